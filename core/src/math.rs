@@ -1,0 +1,228 @@
+//! The one place that computes transcendental functions, so that every target gives the same bits.
+//!
+//! `libm` works in `f32` for all that is used here but sine and cosine; those two are own code, accurate to
+//! [`SIN_COS_MAX_ERROR`] for arguments up to [`SIN_COS_MAX_ARGUMENT_RAD`] in size.
+//! Comparisons are explicit ([`min`], [`max`], [`clamp`]), since `f32::min` of -0 and +0 differs between targets.
+
+use core::f32::consts::{FRAC_2_PI, PI, TAU};
+
+/// Three-component vector of metres (or a unit direction).
+pub type Vec3 = nalgebra::Vector3<f32>;
+/// 3x3 matrix, in this crate a rotation unless said otherwise.
+pub type Mat3 = nalgebra::Matrix3<f32>;
+
+/// Largest absolute error of [`sin_cos`] (asserted by a test against `f64`).
+pub const SIN_COS_MAX_ERROR: f32 = 1.2e-7;
+/// Largest argument for which [`SIN_COS_MAX_ERROR`] holds.
+pub const SIN_COS_MAX_ARGUMENT_RAD: f32 = 1.0e4;
+
+/// Square root; NaN below zero.
+#[inline]
+#[must_use]
+pub fn sqrt(x: f32) -> f32 {
+    libm::sqrtf(x)
+}
+
+/// e to the power of `x`.
+#[inline]
+#[must_use]
+pub fn exp(x: f32) -> f32 {
+    libm::expf(x)
+}
+
+/// Natural logarithm.
+#[inline]
+#[must_use]
+pub fn ln(x: f32) -> f32 {
+    libm::logf(x)
+}
+
+/// Angle of the vector (x, y) in (-pi, pi].
+#[inline]
+#[must_use]
+pub fn atan2(y: f32, x: f32) -> f32 {
+    libm::atan2f(y, x)
+}
+
+/// Arc cosine; arguments beyond +-1 are clamped, so rounding never gives NaN.
+#[inline]
+#[must_use]
+pub fn acos(x: f32) -> f32 {
+    libm::acosf(clamp(x, -1.0, 1.0))
+}
+
+/// Arc sine; arguments beyond +-1 are clamped, so rounding never gives NaN.
+#[inline]
+#[must_use]
+pub fn asin(x: f32) -> f32 {
+    libm::asinf(clamp(x, -1.0, 1.0))
+}
+
+/// Complementary error function.
+#[inline]
+#[must_use]
+pub fn erfc(x: f32) -> f32 {
+    libm::erfcf(x)
+}
+
+/// Largest whole number not above `x`.
+#[inline]
+#[must_use]
+pub fn floor(x: f32) -> f32 {
+    libm::floorf(x)
+}
+
+/// Nearest whole number, halves away from zero.
+#[inline]
+#[must_use]
+pub fn round(x: f32) -> f32 {
+    libm::roundf(x)
+}
+
+/// Absolute value.
+#[inline]
+#[must_use]
+pub fn abs(x: f32) -> f32 {
+    if x < 0.0 { -x } else { x }
+}
+
+/// Smaller of two numbers; `b` where they compare equal or either is NaN.
+#[inline]
+#[must_use]
+pub fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// Greater of two numbers; `b` where they compare equal or either is NaN.
+#[inline]
+#[must_use]
+pub fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// `x` moved into `low..=high`; `low` wins where the interval is inverted.
+#[inline]
+#[must_use]
+pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
+    max(min(x, high), low)
+}
+
+/// Sine and cosine of `x_rad`.
+///
+/// Reduction by multiples of pi/2 (Cody and Waite, three parts), then Taylor polynomials of degree 9 and 10 on
+/// [-pi/4, pi/4]. NaN for NaN and infinity. Beyond [`SIN_COS_MAX_ARGUMENT_RAD`] the error grows with the argument.
+#[inline]
+#[must_use]
+pub fn sin_cos(x_rad: f32) -> (f32, f32) {
+    const PI_HALF_HIGH: f32 = 1.570_312_5;
+    const PI_HALF_MIDDLE: f32 = 4.837_512_97e-4;
+    const PI_HALF_LOW: f32 = 7.549_789_95e-8;
+    if !x_rad.is_finite() {
+        return (f32::NAN, f32::NAN);
+    }
+    let scaled = x_rad * FRAC_2_PI;
+    let quarter_turns = if scaled < 0.0 { (scaled - 0.5) as i32 } else { (scaled + 0.5) as i32 };
+    let whole = quarter_turns as f32;
+    let r = ((x_rad - whole * PI_HALF_HIGH) - whole * PI_HALF_MIDDLE) - whole * PI_HALF_LOW;
+    let r2 = r * r;
+    let sine = r + r * r2 * (-1.666_666_7e-1 + r2 * (8.333_333_3e-3 + r2 * (-1.984_127e-4 + r2 * 2.755_731_9e-6)));
+    let cosine = 1.0
+        + r2 * (-0.5 + r2 * (4.166_666_7e-2 + r2 * (-1.388_888_9e-3 + r2 * (2.480_158_7e-5 - r2 * 2.755_731_9e-7))));
+    match quarter_turns & 3 {
+        0 => (sine, cosine),
+        1 => (cosine, -sine),
+        2 => (-sine, -cosine),
+        _ => (-cosine, sine),
+    }
+}
+
+/// `angle_rad` moved by whole turns into (-pi, pi].
+#[inline]
+#[must_use]
+pub fn wrap_angle(angle_rad: f32) -> f32 {
+    let wrapped = angle_rad - TAU * floor((angle_rad + PI) / TAU);
+    if wrapped <= -PI { PI } else { min(wrapped, PI) }
+}
+
+/// `angle_rad` of an undirected line moved by half turns into [0, pi).
+#[inline]
+#[must_use]
+pub fn wrap_orientation(angle_rad: f32) -> f32 {
+    let wrapped = angle_rad - PI * floor(angle_rad / PI);
+    if wrapped < PI && wrapped >= 0.0 { wrapped } else { 0.0 }
+}
+
+/// Unit vector along `v`, or `None` where `v` is too short (or not finite) to have a direction.
+#[inline]
+#[must_use]
+pub fn unit(v: Vec3) -> Option<Vec3> {
+    let length = sqrt(v.dot(&v));
+    if length > 1.0e-12 && length.is_finite() { Some(v / length) } else { None }
+}
+
+/// Euclidean length of `v`.
+#[inline]
+#[must_use]
+pub fn length(v: &Vec3) -> f32 {
+    sqrt(v.dot(v))
+}
+
+/// Rotation by `angle_rad` about the unit vector `axis` (right-handed), Rodrigues' formula.
+#[inline]
+#[must_use]
+pub fn axis_rotation(axis: &Vec3, angle_rad: f32) -> Mat3 {
+    let (s, c) = sin_cos(angle_rad);
+    let t = 1.0 - c;
+    let (x, y, z) = (axis.x, axis.y, axis.z);
+    Mat3::new(
+        t * x * x + c,
+        t * x * y - s * z,
+        t * x * z + s * y,
+        t * x * y + s * z,
+        t * y * y + c,
+        t * y * z - s * x,
+        t * x * z - s * y,
+        t * y * z + s * x,
+        t * z * z + c,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sine_and_cosine_stay_within_the_stated_error() {
+        let mut worst = 0.0_f64;
+        for i in -400_000..=400_000_i32 {
+            let x = i as f32 * (SIN_COS_MAX_ARGUMENT_RAD / 400_000.0);
+            let (s, c) = sin_cos(x);
+            let exact = f64::from(x);
+            worst = worst.max((f64::from(s) - libm::sin(exact)).abs());
+            worst = worst.max((f64::from(c) - libm::cos(exact)).abs());
+        }
+        assert!(worst <= f64::from(SIN_COS_MAX_ERROR), "worst error {worst:e}");
+        assert!(worst >= 1.0e-8, "an error of {worst:e} is too good to be true");
+    }
+
+    #[test]
+    fn sine_of_infinity_is_nan() {
+        assert!(sin_cos(f32::INFINITY).0.is_nan());
+        assert!(sin_cos(f32::NAN).1.is_nan());
+    }
+
+    #[test]
+    fn wrapping_keeps_the_half_open_interval() {
+        assert_eq!(wrap_angle(PI), PI);
+        assert_eq!(wrap_angle(-PI), PI);
+        assert!(wrap_angle(3.0 * PI) > 3.14);
+        assert_eq!(wrap_orientation(PI), 0.0);
+        assert_eq!(wrap_orientation(-1.0e-9), 0.0);
+    }
+
+    #[test]
+    fn a_rotation_keeps_its_axis_and_turns_right_handed() {
+        let turned = axis_rotation(&Vec3::z(), core::f32::consts::FRAC_PI_2) * Vec3::x();
+        assert!((turned - Vec3::y()).norm() < 1.0e-6);
+    }
+}

@@ -1,0 +1,3 @@
+//! What a frame tells a tracker.
+
+pub mod candidate;

@@ -1,0 +1,1 @@
+//! What a camera's lines can give without a frame buffer.

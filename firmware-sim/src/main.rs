@@ -1,0 +1,3 @@
+//! What camera firmware does with the core, run on the host.
+
+fn main() {}

@@ -1,0 +1,3 @@
+//! The command `sinew`.
+
+fn main() {}

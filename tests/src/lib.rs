@@ -1,0 +1,1 @@
+//! Instruments that the tests of this package share.
