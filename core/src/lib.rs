@@ -5,4 +5,5 @@ pub mod camera;
 pub mod error;
 pub mod math;
 pub mod observation;
+pub mod random;
 pub mod vision;
