@@ -1,1 +1,5 @@
 //! Host side of Sinew: image folders, skin models, scenes, plots and reports around [`sinew_core`].
+
+pub mod cli;
+pub mod images;
+pub mod output;

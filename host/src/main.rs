@@ -1,3 +1,15 @@
 //! The command `sinew`.
 
-fn main() {}
+use clap::Parser;
+use std::process::ExitCode;
+
+#[allow(unreachable_code)] // as long as no subcommand is there
+fn main() -> ExitCode {
+    match sinew::cli::run(&sinew::cli::Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

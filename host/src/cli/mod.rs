@@ -1,0 +1,38 @@
+//! The command tree: one file per subcommand, each with its `...Args` and a `run`.
+//!
+//! To add a subcommand, write `cli/NAME.rs` with `pub struct NameArgs` (`clap::Args`) and
+//! `pub fn run(args: &NameArgs) -> anyhow::Result<()>`, then add a variant and an arm here.
+
+use clap::{Parser, Subcommand};
+
+/// Estimates how a human body moves, from a camera.
+#[derive(Debug, Parser)]
+#[command(name = "sinew", version, about, arg_required_else_help = true, subcommand_required = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The subcommands of `sinew`.
+#[derive(Debug, Subcommand)]
+pub enum Command {}
+
+/// Runs one parsed command line.
+///
+/// # Errors
+/// Whatever the subcommand refuses, with the file or option, the rule it broke, and the remedy.
+pub fn run(cli: &Cli) -> anyhow::Result<()> {
+    match cli.command {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Cli;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_tree_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,6 @@
+//! Folders of images: which files, in which order, as RGB pixels.
+
+pub mod folder;
+pub mod jpeg;
+
+pub use folder::{ImageFileError, ImageInput, InputError, list_images, load_rgb};
