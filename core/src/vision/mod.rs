@@ -1,1 +1,3 @@
 //! What a camera's lines can give without a frame buffer.
+
+pub mod skin;

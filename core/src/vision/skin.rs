@@ -1,0 +1,260 @@
+//! Skin-coloured or not: a Gaussian in chromaticity, or a table over colours.
+//!
+//! Both classifiers turn a line of interleaved RGB bytes into bits, 32 pixels a word, pixel 0 in the lowest bit.
+
+use crate::error::{ParameterError, Rule, finite, positive, within};
+use crate::math::sqrt;
+
+/// Pixels in one word of a line of bits.
+pub const PIXELS_PER_WORD: usize = 32;
+/// Cells along one side of the colour cube of [`HistogramSkin`].
+pub const CUBE_SIDE: usize = 32;
+/// Words of the decision table of [`HistogramSkin`]: one bit a cell of the colour cube, 4 KiB.
+pub const CUBE_WORDS: usize = CUBE_SIDE * CUBE_SIDE;
+
+/// Decides for each pixel of a line whether it shows skin.
+pub trait SkinClassifier {
+    /// Writes one bit a pixel of `rgb` (three bytes a pixel) into `bits`, lowest bit first, 1 = skin.
+    ///
+    /// Judges as many whole pixels as `rgb` holds and `bits` has room for; all other bits of `bits` become zero.
+    fn classify_line(&self, rgb: &[u8], bits: &mut [u32]);
+}
+
+/// Skin as a normal distribution of chromaticity r = R/(R+G+B), g = G/(R+G+B), the arm paper's section 3.1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct GaussianSkin {
+    mean: [f32; 2],
+    covariance: [f32; 3],
+    /// Inverse covariance: rr, rg, gg.
+    precision: [f32; 3],
+    threshold: f32,
+    min_sum: u16,
+}
+
+impl GaussianSkin {
+    /// Skin is what lies within the Mahalanobis distance `threshold` of (`mean_r`, `mean_g`), given the `covariance`
+    /// (rr, rg, gg). Pixels darker than `min_sum` = R+G+B (0 to 765) have no usable chromaticity and are not skin.
+    ///
+    /// # Errors
+    /// Means within 0 to 1, a finite, positive definite covariance, a positive threshold, `min_sum` at most 765.
+    pub fn new(
+        mean_r: f32,
+        mean_g: f32,
+        covariance: [f32; 3],
+        threshold: f32,
+        min_sum: u16,
+    ) -> Result<Self, ParameterError> {
+        let mean = [within("mean_r", mean_r, 0.0, 1.0)?, within("mean_g", mean_g, 0.0, 1.0)?];
+        for value in covariance {
+            finite("covariance", value)?;
+        }
+        let [rr, rg, gg] = covariance;
+        let determinant = rr * gg - rg * rg;
+        let precision = [gg / determinant, -rg / determinant, rr / determinant];
+        if !(rr > 0.0 && determinant > 0.0 && precision.iter().all(|p| p.is_finite())) {
+            return Err(ParameterError::new("covariance", Rule::PositiveDefinite));
+        }
+        within("min_sum", f32::from(min_sum), 0.0, 765.0)?;
+        Ok(Self { mean, covariance, precision, threshold: positive("threshold", threshold)?, min_sum })
+    }
+
+    /// Mean of r.
+    #[must_use]
+    pub fn mean_r(&self) -> f32 {
+        self.mean[0]
+    }
+
+    /// Mean of g.
+    #[must_use]
+    pub fn mean_g(&self) -> f32 {
+        self.mean[1]
+    }
+
+    /// Covariance of (r, g): rr, rg, gg.
+    #[must_use]
+    pub fn covariance(&self) -> [f32; 3] {
+        self.covariance
+    }
+
+    /// Largest Mahalanobis distance that counts as skin.
+    #[must_use]
+    pub fn threshold(&self) -> f32 {
+        self.threshold
+    }
+
+    /// Smallest R+G+B that is judged at all.
+    #[must_use]
+    pub fn min_sum(&self) -> u16 {
+        self.min_sum
+    }
+
+    /// The same distribution with another `threshold`.
+    ///
+    /// # Errors
+    /// The threshold has to be positive.
+    pub fn with_threshold(self, threshold: f32) -> Result<Self, ParameterError> {
+        Ok(Self { threshold: positive("threshold", threshold)?, ..self })
+    }
+
+    /// Mahalanobis distance of a colour's chromaticity from the mean; `None` for a colour darker than `min_sum` (or black).
+    #[must_use]
+    pub fn distance(&self, rgb: [u8; 3]) -> Option<f32> {
+        let sum = rgb.iter().map(|&c| f32::from(c)).sum::<f32>();
+        if sum <= 0.0 || sum < f32::from(self.min_sum) {
+            return None;
+        }
+        let (r, g) = (f32::from(rgb[0]) / sum - self.mean[0], f32::from(rgb[1]) / sum - self.mean[1]);
+        let [rr, rg, gg] = self.precision;
+        Some(sqrt(crate::math::max(r * (rr * r + 2.0 * rg * g) + gg * g * g, 0.0)))
+    }
+
+    /// The decision for 32 pixels given as planes; no division, since all terms are scaled by (R+G+B)^2.
+    fn classify_block(&self, red: &[i32; 32], green: &[i32; 32], blue: &[i32; 32]) -> u32 {
+        let [rr, rg, gg] = self.precision;
+        let rg_twice = 2.0 * rg;
+        let threshold2 = self.threshold * self.threshold;
+        let min_sum = i32::from(self.min_sum.max(1));
+        let mut chosen = [0_u32; 32];
+        for (i, bit) in chosen.iter_mut().enumerate() {
+            let whole = red[i] + green[i] + blue[i];
+            let sum = whole as f32;
+            let r = red[i] as f32 - self.mean[0] * sum;
+            let g = green[i] as f32 - self.mean[1] * sum;
+            let form = r * (rr * r + rg_twice * g) + gg * g * g;
+            let inside = u32::from(form <= threshold2 * sum * sum) & u32::from(whole >= min_sum);
+            *bit = inside << i;
+        }
+        chosen.iter().fold(0, |word, bit| word | bit)
+    }
+}
+
+impl SkinClassifier for GaussianSkin {
+    fn classify_line(&self, rgb: &[u8], bits: &mut [u32]) {
+        let mut blocks = rgb.chunks(3 * PIXELS_PER_WORD);
+        for word in bits {
+            let (mut red, mut green, mut blue) = ([0_i32; 32], [0_i32; 32], [0_i32; 32]);
+            // Pixels beyond the line's end stay black, and black is never skin.
+            let block = blocks.next().unwrap_or(&[]);
+            for (i, pixel) in block.as_chunks::<3>().0.iter().enumerate().take(PIXELS_PER_WORD) {
+                red[i] = i32::from(pixel[0]);
+                green[i] = i32::from(pixel[1]);
+                blue[i] = i32::from(pixel[2]);
+            }
+            *word = self.classify_block(&red, &green, &blue);
+        }
+    }
+}
+
+/// Skin as a table over 32 x 32 x 32 colours, a decision bit each.
+///
+/// The bit of a colour is bit `B >> 3` of word `(R >> 3) * 32 + (G >> 3)`: see [`HistogramSkin::bit_of`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HistogramSkin<'a> {
+    table: &'a [u32; CUBE_WORDS],
+}
+
+impl<'a> HistogramSkin<'a> {
+    /// A classifier that looks up each colour in `table`, which may lie in flash.
+    #[must_use]
+    pub const fn new(table: &'a [u32; CUBE_WORDS]) -> Self {
+        Self { table }
+    }
+
+    /// The decision table.
+    #[must_use]
+    pub const fn table(&self) -> &'a [u32; CUBE_WORDS] {
+        self.table
+    }
+
+    /// Word (0 to 1023) and bit (0 to 31) of a colour in the table.
+    #[inline]
+    #[must_use]
+    pub const fn bit_of(rgb: [u8; 3]) -> (usize, u32) {
+        (((rgb[0] >> 3) as usize) << 5 | (rgb[1] >> 3) as usize, (rgb[2] >> 3) as u32)
+    }
+
+    /// Whether a colour counts as skin.
+    #[inline]
+    #[must_use]
+    pub fn is_skin(&self, rgb: [u8; 3]) -> bool {
+        let (word, bit) = Self::bit_of(rgb);
+        (self.table[word & (CUBE_WORDS - 1)] >> bit) & 1 == 1
+    }
+}
+
+impl SkinClassifier for HistogramSkin<'_> {
+    fn classify_line(&self, rgb: &[u8], bits: &mut [u32]) {
+        let mut blocks = rgb.chunks(3 * PIXELS_PER_WORD);
+        for word in bits {
+            let block = blocks.next().unwrap_or(&[]);
+            let pixels = block.as_chunks::<3>().0.iter().enumerate();
+            *word = pixels.fold(0, |packed, (i, &pixel)| packed | u32::from(self.is_skin(pixel)) << (i & 31));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn model() -> GaussianSkin {
+        GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60).unwrap()
+    }
+
+    proptest! {
+        #[test]
+        fn the_line_agrees_with_the_distance(rgb in prop::collection::vec(any::<u8>(), 0..400), words in 0_usize..6) {
+            let mut bits = vec![u32::MAX; words];
+            model().classify_line(&rgb, &mut bits);
+            for i in 0..32 * words {
+                let bit = bits[i / 32] >> (i % 32) & 1 == 1;
+                match rgb.as_chunks::<3>().0.get(i).and_then(|&pixel| model().distance(pixel)) {
+                    None => prop_assert!(!bit),
+                    Some(d) if (d - 2.0).abs() > 1.0e-4 => prop_assert_eq!(bit, d < 2.0, "pixel {} at {}", i, d),
+                    Some(_) => {}
+                }
+            }
+        }
+
+        #[test]
+        fn the_table_is_read_in_the_documented_order(colour in any::<[u8; 3]>(), other in any::<[u8; 3]>()) {
+            let mut table = [0_u32; CUBE_WORDS];
+            table[usize::from(colour[0] / 8) * 32 + usize::from(colour[1] / 8)] = 1 << (colour[2] / 8);
+            let skin = HistogramSkin::new(&table);
+            let same = (0..3).all(|i| colour[i] / 8 == other[i] / 8);
+            let line = [colour, other].concat();
+            let mut bits = [u32::MAX; 2];
+            skin.classify_line(&line, &mut bits);
+            prop_assert_eq!(bits, [1 | u32::from(same) << 1, 0]);
+        }
+    }
+
+    #[test]
+    fn a_whole_line_of_skin_sets_no_bit_beyond_its_end() {
+        let line: Vec<u8> = [200, 140, 110].repeat(35);
+        let mut bits = [0; 3];
+        model().classify_line(&line, &mut bits);
+        assert_eq!(bits, [u32::MAX, 0b111, 0]);
+    }
+
+    #[test]
+    fn distance_counts_standard_deviations() {
+        let skin = GaussianSkin::new(0.4, 0.3, [0.01, 0.0, 0.04], 1.0, 0).unwrap();
+        let d = skin.distance([60, 30, 10]).unwrap();
+        assert!((d - 2.0).abs() < 1.0e-5, "{d}");
+        assert_eq!(skin.distance([0, 0, 0]), None);
+    }
+
+    #[test]
+    fn bad_parameters_are_refused_by_name() {
+        let bad = |c, t, s| GaussianSkin::new(0.4, 0.3, c, t, s).unwrap_err();
+        assert_eq!(bad([1.0, 1.0, 1.0], 1.0, 0), ParameterError::new("covariance", Rule::PositiveDefinite));
+        assert_eq!(bad([f32::NAN, 0.0, 1.0], 1.0, 0), ParameterError::new("covariance", Rule::Finite));
+        assert_eq!(bad([1.0e-30, 0.0, 1.0e-30], 1.0, 0), ParameterError::new("covariance", Rule::PositiveDefinite));
+        assert_eq!(bad([1.0, 0.0, 1.0], 0.0, 0), ParameterError::new("threshold", Rule::Positive));
+        assert_eq!(bad([1.0, 0.0, 1.0], 1.0, 766).parameter, "min_sum");
+        assert_eq!(GaussianSkin::new(1.5, 0.3, [1.0, 0.0, 1.0], 1.0, 0).unwrap_err().parameter, "mean_r");
+    }
+}
