@@ -1,9 +1,13 @@
 #![cfg_attr(not(test), no_std)]
 #![doc = include_str!("../README.md")]
 
+pub mod angle;
 pub mod camera;
 pub mod error;
+pub mod kinematics;
 pub mod math;
 pub mod observation;
+pub mod particle;
 pub mod random;
+pub mod skeleton;
 pub mod vision;

@@ -1,0 +1,78 @@
+//! Angles on the circle: weighted means that do not break where the circle closes.
+
+use crate::math::{atan2, ln, sin_cos, sqrt};
+
+/// Sums of cosines and sines of weighted angles.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CircularSum {
+    cosine: f32,
+    sine: f32,
+    weight: f32,
+}
+
+impl CircularSum {
+    /// Adds `angle_rad` with a `weight`, which should not be negative.
+    #[inline]
+    pub fn add(&mut self, angle_rad: f32, weight: f32) {
+        let (s, c) = sin_cos(angle_rad);
+        self.cosine += weight * c;
+        self.sine += weight * s;
+        self.weight += weight;
+    }
+
+    /// Mean direction in (-pi, pi]; `None` where the angles cancel or nothing was added.
+    #[must_use]
+    pub fn mean_rad(&self) -> Option<f32> {
+        (self.resultant_length()? > 1.0e-6).then(|| atan2(self.sine, self.cosine))
+    }
+
+    /// Mean resultant length in [0, 1]: 1 where all angles agree; `None` without weight.
+    #[must_use]
+    pub fn resultant_length(&self) -> Option<f32> {
+        if self.weight > 0.0 {
+            Some(sqrt(self.cosine * self.cosine + self.sine * self.sine) / self.weight)
+        } else {
+            None
+        }
+    }
+
+    /// Circular standard deviation sqrt(-2 ln R), radians; `None` without weight.
+    #[must_use]
+    pub fn std_rad(&self) -> Option<f32> {
+        let length = self.resultant_length()?;
+        Some(if length >= 1.0 { 0.0 } else { sqrt(-2.0 * ln(length)) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f32::consts::PI;
+
+    #[test]
+    fn the_mean_of_angles_around_the_seam_lies_at_the_seam() {
+        let mut sum = CircularSum::default();
+        sum.add(PI - 0.1, 1.0);
+        sum.add(-PI + 0.1, 1.0);
+        assert!((sum.mean_rad().unwrap().abs() - PI).abs() < 1.0e-5);
+        assert!((sum.std_rad().unwrap() - 0.1).abs() < 1.0e-3);
+    }
+
+    #[test]
+    fn weights_pull_the_mean() {
+        let mut sum = CircularSum::default();
+        sum.add(0.0, 3.0);
+        sum.add(0.4, 1.0);
+        assert!((sum.mean_rad().unwrap() - 0.1).abs() < 2.0e-3);
+    }
+
+    #[test]
+    fn opposite_angles_have_no_mean() {
+        let mut sum = CircularSum::default();
+        assert_eq!(sum.mean_rad(), None);
+        assert_eq!(sum.std_rad(), None);
+        sum.add(0.0, 1.0);
+        sum.add(PI, 1.0);
+        assert_eq!(sum.mean_rad(), None);
+    }
+}

@@ -1,0 +1,94 @@
+//! Cholesky factor of a small symmetric matrix: H = L L'.
+//!
+//! Own code in place of nalgebra's, since the proposal needs the rows of L one by one and none of it may hold a panic.
+
+use crate::math::sqrt;
+
+/// Lower triangular factor; entries above the diagonal are zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cholesky<const N: usize> {
+    /// Rows of L.
+    pub lower: [[f32; N]; N],
+}
+
+impl<const N: usize> Cholesky<N> {
+    /// Factors `matrix` (only its lower half is read); `None` where it is not positive definite.
+    #[must_use]
+    pub fn new(matrix: &[[f32; N]; N]) -> Option<Self> {
+        let mut lower = [[0.0; N]; N];
+        for i in 0..N {
+            for j in 0..=i {
+                let mut sum = matrix[i][j];
+                for k in 0..j {
+                    sum -= lower[i][k] * lower[j][k];
+                }
+                if i == j {
+                    if !(sum > 0.0 && sum.is_finite()) {
+                        return None;
+                    }
+                    lower[i][i] = sqrt(sum);
+                } else {
+                    lower[i][j] = sum / lower[j][j];
+                }
+            }
+        }
+        Some(Self { lower })
+    }
+
+    /// x with H x = `right`.
+    #[must_use]
+    pub fn solve(&self, right: &[f32; N]) -> [f32; N] {
+        let mut x = *right;
+        for i in 0..N {
+            for k in 0..i {
+                x[i] -= self.lower[i][k] * x[k];
+            }
+            x[i] /= self.lower[i][i];
+        }
+        for i in (0..N).rev() {
+            for k in i + 1..N {
+                x[i] -= self.lower[k][i] * x[k];
+            }
+            x[i] /= self.lower[i][i];
+        }
+        x
+    }
+
+    /// ln |H|.
+    #[must_use]
+    pub fn log_determinant(&self) -> f32 {
+        (0..N).map(|i| 2.0 * crate::math::ln(self.lower[i][i])).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn solving_undoes_multiplying(factor in prop::array::uniform3(prop::array::uniform3(-1.0_f32..1.0)),
+                                      x in prop::array::uniform3(-1.0_f32..1.0)) {
+            let mut matrix = [[0.0; 3]; 3];
+            let mut right = [0.0; 3];
+            for i in 0..3 {
+                for j in 0..3 {
+                    matrix[i][j] = (0..3).map(|k| factor[i][k] * factor[j][k]).sum::<f32>() + if i == j { 0.5 } else { 0.0 };
+                }
+                right[i] = (0..3).map(|j| matrix[i][j] * x[j]).sum();
+            }
+            let back = Cholesky::new(&matrix).unwrap().solve(&right);
+            for i in 0..3 {
+                prop_assert!((back[i] - x[i]).abs() < 1.0e-4);
+            }
+        }
+    }
+
+    #[test]
+    fn an_indefinite_matrix_has_no_factor() {
+        assert_eq!(Cholesky::new(&[[1.0, 2.0], [2.0, 1.0]]), None);
+        assert_eq!(Cholesky::new(&[[f32::NAN]]), None);
+        assert!((Cholesky::new(&[[4.0, 0.0], [0.0, 9.0]]).unwrap().log_determinant() - 36.0_f32.ln()).abs() < 1.0e-6);
+    }
+}

@@ -1,0 +1,61 @@
+//! Forward kinematics (PIK paper, section 2.1, eq. 1).
+
+use crate::math::{Mat3, Vec3, axis_rotation};
+use crate::skeleton::Skeleton;
+
+/// Where all bones of a skeleton are in one pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Posture<const BONES: usize, const ANGLES: usize> {
+    /// Joint at which each bone starts, metres.
+    pub joints: [Vec3; BONES],
+    /// End of each bone, metres: the end-effectors.
+    pub ends: [Vec3; BONES],
+    /// Unit axis about which each angle turns in this pose.
+    pub axes: [Vec3; ANGLES],
+}
+
+/// The posture of `skeleton` at `root_m` with `angles_rad`.
+#[must_use]
+pub fn posture<const BONES: usize, const ANGLES: usize>(
+    skeleton: &Skeleton<BONES, ANGLES>,
+    root_m: &Vec3,
+    angles_rad: &[f32; ANGLES],
+) -> Posture<BONES, ANGLES> {
+    let mut result = Posture { joints: [*root_m; BONES], ends: [*root_m; BONES], axes: [Vec3::zeros(); ANGLES] };
+    let mut rotations = [Mat3::identity(); BONES];
+    let mut angle = 0;
+    for (index, bone) in skeleton.bones().iter().enumerate() {
+        let parent = bone.parent.map(usize::from).filter(|&parent| parent < BONES);
+        let mut rotation = parent.map_or_else(Mat3::identity, |parent| rotations[parent]);
+        let joint = parent.map_or(*root_m, |parent| result.ends[parent]);
+        for axis in bone.joint.axes() {
+            if let (Some(slot), Some(&value)) = (result.axes.get_mut(angle), angles_rad.get(angle)) {
+                *slot = rotation * axis;
+                rotation *= axis_rotation(axis, value);
+            }
+            angle += 1;
+        }
+        rotations[index] = rotation;
+        result.joints[index] = joint;
+        result.ends[index] = joint + rotation * bone.offset_m;
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::{Bone, Joint, Limit};
+    use core::f32::consts::FRAC_PI_2;
+
+    #[test]
+    fn a_planar_two_link_chain_lands_where_trigonometry_says() {
+        let hinge = |parent| Bone { parent, joint: Joint::Hinge(Vec3::z()), offset_m: Vec3::x() };
+        let limits = [Limit::from_degrees(-180.0, 180.0); 2];
+        let chain = Skeleton::<2, 2>::new([hinge(None), hinge(Some(0))], limits).unwrap();
+        let there = posture(&chain, &Vec3::new(5.0, 0.0, 0.0), &[FRAC_PI_2, -FRAC_PI_2]);
+        assert!((there.ends[0] - Vec3::new(5.0, 1.0, 0.0)).norm() < 1.0e-6);
+        assert!((there.ends[1] - Vec3::new(6.0, 1.0, 0.0)).norm() < 1.0e-6);
+        assert_eq!(there.joints[1], there.ends[0]);
+    }
+}

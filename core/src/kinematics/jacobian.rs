@@ -1,0 +1,49 @@
+//! How a bone's end moves with each angle: axis x (end-effector - joint) (PIK paper, fig. 5).
+
+use super::forward::Posture;
+use crate::math::Vec3;
+use crate::skeleton::Skeleton;
+
+/// Derivative of the end of `bone` with respect to `angle`, metres per radian.
+#[inline]
+#[must_use]
+pub fn column<const BONES: usize, const ANGLES: usize>(
+    skeleton: &Skeleton<BONES, ANGLES>,
+    posture: &Posture<BONES, ANGLES>,
+    bone: usize,
+    angle: usize,
+) -> Vec3 {
+    if !skeleton.angle_moves(angle, bone) {
+        return Vec3::zeros();
+    }
+    match (posture.axes.get(angle), posture.ends.get(bone), posture.joints.get(skeleton.bone_of_angle(angle))) {
+        (Some(axis), Some(end), Some(joint)) => axis.cross(&(end - joint)),
+        _ => Vec3::zeros(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::forward::posture;
+    use crate::skeleton::{ArmGeometry, Side};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_jacobian_is_the_slope_of_forward_kinematics(
+            angles in prop::array::uniform4(-1.5_f32..1.5), bone in 0_usize..2, angle in 0_usize..4,
+        ) {
+            let skeleton = ArmGeometry::new(Side::Right, 0.3, 0.35).unwrap().skeleton().unwrap();
+            let step = 0.01;
+            let (mut below, mut above) = (angles, angles);
+            below[angle] -= step;
+            above[angle] += step;
+            let root = Vec3::new(0.1, 0.2, 1.0);
+            let slope = (posture(&skeleton, &root, &above).ends[bone] - posture(&skeleton, &root, &below).ends[bone])
+                / (2.0 * step);
+            let exact = column(&skeleton, &posture(&skeleton, &root, &angles), bone, angle);
+            prop_assert!((slope - exact).norm() < 1.0e-4, "{} instead of {}", slope, exact);
+        }
+    }
+}

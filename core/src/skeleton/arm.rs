@@ -1,0 +1,222 @@
+//! An arm: three shoulder angles and one elbow angle, the hand being part of the forearm (arm paper, section 2).
+//!
+//! With all angles zero the arm hangs straight down. The shoulder's ball joint turns by
+//!
+//! 1. *elevation* in the scapular plane, 45 degrees in front of the body's side (positive: up and out),
+//! 2. *deviation* out of that plane (positive: inwards to the front, negative: outwards to the back),
+//! 3. *axial rotation* of the upper arm (positive: inwards),
+//!
+//! and the elbow by *flexion*. The singular directions of this order (deviation +-90 degrees) point inwards to the front
+//! and outwards to the back, where an arm cannot go: the limits exclude them.
+
+use super::tree::{Bone, Joint, Limit, Skeleton};
+use crate::error::{ParameterError, Rule, finite, positive};
+use crate::math::{Mat3, Vec3, abs, acos, asin, atan2, axis_rotation, clamp, unit};
+use core::f32::consts::{FRAC_1_SQRT_2, PI};
+
+/// Whose side: the person's own left or right, not the image's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Side {
+    /// The person's left.
+    Left,
+    /// The person's right.
+    Right,
+}
+
+/// Number of angles of an arm.
+pub const ARM_ANGLES: usize = 4;
+/// Number of bones of an arm: upper arm and forearm.
+pub const ARM_BONES: usize = 2;
+/// Index of the upper arm, whose end is the elbow.
+pub const UPPER_ARM: usize = 0;
+/// Index of the forearm, whose end is the hand.
+pub const FOREARM: usize = 1;
+
+/// Angles of an arm: elevation, deviation, axial rotation, elbow flexion; radians.
+pub type ArmAngles = [f32; ARM_ANGLES];
+
+/// The default limits: active range of motion of a healthy adult, rounded outwards to five degrees.
+pub const ARM_LIMITS: [Limit; ARM_ANGLES] = [
+    Limit::from_degrees(-50.0, 175.0),
+    Limit::from_degrees(-70.0, 80.0),
+    Limit::from_degrees(-95.0, 125.0),
+    Limit::from_degrees(0.0, 150.0),
+];
+
+/// Lengths, place and limits of one arm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArmGeometry {
+    /// The person's own side.
+    pub side: Side,
+    /// From shoulder to elbow, metres.
+    pub upper_arm_m: f32,
+    /// From elbow to the middle of the hand, metres.
+    pub forearm_m: f32,
+    /// Legal angles.
+    pub limits: [Limit; ARM_ANGLES],
+    /// Turns body axes (left, up, front as columns' images) into camera axes; see [`facing_camera`].
+    pub torso: Mat3,
+}
+
+/// The torso's rotation when the person faces the camera upright: left = +x, up = -y, front = -z.
+#[must_use]
+pub fn facing_camera() -> Mat3 {
+    Mat3::from_columns(&[Vec3::x(), -Vec3::y(), -Vec3::z()])
+}
+
+impl ArmGeometry {
+    /// An arm of a person who faces the camera, with the default limits.
+    ///
+    /// # Errors
+    /// Both lengths have to be positive.
+    pub fn new(side: Side, upper_arm_m: f32, forearm_m: f32) -> Result<Self, ParameterError> {
+        Ok(Self {
+            side,
+            upper_arm_m: positive("upper_arm_m", upper_arm_m)?,
+            forearm_m: positive("forearm_m", forearm_m)?,
+            limits: ARM_LIMITS,
+            torso: facing_camera(),
+        })
+    }
+
+    /// Greatest distance of the hand from the shoulder, metres.
+    #[must_use]
+    pub fn reach_m(&self) -> f32 {
+        self.upper_arm_m + self.forearm_m
+    }
+
+    /// Outward, up and front in camera axes.
+    fn directions(&self) -> (Vec3, Vec3, Vec3) {
+        let left: Vec3 = self.torso.column(0).into();
+        let outward = if self.side == Side::Left { left } else { -left };
+        (outward, self.torso.column(1).into(), self.torso.column(2).into())
+    }
+
+    /// The arm as a tree of bones in camera axes.
+    ///
+    /// # Errors
+    /// As [`Skeleton::new`]; `torso` has to be a rotation.
+    pub fn skeleton(&self) -> Result<Skeleton<ARM_BONES, ARM_ANGLES>, ParameterError> {
+        finite("torso", self.torso.sum())?;
+        if abs(self.torso.determinant() - 1.0) > 1.0e-3 {
+            return Err(ParameterError::new("torso determinant", Rule::Within { low: 1.0, high: 1.0 }));
+        }
+        let (outward, up, front) = self.directions();
+        let (in_plane, out_of_plane) = scapular_plane(&outward, &front);
+        let down = -up;
+        let shoulder = Joint::Ball([down.cross(&in_plane), down.cross(&out_of_plane), front.cross(&-outward)]);
+        let bones = [
+            Bone { parent: None, joint: shoulder, offset_m: down * self.upper_arm_m },
+            Bone {
+                parent: Some(UPPER_ARM as u8),
+                joint: Joint::Hinge(down.cross(&front)),
+                offset_m: down * self.forearm_m,
+            },
+        ];
+        Skeleton::new(bones, self.limits)
+    }
+
+    /// The angles, cut to the limits, whose elbow and hand lie in the given directions: inverse kinematics of an arm
+    /// whose elbow is known.
+    ///
+    /// `elbow_m` and `hand_m` are relative to the shoulder. Lengths need not fit: the upper arm points to the elbow and
+    /// the forearm from there to the hand. A part without direction keeps the `fallback` angles.
+    #[must_use]
+    pub fn angles_from_joints(&self, elbow_m: &Vec3, hand_m: &Vec3, fallback: &ArmAngles) -> ArmAngles {
+        let (outward, up, front) = self.directions();
+        let (in_plane, out_of_plane) = scapular_plane(&outward, &front);
+        let mut angles = *fallback;
+        if let Some(upper) = unit(*elbow_m) {
+            angles[0] = elevation_within(&self.limits[0], atan2(upper.dot(&in_plane), -upper.dot(&up)));
+            angles[1] = asin(upper.dot(&out_of_plane));
+        }
+        for i in 0..2 {
+            angles[i] = self.limits[i].clamp(angles[i]);
+        }
+        if let Some(fore) = unit(hand_m - elbow_m) {
+            let down = -up;
+            let swing =
+                axis_rotation(&down.cross(&in_plane), angles[0]) * axis_rotation(&down.cross(&out_of_plane), angles[1]);
+            let local = swing.transpose() * fore;
+            angles[3] = acos(local.dot(&down));
+            let (ahead, inward) = (local.dot(&front), local.dot(&-outward));
+            if ahead * ahead + inward * inward > 1.0e-8 {
+                angles[2] = atan2(inward, ahead);
+            }
+        }
+        for i in 2..ARM_ANGLES {
+            angles[i] = self.limits[i].clamp(angles[i]);
+        }
+        angles
+    }
+}
+
+/// Unit vectors in the scapular plane (outwards to the front) and across it (inwards to the front).
+fn scapular_plane(outward: &Vec3, front: &Vec3) -> (Vec3, Vec3) {
+    ((outward + front) * FRAC_1_SQRT_2, (front - outward) * FRAC_1_SQRT_2)
+}
+
+/// The turn of `angle_rad` that lies in `limit`, or that is nearest to it.
+fn elevation_within(limit: &Limit, angle_rad: f32) -> f32 {
+    let middle = 0.5 * (limit.low_rad + limit.high_rad);
+    let turned = middle + crate::math::wrap_angle(angle_rad - middle);
+    clamp(turned, middle - PI, middle + PI)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::forward::posture;
+    use proptest::prelude::*;
+
+    fn arm(side: Side) -> ArmGeometry {
+        ArmGeometry::new(side, 0.3, 0.35).unwrap()
+    }
+
+    #[test]
+    fn a_bent_elbow_points_to_the_camera_and_inward_rotation_points_inwards() {
+        for (side, inward) in [(Side::Left, -1.0), (Side::Right, 1.0)] {
+            let skeleton = arm(side).skeleton().unwrap();
+            let bent = posture(&skeleton, &Vec3::zeros(), &[0.0, 0.0, 0.0, PI / 2.0]);
+            assert!((bent.ends[FOREARM] - Vec3::new(0.0, 0.3, -0.35)).norm() < 1.0e-5);
+            let turned = posture(&skeleton, &Vec3::zeros(), &[0.0, 0.0, PI / 2.0, PI / 2.0]);
+            assert!((turned.ends[FOREARM] - Vec3::new(0.35 * inward, 0.3, 0.0)).norm() < 1.0e-5);
+            let raised = posture(&skeleton, &Vec3::zeros(), &[PI / 2.0, -PI / 4.0, 0.0, 0.0]);
+            assert!((raised.ends[FOREARM] - Vec3::new(-0.65 * inward, 0.0, 0.0)).norm() < 1.0e-5, "out to the side");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn angles_come_back_from_elbow_and_hand(
+            e in -0.8_f32..3.0, d in -1.2_f32..1.35, t in -1.6_f32..2.1, f in 0.05_f32..2.6, left in any::<bool>(),
+        ) {
+            let geometry = arm(if left { Side::Left } else { Side::Right });
+            let skeleton = geometry.skeleton().unwrap();
+            let angles = [e, d, t, f];
+            let there = posture(&skeleton, &Vec3::zeros(), &angles);
+            let back = geometry.angles_from_joints(&there.ends[UPPER_ARM], &there.ends[FOREARM], &[0.0; 4]);
+            let again = posture(&skeleton, &Vec3::zeros(), &back);
+            prop_assert!((there.ends[FOREARM] - again.ends[FOREARM]).norm() < 2.0e-4, "{:?} {:?}", angles, back);
+            prop_assert!((there.ends[UPPER_ARM] - again.ends[UPPER_ARM]).norm() < 2.0e-4);
+        }
+
+        #[test]
+        fn any_two_points_give_a_legal_pose(
+            ex in -1.0_f32..1.0, ey in -1.0_f32..1.0, ez in -1.0_f32..1.0,
+            hx in -1.0_f32..1.0, hy in -1.0_f32..1.0, hz in -1.0_f32..1.0,
+        ) {
+            let angles = arm(Side::Left).angles_from_joints(&Vec3::new(ex, ey, ez), &Vec3::new(hx, hy, hz), &[0.0; 4]);
+            for (angle, limit) in angles.iter().zip(&ARM_LIMITS) {
+                prop_assert!(*angle >= limit.low_rad && *angle <= limit.high_rad);
+            }
+        }
+    }
+
+    #[test]
+    fn a_point_without_direction_keeps_the_fallback() {
+        let fallback = [0.3, 0.2, 0.1, 0.4];
+        assert_eq!(arm(Side::Left).angles_from_joints(&Vec3::zeros(), &Vec3::zeros(), &fallback), fallback);
+    }
+}

@@ -1,0 +1,7 @@
+//! What a body is: rigid bones in a tree, their joints and limits. Immutable; poses are small arrays of angles.
+
+pub mod arm;
+pub mod tree;
+
+pub use arm::{ArmGeometry, Side};
+pub use tree::{Bone, Joint, Limit, Skeleton};
