@@ -3,11 +3,13 @@
 
 pub mod angle;
 pub mod camera;
+pub mod correction;
 pub mod error;
 pub mod kinematics;
 pub mod math;
 pub mod observation;
 pub mod particle;
+pub mod pik;
 pub mod random;
 pub mod skeleton;
 pub mod vision;
