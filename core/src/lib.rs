@@ -12,4 +12,5 @@ pub mod particle;
 pub mod pik;
 pub mod random;
 pub mod skeleton;
+pub mod tracker;
 pub mod vision;

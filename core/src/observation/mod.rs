@@ -1,3 +1,7 @@
 //! What a frame tells a tracker.
 
 pub mod candidate;
+pub mod edge_pixel;
+pub mod hough;
+pub mod limbs;
+pub mod orientation;

@@ -1,0 +1,174 @@
+//! A probability density over the orientation of a line in the image, modulo pi.
+
+use crate::error::{ParameterError, Rule};
+use crate::math::{clamp, floor, ln, sin_cos, sqrt, wrap_orientation};
+use core::f32::consts::PI;
+
+/// Most bins of a histogram.
+pub const MAX_BINS: usize = 72;
+
+/// Histogram density of an orientation. It is stored relative to the uniform density: 1 everywhere means uniform.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OrientationDensity {
+    bins: [f32; MAX_BINS],
+    len: usize,
+}
+
+impl OrientationDensity {
+    /// The uniform density over `bins` bins.
+    ///
+    /// # Errors
+    /// From 2 to [`MAX_BINS`] bins.
+    pub fn uniform(bins: usize) -> Result<Self, ParameterError> {
+        if (2..=MAX_BINS).contains(&bins) {
+            Ok(Self { bins: [1.0; MAX_BINS], len: bins })
+        } else {
+            Err(ParameterError::new("orientation_bins", Rule::Within { low: 2.0, high: MAX_BINS as f32 }))
+        }
+    }
+
+    /// The density with `counts` votes in its bins (normalised to mass one); uniform without a vote. Counts beyond the
+    /// bins are ignored.
+    #[must_use]
+    pub fn from_votes(&self, counts: &[u16]) -> Self {
+        let mut result = *self;
+        let total: u32 = counts.iter().take(self.len).map(|&c| u32::from(c)).sum();
+        if total == 0 {
+            result.bins = [1.0; MAX_BINS];
+            return result;
+        }
+        let scale = self.len as f32 / total as f32;
+        for (bin, &count) in result.bins.iter_mut().zip(counts).take(self.len) {
+            *bin = f32::from(count) * scale;
+        }
+        result
+    }
+
+    /// Number of bins.
+    #[must_use]
+    pub fn bin_count(&self) -> usize {
+        self.len
+    }
+
+    /// Index of the bin that holds `orientation_rad`.
+    #[inline]
+    #[must_use]
+    pub fn bin_of(&self, orientation_rad: f32) -> usize {
+        let position = wrap_orientation(orientation_rad) * (self.len as f32 / PI);
+        (position as usize).min(self.len - 1)
+    }
+
+    /// Density at `orientation_rad` relative to uniform, linear between the bins' centres, across the seam too.
+    #[must_use]
+    pub fn at(&self, orientation_rad: f32) -> f32 {
+        let position = wrap_orientation(orientation_rad) * (self.len as f32 / PI) - 0.5;
+        let below = floor(position);
+        let share = position - below;
+        let index = if below < 0.0 { self.len - 1 } else { (below as usize).min(self.len - 1) };
+        let next = if index + 1 < self.len { index + 1 } else { 0 };
+        let (a, b) = (self.bins.get(index).copied().unwrap_or(1.0), self.bins.get(next).copied().unwrap_or(1.0));
+        a + share * (b - a)
+    }
+
+    /// Moves the density towards uniform: `keep` of 1 leaves it, 0 forgets it.
+    pub fn fade(&mut self, keep: f32) {
+        let keep = clamp(keep, 0.0, 1.0);
+        for bin in &mut self.bins {
+            *bin = 1.0 + keep * (*bin - 1.0);
+        }
+    }
+
+    /// Spreads each bin over its neighbours (1/4, 1/2, 1/4).
+    #[must_use]
+    pub fn smoothed(&self) -> Self {
+        let mut result = *self;
+        for i in 0..self.len {
+            let before = if i == 0 { self.len - 1 } else { i - 1 };
+            let after = if i + 1 < self.len { i + 1 } else { 0 };
+            let get = |k: usize| self.bins.get(k).copied().unwrap_or(1.0);
+            if let Some(bin) = result.bins.get_mut(i) {
+                *bin = 0.25 * get(before) + 0.5 * get(i) + 0.25 * get(after);
+            }
+        }
+        result
+    }
+}
+
+/// Running circular variance of orientations, on the doubled angle.
+///
+/// For small spreads it is the plain variance in square radians: -2 ln R / 4, R the doubled angles' resultant length.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct OrientationVariance {
+    cosine: f32,
+    sine: f32,
+    count: f32,
+}
+
+impl OrientationVariance {
+    /// Adds one orientation.
+    pub fn add(&mut self, orientation_rad: f32) {
+        let (s, c) = sin_cos(2.0 * orientation_rad);
+        self.cosine += c;
+        self.sine += s;
+        self.count += 1.0;
+    }
+
+    /// Variance in square radians; that of nearly uniform orientations is bounded by R >= 0.001.
+    #[must_use]
+    pub fn variance_rad2(&self) -> f32 {
+        if !(self.count > 0.0) {
+            return 0.0;
+        }
+        let length = sqrt(self.cosine * self.cosine + self.sine * self.sine) / self.count;
+        -0.5 * ln(clamp(length, 1.0e-3, 1.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_density_has_mass_one(counts in prop::collection::vec(0_u16..100, 36)) {
+            let density = OrientationDensity::uniform(36).unwrap().from_votes(&counts);
+            let steps = 3600_u16;
+            let mean = (0..steps).map(|i| density.at(PI * f32::from(i) / f32::from(steps))).sum::<f32>() / f32::from(steps);
+            prop_assert!((mean - 1.0).abs() < 2.0e-3, "mean density {}", mean);
+            let smooth = density.smoothed();
+            let mean = (0..steps).map(|i| smooth.at(PI * f32::from(i) / f32::from(steps))).sum::<f32>() / f32::from(steps);
+            prop_assert!((mean - 1.0).abs() < 2.0e-3);
+        }
+
+        #[test]
+        fn an_orientation_is_the_same_half_a_turn_on(angle in -7.0_f32..7.0) {
+            let mut counts = [0_u16; 36];
+            counts[3] = 5;
+            counts[35] = 2;
+            let density = OrientationDensity::uniform(36).unwrap().from_votes(&counts);
+            prop_assert!((density.at(angle) - density.at(angle + PI)).abs() < 1.0e-3);
+        }
+    }
+
+    #[test]
+    fn fading_ends_at_uniform() {
+        let mut density = OrientationDensity::uniform(4).unwrap().from_votes(&[8, 0, 0, 0]);
+        assert!((density.at(PI / 8.0) - 4.0).abs() < 1.0e-5);
+        density.fade(0.5);
+        assert!((density.at(PI / 8.0) - 2.5).abs() < 1.0e-5);
+        density.fade(0.0);
+        assert_eq!(density, OrientationDensity::uniform(4).unwrap());
+        assert!(OrientationDensity::uniform(1).is_err());
+    }
+
+    #[test]
+    fn the_variance_of_a_narrow_spread_across_the_seam_is_the_plain_one() {
+        let mut variance = OrientationVariance::default();
+        for i in -50..=50_i8 {
+            variance.add(f32::from(i) * 0.004);
+        }
+        let plain = (-50..=50_i8).map(|i| (f32::from(i) * 0.004).powi(2)).sum::<f32>() / 101.0;
+        assert!((variance.variance_rad2() / plain - 1.0).abs() < 0.02);
+    }
+}

@@ -1,0 +1,148 @@
+//! The estimate: the mean of the heaviest cluster of particles, made a pose again.
+
+use super::frame::MAX_CANDIDATES;
+use super::options::EstimateRule;
+use super::propose::FrameContext;
+use super::step::Particle;
+use crate::angle::CircularSum;
+use crate::camera::Pixel;
+use crate::kinematics::inverse::{Goal, PoseDensity};
+use crate::math::{Mat3, Vec3, sqrt};
+use crate::skeleton::Side;
+use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
+
+/// How the estimate came about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Status {
+    /// A blob of this frame carries the estimate.
+    Tracking,
+    /// No blob does; the estimate is a prediction.
+    Predicted,
+    /// No blob did for so long (or ever) that the prediction means nothing.
+    #[default]
+    Lost,
+}
+
+/// Places of an arm's joints, metres in camera axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArmJoints {
+    /// Shoulder.
+    pub shoulder_m: Vec3,
+    /// Elbow.
+    pub elbow_m: Vec3,
+    /// Middle of the hand.
+    pub hand_m: Vec3,
+}
+
+/// What a step answers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArmEstimate {
+    /// The person's own side.
+    pub side: Side,
+    /// How the estimate came about.
+    pub status: Status,
+    /// Joints of the estimated pose.
+    pub joints: ArmJoints,
+    /// Angles of the estimated pose, inside the limits.
+    pub angles_rad: ArmAngles,
+    /// Standard deviation of the hand in the cluster, metres: root of the mean over the three axes.
+    pub hand_std_m: f32,
+    /// Effective sample size of all weights.
+    pub effective_sample_size: f32,
+    /// ln of the mean weight: this frame's part of the log evidence. Zero where nothing was seen.
+    pub log_evidence: f32,
+    /// Whether all weights were zero and the frame taught nothing.
+    pub degenerate: bool,
+    /// Likelihood of the blob that carries the estimate; zero without one.
+    pub hand_likelihood: f32,
+    /// Index in the frame's candidate list of the blob that carries the estimate.
+    pub candidate: Option<usize>,
+    /// Candidates that were not considered (over capacity, or not finite).
+    pub dropped_candidates: usize,
+}
+
+/// The heaviest cluster.
+pub(super) struct Cluster {
+    /// Considered candidate that it lies at.
+    pub candidate: Option<usize>,
+    pub angles_rad: ArmAngles,
+    pub joints: ArmJoints,
+    pub hand_std_m: f32,
+}
+
+impl FrameContext<'_> {
+    /// The candidate whose centre lies nearest to `hand`, if within the cluster radius.
+    pub fn candidate_at(&self, hand: Option<Pixel>) -> Option<usize> {
+        let radius_per_focal = match self.model.options().estimate {
+            EstimateRule::HeaviestCluster { radius_per_focal } => radius_per_focal,
+            EstimateRule::MeanOfAll => 0.045,
+        };
+        let mut best = (None, radius_per_focal * self.model.camera().focal_px());
+        for (index, candidate) in self.candidates.iter().enumerate() {
+            let distance = candidate.centre.distance_px(hand?);
+            if distance < best.1 {
+                best = (Some(index), distance);
+            }
+        }
+        best.0
+    }
+
+    /// Mean of the heaviest cluster (or of all particles).
+    pub fn heaviest_cluster(&self, particles: &[Particle], weights: &[f32]) -> Cluster {
+        let at = |particle: &Particle| self.candidate_at(self.model.camera().project(&particle.hand_m));
+        let slot = |candidate: Option<usize>| candidate.map_or(MAX_CANDIDATES, |index| index.min(MAX_CANDIDATES - 1));
+        let mut masses = [0.0; MAX_CANDIDATES + 1];
+        for (particle, weight) in particles.iter().zip(weights) {
+            masses[slot(at(particle))] += weight;
+        }
+        let mut heaviest = MAX_CANDIDATES;
+        for (index, mass) in masses.iter().enumerate() {
+            if *mass > masses[heaviest] {
+                heaviest = index;
+            }
+        }
+        let all = self.model.options().estimate == EstimateRule::MeanOfAll;
+        let members = particles.iter().zip(weights).filter(|(p, _)| all || slot(at(p)) == heaviest);
+        let candidate = (heaviest < MAX_CANDIDATES).then_some(heaviest);
+        self.mean_pose(members.map(|(p, w)| (p, *w)), candidate)
+    }
+
+    /// Circular mean of the angles, then the pose next to it whose hand is the mean hand.
+    fn mean_pose<'p>(
+        &self,
+        members: impl Iterator<Item = (&'p Particle, f32)> + Clone,
+        candidate: Option<usize>,
+    ) -> Cluster {
+        let mut mass = 0.0;
+        let mut hand = Vec3::zeros();
+        let mut sums = [CircularSum::default(); ARM_ANGLES];
+        for (particle, weight) in members.clone() {
+            mass += weight;
+            hand += particle.hand_m * weight;
+            for (sum, angle) in sums.iter_mut().zip(particle.angles_rad) {
+                sum.add(angle, weight);
+            }
+        }
+        let mass = if mass > 0.0 { mass } else { 1.0 };
+        let hand = hand / mass;
+        let variance: f32 = members.map(|(p, w)| w * (p.hand_m - hand).norm_squared()).sum::<f32>() / (3.0 * mass);
+        let mut mean_rad = self.model.waiting_pose();
+        for (angle, sum) in mean_rad.iter_mut().zip(&sums) {
+            *angle = sum.mean_rad().unwrap_or(*angle);
+        }
+        let goal = Goal { bone: FOREARM, position_m: hand, precision: Mat3::identity() * 1.0e4 };
+        let density = PoseDensity {
+            skeleton: self.model.skeleton(),
+            root_m: self.shoulder_m,
+            goals: &[goal],
+            previous_rad: self.model.skeleton().clamp(mean_rad),
+            stiffness: [1.0; ARM_ANGLES],
+        };
+        let angles_rad = density.mode(4).angles_rad;
+        let there = density.posture(&angles_rad);
+        let joints =
+            ArmJoints { shoulder_m: self.shoulder_m, elbow_m: there.ends[UPPER_ARM], hand_m: there.ends[FOREARM] };
+        Cluster { candidate, angles_rad, joints, hand_std_m: sqrt(variance) }
+    }
+}

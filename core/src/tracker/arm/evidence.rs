@@ -1,0 +1,163 @@
+//! Weights: what the image says of one arm.
+
+use super::options::LimbCombination;
+use super::propose::{FrameContext, Proposed};
+use super::step::Particle;
+use crate::camera::Pixel;
+use crate::math::{atan2, exp, ln, max};
+use crate::observation::candidate::HandCandidate;
+use crate::observation::limbs::ArmImagePoints;
+use crate::observation::orientation::OrientationDensity;
+
+/// A limb whose image is shorter than this has no orientation.
+const MIN_LIMB_IMAGE_PX: f32 = 6.0;
+
+/// Orientation densities of both limbs.
+#[derive(Debug, Clone)]
+pub(super) struct LimbDensities {
+    pub upper: OrientationDensity,
+    pub fore: OrientationDensity,
+}
+
+impl FrameContext<'_> {
+    /// Images of the joints of `particle`; `None` where one of them lies behind the camera.
+    pub fn image_of(&self, particle: &Particle) -> Option<ArmImagePoints> {
+        let camera = self.model.camera();
+        Some(ArmImagePoints {
+            shoulder: camera.project(&self.shoulder_m)?,
+            elbow: camera.project(&particle.elbow_m)?,
+            hand: camera.project(&particle.hand_m)?,
+        })
+    }
+
+    /// ln of the particle's weight, up to a constant of the frame.
+    pub fn log_weight(&self, proposed: &Proposed, limbs: &LimbDensities) -> f32 {
+        let image = self.image_of(&proposed.particle);
+        let mut log_weight = proposed.log_payment + self.log_orientation(image.as_ref(), limbs);
+        if let (Some(gate), Some(_)) = (self.model.options().gate, proposed.particle.driver) {
+            let std_m = gate.std_m + gate.growth_m_per_s * self.unseen_s;
+            let jumps = proposed.jump_m / std_m;
+            log_weight += ln(exp(-0.5 * jumps * jumps) + gate.floor);
+        }
+        let hand = image.map(|points| points.hand);
+        if self.model.options().variant.has_blob_term() {
+            log_weight += self.log_blob_term(&proposed.particle, hand);
+        } else if self.model.options().variant.is_blob_driven() {
+            log_weight += self.log_area_cue(&proposed.particle, hand);
+        }
+        log_weight
+    }
+
+    /// Observation density of both limbs, eq. (3) or the product; uniform where a limb has no orientation.
+    fn log_orientation(&self, image: Option<&ArmImagePoints>, limbs: &LimbDensities) -> f32 {
+        let limb = |density: &OrientationDensity, a: Pixel, b: Pixel| {
+            if a.distance_px(b) < MIN_LIMB_IMAGE_PX { 1.0 } else { density.at(atan2(b.v_px - a.v_px, b.u_px - a.u_px)) }
+        };
+        let (upper, fore) = image.map_or((1.0, 1.0), |points| {
+            (limb(&limbs.upper, points.shoulder, points.elbow), limb(&limbs.fore, points.elbow, points.hand))
+        });
+        match self.model.options().combination {
+            LimbCombination::Mean => ln(max(0.5 * (upper + fore), 1.0e-6)),
+            LimbCombination::Product { floor } => ln((upper + floor) * (fore + floor)),
+        }
+    }
+
+    /// Squared deviation of a blob's log area from what the hand's depth lets expect, in standard deviations; zero
+    /// without the cue.
+    fn area_deviation(&self, particle: &Particle, candidate: &HandCandidate) -> f32 {
+        let Some(cue) = self.model.options().area_cue else { return 0.0 };
+        let focal_px = self.model.camera().focal_px();
+        let depth_m = max(particle.hand_m.z, 0.05);
+        let expected_px = cue.hand_area_m2 * focal_px * focal_px / (depth_m * depth_m);
+        let deviation = ln(candidate.area_px / expected_px) / cue.log_std;
+        deviation * deviation
+    }
+
+    /// The area cue of an unpaid variant: the blob that drove the particle, or the one its hand lies on.
+    ///
+    /// A particle at no blob gets what a fitting one has on average. With `depth_from_area` the area already placed the
+    /// driven hands and is not counted again.
+    fn log_area_cue(&self, particle: &Particle, hand: Option<Pixel>) -> f32 {
+        const AVERAGE: f32 = -0.5;
+        let options = self.model.options();
+        if options.area_cue.is_none() || self.candidates.is_empty() {
+            return 0.0;
+        }
+        let own = particle.driver.map(usize::from);
+        if own.is_some() && options.depth_from_area {
+            return AVERAGE;
+        }
+        match own.or_else(|| self.candidate_at(hand)).and_then(|index| self.candidates.get(index)) {
+            Some(candidate) => -0.5 * self.area_deviation(particle, candidate),
+            None => AVERAGE,
+        }
+    }
+
+    /// ln p(blobs | hand) times the image's area: clutter + sum_b pi_b N(u(hand); CoG_b, R_b), with the area cue as a
+    /// factor of each blob.
+    fn log_blob_term(&self, particle: &Particle, hand: Option<Pixel>) -> f32 {
+        let clutter = self.model.options().clutter_share;
+        let total: f32 = self.candidates.iter().map(|c| c.likelihood).sum();
+        let (Some(hand), true) = (hand, total > 0.0) else { return ln(clutter) };
+        let std_px = self.model.options().centre_std_per_focal * self.model.camera().focal_px();
+        let peak = self.model.image_area_px() / (core::f32::consts::TAU * std_px * std_px);
+        let mut sum = 0.0;
+        for candidate in &self.candidates {
+            let miss = hand.distance_px(candidate.centre) / std_px;
+            let exponent = -0.5 * (miss * miss + self.area_deviation(particle, candidate));
+            sum += candidate.likelihood / total * peak * exp(exponent);
+        }
+        ln(clutter + (1.0 - clutter) * sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Camera;
+    use crate::math::Vec3;
+    use crate::skeleton::{ArmGeometry, Side};
+    use crate::tracker::arm::{ArmModel, ArmOptions};
+
+    fn context(model: &ArmModel) -> FrameContext<'_> {
+        let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
+        FrameContext {
+            model,
+            shoulder_m,
+            reachable: model.reachable(&shoulder_m),
+            dt_s: 0.066,
+            unseen_s: 0.0,
+            hand_velocity_m_per_s: Vec3::zeros(),
+            elbow_velocity_m_per_s: Vec3::zeros(),
+            candidates: heapless::Vec::new(),
+            rays: heapless::Vec::new(),
+            counts: [0; 8],
+            free: 1,
+        }
+    }
+
+    #[test]
+    fn the_weight_follows_the_forearm_s_orientation_and_is_uniform_without_edges() {
+        let camera = Camera::from_field_of_view(640, 480, 1.05).unwrap();
+        let geometry = ArmGeometry::new(Side::Left, 0.3, 0.35).unwrap();
+        let model = ArmModel::new(camera, (640, 480), geometry, ArmOptions::default()).unwrap();
+        let context = context(&model);
+        let angles_rad = [0.0, 0.0, 1.57, 1.57];
+        let (elbow_m, hand_m) = model.elbow_and_hand(&context.shoulder_m, &angles_rad);
+        let particle = Particle { angles_rad, elbow_m, hand_m, driver: None };
+        let proposed = Proposed { particle, jump_m: 0.0, log_payment: 0.0 };
+        let uniform = OrientationDensity::uniform(36).unwrap();
+        let flat = LimbDensities { upper: uniform, fore: uniform };
+        let image = context.image_of(&proposed.particle).unwrap();
+        let slope = atan2(image.hand.v_px - image.elbow.v_px, image.hand.u_px - image.elbow.u_px);
+        let mut votes = [0_u16; 36];
+        votes[uniform.bin_of(slope)] = 10;
+        let fitting = LimbDensities { upper: uniform, fore: uniform.from_votes(&votes) };
+        votes.rotate_left(18);
+        let crossing = LimbDensities { upper: uniform, fore: uniform.from_votes(&votes) };
+        let weight = |limbs: &LimbDensities| context.log_weight(&proposed, limbs);
+        assert!(weight(&fitting) > weight(&flat) + 2.0);
+        assert!(weight(&crossing) < weight(&flat) - 2.0);
+        assert!((weight(&flat) - 2.0 * ln(1.1)).abs() < 1.0e-5);
+    }
+}

@@ -1,0 +1,91 @@
+//! What goes into a step.
+
+use crate::math::Vec3;
+use crate::observation::candidate::HandCandidate;
+use crate::observation::edge_pixel::EdgePixel;
+use heapless::Vec;
+
+/// Most blobs that a step considers.
+pub const MAX_CANDIDATES: usize = 8;
+
+/// What was found in one image.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ArmImage<'a> {
+    /// Blobs that may be a hand; over [`MAX_CANDIDATES`] the most likely are kept.
+    pub candidates: &'a [HandCandidate],
+    /// Temporal edge pixels.
+    pub edges: &'a [EdgePixel],
+}
+
+/// One frame of one arm.
+#[derive(Debug, Clone, Copy)]
+pub struct ArmFrame<'a> {
+    /// When the frame was taken, microseconds since any start. Dropped frames are simply not given.
+    pub timestamp_us: u64,
+    /// What the image showed; `None` where the image is missing.
+    pub image: Option<ArmImage<'a>>,
+    /// Where the shoulder is, metres in camera axes.
+    pub shoulder_m: Vec3,
+}
+
+/// The most likely candidates, in descending order of likelihood, and the count of those that found no room.
+///
+/// Candidates whose numbers are not finite are dropped as well.
+#[must_use]
+pub fn most_likely(candidates: &[HandCandidate]) -> (Vec<HandCandidate, MAX_CANDIDATES>, usize) {
+    let mut kept: Vec<HandCandidate, MAX_CANDIDATES> = Vec::new();
+    for candidate in candidates {
+        let usable = candidate.centre.u_px.is_finite()
+            && candidate.centre.v_px.is_finite()
+            && candidate.area_px > 0.0
+            && candidate.area_px.is_finite()
+            && candidate.likelihood > 0.0
+            && candidate.likelihood <= 1.0;
+        if !usable {
+            continue;
+        }
+        if kept.is_full() {
+            if kept.last().is_some_and(|last| last.likelihood >= candidate.likelihood) {
+                continue;
+            }
+            kept.pop();
+        }
+        // There is room now, so this cannot fail.
+        let _ = kept.push(*candidate);
+        let mut i = kept.len() - 1;
+        while i > 0 && kept.get(i - 1).map_or(0.0, |c| c.likelihood) < candidate.likelihood {
+            kept.swap(i, i - 1);
+            i -= 1;
+        }
+    }
+    let dropped = candidates.len() - kept.len();
+    (kept, dropped)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn over_capacity_the_most_likely_are_kept_in_order() {
+        let list: std::vec::Vec<_> = (0..20_u8)
+            .map(|i| HandCandidate {
+                area_px: 500.0,
+                likelihood: f32::from((i * 7) % 20 + 1) / 20.0,
+                ..HandCandidate::default()
+            })
+            .collect();
+        let (kept, dropped) = most_likely(&list);
+        let likelihoods: std::vec::Vec<_> = kept.iter().map(|c| (c.likelihood * 20.0).round() as u8).collect();
+        assert_eq!(likelihoods, [20, 19, 18, 17, 16, 15, 14, 13]);
+        assert_eq!(dropped, 12);
+    }
+
+    #[test]
+    fn a_candidate_that_is_not_a_number_is_dropped() {
+        let broken = HandCandidate { area_px: f32::NAN, likelihood: 0.5, ..HandCandidate::default() };
+        let (kept, dropped) = most_likely(&[broken]);
+        assert!(kept.is_empty());
+        assert_eq!(dropped, 1);
+    }
+}

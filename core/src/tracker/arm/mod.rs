@@ -1,0 +1,22 @@
+//! The arm tracker: particles of arm poses, some of whose hands are sent to skin-coloured blobs.
+//!
+//! [`ArmModel`] is what does not change (camera, arm, options); [`ArmTracker`] is the small state of one arm, and
+//! [`ArmPair`] that of two arms that share one list of blobs. A frame goes in as an [`ArmFrame`], an [`ArmEstimate`] comes out, for
+//! every frame.
+
+mod estimate;
+mod evidence;
+mod frame;
+mod model;
+pub mod options;
+mod pair;
+mod payment;
+mod propose;
+mod step;
+
+pub use estimate::{ArmEstimate, ArmJoints, Status};
+pub use frame::{ArmFrame, ArmImage, MAX_CANDIDATES};
+pub use model::ArmModel;
+pub use options::{ArmOptions, Variant};
+pub use pair::{ArmPair, PairFrame};
+pub use step::{ArmTracker, Particle};

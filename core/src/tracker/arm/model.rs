@@ -1,0 +1,97 @@
+//! What does not change while an arm is tracked.
+
+use super::options::ArmOptions;
+use crate::camera::Camera;
+use crate::correction::hand::ReachableShell;
+use crate::error::ParameterError;
+use crate::kinematics::forward::posture;
+use crate::math::{Vec3, sin_cos, sqrt};
+use crate::skeleton::arm::{ARM_ANGLES, ARM_BONES, ArmAngles, ArmGeometry, FOREARM, UPPER_ARM};
+use crate::skeleton::{Side, Skeleton};
+
+/// Camera, arm and options of one arm tracker; immutable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ArmModel {
+    camera: Camera,
+    image_area_px: f32,
+    geometry: ArmGeometry,
+    skeleton: Skeleton<ARM_BONES, ARM_ANGLES>,
+    options: ArmOptions,
+}
+
+impl ArmModel {
+    /// Puts the parts together.
+    ///
+    /// `image_size_px` is (width, height).
+    ///
+    /// # Errors
+    /// Names the first parameter that is out of its range.
+    pub fn new(
+        camera: Camera,
+        image_size_px: (u32, u32),
+        geometry: ArmGeometry,
+        options: ArmOptions,
+    ) -> Result<Self, ParameterError> {
+        options.check()?;
+        let image_area_px = crate::error::positive("image_size_px", image_size_px.0 as f32 * image_size_px.1 as f32)?;
+        Ok(Self { camera, image_area_px, skeleton: geometry.skeleton()?, geometry, options })
+    }
+
+    /// The camera.
+    #[must_use]
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// Number of pixels of the image.
+    #[must_use]
+    pub fn image_area_px(&self) -> f32 {
+        self.image_area_px
+    }
+
+    /// Lengths and limits of the arm.
+    #[must_use]
+    pub fn geometry(&self) -> &ArmGeometry {
+        &self.geometry
+    }
+
+    /// The arm as a tree of bones.
+    #[must_use]
+    pub fn skeleton(&self) -> &Skeleton<ARM_BONES, ARM_ANGLES> {
+        &self.skeleton
+    }
+
+    /// The options.
+    #[must_use]
+    pub fn options(&self) -> &ArmOptions {
+        &self.options
+    }
+
+    /// The person's own side.
+    #[must_use]
+    pub fn side(&self) -> Side {
+        self.geometry.side
+    }
+
+    /// Elbow and hand of a pose, metres.
+    #[must_use]
+    pub fn elbow_and_hand(&self, shoulder_m: &Vec3, angles_rad: &ArmAngles) -> (Vec3, Vec3) {
+        let there = posture(&self.skeleton, shoulder_m, angles_rad);
+        (there.ends[UPPER_ARM], there.ends[FOREARM])
+    }
+
+    /// Where the hand can be, given the elbow's limits.
+    #[must_use]
+    pub fn reachable(&self, shoulder_m: &Vec3) -> ReachableShell {
+        let (upper, fore) = (self.geometry.upper_arm_m, self.geometry.forearm_m);
+        let elbow = self.geometry.limits[3];
+        let span = |flexion: f32| sqrt(upper * upper + fore * fore + 2.0 * upper * fore * sin_cos(flexion).1);
+        ReachableShell { centre_m: *shoulder_m, inner_m: span(elbow.high_rad), outer_m: span(elbow.low_rad) }
+    }
+
+    /// The pose in which an arm waits to be seen: hands in front of the belly.
+    #[must_use]
+    pub fn waiting_pose(&self) -> ArmAngles {
+        self.skeleton.clamp([0.5, 0.25, 0.3, 1.4])
+    }
+}

@@ -1,0 +1,241 @@
+//! Options of the arm tracker, each with its default and its reason.
+
+use crate::error::{ParameterError, Rule, not_negative, positive, within};
+use crate::observation::hough::HoughSettings;
+use crate::skeleton::arm::ARM_ANGLES;
+
+/// Which tracker: the rows of the table in DESIGN.md section 4.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Variant {
+    /// Blobs drive goals, PIK turns goals into poses; not paid for.
+    #[default]
+    Pik,
+    /// As `Pik`, with a blob likelihood and every goal paid for exactly.
+    PikPaid,
+    /// Goals from the goal process only, blobs in the likelihood.
+    Bootstrap,
+    /// The arm paper: blobs correct hands, the elbow goes to the circle's nearest point; not paid for.
+    Corrected,
+    /// The arm paper's baseline: sequential Monte Carlo without blobs.
+    Standard,
+}
+
+impl Variant {
+    /// Whether blobs send some particles' hands somewhere.
+    #[must_use]
+    pub const fn is_blob_driven(self) -> bool {
+        matches!(self, Self::Pik | Self::PikPaid | Self::Corrected)
+    }
+
+    /// Whether poses come from PIK (otherwise from the arm paper's elbow and hand).
+    #[must_use]
+    pub const fn uses_inverse_kinematics(self) -> bool {
+        matches!(self, Self::Pik | Self::PikPaid | Self::Bootstrap)
+    }
+
+    /// Whether the likelihood has the blob term p(blobs | hand).
+    #[must_use]
+    pub const fn has_blob_term(self) -> bool {
+        matches!(self, Self::PikPaid | Self::Bootstrap)
+    }
+}
+
+/// How the orientation densities of both limbs become one weight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LimbCombination {
+    /// Half of the sum, eq. (3) of the arm paper.
+    Mean,
+    /// Product of (density + floor); uniform is 1 + floor.
+    Product {
+        /// What keeps one empty bin from deciding alone.
+        floor: f32,
+    },
+}
+
+/// Continuity gate: exp(-d^2 / 2 s^2) + floor, d from the corrected hand to the particle's own prediction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gate {
+    /// s while the hand is seen, metres.
+    pub std_m: f32,
+    /// Growth of s with the time since the hand was last seen, metres per second.
+    pub growth_m_per_s: f32,
+    /// What a jump of any length keeps.
+    pub floor: f32,
+}
+
+/// Area cue: the blob's area tells the hand's distance, since area times squared depth is about constant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AreaCue {
+    /// Area of the hand's image times squared depth over squared focal length, square metres.
+    pub hand_area_m2: f32,
+    /// Standard deviation of the logarithm of the area.
+    pub log_std: f32,
+}
+
+/// What is reported as the estimate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum EstimateRule {
+    /// Weighted mean of all particles.
+    MeanOfAll,
+    /// Weighted mean of the heaviest cluster: the particles whose hand lies near one blob's centre, or near none.
+    HeaviestCluster {
+        /// Radius around a blob's centre as a share of the focal length.
+        radius_per_focal: f32,
+    },
+}
+
+/// All options of one arm tracker.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArmOptions {
+    /// Which tracker.
+    pub variant: Variant,
+    /// Number of particles.
+    pub particles: usize,
+    /// Combination of both limbs' orientation densities.
+    pub combination: LimbCombination,
+    /// Continuity gate, or none.
+    pub gate: Option<Gate>,
+    /// Area cue, or none.
+    pub area_cue: Option<AreaCue>,
+    /// Whether an unpaid goal is drawn along the ray from prediction and area together (needs the area cue), which then
+    /// does not stand in the weight again.
+    pub depth_from_area: bool,
+    /// What is reported.
+    pub estimate: EstimateRule,
+    /// Share of the estimated velocity that goes on.
+    pub velocity_persistence: f32,
+    /// Share of a new velocity in the running one.
+    pub velocity_gain: f32,
+    /// Spread of the hand's goal after one second, metres along each axis.
+    pub hand_std_m_per_sqrt_s: f32,
+    /// Spread of the predicted elbow after one second (`corrected` and `standard`), metres along each axis.
+    pub elbow_std_m_per_sqrt_s: f32,
+    /// Spread along the ray of a hand that a blob corrected, after one second, metres.
+    pub ray_std_m_per_sqrt_s: f32,
+    /// Error of a blob's centre as the hand's place, as a share of the focal length.
+    pub centre_std_per_focal: f32,
+    /// Standard deviation of reaching a goal, W^(-1/2) of eq. (12); metres.
+    pub reach_std_m: f32,
+    /// The same across the ray, for goals that a blob drives.
+    pub reach_across_std_m: f32,
+    /// Spread of each angle after one second, lambda^(-1/2) of eq. (12); radians.
+    pub angle_std_rad_per_sqrt_s: [f32; ARM_ANGLES],
+    /// Steps of the pose solver.
+    pub solver_steps: usize,
+    /// Band around a limb within which edge pixels belong to it, metres at the limb's depth.
+    pub limb_band_m: f32,
+    /// Settings of the dynamic Hough transform.
+    pub hough: HoughSettings,
+    /// Time in which a limb's old orientation density fades by 1/e while the limb shows no moving edges, seconds.
+    pub orientation_memory_s: f32,
+    /// Share of the goal process that is uniform over the reachable space (`pik-paid`).
+    pub teleport_share: f32,
+    /// Share of the blob likelihood that is uniform over the image (`pik-paid`, `bootstrap`).
+    pub clutter_share: f32,
+    /// Without a blob for longer than this the arm counts as lost, seconds.
+    pub lost_after_s: f32,
+}
+
+impl Default for ArmOptions {
+    fn default() -> Self {
+        Self {
+            variant: Variant::Pik,
+            particles: 50,
+            combination: LimbCombination::Product { floor: 0.1 },
+            gate: Some(Gate { std_m: 0.1, growth_m_per_s: 0.5, floor: 0.02 }),
+            area_cue: Some(AreaCue { hand_area_m2: 0.011, log_std: 0.3 }),
+            depth_from_area: true,
+            estimate: EstimateRule::HeaviestCluster { radius_per_focal: 0.045 },
+            velocity_persistence: 0.7,
+            velocity_gain: 0.5,
+            hand_std_m_per_sqrt_s: 0.25,
+            elbow_std_m_per_sqrt_s: 0.2,
+            ray_std_m_per_sqrt_s: 0.3,
+            centre_std_per_focal: 0.01,
+            reach_std_m: 0.05,
+            reach_across_std_m: 0.015,
+            angle_std_rad_per_sqrt_s: [1.0, 1.0, 1.0, 1.0],
+            solver_steps: 3,
+            limb_band_m: 0.09,
+            hough: HoughSettings::default(),
+            orientation_memory_s: 0.7,
+            teleport_share: 0.05,
+            clutter_share: 0.1,
+            lost_after_s: 1.0,
+        }
+    }
+}
+
+impl ArmOptions {
+    /// Checks every value.
+    ///
+    /// # Errors
+    /// Names the first value that is out of its range.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        if self.particles == 0 {
+            return Err(ParameterError::new("particles", Rule::NotEmpty));
+        }
+        if let LimbCombination::Product { floor } = self.combination {
+            within("combination.floor", floor, 1.0e-6, 10.0)?;
+        }
+        if let Some(gate) = self.gate {
+            positive("gate.std_m", gate.std_m)?;
+            not_negative("gate.growth_m_per_s", gate.growth_m_per_s)?;
+            within("gate.floor", gate.floor, 1.0e-9, 1.0)?;
+        }
+        if let Some(cue) = self.area_cue {
+            positive("area_cue.hand_area_m2", cue.hand_area_m2)?;
+            positive("area_cue.log_std", cue.log_std)?;
+        }
+        if let EstimateRule::HeaviestCluster { radius_per_focal } = self.estimate {
+            positive("estimate.radius_per_focal", radius_per_focal)?;
+        }
+        within("velocity_persistence", self.velocity_persistence, 0.0, 1.0)?;
+        within("velocity_gain", self.velocity_gain, 0.0, 1.0)?;
+        positive("hand_std_m_per_sqrt_s", self.hand_std_m_per_sqrt_s)?;
+        positive("elbow_std_m_per_sqrt_s", self.elbow_std_m_per_sqrt_s)?;
+        positive("ray_std_m_per_sqrt_s", self.ray_std_m_per_sqrt_s)?;
+        positive("centre_std_per_focal", self.centre_std_per_focal)?;
+        positive("reach_std_m", self.reach_std_m)?;
+        positive("reach_across_std_m", self.reach_across_std_m)?;
+        for std in self.angle_std_rad_per_sqrt_s {
+            positive("angle_std_rad_per_sqrt_s", std)?;
+        }
+        if !(1..=100).contains(&self.solver_steps) {
+            return Err(ParameterError::new("solver_steps", Rule::Within { low: 1.0, high: 100.0 }));
+        }
+        positive("limb_band_m", self.limb_band_m)?;
+        self.hough.check()?;
+        positive("orientation_memory_s", self.orientation_memory_s)?;
+        within("teleport_share", self.teleport_share, 1.0e-6, 1.0)?;
+        within("clutter_share", self.clutter_share, 1.0e-6, 1.0)?;
+        positive("lost_after_s", self.lost_after_s)?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defaults_are_legal_and_a_wrong_value_is_named() {
+        ArmOptions::default().check().unwrap();
+        let none = ArmOptions { particles: 0, ..ArmOptions::default() };
+        assert_eq!(none.check().unwrap_err().parameter, "particles");
+        let gate = Gate { std_m: -1.0, growth_m_per_s: 0.0, floor: 0.02 };
+        let wrong = ArmOptions { gate: Some(gate), ..ArmOptions::default() };
+        assert_eq!(wrong.check().unwrap_err(), ParameterError::new("gate.std_m", Rule::Positive));
+    }
+
+    #[test]
+    fn the_table_of_variants_is_that_of_the_design() {
+        let row = |v: Variant| (v.is_blob_driven(), v.uses_inverse_kinematics(), v.has_blob_term());
+        assert_eq!(row(Variant::Standard), (false, false, false));
+        assert_eq!(row(Variant::Corrected), (true, false, false));
+        assert_eq!(row(Variant::Bootstrap), (false, true, true));
+        assert_eq!(row(Variant::Pik), (true, true, false));
+        assert_eq!(row(Variant::PikPaid), (true, true, true));
+    }
+}

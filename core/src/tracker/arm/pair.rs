@@ -1,0 +1,233 @@
+//! Two arms that share one list of blobs: a blob serves one hand, unless hands touch (DESIGN.md section 4).
+
+use super::estimate::ArmEstimate;
+use super::frame::{ArmFrame, ArmImage, MAX_CANDIDATES, most_likely};
+use super::model::ArmModel;
+use super::step::ArmTracker;
+use crate::camera::Pixel;
+use crate::error::ParameterError;
+use crate::math::{Vec3, abs, atan2, exp, ln, max, sin_cos, sqrt};
+use crate::observation::candidate::HandCandidate;
+use heapless::Vec;
+
+/// What a hand without any blob is as likely as; compared with a blob's likelihood times its nearness.
+const NO_BLOB: f32 = 0.05;
+/// What a blob at any distance from the prediction keeps of its nearness.
+const FAR_FLOOR: f32 = 0.01;
+/// A blob is split where both predictions lie within this many of its standard deviations.
+const SPLIT_REACH: f32 = 3.0;
+
+/// One frame of both arms.
+#[derive(Debug, Clone, Copy)]
+pub struct PairFrame<'a> {
+    /// When the frame was taken, microseconds since any start.
+    pub timestamp_us: u64,
+    /// What the image showed; `None` where the image is missing.
+    pub image: Option<ArmImage<'a>>,
+    /// Left and right shoulder, metres in camera axes.
+    pub shoulders_m: [Vec3; 2],
+}
+
+/// State of both arms' trackers, left and right.
+#[derive(Debug, Clone)]
+pub struct ArmPair<const CAPACITY: usize> {
+    trackers: [ArmTracker<CAPACITY>; 2],
+}
+
+/// Blobs of one side: its own first.
+type SideCandidates = Vec<HandCandidate, MAX_CANDIDATES>;
+
+/// Where a side expects its hand in the image.
+#[derive(Debug, Clone, Copy)]
+struct Expected {
+    hand: Pixel,
+    std_px: f32,
+}
+
+impl<const CAPACITY: usize> ArmPair<CAPACITY> {
+    /// Trackers of a left and a right arm that have seen nothing yet. `models` and `shoulders_m` are left, right.
+    ///
+    /// # Errors
+    /// As [`ArmTracker::new`].
+    pub fn new(models: &[ArmModel; 2], shoulders_m: [Vec3; 2], seed: u64) -> Result<Self, ParameterError> {
+        // Two sides with one seed would draw the same numbers.
+        let other = seed ^ 0x5DEE_CE66_D153_2701;
+        Ok(Self {
+            trackers: [
+                ArmTracker::new(&models[0], shoulders_m[0], seed)?,
+                ArmTracker::new(&models[1], shoulders_m[1], other)?,
+            ],
+        })
+    }
+
+    /// The trackers, left and right.
+    #[must_use]
+    pub fn trackers(&self) -> &[ArmTracker<CAPACITY>; 2] {
+        &self.trackers
+    }
+
+    /// Answers one frame for both arms, left and right.
+    pub fn step(&mut self, models: &[ArmModel; 2], frame: &PairFrame<'_>) -> [ArmEstimate; 2] {
+        let image = frame.image.unwrap_or_default();
+        let (candidates, dropped) = most_likely(image.candidates);
+        let expected = [0, 1].map(|side| self.expected(&models[side], side, frame.timestamp_us));
+        let lists = share_out(&candidates, &expected);
+        let mut answer = |side: usize| {
+            let list: &SideCandidates = &lists[side];
+            let arm_frame = ArmFrame {
+                timestamp_us: frame.timestamp_us,
+                image: frame.image.map(|image| ArmImage { candidates: list, edges: image.edges }),
+                shoulder_m: frame.shoulders_m[side],
+            };
+            let mut estimate = self.trackers[side].step(&models[side], &arm_frame);
+            let carrier = estimate.candidate.and_then(|index| list.get(index));
+            estimate.candidate = carrier.and_then(|carrier| nearest_index(image.candidates, carrier.centre));
+            estimate.dropped_candidates = dropped;
+            estimate
+        };
+        [answer(0), answer(1)]
+    }
+
+    /// Where `side` expects its hand.
+    fn expected(&self, model: &ArmModel, side: usize, timestamp_us: u64) -> Option<Expected> {
+        let (hand_m, std_m) = self.trackers[side].predicted_hand(model, timestamp_us);
+        let hand = model.camera().project(&hand_m)?;
+        let std_px = max(std_m, 0.06) * model.camera().focal_px() / max(hand_m.z, 0.1);
+        Some(Expected { hand, std_px })
+    }
+}
+
+/// Index of the candidate whose centre is nearest to `centre`.
+fn nearest_index(candidates: &[HandCandidate], centre: Pixel) -> Option<usize> {
+    let mut best = (None, f32::INFINITY);
+    for (index, candidate) in candidates.iter().enumerate() {
+        let distance = candidate.centre.distance_px(centre);
+        if distance < best.1 {
+            best = (Some(index), distance);
+        }
+    }
+    best.0
+}
+
+/// ln of likelihood times nearness; a side without expectation finds every place alike.
+fn log_fit(candidate: &HandCandidate, expected: Option<&Expected>) -> f32 {
+    let nearness = expected.map_or(1.0, |e| {
+        let miss = candidate.centre.distance_px(e.hand) / e.std_px;
+        exp(-0.5 * miss * miss) + FAR_FLOOR
+    });
+    ln(candidate.likelihood * nearness)
+}
+
+/// Gives each side its blob of the likeliest pair, and to both the blobs that are nobody's.
+fn share_out(candidates: &[HandCandidate], expected: &[Option<Expected>; 2]) -> [SideCandidates; 2] {
+    let fit = |side: usize, choice: Option<usize>| {
+        let candidate = choice.and_then(|index| candidates.get(index));
+        candidate.map_or(ln(NO_BLOB), |candidate| log_fit(candidate, expected[side].as_ref()))
+    };
+    let choices = || core::iter::once(None).chain((0..candidates.len()).map(Some));
+    let mut best = ([None, None], f32::NEG_INFINITY);
+    for left in choices() {
+        for right in choices() {
+            let both = fit(0, left) + fit(1, right);
+            if (left.is_none() || left != right) && both > best.1 {
+                best = ([left, right], both);
+            }
+        }
+    }
+    let mut lists = [0, 1].map(|side| own_and_free(candidates, best.0[side], best.0[1 - side]));
+    if let Some((index, halves)) = touching(candidates, expected, &best.0) {
+        lists = halves.map(|half| {
+            let mut list = own_and_free(candidates, None, Some(index));
+            if list.is_full() {
+                list.pop();
+            }
+            let _ = list.push(half);
+            list
+        });
+    }
+    lists
+}
+
+/// A side's own blob and those that the other side does not have.
+fn own_and_free(candidates: &[HandCandidate], own: Option<usize>, others: Option<usize>) -> SideCandidates {
+    let free = (0..candidates.len()).filter(|&index| Some(index) != own && Some(index) != others);
+    own.into_iter().chain(free).filter_map(|index| candidates.get(index).copied()).collect()
+}
+
+/// The blob in which both hands lie, and its halves for left and right: one side has it, the other has none, and
+/// both expect their hand inside.
+fn touching(
+    candidates: &[HandCandidate],
+    expected: &[Option<Expected>; 2],
+    chosen: &[Option<usize>; 2],
+) -> Option<(usize, [HandCandidate; 2])> {
+    let index = match chosen {
+        [Some(index), None] | [None, Some(index)] => *index,
+        _ => return None,
+    };
+    let (blob, [Some(left), Some(right)]) = (candidates.get(index)?, expected) else { return None };
+    let [uu, uv, vv] = blob.moments_px2;
+    let direction_rad = 0.5 * atan2(2.0 * uv, uu - vv);
+    let (s, c) = sin_cos(direction_rad);
+    let half_sum = 0.5 * (uu + vv);
+    let half_difference = sqrt(0.25 * (uu - vv) * (uu - vv) + uv * uv);
+    let (long_std, short_std) = (sqrt(half_sum + half_difference), sqrt(max(half_sum - half_difference, 0.25)));
+    let inside = |e: &Expected| {
+        let (du, dv) = (e.hand.u_px - blob.centre.u_px, e.hand.v_px - blob.centre.v_px);
+        let (along, across) = ((du * c + dv * s) / long_std, (dv * c - du * s) / short_std);
+        (along * along + across * across <= SPLIT_REACH * SPLIT_REACH).then_some(along)
+    };
+    let (left_along, right_along) = (inside(left)?, inside(right)?);
+    // Two means of a long blob lie sqrt(3)/2 standard deviations on either side of its centre.
+    let offset = 0.866 * long_std;
+    let sign = if left_along >= right_along { 1.0 } else { -1.0 };
+    if abs(left_along - right_along) < 0.2 || long_std < 1.3 * short_std {
+        return None;
+    }
+    let half = |sign: f32| HandCandidate {
+        centre: Pixel::new(blob.centre.u_px + sign * offset * c, blob.centre.v_px + sign * offset * s),
+        moments_px2: blob.moments_px2.map(|moment| 0.25 * moment),
+        area_px: 0.5 * blob.area_px,
+        likelihood: blob.likelihood,
+    };
+    Some((index, [half(sign), half(-sign)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn blob(u_px: f32, v_px: f32, likelihood: f32) -> HandCandidate {
+        let moments_px2 = [400.0, 0.0, 400.0];
+        HandCandidate { centre: Pixel::new(u_px, v_px), moments_px2, area_px: 4000.0, likelihood }
+    }
+
+    fn expect(u_px: f32, v_px: f32) -> Option<Expected> {
+        Some(Expected { hand: Pixel::new(u_px, v_px), std_px: 40.0 })
+    }
+
+    #[test]
+    fn a_blob_serves_one_hand_and_stray_blobs_serve_both() {
+        let blobs = [blob(100.0, 100.0, 0.8), blob(300.0, 100.0, 0.8), blob(200.0, 300.0, 0.1)];
+        let [left, right] = share_out(&blobs, &[expect(290.0, 110.0), expect(110.0, 90.0)]);
+        assert_eq!(left.as_slice(), &[blobs[1], blobs[2]]);
+        assert_eq!(right.as_slice(), &[blobs[0], blobs[2]]);
+    }
+
+    #[test]
+    fn a_single_blob_goes_to_the_nearer_hand() {
+        let blobs = [blob(100.0, 100.0, 0.8)];
+        let [left, right] = share_out(&blobs, &[expect(400.0, 100.0), expect(120.0, 100.0)]);
+        assert!(left.is_empty());
+        assert_eq!(right.as_slice(), &blobs);
+    }
+
+    #[test]
+    fn hands_that_touch_share_a_wide_blob_by_halves() {
+        let mut wide = blob(200.0, 100.0, 0.8);
+        wide.moments_px2 = [3600.0, 0.0, 400.0];
+        let [left, right] = share_out(&[wide], &[expect(260.0, 100.0), expect(150.0, 105.0)]);
+        assert!((left[0].centre.u_px - 251.96).abs() < 0.1 && (right[0].centre.u_px - 148.04).abs() < 0.1);
+        assert_eq!(left[0].area_px, 2000.0);
+    }
+}

@@ -1,0 +1,300 @@
+//! One frame of one arm.
+
+use super::estimate::{ArmEstimate, ArmJoints, Cluster, Status};
+use super::evidence::LimbDensities;
+use super::frame::{ArmFrame, ArmImage, MAX_CANDIDATES, most_likely};
+use super::model::ArmModel;
+use super::propose::FrameContext;
+use crate::camera::Pixel;
+use crate::correction::allocation::allot;
+use crate::error::{ParameterError, Rule};
+use crate::math::{Vec3, clamp, exp, length, max};
+use crate::observation::candidate::HandCandidate;
+use crate::observation::hough::dynamic_hough;
+use crate::observation::limbs::{ArmImagePoints, split};
+use crate::observation::orientation::OrientationDensity;
+use crate::particle::Weights;
+use crate::particle::resampling::{permute, systematic};
+use crate::random::Stream;
+use crate::skeleton::arm::ArmAngles;
+use heapless::Vec;
+
+/// Spread of the angles around the waiting pose before anything was seen, radians.
+const INITIAL_STD_RAD: f32 = 0.5;
+/// Time that is taken to have passed before the first frame, seconds.
+const FIRST_DT_S: f32 = 1.0 / 15.0;
+/// Shortest and longest time between two frames that the motion model is asked for, seconds.
+const DT_RANGE_S: (f32, f32) = (1.0e-3, 1.0);
+/// Fastest hand, metres per second: a sprinter's punch stays below.
+const MAX_SPEED_M_PER_S: f32 = 6.0;
+/// Index of the stream that the frame as a whole draws from.
+const FRAME_STREAM: u32 = u32::MAX;
+/// Indices of the streams of both limbs' Hough transforms.
+const LIMB_STREAMS: [u32; 2] = [u32::MAX - 1, u32::MAX - 2];
+
+/// One weighted arm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Particle {
+    /// Pose, inside the limits.
+    pub angles_rad: ArmAngles,
+    /// Elbow of that pose, metres.
+    pub elbow_m: Vec3,
+    /// Hand of that pose, metres: what was reached, not the goal.
+    pub hand_m: Vec3,
+    /// The considered candidate that drove the particle in this frame.
+    pub driver: Option<u8>,
+}
+
+/// State of one arm's tracker with room for `CAPACITY` particles.
+#[derive(Debug, Clone)]
+pub struct ArmTracker<const CAPACITY: usize> {
+    seed: u64,
+    frame: u64,
+    timestamp_us: Option<u64>,
+    unseen_s: f32,
+    ever_seen: bool,
+    generations: [Vec<Particle, CAPACITY>; 2],
+    current: usize,
+    weights: Weights<CAPACITY>,
+    limbs: LimbDensities,
+    estimate: ArmJoints,
+    hand_velocity_m_per_s: Vec3,
+    elbow_velocity_m_per_s: Vec3,
+}
+
+impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
+    /// A tracker that has seen nothing yet: particles around the waiting pose.
+    ///
+    /// # Errors
+    /// The model's particle count has to be from 1 to `CAPACITY`.
+    pub fn new(model: &ArmModel, shoulder_m: Vec3, seed: u64) -> Result<Self, ParameterError> {
+        let weights = Weights::uniform(model.options().particles)?;
+        let uniform = OrientationDensity::uniform(model.options().hough.bins)?;
+        let waiting = model.waiting_pose();
+        let (elbow_m, hand_m) = model.elbow_and_hand(&shoulder_m, &waiting);
+        let mut first = Vec::new();
+        for index in 0..weights.len() as u32 {
+            let mut stream = Stream::new(seed, 0, index);
+            let angles_rad = model.skeleton().clamp(waiting.map(|angle| angle + INITIAL_STD_RAD * stream.normal()));
+            let (elbow_m, hand_m) = model.elbow_and_hand(&shoulder_m, &angles_rad);
+            first
+                .push(Particle { angles_rad, elbow_m, hand_m, driver: None })
+                .map_err(|_| ParameterError::new("particles", Rule::Capacity { capacity: CAPACITY }))?;
+        }
+        Ok(Self {
+            seed,
+            frame: 0,
+            timestamp_us: None,
+            unseen_s: 0.0,
+            ever_seen: false,
+            generations: [first, Vec::new()],
+            current: 0,
+            weights,
+            limbs: LimbDensities { upper: uniform, fore: uniform },
+            estimate: ArmJoints { shoulder_m, elbow_m, hand_m },
+            hand_velocity_m_per_s: Vec3::zeros(),
+            elbow_velocity_m_per_s: Vec3::zeros(),
+        })
+    }
+
+    /// The particles of the last frame.
+    #[must_use]
+    pub fn particles(&self) -> &[Particle] {
+        &self.generations[self.current & 1]
+    }
+
+    /// Weights of [`Self::particles`], in their order; they sum to one.
+    #[must_use]
+    pub fn weights(&self) -> &[f32] {
+        self.weights.normalised()
+    }
+
+    /// Whether a blob carried the estimate in any frame so far.
+    #[must_use]
+    pub fn has_seen_the_hand(&self) -> bool {
+        self.ever_seen
+    }
+
+    /// Where the hand is expected at `timestamp_us`, metres, and how far off that may be (standard deviation, metres).
+    #[must_use]
+    pub fn predicted_hand(&self, model: &ArmModel, timestamp_us: u64) -> (Vec3, f32) {
+        let dt_s = self.elapsed_s(timestamp_us);
+        let options = model.options();
+        let hand = self.estimate.hand_m + self.hand_velocity_m_per_s * (options.velocity_persistence * dt_s);
+        let std_m = options.hand_std_m_per_sqrt_s * crate::math::sqrt(dt_s + self.unseen_s);
+        (hand, if self.ever_seen { std_m } else { 2.0 * options.hand_std_m_per_sqrt_s })
+    }
+
+    /// Answers one frame: the algorithm box of the arm paper, joined with PIK.
+    ///
+    /// A timestamp that does not lie after the last one counts as the shortest step. Every frame gets an answer; where
+    /// nothing was seen it is a prediction and says so.
+    pub fn step(&mut self, model: &ArmModel, frame: &ArmFrame<'_>) -> ArmEstimate {
+        let dt_s = self.elapsed_s(frame.timestamp_us);
+        let image = frame.image.unwrap_or_default();
+        let (candidates, dropped) = most_likely(image.candidates);
+        self.observe_limbs(model, &image, dt_s);
+        let context = self.context(model, frame, candidates, dt_s);
+        let ancestors = self.select_ancestors();
+        self.predict_and_weigh(&context, &ancestors, frame.image.is_some());
+        let (log_evidence, degenerate) = match self.weights.normalise() {
+            Ok(log_evidence) => (log_evidence, false),
+            Err(_) => (0.0, true),
+        };
+        let cluster = context.heaviest_cluster(self.particles(), self.weights.normalised());
+        let status = self.remember(&context, &cluster, dt_s);
+        self.frame += 1;
+        self.timestamp_us = Some(frame.timestamp_us);
+        let carrier = cluster.candidate.and_then(|index| context.candidates.get(index));
+        ArmEstimate {
+            side: model.side(),
+            status,
+            joints: cluster.joints,
+            angles_rad: cluster.angles_rad,
+            hand_std_m: cluster.hand_std_m,
+            effective_sample_size: self.weights.effective_sample_size(),
+            log_evidence,
+            degenerate,
+            hand_likelihood: carrier.map_or(0.0, |candidate| candidate.likelihood),
+            candidate: carrier.and_then(|kept| image.candidates.iter().position(|given| given == kept)),
+            dropped_candidates: dropped,
+        }
+    }
+
+    fn elapsed_s(&self, timestamp_us: u64) -> f32 {
+        let Some(before) = self.timestamp_us else { return FIRST_DT_S };
+        let elapsed = timestamp_us.saturating_sub(before) as f32 * 1.0e-6;
+        clamp(elapsed, DT_RANGE_S.0, DT_RANGE_S.1)
+    }
+
+    /// Orientation densities of both limbs: those of the moving edges near the last estimate, or the faded old ones.
+    fn observe_limbs(&mut self, model: &ArmModel, image: &ArmImage<'_>, dt_s: f32) {
+        let options = model.options();
+        let keep = exp(-dt_s / options.orientation_memory_s);
+        self.limbs.upper.fade(keep);
+        self.limbs.fore.fade(keep);
+        let Some(points) = image_points(model, &self.estimate) else { return };
+        let depth_m = max(self.estimate.elbow_m.z, 0.1);
+        let band_px = options.limb_band_m * model.camera().focal_px() / depth_m;
+        let pixels = split(image.edges, &points, band_px);
+        let mut streams = LIMB_STREAMS.map(|index| Stream::new(self.seed, self.frame, index));
+        if let Some(found) = dynamic_hough(&pixels.upper, &options.hough, &mut streams[0]) {
+            self.limbs.upper = found.density;
+        }
+        if let Some(found) = dynamic_hough(&pixels.fore, &options.hough, &mut streams[1]) {
+            self.limbs.fore = found.density;
+        }
+    }
+
+    /// Gathers what all particles share: rays of the blobs and how many particles each blob gets.
+    fn context<'a>(
+        &self,
+        model: &'a ArmModel,
+        frame: &ArmFrame<'_>,
+        candidates: Vec<HandCandidate, MAX_CANDIDATES>,
+        dt_s: f32,
+    ) -> FrameContext<'a> {
+        let mut counts = [0; MAX_CANDIDATES];
+        let mut free = self.weights.len();
+        if model.options().variant.is_blob_driven() {
+            let mut likelihoods = [0.0; MAX_CANDIDATES];
+            for (likelihood, candidate) in likelihoods.iter_mut().zip(&candidates) {
+                *likelihood = candidate.likelihood;
+            }
+            free = allot(self.weights.len(), &likelihoods, &mut counts);
+        }
+        FrameContext {
+            model,
+            shoulder_m: frame.shoulder_m,
+            reachable: model.reachable(&frame.shoulder_m),
+            dt_s,
+            unseen_s: self.unseen_s,
+            hand_velocity_m_per_s: self.hand_velocity_m_per_s,
+            elbow_velocity_m_per_s: self.elbow_velocity_m_per_s,
+            rays: candidates.iter().map(|candidate| model.camera().back_project(candidate.centre)).collect(),
+            candidates,
+            counts,
+            free,
+        }
+    }
+
+    /// Systematic resampling, then a permutation, so that the order of the ancestors does not decide who drives them.
+    fn select_ancestors(&self) -> Vec<u16, CAPACITY> {
+        let mut stream = Stream::new(self.seed, self.frame, FRAME_STREAM);
+        let mut ancestors: Vec<u16, CAPACITY> = Vec::new();
+        // As many as there are particles, so it always fits.
+        let _ = ancestors.resize(self.weights.len(), 0);
+        systematic(self.weights.normalised(), stream.uniform(), &mut ancestors);
+        permute(&mut ancestors, &mut stream);
+        ancestors
+    }
+
+    /// Moves every ancestor on and weighs the result. Without an image all weights are equal.
+    fn predict_and_weigh(&mut self, context: &FrameContext<'_>, ancestors: &[u16], seen: bool) {
+        let [even, odd] = &mut self.generations;
+        let (before, after) = if self.current == 0 { (even, odd) } else { (odd, even) };
+        after.clear();
+        let mut drivers = context.counts.iter().enumerate().flat_map(|(blob, &n)| (0..n).map(move |_| blob));
+        for (index, &ancestor) in ancestors.iter().enumerate() {
+            let Some(parent) = before.get(usize::from(ancestor)) else { continue };
+            // Frame 0 is the scatter of the first generation.
+            let mut stream = Stream::new(self.seed, self.frame + 1, index as u32);
+            let proposed = context.propose(parent, drivers.next(), &mut stream);
+            let log_weight = if seen { context.log_weight(&proposed, &self.limbs) } else { 0.0 };
+            self.weights.set_log(index, log_weight);
+            // The generation has the capacity of the one before.
+            let _ = after.push(proposed.particle);
+        }
+        self.current ^= 1;
+    }
+
+    /// Keeps what the next frame needs of the estimate: its place, its velocity, when a blob last carried it.
+    fn remember(&mut self, context: &FrameContext<'_>, cluster: &Cluster, dt_s: f32) -> Status {
+        let was_seen = self.ever_seen && self.unseen_s == 0.0;
+        let carried = cluster.candidate.is_some();
+        let options = context.model.options();
+        self.unseen_s = if carried { 0.0 } else { clamp(self.unseen_s + dt_s, 0.0, 60.0) };
+        self.ever_seen |= carried;
+        if was_seen && carried {
+            let gain = options.velocity_gain;
+            let blend = |old: Vec3, change: Vec3| {
+                let new = old * (1.0 - gain) + change * (gain / dt_s);
+                let speed = length(&new);
+                if speed > MAX_SPEED_M_PER_S { new * (MAX_SPEED_M_PER_S / speed) } else { new }
+            };
+            self.hand_velocity_m_per_s =
+                blend(self.hand_velocity_m_per_s, cluster.joints.hand_m - self.estimate.hand_m);
+            self.elbow_velocity_m_per_s =
+                blend(self.elbow_velocity_m_per_s, cluster.joints.elbow_m - self.estimate.elbow_m);
+        } else {
+            // A prediction confirms itself; its velocity fades. A return is no motion.
+            let keep = if carried { 0.0 } else { options.velocity_persistence };
+            self.hand_velocity_m_per_s *= keep;
+            self.elbow_velocity_m_per_s *= keep;
+        }
+        self.estimate = cluster.joints;
+        if carried {
+            Status::Tracking
+        } else if self.ever_seen && self.unseen_s <= options.lost_after_s {
+            Status::Predicted
+        } else {
+            Status::Lost
+        }
+    }
+}
+
+/// Images of an arm's joints; `None` where one lies behind the camera.
+pub(super) fn image_points(model: &ArmModel, joints: &ArmJoints) -> Option<ArmImagePoints> {
+    let project = |point: &Vec3| -> Option<Pixel> { model.camera().project(point) };
+    Some(ArmImagePoints {
+        shoulder: project(&joints.shoulder_m)?,
+        elbow: project(&joints.elbow_m)?,
+        hand: project(&joints.hand_m)?,
+    })
+}
+
+/// An arm's whole state with 50 particles fits a small device.
+#[cfg(target_pointer_width = "32")]
+const _: () = assert!(size_of::<ArmTracker<50>>() <= 16 * 1024);
+#[cfg(not(target_pointer_width = "32"))]
+const _: () = assert!(size_of::<ArmTracker<50>>() <= 16 * 1024);

@@ -1,0 +1,3 @@
+//! The trackers: each frame's step reads like the algorithm box in its paper.
+
+pub mod arm;
