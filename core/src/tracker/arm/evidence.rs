@@ -1,5 +1,6 @@
 //! Weights: what the image says of one arm.
 
+use super::limbs::{LimbDensities, LimbHypotheses};
 use super::options::LimbCombination;
 use super::propose::{FrameContext, Proposed};
 use super::step::Particle;
@@ -11,13 +12,6 @@ use crate::observation::orientation::OrientationDensity;
 
 /// A limb whose image is shorter than this has no orientation.
 const MIN_LIMB_IMAGE_PX: f32 = 6.0;
-
-/// Orientation densities of both limbs.
-#[derive(Debug, Clone)]
-pub(super) struct LimbDensities {
-    pub upper: OrientationDensity,
-    pub fore: OrientationDensity,
-}
 
 impl FrameContext<'_> {
     /// Images of the joints of `particle`; `None` where one of them lies behind the camera.
@@ -31,9 +25,11 @@ impl FrameContext<'_> {
     }
 
     /// ln of the particle's weight, up to a constant of the frame.
-    pub fn log_weight(&self, proposed: &Proposed, limbs: &LimbDensities) -> f32 {
+    pub fn log_weight(&self, proposed: &Proposed, limbs: &LimbHypotheses) -> f32 {
         let image = self.image_of(&proposed.particle);
-        let mut log_weight = proposed.log_payment + self.log_orientation(image.as_ref(), limbs);
+        let place =
+            proposed.particle.driver.map(usize::from).or_else(|| self.candidate_at(image.map(|points| points.hand)));
+        let mut log_weight = proposed.log_payment + self.log_orientation(image.as_ref(), limbs.at(place));
         if let (Some(gate), Some(_)) = (self.model.options().gate, proposed.particle.driver) {
             let std_m = gate.std_m + gate.growth_m_per_s * self.unseen_s;
             let jumps = proposed.jump_m / std_m;
@@ -119,6 +115,10 @@ mod tests {
     use crate::skeleton::{ArmGeometry, Side};
     use crate::tracker::arm::{ArmModel, ArmOptions};
 
+    fn only(upper: OrientationDensity, fore: OrientationDensity) -> LimbHypotheses {
+        LimbHypotheses { estimate: LimbDensities { upper, fore }, blobs: heapless::Vec::new() }
+    }
+
     fn context(model: &ArmModel) -> FrameContext<'_> {
         let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
         FrameContext {
@@ -147,15 +147,15 @@ mod tests {
         let particle = Particle { angles_rad, elbow_m, hand_m, driver: None };
         let proposed = Proposed { particle, jump_m: 0.0, log_payment: 0.0 };
         let uniform = OrientationDensity::uniform(36).unwrap();
-        let flat = LimbDensities { upper: uniform, fore: uniform };
+        let flat = only(uniform, uniform);
         let image = context.image_of(&proposed.particle).unwrap();
         let slope = atan2(image.hand.v_px - image.elbow.v_px, image.hand.u_px - image.elbow.u_px);
         let mut votes = [0_u16; 36];
         votes[uniform.bin_of(slope)] = 10;
-        let fitting = LimbDensities { upper: uniform, fore: uniform.from_votes(&votes) };
+        let fitting = only(uniform, uniform.from_votes(&votes));
         votes.rotate_left(18);
-        let crossing = LimbDensities { upper: uniform, fore: uniform.from_votes(&votes) };
-        let weight = |limbs: &LimbDensities| context.log_weight(&proposed, limbs);
+        let crossing = only(uniform, uniform.from_votes(&votes));
+        let weight = |limbs: &LimbHypotheses| context.log_weight(&proposed, limbs);
         assert!(weight(&fitting) > weight(&flat) + 2.0);
         assert!(weight(&crossing) < weight(&flat) - 2.0);
         assert!((weight(&flat) - 2.0 * ln(1.1)).abs() < 1.0e-5);

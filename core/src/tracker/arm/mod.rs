@@ -7,6 +7,7 @@
 mod estimate;
 mod evidence;
 mod frame;
+mod limbs;
 mod model;
 pub mod options;
 mod pair;

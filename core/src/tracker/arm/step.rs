@@ -1,17 +1,16 @@
 //! One frame of one arm.
 
 use super::estimate::{ArmEstimate, ArmJoints, Cluster, Status};
-use super::evidence::LimbDensities;
 use super::frame::{ArmFrame, ArmImage, MAX_CANDIDATES, most_likely};
+use super::limbs::{self, LimbDensities, LimbHypotheses};
 use super::model::ArmModel;
 use super::propose::FrameContext;
 use crate::camera::Pixel;
 use crate::correction::allocation::allot;
 use crate::error::{ParameterError, Rule};
-use crate::math::{Vec3, clamp, exp, length, max};
+use crate::math::{Vec3, clamp, exp, length};
 use crate::observation::candidate::HandCandidate;
-use crate::observation::hough::dynamic_hough;
-use crate::observation::limbs::{ArmImagePoints, split};
+use crate::observation::limbs::ArmImagePoints;
 use crate::observation::orientation::OrientationDensity;
 use crate::particle::Weights;
 use crate::particle::resampling::{permute, systematic};
@@ -29,8 +28,8 @@ const DT_RANGE_S: (f32, f32) = (1.0e-3, 1.0);
 const MAX_SPEED_M_PER_S: f32 = 6.0;
 /// Index of the stream that the frame as a whole draws from.
 const FRAME_STREAM: u32 = u32::MAX;
-/// Indices of the streams of both limbs' Hough transforms.
-const LIMB_STREAMS: [u32; 2] = [u32::MAX - 1, u32::MAX - 2];
+/// First of the streams that the Hough transforms draw from.
+const LIMB_STREAMS: u32 = u32::MAX - 64;
 
 /// One weighted arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -133,16 +132,16 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         let dt_s = self.elapsed_s(frame.timestamp_us);
         let image = frame.image.unwrap_or_default();
         let (candidates, dropped) = most_likely(image.candidates);
-        self.observe_limbs(model, &image, dt_s);
         let context = self.context(model, frame, candidates, dt_s);
+        let limbs = self.observe_limbs(&context, &image);
         let ancestors = self.select_ancestors();
-        self.predict_and_weigh(&context, &ancestors, frame.image.is_some());
+        self.predict_and_weigh(&context, &ancestors, frame.image.map(|_| &limbs));
         let (log_evidence, degenerate) = match self.weights.normalise() {
             Ok(log_evidence) => (log_evidence, false),
             Err(_) => (0.0, true),
         };
         let cluster = context.heaviest_cluster(self.particles(), self.weights.normalised());
-        let status = self.remember(&context, &cluster, dt_s);
+        let status = self.remember(&context, &cluster, &limbs, dt_s);
         self.frame += 1;
         self.timestamp_us = Some(frame.timestamp_us);
         let carrier = cluster.candidate.and_then(|index| context.candidates.get(index));
@@ -167,23 +166,13 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         clamp(elapsed, DT_RANGE_S.0, DT_RANGE_S.1)
     }
 
-    /// Orientation densities of both limbs: those of the moving edges near the last estimate, or the faded old ones.
-    fn observe_limbs(&mut self, model: &ArmModel, image: &ArmImage<'_>, dt_s: f32) {
-        let options = model.options();
-        let keep = exp(-dt_s / options.orientation_memory_s);
+    /// Orientation densities for the last estimate, faded where nothing moves, and for every blob.
+    fn observe_limbs(&mut self, context: &FrameContext<'_>, image: &ArmImage<'_>) -> LimbHypotheses {
+        let keep = exp(-context.dt_s / context.model.options().orientation_memory_s);
         self.limbs.upper.fade(keep);
         self.limbs.fore.fade(keep);
-        let Some(points) = image_points(model, &self.estimate) else { return };
-        let depth_m = max(self.estimate.elbow_m.z, 0.1);
-        let band_px = options.limb_band_m * model.camera().focal_px() / depth_m;
-        let pixels = split(image.edges, &points, band_px);
-        let mut streams = LIMB_STREAMS.map(|index| Stream::new(self.seed, self.frame, index));
-        if let Some(found) = dynamic_hough(&pixels.upper, &options.hough, &mut streams[0]) {
-            self.limbs.upper = found.density;
-        }
-        if let Some(found) = dynamic_hough(&pixels.fore, &options.hough, &mut streams[1]) {
-            self.limbs.fore = found.density;
-        }
+        let stream_of = |index| Stream::new(self.seed, self.frame, LIMB_STREAMS + index);
+        limbs::observe(context, &self.estimate, &self.limbs, image, stream_of)
     }
 
     /// Gathers what all particles share: rays of the blobs and how many particles each blob gets.
@@ -230,7 +219,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     }
 
     /// Moves every ancestor on and weighs the result. Without an image all weights are equal.
-    fn predict_and_weigh(&mut self, context: &FrameContext<'_>, ancestors: &[u16], seen: bool) {
+    fn predict_and_weigh(&mut self, context: &FrameContext<'_>, ancestors: &[u16], limbs: Option<&LimbHypotheses>) {
         let [even, odd] = &mut self.generations;
         let (before, after) = if self.current == 0 { (even, odd) } else { (odd, even) };
         after.clear();
@@ -240,7 +229,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             // Frame 0 is the scatter of the first generation.
             let mut stream = Stream::new(self.seed, self.frame + 1, index as u32);
             let proposed = context.propose(parent, drivers.next(), &mut stream);
-            let log_weight = if seen { context.log_weight(&proposed, &self.limbs) } else { 0.0 };
+            let log_weight = limbs.map_or(0.0, |limbs| context.log_weight(&proposed, limbs));
             self.weights.set_log(index, log_weight);
             // The generation has the capacity of the one before.
             let _ = after.push(proposed.particle);
@@ -249,7 +238,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     }
 
     /// Keeps what the next frame needs of the estimate: its place, its velocity, when a blob last carried it.
-    fn remember(&mut self, context: &FrameContext<'_>, cluster: &Cluster, dt_s: f32) -> Status {
+    fn remember(&mut self, context: &FrameContext<'_>, cluster: &Cluster, limbs: &LimbHypotheses, dt_s: f32) -> Status {
+        self.limbs = *limbs.at(cluster.candidate);
         let was_seen = self.ever_seen && self.unseen_s == 0.0;
         let carried = cluster.candidate.is_some();
         let options = context.model.options();
