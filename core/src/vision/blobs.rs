@@ -1,0 +1,124 @@
+//! The blobs of a mask that are most likely hands.
+
+use super::component_scanner::ComponentScanner;
+use super::components::Component;
+use super::features::{Blob, BlobMeter};
+use super::hand_likelihood::HandLikelihood;
+use super::mask::Mask;
+use super::runs::{Run, RunPool};
+use crate::observation::candidate::HandCandidate;
+use heapless::Vec;
+
+/// Smallest component that becomes a blob, as a part of the image's area (24 pixels of 640 x 480).
+pub const DEFAULT_MIN_AREA_FRACTION: f32 = 8.0e-5;
+
+/// A blob and its likelihood of being a hand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct LikelyBlob {
+    /// The blob.
+    pub blob: Blob,
+    /// p(hand | blob) in [0, 1].
+    pub likelihood: f32,
+}
+
+/// The most likely blobs of a frame, most likely first, and what found no room.
+#[derive(Debug, Clone, Default)]
+pub struct BlobList<const N: usize> {
+    blobs: Vec<LikelyBlob, N>,
+    /// Blobs that were less likely than all that were kept.
+    pub dropped_blobs: u32,
+    /// Components that found no room while the mask was scanned, see [`ComponentScanner::dropped_components`].
+    pub dropped_components: u32,
+    /// Components too small to become a blob.
+    pub specks: u32,
+}
+
+impl<const N: usize> BlobList<N> {
+    /// An empty list.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { blobs: Vec::new(), dropped_blobs: 0, dropped_components: 0, specks: 0 }
+    }
+
+    /// The blobs, most likely first.
+    #[must_use]
+    pub fn as_slice(&self) -> &[LikelyBlob] {
+        &self.blobs
+    }
+
+    /// What the trackers need to know of them, most likely first.
+    pub fn candidates(&self) -> impl Iterator<Item = HandCandidate> + '_ {
+        self.blobs.iter().map(|entry| entry.blob.candidate(entry.likelihood))
+    }
+
+    /// Empties the list and its counts.
+    pub fn clear(&mut self) {
+        self.blobs.clear();
+        self.dropped_blobs = 0;
+        self.dropped_components = 0;
+        self.specks = 0;
+    }
+
+    /// Whether a blob of at most this likelihood would find no room.
+    fn refuses(&self, likelihood: f32) -> bool {
+        self.blobs.is_full() && self.blobs.last().is_none_or(|least| likelihood <= least.likelihood)
+    }
+
+    /// Puts a blob in its place; the least likely one goes when there is no room.
+    pub fn insert(&mut self, entry: LikelyBlob) {
+        if self.refuses(entry.likelihood) {
+            self.dropped_blobs = self.dropped_blobs.saturating_add(1);
+            return;
+        }
+        if self.blobs.is_full() {
+            self.blobs.pop();
+            self.dropped_blobs = self.dropped_blobs.saturating_add(1);
+        }
+        let place = self.blobs.iter().position(|other| other.likelihood < entry.likelihood);
+        // There is room, so neither can fail.
+        let _ = self.blobs.insert(place.unwrap_or(self.blobs.len()), entry);
+    }
+}
+
+/// Finds the blobs of masks; owns the working memory.
+#[derive(Debug, Clone)]
+pub struct BlobFinder<const RUNS: usize, const OPEN: usize> {
+    scanner: ComponentScanner<RUNS, OPEN>,
+    meter: BlobMeter,
+    likelihood: HandLikelihood,
+    min_area_fraction: f32,
+}
+
+impl<const RUNS: usize, const OPEN: usize> BlobFinder<RUNS, OPEN> {
+    /// A finder that leaves out components below `min_area_fraction` of the image's area (a NaN leaves out all).
+    #[must_use]
+    pub fn new(meter: BlobMeter, likelihood: HandLikelihood, min_area_fraction: f32) -> Self {
+        Self { scanner: ComponentScanner::new(), meter, likelihood, min_area_fraction }
+    }
+
+    /// Replaces the contents of `list` by the most likely blobs of `mask`.
+    ///
+    /// `runs` is working memory for the runs of the components that grow at the same time. Where it is too short, blobs come
+    /// with `shape_complete` false.
+    pub fn find<const N: usize>(&mut self, mask: &Mask<'_>, runs: &mut [Run], list: &mut BlobList<N>) {
+        list.clear();
+        let image_area_px = (mask.width() * mask.height()) as f32;
+        let Self { scanner, meter, likelihood, min_area_fraction } = self;
+        let mut take = |component: &Component, pool: &RunPool<'_>| {
+            let area_px = component.area_px() as f32;
+            if area_px >= *min_area_fraction * image_area_px {
+                if list.refuses(likelihood.upper_bound(area_px, image_area_px)) {
+                    list.dropped_blobs = list.dropped_blobs.saturating_add(1);
+                    return;
+                }
+                let blob = meter.measure(component, pool);
+                list.insert(LikelyBlob { blob, likelihood: likelihood.evaluate(&blob, image_area_px) });
+            } else {
+                list.specks = list.specks.saturating_add(1);
+            }
+        };
+        scanner.scan(mask, &mut RunPool::new(runs), &mut take);
+        list.dropped_components = scanner.dropped_components();
+    }
+}

@@ -1,0 +1,311 @@
+//! Temporal edge pixels: where the luminance has an edge and has changed since the frame before.
+
+use super::mask::{MAX_SIDE_PX, words_per_row};
+use crate::error::{ParameterError, Rule, within};
+use heapless::Vec;
+
+/// Pixels judged together.
+const BLOCK: usize = 32;
+/// A block and its neighbours on both sides.
+const WINDOW: usize = BLOCK + 2;
+
+/// A pixel that is an edge and moving.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct EdgePixel {
+    /// Column.
+    pub u: u16,
+    /// Row.
+    pub v: u16,
+}
+
+/// Temporal edge pixels in the order of rows, thinned where there were more than fit.
+#[derive(Debug, Clone, Default)]
+pub struct EdgeList<const N: usize> {
+    pixels: Vec<EdgePixel, N>,
+    /// Edge pixels that were left out, evenly over the image.
+    pub dropped: u32,
+}
+
+impl<const N: usize> EdgeList<N> {
+    /// An empty list.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { pixels: Vec::new(), dropped: 0 }
+    }
+
+    /// The edge pixels.
+    #[must_use]
+    pub fn as_slice(&self) -> &[EdgePixel] {
+        &self.pixels
+    }
+
+    /// Empties the list.
+    pub fn clear(&mut self) {
+        self.pixels.clear();
+        self.dropped = 0;
+    }
+
+    /// Takes the set pixels of a mask; of more than fit every n-th, n a fraction, in the order of rows.
+    pub fn take_mask(&mut self, bits: &[u32], width: usize) {
+        self.clear();
+        let total: u32 = bits.iter().map(|word| word.count_ones()).sum();
+        let room = total.min(N as u32);
+        let mut credit = 0;
+        for (i, &word) in bits.iter().enumerate() {
+            let (v, first) = (i / words_per_row(width).max(1), 32 * (i % words_per_row(width).max(1)));
+            let mut rest = word;
+            while rest != 0 {
+                let u = first + rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                credit += u64::from(room);
+                if credit >= u64::from(total) {
+                    credit -= u64::from(total);
+                    // `room` pixels are taken in all, so there is room.
+                    let _ = self.pixels.push(EdgePixel { u: u as u16, v: v as u16 });
+                }
+            }
+        }
+        self.dropped = total - self.pixels.len() as u32;
+    }
+}
+
+/// Luminance 0 to 255 of a line of interleaved RGB, (77 R + 150 G + 29 B) / 256 (Rec. 601).
+pub fn luminance_line(rgb: &[u8], luminance: &mut [u8]) {
+    for (pixel, out) in rgb.as_chunks::<3>().0.iter().zip(luminance) {
+        let [r, g, b] = pixel.map(u16::from);
+        *out = ((77 * r + 150 * g + 29 * b) >> 8) as u8;
+    }
+}
+
+/// Finds temporal edges; both thresholds are in grey levels, 0 to 255.
+///
+/// The gradient is Sobel's, divided by 8 so that a step of one grey level a pixel has length 1; the change between frames is weighted over
+/// 3x3 pixels by 1-2-1 in both directions, which takes most of a webcam's or JPEG's noise away.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct EdgeDetector {
+    /// (8 x gradient threshold)^2.
+    gradient_square: i32,
+    /// 16 x motion threshold.
+    motion: i16,
+}
+
+/// Default of the smallest gradient, grey levels a pixel: a soft edge of 40 levels over five pixels passes.
+pub const DEFAULT_MIN_GRADIENT: f32 = 8.0;
+/// Default of the smallest smoothed change, grey levels: about five standard deviations of a webcam's noise of 5 levels (smoothed: 2.7).
+pub const DEFAULT_MIN_MOTION: f32 = 12.0;
+
+impl Default for EdgeDetector {
+    fn default() -> Self {
+        Self { gradient_square: 64 * 64, motion: 192 }
+    }
+}
+
+impl EdgeDetector {
+    /// A detector for gradients of at least `min_gradient` and changes of at least `min_motion`, grey levels.
+    ///
+    /// # Errors
+    /// Both have to lie from 0 to 255.
+    pub fn new(min_gradient: f32, min_motion: f32) -> Result<Self, ParameterError> {
+        let gradient = 8.0 * within("min_gradient", min_gradient, 0.0, 255.0)?;
+        let motion = 16.0 * within("min_motion", min_motion, 0.0, 255.0)?;
+        Ok(Self { gradient_square: (gradient * gradient) as i32, motion: motion as i16 })
+    }
+
+    /// Sets the bits of the temporal edge pixels of two luminance frames in `bits` ([`words_per_row`] words a row).
+    ///
+    /// Pixels on the image's border are never edges.
+    ///
+    /// # Errors
+    /// Sides up to [`MAX_SIDE_PX`], frames of `width` x `height` bytes, and enough words.
+    pub fn find(
+        &self,
+        luminance: &[u8],
+        previous: &[u8],
+        width: usize,
+        height: usize,
+        bits: &mut [u32],
+    ) -> Result<(), ParameterError> {
+        if width > MAX_SIDE_PX || height > MAX_SIDE_PX {
+            return Err(ParameterError::new("frame side", Rule::Capacity { capacity: MAX_SIDE_PX }));
+        }
+        let len = words_per_row(width);
+        let same = |parameter, have: usize, expected: usize| {
+            if have < expected { Err(ParameterError::new(parameter, Rule::SameLength { expected })) } else { Ok(()) }
+        };
+        same("luminance", luminance.len(), width * height)?;
+        same("previous", previous.len(), width * height)?;
+        same("bits", bits.len(), len * height)?;
+        bits.fill(0);
+        if width < 3 || height < 3 {
+            return Ok(());
+        }
+        for (v, row) in bits.chunks_exact_mut(len).enumerate().take(height - 1).skip(1) {
+            let lines = [v - 1, v, v + 1].map(|y| y * width..(y + 1) * width);
+            let now = lines.clone().map(|range| &luminance[range]);
+            let before = lines.map(|range| &previous[range]);
+            for (i, word) in row.iter_mut().enumerate() {
+                *word = self.block(now, before, i * BLOCK) & inner_columns(i * BLOCK, width);
+            }
+        }
+        Ok(())
+    }
+
+    /// The bits of the block that begins at column `first`.
+    fn block(&self, now: [&[u8]; 3], before: [&[u8]; 3], first: usize) -> u32 {
+        let now = now.map(|line| window(line, first));
+        let before = before.map(|line| window(line, first));
+        let mut change = [0_i16; WINDOW];
+        for (i, out) in change.iter_mut().enumerate() {
+            let difference = |y: usize| i16::from(now[y][i]) - i16::from(before[y][i]);
+            *out = difference(0) + 2 * difference(1) + difference(2);
+        }
+        let mut moving = [0_u16; BLOCK];
+        for (i, out) in moving.iter_mut().enumerate() {
+            let sum = change[i] + 2 * change[i + 1] + change[i + 2];
+            *out = u16::from(sum >= self.motion) | u16::from(sum <= -self.motion);
+        }
+        if moving.iter().fold(0, |any, m| any | m) == 0 {
+            return 0;
+        }
+        let (mut smooth, mut slope) = ([0_i16; WINDOW], [0_i16; WINDOW]);
+        for i in 0..WINDOW {
+            let [a, b, c] = [0, 1, 2].map(|y: usize| i16::from(now[y][i]));
+            smooth[i] = a + 2 * b + c;
+            slope[i] = c - a;
+        }
+        let mut word = 0;
+        for i in 0..BLOCK {
+            let across = i32::from(smooth[i + 2] - smooth[i]);
+            let down = i32::from(slope[i] + 2 * slope[i + 1] + slope[i + 2]);
+            let edge = across * across + down * down >= self.gradient_square;
+            word |= (u32::from(moving[i]) & u32::from(edge)) << i;
+        }
+        word
+    }
+}
+
+/// Columns `first - 1` to `first + 32` of a line, zero beyond it.
+#[inline]
+fn window(line: &[u8], first: usize) -> [u8; WINDOW] {
+    let mut out = [0; WINDOW];
+    match (first.checked_sub(1), line.get(first.wrapping_sub(1)..first + BLOCK + 1)) {
+        (Some(_), Some(inside)) => out.copy_from_slice(inside),
+        (Some(before), None) => out.iter_mut().zip(line.iter().skip(before)).for_each(|(o, l)| *o = *l),
+        (None, _) => out.iter_mut().skip(1).zip(line).for_each(|(o, l)| *o = *l),
+    }
+    out
+}
+
+/// The bits of a block's columns that are neither the image's first nor its last.
+fn inner_columns(first: usize, width: usize) -> u32 {
+    let end = (width - 1).saturating_sub(first).min(BLOCK) as u32;
+    let below = 1_u32.checked_shl(end).map_or(u32::MAX, |bit| bit - 1);
+    if first == 0 { below & !1 } else { below }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn naive(
+        now: &[u8],
+        before: &[u8],
+        width: usize,
+        height: usize,
+        gradient: f32,
+        motion: f32,
+    ) -> Vec<EdgePixel, 4096> {
+        let mut found = Vec::new();
+        let at = |f: &[u8], u: usize, v: usize| f32::from(f[v * width + u]);
+        for v in 1..height.saturating_sub(1) {
+            for u in 1..width.saturating_sub(1) {
+                let (mut gx, mut gy, mut change) = (0.0, 0.0, 0.0);
+                for (dv, a) in [1.0, 2.0, 1.0].into_iter().enumerate() {
+                    for (du, b) in [1.0, 2.0, 1.0].into_iter().enumerate() {
+                        let (x, y) = (u + du - 1, v + dv - 1);
+                        gx += a * (du as f32 - 1.0) * at(now, x, y) / 8.0;
+                        gy += b * (dv as f32 - 1.0) * at(now, x, y) / 8.0;
+                        change += a * b * (at(now, x, y) - at(before, x, y)) / 16.0;
+                    }
+                }
+                if gx * gx + gy * gy >= gradient * gradient && change.abs() >= motion {
+                    found.push(EdgePixel { u: u as u16, v: v as u16 }).unwrap();
+                }
+            }
+        }
+        found
+    }
+
+    proptest! {
+        #[test]
+        fn edges_equal_the_definition(
+            width in 1_usize..70, height in 1_usize..8, pixels in prop::collection::vec(any::<[u8; 2]>(), 70 * 8),
+            gradient in 0_u8..60, motion in 0_u8..60,
+        ) {
+            let now: std::vec::Vec<u8> = pixels[..width * height].iter().map(|p| p[0]).collect();
+            let before: std::vec::Vec<u8> = pixels[..width * height].iter().map(|p| p[1]).collect();
+            let (gradient, motion) = (f32::from(gradient), f32::from(motion));
+            let mut bits = vec![u32::MAX; words_per_row(width) * height];
+            EdgeDetector::new(gradient, motion).unwrap().find(&now, &before, width, height, &mut bits).unwrap();
+            let mut list = EdgeList::<4096>::new();
+            list.take_mask(&bits, width);
+            let wanted = naive(&now, &before, width, height, gradient, motion);
+            prop_assert_eq!(list.as_slice(), wanted.as_slice());
+            let mut short = EdgeList::<10>::new();
+            short.take_mask(&bits, width);
+            prop_assert_eq!(short.as_slice().len() + short.dropped as usize, wanted.len());
+            prop_assert_eq!(short.as_slice().len(), wanted.len().min(10));
+        }
+    }
+
+    #[test]
+    fn thinning_keeps_every_part_of_the_image() {
+        let bits = [u32::MAX; 64];
+        let mut list = EdgeList::<128>::new();
+        list.take_mask(&bits, 64);
+        assert_eq!((list.as_slice().len(), list.dropped), (128, 1920));
+        for v in 0..32 {
+            assert_eq!(list.as_slice().iter().filter(|p| p.v == v).count(), 4);
+        }
+    }
+
+    #[test]
+    fn noise_of_five_levels_gives_hardly_any_edges() {
+        use rand_core::{Rng, SeedableRng};
+        let mut random = rand_xoshiro::Xoshiro128PlusPlus::seed_from_u64(1);
+        // A sum of four uniform draws, standard deviation 5; the scene holds strong edges.
+        let mut noisy = |base: u8| {
+            let draws: i32 = (0..4).map(|_| (random.next_u32() >> 8) as i32 % 1000 - 500).sum();
+            (i32::from(base) + draws * 5 / 577) as u8
+        };
+        let scene: std::vec::Vec<u8> = (0..320 * 240).map(|i| if (i % 320 / 16) % 2 == 0 { 60 } else { 180 }).collect();
+        let now: std::vec::Vec<u8> = scene.iter().map(|&p| noisy(p)).collect();
+        let before: std::vec::Vec<u8> = scene.iter().map(|&p| noisy(p)).collect();
+        let mut bits = vec![0; 10 * 240];
+        EdgeDetector::default().find(&now, &before, 320, 240, &mut bits).unwrap();
+        let count: u32 = bits.iter().map(|w| w.count_ones()).sum();
+        assert!(count < 20, "{count} of 76800 pixels");
+        let moved: std::vec::Vec<u8> = (0..320 * 240).map(|i| now[i / 320 * 320 + (i % 320 + 3) % 320]).collect();
+        EdgeDetector::default().find(&moved, &before, 320, 240, &mut bits).unwrap();
+        let count: u32 = bits.iter().map(|w| w.count_ones()).sum();
+        assert!((8_000..20_000).contains(&count), "{count}");
+    }
+
+    #[test]
+    fn short_slices_are_refused_by_name() {
+        let find = |a: usize, b: usize, c: usize| {
+            EdgeDetector::default().find(&vec![0; a], &vec![0; b], 40, 2, &mut vec![0; c]).unwrap_err().parameter
+        };
+        assert_eq!((find(79, 80, 4), find(80, 79, 4), find(80, 80, 3)), ("luminance", "previous", "bits"));
+    }
+
+    #[test]
+    fn white_is_255_and_green_is_brighter_than_blue() {
+        let mut out = [0; 3];
+        luminance_line(&[255, 255, 255, 0, 200, 0, 0, 0, 200], &mut out);
+        assert_eq!(out, [255, 117, 22]);
+    }
+}

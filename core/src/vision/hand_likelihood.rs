@@ -1,0 +1,204 @@
+//! How likely a blob is a hand: eqs. (6) to (9) of the arm paper, as printed or made fit for open hands.
+
+use super::features::Blob;
+use crate::error::{ParameterError, Rule, not_negative, positive};
+use crate::math::{clamp, exp, ln, max};
+
+/// Which features are used, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum LikelihoodForm {
+    /// Eqs. (6) to (9) as printed: an area gate, features of the plain blob, weights as factors.
+    Paper,
+    /// A smooth area term, features of the finger-filled blob, weights as exponents.
+    #[default]
+    Filled,
+}
+
+/// Turns a blob's features into p(hand | blob).
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct HandLikelihood {
+    form: LikelihoodForm,
+    weights: [f32; 3],
+    area_fractions: [f32; 2],
+    scale: f32,
+}
+
+/// Weights of the area, centrality and ellipse features in the paper.
+pub const DEFAULT_WEIGHTS: [f32; 3] = [1.0; 3];
+/// Smallest and largest usual area of a hand, as parts of the image's area.
+///
+/// With a webcam of 60 degrees, seen from 2.5 m a fist (60 square centimetres) covers 0.17 % of a 4:3 image, an open hand
+/// (150 square centimetres) seen from 0.35 m 12 %.
+pub const DEFAULT_AREA_FRACTIONS: [f32; 2] = [0.0017, 0.12];
+/// The factor in F(x) = 1 - exp(-5 x).
+pub const DEFAULT_SCALE: f32 = 5.0;
+
+/// Standard deviation of the natural logarithm of the area beyond the usual ones.
+const LOG_AREA_STD: f32 = 0.7;
+
+impl Default for HandLikelihood {
+    fn default() -> Self {
+        Self {
+            form: LikelihoodForm::Filled,
+            weights: DEFAULT_WEIGHTS,
+            area_fractions: DEFAULT_AREA_FRACTIONS,
+            scale: DEFAULT_SCALE,
+        }
+    }
+}
+
+impl HandLikelihood {
+    /// A likelihood of the given `form`, with a weight for each of the area, centrality and ellipse features, the smallest and
+    /// largest usual area (TH_min, TH_max) as parts of the image's area, and the `scale` of F(x) = 1 - exp(-scale x).
+    ///
+    /// # Errors
+    /// Weights must not be negative, areas and scale positive, the areas in order.
+    pub fn new(
+        form: LikelihoodForm,
+        weights: [f32; 3],
+        area_fractions: [f32; 2],
+        scale: f32,
+    ) -> Result<Self, ParameterError> {
+        for weight in weights {
+            not_negative("weights", weight)?;
+        }
+        for fraction in area_fractions {
+            positive("area_fractions", fraction)?;
+        }
+        if area_fractions[0] >= area_fractions[1] {
+            return Err(ParameterError::new("area_fractions", Rule::OrderedInterval));
+        }
+        Ok(Self { form, weights, area_fractions, scale: positive("scale", scale)? })
+    }
+
+    /// The same parameters in another form.
+    #[must_use]
+    pub fn with_form(self, form: LikelihoodForm) -> Self {
+        Self { form, ..self }
+    }
+
+    /// p(hand | blob) in [0, 1] for a blob of an image of `image_area_px` pixels.
+    #[must_use]
+    pub fn evaluate(&self, blob: &Blob, image_area_px: f32) -> f32 {
+        let shape = match self.form {
+            LikelihoodForm::Paper => &blob.plain,
+            LikelihoodForm::Filled => &blob.filled,
+        };
+        let area = self.area_term(blob.area_px as f32, image_area_px);
+        self.scaled([area, shape.centrality(), shape.ellipse_iou])
+    }
+
+    /// The most that a blob of this area can reach, whatever its shape.
+    #[must_use]
+    pub fn upper_bound(&self, area_px: f32, image_area_px: f32) -> f32 {
+        self.scaled([self.area_term(area_px, image_area_px), 1.0, 1.0])
+    }
+
+    /// Eq. (6).
+    fn scaled(&self, features: [f32; 3]) -> f32 {
+        let product = features.iter().zip(self.weights).fold(1.0, |product, (&feature, weight)| match self.form {
+            LikelihoodForm::Paper => product * weight * feature,
+            LikelihoodForm::Filled => product * power(feature, weight),
+        });
+        clamp(1.0 - exp(-self.scale * product), 0.0, 1.0)
+    }
+
+    /// Eq. (7), or 1 within the usual areas and a normal distribution's flanks in the logarithm of the area beyond them.
+    fn area_term(&self, area_px: f32, image_area_px: f32) -> f32 {
+        let [low, high] = self.area_fractions;
+        let fraction = area_px / max(image_area_px, 1.0);
+        match self.form {
+            LikelihoodForm::Paper => f32::from(u8::from((low..=high).contains(&fraction))),
+            LikelihoodForm::Filled => {
+                let beyond = max(max(ln(low / max(fraction, 1.0e-9)), ln(fraction / high)), 0.0) / LOG_AREA_STD;
+                exp(-0.5 * beyond * beyond)
+            }
+        }
+    }
+}
+
+/// `base` to the power of `exponent`; 1 for the exponent 0.
+fn power(base: f32, exponent: f32) -> f32 {
+    if exponent <= 0.0 {
+        1.0
+    } else if base <= 0.0 {
+        0.0
+    } else {
+        exp(exponent * ln(base))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Pixel;
+    use crate::vision::components::BoundingBox;
+    use crate::vision::features::ShapeFeatures;
+    use proptest::prelude::*;
+
+    fn blob(area_px: u32, plain: (f32, f32), filled: (f32, f32)) -> Blob {
+        let shape = |(centrality, ellipse_iou): (f32, f32)| ShapeFeatures {
+            area_px: area_px as f32,
+            dt_max_px: 10.0,
+            dt_at_centroid_px: 10.0 * centrality,
+            ellipse_iou,
+            ..ShapeFeatures::default()
+        };
+        Blob {
+            area_px,
+            centroid: Pixel::default(),
+            moments_px2: [1.0, 0.0, 1.0],
+            bounding_box: BoundingBox { min_u: 0, min_v: 0, max_u: 9, max_v: 9 },
+            plain: shape(plain),
+            filled: shape(filled),
+            shape_complete: true,
+        }
+    }
+
+    const IMAGE_PX: f32 = 640.0 * 480.0;
+
+    #[test]
+    fn the_paper_form_is_the_printed_equation() {
+        let paper = HandLikelihood::default().with_form(LikelihoodForm::Paper);
+        let p = paper.evaluate(&blob(5000, (0.5, 0.6), (1.0, 1.0)), IMAGE_PX);
+        assert!((p - (1.0 - (-5.0_f32 * 0.3).exp())).abs() < 1.0e-6);
+        assert_eq!(paper.evaluate(&blob(50_000, (1.0, 1.0), (1.0, 1.0)), IMAGE_PX), 0.0);
+        assert_eq!(paper.evaluate(&blob(300, (1.0, 1.0), (1.0, 1.0)), IMAGE_PX), 0.0);
+    }
+
+    #[test]
+    fn the_area_counts_smoothly_by_default() {
+        let default = HandLikelihood::default();
+        let p = [100, 200, 400, 3000, 30_000, 60_000, 120_000, 300_000]
+            .map(|area_px| default.evaluate(&blob(area_px, (0.0, 0.0), (0.9, 0.8)), IMAGE_PX));
+        assert!(
+            p[0] < p[1] && p[1] < p[2] && p[2] < p[3] && p[3] == p[4] && p[4] > p[5] && p[5] > p[6] && p[6] > p[7],
+            "{p:?}"
+        );
+        assert!(p[0] < 0.5 && p[7] < 0.2 && p[4] > 0.95, "{p:?}");
+    }
+
+    proptest! {
+        #[test]
+        fn likelihoods_are_probabilities_below_their_bound(
+            area in 1_u32..4_000_000, plain in (0.0_f32..1.0, 0.0_f32..1.0), filled in (0.0_f32..1.0, 0.0_f32..1.0),
+            image in 0.0_f32..1.0e7, weights in prop::array::uniform3(0.0_f32..3.0), paper: bool,
+        ) {
+            let form = if paper { LikelihoodForm::Paper } else { LikelihoodForm::Filled };
+            let likelihood = HandLikelihood::new(form, weights, DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE).unwrap();
+            let p = likelihood.evaluate(&blob(area, plain, filled), image);
+            prop_assert!((0.0..=1.0).contains(&p));
+            prop_assert!(p <= likelihood.upper_bound(area as f32, image) + 1.0e-6);
+        }
+    }
+
+    #[test]
+    fn bad_parameters_are_refused_by_name() {
+        let new = |w, a, s| HandLikelihood::new(LikelihoodForm::Paper, w, a, s).unwrap_err();
+        assert_eq!(new([1.0, -1.0, 1.0], [0.1, 0.2], 5.0), ParameterError::new("weights", Rule::NotNegative));
+        assert_eq!(new([1.0; 3], [0.2, 0.1], 5.0), ParameterError::new("area_fractions", Rule::OrderedInterval));
+        assert_eq!(new([1.0; 3], [0.1, 0.2], 0.0), ParameterError::new("scale", Rule::Positive));
+    }
+}
