@@ -2,4 +2,6 @@
 
 pub mod cli;
 pub mod images;
+pub mod motion;
 pub mod output;
+pub mod scene;

@@ -3,7 +3,6 @@
 use clap::Parser;
 use std::process::ExitCode;
 
-#[allow(unreachable_code)] // as long as no subcommand is there
 fn main() -> ExitCode {
     match sinew::cli::run(&sinew::cli::Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,

@@ -3,6 +3,8 @@
 //! To add a subcommand, write `cli/NAME.rs` with `pub struct NameArgs` (`clap::Args`) and
 //! `pub fn run(args: &NameArgs) -> anyhow::Result<()>`, then add a variant and an arm here.
 
+pub mod simulate;
+
 use clap::{Parser, Subcommand};
 
 /// Estimates how a human body moves, from a camera.
@@ -16,14 +18,19 @@ pub struct Cli {
 
 /// The subcommands of `sinew`.
 #[derive(Debug, Subcommand)]
-pub enum Command {}
+pub enum Command {
+    /// Render scenes with known truth.
+    Simulate(simulate::SimulateArgs),
+}
 
 /// Runs one parsed command line.
 ///
 /// # Errors
 /// Whatever the subcommand refuses, with the file or option, the rule it broke, and the remedy.
 pub fn run(cli: &Cli) -> anyhow::Result<()> {
-    match cli.command {}
+    match &cli.command {
+        Command::Simulate(args) => simulate::run(args),
+    }
 }
 
 #[cfg(test)]

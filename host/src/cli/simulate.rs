@@ -1,0 +1,171 @@
+//! `sinew simulate`: rendered scenes with known truth.
+
+use crate::motion::{self, ArmMotion, ArmSide, ReadOptions, reach};
+use crate::output::OutputDir;
+use crate::scene::{Scene, SceneOptions, Sides};
+use anyhow::{Context, Result, bail};
+use clap::{Args, Subcommand, ValueEnum};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// Frames of the built-in motion where `--frames` is not given.
+const BUILTIN_FRAMES: usize = 250;
+
+/// What to simulate.
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// The subject.
+    #[command(subcommand)]
+    pub subject: SimulateSubject,
+}
+
+/// Subjects of `sinew simulate`.
+#[derive(Debug, Subcommand)]
+pub enum SimulateSubject {
+    /// A person before a webcam who performs an arm motion: frames, camera and truth.
+    Arm(SimulateArmArgs),
+}
+
+/// Which arms move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SideChoice {
+    /// The person's left arm.
+    Left,
+    /// The person's right arm.
+    Right,
+    /// Both arms.
+    Both,
+}
+
+impl From<SideChoice> for Sides {
+    fn from(choice: SideChoice) -> Self {
+        match choice {
+            SideChoice::Left => Self::One(ArmSide::Left),
+            SideChoice::Right => Self::One(ArmSide::Right),
+            SideChoice::Both => Self::Both,
+        }
+    }
+}
+
+/// Arguments of `sinew simulate arm`.
+#[derive(Debug, Args)]
+pub struct SimulateArmArgs {
+    /// Motion: a .bvh, .amc or .txt (exponential maps) file, or `builtin` for random reaches.
+    #[arg(long, value_name = "FILE|builtin")]
+    pub motion: PathBuf,
+    /// Skeleton of a .amc motion [default: the only .asf beside it].
+    #[arg(long, value_name = "FILE.asf")]
+    pub skeleton: Option<PathBuf>,
+    /// Frames per second of a motion file that does not say (.amc, .txt).
+    #[arg(long, value_name = "HZ", default_value_t = motion::DEFAULT_FRAMES_PER_SECOND)]
+    pub motion_rate: f32,
+    /// Part of the motion that is used, in seconds from its beginning.
+    #[arg(long, value_name = "START,END", value_parser = pair::<f32>)]
+    pub between: Option<(f32, f32)>,
+    /// Exchange left and right of the motion.
+    #[arg(long)]
+    pub mirror: bool,
+    /// Which arms move and show their hands; left is the person's left.
+    #[arg(long, value_enum, default_value_t = SideChoice::Right)]
+    pub side: SideChoice,
+    /// Number of frames [default: the motion's length, 250 for builtin]; a shorter motion runs to and fro.
+    #[arg(long, value_name = "N")]
+    pub frames: Option<usize>,
+    /// Frames per second of the camera.
+    #[arg(long, value_name = "HZ", default_value_t = 15.0)]
+    pub rate: f32,
+    /// Seed of all that is random.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Share of the frames in which face and neck show skin.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.5)]
+    pub false_blob: f32,
+    /// Share of the frames in which a hand is hidden.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.1)]
+    pub hidden: f32,
+    /// Frames in which the hand is away (behind the back), first and one past the last.
+    #[arg(long, value_name = "FIRST,END", value_parser = pair::<usize>)]
+    pub away: Option<(usize, usize)>,
+    /// Standard deviation of the sensor noise, levels of 255.
+    #[arg(long, value_name = "LEVELS", default_value_t = 2.5)]
+    pub noise: f32,
+    /// Folder for frames/, camera.toml and truth.csv.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Replace the scene that DIR already holds.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Two values with a comma between them.
+fn pair<T: FromStr>(text: &str) -> Result<(T, T), String> {
+    let parsed = text.split_once(',').and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
+    parsed.ok_or_else(|| "two numbers with a comma between them were expected".to_string())
+}
+
+/// Runs `sinew simulate`.
+///
+/// # Errors
+/// A motion that cannot be read, an option out of range, a folder that cannot be written or holds frames already.
+pub fn run(args: &SimulateArgs) -> Result<()> {
+    match &args.subject {
+        SimulateSubject::Arm(args) => run_arm(args),
+    }
+}
+
+fn run_arm(args: &SimulateArmArgs) -> Result<()> {
+    let motion = arm_motion(args)?;
+    let options = SceneOptions {
+        frames: args.frames.unwrap_or_else(|| motion.len()),
+        frames_per_second: args.rate,
+        seed: args.seed,
+        sides: args.side.into(),
+        false_blob_fraction: args.false_blob,
+        hidden_fraction: args.hidden,
+        away: args.away.map(|(first, end)| first..end),
+        noise_std: args.noise,
+        ..SceneOptions::default()
+    };
+    let scene = Scene::new(&motion, &options).context("this scene cannot be made; change the option")?;
+    let output = OutputDir::create(&args.out)?;
+    clear_frames(&output.join("frames"), args.force)?;
+    scene.write_folder(&output)?;
+    println!("{} frames, camera.toml and truth.csv in `{}`", scene.len(), args.out.display());
+    Ok(())
+}
+
+/// The motion at the camera's rate.
+fn arm_motion(args: &SimulateArmArgs) -> Result<ArmMotion> {
+    if args.motion == Path::new("builtin") {
+        return Ok(reach::random_reaches(args.seed, args.rate, args.frames.unwrap_or(BUILTIN_FRAMES))?);
+    }
+    let options = ReadOptions {
+        skeleton: args.skeleton.as_deref(),
+        frames_per_second: Some(args.motion_rate),
+        metres_per_unit: None,
+    };
+    let motion = ArmMotion::from_motion(&motion::read(&args.motion, &options)?, &args.motion)?;
+    let motion = if args.mirror { motion.mirrored() } else { motion };
+    let motion = match args.between {
+        Some((start, end)) if start >= 0.0 && start < end => motion.between(start, end),
+        Some(_) => bail!("--between START,END needs 0 <= START < END, in seconds"),
+        None => motion,
+    };
+    Ok(motion.resampled(args.rate)?)
+}
+
+/// Frames of an older scene would mix with the new ones: they are refused, or with `force` removed.
+fn clear_frames(frames: &Path, force: bool) -> Result<()> {
+    let Ok(entries) = std::fs::read_dir(frames) else { return Ok(()) };
+    for entry in entries {
+        let path = entry?.path();
+        if !force {
+            bail!("`{}` already holds files; choose another --out, or replace them with --force", frames.display());
+        }
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or("");
+        if name.starts_with("frame_") && name.ends_with(".png") {
+            std::fs::remove_file(&path).with_context(|| format!("`{}` cannot be removed", path.display()))?;
+        }
+    }
+    Ok(())
+}

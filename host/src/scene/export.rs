@@ -1,0 +1,64 @@
+//! Writes a scene as a folder: frames, camera and truth.
+
+use super::{Scene, truth};
+use crate::motion::ArmSide;
+use crate::output::{OutputDir, write_atomically};
+use anyhow::{Context, Result};
+use image::{ImageFormat, RgbImage};
+use rayon::prelude::*;
+use std::io::Cursor;
+
+impl Scene {
+    /// The configuration that describes this camera and this body, as `track arm --config` reads it.
+    #[must_use]
+    pub fn config_toml(&self) -> String {
+        let (camera, body, options) = (self.camera(), self.body(), self.options());
+        let point = |side| {
+            let p = body.shoulder_m(side);
+            format!("[{:?}, {:?}, {:?}]", p.x, p.y, p.z)
+        };
+        format!(
+            "[camera]\nwidth_px = {}\nheight_px = {}\nfocal_u_px = {focal:?}\nfocal_v_px = {focal:?}\n\
+             centre_u_px = {:?}\ncentre_v_px = {:?}\n[body]\nupper_arm_m = {:?}\nforearm_m = {:?}\n\
+             left_shoulder_m = {}\nright_shoulder_m = {}\n",
+            options.width_px,
+            options.height_px,
+            camera.centre().u_px,
+            camera.centre().v_px,
+            body.upper_arm_m(),
+            body.forearm_m(),
+            point(ArmSide::Left),
+            point(ArmSide::Right),
+            focal = camera.focal_px(),
+        )
+    }
+
+    /// The truth of all frames as CSV, one line per frame and moving arm.
+    #[must_use]
+    pub fn truth_csv(&self) -> String {
+        let mut text = format!("{}\n", truth::HEADER);
+        for frame in 0..self.len() {
+            text.push_str(&self.truth(frame).csv_lines(&self.camera()));
+        }
+        text
+    }
+
+    /// Writes `frames/frame_0000.png` and on, `truth.csv` and `camera.toml` into `output`.
+    ///
+    /// # Errors
+    /// A file that cannot be written, by name.
+    pub fn write_folder(&self, output: &OutputDir) -> Result<()> {
+        let frames = output.subfolder("frames")?;
+        (0..self.len())
+            .into_par_iter()
+            .try_for_each(|frame| write_png(&frames, &format!("frame_{frame:04}.png"), &self.render(frame)))?;
+        output.write("truth.csv", |writer| Ok(writer.write_all(self.truth_csv().as_bytes())?))?;
+        output.write("camera.toml", |writer| Ok(writer.write_all(self.config_toml().as_bytes())?))
+    }
+}
+
+fn write_png(folder: &OutputDir, name: &str, image: &RgbImage) -> Result<()> {
+    let mut bytes = Cursor::new(Vec::new());
+    image.write_to(&mut bytes, ImageFormat::Png).with_context(|| format!("frame `{name}` cannot be encoded"))?;
+    write_atomically(&folder.join(name), |writer| Ok(writer.write_all(bytes.get_ref())?))
+}
