@@ -3,10 +3,10 @@
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::{Vec3, exp, sin_cos};
 use sinew_core::observation::candidate::HandCandidate;
-use sinew_core::observation::edge_pixel::EdgePixel;
 use sinew_core::random::Stream;
 use sinew_core::skeleton::{ArmGeometry, Side};
 use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, Status, Variant};
+use sinew_core::vision::edges::EdgePixel;
 
 const SHOULDER: Vec3 = Vec3::new(0.2, -0.2, 1.3);
 const FRAMES: u64 = 300;

@@ -4,11 +4,11 @@
 //! until a stated maximum. The stop rule keeps the paper's constant 12 (an interval of +-lambda has variance lambda^2/3;
 //! that only rescales gamma).
 
-use super::edge_pixel::EdgePixel;
 use super::orientation::{MAX_BINS, OrientationDensity, OrientationVariance};
 use crate::error::{ParameterError, Rule, positive};
 use crate::math::atan2;
 use crate::random::Stream;
+use crate::vision::edges::EdgePixel;
 
 /// Pairs between two checks of the stop rule.
 pub const CHECK_EVERY: usize = 10;

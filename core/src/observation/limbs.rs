@@ -3,9 +3,9 @@
 //! A pixel belongs to the limb of the last estimate that is nearer to it in the image, if it lies within a band around
 //! that limb; a pixel far from both is dropped.
 
-use super::edge_pixel::EdgePixel;
 use crate::camera::Pixel;
 use crate::math::{clamp, sqrt};
+use crate::vision::edges::EdgePixel;
 use heapless::Vec;
 
 /// Most pixels kept for one limb.

@@ -2,7 +2,7 @@
 
 use crate::math::Vec3;
 use crate::observation::candidate::HandCandidate;
-use crate::observation::edge_pixel::EdgePixel;
+use crate::vision::edges::EdgePixel;
 use heapless::Vec;
 
 /// Most blobs that a step considers.

@@ -10,11 +10,11 @@ use super::propose::FrameContext;
 use super::step::image_points;
 use crate::correction::elbow::nearest_elbow;
 use crate::math::max;
-use crate::observation::edge_pixel::EdgePixel;
 use crate::observation::hough::dynamic_hough;
 use crate::observation::limbs::split;
 use crate::observation::orientation::OrientationDensity;
 use crate::random::Stream;
+use crate::vision::edges::EdgePixel;
 use heapless::Vec;
 
 /// Blobs that get orientation densities of their own.

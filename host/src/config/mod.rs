@@ -1,0 +1,110 @@
+//! The configuration file of `track arm`: camera, body, thresholds; every value has a default.
+
+mod body;
+mod camera;
+mod known_keys;
+mod likelihood;
+mod tracker;
+
+pub use body::BodyConfig;
+pub use camera::CameraConfig;
+pub use likelihood::{EdgeConfig, LikelihoodConfig, LikelihoodName};
+pub use tracker::{CombinationName, EstimateName, TrackerConfig, VariantName};
+
+use anyhow::{Context, Result, bail};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// The defaults as a commented file: what `--print-config` writes.
+pub const DEFAULT_FILE: &str = include_str!("default.toml");
+
+/// Everything that a configuration file can set.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Config {
+    /// The camera.
+    pub camera: CameraConfig,
+    /// The person.
+    pub body: BodyConfig,
+    /// The tracker.
+    pub tracker: TrackerConfig,
+    /// From blobs to the likelihood of a hand.
+    pub likelihood: LikelihoodConfig,
+    /// Temporal edges.
+    pub edges: EdgeConfig,
+}
+
+impl Config {
+    /// Reads a TOML file.
+    ///
+    /// # Errors
+    /// Names the file and what is wrong: not readable, not TOML, an unknown key (with the nearest right one), a value of the wrong
+    /// type or out of range.
+    pub fn load(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).with_context(|| {
+            format!("configuration `{}` cannot be read; `sinew track arm --print-config` writes one", path.display())
+        })?;
+        Self::parse(&text).with_context(|| format!("configuration `{}`", path.display()))
+    }
+
+    /// Reads TOML text.
+    ///
+    /// # Errors
+    /// As [`Config::load`].
+    pub fn parse(text: &str) -> Result<Self> {
+        let mut unknown = Vec::new();
+        let value = toml::Deserializer::parse(text).context("it is not valid TOML")?;
+        let config: Self = serde_ignored::deserialize(value, |path| unknown.push(path.to_string()))?;
+        if let Some(key) = unknown.first() {
+            bail!("{}", known_keys::unknown_key_message(key));
+        }
+        config.camera.check()?;
+        config.body.check()?;
+        config.tracker.check()?;
+        config.likelihood.build()?;
+        config.edges.build()?;
+        Ok(config)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_printed_file_holds_exactly_the_defaults() {
+        assert_eq!(Config::parse(DEFAULT_FILE).unwrap(), Config::default());
+    }
+
+    #[test]
+    fn the_printed_file_names_every_key() {
+        for key in known_keys::all() {
+            let name = key.rsplit('.').next().unwrap();
+            assert!(DEFAULT_FILE.contains(&format!("{name} =")), "`{key}` is missing");
+        }
+    }
+
+    #[test]
+    fn an_unknown_key_is_refused_with_the_nearest_right_one() {
+        let message = format!("{:#}", Config::parse("[body]\nheigth_m = 1.8\n").unwrap_err());
+        assert!(message.contains("body.heigth_m") && message.contains("body.height_m"), "{message}");
+        let message = format!("{:#}", Config::parse("[trakcer]\nparticles = 5\n").unwrap_err());
+        assert!(message.contains("trakcer") && message.contains("tracker"), "{message}");
+    }
+
+    #[test]
+    fn a_value_out_of_range_is_refused_by_name() {
+        for (text, name) in [
+            ("[tracker]\nparticles = 0\n", "particles"),
+            ("[tracker]\ngate_std_m = -1.0\n", "gate_std_m"),
+            ("[camera]\nhorizontal_field_of_view_deg = 200.0\n", "horizontal_field_of_view_deg"),
+            ("[body]\nupper_arm_m = nan\n", "upper_arm_m"),
+            ("[body]\nheight_m = \"tall\"\n", "height_m"),
+            ("[likelihood]\narea_fractions = [0.5, 0.1]\n", "area_fractions"),
+            ("[edges]\nmin_motion = 999.0\n", "min_motion"),
+        ] {
+            let message = format!("{:#}", Config::parse(text).unwrap_err());
+            assert!(message.contains(name), "{text}: {message}");
+        }
+    }
+}
