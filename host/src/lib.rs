@@ -1,7 +1,10 @@
 //! Host side of Sinew: image folders, skin models, scenes, plots and reports around [`sinew_core`].
 
 pub mod cli;
+pub mod config;
+pub mod frames;
 pub mod images;
 pub mod motion;
 pub mod output;
 pub mod scene;
+pub mod track;

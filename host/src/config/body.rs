@@ -66,11 +66,9 @@ impl BodyConfig {
 
     pub(super) fn check(&self) -> Result<(), ParameterError> {
         within("height_m", self.height_m, 0.3, 3.0)?;
-        for (name, value) in [
-            ("upper_arm_m", self.upper_arm_m),
-            ("forearm_m", self.forearm_m),
-            ("hand_area_m2", self.hand_area_m2),
-        ] {
+        for (name, value) in
+            [("upper_arm_m", self.upper_arm_m), ("forearm_m", self.forearm_m), ("hand_area_m2", self.hand_area_m2)]
+        {
             value.map_or(Ok(0.0), |value| positive(name, value))?;
         }
         for (name, place) in [("left_shoulder_m", self.left_shoulder_m), ("right_shoulder_m", self.right_shoulder_m)] {

@@ -74,9 +74,7 @@ impl CameraConfig {
     /// # Errors
     /// The size has to be the configured one, where one is configured.
     pub fn build(&self, width_px: u32, height_px: u32) -> Result<Camera> {
-        for (name, wanted, found) in
-            [("width_px", self.width_px, width_px), ("height_px", self.height_px, height_px)]
-        {
+        for (name, wanted, found) in [("width_px", self.width_px, width_px), ("height_px", self.height_px, height_px)] {
             if let Some(wanted) = wanted.filter(|&wanted| wanted != found) {
                 bail!(
                     "the images are {width_px} x {height_px} pixels, but the configuration's camera.{name} is {wanted}; \

@@ -174,11 +174,7 @@ impl TrackerConfig {
             CombinationName::Mean => false,
             CombinationName::Product => true,
         };
-        let gate = Gate {
-            std_m: self.gate_std_m,
-            growth_m_per_s: self.gate_growth_m_per_s,
-            floor: self.gate_floor,
-        };
+        let gate = Gate { std_m: self.gate_std_m, growth_m_per_s: self.gate_growth_m_per_s, floor: self.gate_floor };
         ArmOptions {
             variant: self.variant.into(),
             particles: self.particles,

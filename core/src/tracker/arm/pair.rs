@@ -49,13 +49,13 @@ impl<const CAPACITY: usize> ArmPair<CAPACITY> {
     ///
     /// # Errors
     /// As [`ArmTracker::new`].
-    pub fn new(models: &[ArmModel; 2], shoulders_m: [Vec3; 2], seed: u64) -> Result<Self, ParameterError> {
+    pub fn new(models: [&ArmModel; 2], shoulders_m: [Vec3; 2], seed: u64) -> Result<Self, ParameterError> {
         // Two sides with one seed would draw the same numbers.
         let other = seed ^ 0x5DEE_CE66_D153_2701;
         Ok(Self {
             trackers: [
-                ArmTracker::new(&models[0], shoulders_m[0], seed)?,
-                ArmTracker::new(&models[1], shoulders_m[1], other)?,
+                ArmTracker::new(models[0], shoulders_m[0], seed)?,
+                ArmTracker::new(models[1], shoulders_m[1], other)?,
             ],
         })
     }
@@ -67,10 +67,10 @@ impl<const CAPACITY: usize> ArmPair<CAPACITY> {
     }
 
     /// Answers one frame for both arms, left and right.
-    pub fn step(&mut self, models: &[ArmModel; 2], frame: &PairFrame<'_>) -> [ArmEstimate; 2] {
+    pub fn step(&mut self, models: [&ArmModel; 2], frame: &PairFrame<'_>) -> [ArmEstimate; 2] {
         let image = frame.image.unwrap_or_default();
         let (candidates, dropped) = most_likely(image.candidates);
-        let expected = [0, 1].map(|side| self.expected(&models[side], side, frame.timestamp_us));
+        let expected = [0, 1].map(|side| self.expected(models[side], side, frame.timestamp_us));
         let lists = share_out(&candidates, &expected);
         let mut answer = |side: usize| {
             let list: &SideCandidates = &lists[side];
@@ -79,7 +79,7 @@ impl<const CAPACITY: usize> ArmPair<CAPACITY> {
                 image: frame.image.map(|image| ArmImage { candidates: list, edges: image.edges }),
                 shoulder_m: frame.shoulders_m[side],
             };
-            let mut estimate = self.trackers[side].step(&models[side], &arm_frame);
+            let mut estimate = self.trackers[side].step(models[side], &arm_frame);
             let carrier = estimate.candidate.and_then(|index| list.get(index));
             estimate.candidate = carrier.and_then(|carrier| nearest_index(image.candidates, carrier.centre));
             estimate.dropped_candidates = dropped;

@@ -1,0 +1,148 @@
+//! One arm or both, with their models: what `track arm`, `demo` and `evaluate arm` step through.
+
+use crate::config::{BodyConfig, Config};
+use crate::frames::FrameView;
+use anyhow::Result;
+use clap::ValueEnum;
+use serde::Serialize;
+use sinew_core::camera::{Camera, Pixel};
+use sinew_core::math::Vec3;
+use sinew_core::skeleton::Side;
+use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmPair, ArmTracker, PairFrame, Particle};
+
+/// Which arms are tracked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SideChoice {
+    /// The person's left arm.
+    Left,
+    /// The person's right arm.
+    #[default]
+    Right,
+    /// Both.
+    Both,
+}
+
+/// The trackers of a run: one arm, or two that share their blobs. The capacity is the particle count, rounded up.
+#[derive(Debug)]
+enum Trackers<const CAPACITY: usize> {
+    One(Box<ArmTracker<CAPACITY>>),
+    Two(Box<ArmPair<CAPACITY>>),
+}
+
+#[derive(Debug)]
+enum Sized {
+    Small(Trackers<64>),
+    Middle(Trackers<1024>),
+    Large(Trackers<5000>),
+}
+
+/// Arms with their models and state.
+#[derive(Debug)]
+pub struct ArmSet {
+    models: Vec<ArmModel>,
+    shoulders_m: Vec<Vec3>,
+    trackers: Sized,
+}
+
+/// What a frame gave for one arm.
+#[derive(Debug, Clone)]
+pub struct ArmView {
+    /// The estimate.
+    pub estimate: ArmEstimate,
+    /// Particles with their weights.
+    pub particles: Vec<(Particle, f32)>,
+}
+
+impl ArmSet {
+    /// Trackers for images of this size.
+    ///
+    /// # Errors
+    /// Names the parameter of the configuration that cannot be used.
+    pub fn new(config: &Config, size_px: (u32, u32), side: SideChoice, seed: u64) -> Result<Self> {
+        let camera = config.camera.build(size_px.0, size_px.1)?;
+        let sides: &[Side] = match side {
+            SideChoice::Left => &[Side::Left],
+            SideChoice::Right => &[Side::Right],
+            SideChoice::Both => &[Side::Left, Side::Right],
+        };
+        let models: Vec<ArmModel> =
+            sides.iter().map(|&side| model(config, camera, size_px, side)).collect::<Result<_>>()?;
+        let shoulders_m: Vec<Vec3> = sides.iter().map(|&side| shoulder_m(&config.body, side)).collect();
+        let trackers = match config.tracker.particles {
+            0..=64 => Sized::Small(Trackers::new(&models, &shoulders_m, seed)?),
+            65..=1024 => Sized::Middle(Trackers::new(&models, &shoulders_m, seed)?),
+            _ => Sized::Large(Trackers::new(&models, &shoulders_m, seed)?),
+        };
+        Ok(Self { models, shoulders_m, trackers })
+    }
+
+    /// The models, in the order of the views.
+    #[must_use]
+    pub fn models(&self) -> &[ArmModel] {
+        &self.models
+    }
+
+    /// Answers one frame; `view` is `None` where the image is missing. One view an arm, left first.
+    pub fn step(&mut self, timestamp_us: u64, view: Option<&FrameView>) -> Vec<ArmView> {
+        let image = view.map(|view| ArmImage { candidates: &view.candidates, edges: &view.edges });
+        match &mut self.trackers {
+            Sized::Small(trackers) => trackers.step(&self.models, &self.shoulders_m, timestamp_us, image),
+            Sized::Middle(trackers) => trackers.step(&self.models, &self.shoulders_m, timestamp_us, image),
+            Sized::Large(trackers) => trackers.step(&self.models, &self.shoulders_m, timestamp_us, image),
+        }
+    }
+
+    /// Images of shoulder, elbow and hand; `None` where one lies behind the camera.
+    #[must_use]
+    pub fn joints_px(&self, joints_m: [Vec3; 3]) -> Option<[Pixel; 3]> {
+        let camera = self.models.first()?.camera();
+        let [shoulder, elbow, hand] = joints_m.map(|joint| camera.project(&joint));
+        Some([shoulder?, elbow?, hand?])
+    }
+}
+
+fn shoulder_m(body: &BodyConfig, side: Side) -> Vec3 {
+    let [left, right] = body.shoulders_m();
+    if side == Side::Left { left } else { right }
+}
+
+fn model(config: &Config, camera: Camera, size_px: (u32, u32), side: Side) -> Result<ArmModel> {
+    let options = config.tracker.options(config.body.knows_shoulders(), config.body.hand_area_m2());
+    Ok(ArmModel::new(camera, size_px, config.body.arm(side)?, options)?)
+}
+
+impl<const CAPACITY: usize> Trackers<CAPACITY> {
+    fn new(models: &[ArmModel], shoulders_m: &[Vec3], seed: u64) -> Result<Self> {
+        if let ([left, right], [left_m, right_m]) = (models, shoulders_m) {
+            return Ok(Self::Two(Box::new(ArmPair::new([left, right], [*left_m, *right_m], seed)?)));
+        }
+        Ok(Self::One(Box::new(ArmTracker::new(&models[0], shoulders_m[0], seed)?)))
+    }
+
+    fn step(
+        &mut self,
+        models: &[ArmModel],
+        shoulders_m: &[Vec3],
+        timestamp_us: u64,
+        image: Option<ArmImage<'_>>,
+    ) -> Vec<ArmView> {
+        match self {
+            Self::One(tracker) => {
+                let frame = ArmFrame { timestamp_us, image, shoulder_m: shoulders_m[0] };
+                let estimate = tracker.step(&models[0], &frame);
+                vec![view(estimate, tracker)]
+            }
+            Self::Two(pair) => {
+                let frame = PairFrame { timestamp_us, image, shoulders_m: [shoulders_m[0], shoulders_m[1]] };
+                let estimates = pair.step([&models[0], &models[1]], &frame);
+                estimates.into_iter().zip(pair.trackers()).map(|(estimate, tracker)| view(estimate, tracker)).collect()
+            }
+        }
+    }
+}
+
+fn view<const CAPACITY: usize>(estimate: ArmEstimate, tracker: &ArmTracker<CAPACITY>) -> ArmView {
+    let particles = tracker.particles().iter().copied().zip(tracker.weights().iter().copied()).collect();
+    ArmView { estimate, particles }
+}

@@ -1,0 +1,7 @@
+//! Tracking the arms of one image folder.
+
+mod arms;
+mod table;
+
+pub use arms::{ArmSet, ArmView, SideChoice};
+pub use table::{HEADER, TrackRow};
