@@ -7,12 +7,13 @@ use super::runs::RunPool;
 use super::shape::{CellGrid, MAX_PADDING, MAX_ROWS};
 use crate::camera::Pixel;
 use crate::error::{ParameterError, within};
-use crate::math::{clamp, min, round};
+use crate::math::{clamp, min, round, sqrt};
 use crate::observation::candidate::HandCandidate;
 
-/// Radius of the disc that closes the gaps between fingers, as a part of the greatest distance transform (about the palm's radius).
+/// Radius of the disc that closes the gaps between fingers, as a part of the radius of the circle of the blob's area.
 ///
-/// Gaps narrower than 1.5 palm radii are filled: those between the fingers of a spread hand, but not that of an arm bent around something.
+/// For an open hand that is about the palm's radius: gaps up to two palm radii wide are filled, which are those between spread fingers. The area is a
+/// steadier measure of the hand than DTmax, since DTmax of a hand whose mask has holes is that of a finger.
 pub const DEFAULT_FILL_RATIO: f32 = 0.75;
 
 /// Shape features of a set of pixels.
@@ -57,7 +58,7 @@ pub struct Blob {
     pub bounding_box: BoundingBox,
     /// Features of the component as it is.
     pub plain: ShapeFeatures,
-    /// Features of the component closed by a disc in proportion to its DTmax: fingers and the gaps between them become one area.
+    /// Features of the component closed by a disc in proportion to the root of its area: fingers and the gaps between them become one area.
     pub filled: ShapeFeatures,
     /// False where some runs were lost, so that the shape features see only a part.
     pub shape_complete: bool,
@@ -96,7 +97,7 @@ pub struct BlobMeter {
 }
 
 impl BlobMeter {
-    /// A meter that fills gaps by a disc of `fill_ratio` times DTmax, see [`DEFAULT_FILL_RATIO`]; 0 fills nothing.
+    /// A meter that fills gaps by a disc of `fill_ratio` times the radius of the circle of the blob's area, see [`DEFAULT_FILL_RATIO`]; 0 fills nothing.
     ///
     /// # Errors
     /// The ratio has to lie from 0 to 2.
@@ -110,7 +111,7 @@ impl BlobMeter {
         let (area_px, centroid) = (component.area_px() as f32, component.centroid());
         self.plain.draw(component, pool);
         let plain = shape(&self.plain, &mut self.distances, area_px, component.perimeter_px(), centroid);
-        self.fill(plain.dt_max_px);
+        self.fill(sqrt(area_px / core::f32::consts::PI));
         let (area_px, perimeter_px, centroid) = self.filled.outline();
         let filled = shape(&self.filled, &mut self.distances, area_px, perimeter_px, centroid);
         Blob {
@@ -125,8 +126,8 @@ impl BlobMeter {
     }
 
     /// Closes the plain grid by a disc: dilation and erosion by thresholds of two distance transforms.
-    fn fill(&mut self, dt_max_px: f32) {
-        let radius = min(self.fill_ratio * dt_max_px / self.plain.step_px(), (MAX_PADDING - 1) as f32);
+    fn fill(&mut self, circle_radius_px: f32) {
+        let radius = min(self.fill_ratio * circle_radius_px / self.plain.step_px(), (MAX_PADDING - 1) as f32);
         let reach = round(radius * f32::from(UNIT)) as i16;
         self.filled = self.plain.padded((reach / UNIT) as usize + 1);
         if reach < UNIT {

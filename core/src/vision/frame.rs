@@ -3,10 +3,10 @@
 use super::blobs::{BlobFinder, BlobList};
 use super::edges::{EdgeDetector, EdgeList, luminance_line};
 use super::mask::{Mask, MaskMut, words_per_row};
-use super::morphology::{close, open, scratch_words};
+use super::morphology::{close_by, open, scratch_words};
 use super::runs::Run;
 use super::skin::SkinClassifier;
-use crate::error::{ParameterError, Rule};
+use crate::error::{ParameterError, Rule, within};
 use core::mem::swap;
 
 /// Working memory for frames of one size; what a frame leaves behind stays here for the next one.
@@ -24,6 +24,15 @@ pub struct FrameBuffers<'a> {
     pub luminance: &'a mut [u8],
     /// Luminance of the frame before, width x height bytes.
     pub previous: &'a mut [u8],
+}
+
+/// Half the width of the closing, as a part of the image's width: 2 pixels of 640, which joins what noise and highlights cut apart.
+pub const DEFAULT_CLOSING_FRACTION: f32 = 1.0 / 320.0;
+
+/// Steps of closing for an image of `width` pixels, from 1 to 8.
+#[must_use]
+pub fn closing_steps(width: usize, closing_fraction: f32) -> u8 {
+    crate::math::clamp(crate::math::round(width as f32 * closing_fraction), 1.0, 8.0) as u8
 }
 
 /// Words of a mask of this size.
@@ -45,6 +54,7 @@ pub const fn runs_that_suffice(width: usize, height: usize) -> usize {
 pub struct FrameAnalyser<const RUNS: usize, const OPEN: usize> {
     finder: BlobFinder<RUNS, OPEN>,
     detector: EdgeDetector,
+    closing_fraction: f32,
     /// Size of the frame whose luminance is kept.
     last_size: Option<(usize, usize)>,
 }
@@ -53,7 +63,15 @@ impl<const RUNS: usize, const OPEN: usize> FrameAnalyser<RUNS, OPEN> {
     /// An analyser before its first frame.
     #[must_use]
     pub fn new(finder: BlobFinder<RUNS, OPEN>, detector: EdgeDetector) -> Self {
-        Self { finder, detector, last_size: None }
+        Self { finder, detector, closing_fraction: DEFAULT_CLOSING_FRACTION, last_size: None }
+    }
+
+    /// The same analyser with another closing: half its width as a part of the image's width, see [`closing_steps`].
+    ///
+    /// # Errors
+    /// The fraction has to lie from 0 to 0.05.
+    pub fn with_closing_fraction(self, closing_fraction: f32) -> Result<Self, ParameterError> {
+        Ok(Self { closing_fraction: within("closing_fraction", closing_fraction, 0.0, 0.05)?, ..self })
     }
 
     /// Forgets the last frame, so that the next one has no temporal edges.
@@ -82,7 +100,7 @@ impl<const RUNS: usize, const OPEN: usize> FrameAnalyser<RUNS, OPEN> {
         let mut mask = MaskMut::new(buffers.mask, width, height)?;
         segment(rgb, skin, &mut mask);
         open(&mut mask, buffers.scratch)?;
-        close(&mut mask, buffers.scratch)?;
+        close_by(&mut mask, closing_steps(width, self.closing_fraction), buffers.scratch)?;
         self.finder.find(&mask.view(), buffers.runs, blobs);
         swap(&mut buffers.luminance, &mut buffers.previous);
         luminance_line(rgb, &mut buffers.luminance[..width * height]);

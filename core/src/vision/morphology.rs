@@ -47,6 +47,15 @@ pub fn close(mask: &mut MaskMut<'_>, scratch: &mut [u32]) -> Result<(), Paramete
     erode(mask, scratch)
 }
 
+/// `steps` dilations, then as many erosions: closing by a square of 2 `steps` + 1 pixels.
+///
+/// # Errors
+/// `scratch` needs [`scratch_words`].
+pub fn close_by(mask: &mut MaskMut<'_>, steps: u8, scratch: &mut [u32]) -> Result<(), ParameterError> {
+    (0..steps).try_for_each(|_| dilate(mask, scratch))?;
+    (0..steps).try_for_each(|_| erode(mask, scratch))
+}
+
 #[inline]
 fn join<const ERODE: bool>(a: u32, b: u32) -> u32 {
     if ERODE { a & b } else { a | b }
@@ -162,6 +171,10 @@ mod tests {
             prop_assert!(inside(&opened, &words) && inside(&words, &closed));
             prop_assert_eq!(apply(open, &opened, width, height), opened);
             prop_assert_eq!(&apply(close, &closed, width, height), &closed);
+            let wide: Operation = |mask, scratch| close_by(mask, 3, scratch);
+            let wider = apply(wide, &words, width, height);
+            prop_assert!(inside(&closed, &wider));
+            prop_assert_eq!(&apply(wide, &wider, width, height), &wider);
             prop_assert!(Mask::new(&closed, width, height).is_ok(), "a bit beyond the width is set");
         }
     }
