@@ -169,3 +169,83 @@ fn clear_frames(frames: &Path, force: bool) -> Result<()> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::cli::{Cli, run};
+    use clap::Parser;
+    use std::fs;
+    use std::path::Path;
+
+    /// Runs `sinew simulate arm --out OUT` with more words.
+    fn simulate(out: &Path, words: &[&str]) -> anyhow::Result<()> {
+        let out = out.to_str().unwrap();
+        let begin = ["sinew", "simulate", "arm", "--out", out];
+        let line = begin.iter().chain(words);
+        run(&Cli::try_parse_from(line)?)
+    }
+
+    #[test]
+    fn a_scene_folder_holds_frames_truth_and_camera() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("scene");
+        simulate(&out, &["--motion", "builtin", "--frames", "4", "--side", "both"]).unwrap();
+        for frame in 0..4 {
+            let image = image::open(out.join(format!("frames/frame_{frame:04}.png"))).unwrap();
+            assert_eq!((image.width(), image.height()), (640, 480));
+        }
+        let truth = fs::read_to_string(out.join("truth.csv")).unwrap();
+        let lines: Vec<&str> = truth.lines().collect();
+        assert_eq!(lines.len(), 1 + 2 * 4);
+        assert!(lines.iter().all(|line| line.split(',').count() == lines[0].split(',').count()));
+        assert!(lines[1].starts_with("0,0.0000,left,") && lines[8].starts_with("3,0.2000,right,"));
+        let config: toml::Table = fs::read_to_string(out.join("camera.toml")).unwrap().parse().unwrap();
+        let keys = |section: &str| config[section].as_table().unwrap().keys().cloned().collect::<Vec<_>>();
+        let camera = ["centre_u_px", "centre_v_px", "focal_u_px", "focal_v_px", "height_px", "width_px"];
+        assert_eq!(keys("camera"), camera);
+        assert_eq!(keys("body"), ["forearm_m", "left_shoulder_m", "right_shoulder_m", "upper_arm_m"]);
+    }
+
+    #[test]
+    fn an_older_scene_is_replaced_only_with_force() {
+        let folder = tempfile::tempdir().unwrap();
+        let builtin = ["--motion", "builtin", "--frames"];
+        simulate(folder.path(), &[&builtin[..], &["3"]].concat()).unwrap();
+        let message = simulate(folder.path(), &[&builtin[..], &["2"]].concat()).unwrap_err().to_string();
+        assert!(message.contains("--force"), "{message}");
+        simulate(folder.path(), &[&builtin[..], &["2", "--force"]].concat()).unwrap();
+        assert_eq!(fs::read_dir(folder.path().join("frames")).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn what_cannot_be_done_is_said_before_anything_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("scene");
+        let lonely = folder.path().join("lonely.amc");
+        fs::write(&lonely, "1\n").unwrap();
+        let broken = folder.path().join("broken.bvh");
+        fs::write(&broken, "HIERARCHY\nROOT Hips\n{\n").unwrap();
+        let picture = folder.path().join("picture.png");
+        fs::write(&picture, "").unwrap();
+        let cases: [(&[&str], &str); 11] = [
+            (&["--motion", "builtin", "--frames", "0"], "`frames`"),
+            (&["--motion", "builtin", "--rate", "0"], "`frames_per_second`"),
+            (&["--motion", "builtin", "--hidden", "2"], "`hidden_fraction`"),
+            (&["--motion", "builtin", "--false-blob", "NaN"], "`false_blob_fraction`"),
+            (&["--motion", "builtin", "--away", "9,4"], "`away`"),
+            (&["--motion", "builtin", "--away", "9"], "two numbers with a comma"),
+            (&["--motion", "builtin", "--side", "middle"], "middle"),
+            (&["--motion", "no-such.bvh"], "no-such.bvh"),
+            (&["--motion", lonely.to_str().unwrap()], "--skeleton FILE.asf"),
+            (&["--motion", broken.to_str().unwrap()], "broken.bvh:3: the file ends"),
+            (&["--motion", picture.to_str().unwrap()], "give a .bvh, a .amc"),
+        ];
+        for (words, part) in cases {
+            let message = format!("{:#}", simulate(&out, words).unwrap_err());
+            assert!(message.contains(part), "{words:?}: {message}");
+            assert!(!out.exists(), "{words:?} left a folder");
+        }
+        let message = format!("{:#}", simulate(&lonely, &["--motion", "builtin", "--frames", "1"]).unwrap_err());
+        assert!(message.contains("is a file"), "{message}");
+    }
+}

@@ -5,6 +5,8 @@ use sinew_core::math::{Mat3, Vec3, axis_rotation};
 use std::path::{Path, PathBuf};
 
 const METRES_PER_INCH: f32 = 0.0254;
+/// Metres per length unit of the CMU collection, whose files have `length 0.45`.
+pub const CMU_METRES_PER_UNIT: f32 = METRES_PER_INCH / 0.45;
 
 /// One degree of freedom of a bone: a rotation about the axis with this index (0 = x, 1 = y, 2 = z).
 pub type RotationAxis = usize;

@@ -1,16 +1,17 @@
 //! BVH motions. Position channels replace a joint's OFFSET; rotation channels multiply in the order they are listed.
 
 use super::Motion;
+use super::arm_motion::ArmSide;
+use super::asf::{CMU_METRES_PER_UNIT, about};
 use super::error::{MotionError, number, read_text};
 use super::landmarks::Arm;
-use super::{arm_motion::ArmSide, asf::about};
 use sinew_core::math::{Mat3, Vec3, abs, ln};
 use std::iter::Enumerate;
 use std::path::Path;
 use std::str::Lines;
 
 /// Length units that occur: metre, centimetre, millimetre, inch, and the CMU collection's inch / 0.45.
-const UNITS_M: [f32; 5] = [1.0, 0.01, 0.001, 0.0254, 0.0254 / 0.45];
+const UNITS_M: [f32; 5] = [1.0, 0.01, 0.001, 0.0254, CMU_METRES_PER_UNIT];
 /// Shoulder to wrist of an adult, metres: (0.186 + 0.146) times 1.7 m, after Drillis and Contini.
 const SHOULDER_TO_WRIST_M: f32 = 0.332 * 1.7;
 

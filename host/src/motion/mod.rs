@@ -8,7 +8,9 @@ pub mod anthropometry;
 pub mod arm_motion;
 pub mod asf;
 pub mod bvh;
+pub mod clips;
 pub mod error;
+pub mod exponential_map;
 pub mod landmarks;
 pub mod reach;
 
@@ -94,6 +96,7 @@ pub fn read(path: &Path, options: &ReadOptions<'_>) -> Result<Motion, MotionErro
             amc::read(path, &skeleton, rate)
         }
 
+        "txt" => exponential_map::read(path, rate),
         _ => Err(MotionError::UnknownKind { path: path.to_path_buf() }),
     }
 }
