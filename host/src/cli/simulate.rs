@@ -3,8 +3,9 @@
 use crate::motion::{self, ArmMotion, ArmSide, ReadOptions, reach};
 use crate::output::OutputDir;
 use crate::scene::{Scene, SceneOptions, Sides};
+use crate::track::SideChoice;
 use anyhow::{Context, Result, bail};
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -24,17 +25,6 @@ pub struct SimulateArgs {
 pub enum SimulateSubject {
     /// A person before a webcam who performs an arm motion: frames, camera and truth.
     Arm(SimulateArmArgs),
-}
-
-/// Which arms move.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum SideChoice {
-    /// The person's left arm.
-    Left,
-    /// The person's right arm.
-    Right,
-    /// Both arms.
-    Both,
 }
 
 impl From<SideChoice> for Sides {
@@ -172,7 +162,9 @@ fn clear_frames(frames: &Path, force: bool) -> Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use super::{ArmSide, Scene, SceneOptions, reach};
     use crate::cli::{Cli, run};
+    use crate::config::Config;
     use clap::Parser;
     use std::fs;
     use std::path::Path;
@@ -204,6 +196,21 @@ mod tests {
         let camera = ["centre_u_px", "centre_v_px", "focal_u_px", "focal_v_px", "height_px", "width_px"];
         assert_eq!(keys("camera"), camera);
         assert_eq!(keys("body"), ["forearm_m", "left_shoulder_m", "right_shoulder_m", "upper_arm_m"]);
+    }
+
+    #[test]
+    fn the_camera_file_is_a_configuration_of_the_tracker() {
+        let motion = reach::random_reaches(1, 15.0, 2).unwrap();
+        let scene = Scene::new(&motion, &SceneOptions { frames: 2, ..SceneOptions::default() }).unwrap();
+        let config = Config::parse(&scene.config_toml()).unwrap();
+        let shoulders_m = [ArmSide::Left, ArmSide::Right].map(|side| scene.body().shoulder_m(side));
+        assert_eq!(config.body.shoulders_m(), shoulders_m);
+        assert_eq!(config.body.forearm_m, Some(scene.body().forearm_m()));
+        let camera = config.camera.build(640, 480).unwrap();
+        for frame in 0..2 {
+            let hand_m = scene.truth(frame).sides[0].joints.hand_m;
+            assert_eq!(camera.project(&hand_m), scene.camera().project(&hand_m));
+        }
     }
 
     #[test]

@@ -6,33 +6,7 @@ use sinew_core::math::{Vec3, floor, unit};
 use std::path::Path;
 
 /// Side of a body, the person's own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum ArmSide {
-    /// The person's left arm.
-    Left,
-    /// The person's right arm.
-    Right,
-}
-
-impl ArmSide {
-    /// `left` or `right`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Left => "left",
-            Self::Right => "right",
-        }
-    }
-
-    /// The other side.
-    #[must_use]
-    pub const fn other(self) -> Self {
-        match self {
-            Self::Left => Self::Right,
-            Self::Right => Self::Left,
-        }
-    }
-}
+pub use sinew_core::skeleton::Side as ArmSide;
 
 /// Unit directions of one arm in torso axes: x to the body's left, y up, z to the front.
 #[derive(Debug, Clone, Copy, PartialEq)]

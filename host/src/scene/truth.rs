@@ -2,6 +2,7 @@
 
 use super::body::ArmJoints;
 use crate::motion::ArmSide;
+use crate::track::side_name;
 use sinew_core::camera::{Camera, Pixel};
 use std::fmt::Write;
 
@@ -50,7 +51,7 @@ impl FrameTruth {
         let mut text = String::new();
         for truth in &self.sides {
             let points = [truth.joints.shoulder_m, truth.joints.elbow_m, truth.joints.hand_m];
-            let _ = write!(text, "{},{:.4},{}", self.frame, self.time_s, truth.side.name());
+            let _ = write!(text, "{},{:.4},{}", self.frame, self.time_s, side_name(truth.side));
             for point in &points {
                 let _ = write!(text, ",{:.5},{:.5},{:.5}", point.x, point.y, point.z);
             }

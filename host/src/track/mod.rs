@@ -4,4 +4,4 @@ mod arms;
 mod table;
 
 pub use arms::{ArmSet, ArmView, SideChoice};
-pub use table::{HEADER, TrackRow};
+pub use table::{HEADER, TrackRow, side_name};
