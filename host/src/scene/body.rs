@@ -128,7 +128,7 @@ pub fn trunk(body: &Body, clothes: &Clothes, face_shown: bool) -> Vec<(Shape, Su
 #[must_use]
 pub fn sleeve(body: &Body, joints: &ArmJoints, clothes: &Clothes) -> [(Shape, Surface); 2] {
     let h = body.height_m;
-    let cuff = joints.wrist_m + (joints.elbow_m - joints.wrist_m) * 0.18;
+    let cuff = joints.wrist_m + (joints.elbow_m - joints.wrist_m) * 0.13;
     [
         (Shape::Capsule { start: joints.shoulder_m, end: joints.elbow_m, radius: 0.029 * h }, clothes.sleeve),
         (Shape::Capsule { start: joints.elbow_m, end: cuff, radius: 0.022 * h }, clothes.sleeve),

@@ -10,6 +10,10 @@ use sinew_core::random::Stream;
 /// hand is fingers.
 const FINGERS: [(f32, f32); 4] = [(0.165, 0.42), (0.055, 0.46), (-0.055, 0.43), (-0.160, 0.34)];
 
+/// By how much of its length the hand is drawn beyond the wrist, so that the half-open hand, seen flat, has the middle of
+/// its silhouette at [`ArmJoints::hand_m`], the point that truth and trackers call the hand.
+const BEYOND_WRIST: f32 = 0.08;
+
 /// Shape of a hand at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandPose {
@@ -82,8 +86,10 @@ pub fn shapes(body: &Body, side: ArmSide, joints: &ArmJoints, pose: &HandPose) -
     let facing = -Vec3::z();
     let normal = unit(facing - along * facing.dot(&along)).unwrap_or(Vec3::x());
     let normal = axis_rotation(&along, pose.roll_rad) * normal;
-    let thumbwards = if side == ArmSide::Left { along.cross(&normal) } else { normal.cross(&along) };
-    let at = |forward: f32, sideways: f32| joints.wrist_m + (along * forward + thumbwards * sideways) * length;
+    let thumbwards = if side == ArmSide::Left { normal.cross(&along) } else { along.cross(&normal) };
+    let at = |forward: f32, sideways: f32| {
+        joints.wrist_m + (along * (forward + BEYOND_WRIST) + thumbwards * sideways) * length
+    };
     let palm = Shape::Ellipsoid {
         centre: at(0.29, 0.0),
         axes: Mat3::from_rows(&[along.transpose(), thumbwards.transpose(), normal.transpose()]),
@@ -94,7 +100,7 @@ pub fn shapes(body: &Body, side: ArmSide, joints: &ArmJoints, pose: &HandPose) -
     for (index, (sideways, reach)) in FINGERS.into_iter().enumerate() {
         let fan = axis_rotation(
             &normal,
-            if side == ArmSide::Left { 1.0 } else { -1.0 } * pose.spread_rad * (index as f32 - 1.5),
+            if side == ArmSide::Left { -1.0 } else { 1.0 } * pose.spread_rad * (index as f32 - 1.5),
         );
         let straight = fan * along;
         let bent = |angle_rad: f32| {
@@ -116,4 +122,48 @@ pub fn shapes(body: &Body, side: ArmSide, joints: &ArmJoints, pose: &HandPose) -
         radius: 0.058 * length,
     });
     shapes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::body::to_camera;
+
+    /// Mean of the surface points that a camera sees of an upright hand before it, relative to the hand's point.
+    fn middle_of_silhouette(side: ArmSide, pose: &HandPose) -> Vec3 {
+        let body = Body { height_m: 1.75, shoulder_middle_m: Vec3::new(0.0, 0.0, 1.0) };
+        let hand_m = Vec3::new(0.0, 0.0, 1.0);
+        let wrist_m = hand_m - to_camera(&Vec3::y()) * (0.5 * anthropometry::HAND * body.height_m);
+        let joints = ArmJoints { shoulder_m: wrist_m, elbow_m: wrist_m, wrist_m, hand_m };
+        let shapes: Vec<_> = shapes(&body, side, &joints, pose).iter().map(Shape::prepare).collect();
+        let (mut sum, mut count) = (Vec3::zeros(), 0.0);
+        for row in -130..130 {
+            for column in -130..130 {
+                let direction = Vec3::new(column as f32 * 0.001, row as f32 * 0.001, 1.0);
+                // What the sleeve covers is left out.
+                let bare = direction.y < wrist_m.y - 0.005;
+                if bare && shapes.iter().any(|shape| shape.hit(&direction).is_some()) {
+                    sum += direction - hand_m;
+                    count += 1.0;
+                }
+            }
+        }
+        sum / count
+    }
+
+    #[test]
+    fn the_half_open_hand_is_seen_where_the_truth_says() {
+        for side in [ArmSide::Left, ArmSide::Right] {
+            let middle = middle_of_silhouette(side, &HandPose { curl_rad: 0.5, spread_rad: 0.08, roll_rad: 0.0 });
+            assert!(middle.norm() < 0.008, "{side:?}: {middle:?}");
+        }
+    }
+
+    #[test]
+    fn a_thumb_points_to_the_body_s_middle_when_the_palm_faces_the_camera() {
+        // Arms raised, palms to the front: the thumbs of both hands point to the head.
+        let pose = HandPose { curl_rad: 0.05, spread_rad: 0.0, roll_rad: 0.0 };
+        assert!(middle_of_silhouette(ArmSide::Left, &pose).x < -0.001);
+        assert!(middle_of_silhouette(ArmSide::Right, &pose).x > 0.001);
+    }
 }
