@@ -49,7 +49,6 @@ struct Buffers {
     scratch: Vec<u32>,
     runs: Vec<Run>,
     luminance: [Vec<u8>; 2],
-    newest: usize,
 }
 
 impl Buffers {
@@ -65,14 +64,12 @@ impl Buffers {
 
     fn borrow(&mut self) -> FrameBuffers<'_> {
         let [first, second] = &mut self.luminance;
-        let (luminance, previous) = if self.newest == 0 { (first, second) } else { (second, first) };
         FrameBuffers {
             mask: &mut self.mask,
             edges: &mut self.edges,
             scratch: &mut self.scratch,
             runs: &mut self.runs,
-            luminance,
-            previous,
+            luminance: [first, second],
         }
     }
 }
@@ -110,8 +107,6 @@ impl FrameReader {
         }
         let mut buffers = self.buffers.borrow();
         self.analyser.analyse(image.as_raw(), size, skin, &mut buffers, &mut self.blobs, &mut self.edges)?;
-        // The analyser swaps both luminance planes each frame.
-        self.buffers.newest ^= 1;
         Ok(FrameView {
             blobs: self.blobs.as_slice().to_vec(),
             candidates: self.blobs.candidates().collect(),

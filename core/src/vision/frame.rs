@@ -7,7 +7,6 @@ use super::morphology::{close_by, open, scratch_words};
 use super::runs::Run;
 use super::skin::SkinClassifier;
 use crate::error::{ParameterError, Rule, within};
-use core::mem::swap;
 
 /// Working memory for frames of one size; what a frame leaves behind stays here for the next one.
 #[derive(Debug)]
@@ -20,10 +19,8 @@ pub struct FrameBuffers<'a> {
     pub scratch: &'a mut [u32],
     /// Runs of growing components, see [`runs_that_suffice`]; with fewer, shapes may be incomplete.
     pub runs: &'a mut [Run],
-    /// Luminance of the last frame, width x height bytes.
-    pub luminance: &'a mut [u8],
-    /// Luminance of the frame before, width x height bytes.
-    pub previous: &'a mut [u8],
+    /// Luminance of two frames on end, width x height bytes each; they take turns.
+    pub luminance: [&'a mut [u8]; 2],
 }
 
 /// Half the width of the closing, as a part of the image's width: 2 pixels of 640, which joins what noise and highlights cut apart.
@@ -55,6 +52,8 @@ pub struct FrameAnalyser<const RUNS: usize, const OPEN: usize> {
     finder: BlobFinder<RUNS, OPEN>,
     detector: EdgeDetector,
     closing_fraction: f32,
+    /// Whether the next frame's luminance goes into the second buffer.
+    odd: bool,
     /// Size of the frame whose luminance is kept.
     last_size: Option<(usize, usize)>,
 }
@@ -63,7 +62,7 @@ impl<const RUNS: usize, const OPEN: usize> FrameAnalyser<RUNS, OPEN> {
     /// An analyser before its first frame.
     #[must_use]
     pub fn new(finder: BlobFinder<RUNS, OPEN>, detector: EdgeDetector) -> Self {
-        Self { finder, detector, closing_fraction: DEFAULT_CLOSING_FRACTION, last_size: None }
+        Self { finder, detector, closing_fraction: DEFAULT_CLOSING_FRACTION, odd: false, last_size: None }
     }
 
     /// The same analyser with another closing: half its width as a part of the image's width, see [`closing_steps`].
@@ -102,10 +101,12 @@ impl<const RUNS: usize, const OPEN: usize> FrameAnalyser<RUNS, OPEN> {
         open(&mut mask, buffers.scratch)?;
         close_by(&mut mask, closing_steps(width, self.closing_fraction), buffers.scratch)?;
         self.finder.find(&mask.view(), buffers.runs, blobs);
-        swap(&mut buffers.luminance, &mut buffers.previous);
-        luminance_line(rgb, &mut buffers.luminance[..width * height]);
+        let [even, odd] = &mut buffers.luminance;
+        let (now, before) = if self.odd { (odd, even) } else { (even, odd) };
+        luminance_line(rgb, &mut now[..width * height]);
+        self.odd = !self.odd;
         if self.last_size == Some((width, height)) {
-            self.detector.find(buffers.luminance, buffers.previous, width, height, buffers.edges)?;
+            self.detector.find(now, before, width, height, buffers.edges)?;
             edges.take_mask(&buffers.edges[..mask_words(width, height)], width);
         } else {
             buffers.edges.fill(0);
@@ -141,8 +142,7 @@ fn check_lengths(rgb: &[u8], width: usize, height: usize, buffers: &FrameBuffers
         ("buffers.mask", buffers.mask.len(), words),
         ("buffers.edges", buffers.edges.len(), words),
         ("buffers.scratch", buffers.scratch.len(), scratch_words(width)),
-        ("buffers.luminance", buffers.luminance.len(), pixels),
-        ("buffers.previous", buffers.previous.len(), pixels),
+        ("buffers.luminance", buffers.luminance[0].len().min(buffers.luminance[1].len()), pixels),
     ];
     match checks.into_iter().find(|&(_, have, expected)| have < expected) {
         Some((parameter, _, expected)) => Err(ParameterError::new(parameter, Rule::SameLength { expected })),
@@ -174,8 +174,7 @@ mod tests {
             edges: &mut edge_bits,
             scratch: &mut scratch,
             runs: &mut runs,
-            luminance: &mut luminance,
-            previous: &mut previous,
+            luminance: [&mut luminance, &mut previous],
         };
         let skin = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60).unwrap();
         let meter = BlobMeter::new(DEFAULT_FILL_RATIO).unwrap();
@@ -245,8 +244,7 @@ mod tests {
             edges: &mut [0; 3],
             scratch: &mut [0; 3],
             runs: &mut [],
-            luminance: &mut [0; 16],
-            previous: &mut [0; 16],
+            luminance: [&mut [0; 16], &mut [0; 16]],
         };
         let mut run = |rgb: &[u8], size| {
             let lists = (&mut BlobList::<2>::new(), &mut EdgeList::<2>::new());
