@@ -36,9 +36,14 @@ pub fn transform(cells: &[CellRow], columns: usize, inside: bool, distances: &mu
     let distances = &mut distances[..len];
     for (row, line) in cells.iter().zip(distances.iter_mut()) {
         *line = edge;
-        for (u, d) in line[BORDER..BORDER + columns].iter_mut().enumerate() {
-            *d = if (row >> u & 1 == 1) == inside { FAR } else { 0 };
+        let wanted = if inside { *row } else { !row };
+        for (part, out) in line[BORDER..].chunks_mut(32).enumerate().take(columns.div_ceil(32)) {
+            let bits = (wanted >> (32 * part)) as u32;
+            for (i, d) in out.iter_mut().enumerate() {
+                *d = FAR * (bits >> (i & 31) & 1) as i16;
+            }
         }
+        line[BORDER + columns..].fill(outside);
     }
     for v in 0..len {
         let (before, rest) = distances.split_at_mut(v);
@@ -87,6 +92,13 @@ pub fn at(distances: &[DistanceRow], u: usize, v: usize) -> i16 {
         return 0;
     }
     distances.get(v).map_or(0, |line| line[BORDER + u])
+}
+
+/// The distances of one row's cells, without the border.
+#[must_use]
+pub fn interior(line: &DistanceRow) -> &[i16; MAX_COLUMNS] {
+    const EMPTY: &[i16; MAX_COLUMNS] = &[0; MAX_COLUMNS];
+    line[BORDER..].first_chunk().unwrap_or(EMPTY)
 }
 
 /// The greatest distance and its cell (column, row); of several the one nearest to the point (`u`, `v`).

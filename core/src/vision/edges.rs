@@ -175,14 +175,14 @@ impl EdgeDetector {
             smooth[i] = a + 2 * b + c;
             slope[i] = c - a;
         }
-        let mut word = 0;
-        for i in 0..BLOCK {
+        let mut bits = [0_u32; BLOCK];
+        for (i, bit) in bits.iter_mut().enumerate() {
             let across = i32::from(smooth[i + 2] - smooth[i]);
             let down = i32::from(slope[i] + 2 * slope[i + 1] + slope[i + 2]);
             let edge = across * across + down * down >= self.gradient_square;
-            word |= (u32::from(moving[i]) & u32::from(edge)) << i;
+            *bit = (u32::from(moving[i]) & u32::from(edge)) << i;
         }
-        word
+        bits.iter().fold(0, |word, bit| word | bit)
     }
 }
 

@@ -1,7 +1,7 @@
 //! A component drawn on a small grid of cells, 128 cells a row, on which its shape is measured.
 
 use super::components::{Component, crofton_perimeter};
-use super::distance::{CellRow, DistanceRow, MAX_COLUMNS, at};
+use super::distance::{CellRow, DistanceRow, MAX_COLUMNS, interior};
 use super::runs::RunPool;
 use crate::camera::Pixel;
 
@@ -91,9 +91,17 @@ impl CellGrid {
 
     /// Keeps just the cells where the condition on the distance holds.
     pub fn keep(&mut self, distances: &[DistanceRow], holds: impl Fn(i16) -> bool) {
-        for v in 0..self.row_count {
-            self.rows[v & (MAX_ROWS - 1)] =
-                (0..self.columns).fold(0, |row, u| row | CellRow::from(holds(at(distances, u, v))) << u);
+        let columns = below(self.columns as u32);
+        let count = self.row_count.min(MAX_ROWS);
+        for (row, line) in self.rows[..count].iter_mut().zip(distances) {
+            let parts = interior(line).as_chunks::<32>().0.iter().map(|part| {
+                let mut bits = [0_u32; 32];
+                for (i, (bit, &d)) in bits.iter_mut().zip(part).enumerate() {
+                    *bit = u32::from(holds(d)) << i;
+                }
+                bits.iter().fold(0, |word, bit| word | bit)
+            });
+            *row = parts.rev().fold(0, |row, part| row << 32 | CellRow::from(part)) & columns;
         }
     }
 

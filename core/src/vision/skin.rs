@@ -7,6 +7,8 @@ use crate::math::sqrt;
 
 /// Pixels in one word of a line of bits.
 pub const PIXELS_PER_WORD: usize = 32;
+/// Bytes of the pixels of one word.
+const BLOCK_BYTES: usize = 3 * PIXELS_PER_WORD;
 /// Cells along one side of the colour cube of [`HistogramSkin`].
 pub const CUBE_SIDE: usize = 32;
 /// Words of the decision table of [`HistogramSkin`]: one bit a cell of the colour cube, 4 KiB.
@@ -109,20 +111,26 @@ impl GaussianSkin {
         Some(sqrt(crate::math::max(r * (rr * r + 2.0 * rg * g) + gg * g * g, 0.0)))
     }
 
-    /// The decision for 32 pixels given as planes; no division, since all terms are scaled by (R+G+B)^2.
-    fn classify_block(&self, red: &[i32; 32], green: &[i32; 32], blue: &[i32; 32]) -> u32 {
+    /// The decision for 32 pixels; no division, since all terms are scaled by (R+G+B)^2.
+    fn classify_block(&self, block: &[u8; BLOCK_BYTES]) -> u32 {
+        let (mut red, mut green, mut sum) =
+            ([0_i32; PIXELS_PER_WORD], [0_i32; PIXELS_PER_WORD], [0_i32; PIXELS_PER_WORD]);
+        for (i, &[r, g, b]) in block.as_chunks::<3>().0.iter().enumerate() {
+            red[i] = i32::from(r);
+            green[i] = i32::from(g);
+            sum[i] = i32::from(r) + i32::from(g) + i32::from(b);
+        }
         let [rr, rg, gg] = self.precision;
         let rg_twice = 2.0 * rg;
         let threshold2 = self.threshold * self.threshold;
         let min_sum = i32::from(self.min_sum.max(1));
-        let mut chosen = [0_u32; 32];
+        let mut chosen = [0_u32; PIXELS_PER_WORD];
         for (i, bit) in chosen.iter_mut().enumerate() {
-            let whole = red[i] + green[i] + blue[i];
-            let sum = whole as f32;
-            let r = red[i] as f32 - self.mean[0] * sum;
-            let g = green[i] as f32 - self.mean[1] * sum;
+            let whole = sum[i] as f32;
+            let r = red[i] as f32 - self.mean[0] * whole;
+            let g = green[i] as f32 - self.mean[1] * whole;
             let form = r * (rr * r + rg_twice * g) + gg * g * g;
-            let inside = u32::from(form <= threshold2 * sum * sum) & u32::from(whole >= min_sum);
+            let inside = u32::from(form <= threshold2 * whole * whole) & u32::from(sum[i] >= min_sum);
             *bit = inside << i;
         }
         chosen.iter().fold(0, |word, bit| word | bit)
@@ -131,17 +139,13 @@ impl GaussianSkin {
 
 impl SkinClassifier for GaussianSkin {
     fn classify_line(&self, rgb: &[u8], bits: &mut [u32]) {
-        let mut blocks = rgb.chunks(3 * PIXELS_PER_WORD);
+        let (whole, rest) = rgb.as_chunks::<BLOCK_BYTES>();
+        // Pixels beyond the line's end are black, and black is never skin.
+        let mut last = [0; BLOCK_BYTES];
+        last.iter_mut().zip(rest.chunks_exact(3).flatten()).for_each(|(to, from)| *to = *from);
+        let mut blocks = whole.iter().chain(core::iter::once(&last));
         for word in bits {
-            let (mut red, mut green, mut blue) = ([0_i32; 32], [0_i32; 32], [0_i32; 32]);
-            // Pixels beyond the line's end stay black, and black is never skin.
-            let block = blocks.next().unwrap_or(&[]);
-            for (i, pixel) in block.as_chunks::<3>().0.iter().enumerate().take(PIXELS_PER_WORD) {
-                red[i] = i32::from(pixel[0]);
-                green[i] = i32::from(pixel[1]);
-                blue[i] = i32::from(pixel[2]);
-            }
-            *word = self.classify_block(&red, &green, &blue);
+            *word = blocks.next().map_or(0, |block| self.classify_block(block));
         }
     }
 }
