@@ -30,11 +30,21 @@ pub struct HoughSettings {
     pub min_separation_px: f32,
     /// Fewer pixels than this say nothing: uniform.
     pub min_pixels: usize,
+    /// With this many pixels the density counts half, with more it counts more.
+    pub doubt_pixels: f32,
 }
 
 impl Default for HoughSettings {
     fn default() -> Self {
-        Self { bins: 36, window: 10, gamma: 10.0, max_pairs: 1000, min_separation_px: 8.0, min_pixels: 12 }
+        Self {
+            bins: 36,
+            window: 10,
+            gamma: 10.0,
+            max_pairs: 1000,
+            min_separation_px: 8.0,
+            min_pixels: 12,
+            doubt_pixels: 20.0,
+        }
     }
 }
 
@@ -50,6 +60,7 @@ impl HoughSettings {
         }
         positive("hough.gamma", self.gamma)?;
         positive("hough.min_separation_px", self.min_separation_px)?;
+        crate::error::not_negative("hough.doubt_pixels", self.doubt_pixels)?;
         if !(CHECK_EVERY..=usize::from(u16::MAX)).contains(&self.max_pairs) {
             return Err(ParameterError::new("hough.max_pairs", Rule::Within { low: 10.0, high: 65_535.0 }));
         }
@@ -124,7 +135,10 @@ pub fn dynamic_hough(pixels: &[EdgePixel], settings: &HoughSettings, stream: &mu
             stable = stop.is_stable(variance.variance_rad2(), settings.gamma);
         }
     }
-    (voters > 0).then(|| HoughResult { density: uniform.from_votes(&votes).smoothed(), pairs, stable })
+    let mut density = uniform.from_votes(&votes).smoothed();
+    // Few pixels make sharp peaks by chance.
+    density.fade(pixels.len() as f32 / (pixels.len() as f32 + settings.doubt_pixels));
+    (voters > 0).then_some(HoughResult { density, pairs, stable })
 }
 
 #[cfg(test)]

@@ -10,8 +10,8 @@ use sinew_core::skeleton::{ArmGeometry, Side};
 const UPPER_ARM: f32 = 0.186;
 /// Elbow to the middle of the hand as a share of the body's height: forearm and half of the hand.
 const FOREARM: f32 = 0.2;
-/// Area of a half-open hand's image at one metre, over squared height: 0.011 m^2 at 1.75 m.
-const HAND_AREA: f32 = 0.0036;
+/// Area of a half-open hand's image at one metre, over squared height: 0.0129 m^2 at 1.75 m.
+const HAND_AREA: f32 = 0.0042;
 
 /// Size and place of the person.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,9 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use sinew_core::error::{ParameterError, Rule, not_negative, positive, within};
 use sinew_core::observation::hough::HoughSettings;
-use sinew_core::tracker::arm::options::{AreaCue, EstimateRule, Gate, LimbCombination};
+use sinew_core::tracker::arm::options::{
+    AreaCue, BlobMemoryOptions, DEFAULT_BLOB_MEMORY, DEFAULT_GATE, EstimateRule, Gate, LimbCombination,
+};
 use sinew_core::tracker::arm::{ArmOptions, Variant};
 
 /// Most particles that the command tracks with.
@@ -76,9 +78,14 @@ pub struct TrackerConfig {
     pub gate_std_m: f32,
     pub gate_growth_m_per_s: f32,
     pub gate_floor: f32,
+    pub gate_missed_share: f32,
+    pub gate_allotment_reach: f32,
     pub area_cue: bool,
     pub area_log_std: f32,
     pub depth_from_area: bool,
+    pub blob_memory: bool,
+    pub blob_memory_s: f32,
+    pub blob_memory_floor: f32,
     pub estimate: EstimateName,
     pub cluster_radius_per_focal: f32,
     pub velocity_persistence: f32,
@@ -98,6 +105,7 @@ pub struct TrackerConfig {
     pub hough_max_pairs: usize,
     pub hough_min_separation_px: f32,
     pub hough_min_pixels: usize,
+    pub hough_doubt_pixels: f32,
     pub orientation_memory_s: f32,
     pub teleport_share: f32,
     pub clutter_share: f32,
@@ -107,7 +115,8 @@ pub struct TrackerConfig {
 impl Default for TrackerConfig {
     fn default() -> Self {
         let options = ArmOptions::default();
-        let gate = options.gate.unwrap_or(Gate { std_m: 0.1, growth_m_per_s: 0.5, floor: 0.02 });
+        let gate = options.gate.unwrap_or(DEFAULT_GATE);
+        let memory = options.blob_memory.unwrap_or(DEFAULT_BLOB_MEMORY);
         Self {
             variant: VariantName::Pik,
             particles: options.particles,
@@ -117,9 +126,14 @@ impl Default for TrackerConfig {
             gate_std_m: gate.std_m,
             gate_growth_m_per_s: gate.growth_m_per_s,
             gate_floor: gate.floor,
+            gate_missed_share: gate.missed_share,
+            gate_allotment_reach: gate.allotment_reach,
             area_cue: options.area_cue.is_some(),
             area_log_std: options.area_cue.map_or(0.3, |cue| cue.log_std),
             depth_from_area: options.depth_from_area,
+            blob_memory: options.blob_memory.is_some(),
+            blob_memory_s: memory.time_s,
+            blob_memory_floor: memory.floor,
             estimate: EstimateName::Cluster,
             cluster_radius_per_focal: match options.estimate {
                 EstimateRule::HeaviestCluster { radius_per_focal } => radius_per_focal,
@@ -142,6 +156,7 @@ impl Default for TrackerConfig {
             hough_max_pairs: options.hough.max_pairs,
             hough_min_separation_px: options.hough.min_separation_px,
             hough_min_pixels: options.hough.min_pixels,
+            hough_doubt_pixels: options.hough.doubt_pixels,
             orientation_memory_s: options.orientation_memory_s,
             teleport_share: options.teleport_share,
             clutter_share: options.clutter_share,
@@ -160,8 +175,12 @@ impl TrackerConfig {
         positive("gate_std_m", self.gate_std_m)?;
         not_negative("gate_growth_m_per_s", self.gate_growth_m_per_s)?;
         within("gate_floor", self.gate_floor, 1.0e-9, 1.0)?;
+        within("gate_missed_share", self.gate_missed_share, 0.0, 1.0)?;
+        positive("gate_allotment_reach", self.gate_allotment_reach)?;
         within("product_floor", self.product_floor, 1.0e-6, 10.0)?;
         positive("area_log_std", self.area_log_std)?;
+        positive("blob_memory_s", self.blob_memory_s)?;
+        within("blob_memory_floor", self.blob_memory_floor, 1.0e-6, 1.0)?;
         positive("cluster_radius_per_focal", self.cluster_radius_per_focal)?;
         self.options(true, 0.01).check()
     }
@@ -174,7 +193,14 @@ impl TrackerConfig {
             CombinationName::Mean => false,
             CombinationName::Product => true,
         };
-        let gate = Gate { std_m: self.gate_std_m, growth_m_per_s: self.gate_growth_m_per_s, floor: self.gate_floor };
+        let gate = Gate {
+            std_m: self.gate_std_m,
+            growth_m_per_s: self.gate_growth_m_per_s,
+            floor: self.gate_floor,
+            missed_share: self.gate_missed_share,
+            allotment_reach: self.gate_allotment_reach,
+        };
+        let memory = BlobMemoryOptions { time_s: self.blob_memory_s, floor: self.blob_memory_floor };
         ArmOptions {
             variant: self.variant.into(),
             particles: self.particles,
@@ -186,6 +212,7 @@ impl TrackerConfig {
             gate: self.gate.then_some(gate),
             area_cue: self.area_cue.then_some(AreaCue { hand_area_m2, log_std: self.area_log_std }),
             depth_from_area: self.depth_from_area,
+            blob_memory: self.blob_memory.then_some(memory),
             estimate: match self.estimate {
                 EstimateName::Cluster => {
                     EstimateRule::HeaviestCluster { radius_per_focal: self.cluster_radius_per_focal }
@@ -210,6 +237,7 @@ impl TrackerConfig {
                 max_pairs: self.hough_max_pairs,
                 min_separation_px: self.hough_min_separation_px,
                 min_pixels: self.hough_min_pixels,
+                doubt_pixels: self.hough_doubt_pixels,
             },
             orientation_memory_s: self.orientation_memory_s,
             teleport_share: self.teleport_share,

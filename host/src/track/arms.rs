@@ -113,6 +113,8 @@ fn model(config: &Config, camera: Camera, size_px: (u32, u32), side: Side) -> Re
 }
 
 impl<const CAPACITY: usize> Trackers<CAPACITY> {
+    // Not inlined: three capacities in one function would need the stack of all of them.
+    #[inline(never)]
     fn new(models: &[ArmModel], shoulders_m: &[Vec3], seed: u64) -> Result<Self> {
         if let ([left, right], [left_m, right_m]) = (models, shoulders_m) {
             return Ok(Self::Two(Box::new(ArmPair::new([left, right], [*left_m, *right_m], seed)?)));
@@ -120,6 +122,7 @@ impl<const CAPACITY: usize> Trackers<CAPACITY> {
         Ok(Self::One(Box::new(ArmTracker::new(&models[0], shoulders_m[0], seed)?)))
     }
 
+    #[inline(never)]
     fn step(
         &mut self,
         models: &[ArmModel],

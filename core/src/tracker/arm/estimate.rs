@@ -69,16 +69,14 @@ pub(super) struct Cluster {
     pub angles_rad: ArmAngles,
     pub joints: ArmJoints,
     pub hand_std_m: f32,
+    /// Share of the weights at each candidate.
+    pub masses: [f32; MAX_CANDIDATES],
 }
 
 impl FrameContext<'_> {
     /// The candidate whose centre lies nearest to `hand`, if within the cluster radius.
     pub fn candidate_at(&self, hand: Option<Pixel>) -> Option<usize> {
-        let radius_per_focal = match self.model.options().estimate {
-            EstimateRule::HeaviestCluster { radius_per_focal } => radius_per_focal,
-            EstimateRule::MeanOfAll => 0.045,
-        };
-        let mut best = (None, radius_per_focal * self.model.camera().focal_px());
+        let mut best = (None, self.model.cluster_radius_px());
         for (index, candidate) in self.candidates.iter().enumerate() {
             let distance = candidate.centre.distance_px(hand?);
             if distance < best.1 {
@@ -105,7 +103,9 @@ impl FrameContext<'_> {
         let all = self.model.options().estimate == EstimateRule::MeanOfAll;
         let members = particles.iter().zip(weights).filter(|(p, _)| all || slot(at(p)) == heaviest);
         let candidate = (heaviest < MAX_CANDIDATES).then_some(heaviest);
-        self.mean_pose(members.map(|(p, w)| (p, *w)), candidate)
+        let mut cluster = self.mean_pose(members.map(|(p, w)| (p, *w)), candidate);
+        cluster.masses.copy_from_slice(&masses[..MAX_CANDIDATES]);
+        cluster
     }
 
     /// Circular mean of the angles, then the pose next to it whose hand is the mean hand.
@@ -143,6 +143,6 @@ impl FrameContext<'_> {
         let there = density.posture(&angles_rad);
         let joints =
             ArmJoints { shoulder_m: self.shoulder_m, elbow_m: there.ends[UPPER_ARM], hand_m: there.ends[FOREARM] };
-        Cluster { candidate, angles_rad, joints, hand_std_m: sqrt(variance) }
+        Cluster { candidate, angles_rad, joints, hand_std_m: sqrt(variance), masses: [0.0; MAX_CANDIDATES] }
     }
 }

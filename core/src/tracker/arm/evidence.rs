@@ -30,11 +30,7 @@ impl FrameContext<'_> {
         let place =
             proposed.particle.driver.map(usize::from).or_else(|| self.candidate_at(image.map(|points| points.hand)));
         let mut log_weight = proposed.log_payment + self.log_orientation(image.as_ref(), limbs.at(place));
-        if let (Some(gate), Some(_)) = (self.model.options().gate, proposed.particle.driver) {
-            let std_m = gate.std_m + gate.growth_m_per_s * self.unseen_s;
-            let jumps = proposed.jump_m / std_m;
-            log_weight += ln(exp(-0.5 * jumps * jumps) + gate.floor);
-        }
+        log_weight += self.log_gate(proposed);
         let hand = image.map(|points| points.hand);
         if self.model.options().variant.has_blob_term() {
             log_weight += self.log_blob_term(&proposed.particle, hand);
@@ -42,6 +38,17 @@ impl FrameContext<'_> {
             log_weight += self.log_area_cue(&proposed.particle, hand);
         }
         log_weight
+    }
+
+    /// Continuity: what a jump to a blob costs, and what it costs to ignore one that is likely the hand.
+    fn log_gate(&self, proposed: &Proposed) -> f32 {
+        let options = self.model.options();
+        let Some(gate) = options.gate.filter(|_| options.variant.is_blob_driven()) else { return 0.0 };
+        if proposed.particle.driver.is_none() {
+            return ln(max(1.0 - self.best_chance * (1.0 - gate.missed_share), 1.0e-6));
+        }
+        let jumps = proposed.jump_m / (gate.std_m + gate.growth_m_per_s * self.unseen_s);
+        ln(exp(-0.5 * jumps * jumps) + gate.floor)
     }
 
     /// Observation density of both limbs, eq. (3) or the product; uniform where a limb has no orientation.
@@ -133,6 +140,7 @@ mod tests {
             rays: heapless::Vec::new(),
             counts: [0; 8],
             free: 1,
+            best_chance: 0.0,
         }
     }
 

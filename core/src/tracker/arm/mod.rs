@@ -8,6 +8,7 @@ mod estimate;
 mod evidence;
 mod frame;
 mod limbs;
+mod memory;
 mod model;
 pub mod options;
 mod pair;

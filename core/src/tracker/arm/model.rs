@@ -1,6 +1,6 @@
 //! What does not change while an arm is tracked.
 
-use super::options::ArmOptions;
+use super::options::{ArmOptions, DEFAULT_RADIUS_PER_FOCAL, EstimateRule};
 use crate::camera::Camera;
 use crate::correction::hand::ReachableShell;
 use crate::error::ParameterError;
@@ -78,6 +78,16 @@ impl ArmModel {
     pub fn elbow_and_hand(&self, shoulder_m: &Vec3, angles_rad: &ArmAngles) -> (Vec3, Vec3) {
         let there = posture(&self.skeleton, shoulder_m, angles_rad);
         (there.ends[UPPER_ARM], there.ends[FOREARM])
+    }
+
+    /// Distance from a blob's centre within which a hand lies at that blob, pixels.
+    #[must_use]
+    pub fn cluster_radius_px(&self) -> f32 {
+        let radius_per_focal = match self.options.estimate {
+            EstimateRule::HeaviestCluster { radius_per_focal } => radius_per_focal,
+            EstimateRule::MeanOfAll => DEFAULT_RADIUS_PER_FOCAL,
+        };
+        radius_per_focal * self.camera.focal_px()
     }
 
     /// Where the hand can be, given the elbow's limits.

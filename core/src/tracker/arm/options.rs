@@ -62,6 +62,11 @@ pub struct Gate {
     pub growth_m_per_s: f32,
     /// What a jump of any length keeps.
     pub floor: f32,
+    /// Share of visible hands that give no blob: what a particle that ignores the blobs keeps beside a blob that is surely
+    /// the hand.
+    pub missed_share: f32,
+    /// Blobs are allotted particles by likelihood times nearness; nearness falls over this many s.
+    pub allotment_reach: f32,
 }
 
 /// Area cue: the blob's area tells the hand's distance, since area times squared depth is about constant.
@@ -71,6 +76,15 @@ pub struct AreaCue {
     pub hand_area_m2: f32,
     /// Standard deviation of the logarithm of the area.
     pub log_std: f32,
+}
+
+/// Memory of blobs that were there and were not the hand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BlobMemoryOptions {
+    /// Time in which belief in a blob that is not the hand falls by 1/e, seconds.
+    pub time_s: f32,
+    /// Belief that is never lost; it bounds how long a mistake can last.
+    pub floor: f32,
 }
 
 /// What is reported as the estimate.
@@ -84,6 +98,14 @@ pub enum EstimateRule {
         radius_per_focal: f32,
     },
 }
+
+/// Default of the gate.
+pub const DEFAULT_GATE: Gate =
+    Gate { std_m: 0.1, growth_m_per_s: 0.5, floor: 0.02, missed_share: 0.3, allotment_reach: 3.0 };
+/// Default of the memory of blobs.
+pub const DEFAULT_BLOB_MEMORY: BlobMemoryOptions = BlobMemoryOptions { time_s: 0.15, floor: 0.05 };
+/// Default of [`EstimateRule::HeaviestCluster`]'s radius: 25 pixels of a 640 pixel image with 60 degrees.
+pub const DEFAULT_RADIUS_PER_FOCAL: f32 = 0.045;
 
 /// All options of one arm tracker.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,6 +123,8 @@ pub struct ArmOptions {
     /// Whether an unpaid goal is drawn along the ray from prediction and area together (needs the area cue), which then
     /// does not stand in the weight again.
     pub depth_from_area: bool,
+    /// Memory of blobs that are not the hand, or none.
+    pub blob_memory: Option<BlobMemoryOptions>,
     /// What is reported.
     pub estimate: EstimateRule,
     /// Share of the estimated velocity that goes on.
@@ -143,10 +167,11 @@ impl Default for ArmOptions {
             variant: Variant::Pik,
             particles: 50,
             combination: LimbCombination::Product { floor: 0.1 },
-            gate: Some(Gate { std_m: 0.1, growth_m_per_s: 0.5, floor: 0.02 }),
+            gate: Some(DEFAULT_GATE),
             area_cue: Some(AreaCue { hand_area_m2: 0.011, log_std: 0.3 }),
             depth_from_area: true,
-            estimate: EstimateRule::HeaviestCluster { radius_per_focal: 0.045 },
+            blob_memory: Some(DEFAULT_BLOB_MEMORY),
+            estimate: EstimateRule::HeaviestCluster { radius_per_focal: DEFAULT_RADIUS_PER_FOCAL },
             velocity_persistence: 0.7,
             velocity_gain: 0.5,
             hand_std_m_per_sqrt_s: 0.25,
@@ -183,10 +208,16 @@ impl ArmOptions {
             positive("gate.std_m", gate.std_m)?;
             not_negative("gate.growth_m_per_s", gate.growth_m_per_s)?;
             within("gate.floor", gate.floor, 1.0e-9, 1.0)?;
+            within("gate.missed_share", gate.missed_share, 0.0, 1.0)?;
+            positive("gate.allotment_reach", gate.allotment_reach)?;
         }
         if let Some(cue) = self.area_cue {
             positive("area_cue.hand_area_m2", cue.hand_area_m2)?;
             positive("area_cue.log_std", cue.log_std)?;
+        }
+        if let Some(memory) = self.blob_memory {
+            positive("blob_memory.time_s", memory.time_s)?;
+            within("blob_memory.floor", memory.floor, 1.0e-6, 1.0)?;
         }
         if let EstimateRule::HeaviestCluster { radius_per_focal } = self.estimate {
             positive("estimate.radius_per_focal", radius_per_focal)?;
@@ -224,7 +255,7 @@ mod tests {
         ArmOptions::default().check().unwrap();
         let none = ArmOptions { particles: 0, ..ArmOptions::default() };
         assert_eq!(none.check().unwrap_err().parameter, "particles");
-        let gate = Gate { std_m: -1.0, growth_m_per_s: 0.0, floor: 0.02 };
+        let gate = Gate { std_m: -1.0, ..DEFAULT_GATE };
         let wrong = ArmOptions { gate: Some(gate), ..ArmOptions::default() };
         assert_eq!(wrong.check().unwrap_err(), ParameterError::new("gate.std_m", Rule::Positive));
     }

@@ -33,6 +33,8 @@ pub(super) struct FrameContext<'a> {
     pub counts: [u16; MAX_CANDIDATES],
     /// Particles that ignore the candidates.
     pub free: usize,
+    /// Greatest of the candidates' chances to be the hand, after belief and nearness.
+    pub best_chance: f32,
 }
 
 /// A particle before it is weighted.

@@ -3,12 +3,13 @@
 use super::estimate::{ArmEstimate, ArmJoints, Cluster, Status};
 use super::frame::{ArmFrame, ArmImage, MAX_CANDIDATES, most_likely};
 use super::limbs::{self, LimbDensities, LimbHypotheses};
+use super::memory::BlobMemory;
 use super::model::ArmModel;
 use super::propose::FrameContext;
 use crate::camera::Pixel;
 use crate::correction::allocation::allot;
 use crate::error::{ParameterError, Rule};
-use crate::math::{Vec3, clamp, exp, length};
+use crate::math::{Vec3, clamp, exp, length, max};
 use crate::observation::candidate::HandCandidate;
 use crate::observation::limbs::ArmImagePoints;
 use crate::observation::orientation::OrientationDensity;
@@ -26,6 +27,8 @@ const FIRST_DT_S: f32 = 1.0 / 15.0;
 const DT_RANGE_S: (f32, f32) = (1.0e-3, 1.0);
 /// Fastest hand, metres per second: a sprinter's punch stays below.
 const MAX_SPEED_M_PER_S: f32 = 6.0;
+/// What a blob at any distance keeps of its chance.
+const FAR_SHARE: f32 = 0.1;
 /// Index of the stream that the frame as a whole draws from.
 const FRAME_STREAM: u32 = u32::MAX;
 /// First of the streams that the Hough transforms draw from.
@@ -56,6 +59,7 @@ pub struct ArmTracker<const CAPACITY: usize> {
     current: usize,
     weights: Weights<CAPACITY>,
     limbs: LimbDensities,
+    memory: BlobMemory,
     estimate: ArmJoints,
     hand_velocity_m_per_s: Vec3,
     elbow_velocity_m_per_s: Vec3,
@@ -90,6 +94,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             current: 0,
             weights,
             limbs: LimbDensities { upper: uniform, fore: uniform },
+            memory: BlobMemory::default(),
             estimate: ArmJoints { shoulder_m, elbow_m, hand_m },
             hand_velocity_m_per_s: Vec3::zeros(),
             elbow_velocity_m_per_s: Vec3::zeros(),
@@ -185,12 +190,12 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     ) -> FrameContext<'a> {
         let mut counts = [0; MAX_CANDIDATES];
         let mut free = self.weights.len();
+        let mut chances = [0.0; MAX_CANDIDATES];
         if model.options().variant.is_blob_driven() {
-            let mut likelihoods = [0.0; MAX_CANDIDATES];
-            for (likelihood, candidate) in likelihoods.iter_mut().zip(&candidates) {
-                *likelihood = candidate.likelihood;
+            for (chance, candidate) in chances.iter_mut().zip(&candidates) {
+                *chance = self.chance(model, candidate, dt_s);
             }
-            free = allot(self.weights.len(), &likelihoods, &mut counts);
+            free = allot(self.weights.len(), &chances, &mut counts);
         }
         FrameContext {
             model,
@@ -204,7 +209,26 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             candidates,
             counts,
             free,
+            best_chance: chances.iter().fold(0.0, |a, &b| max(a, b)),
         }
+    }
+
+    /// Chance of a candidate to be the hand: its likelihood, less where it was not the hand before, less where it is far
+    /// from what the last estimate lets expect.
+    fn chance(&self, model: &ArmModel, candidate: &HandCandidate, dt_s: f32) -> f32 {
+        let options = model.options();
+        let mut chance = candidate.likelihood;
+        if options.blob_memory.is_some() {
+            chance *= self.memory.belief(candidate.centre, model.cluster_radius_px());
+        }
+        if let Some(gate) = options.gate.filter(|_| self.ever_seen) {
+            let ray = model.camera().back_project(candidate.centre);
+            let hand_m = self.estimate.hand_m + self.hand_velocity_m_per_s * (options.velocity_persistence * dt_s);
+            let miss_m = length(&(ray.project(&hand_m) - hand_m));
+            let reach_m = gate.allotment_reach * (gate.std_m + gate.growth_m_per_s * self.unseen_s);
+            chance *= exp(-0.5 * miss_m * miss_m / (reach_m * reach_m)) * (1.0 - FAR_SHARE) + FAR_SHARE;
+        }
+        chance
     }
 
     /// Systematic resampling, then a permutation, so that the order of the ancestors does not decide who drives them.
@@ -240,6 +264,10 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     /// Keeps what the next frame needs of the estimate: its place, its velocity, when a blob last carried it.
     fn remember(&mut self, context: &FrameContext<'_>, cluster: &Cluster, limbs: &LimbHypotheses, dt_s: f32) -> Status {
         self.limbs = *limbs.at(cluster.candidate);
+        if let Some(memory) = context.model.options().blob_memory {
+            let times = (dt_s, memory.time_s, memory.floor);
+            self.memory.learn(&context.candidates, &cluster.masses, context.model.cluster_radius_px(), times);
+        }
         let was_seen = self.ever_seen && self.unseen_s == 0.0;
         let carried = cluster.candidate.is_some();
         let options = context.model.options();

@@ -1,0 +1,5 @@
+//! Measuring the trackers where the truth is known.
+
+pub mod clips;
+pub mod observed;
+pub mod score;

@@ -1,0 +1,104 @@
+//! A rendered scene after the front end: what the trackers see, beside the truth. Rendered once, tracked many times.
+
+use super::clips::Clip;
+use crate::config::Config;
+use crate::frames::{FrameReader, FrameView};
+use crate::motion::ArmSide;
+use crate::scene::{Scene, SceneOptions, Sides};
+use crate::track::SideChoice;
+use anyhow::Result;
+use rayon::prelude::*;
+use sinew_core::camera::Pixel;
+use sinew_core::math::Vec3;
+use sinew_core::vision::skin::SkinClassifier;
+
+/// Truth of one frame of the tracked arm.
+#[derive(Debug, Clone, Copy)]
+pub struct HandTruth {
+    /// Hand, metres.
+    pub hand_m: Vec3,
+    /// Its pixel, also where it is hidden.
+    pub hand_px: Pixel,
+    /// Whether its skin can be seen.
+    pub visible: bool,
+    /// Whether a skin-coloured face is shown.
+    pub false_blob: bool,
+}
+
+/// All frames of one scene as blobs and edges.
+#[derive(Debug, Clone)]
+pub struct ObservedScene {
+    /// Name of the clip.
+    pub clip: String,
+    /// Seed of the scene.
+    pub seed: u64,
+    /// Camera and body, as a user would give them.
+    pub config: Config,
+    /// Image size.
+    pub size_px: (u32, u32),
+    /// Tracked arm.
+    pub side: SideChoice,
+    /// Time between frames, microseconds.
+    pub frame_us: u64,
+    /// What the front end found.
+    pub views: Vec<FrameView>,
+    /// The truth.
+    pub truth: Vec<HandTruth>,
+}
+
+/// Renders the scene of `clip` and sends every frame through the front end.
+///
+/// # Errors
+/// A clip that cannot be read, an option out of range.
+pub fn observe(
+    clip: &Clip,
+    options: &SceneOptions,
+    base: &Config,
+    skin: &impl SkinClassifier,
+) -> Result<ObservedScene> {
+    let options = SceneOptions { sides: Sides::One(clip.side), ..options.clone() };
+    let motion = clip.load(options.frames_per_second, options.frames)?;
+    let scene = Scene::new(&motion, &options)?;
+    let told = Config::parse(&scene.config_toml())?;
+    let config = Config { camera: told.camera, body: told.body, ..base.clone() };
+    let mut reader = FrameReader::new(config.likelihood.build()?, config.edges.build()?)?;
+    let views = (0..scene.len()).map(|frame| reader.read(&scene.render(frame), skin)).collect::<Result<_>>()?;
+    let camera = scene.camera();
+    let truth = (0..scene.len()).map(|frame| {
+        let truth = scene.truth(frame);
+        let side = truth.sides[0];
+        HandTruth {
+            hand_m: side.joints.hand_m,
+            hand_px: side.hand_px(&camera).unwrap_or(Pixel::new(f32::NAN, f32::NAN)),
+            visible: side.hand_visible,
+            false_blob: truth.false_blob,
+        }
+    });
+    Ok(ObservedScene {
+        clip: clip.name.clone(),
+        seed: options.seed,
+        config,
+        size_px: (options.width_px, options.height_px),
+        side: if clip.side == ArmSide::Left { SideChoice::Left } else { SideChoice::Right },
+        frame_us: (1.0e6 / f64::from(options.frames_per_second)) as u64,
+        views,
+        truth: truth.collect(),
+    })
+}
+
+/// All clips with all seeds, in parallel; the order does not depend on the threads.
+///
+/// # Errors
+/// As [`observe`].
+pub fn observe_all(
+    clips: &[Clip],
+    seeds: &[u64],
+    options: &SceneOptions,
+    base: &Config,
+    skin: &(impl SkinClassifier + Sync),
+) -> Result<Vec<ObservedScene>> {
+    let jobs: Vec<(&Clip, u64)> = clips.iter().flat_map(|clip| seeds.iter().map(move |&seed| (clip, seed))).collect();
+    jobs.into_par_iter()
+        .map(|(clip, seed)| observe(clip, &SceneOptions { seed, ..options.clone() }, base, skin))
+        .collect()
+}
