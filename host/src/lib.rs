@@ -8,4 +8,5 @@ pub mod images;
 pub mod motion;
 pub mod output;
 pub mod scene;
+pub mod skin;
 pub mod track;

@@ -3,7 +3,16 @@
 //! To add a subcommand, write `cli/NAME.rs` with `pub struct NameArgs` (`clap::Args`) and
 //! `pub fn run(args: &NameArgs) -> anyhow::Result<()>`, then add a variant and an arm here.
 
+pub mod blobs;
+pub mod evaluate;
+pub mod evaluate_skin;
+pub mod image_run;
+pub mod segment;
 pub mod simulate;
+pub mod skin_args;
+pub mod stdout;
+pub mod train;
+pub mod train_skin;
 
 use clap::{Parser, Subcommand};
 
@@ -21,6 +30,16 @@ pub struct Cli {
 pub enum Command {
     /// Render scenes with known truth.
     Simulate(simulate::SimulateArgs),
+    /// Write the skin mask of each image.
+    Segment(segment::SegmentArgs),
+    /// Write the features and hand likelihood of each blob of each image.
+    Blobs(blobs::BlobsArgs),
+    /// Train a model.
+    #[command(subcommand)]
+    Train(train::Train),
+    /// Measure how well something works.
+    #[command(subcommand)]
+    Evaluate(evaluate::Evaluate),
 }
 
 /// Runs one parsed command line.
@@ -30,6 +49,10 @@ pub enum Command {
 pub fn run(cli: &Cli) -> anyhow::Result<()> {
     match &cli.command {
         Command::Simulate(args) => simulate::run(args),
+        Command::Segment(args) => segment::run(args),
+        Command::Blobs(args) => blobs::run(args),
+        Command::Train(train) => train::run(train),
+        Command::Evaluate(evaluate) => evaluate::run(evaluate),
     }
 }
 

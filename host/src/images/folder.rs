@@ -12,8 +12,8 @@ use thiserror::Error;
 /// Extensions that are read, in lower case; a file's own may be in any case.
 pub const EXTENSIONS: [&str; 7] = ["png", "jpg", "jpeg", "ppm", "pgm", "pnm", "pbm"];
 
-/// Largest width or height that is decoded, pixels.
-pub const MAX_SIDE_PX: u32 = 16_384;
+/// Largest width or height that is decoded, pixels: what a mask of the core can hold.
+pub const MAX_SIDE_PX: u32 = sinew_core::vision::mask::MAX_SIDE_PX as u32;
 
 /// Largest memory that decoding one image may take, bytes.
 const MAX_DECODE_BYTES: u64 = 1 << 30;

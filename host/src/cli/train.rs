@@ -1,0 +1,21 @@
+//! `sinew train ...`
+
+use super::train_skin::{self, TrainSkinArgs};
+use clap::Subcommand;
+
+/// What can be trained.
+#[derive(Debug, Subcommand)]
+pub enum Train {
+    /// Train a skin model from labelled pixels or from images with masks.
+    Skin(TrainSkinArgs),
+}
+
+/// Runs the chosen training.
+///
+/// # Errors
+/// As the chosen training.
+pub fn run(train: &Train) -> anyhow::Result<()> {
+    match train {
+        Train::Skin(args) => train_skin::run(args),
+    }
+}

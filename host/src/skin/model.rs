@@ -1,0 +1,144 @@
+//! A skin model of either kind, from a shipped default or a file, applied to whole images.
+
+use super::bit_image::BitImage;
+use super::gaussian::GaussianModel;
+use super::histogram::HistogramModel;
+use super::model_file::{self, TrainedOn};
+use anyhow::{Result, bail};
+use clap::ValueEnum;
+use image::RgbImage;
+use serde::{Deserialize, Serialize};
+use sinew_core::vision::skin::{CUBE_WORDS, GaussianSkin, HistogramSkin, SkinClassifier};
+use std::path::Path;
+
+/// What `--skin` is when it is not given.
+pub const DEFAULT_SKIN: &str = "histogram";
+
+const SHIPPED_GAUSSIAN: &str = include_str!("../../models/skin_gaussian.json");
+const SHIPPED_HISTOGRAM: &str = include_str!("../../models/skin_histogram.json");
+
+/// The two kinds of model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum ModelKind {
+    /// A normal distribution of chromaticity.
+    Gaussian,
+    /// A table over colours.
+    Histogram,
+}
+
+/// The numbers of a model.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ModelNumbers {
+    /// Of a Gaussian.
+    Gaussian(GaussianModel),
+    /// Of a histogram.
+    Histogram(HistogramModel),
+}
+
+/// The core classifier that a model's numbers make.
+#[derive(Debug, Clone, PartialEq)]
+enum Classifier {
+    Gaussian(GaussianSkin),
+    Histogram(Box<[u32; CUBE_WORDS]>),
+}
+
+/// A skin model that is ready for use.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SkinModel {
+    numbers: ModelNumbers,
+    classifier: Classifier,
+    /// What it was trained on; kept by a calibration.
+    pub trained_on: TrainedOn,
+}
+
+impl SkinModel {
+    /// Builds the classifier of `numbers`.
+    ///
+    /// # Errors
+    /// Names the number that cannot be used.
+    pub fn new(numbers: ModelNumbers, trained_on: TrainedOn) -> Result<Self> {
+        let classifier = match &numbers {
+            ModelNumbers::Gaussian(gaussian) => Classifier::Gaussian(gaussian.classifier()?),
+            ModelNumbers::Histogram(histogram) => Classifier::Histogram(histogram.table()),
+        };
+        Ok(Self { numbers, classifier, trained_on })
+    }
+
+    /// The model that `--skin` names: `gaussian`, `histogram` (the shipped ones), or a file made by `sinew train skin`.
+    ///
+    /// # Errors
+    /// Says what is wrong with the file and how to make one.
+    pub fn from_option(option: &str) -> Result<Self> {
+        match option {
+            "gaussian" => model_file::parse(SHIPPED_GAUSSIAN),
+            "histogram" => model_file::parse(SHIPPED_HISTOGRAM),
+            path if Path::new(path).exists() => model_file::read(Path::new(path)),
+            other => {
+                bail!(
+                    "`--skin {other}`: there is no such file; give gaussian, histogram, or a file made by `sinew train skin`"
+                )
+            }
+        }
+    }
+
+    /// The numbers.
+    #[must_use]
+    pub fn numbers(&self) -> &ModelNumbers {
+        &self.numbers
+    }
+
+    /// The kind.
+    #[must_use]
+    pub fn kind(&self) -> ModelKind {
+        match self.numbers {
+            ModelNumbers::Gaussian(_) => ModelKind::Gaussian,
+            ModelNumbers::Histogram(_) => ModelKind::Histogram,
+        }
+    }
+
+    /// The raw skin mask of an image, without any morphology.
+    ///
+    /// # Errors
+    /// The image has no pixels or is larger than a mask can be.
+    pub fn classify(&self, image: &RgbImage) -> Result<BitImage> {
+        let mut bits = BitImage::new(image.width() as usize, image.height() as usize)?;
+        let row_bytes = 3 * image.width() as usize;
+        for (pixels, words) in image.as_raw().chunks_exact(row_bytes).zip(bits.rows_mut()) {
+            self.classify_line(pixels, words);
+        }
+        Ok(bits)
+    }
+}
+
+impl SkinClassifier for SkinModel {
+    fn classify_line(&self, rgb: &[u8], bits: &mut [u32]) {
+        match &self.classifier {
+            Classifier::Gaussian(gaussian) => gaussian.classify_line(rgb, bits),
+            Classifier::Histogram(table) => HistogramSkin::new(table).classify_line(rgb, bits),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::Rgb;
+
+    #[test]
+    fn both_shipped_models_tell_skin_from_sky() {
+        for name in ["gaussian", "histogram"] {
+            let model = SkinModel::from_option(name).unwrap();
+            let image = RgbImage::from_fn(50, 3, |u, _| Rgb(if u < 20 { [196, 140, 115] } else { [120, 160, 220] }));
+            let mask = model.classify(&image).unwrap();
+            assert_eq!(mask.view().unwrap().count(), 60, "{name}");
+            assert!(mask.view().unwrap().get(19, 2) && !mask.view().unwrap().get(20, 2));
+        }
+    }
+
+    #[test]
+    fn an_unknown_name_is_refused_with_the_choices() {
+        let message = SkinModel::from_option("gausian").unwrap_err().to_string();
+        assert!(message.contains("gaussian, histogram") && message.contains("gausian"), "{message}");
+    }
+}

@@ -1,0 +1,205 @@
+//! Skin models as JSON files.
+
+use super::colour_cube::CELLS;
+use super::confusion::Scores;
+use super::gaussian::GaussianModel;
+use super::histogram::{EVIDENCE_LEVELS, HistogramModel};
+use super::model::{ModelKind, ModelNumbers, SkinModel};
+use anyhow::{Context, Result, bail, ensure};
+use serde::{Deserialize, Serialize};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+/// Value of the field `format`.
+pub const FORMAT: &str = "sinew-skin";
+/// Value of the field `version`.
+pub const VERSION: u64 = 1;
+/// Largest file that is taken for a model, bytes.
+const MAX_FILE_BYTES: u64 = 4 << 20;
+/// Cells in one line of the file: all blues of a red and a green.
+const CELLS_PER_LINE: usize = 32;
+
+/// What a model was trained on, and how well it did there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainedOn {
+    /// Names of files or folders, without the places where they lay.
+    pub sources: Vec<String>,
+    /// Number of images, 0 for a list of pixels.
+    pub images: u64,
+    /// Pixels of skin that were counted (of images a sample, of a list the different rows).
+    pub skin_pixels: u64,
+    /// Other pixels that were counted.
+    pub other_pixels: u64,
+    /// Folds of the cross-validation.
+    pub folds: u64,
+    /// Seed of the shuffling.
+    pub seed: u64,
+    /// Pooled scores at the chosen threshold, each unit judged by a model that was not trained on it.
+    pub cross_validated: Scores,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ModelFile {
+    format: String,
+    version: u64,
+    kind: ModelKind,
+    trained_on: TrainedOn,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    gaussian: Option<GaussianModel>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    histogram: Option<HistogramText>,
+}
+
+/// A histogram as text: two hexadecimal digits a cell for the probability, one for the evidence.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HistogramText {
+    min_probability: u8,
+    probability: Vec<String>,
+    evidence: Vec<String>,
+}
+
+/// The JSON text of a model.
+///
+/// # Errors
+/// None in practice: all fields can be written.
+pub fn to_json(model: &SkinModel) -> Result<String> {
+    let (gaussian, histogram) = match model.numbers() {
+        ModelNumbers::Gaussian(gaussian) => (Some(*gaussian), None),
+        ModelNumbers::Histogram(histogram) => (None, Some(histogram_to_text(histogram))),
+    };
+    let (format, trained_on) = (FORMAT.to_owned(), model.trained_on.clone());
+    let file = ModelFile { format, version: VERSION, kind: model.kind(), trained_on, gaussian, histogram };
+    Ok(serde_json::to_string_pretty(&file)? + "\n")
+}
+
+/// Reads a model file.
+///
+/// # Errors
+/// Names the file, what is wrong with it, and how to make one.
+pub fn read(path: &Path) -> Result<SkinModel> {
+    let remedy = || {
+        let path = path.display();
+        format!("`{path}` cannot be used as a skin model; make one with `sinew train skin --pixels FILE --out {path}`")
+    };
+    let load = || -> Result<SkinModel> {
+        let metadata = fs::metadata(path)?;
+        ensure!(metadata.is_file(), "it is not a file");
+        ensure!(metadata.len() <= MAX_FILE_BYTES, "it is larger than {MAX_FILE_BYTES} bytes");
+        let bytes = fs::read(path)?;
+        parse(std::str::from_utf8(&bytes).ok().context("it is not a text file")?)
+    };
+    load().with_context(remedy)
+}
+
+/// Reads a model from JSON text.
+///
+/// # Errors
+/// Says which field is missing or has a value that cannot be used.
+pub fn parse(text: &str) -> Result<SkinModel> {
+    let value: serde_json::Value = serde_json::from_str(text).context("it is not JSON")?;
+    let format = value.get("format").and_then(serde_json::Value::as_str).unwrap_or("missing");
+    ensure!(format == FORMAT, "its field `format` is {format}, but has to be {FORMAT}");
+    let version = value.get("version").and_then(serde_json::Value::as_u64);
+    ensure!(version == Some(VERSION), "its field `version` is {version:?}, but this program reads version {VERSION}");
+    let file: ModelFile = serde_json::from_value(value)?;
+    let numbers = match (file.kind, file.gaussian, file.histogram) {
+        (ModelKind::Gaussian, Some(gaussian), None) => ModelNumbers::Gaussian(gaussian),
+        (ModelKind::Histogram, None, Some(text)) => ModelNumbers::Histogram(histogram_from_text(&text)?),
+        (kind, _, _) => bail!("its kind is {kind:?}, so it needs the numbers of that kind and of no other"),
+    };
+    SkinModel::new(numbers, file.trained_on)
+}
+
+fn histogram_to_text(histogram: &HistogramModel) -> HistogramText {
+    let lines = |cells: &[u8], digits: usize| -> Vec<String> {
+        let line = |cells: &[u8]| {
+            cells.iter().fold(String::new(), |mut text, cell| {
+                // Writing to a string cannot fail.
+                let _ = write!(text, "{cell:0digits$x}");
+                text
+            })
+        };
+        cells.chunks(CELLS_PER_LINE).map(line).collect()
+    };
+    HistogramText {
+        min_probability: histogram.min_probability,
+        probability: lines(&histogram.probability, 2),
+        evidence: lines(&histogram.evidence, 1),
+    }
+}
+
+fn histogram_from_text(text: &HistogramText) -> Result<HistogramModel> {
+    ensure!(text.min_probability > 0, "`min_probability` has to lie from 1 to 255");
+    let cells = |name: &str, lines: &[String], digits: usize| -> Result<Vec<u8>> {
+        let all: Vec<u8> = lines.concat().into_bytes();
+        let expected = CELLS * digits;
+        ensure!(all.len() == expected, "`{name}` has {} digits, but {expected} are needed", all.len());
+        let digit = |&byte: &u8| char::from(byte).to_digit(16).map(|digit| digit as u8);
+        let value = |digits: &[u8]| digits.iter().try_fold(0_u8, |sum, byte| Some((sum << 4) | digit(byte)?));
+        let values: Option<Vec<u8>> = all.chunks(digits).map(value).collect();
+        values.with_context(|| format!("`{name}` has a character that is no hexadecimal digit"))
+    };
+    let evidence = cells("evidence", &text.evidence, 1)?;
+    debug_assert!(evidence.iter().all(|&level| level < EVIDENCE_LEVELS));
+    let probability = cells("probability", &text.probability, 2)?;
+    Ok(HistogramModel { probability, evidence, min_probability: text.min_probability })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gaussian_json() -> String {
+        to_json(&SkinModel::from_option("gaussian").unwrap()).unwrap()
+    }
+
+    fn refusal(text: &str) -> String {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("model.json");
+        fs::write(&path, text).unwrap();
+        let message = format!("{:#}", read(&path).unwrap_err());
+        assert!(message.contains("model.json") && message.contains("sinew train skin"), "{message}");
+        message
+    }
+
+    #[test]
+    fn models_survive_a_file() {
+        for name in ["gaussian", "histogram"] {
+            let model = SkinModel::from_option(name).unwrap();
+            let text = to_json(&model).unwrap();
+            assert!(text.len() < 200 * 1024, "{name} takes {} bytes", text.len());
+            assert_eq!(parse(&text).unwrap(), model, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_model_is_refused_with_the_reason() {
+        assert!(refusal("no json").contains("not JSON"));
+        assert!(refusal("{}").contains("`format` is missing"));
+        assert!(refusal(&gaussian_json().replace("\"version\": 1", "\"version\": 2")).contains("Some(2)"));
+        assert!(
+            refusal(&gaussian_json().replace("\"kind\": \"gaussian\"", "\"kind\": \"histogram\""))
+                .contains("Histogram")
+        );
+        assert!(refusal(&gaussian_json().replace("\"threshold\": ", "\"threshold\": -")).contains("threshold"));
+        let mut infinite: serde_json::Value = serde_json::from_str(&gaussian_json()).unwrap();
+        infinite["gaussian"]["threshold"] = 1.0e39.into();
+        assert!(refusal(&infinite.to_string()).contains("threshold"));
+        assert!(refusal(&gaussian_json().replace("\"threshold\": ", "\"treshold\": ")).contains("treshold"));
+        assert!(
+            refusal(&gaussian_json().replace("\"threshold\": ", "\"threshold\": NaN, \"x\": ")).contains("not JSON")
+        );
+    }
+
+    #[test]
+    fn a_damaged_histogram_is_refused() {
+        let text = to_json(&SkinModel::from_option("histogram").unwrap()).unwrap();
+        let line = text.lines().find(|line| line.trim().len() == 67).unwrap();
+        assert!(refusal(&text.replacen(&format!("{line}\n"), "", 1)).contains("digits"));
+        assert!(refusal(&text.replacen(line, &line.replacen('0', "g", 1), 1)).contains("hexadecimal"));
+    }
+}
