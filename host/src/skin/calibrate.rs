@@ -150,7 +150,7 @@ fn squared_distance(point: [f64; 2], mean: [f64; 2], [rr, rg, gg]: [f64; 3]) -> 
 /// Makes [`RECTANGLE_SHARE`] of all skin look like the rectangle, in all [`SHADES`]; the rest looks as it was trained.
 fn adapt_histogram(trained: &HistogramModel, colours: &[[u8; 3]]) -> Result<HistogramModel> {
     let mut density = vec![0.0; CELLS];
-    for rgb in colours.iter().flat_map(|&rgb| SHADES.iter().filter_map(move |&gain| relit(rgb, gain))) {
+    for rgb in colours.iter().flat_map(|&rgb| SHADES.iter().filter_map(move |&gain| relit(rgb, gain, [1.0; 3]))) {
         density[cell_of(rgb)] += 1.0;
     }
     let total: f64 = density.iter().sum();

@@ -21,10 +21,11 @@ pub fn centre_of(cell: usize) -> [f64; 3] {
     [r, g, b].map(|channel| channel as f64 * 8.0 + 3.5)
 }
 
-/// `rgb` under light that is `gain` times as strong; `None` where a channel would be clipped that was not before.
+/// `rgb` under light that is `gain` times as strong, with a `tint` for each channel; `None` where a channel would be
+/// clipped that was not before.
 #[must_use]
-pub fn relit(rgb: [u8; 3], gain: f64) -> Option<[u8; 3]> {
-    let scaled = rgb.map(|channel| f64::from(channel) * gain);
+pub fn relit(rgb: [u8; 3], gain: f64, tint: [f64; 3]) -> Option<[u8; 3]> {
+    let scaled = [0, 1, 2].map(|i| f64::from(rgb[i]) * gain * tint[i]);
     let clips = scaled.iter().any(|&channel| channel > 255.5) && !rgb.contains(&255);
     (!clips).then(|| scaled.map(|channel| channel.round().min(255.0) as u8))
 }
@@ -117,8 +118,9 @@ mod tests {
 
     #[test]
     fn relighting_scales_and_drops_what_would_clip() {
-        assert_eq!(relit([100, 50, 200], 1.1), Some([110, 55, 220]));
-        assert_eq!(relit([100, 50, 250], 1.1), None);
-        assert_eq!(relit([100, 50, 255], 1.1), Some([110, 55, 255]));
+        assert_eq!(relit([100, 50, 200], 1.1, [1.0; 3]), Some([110, 55, 220]));
+        assert_eq!(relit([100, 50, 250], 1.1, [1.0; 3]), None);
+        assert_eq!(relit([100, 50, 255], 1.1, [1.0; 3]), Some([110, 55, 255]));
+        assert_eq!(relit([100, 50, 200], 1.0, [1.1, 1.0, 0.9]), Some([110, 50, 180]));
     }
 }

@@ -1,6 +1,6 @@
 //! Colour histograms of skin and of everything else, and Bayes' rule, after Jones and Rehg (2002).
 //!
-//! Three things make a few dozen images enough: each pixel is counted under several strengths of light, neighbouring
+//! Three things make a few dozen images enough: each pixel is counted under several strengths and tints of light, neighbouring
 //! cells share counts, and a cell with little evidence falls back to what is known of its chromaticity.
 
 use super::colour_cube::{CELLS, cell_of, centre_of, over_brightness, relit, smooth};
@@ -11,10 +11,13 @@ use sinew_core::vision::skin::{CUBE_WORDS, HistogramSkin};
 
 /// Strengths of light under which each training pixel is counted.
 pub const GAINS: [f64; 5] = [0.85, 0.92, 1.0, 1.08, 1.17];
+/// Tints of light (errors of white balance) under which each training pixel is counted.
+pub const TINTS: [[f64; 3]; 5] =
+    [[1.0, 1.0, 1.0], [1.04, 1.0, 0.96], [0.96, 1.0, 1.04], [1.0, 1.03, 1.0], [1.0, 0.97, 1.0]];
 /// Standard deviation of the smoothing of the cube, cells.
 pub const SMOOTHING_STD_CELLS: f64 = 0.7;
 /// Evidence, in images, that the chromaticity's own probability counts in each cell.
-pub const CHROMATICITY_EVIDENCE: f64 = 0.015;
+pub const CHROMATICITY_EVIDENCE: f64 = 0.01;
 /// Evidence, in images, that the overall share of skin counts in each chromaticity.
 const BASE_EVIDENCE: f64 = 0.001;
 /// Cells darker than this sum R+G+B get no help from their chromaticity, which is noise there.
@@ -77,12 +80,13 @@ pub fn is_skin(table: &[u32; CUBE_WORDS], rgb: [u8; 3]) -> bool {
     HistogramSkin::new(table).is_skin(rgb)
 }
 
-/// Adds a unit's colours to the cubes, under all [`GAINS`]; the unit as a whole counts as one image.
+/// Adds a unit's colours to the cubes, under all [`GAINS`] and [`TINTS`]; the unit as a whole counts as one image.
 fn count(unit: &Unit, skin: &mut [f64], other: &mut [f64]) {
     let mut total = 0.0;
-    let mut counted = Vec::with_capacity(unit.colours.len() * GAINS.len());
+    let mut counted = Vec::with_capacity(unit.colours.len() * GAINS.len() * TINTS.len());
     for colour in &unit.colours {
-        for rgb in GAINS.iter().filter_map(|&gain| relit(colour.rgb, gain)) {
+        let lights = GAINS.iter().flat_map(|&gain| TINTS.iter().map(move |&tint| (gain, tint)));
+        for rgb in lights.filter_map(|(gain, tint)| relit(colour.rgb, gain, tint)) {
             total += f64::from(colour.count);
             counted.push((cell_of(rgb), colour.is_skin, f64::from(colour.count)));
         }
