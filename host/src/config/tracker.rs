@@ -84,8 +84,11 @@ pub struct TrackerConfig {
     pub area_log_std: f32,
     pub depth_from_area: bool,
     pub blob_memory: bool,
-    pub blob_memory_s: f32,
-    pub blob_memory_floor: f32,
+    pub blob_fall_time_s: f32,
+    pub blob_rise_time_s: f32,
+    pub blob_floor: f32,
+    pub blob_rest_share: f32,
+    pub blob_rest_time_s: f32,
     pub estimate: EstimateName,
     pub cluster_radius_per_focal: f32,
     pub velocity_persistence: f32,
@@ -132,8 +135,11 @@ impl Default for TrackerConfig {
             area_log_std: options.area_cue.map_or(0.3, |cue| cue.log_std),
             depth_from_area: options.depth_from_area,
             blob_memory: options.blob_memory.is_some(),
-            blob_memory_s: memory.time_s,
-            blob_memory_floor: memory.floor,
+            blob_fall_time_s: memory.fall_time_s,
+            blob_rise_time_s: memory.rise_time_s,
+            blob_floor: memory.floor,
+            blob_rest_share: memory.rest_share,
+            blob_rest_time_s: memory.rest_time_s,
             estimate: EstimateName::Cluster,
             cluster_radius_per_focal: match options.estimate {
                 EstimateRule::HeaviestCluster { radius_per_focal } => radius_per_focal,
@@ -179,8 +185,11 @@ impl TrackerConfig {
         positive("gate_allotment_reach", self.gate_allotment_reach)?;
         within("product_floor", self.product_floor, 1.0e-6, 10.0)?;
         positive("area_log_std", self.area_log_std)?;
-        positive("blob_memory_s", self.blob_memory_s)?;
-        within("blob_memory_floor", self.blob_memory_floor, 1.0e-6, 1.0)?;
+        positive("blob_fall_time_s", self.blob_fall_time_s)?;
+        positive("blob_rise_time_s", self.blob_rise_time_s)?;
+        within("blob_floor", self.blob_floor, 1.0e-6, 1.0)?;
+        within("blob_rest_share", self.blob_rest_share, 0.0, 1.0)?;
+        positive("blob_rest_time_s", self.blob_rest_time_s)?;
         positive("cluster_radius_per_focal", self.cluster_radius_per_focal)?;
         self.options(true, 0.01).check()
     }
@@ -200,7 +209,14 @@ impl TrackerConfig {
             missed_share: self.gate_missed_share,
             allotment_reach: self.gate_allotment_reach,
         };
-        let memory = BlobMemoryOptions { time_s: self.blob_memory_s, floor: self.blob_memory_floor };
+        let memory = BlobMemoryOptions {
+            fall_time_s: self.blob_fall_time_s,
+            rise_time_s: self.blob_rise_time_s,
+            floor: self.blob_floor,
+            rest_share: self.blob_rest_share,
+            rest_time_s: self.blob_rest_time_s,
+            ..DEFAULT_BLOB_MEMORY
+        };
         ArmOptions {
             variant: self.variant.into(),
             particles: self.particles,

@@ -1,59 +1,82 @@
-//! Which blobs were there before and were not the hand.
+//! What is remembered of the blobs: which were not the hand, and which have not moved for long.
 //!
-//! A face has nearly the likelihood of a hand, frame after frame. While the hand is seen elsewhere, a blob that stays
-//! where it is loses belief; when the hand is hidden or fast, that blob no longer takes its particles. A blob that is new, or that
-//! moved on, has full belief again, so a returning hand is not held back.
+//! A face has nearly the likelihood of a hand, frame after frame. While the hand is seen at another blob, a blob that
+//! stays where it is loses belief fast, and wins it back slowly; and a blob that rests is less likely a hand than one that
+//! moves. So a known face does not take the particles when the hand is hidden or fast. A blob that is new, or that moved
+//! on, has full belief, so a returning hand is not held back.
 
 use super::frame::MAX_CANDIDATES;
+use super::options::BlobMemoryOptions;
 use crate::camera::Pixel;
 use crate::math::{exp, max};
 use crate::observation::candidate::HandCandidate;
 use heapless::Vec;
 
-/// A blob of the last frame and how far it may still be the hand.
+/// A blob of the last frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Remembered {
     centre: Pixel,
+    /// How far it may still be the hand, in [floor, 1].
     belief: f32,
+    /// Where it was when it last moved.
+    anchor: Pixel,
+    /// Time since it last moved, seconds.
+    still_s: f32,
 }
 
-/// Beliefs in the blobs of the last frame, in [floor, 1].
+/// The blobs of the last frame.
 #[derive(Debug, Clone, Default)]
 pub(super) struct BlobMemory {
     blobs: Vec<Remembered, MAX_CANDIDATES>,
 }
 
 impl BlobMemory {
-    /// Belief in a blob at `centre`: that of the remembered blob nearest to it within `radius_px`, or 1.
-    pub fn belief(&self, centre: Pixel, radius_px: f32) -> f32 {
-        let mut best = (1.0, radius_px);
+    /// The remembered blob nearest to `centre` within `radius_px`.
+    fn recall(&self, centre: Pixel, radius_px: f32) -> Option<&Remembered> {
+        let mut best = (None, radius_px);
         for blob in &self.blobs {
             let distance = blob.centre.distance_px(centre);
             if distance < best.1 {
-                best = (blob.belief, distance);
+                best = (Some(blob), distance);
             }
         }
         best.0
     }
 
-    /// Remembers this frame's blobs: each belief moves towards the posterior mass of the particles at the blob, within
-    /// about `time_s`, and not below `floor`. Without a hand at any blob nothing is learned.
+    /// Share of its likelihood that a blob at `centre` keeps: belief times activity; 1 for a blob that is new.
+    pub fn share(&self, centre: Pixel, radius_px: f32, options: &BlobMemoryOptions) -> f32 {
+        self.recall(centre, radius_px).map_or(1.0, |blob| {
+            let activity = options.rest_share + (1.0 - options.rest_share) * exp(-blob.still_s / options.rest_time_s);
+            blob.belief * activity
+        })
+    }
+
+    /// Remembers this frame's blobs. `masses` are the shares of the particles' weights at each.
     pub fn learn(
         &mut self,
         candidates: &[HandCandidate],
         masses: &[f32],
         radius_px: f32,
-        (dt_s, time_s, floor): (f32, f32, f32),
+        dt_s: f32,
+        options: &BlobMemoryOptions,
     ) {
-        let keep = exp(-dt_s / time_s);
-        let greatest = masses.iter().take(candidates.len()).fold(0.0, |a, &b| max(a, b));
+        let elsewhere = |index: usize| {
+            let others = masses.iter().take(candidates.len()).enumerate().filter(|(other, _)| *other != index);
+            others.fold(0.0, |sum, (_, mass)| sum + mass)
+        };
         let mut next = Vec::new();
-        for (candidate, &mass) in candidates.iter().zip(masses) {
-            let before = self.belief(candidate.centre, radius_px);
-            let target = if greatest > 0.0 { mass / greatest } else { before };
-            let belief = max(keep * before + (1.0 - keep) * target, floor);
+        for (index, candidate) in candidates.iter().enumerate() {
+            let fresh = Remembered { centre: candidate.centre, belief: 1.0, anchor: candidate.centre, still_s: 0.0 };
+            let before = self.recall(candidate.centre, radius_px).copied().unwrap_or(fresh);
+            let away = elsewhere(index);
+            let fallen = before.belief * exp(-dt_s * away / options.fall_time_s);
+            let recovery = 1.0 - exp(-dt_s * (1.0 - away) / options.rise_time_s);
+            let belief = max(fallen + recovery * (1.0 - fallen), options.floor);
+            let moved = before.anchor.distance_px(candidate.centre) > options.moved_per_radius * radius_px;
+            let (anchor, still_s) =
+                if moved { (candidate.centre, 0.0) } else { (before.anchor, before.still_s + dt_s) };
             // One entry a candidate, of which there are not more than fit.
-            let _ = next.push(Remembered { centre: candidate.centre, belief });
+            let _ = next.push(Remembered { centre: candidate.centre, belief, anchor, still_s });
         }
         self.blobs = next;
     }
@@ -61,38 +84,48 @@ impl BlobMemory {
 
 #[cfg(test)]
 mod tests {
+    use super::super::options::DEFAULT_BLOB_MEMORY as OPTIONS;
     use super::*;
-
-    const TIMES: (f32, f32, f32) = (0.1, 0.4, 0.05);
 
     fn at(u_px: f32) -> HandCandidate {
         HandCandidate { centre: Pixel::new(u_px, 0.0), ..HandCandidate::default() }
+    }
+
+    fn learn(memory: &mut BlobMemory, places: [f32; 2], masses: [f32; 2], frames: u8) {
+        for _ in 0..frames {
+            memory.learn(&places.map(at), &masses, 25.0, 0.1, &OPTIONS);
+        }
     }
 
     #[test]
     fn a_resting_blob_that_is_not_the_hand_loses_belief_down_to_the_floor() {
         let mut memory = BlobMemory::default();
         for frame in 0..100_u8 {
-            memory.learn(&[at(100.0), at(300.0 + 30.0 * f32::from(frame))], &[0.0, 0.9], 25.0, TIMES);
+            let places = [at(100.0), at(300.0 + 30.0 * f32::from(frame))];
+            memory.learn(&places, &[0.0, 0.9], 25.0, 0.1, &OPTIONS);
         }
-        assert!((memory.belief(Pixel::new(103.0, 0.0), 25.0) - 0.05).abs() < 1.0e-6);
-        assert_eq!(memory.belief(Pixel::new(200.0, 0.0), 25.0), 1.0);
+        let face = memory.share(Pixel::new(103.0, 0.0), 25.0, &OPTIONS);
+        assert!(face < 2.0 * OPTIONS.floor, "{face}");
+        assert_eq!(memory.share(Pixel::new(200.0, 0.0), 25.0, &OPTIONS), 1.0);
     }
 
     #[test]
-    fn the_hand_s_own_blob_keeps_its_belief_and_a_moving_blob_is_new() {
+    fn belief_falls_fast_and_comes_back_slowly() {
+        let mut memory = BlobMemory::default();
+        learn(&mut memory, [100.0, 300.0], [0.0, 1.0], 5);
+        let low = memory.share(Pixel::new(100.0, 0.0), 25.0, &OPTIONS);
+        learn(&mut memory, [100.0, 900.0], [0.0, 0.0], 5);
+        let later = memory.share(Pixel::new(100.0, 0.0), 25.0, &OPTIONS);
+        assert!(low < 0.15 && later < 0.4, "{low} {later}");
+    }
+
+    #[test]
+    fn a_moving_blob_keeps_its_share_and_a_resting_hand_most_of_its_belief() {
         let mut memory = BlobMemory::default();
         for frame in 0..50_u8 {
-            memory.learn(&[at(100.0), at(200.0 + 30.0 * f32::from(frame))], &[0.9, 0.0], 25.0, TIMES);
+            let places = [at(100.0), at(200.0 + 10.0 * f32::from(frame))];
+            memory.learn(&places, &[1.0, 0.0], 25.0, 0.1, &OPTIONS);
         }
-        assert_eq!(memory.belief(Pixel::new(100.0, 0.0), 25.0), 1.0);
-        assert!(memory.belief(Pixel::new(200.0 + 30.0 * 49.0, 0.0), 25.0) > 0.7);
-    }
-
-    #[test]
-    fn without_a_hand_nothing_is_learned() {
-        let mut memory = BlobMemory::default();
-        memory.learn(&[at(100.0)], &[0.0], 25.0, TIMES);
-        assert_eq!(memory.belief(Pixel::new(100.0, 0.0), 25.0), 1.0);
+        assert!(memory.share(Pixel::new(100.0, 0.0), 25.0, &OPTIONS) >= OPTIONS.rest_share);
     }
 }

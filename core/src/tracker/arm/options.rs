@@ -81,10 +81,18 @@ pub struct AreaCue {
 /// Memory of blobs that were there and were not the hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BlobMemoryOptions {
-    /// Time in which belief in a blob that is not the hand falls by 1/e, seconds.
-    pub time_s: f32,
+    /// Time in which belief in a blob falls by 1/e while the hand is at another, seconds.
+    pub fall_time_s: f32,
+    /// Time in which it comes back otherwise, seconds.
+    pub rise_time_s: f32,
     /// Belief that is never lost; it bounds how long a mistake can last.
     pub floor: f32,
+    /// Share of its likelihood that a blob keeps that has long rested.
+    pub rest_share: f32,
+    /// Time in which a resting blob comes to that, seconds.
+    pub rest_time_s: f32,
+    /// A blob has moved when it is this far from where it last did, in cluster radii.
+    pub moved_per_radius: f32,
 }
 
 /// What is reported as the estimate.
@@ -103,7 +111,14 @@ pub enum EstimateRule {
 pub const DEFAULT_GATE: Gate =
     Gate { std_m: 0.1, growth_m_per_s: 0.5, floor: 0.02, missed_share: 0.3, allotment_reach: 3.0 };
 /// Default of the memory of blobs.
-pub const DEFAULT_BLOB_MEMORY: BlobMemoryOptions = BlobMemoryOptions { time_s: 0.15, floor: 0.05 };
+pub const DEFAULT_BLOB_MEMORY: BlobMemoryOptions = BlobMemoryOptions {
+    fall_time_s: 0.15,
+    rise_time_s: 2.0,
+    floor: 0.05,
+    rest_share: 0.3,
+    rest_time_s: 1.5,
+    moved_per_radius: 0.25,
+};
 /// Default of [`EstimateRule::HeaviestCluster`]'s radius: 25 pixels of a 640 pixel image with 60 degrees.
 pub const DEFAULT_RADIUS_PER_FOCAL: f32 = 0.045;
 
@@ -216,7 +231,11 @@ impl ArmOptions {
             positive("area_cue.log_std", cue.log_std)?;
         }
         if let Some(memory) = self.blob_memory {
-            positive("blob_memory.time_s", memory.time_s)?;
+            positive("blob_memory.fall_time_s", memory.fall_time_s)?;
+            positive("blob_memory.rise_time_s", memory.rise_time_s)?;
+            within("blob_memory.rest_share", memory.rest_share, 0.0, 1.0)?;
+            positive("blob_memory.rest_time_s", memory.rest_time_s)?;
+            positive("blob_memory.moved_per_radius", memory.moved_per_radius)?;
             within("blob_memory.floor", memory.floor, 1.0e-6, 1.0)?;
         }
         if let EstimateRule::HeaviestCluster { radius_per_focal } = self.estimate {

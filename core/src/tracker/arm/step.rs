@@ -218,8 +218,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     fn chance(&self, model: &ArmModel, candidate: &HandCandidate, dt_s: f32) -> f32 {
         let options = model.options();
         let mut chance = candidate.likelihood;
-        if options.blob_memory.is_some() {
-            chance *= self.memory.belief(candidate.centre, model.cluster_radius_px());
+        if let Some(memory) = &options.blob_memory {
+            chance *= self.memory.share(candidate.centre, model.cluster_radius_px(), memory);
         }
         if let Some(gate) = options.gate.filter(|_| self.ever_seen) {
             let ray = model.camera().back_project(candidate.centre);
@@ -264,9 +264,9 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     /// Keeps what the next frame needs of the estimate: its place, its velocity, when a blob last carried it.
     fn remember(&mut self, context: &FrameContext<'_>, cluster: &Cluster, limbs: &LimbHypotheses, dt_s: f32) -> Status {
         self.limbs = *limbs.at(cluster.candidate);
-        if let Some(memory) = context.model.options().blob_memory {
-            let times = (dt_s, memory.time_s, memory.floor);
-            self.memory.learn(&context.candidates, &cluster.masses, context.model.cluster_radius_px(), times);
+        if let Some(memory) = &context.model.options().blob_memory {
+            let radius_px = context.model.cluster_radius_px();
+            self.memory.learn(&context.candidates, &cluster.masses, radius_px, dt_s, memory);
         }
         let was_seen = self.ever_seen && self.unseen_s == 0.0;
         let carried = cluster.candidate.is_some();
