@@ -1,0 +1,13 @@
+//! Plots of tables: the path of a hand, curves with bands, bars.
+//!
+//! Everything is drawn at twice the size and averaged down, which smooths text and lines alike.
+
+mod axis;
+mod bars;
+mod curves;
+mod figure;
+mod hand;
+
+pub use bars::bars_plot;
+pub use curves::{Curve, curves_plot};
+pub use hand::{HandSample, hand_plot};
