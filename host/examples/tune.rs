@@ -2,7 +2,6 @@
 use sinew::config::*;
 use sinew::evaluate::{clips, observed, score};
 use sinew::scene::SceneOptions;
-use sinew_core::vision::skin::GaussianSkin;
 fn line(name: &str, scenes: &[observed::ObservedScene], c: &TrackerConfig) {
     let mut r = score::run_all(scenes, c).unwrap();
     let other: Vec<_> = scenes
@@ -25,7 +24,7 @@ fn line(name: &str, scenes: &[observed::ObservedScene], c: &TrackerConfig) {
 }
 fn main() {
     rayon::ThreadPoolBuilder::new().stack_size(16 << 20).build_global().unwrap();
-    let skin = GaussianSkin::new(0.4464, 0.3154, [1.469e-3, 8.33e-5, 1.42e-4], 2.0, 90).unwrap();
+    let skin = sinew::skin::SkinModel::from_option(&std::env::var("SKIN").unwrap_or("gaussian".into())).unwrap();
     let mocap = std::path::Path::new("../shared/data/mocap");
     let mut list = clips::recorded(mocap).unwrap();
     list.truncate(8);
@@ -39,7 +38,34 @@ fn main() {
     if let Ok(dump) = std::env::var("DUMP") {
         for s in &scenes {
             let r = score::summarise(&score::track(s, &d, s.seed).unwrap());
-            println!("{:13} seed {} -> {:.3} m {:.1} px", s.clip, s.seed, r.mean_m, r.mean_px);
+            let vis = s.truth.iter().filter(|t| t.visible).count();
+            let hit = s
+                .views
+                .iter()
+                .zip(&s.truth)
+                .filter(|(v, t)| t.visible && v.candidates.iter().any(|c| c.centre.distance_px(t.hand_px) < 25.0))
+                .count();
+            let n = s.views.iter().map(|v| v.blobs.len()).sum::<usize>() as f64 / s.views.len() as f64;
+            let az: Vec<f64> = s
+                .views
+                .iter()
+                .zip(&s.truth)
+                .filter_map(|(v, t)| {
+                    v.candidates
+                        .iter()
+                        .filter(|c| t.visible && c.centre.distance_px(t.hand_px) < 25.0)
+                        .map(|c| f64::from(c.area_px * t.hand_m.z.powi(2) / 554.26f32.powi(2)))
+                        .next()
+                })
+                .collect();
+            println!(
+                "{:13} seed {} found {hit}/{vis} blobs {n:.1} area {:.4} -> {:.3} m {:.1} px",
+                s.clip,
+                s.seed,
+                score::Spread::of(&az).median,
+                r.mean_m,
+                r.mean_px
+            );
             if dump == format!("{}-{}", s.clip, s.seed) {
                 for (f, ((e, v), t)) in
                     score::track(s, &d, s.seed).unwrap().iter().zip(&s.views).zip(&s.truth).enumerate()

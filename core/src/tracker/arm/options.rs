@@ -109,7 +109,7 @@ pub enum EstimateRule {
 
 /// Default of the gate.
 pub const DEFAULT_GATE: Gate =
-    Gate { std_m: 0.1, growth_m_per_s: 0.5, floor: 0.02, missed_share: 0.3, allotment_reach: 3.0 };
+    Gate { std_m: 0.2, growth_m_per_s: 1.0, floor: 0.02, missed_share: 0.3, allotment_reach: 3.0 };
 /// Default of the memory of blobs.
 pub const DEFAULT_BLOB_MEMORY: BlobMemoryOptions = BlobMemoryOptions {
     fall_time_s: 0.15,
@@ -187,8 +187,8 @@ impl Default for ArmOptions {
             depth_from_area: true,
             blob_memory: Some(DEFAULT_BLOB_MEMORY),
             estimate: EstimateRule::HeaviestCluster { radius_per_focal: DEFAULT_RADIUS_PER_FOCAL },
-            velocity_persistence: 0.7,
-            velocity_gain: 0.5,
+            velocity_persistence: 0.9,
+            velocity_gain: 0.8,
             hand_std_m_per_sqrt_s: 0.25,
             elbow_std_m_per_sqrt_s: 0.2,
             ray_std_m_per_sqrt_s: 0.3,
