@@ -7,6 +7,7 @@ use sinew_core::random::Stream;
 use sinew_core::skeleton::{ArmGeometry, Side};
 use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, Status, Variant};
 use sinew_core::vision::edges::EdgePixel;
+use std::f32::consts::TAU;
 
 const SHOULDER: Vec3 = Vec3::new(0.2, -0.2, 1.3);
 const FRAMES: u64 = 300;
@@ -20,8 +21,8 @@ fn model(options: ArmOptions) -> ArmModel {
 fn truth(model: &ArmModel, seed: u64, frame: u64) -> (Vec3, Vec3) {
     let mut stream = Stream::new(seed, 1 << 40, 0);
     let mut wave = |middle: f32, swing: f32| {
-        let (period_s, phase) = (1.8 + 2.5 * stream.uniform(), 6.28 * stream.uniform());
-        middle + swing * sin_cos(6.283 * frame as f32 / 15.0 / period_s + phase).0
+        let (period_s, phase) = (1.8 + 2.5 * stream.uniform(), TAU * stream.uniform());
+        middle + swing * sin_cos(TAU * frame as f32 / 15.0 / period_s + phase).0
     };
     let angles = [wave(0.9, 0.5), wave(0.3, 0.5), wave(0.4, 0.5), wave(1.3, 0.6)];
     model.elbow_and_hand(&SHOULDER, &angles)

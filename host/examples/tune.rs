@@ -22,6 +22,7 @@ fn line(name: &str, scenes: &[observed::ObservedScene], c: &TrackerConfig) {
         m.median, m.lower, m.upper, p.median, p.lower, p.upper
     );
 }
+#[allow(clippy::too_many_lines, reason = "one list of trials, read from top to bottom")]
 fn main() {
     rayon::ThreadPoolBuilder::new().stack_size(16 << 20).build_global().unwrap();
     let skin = sinew::skin::SkinModel::from_option(&std::env::var("SKIN").unwrap_or("gaussian".into())).unwrap();

@@ -40,7 +40,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_elbow_fits_both_lengths_and_is_nearest(hand in near_point(), predicted in near_point(), turn in 0.0_f32..6.28) {
+        fn the_elbow_fits_both_lengths_and_is_nearest(hand in near_point(), predicted in near_point(), turn in 0.0_f32..core::f32::consts::TAU) {
             let (upper, fore) = (0.3, 0.35);
             prop_assume!(hand.norm() > 0.06 && hand.norm() < 0.64);
             let elbow = nearest_elbow(&Vec3::zeros(), &hand, upper, fore, &predicted);

@@ -1,6 +1,6 @@
 //! Distance transform of small masks: two passes of the 5-7-11 chamfer, and the cell where it is greatest.
 
-/// Columns of a [`CellMask`].
+/// Columns of a [`CellRow`].
 pub const MAX_COLUMNS: usize = 128;
 /// Distance of two cells side by side, in the unit of [`transform`].
 pub const UNIT: i16 = 5;

@@ -246,19 +246,23 @@ impl TrackerConfig {
             angle_std_rad_per_sqrt_s: self.angle_std_rad_per_sqrt_s,
             solver_steps: self.solver_steps,
             limb_band_m: self.limb_band_m,
-            hough: HoughSettings {
-                bins: self.hough_bins,
-                window: self.hough_window,
-                gamma: self.hough_gamma,
-                max_pairs: self.hough_max_pairs,
-                min_separation_px: self.hough_min_separation_px,
-                min_pixels: self.hough_min_pixels,
-                doubt_pixels: self.hough_doubt_pixels,
-            },
+            hough: self.hough(),
             orientation_memory_s: self.orientation_memory_s,
             teleport_share: self.teleport_share,
             clutter_share: self.clutter_share,
             lost_after_s: self.lost_after_s,
+        }
+    }
+
+    fn hough(&self) -> HoughSettings {
+        HoughSettings {
+            bins: self.hough_bins,
+            window: self.hough_window,
+            gamma: self.hough_gamma,
+            max_pairs: self.hough_max_pairs,
+            min_separation_px: self.hough_min_separation_px,
+            min_pixels: self.hough_min_pixels,
+            doubt_pixels: self.hough_doubt_pixels,
         }
     }
 }
