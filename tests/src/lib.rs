@@ -1,1 +1,59 @@
 //! Instruments that the tests of this package share.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+/// The command `sinew` of this workspace, freshly built in the profile of the running test.
+///
+/// `CARGO_BIN_EXE_sinew` is set for the tests of the package that owns the binary only, and `cargo test` does not build
+/// binaries of other packages. So the target folder is taken from the path of the running test, and cargo is asked once
+/// a process to bring the binary up to date, which takes a moment if it is.
+///
+/// # Panics
+/// If the binary cannot be built.
+#[must_use]
+pub fn sinew_command() -> Command {
+    static BINARY: OnceLock<PathBuf> = OnceLock::new();
+    Command::new(BINARY.get_or_init(build_sinew))
+}
+
+fn build_sinew() -> PathBuf {
+    let test = env::current_exe().expect("the running test has a path");
+    // TARGET/PROFILE/deps/TEST
+    let profile_folder = test.ancestors().nth(2).expect("a test lies in TARGET/PROFILE/deps");
+    let target_folder = profile_folder.parent().expect("a profile folder lies in the target folder");
+    let profile = match profile_folder.file_name().and_then(|name| name.to_str()) {
+        Some("debug") | None => "dev",
+        Some(profile) => profile,
+    };
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .current_dir(workspace_root())
+        .args(["build", "--quiet", "--workspace", "--bin", "sinew", "--profile", profile, "--target-dir"])
+        .arg(target_folder)
+        .output()
+        .expect("cargo runs");
+    assert!(output.status.success(), "sinew cannot be built: {}", String::from_utf8_lossy(&output.stderr));
+    profile_folder.join(format!("sinew{}", env::consts::EXE_SUFFIX))
+}
+
+/// Root folder of the workspace.
+#[must_use]
+pub fn workspace_root() -> &'static Path {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    package.parent().unwrap_or(package)
+}
+
+/// A folder or file of the development data beside the workspace; `None`, with a line that says so, where it is not there.
+#[must_use]
+pub fn shared_data(path: &str) -> Option<PathBuf> {
+    let from = env::var_os("SINEW_SHARED_DATA").map_or_else(|| workspace_root().join("../shared/data"), PathBuf::from);
+    let full = from.join(path);
+    if full.exists() {
+        return Some(full);
+    }
+    eprintln!("skipped: the development data `{path}` is not there (looked in {})", from.display());
+    None
+}

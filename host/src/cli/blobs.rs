@@ -120,7 +120,7 @@ pub fn run(args: &BlobsArgs) -> Result<()> {
     let mut skipped = Skipped::new(args.strict);
     load_each(&input.files, &args.skin, &mut model, &mut skipped, |model, index, image| {
         reader.forget_last_frame();
-        let view = reader.read(image, model)?;
+        let view = reader.read(image, &*model.for_image(image)?)?;
         if view.dropped_blobs > 0 {
             eprintln!("`{}`: {} less likely blobs are left out", input.files[index].display(), view.dropped_blobs);
         }

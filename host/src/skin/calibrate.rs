@@ -4,12 +4,13 @@ use super::colour_cube::{CELLS, cell_of, relit, smooth};
 use super::gaussian::{GaussianModel, Moments, chromaticity};
 use super::histogram::{HistogramModel, SMOOTHING_STD_CELLS};
 use super::model::{ModelNumbers, SkinModel};
+use super::white_balance::Gains;
 use anyhow::{Result, bail, ensure};
 use image::RgbImage;
 use std::str::FromStr;
 
 /// Pixels' worth of evidence that the trained Gaussian counts against the rectangle's pixels.
-const TRAINED_PIXELS: f64 = 200.0;
+const TRAINED_PIXELS: f64 = 30.0;
 /// Largest part that the rectangle gets: one patch of skin does not show all its shades.
 const MAX_RECTANGLE_PART: f64 = 0.8;
 /// Rounds of trimming.
@@ -19,7 +20,7 @@ const TRIM_SQUARED: f64 = 9.21;
 /// Part of the scene's skin that is taken to look like the rectangle, in the histogram.
 const RECTANGLE_SHARE: f64 = 0.3;
 /// Strengths of light under which the rectangle's colours are expected elsewhere in the scene.
-const SHADES: [f64; 9] = [0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3];
+const SHADES: [f64; 7] = [0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3];
 
 /// A rectangle of pixels, as given to `--calibrate X,Y,W,H`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,7 +81,11 @@ impl SkinModel {
     pub fn calibrated(&self, image: &RgbImage, rectangle: Rectangle) -> Result<Self> {
         let colours = rectangle.colours(image)?;
         let numbers = match self.numbers() {
-            ModelNumbers::Gaussian(gaussian) => ModelNumbers::Gaussian(adapt_gaussian(gaussian, &colours)?),
+            ModelNumbers::Gaussian(gaussian) => ModelNumbers::Gaussian(adapt_gaussian(
+                gaussian,
+                &colours,
+                Gains::of_image(gaussian.white_balance, image),
+            )?),
             ModelNumbers::Histogram(histogram) => ModelNumbers::Histogram(adapt_histogram(histogram, &colours)?),
         };
         Self::new(numbers, self.trained_on.clone())
@@ -88,8 +93,8 @@ impl SkinModel {
 }
 
 /// Blends the trained moments with the rectangle's, trimmed of what is not skin in it (rings, glare, background).
-fn adapt_gaussian(trained: &GaussianModel, colours: &[[u8; 3]]) -> Result<GaussianModel> {
-    let points: Vec<[f64; 2]> = colours.iter().filter_map(|&rgb| chromaticity(rgb)).collect();
+fn adapt_gaussian(trained: &GaussianModel, colours: &[[u8; 3]], gains: Gains) -> Result<GaussianModel> {
+    let points: Vec<[f64; 2]> = colours.iter().filter_map(|&rgb| chromaticity(gains.apply(rgb))).collect();
     let (mean, covariance, kept) = trimmed_moments(&points)?;
     let part = (kept / (kept + TRAINED_PIXELS)).min(MAX_RECTANGLE_PART);
     let blend = |trained: f64, here: f64| (1.0 - part) * trained + part * here;
@@ -102,6 +107,7 @@ fn adapt_gaussian(trained: &GaussianModel, colours: &[[u8; 3]]) -> Result<Gaussi
         covariance: [0, 1, 2].map(|i| blend(trained.covariance[i], covariance[i])),
         threshold: trained.threshold,
         min_sum: trained.min_sum.min(shadow),
+        white_balance: trained.white_balance,
     })
 }
 

@@ -1,7 +1,8 @@
 //! Fit of the Gaussian chromaticity model: the arm paper's section 3.1.
 
 use super::threshold::{Choice, ColourLevels, cross_validate};
-use super::training_set::{TrainingSet, Unit};
+use super::training_set::{Source, TrainingSet, Unit};
+use super::white_balance::{Gains, WhiteBalance};
 use anyhow::{Result, bail};
 use serde::{Deserialize, Serialize};
 use sinew_core::vision::skin::GaussianSkin;
@@ -27,6 +28,8 @@ pub struct GaussianModel {
     pub threshold: f64,
     /// Smallest R+G+B that is judged, 0 to 765.
     pub min_sum: u16,
+    /// Whether chromaticities are those after a white balance.
+    pub white_balance: WhiteBalance,
 }
 
 impl GaussianModel {
@@ -76,9 +79,9 @@ impl Moments {
 }
 
 /// Chromaticity (r, g) of a colour; `None` for black.
-pub(super) fn chromaticity(rgb: [u8; 3]) -> Option<[f64; 2]> {
-    let sum: f64 = rgb.iter().map(|&channel| f64::from(channel)).sum();
-    (sum > 0.0).then(|| [f64::from(rgb[0]) / sum, f64::from(rgb[1]) / sum])
+pub(super) fn chromaticity(rgb: [f64; 3]) -> Option<[f64; 2]> {
+    let sum: f64 = rgb.iter().sum();
+    (sum > 0.0).then(|| [rgb[0] / sum, rgb[1] / sum])
 }
 
 /// Fits mean, covariance and the darkest sum to the skin of `units`; the threshold is left at `threshold`.
@@ -86,7 +89,7 @@ fn fit(units: &[&Unit], threshold: f64) -> Result<GaussianModel> {
     let mut moments = Moments::default();
     let mut count_of_sum = vec![0_u64; 766];
     for colour in units.iter().flat_map(|unit| &unit.colours).filter(|colour| colour.is_skin) {
-        if let Some(rg) = chromaticity(colour.rgb) {
+        if let Some(rg) = chromaticity(colour.rgb.map(f64::from)) {
             moments.add(rg, f64::from(colour.count));
         }
         count_of_sum[colour.rgb.iter().map(|&c| usize::from(c)).sum::<usize>()] += u64::from(colour.count);
@@ -100,7 +103,32 @@ fn fit(units: &[&Unit], threshold: f64) -> Result<GaussianModel> {
         darker += count;
         darker > allowed
     });
-    Ok(GaussianModel { mean, covariance, threshold, min_sum: min_sum.unwrap_or(0) as u16 })
+    Ok(GaussianModel {
+        mean,
+        covariance,
+        threshold,
+        min_sum: min_sum.unwrap_or(0) as u16,
+        white_balance: WhiteBalance::QuarterGreyWorld,
+    })
+}
+
+/// The set with the colours of each image balanced; a list of pixels has no image to balance by and stays as it is.
+fn balanced(set: &TrainingSet) -> TrainingSet {
+    let mut set = set.clone();
+    if set.source == Source::PixelList {
+        return set;
+    }
+    for unit in &mut set.units {
+        let mut mean = [0.0; 3];
+        for colour in &unit.colours {
+            mean = [0, 1, 2].map(|i| mean[i] + f64::from(colour.rgb[i]) * f64::from(colour.count));
+        }
+        let gains = Gains::quarter_grey_world(mean.map(|sum| sum / unit.counted_pixels().max(1.0)));
+        for colour in &mut unit.colours {
+            colour.rgb = gains.apply(colour.rgb).map(|channel| channel.round().min(255.0) as u8);
+        }
+    }
+    set
 }
 
 /// Trains the model: moments from all skin, the threshold by cross-validation.
@@ -108,6 +136,7 @@ fn fit(units: &[&Unit], threshold: f64) -> Result<GaussianModel> {
 /// # Errors
 /// No skin in a training fold.
 pub fn train(set: &TrainingSet, folds: usize, seed: u64) -> Result<(GaussianModel, Choice)> {
+    let set = &balanced(set);
     let curve = cross_validate(set, folds, seed, THRESHOLD_LEVELS, |units| fit(units, 1.0)?.classifier())?;
     let choice = curve.choose();
     let units: Vec<&Unit> = set.units.iter().collect();
@@ -149,7 +178,13 @@ mod tests {
 
     #[test]
     fn the_level_is_the_tightest_that_accepts() {
-        let skin = GaussianModel { mean: [0.4, 0.3], covariance: [0.01, 0.0, 0.04], threshold: 1.0, min_sum: 50 };
+        let skin = GaussianModel {
+            mean: [0.4, 0.3],
+            covariance: [0.01, 0.0, 0.04],
+            threshold: 1.0,
+            min_sum: 50,
+            white_balance: WhiteBalance::None,
+        };
         let skin = skin.classifier().unwrap();
         assert_eq!(skin.level([1, 1, 1]), usize::MAX);
         let level = skin.level([60, 32, 8]);

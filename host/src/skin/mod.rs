@@ -16,6 +16,7 @@ pub mod pairs;
 pub mod threshold;
 pub mod training;
 pub mod training_set;
+pub mod white_balance;
 
 pub use bit_image::BitImage;
 pub use calibrate::Rectangle;

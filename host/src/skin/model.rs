@@ -4,15 +4,17 @@ use super::bit_image::BitImage;
 use super::gaussian::GaussianModel;
 use super::histogram::HistogramModel;
 use super::model_file::{self, TrainedOn};
+use super::white_balance::{Gains, WhiteBalance};
 use anyhow::{Result, bail};
 use clap::ValueEnum;
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use sinew_core::vision::skin::{CUBE_WORDS, GaussianSkin, HistogramSkin, SkinClassifier};
+use std::borrow::Cow;
 use std::path::Path;
 
-/// What `--skin` is when it is not given.
-pub const DEFAULT_SKIN: &str = "histogram";
+/// What `--skin` is when it is not given; `docs/skin.md` says why.
+pub const DEFAULT_SKIN: &str = "gaussian";
 
 const SHIPPED_GAUSSIAN: &str = include_str!("../../models/skin_gaussian.json");
 const SHIPPED_HISTOGRAM: &str = include_str!("../../models/skin_histogram.json");
@@ -97,15 +99,33 @@ impl SkinModel {
         }
     }
 
+    /// The model as it is to be used line by line on `image`: a Gaussian follows the image's tint.
+    ///
+    /// As a [`SkinClassifier`] a model knows single lines only; call this for each image first.
+    ///
+    /// # Errors
+    /// None in practice: a small change of tint keeps all numbers usable.
+    pub fn for_image(&self, image: &RgbImage) -> Result<Cow<'_, Self>> {
+        match &self.numbers {
+            ModelNumbers::Gaussian(gaussian) if gaussian.white_balance == WhiteBalance::QuarterGreyWorld => {
+                let raw = Gains::of_image(gaussian.white_balance, image).raw_model(gaussian);
+                let raw = GaussianModel { white_balance: WhiteBalance::None, ..raw };
+                Ok(Cow::Owned(Self::new(ModelNumbers::Gaussian(raw), self.trained_on.clone())?))
+            }
+            _ => Ok(Cow::Borrowed(self)),
+        }
+    }
+
     /// The raw skin mask of an image, without any morphology.
     ///
     /// # Errors
     /// The image has no pixels or is larger than a mask can be.
     pub fn classify(&self, image: &RgbImage) -> Result<BitImage> {
+        let model = self.for_image(image)?;
         let mut bits = BitImage::new(image.width() as usize, image.height() as usize)?;
         let row_bytes = 3 * image.width() as usize;
         for (pixels, words) in image.as_raw().chunks_exact(row_bytes).zip(bits.rows_mut()) {
-            self.classify_line(pixels, words);
+            model.classify_line(pixels, words);
         }
         Ok(bits)
     }
