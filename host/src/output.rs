@@ -1,8 +1,9 @@
 //! Outputs that appear whole or not at all: a temporary name in the same folder, then a rename.
 
 use anyhow::{Context, Result, bail};
+use image::{ImageFormat, RgbImage};
 use std::fs;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Cursor, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
@@ -58,6 +59,61 @@ impl OutputDir {
         F: FnOnce(&mut dyn Write) -> Result<()>,
     {
         write_atomically(&self.join(name), fill)
+    }
+
+    /// Writes `image` as the PNG file `name` of this folder.
+    ///
+    /// # Errors
+    /// As [`write_atomically`].
+    pub fn write_png(&self, name: impl AsRef<Path>, image: &RgbImage) -> Result<()> {
+        let mut bytes = Cursor::new(Vec::new());
+        let path = self.join(name);
+        image
+            .write_to(&mut bytes, ImageFormat::Png)
+            .with_context(|| format!("`{}` cannot be encoded", path.display()))?;
+        write_atomically(&path, |writer| Ok(writer.write_all(bytes.get_ref())?))
+    }
+
+    /// Begins the file `name` of this folder.
+    ///
+    /// # Errors
+    /// Names the file if the folder refuses it.
+    pub fn begin(&self, name: impl AsRef<Path>) -> Result<PendingFile> {
+        let path = self.join(name);
+        let temporary = temporary_in(&self.path).with_context(|| format!("`{}` cannot be written", path.display()))?;
+        Ok(PendingFile { path, writer: BufWriter::new(temporary) })
+    }
+}
+
+/// A file that grows under a temporary name and gets its own name at the end; dropped before, it leaves nothing.
+#[derive(Debug)]
+pub struct PendingFile {
+    path: PathBuf,
+    writer: BufWriter<NamedTempFile>,
+}
+
+impl PendingFile {
+    /// Gives the file its name, replacing what was there.
+    ///
+    /// # Errors
+    /// Names the file if what is left cannot be written or the name cannot be taken.
+    pub fn finish(self) -> Result<()> {
+        let Self { path, writer } = self;
+        let inner = || -> Result<()> {
+            writer.into_inner()?.persist(&path)?;
+            Ok(())
+        };
+        inner().with_context(|| format!("`{}` cannot be written", path.display()))
+    }
+}
+
+impl Write for PendingFile {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.writer.write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.writer.flush()
     }
 }
 

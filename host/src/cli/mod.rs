@@ -4,6 +4,7 @@
 //! `pub fn run(args: &NameArgs) -> anyhow::Result<()>`, then add a variant and an arm here.
 
 pub mod blobs;
+pub mod ctrl_c;
 pub mod evaluate;
 pub mod evaluate_skin;
 pub mod image_run;
@@ -11,6 +12,8 @@ pub mod segment;
 pub mod simulate;
 pub mod skin_args;
 pub mod stdout;
+pub mod track;
+pub mod track_arm;
 pub mod train;
 pub mod train_skin;
 
@@ -28,6 +31,9 @@ pub struct Cli {
 /// The subcommands of `sinew`.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Track a person in a folder of video frames.
+    #[command(subcommand)]
+    Track(track::Track),
     /// Render scenes with known truth.
     Simulate(simulate::SimulateArgs),
     /// Write the skin mask of each image.
@@ -48,6 +54,7 @@ pub enum Command {
 /// Whatever the subcommand refuses, with the file or option, the rule it broke, and the remedy.
 pub fn run(cli: &Cli) -> anyhow::Result<()> {
     match &cli.command {
+        Command::Track(track) => track::run(track),
         Command::Simulate(args) => simulate::run(args),
         Command::Segment(args) => segment::run(args),
         Command::Blobs(args) => blobs::run(args),

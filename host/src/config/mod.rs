@@ -9,7 +9,7 @@ mod tracker;
 pub use body::BodyConfig;
 pub use camera::CameraConfig;
 pub use likelihood::{EdgeConfig, LikelihoodConfig, LikelihoodName};
-pub use tracker::{CombinationName, EstimateName, TrackerConfig, VariantName};
+pub use tracker::{CombinationName, EstimateName, MAX_PARTICLES, TrackerConfig, VariantName};
 
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};

@@ -2,11 +2,9 @@
 
 use super::{Scene, truth};
 use crate::motion::ArmSide;
-use crate::output::{OutputDir, write_atomically};
-use anyhow::{Context, Result};
-use image::{ImageFormat, RgbImage};
+use crate::output::OutputDir;
+use anyhow::Result;
 use rayon::prelude::*;
-use std::io::Cursor;
 
 impl Scene {
     /// The configuration that describes this camera and this body, as `track arm --config` reads it.
@@ -51,14 +49,8 @@ impl Scene {
         let frames = output.subfolder("frames")?;
         (0..self.len())
             .into_par_iter()
-            .try_for_each(|frame| write_png(&frames, &format!("frame_{frame:04}.png"), &self.render(frame)))?;
+            .try_for_each(|frame| frames.write_png(format!("frame_{frame:04}.png"), &self.render(frame)))?;
         output.write("truth.csv", |writer| Ok(writer.write_all(self.truth_csv().as_bytes())?))?;
         output.write("camera.toml", |writer| Ok(writer.write_all(self.config_toml().as_bytes())?))
     }
-}
-
-fn write_png(folder: &OutputDir, name: &str, image: &RgbImage) -> Result<()> {
-    let mut bytes = Cursor::new(Vec::new());
-    image.write_to(&mut bytes, ImageFormat::Png).with_context(|| format!("frame `{name}` cannot be encoded"))?;
-    write_atomically(&folder.join(name), |writer| Ok(writer.write_all(bytes.get_ref())?))
 }

@@ -7,6 +7,7 @@ use super::model::{ModelNumbers, SkinModel};
 use super::white_balance::Gains;
 use anyhow::{Result, bail, ensure};
 use image::RgbImage;
+use serde::Serialize;
 use std::str::FromStr;
 
 /// Pixels' worth of evidence that the trained Gaussian counts against the rectangle's pixels.
@@ -23,7 +24,7 @@ const RECTANGLE_SHARE: f64 = 0.3;
 const SHADES: [f64; 7] = [0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3];
 
 /// A rectangle of pixels, as given to `--calibrate X,Y,W,H`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Rectangle {
     /// Column of its left edge, pixels.
     pub x_px: u32,

@@ -1,7 +1,15 @@
 //! Tracking the arms of one image folder.
 
 mod arms;
+mod input;
+mod particles;
+mod pictures;
+mod report;
+mod run;
 mod table;
 
 pub use arms::{ArmSet, ArmView, SideChoice};
+pub use input::{FrameFolder, SkippedImage};
+pub use report::{Inputs, RunReport, StatusCounts};
+pub use run::{Event, Interrupted, RATES_HZ, RunOutcome, TrackOptions, TrackRun};
 pub use table::{HEADER, TrackRow, side_name};

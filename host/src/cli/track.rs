@@ -1,0 +1,21 @@
+//! `sinew track ...`
+
+use super::track_arm::{self, TrackArmArgs};
+use clap::Subcommand;
+
+/// What can be tracked.
+#[derive(Debug, Subcommand)]
+pub enum Track {
+    /// Track the arms of the person in a folder of video frames.
+    Arm(TrackArmArgs),
+}
+
+/// Runs the chosen tracker.
+///
+/// # Errors
+/// As the chosen tracker.
+pub fn run(track: &Track) -> anyhow::Result<()> {
+    match track {
+        Track::Arm(args) => track_arm::run(args),
+    }
+}

@@ -1,0 +1,128 @@
+//! `sinew track arm`: shoulder, elbow and hand for every frame of a folder.
+
+use super::ctrl_c::stop_flag;
+use super::skin_args::SkinArgs;
+use super::stdout::write_all;
+use crate::config::{Config, DEFAULT_FILE, MAX_PARTICLES, VariantName};
+use crate::track::{Event, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
+use anyhow::{Context, Result};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::{Path, PathBuf};
+
+/// Options of `sinew track arm`.
+#[derive(Debug, Args)]
+pub struct TrackArmArgs {
+    /// Folder of video frames (PNG, JPEG, PPM), all of one size, tracked in natural order of their names.
+    #[arg(value_name = "FOLDER", required_unless_present = "print_config")]
+    pub folder: Option<PathBuf>,
+    /// Folder for track.csv, run.json, hand.png and what else is asked for; files of these names are replaced, each as a
+    /// whole, when the run ends.
+    #[arg(long, value_name = "DIR", required_unless_present = "print_config")]
+    pub out: Option<PathBuf>,
+    /// Camera, person and thresholds; options of the command line come before it.
+    #[arg(long, value_name = "FILE.toml")]
+    pub config: Option<PathBuf>,
+    /// Write the defaults as a commented configuration to standard output, and do nothing else.
+    #[arg(long)]
+    pub print_config: bool,
+    /// Which arms; left is the person's left.
+    #[arg(long, value_enum, default_value_t = SideChoice::Right)]
+    pub side: SideChoice,
+    /// Which tracker [default: pik].
+    #[arg(long, value_enum)]
+    pub variant: Option<VariantName>,
+    /// Number of particles of each arm [default: 50].
+    #[arg(long, value_name = "N", value_parser = particle_count, allow_negative_numbers = true)]
+    pub particles: Option<usize>,
+    /// Seed of all that is random; the same seed gives the same result.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Skin model and calibration.
+    #[command(flatten)]
+    pub skin: SkinArgs,
+    /// Frames per second of the camera.
+    #[arg(long, value_name = "HZ", default_value_t = 15.0, value_parser = rate_hz, allow_negative_numbers = true)]
+    pub rate: f64,
+    /// Draw what was found on every frame, into DIR/overlay, and some of these pictures on DIR/contact_sheet.png.
+    #[arg(long)]
+    pub overlay: bool,
+    /// Write every particle of every frame into DIR/particles.csv.
+    #[arg(long)]
+    pub particles_csv: bool,
+    /// Refuse the folder if one of its images cannot be read; without it such a frame counts as missing.
+    #[arg(long)]
+    pub strict: bool,
+}
+
+fn particle_count(text: &str) -> Result<usize, String> {
+    let count = text.parse().ok().filter(|count| (1..=MAX_PARTICLES).contains(count));
+    count.ok_or_else(|| format!("particles must be a whole number from 1 to {MAX_PARTICLES}; 50 is a good choice"))
+}
+
+fn rate_hz(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate| (RATES_HZ[0]..=RATES_HZ[1]).contains(rate));
+    let [low, high] = RATES_HZ;
+    rate.ok_or_else(|| format!("the rate must lie from {low} to {high} Hz; give the camera's frames per second"))
+}
+
+/// Tracks the folder, or prints the default configuration.
+///
+/// # Errors
+/// Bad input, an output that cannot be written, or [`crate::track::Interrupted`].
+pub fn run(args: &TrackArmArgs) -> Result<()> {
+    if args.print_config {
+        return write_all(DEFAULT_FILE.as_bytes());
+    }
+    let folder = args.folder.clone().context("no FOLDER was given")?;
+    let out = args.out.as_deref().context("no --out was given")?;
+    let options = TrackOptions {
+        folder,
+        side: args.side,
+        rate_hz: args.rate,
+        seed: args.seed,
+        skin: args.skin.skin.clone(),
+        calibrate: args.skin.calibrate,
+        overlay: args.overlay,
+        particles_csv: args.particles_csv,
+        strict: args.strict,
+        config: effective_config(args)?,
+    };
+    let outcome = run_with_progress(options, out)?;
+    write_all((outcome.report.summary() + &contents(args, out)).as_bytes())
+}
+
+/// The configuration file, or the defaults, with what the command line sets.
+fn effective_config(args: &TrackArmArgs) -> Result<Config> {
+    let mut config = args.config.as_deref().map_or_else(|| Ok(Config::default()), Config::load)?;
+    config.tracker.variant = args.variant.unwrap_or(config.tracker.variant);
+    config.tracker.particles = args.particles.unwrap_or(config.tracker.particles);
+    Ok(config)
+}
+
+/// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the current frame.
+///
+/// # Errors
+/// As [`TrackRun::prepare`] and [`TrackRun::run`].
+pub(super) fn run_with_progress(options: TrackOptions, out: &Path) -> Result<RunOutcome> {
+    let run = TrackRun::prepare(options, out)?;
+    // Hidden by itself where standard error is no terminal.
+    let bar = ProgressBar::new(run.frame_count() as u64);
+    bar.set_style(ProgressStyle::with_template("{wide_bar} frame {pos} of {len}, {per_sec}")?);
+    let outcome = run.run(stop_flag()?, &mut |event| match event {
+        Event::Skipped(image) => {
+            bar.suspend(|| eprintln!("skipped frame {}: `{}`: {}", image.frame, image.file, image.reason));
+        }
+        Event::Finished(frames) => bar.set_position(frames as u64),
+    });
+    bar.finish_and_clear();
+    outcome
+}
+
+/// Where the results are.
+fn contents(args: &TrackArmArgs, out: &Path) -> String {
+    let mut names = vec!["track.csv", "run.json", "hand.png"];
+    names.extend(args.particles_csv.then_some("particles.csv"));
+    names.extend(args.overlay.then_some(["contact_sheet.png", "overlay/"]).into_iter().flatten());
+    format!("results in `{}`: {}\n", out.display(), names.join(", "))
+}

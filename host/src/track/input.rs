@@ -1,0 +1,123 @@
+//! The frames of a run: one folder of images of one size, checked before anything is tracked.
+
+use crate::images::{ImageFileError, list_images, load_rgb};
+use anyhow::{Result, bail};
+use image::{ImageReader, RgbImage};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// An image that could not be read; the frame counts as missing.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct SkippedImage {
+    /// Number of the frame, from 0.
+    pub frame: usize,
+    /// File name.
+    pub file: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// A folder of frames of one size, at least one of which can be read.
+#[derive(Debug, Clone)]
+pub struct FrameFolder {
+    files: Vec<PathBuf>,
+    size_px: (u32, u32),
+    first: (usize, RgbImage),
+}
+
+impl FrameFolder {
+    /// Lists the images of `folder` and reads the size of each; `strict` decodes them all.
+    ///
+    /// # Errors
+    /// The folder is missing or holds no image, no image can be read, two differ in size (the first odd one is named), or
+    /// one cannot be read and `strict` was asked for.
+    pub fn open(folder: &Path, strict: bool) -> Result<Self> {
+        let files = list_images(folder)?;
+        let sizes: Vec<Option<(u32, u32)>> = files.par_iter().map(|file| size_of(file)).collect();
+        check_sizes(&files, &sizes)?;
+        if strict {
+            let unreadable: Vec<ImageFileError> = files.par_iter().filter_map(|file| load_rgb(file).err()).collect();
+            if let Some(first) = unreadable.first() {
+                bail!(
+                    "{first}; {} of {} images are unreadable, and --strict was given (without it they are skipped)",
+                    unreadable.len(),
+                    files.len()
+                );
+            }
+        }
+        let mut reason = None;
+        for (index, file) in files.iter().enumerate() {
+            match load_rgb(file) {
+                Ok(image) => return Ok(Self { files, size_px: image.dimensions(), first: (index, image) }),
+                Err(error) => reason = reason.or(Some(error)),
+            }
+        }
+        let reason = reason.map_or_else(String::new, |error| error.to_string());
+        bail!(
+            "no image in `{}` can be read; of the first one, {reason}; give a folder of intact images",
+            folder.display()
+        )
+    }
+
+    /// The files, in natural order.
+    #[must_use]
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
+    /// File name of one frame.
+    #[must_use]
+    pub fn name(&self, frame: usize) -> String {
+        let name = self.files.get(frame).and_then(|file| file.file_name());
+        name.unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// Width and height of every frame, pixels.
+    #[must_use]
+    pub fn size_px(&self) -> (u32, u32) {
+        self.size_px
+    }
+
+    /// Number and picture of the first frame that can be read.
+    #[must_use]
+    pub fn first(&self) -> (usize, &RgbImage) {
+        (self.first.0, &self.first.1)
+    }
+
+    /// Reads one frame.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    pub fn load(&self, frame: usize) -> Result<RgbImage, SkippedImage> {
+        let skipped = |reason: String| SkippedImage { frame, file: self.name(frame), reason };
+        let image = load_rgb(&self.files[frame]).map_err(|error| skipped(error.reason))?;
+        // Sizes were checked before the run; a file that was exchanged since then is not part of it.
+        if image.dimensions() != self.size_px {
+            return Err(skipped("its size changed after the run began".to_owned()));
+        }
+        Ok(image)
+    }
+}
+
+/// Size by the file's header; `None` where even that cannot be read.
+fn size_of(file: &Path) -> Option<(u32, u32)> {
+    ImageReader::open(file).ok()?.with_guessed_format().ok()?.into_dimensions().ok()
+}
+
+fn check_sizes(files: &[PathBuf], sizes: &[Option<(u32, u32)>]) -> Result<()> {
+    let mut known = files.iter().zip(sizes).filter_map(|(file, size)| size.map(|size| (file, size)));
+    let Some((first, size)) = known.next() else { return Ok(()) };
+    if let Some((odd, other)) = known.find(|(_, other)| *other != size) {
+        bail!(
+            "`{}` has {}x{} pixels, but `{}` has {}x{}; all frames of a folder must have one size: take odd ones out",
+            odd.display(),
+            other.0,
+            other.1,
+            first.display(),
+            size.0,
+            size.1
+        );
+    }
+    Ok(())
+}
