@@ -5,6 +5,7 @@
 
 pub mod blobs;
 pub mod ctrl_c;
+pub mod demo;
 pub mod evaluate;
 pub mod evaluate_skin;
 pub mod image_run;
@@ -31,6 +32,8 @@ pub struct Cli {
 /// The subcommands of `sinew`.
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Render a scene with known truth, track it, and print the error.
+    Demo(demo::DemoArgs),
     /// Track a person in a folder of video frames.
     #[command(subcommand)]
     Track(track::Track),
@@ -54,6 +57,7 @@ pub enum Command {
 /// Whatever the subcommand refuses, with the file or option, the rule it broke, and the remedy.
 pub fn run(cli: &Cli) -> anyhow::Result<()> {
     match &cli.command {
+        Command::Demo(args) => demo::run(args),
         Command::Track(track) => track::run(track),
         Command::Simulate(args) => simulate::run(args),
         Command::Segment(args) => segment::run(args),

@@ -1,0 +1,169 @@
+//! `sinew demo`: a rendered scene with known truth, tracked, and compared with the truth.
+
+use super::stdout::write_all;
+use super::track_arm::run_with_progress;
+use crate::config::Config;
+use crate::motion::{ArmSide, reach};
+use crate::output::OutputDir;
+use crate::scene::{Scene, SceneOptions, Sides};
+use crate::skin::model::DEFAULT_SKIN;
+use crate::track::{RunOutcome, SideChoice, TrackOptions};
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use serde::Serialize;
+use statrs::statistics::{Data, Distribution, OrderStatistics};
+use std::path::{Path, PathBuf};
+
+/// Frames of the scene: eight seconds.
+const FRAMES: usize = 120;
+/// Frames per second of the scene.
+const RATE_HZ: f32 = 15.0;
+/// First frame whose error counts: the tracker needs a second to find the arm.
+const FIRST_SCORED_FRAME: usize = 16;
+/// Marks a scene that the demo made and may replace.
+const MARK: &str = "demo.json";
+
+/// Options of `sinew demo`.
+#[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// Run directory, as that of `sinew track arm --overlay`, with the scene in DIR/scene.
+    #[arg(long, value_name = "DIR", default_value = "out/demo")]
+    pub out: PathBuf,
+    /// Seed of the scene and of the tracker.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+}
+
+/// The content of `error.json`: distance of the tracked hand from the true one, over frames `first_frame` to `last_frame`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DemoError {
+    /// First frame that counts.
+    pub first_frame: usize,
+    /// Last frame that counts.
+    pub last_frame: usize,
+    /// Mean 3D error, metres.
+    pub mean_error_m: f64,
+    /// Median 3D error, metres.
+    pub median_error_m: f64,
+    /// Mean 2D error, pixels.
+    pub mean_error_px: f64,
+    /// Median 2D error, pixels.
+    pub median_error_px: f64,
+}
+
+/// Renders, tracks, compares, and says where to look.
+///
+/// # Errors
+/// An output that cannot be written, or [`crate::track::Interrupted`].
+pub fn run(args: &DemoArgs) -> Result<()> {
+    let out = OutputDir::create(&args.out)?;
+    let scene = render(&out, args.seed)?;
+    let outcome = run_with_progress(track_options(&out, args.seed)?, out.path())?;
+    let error = compare(&scene, &outcome)?;
+    let json = serde_json::to_string_pretty(&error)? + "\n";
+    out.write("error.json", |writer| Ok(writer.write_all(json.as_bytes())?))?;
+    write_all(report(&outcome, &error, out.path()).as_bytes())
+}
+
+/// A person who reaches about with the right arm; the face shows half of the time, the hand is hidden a tenth of it.
+fn render(out: &OutputDir, seed: u64) -> Result<Scene> {
+    let motion = reach::random_reaches(seed, RATE_HZ, FRAMES)?;
+    let sides = Sides::One(ArmSide::Right);
+    let options = SceneOptions { frames: FRAMES, frames_per_second: RATE_HZ, seed, sides, ..SceneOptions::default() };
+    let scene = Scene::new(&motion, &options)?;
+    let folder = scene_folder(out)?;
+    scene.write_folder(&folder)?;
+    Ok(scene)
+}
+
+/// DIR/scene, which has to be new or made by an earlier demo.
+fn scene_folder(out: &OutputDir) -> Result<OutputDir> {
+    let path = out.join("scene");
+    if path.join("frames").exists() && !path.join(MARK).exists() {
+        bail!("`{}` holds frames that the demo did not make; choose another --out", path.display());
+    }
+    let folder = out.subfolder("scene")?;
+    let mark = serde_json::json!({ "made_by": "sinew demo", "frames": FRAMES });
+    folder.write(MARK, |writer| Ok(serde_json::to_writer_pretty(writer, &mark)?))?;
+    Ok(folder)
+}
+
+fn track_options(out: &OutputDir, seed: u64) -> Result<TrackOptions> {
+    let scene = out.join("scene");
+    Ok(TrackOptions {
+        folder: scene.join("frames"),
+        side: SideChoice::Right,
+        rate_hz: f64::from(RATE_HZ),
+        seed,
+        skin: DEFAULT_SKIN.to_owned(),
+        calibrate: None,
+        overlay: true,
+        particles_csv: false,
+        strict: true,
+        config: Config::load(&scene.join("camera.toml"))?,
+    })
+}
+
+/// Distances of the tracked hand from the true one. A hand that is projected nowhere is as wrong as the image is wide.
+fn compare(scene: &Scene, outcome: &RunOutcome) -> Result<DemoError> {
+    ensure!(
+        outcome.samples.len() == scene.len(),
+        "{} frames were tracked in place of {}; `{}` holds other images, too: take them out",
+        outcome.samples.len(),
+        scene.len(),
+        outcome.report.inputs.folder.display()
+    );
+    let camera = scene.camera();
+    let width_px = f64::from(scene.options().width_px);
+    let scored = outcome.samples.iter().enumerate().skip(FIRST_SCORED_FRAME);
+    let errors = scored.filter_map(|(frame, sample)| {
+        let truth = scene.truth(frame).sides.into_iter().next()?;
+        let error_m = f64::from((sample.hand_m? - truth.joints.hand_m).norm());
+        let true_px = truth.hand_px(&camera)?;
+        Some((error_m, sample.hand_px.map_or(width_px, |pixel| f64::from(pixel.distance_px(true_px)))))
+    });
+    let (errors_m, errors_px): (Vec<f64>, Vec<f64>) = errors.unzip();
+    let (mut metres, mut pixels) = (Data::new(errors_m), Data::new(errors_px));
+    let nothing = "no frame can be compared with the truth";
+    Ok(DemoError {
+        first_frame: FIRST_SCORED_FRAME,
+        last_frame: scene.len() - 1,
+        mean_error_m: metres.mean().context(nothing)?,
+        median_error_m: metres.median(),
+        mean_error_px: pixels.mean().context(nothing)?,
+        median_error_px: pixels.median(),
+    })
+}
+
+/// What a newcomer reads at the end.
+fn report(outcome: &RunOutcome, error: &DemoError, out: &Path) -> String {
+    let folder = out.display();
+    format!(
+        "\
+A person was rendered whose arm and camera are known, and the right arm was tracked from the pictures alone.
+
+{}
+Distance of the tracked hand from the true one, frames {} to {}:
+  in space:     mean {:.3} m,  median {:.3} m
+  in the image: mean {:.1} px, median {:.1} px  (images are {} px wide)
+
+Look at
+  {folder}/contact_sheet.png   the run at a glance
+  {folder}/overlay/            every frame with the arm, the particles and the blobs
+  {folder}/hand.png            the hand's path, and how sure the tracker was over time
+  {folder}/track.csv           the numbers; {folder}/scene/truth.csv holds the true ones
+
+Try next, with a folder of your own webcam frames (PNG or JPEG):
+  sinew track arm FOLDER --out out/mine --overlay
+  sinew track arm --help
+",
+        outcome.report.summary(),
+        error.first_frame,
+        error.last_frame,
+        error.mean_error_m,
+        error.median_error_m,
+        error.mean_error_px,
+        error.median_error_px,
+        outcome.report.image_size_px.0,
+    )
+}
