@@ -1,0 +1,85 @@
+//! README's commands exist, and the links of all Markdown pages lead somewhere.
+
+use clap::Parser;
+use sinew::cli::Cli;
+use sinew_tests::workspace_root;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Lines of the code blocks of a page, block by block.
+fn code_blocks(page: &str) -> Vec<Vec<&str>> {
+    let mut blocks = Vec::new();
+    let mut inside = false;
+    for line in page.lines() {
+        if line.starts_with("```") {
+            inside = !inside;
+            if inside {
+                blocks.push(Vec::new());
+            }
+        } else if inside && let Some(block) = blocks.last_mut() {
+            block.push(line);
+        }
+    }
+    blocks
+}
+
+fn readme() -> String {
+    fs::read_to_string(workspace_root().join("README.md")).unwrap()
+}
+
+#[test]
+fn the_first_block_of_the_readme_is_the_demo_and_all_tests() {
+    let page = readme();
+    assert_eq!(code_blocks(&page)[0], ["cargo run --release -- demo", "cargo test --release --workspace"]);
+}
+
+#[test]
+fn every_sinew_command_of_the_readme_is_understood() {
+    let page = readme();
+    let mut count = 0;
+    for line in code_blocks(&page).concat() {
+        let Some(arguments) = line.strip_prefix("cargo run --release -- ") else { continue };
+        let words = arguments.split_whitespace().take_while(|word| !matches!(*word, "#" | ">"));
+        Cli::try_parse_from(std::iter::once("sinew").chain(words)).unwrap_or_else(|error| panic!("{line}\n{error}"));
+        count += 1;
+    }
+    assert!(count >= 6, "only {count} commands");
+}
+
+fn pages(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries.filter(|path| path.extension().is_some_and(|extension| extension == "md")).collect()
+}
+
+/// Targets of `[text](target)` and `![text](target)` that are neither web addresses nor anchors of the same page.
+fn links(page: &str) -> Vec<&str> {
+    let targets = page.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+    targets.map(|(target, _)| target).filter(|target| !target.contains("://") && !target.starts_with('#')).collect()
+}
+
+/// A heading's anchor, as hosts of Markdown form it.
+fn anchor(heading: &str) -> String {
+    let kept = heading.trim_start_matches('#').trim().to_lowercase();
+    let kept = kept.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+}
+
+#[test]
+fn links_between_pages_lead_somewhere() {
+    let root = workspace_root();
+    let mut checked = 0;
+    for page in ["", "core", "docs"].iter().flat_map(|folder| pages(&root.join(folder))) {
+        for link in links(&fs::read_to_string(&page).unwrap()) {
+            let (path, wanted) = link.split_once('#').unwrap_or((link, ""));
+            let target = page.parent().unwrap().join(path);
+            assert!(target.exists(), "{}: `{link}` does not exist", page.display());
+            if !wanted.is_empty() {
+                let text = fs::read_to_string(&target).unwrap();
+                let found = text.lines().filter(|line| line.starts_with('#')).any(|line| anchor(line) == wanted);
+                assert!(found, "{}: `{link}` has no such heading", page.display());
+            }
+            checked += 1;
+        }
+    }
+    assert!(checked > 30, "only {checked} links");
+}
