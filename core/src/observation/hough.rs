@@ -157,11 +157,22 @@ mod tests {
 
     #[test]
     fn a_line_s_orientation_is_found_and_ends_the_drawing_early() {
+        let settings = HoughSettings { doubt_pixels: 0.0, ..HoughSettings::default() };
         for angle in [0.0_f32, 0.4, 1.2, 1.57] {
-            let result = dynamic_hough(&line(angle, 60), &HoughSettings::default(), &mut Stream::new(1, 0, 0)).unwrap();
+            let result = dynamic_hough(&line(angle, 60), &settings, &mut Stream::new(1, 0, 0)).unwrap();
             assert!(result.density.at(angle) > 5.0, "density {} at {angle}", result.density.at(angle));
             assert!(result.density.at(angle + PI / 2.0) < 0.1);
             assert!(result.stable && result.pairs < 600, "{} pairs", result.pairs);
+        }
+    }
+
+    #[test]
+    fn doubt_leaves_a_uniform_part_that_shrinks_with_the_pixels() {
+        let settings = HoughSettings { doubt_pixels: 20.0, ..HoughSettings::default() };
+        for (count, uniform_part) in [(20, 0.5), (60, 0.25), (180, 0.1)] {
+            let result = dynamic_hough(&line(0.4, count), &settings, &mut Stream::new(1, 0, 0)).unwrap();
+            let across = result.density.at(0.4 + PI / 2.0);
+            assert!((across - uniform_part).abs() < 1.0e-3, "{across} with {count} pixels");
         }
     }
 
