@@ -13,7 +13,7 @@ use crate::skeleton::Skeleton;
 /// Halvings of a step that does not climb.
 const MAX_HALVINGS: usize = 6;
 /// A step shorter than this (radians) ends the iteration.
-const STEP_TOLERANCE_RAD: f32 = 1.0e-4;
+const STEP_TOLERANCE_RAD: f32 = 1.0e-3;
 
 /// Where an end-effector wants to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -118,9 +118,24 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
     /// Climbs from the pose of the frame before to the mode in at most `max_steps` steps.
     #[must_use]
     pub fn mode(&self, max_steps: usize) -> Mode<ANGLES> {
+        self.mode_from(&[], max_steps)
+    }
+
+    /// As [`Self::mode`], but climbs from the likeliest of the pose of the frame before and other `starts`: after a jump
+    /// the way from the old pose may end at a limit.
+    #[must_use]
+    pub fn mode_from(&self, starts: &[[f32; ANGLES]], max_steps: usize) -> Mode<ANGLES> {
         let mut angles_rad = self.skeleton.clamp(self.previous_rad);
         let mut here = self.posture(&angles_rad);
         let mut log_density = self.log_density(&angles_rad, &here);
+        for start in starts {
+            let other = self.skeleton.clamp(*start);
+            let there = self.posture(&other);
+            let log_other = self.log_density(&other, &there);
+            if log_other > log_density {
+                (angles_rad, here, log_density) = (other, there, log_other);
+            }
+        }
         let mut converged = false;
         for _ in 0..max_steps {
             let (gradient, hessian) = self.derivatives(&angles_rad, &here);

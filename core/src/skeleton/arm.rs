@@ -86,6 +86,12 @@ impl ArmGeometry {
         self.upper_arm_m + self.forearm_m
     }
 
+    /// The body's up in camera axes, a unit vector.
+    #[must_use]
+    pub fn up(&self) -> Vec3 {
+        self.torso.column(1).into()
+    }
+
     /// Outward, up and front in camera axes.
     fn directions(&self) -> (Vec3, Vec3, Vec3) {
         let left: Vec3 = self.torso.column(0).into();

@@ -56,8 +56,8 @@ impl Default for BodyConfig {
 }
 
 impl BodyConfig {
-    /// Shoulders of a seated adult before a laptop: 0.7 m away, a little below the line of sight.
-    pub const DEFAULT_SHOULDERS_M: [[f32; 3]; 2] = [[0.2, 0.1, 0.7], [-0.2, 0.1, 0.7]];
+    /// Shoulders of a seated adult before a laptop: 0.9 m away, at the height of the camera.
+    pub const DEFAULT_SHOULDERS_M: [[f32; 3]; 2] = [[0.2, 0.0, 0.9], [-0.2, 0.0, 0.9]];
 
     pub(super) fn set_all(&mut self) {
         (self.upper_arm_m, self.forearm_m, self.hand_area_m2) = (Some(1.0), Some(1.0), Some(1.0));

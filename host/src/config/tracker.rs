@@ -12,6 +12,9 @@ use sinew_core::tracker::arm::{ArmOptions, Variant};
 /// Most particles that the command tracks with.
 pub const MAX_PARTICLES: usize = 5000;
 
+/// How much less the area tells of the depth where the shoulders are guessed.
+const GUESSED_AREA_DOUBT: f32 = 3.0;
+
 /// Which tracker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
@@ -197,6 +200,8 @@ impl TrackerConfig {
     /// The options of the core's tracker.
     #[must_use]
     pub fn options(&self, shoulders_known: bool, hand_area_m2: f32) -> ArmOptions {
+        // With guessed shoulders the depth that fits the arm may be far from the one that the area tells.
+        let doubt = if shoulders_known { 1.0 } else { GUESSED_AREA_DOUBT };
         let is_product = match self.combination {
             CombinationName::Auto => shoulders_known,
             CombinationName::Mean => false,
@@ -226,7 +231,7 @@ impl TrackerConfig {
                 LimbCombination::Mean
             },
             gate: self.gate.then_some(gate),
-            area_cue: self.area_cue.then_some(AreaCue { hand_area_m2, log_std: self.area_log_std }),
+            area_cue: self.area_cue.then_some(AreaCue { hand_area_m2, log_std: self.area_log_std * doubt }),
             depth_from_area: self.depth_from_area,
             blob_memory: self.blob_memory.then_some(memory),
             estimate: match self.estimate {

@@ -5,12 +5,12 @@ use crate::config::Config;
 use crate::frames::{FrameReader, FrameView};
 use crate::motion::ArmSide;
 use crate::scene::{Scene, SceneOptions, Sides};
+use crate::skin::SkinModel;
 use crate::track::SideChoice;
 use anyhow::Result;
 use rayon::prelude::*;
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
-use sinew_core::vision::skin::SkinClassifier;
 
 /// Truth of one frame of the tracked arm.
 #[derive(Debug, Clone, Copy)]
@@ -50,19 +50,18 @@ pub struct ObservedScene {
 ///
 /// # Errors
 /// A clip that cannot be read, an option out of range.
-pub fn observe(
-    clip: &Clip,
-    options: &SceneOptions,
-    base: &Config,
-    skin: &impl SkinClassifier,
-) -> Result<ObservedScene> {
+pub fn observe(clip: &Clip, options: &SceneOptions, base: &Config, skin: &SkinModel) -> Result<ObservedScene> {
     let options = SceneOptions { sides: Sides::One(clip.side), ..options.clone() };
     let motion = clip.load(options.frames_per_second, options.frames)?;
     let scene = Scene::new(&motion, &options)?;
     let told = Config::parse(&scene.config_toml())?;
     let config = Config { camera: told.camera, body: told.body, ..base.clone() };
     let mut reader = FrameReader::new(config.likelihood.build()?, config.edges.build()?)?;
-    let views = (0..scene.len()).map(|frame| reader.read(&scene.render(frame), skin)).collect::<Result<_>>()?;
+    let mut read = |frame| {
+        let image = scene.render(frame);
+        reader.read(&image, &*skin.for_image(&image)?)
+    };
+    let views = (0..scene.len()).map(&mut read).collect::<Result<_>>()?;
     let camera = scene.camera();
     let truth = (0..scene.len()).map(|frame| {
         let truth = scene.truth(frame);
@@ -95,7 +94,7 @@ pub fn observe_all(
     seeds: &[u64],
     options: &SceneOptions,
     base: &Config,
-    skin: &(impl SkinClassifier + Sync),
+    skin: &SkinModel,
 ) -> Result<Vec<ObservedScene>> {
     let jobs: Vec<(&Clip, u64)> = clips.iter().flat_map(|clip| seeds.iter().map(move |&seed| (clip, seed))).collect();
     jobs.into_par_iter()

@@ -7,7 +7,7 @@ use super::step::Particle;
 use crate::angle::CircularSum;
 use crate::camera::Pixel;
 use crate::kinematics::inverse::{Goal, PoseDensity};
-use crate::math::{Mat3, Vec3, sqrt};
+use crate::math::{Mat3, Vec3, max, sqrt};
 use crate::skeleton::Side;
 use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 
@@ -76,10 +76,10 @@ pub(super) struct Cluster {
 impl FrameContext<'_> {
     /// The candidate whose centre lies nearest to `hand`, if within the cluster radius.
     pub fn candidate_at(&self, hand: Option<Pixel>) -> Option<usize> {
-        let mut best = (None, self.model.cluster_radius_px());
+        let mut best = (None, f32::INFINITY);
         for (index, candidate) in self.candidates.iter().enumerate() {
             let distance = candidate.centre.distance_px(hand?);
-            if distance < best.1 {
+            if distance < best.1 && distance < self.model.cluster_radius_px(candidate) {
                 best = (Some(index), distance);
             }
         }
@@ -94,6 +94,7 @@ impl FrameContext<'_> {
         for (particle, weight) in particles.iter().zip(weights) {
             masses[slot(at(particle))] += weight;
         }
+        masses[MAX_CANDIDATES] *= self.concentration(particles, weights);
         let mut heaviest = MAX_CANDIDATES;
         for (index, mass) in masses.iter().enumerate() {
             if *mass > masses[heaviest] {
@@ -106,6 +107,28 @@ impl FrameContext<'_> {
         let mut cluster = self.mean_pose(members.map(|(p, w)| (p, *w)), candidate);
         cluster.masses.copy_from_slice(&masses[..MAX_CANDIDATES]);
         cluster
+    }
+
+    /// How far the particles at no candidate are a cluster: 1 where they fill no more than a disc of the least cluster
+    /// radius, else the disc's share of what they fill. Scattered particles agree on nothing.
+    fn concentration(&self, particles: &[Particle], weights: &[f32]) -> f32 {
+        let camera = self.model.camera();
+        let (mut mass, mut sum, mut square) = (0.0, [0.0; 2], 0.0);
+        for (particle, weight) in particles.iter().zip(weights) {
+            let Some(pixel) = camera.project(&particle.hand_m) else { continue };
+            if self.candidate_at(Some(pixel)).is_none() {
+                mass += weight;
+                sum[0] += weight * pixel.u_px;
+                sum[1] += weight * pixel.v_px;
+                square += weight * (pixel.u_px * pixel.u_px + pixel.v_px * pixel.v_px);
+            }
+        }
+        if !(mass > 0.0) || self.candidates.is_empty() {
+            return 1.0;
+        }
+        let variance_px2 = square / mass - (sum[0] * sum[0] + sum[1] * sum[1]) / (mass * mass);
+        let radius_px = self.model.least_cluster_radius_px();
+        radius_px * radius_px / max(variance_px2, radius_px * radius_px)
     }
 
     /// Circular mean of the angles, then the pose next to it whose hand is the mean hand.

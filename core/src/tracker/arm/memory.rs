@@ -56,7 +56,7 @@ impl BlobMemory {
         &mut self,
         candidates: &[HandCandidate],
         masses: &[f32],
-        radius_px: f32,
+        radius_of_px: impl Fn(&HandCandidate) -> f32,
         dt_s: f32,
         options: &BlobMemoryOptions,
     ) {
@@ -67,6 +67,7 @@ impl BlobMemory {
         let mut next = Vec::new();
         for (index, candidate) in candidates.iter().enumerate() {
             let fresh = Remembered { centre: candidate.centre, belief: 1.0, anchor: candidate.centre, still_s: 0.0 };
+            let radius_px = radius_of_px(candidate);
             let before = self.recall(candidate.centre, radius_px).copied().unwrap_or(fresh);
             let away = elsewhere(index);
             let fallen = before.belief * exp(-dt_s * away / options.fall_time_s);
@@ -93,7 +94,7 @@ mod tests {
 
     fn learn(memory: &mut BlobMemory, places: [f32; 2], masses: [f32; 2], frames: u8) {
         for _ in 0..frames {
-            memory.learn(&places.map(at), &masses, 25.0, 0.1, &OPTIONS);
+            memory.learn(&places.map(at), &masses, |_| 25.0, 0.1, &OPTIONS);
         }
     }
 
@@ -102,7 +103,7 @@ mod tests {
         let mut memory = BlobMemory::default();
         for frame in 0..100_u8 {
             let places = [at(100.0), at(300.0 + 30.0 * f32::from(frame))];
-            memory.learn(&places, &[0.0, 0.9], 25.0, 0.1, &OPTIONS);
+            memory.learn(&places, &[0.0, 0.9], |_| 25.0, 0.1, &OPTIONS);
         }
         let face = memory.share(Pixel::new(103.0, 0.0), 25.0, &OPTIONS);
         assert!(face < 2.0 * OPTIONS.floor, "{face}");
@@ -124,7 +125,7 @@ mod tests {
         let mut memory = BlobMemory::default();
         for frame in 0..50_u8 {
             let places = [at(100.0), at(200.0 + 10.0 * f32::from(frame))];
-            memory.learn(&places, &[1.0, 0.0], 25.0, 0.1, &OPTIONS);
+            memory.learn(&places, &[1.0, 0.0], |_| 25.0, 0.1, &OPTIONS);
         }
         assert!(memory.share(Pixel::new(100.0, 0.0), 25.0, &OPTIONS) >= OPTIONS.rest_share);
     }

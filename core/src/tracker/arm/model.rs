@@ -5,7 +5,8 @@ use crate::camera::Camera;
 use crate::correction::hand::ReachableShell;
 use crate::error::ParameterError;
 use crate::kinematics::forward::posture;
-use crate::math::{Vec3, sin_cos, sqrt};
+use crate::math::{Vec3, max, sin_cos, sqrt};
+use crate::observation::candidate::HandCandidate;
 use crate::skeleton::arm::{ARM_ANGLES, ARM_BONES, ArmAngles, ArmGeometry, FOREARM, UPPER_ARM};
 use crate::skeleton::{Side, Skeleton};
 
@@ -80,9 +81,16 @@ impl ArmModel {
         (there.ends[UPPER_ARM], there.ends[FOREARM])
     }
 
-    /// Distance from a blob's centre within which a hand lies at that blob, pixels.
+    /// Distance from a blob's centre within which a hand lies at that blob, pixels: the radius of the disc of its area,
+    /// and at least [`Self::least_cluster_radius_px`].
     #[must_use]
-    pub fn cluster_radius_px(&self) -> f32 {
+    pub fn cluster_radius_px(&self, blob: &HandCandidate) -> f32 {
+        max(self.least_cluster_radius_px(), sqrt(blob.area_px / core::f32::consts::PI))
+    }
+
+    /// The configured cluster radius, pixels.
+    #[must_use]
+    pub fn least_cluster_radius_px(&self) -> f32 {
         let radius_per_focal = match self.options.estimate {
             EstimateRule::HeaviestCluster { radius_per_focal } => radius_per_focal,
             EstimateRule::MeanOfAll => DEFAULT_RADIUS_PER_FOCAL,

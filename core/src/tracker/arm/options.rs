@@ -115,7 +115,7 @@ pub const DEFAULT_BLOB_MEMORY: BlobMemoryOptions = BlobMemoryOptions {
     fall_time_s: 0.15,
     rise_time_s: 2.0,
     floor: 0.05,
-    rest_share: 0.3,
+    rest_share: 0.6,
     rest_time_s: 1.5,
     moved_per_radius: 0.25,
 };
@@ -196,7 +196,7 @@ impl Default for ArmOptions {
             reach_std_m: 0.05,
             reach_across_std_m: 0.015,
             angle_std_rad_per_sqrt_s: [1.0, 1.0, 1.0, 1.0],
-            solver_steps: 3,
+            solver_steps: 6,
             limb_band_m: 0.09,
             hough: HoughSettings::default(),
             orientation_memory_s: 0.7,

@@ -13,7 +13,11 @@ use heapless::Vec;
 /// What a hand without any blob is as likely as; compared with a blob's likelihood times its nearness.
 const NO_BLOB: f32 = 0.05;
 /// What a blob at any distance from the prediction keeps of its nearness.
-const FAR_FLOOR: f32 = 0.01;
+const FAR_FLOOR: f32 = 0.03;
+/// Share of its likelihood that a blob keeps for a side that has a likelier one of its own.
+const STRAY_SHARE: f32 = 0.25;
+/// Least standard deviation of where a hand is expected, metres: hands start and stop.
+const LEAST_STD_M: f32 = 0.1;
 /// A blob is split where both predictions lie within this many of its standard deviations.
 const SPLIT_REACH: f32 = 3.0;
 
@@ -92,7 +96,7 @@ impl<const CAPACITY: usize> ArmPair<CAPACITY> {
     fn expected(&self, model: &ArmModel, side: usize, timestamp_us: u64) -> Option<Expected> {
         let (hand_m, std_m) = self.trackers[side].predicted_hand(model, timestamp_us);
         let hand = model.camera().project(&hand_m)?;
-        let std_px = max(std_m, 0.06) * model.camera().focal_px() / max(hand_m.z, 0.1);
+        let std_px = max(std_m, LEAST_STD_M) * model.camera().focal_px() / max(hand_m.z, 0.1);
         Some(Expected { hand, std_px })
     }
 }
@@ -134,10 +138,11 @@ fn share_out(candidates: &[HandCandidate], expected: &[Option<Expected>; 2]) -> 
             }
         }
     }
-    let mut lists = [0, 1].map(|side| own_and_free(candidates, best.0[side], best.0[1 - side]));
+    let mut lists = [0_usize, 1].map(|side| own_and_free(candidates, best.0[side], best.0[1 - side]));
     if let Some((index, halves)) = touching(candidates, expected, &best.0) {
         lists = halves.map(|half| {
-            let mut list = own_and_free(candidates, None, Some(index));
+            let mut list = own_and_free(candidates, Some(index), None);
+            list.swap_remove(0);
             if list.is_full() {
                 list.pop();
             }
@@ -151,7 +156,10 @@ fn share_out(candidates: &[HandCandidate], expected: &[Option<Expected>; 2]) -> 
 /// A side's own blob and those that the other side does not have.
 fn own_and_free(candidates: &[HandCandidate], own: Option<usize>, others: Option<usize>) -> SideCandidates {
     let free = (0..candidates.len()).filter(|&index| Some(index) != own && Some(index) != others);
-    own.into_iter().chain(free).filter_map(|index| candidates.get(index).copied()).collect()
+    let share = if own.is_some() { STRAY_SHARE } else { 1.0 };
+    let stray = free.filter_map(|index| candidates.get(index));
+    let stray = stray.map(|blob| HandCandidate { likelihood: share * blob.likelihood, ..*blob });
+    own.and_then(|index| candidates.get(index).copied()).into_iter().chain(stray).collect()
 }
 
 /// The blob in which both hands lie, and its halves for left and right: one side has it, the other has none, and
@@ -210,8 +218,9 @@ mod tests {
     fn a_blob_serves_one_hand_and_stray_blobs_serve_both() {
         let blobs = [blob(100.0, 100.0, 0.8), blob(300.0, 100.0, 0.8), blob(200.0, 300.0, 0.1)];
         let [left, right] = share_out(&blobs, &[expect(290.0, 110.0), expect(110.0, 90.0)]);
-        assert_eq!(left.as_slice(), &[blobs[1], blobs[2]]);
-        assert_eq!(right.as_slice(), &[blobs[0], blobs[2]]);
+        let stray = HandCandidate { likelihood: STRAY_SHARE * 0.1, ..blobs[2] };
+        assert_eq!(left.as_slice(), &[blobs[1], stray]);
+        assert_eq!(right.as_slice(), &[blobs[0], stray]);
     }
 
     #[test]
@@ -227,6 +236,7 @@ mod tests {
         let mut wide = blob(200.0, 100.0, 0.8);
         wide.moments_px2 = [3600.0, 0.0, 400.0];
         let [left, right] = share_out(&[wide], &[expect(260.0, 100.0), expect(150.0, 105.0)]);
+        assert_eq!((left.len(), right.len()), (1, 1));
         assert!((left[0].centre.u_px - 251.96).abs() < 0.1 && (right[0].centre.u_px - 148.04).abs() < 0.1);
         assert_eq!(left[0].area_px, 2000.0);
     }

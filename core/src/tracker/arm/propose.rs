@@ -75,6 +75,33 @@ impl FrameContext<'_> {
         Some((ray.origin + ray.direction * depth_m, *ray, HandSpread { along_std_m, across_std_m }))
     }
 
+    /// Which candidate drives each ancestor's hand, if any.
+    ///
+    /// Unpaid, an ancestor that is at a blob stays with it while that blob has particles left: sent elsewhere it would
+    /// only meet the gate. The others, and all where goals are paid for, are assigned in the given (permuted) order.
+    pub fn assign_drivers<'p, const CAPACITY: usize>(
+        &self,
+        ancestors: impl Iterator<Item = Option<&'p Particle>>,
+    ) -> Vec<Option<usize>, CAPACITY> {
+        let is_paid = self.model.options().variant == Variant::PikPaid;
+        let mut left = self.counts;
+        let mut drivers: Vec<Option<usize>, CAPACITY> = Vec::new();
+        for ancestor in ancestors {
+            let place = ancestor.filter(|_| !is_paid).and_then(|p| self.model.camera().project(&p.hand_m));
+            let own = self.candidate_at(place).filter(|&index| left.get(index).is_some_and(|&n| n > 0));
+            if let Some(count) = own.and_then(|index| left.get_mut(index)) {
+                *count -= 1;
+            }
+            // One entry a particle, so it always fits.
+            let _ = drivers.push(own);
+        }
+        let mut rest = left.iter().enumerate().flat_map(|(blob, &n)| (0..n).map(move |_| blob));
+        for driver in drivers.iter_mut().filter(|driver| driver.is_none()) {
+            *driver = rest.next();
+        }
+        drivers
+    }
+
     /// Moves `ancestor` on; `driver` is the candidate that its hand is sent to.
     pub fn propose(&self, ancestor: &Particle, driver: Option<usize>, stream: &mut Stream) -> Proposed {
         let mut proposed = match self.model.options().variant {
@@ -128,7 +155,7 @@ impl FrameContext<'_> {
         };
         let goal_m = self.reachable.along_ray(&draw_on_ray(&mean_m, &ray, &spread, stream), &ray);
         let (particle, _) = self.pose_for(ancestor, &self.driven_goal(goal_m, &ray), stream);
-        Proposed { particle, jump_m: length(&(goal_m - extrapolated_m)), log_payment: 0.0 }
+        Proposed { particle, jump_m: length(&(particle.hand_m - extrapolated_m)), log_payment: 0.0 }
     }
 
     /// As [`Self::propose_by_goal`], but goals stay as drawn and the weight pays for them.
@@ -151,7 +178,8 @@ impl FrameContext<'_> {
         Goal { bone: FOREARM, position_m, precision: Mat3::identity() / (std_m * std_m) }
     }
 
-    /// A goal that is wanted more closely across the ray than along it.
+    /// A goal that is wanted more closely across the ray than along it: where limits forbid its depth, the hand slides
+    /// along the ray.
     fn driven_goal(&self, position_m: Vec3, ray: &Ray) -> Goal {
         let options = self.model.options();
         let along = ray.direction * ray.direction.transpose();
@@ -163,14 +191,23 @@ impl FrameContext<'_> {
     /// Mode and Laplace draw for one goal, with the log importance ratio of the draw.
     fn pose_for(&self, ancestor: &Particle, goal: &Goal, stream: &mut Stream) -> (Particle, f32) {
         let options = self.model.options();
+        let jump_rad = length(&(goal.position_m - ancestor.hand_m)) / self.model.geometry().reach_m();
+        let variances = options.angle_std_rad_per_sqrt_s.map(|std| std * std * self.dt_s);
         let density = PoseDensity {
             skeleton: self.model.skeleton(),
             root_m: self.shoulder_m,
             goals: core::slice::from_ref(goal),
             previous_rad: ancestor.angles_rad,
-            stiffness: options.angle_std_rad_per_sqrt_s.map(|std| 1.0 / (std * std * self.dt_s)),
+            // A jump needs its angles; what it costs is the gate's business, not the stiffness's.
+            stiffness: variances.map(|variance| 1.0 / (variance + jump_rad * jump_rad)),
         };
-        let mode = density.mode(options.solver_steps);
+        let mut mode = density.mode_from(&self.starts(ancestor, &goal.position_m), options.solver_steps);
+        if options.variant != Variant::PikPaid {
+            // The draw spreads as far as a frame's stiffness lets it: wider, the expansion would leave the goal.
+            for (i, variance) in variances.iter().enumerate() {
+                mode.hessian[i][i] += 1.0 / variance - density.stiffness[i];
+            }
+        }
         let Some(proposal) = LaplaceProposal::new(&mode) else {
             return (self.particle(mode.angles_rad), 0.0);
         };
@@ -184,6 +221,18 @@ impl FrameContext<'_> {
         };
         let log_density = density.log_density(&draw.angles_rad, &there);
         (particle, proposal.log_importance_ratio(&draw, log_density, LimitMass::Neglected))
+    }
+
+    /// Poses whose hand is at the goal: with the elbow as near to the ancestor's as can be, and with a hanging elbow.
+    fn starts(&self, ancestor: &Particle, goal_m: &Vec3) -> [[f32; ARM_ANGLES]; 2] {
+        let geometry = self.model.geometry();
+        let hand_m = self.reachable.nearest(goal_m);
+        let hanging_m = self.shoulder_m - geometry.up() * geometry.upper_arm_m;
+        [ancestor.elbow_m, hanging_m].map(|wanted_m| {
+            let elbow_m = nearest_elbow(&self.shoulder_m, &hand_m, geometry.upper_arm_m, geometry.forearm_m, &wanted_m);
+            let (elbow, hand) = (elbow_m - self.shoulder_m, hand_m - self.shoulder_m);
+            geometry.angles_from_joints(&elbow, &hand, &ancestor.angles_rad)
+        })
     }
 
     fn particle(&self, angles_rad: [f32; ARM_ANGLES]) -> Particle {

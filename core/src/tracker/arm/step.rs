@@ -21,12 +21,16 @@ use heapless::Vec;
 
 /// Spread of the angles around the waiting pose before anything was seen, radians.
 const INITIAL_STD_RAD: f32 = 0.5;
+/// Time that the hand counts as unseen before the first frame, seconds: it may be anywhere.
+const UNSEEN_AT_START_S: f32 = 2.0;
 /// Time that is taken to have passed before the first frame, seconds.
 const FIRST_DT_S: f32 = 1.0 / 15.0;
 /// Shortest and longest time between two frames that the motion model is asked for, seconds.
 const DT_RANGE_S: (f32, f32) = (1.0e-3, 1.0);
 /// Fastest hand, metres per second: a sprinter's punch stays below.
 const MAX_SPEED_M_PER_S: f32 = 6.0;
+/// How far a hand that is not known to be anywhere may be from that of the waiting pose, metres.
+const WAITING_STD_M: f32 = 0.25;
 /// What a blob at any distance keeps of its chance.
 const FAR_SHARE: f32 = 0.1;
 /// Index of the stream that the frame as a whole draws from.
@@ -88,7 +92,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             seed,
             frame: 0,
             timestamp_us: None,
-            unseen_s: 0.0,
+            unseen_s: UNSEEN_AT_START_S,
             ever_seen: false,
             generations: [first, Vec::new()],
             current: 0,
@@ -124,9 +128,12 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     pub fn predicted_hand(&self, model: &ArmModel, timestamp_us: u64) -> (Vec3, f32) {
         let dt_s = self.elapsed_s(timestamp_us);
         let options = model.options();
+        if !self.ever_seen || self.unseen_s > options.lost_after_s {
+            return (model.elbow_and_hand(&self.estimate.shoulder_m, &model.waiting_pose()).1, WAITING_STD_M);
+        }
         let hand = self.estimate.hand_m + self.hand_velocity_m_per_s * (options.velocity_persistence * dt_s);
         let std_m = options.hand_std_m_per_sqrt_s * crate::math::sqrt(dt_s + self.unseen_s);
-        (hand, if self.ever_seen { std_m } else { 2.0 * options.hand_std_m_per_sqrt_s })
+        (hand, std_m)
     }
 
     /// Answers one frame: the algorithm box of the arm paper, joined with PIK.
@@ -219,9 +226,10 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         let options = model.options();
         let mut chance = candidate.likelihood;
         if let Some(memory) = &options.blob_memory {
-            chance *= self.memory.share(candidate.centre, model.cluster_radius_px(), memory);
+            chance *= self.memory.share(candidate.centre, model.cluster_radius_px(candidate), memory);
         }
-        if let Some(gate) = options.gate.filter(|_| self.ever_seen) {
+        let known = self.ever_seen && self.unseen_s <= options.lost_after_s;
+        if let Some(gate) = options.gate.filter(|_| known) {
             let ray = model.camera().back_project(candidate.centre);
             let hand_m = self.estimate.hand_m + self.hand_velocity_m_per_s * (options.velocity_persistence * dt_s);
             let miss_m = length(&(ray.project(&hand_m) - hand_m));
@@ -247,12 +255,13 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         let [even, odd] = &mut self.generations;
         let (before, after) = if self.current == 0 { (even, odd) } else { (odd, even) };
         after.clear();
-        let mut drivers = context.counts.iter().enumerate().flat_map(|(blob, &n)| (0..n).map(move |_| blob));
+        let drivers: Vec<Option<usize>, CAPACITY> =
+            context.assign_drivers(ancestors.iter().map(|&ancestor| before.get(usize::from(ancestor))));
         for (index, &ancestor) in ancestors.iter().enumerate() {
             let Some(parent) = before.get(usize::from(ancestor)) else { continue };
             // Frame 0 is the scatter of the first generation.
             let mut stream = Stream::new(self.seed, self.frame + 1, index as u32);
-            let proposed = context.propose(parent, drivers.next(), &mut stream);
+            let proposed = context.propose(parent, drivers.get(index).copied().flatten(), &mut stream);
             let log_weight = limbs.map_or(0.0, |limbs| context.log_weight(&proposed, limbs));
             self.weights.set_log(index, log_weight);
             // The generation has the capacity of the one before.
@@ -265,8 +274,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     fn remember(&mut self, context: &FrameContext<'_>, cluster: &Cluster, limbs: &LimbHypotheses, dt_s: f32) -> Status {
         self.limbs = *limbs.at(cluster.candidate);
         if let Some(memory) = &context.model.options().blob_memory {
-            let radius_px = context.model.cluster_radius_px();
-            self.memory.learn(&context.candidates, &cluster.masses, radius_px, dt_s, memory);
+            let radius_of = |blob: &HandCandidate| context.model.cluster_radius_px(blob);
+            self.memory.learn(&context.candidates, &cluster.masses, radius_of, dt_s, memory);
         }
         let was_seen = self.ever_seen && self.unseen_s == 0.0;
         let carried = cluster.candidate.is_some();
