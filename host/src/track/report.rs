@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// Version of the form of `run.json`; a reader can tell by it what to expect.
+/// Version of the form of `run.json`.
 pub const REPORT_VERSION: u32 = 1;
 
 /// What a run read.
@@ -35,7 +35,7 @@ pub struct StatusCounts {
 /// The content of `run.json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct RunReport {
-    /// [`REPORT_VERSION`].
+    /// Version of the form of this file; a reader can tell by it what to expect.
     pub version: u32,
     /// Version of the program.
     pub sinew_version: &'static str,
