@@ -6,14 +6,16 @@ use super::model::ArmModel;
 use super::step::ArmTracker;
 use crate::camera::Pixel;
 use crate::error::ParameterError;
-use crate::math::{Vec3, abs, atan2, exp, ln, max, sin_cos, sqrt};
+use crate::math::{Vec3, abs, atan2, exp, ln, max, min, sin_cos, sqrt};
 use crate::observation::candidate::HandCandidate;
 use heapless::Vec;
 
-/// What a hand without any blob is as likely as; compared with a blob's likelihood times its nearness.
-const NO_BLOB: f32 = 0.05;
+/// What a hand without any blob is as likely as; compared with a blob's odds times its nearness.
+const NO_BLOB: f32 = 0.1;
 /// What a blob at any distance from the prediction keeps of its nearness.
-const FAR_FLOOR: f32 = 0.03;
+const FAR_FLOOR: f32 = 0.1;
+/// No blob is more surely a hand than this when the sides are shared out.
+const MOST_LIKELY: f32 = 0.95;
 /// Share of its likelihood that a blob keeps for a side that has a likelier one of its own.
 const STRAY_SHARE: f32 = 0.25;
 /// Least standard deviation of where a hand is expected, metres: hands start and stop.
@@ -113,13 +115,16 @@ fn nearest_index(candidates: &[HandCandidate], centre: Pixel) -> Option<usize> {
     best.0
 }
 
-/// ln of likelihood times nearness; a side without expectation finds every place alike.
+/// ln of odds times nearness; a side without expectation finds every place alike.
+///
+/// Odds, since a blob that is given to no hand has to be explained as something else, with probability 1 - likelihood.
 fn log_fit(candidate: &HandCandidate, expected: Option<&Expected>) -> f32 {
     let nearness = expected.map_or(1.0, |e| {
         let miss = candidate.centre.distance_px(e.hand) / e.std_px;
         exp(-0.5 * miss * miss) + FAR_FLOOR
     });
-    ln(candidate.likelihood * nearness)
+    let likelihood = min(candidate.likelihood, MOST_LIKELY);
+    ln(likelihood / (1.0 - likelihood) * nearness)
 }
 
 /// Gives each side its blob of the likeliest pair, and to both the blobs that are nobody's.
