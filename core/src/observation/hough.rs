@@ -43,7 +43,7 @@ impl Default for HoughSettings {
             max_pairs: 1000,
             min_separation_px: 8.0,
             min_pixels: 12,
-            doubt_pixels: 20.0,
+            doubt_pixels: 60.0,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Weights: what the image says of one arm.
 
 use super::limbs::{LimbDensities, LimbHypotheses};
-use super::options::LimbCombination;
+use super::options::{LimbCombination, Variant};
 use super::propose::{FrameContext, Proposed};
 use super::step::Particle;
 use crate::camera::Pixel;
@@ -43,7 +43,9 @@ impl FrameContext<'_> {
     /// Continuity: what a jump to a blob costs, and what it costs to ignore one that is likely the hand.
     fn log_gate(&self, proposed: &Proposed) -> f32 {
         let options = self.model.options();
-        let Some(gate) = options.gate.filter(|_| options.variant.is_blob_driven()) else { return 0.0 };
+        // What is paid for needs no gate: the transition says what a jump costs.
+        let gated = options.variant.is_blob_driven() && options.variant != Variant::PikPaid;
+        let Some(gate) = options.gate.filter(|_| gated) else { return 0.0 };
         if proposed.particle.driver.is_none() {
             return ln(max(1.0 - self.best_chance * (1.0 - gate.missed_share), 1.0e-6));
         }

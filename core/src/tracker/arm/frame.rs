@@ -8,6 +8,9 @@ use heapless::Vec;
 /// Most blobs that a step considers.
 pub const MAX_CANDIDATES: usize = 8;
 
+/// A blob less likely than this is no hand: a speck of noise must not carry an estimate.
+pub const LEAST_LIKELIHOOD: f32 = 0.05;
+
 /// What was found in one image.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArmImage<'a> {
@@ -30,7 +33,7 @@ pub struct ArmFrame<'a> {
 
 /// The most likely candidates, in descending order of likelihood, and the count of those that found no room.
 ///
-/// Candidates whose numbers are not finite are dropped as well.
+/// Candidates whose numbers are not finite, or that are less likely than [`LEAST_LIKELIHOOD`], are dropped as well.
 #[must_use]
 pub fn most_likely(candidates: &[HandCandidate]) -> (Vec<HandCandidate, MAX_CANDIDATES>, usize) {
     let mut kept: Vec<HandCandidate, MAX_CANDIDATES> = Vec::new();
@@ -39,7 +42,7 @@ pub fn most_likely(candidates: &[HandCandidate]) -> (Vec<HandCandidate, MAX_CAND
             && candidate.centre.v_px.is_finite()
             && candidate.area_px > 0.0
             && candidate.area_px.is_finite()
-            && candidate.likelihood > 0.0
+            && candidate.likelihood >= LEAST_LIKELIHOOD
             && candidate.likelihood <= 1.0;
         if !usable {
             continue;

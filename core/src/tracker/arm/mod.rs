@@ -17,7 +17,7 @@ mod propose;
 mod step;
 
 pub use estimate::{ArmEstimate, ArmJoints, Status};
-pub use frame::{ArmFrame, ArmImage, MAX_CANDIDATES};
+pub use frame::{ArmFrame, ArmImage, LEAST_LIKELIHOOD, MAX_CANDIDATES};
 pub use model::ArmModel;
 pub use options::{ArmOptions, Variant};
 pub use pair::{ArmPair, PairFrame};

@@ -109,13 +109,13 @@ pub enum EstimateRule {
 
 /// Default of the gate.
 pub const DEFAULT_GATE: Gate =
-    Gate { std_m: 0.2, growth_m_per_s: 1.0, floor: 0.02, missed_share: 0.3, allotment_reach: 3.0 };
+    Gate { std_m: 0.2, growth_m_per_s: 1.0, floor: 0.02, missed_share: 0.1, allotment_reach: 3.0 };
 /// Default of the memory of blobs.
 pub const DEFAULT_BLOB_MEMORY: BlobMemoryOptions = BlobMemoryOptions {
     fall_time_s: 0.15,
     rise_time_s: 2.0,
     floor: 0.05,
-    rest_share: 0.6,
+    rest_share: 0.4,
     rest_time_s: 1.5,
     moved_per_radius: 0.25,
 };
@@ -189,15 +189,15 @@ impl Default for ArmOptions {
             estimate: EstimateRule::HeaviestCluster { radius_per_focal: DEFAULT_RADIUS_PER_FOCAL },
             velocity_persistence: 0.9,
             velocity_gain: 0.8,
-            hand_std_m_per_sqrt_s: 0.25,
+            hand_std_m_per_sqrt_s: 0.15,
             elbow_std_m_per_sqrt_s: 0.2,
             ray_std_m_per_sqrt_s: 0.3,
             centre_std_per_focal: 0.01,
             reach_std_m: 0.05,
-            reach_across_std_m: 0.015,
-            angle_std_rad_per_sqrt_s: [1.0, 1.0, 1.0, 1.0],
+            reach_across_std_m: 0.008,
+            angle_std_rad_per_sqrt_s: [0.4, 0.4, 0.4, 0.4],
             solver_steps: 6,
-            limb_band_m: 0.09,
+            limb_band_m: 0.12,
             hough: HoughSettings::default(),
             orientation_memory_s: 0.7,
             teleport_share: 0.05,
