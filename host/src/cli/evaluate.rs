@@ -1,11 +1,14 @@
 //! `sinew evaluate ...`
 
+use super::evaluate_hands::{self, EvaluateHandsArgs};
 use super::evaluate_skin::{self, EvaluateSkinArgs};
 use clap::Subcommand;
 
 /// What can be evaluated.
 #[derive(Debug, Subcommand)]
 pub enum Evaluate {
+    /// Track both hands on real frames and compare with reference boxes.
+    Hands(EvaluateHandsArgs),
     /// Score a skin model on images with masks.
     Skin(EvaluateSkinArgs),
 }
@@ -16,6 +19,7 @@ pub enum Evaluate {
 /// As the chosen evaluation.
 pub fn run(evaluate: &Evaluate) -> anyhow::Result<()> {
     match evaluate {
+        Evaluate::Hands(args) => evaluate_hands::run(args),
         Evaluate::Skin(args) => evaluate_skin::run(args),
     }
 }

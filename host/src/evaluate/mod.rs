@@ -1,6 +1,8 @@
 //! Measuring the trackers where the truth is known.
 
 pub mod clips;
+pub mod hand_ranking;
 pub mod hands;
+pub mod hands_report;
 pub mod observed;
 pub mod score;

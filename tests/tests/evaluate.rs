@@ -1,0 +1,65 @@
+//! `sinew evaluate hands` and `sinew evaluate arm` as a user types them.
+
+use assert_cmd::Command;
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use sinew_tests::sinew_command;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn sinew(words: &[&str]) -> Command {
+    let mut command = Command::from_std(sinew_command());
+    command.args(words);
+    command
+}
+
+/// A folder of six rendered frames.
+fn frames(root: &Path) -> PathBuf {
+    let scene = root.join("scene");
+    let mut simulate = sinew(&["simulate", "arm", "--motion", "builtin", "--frames", "6", "--side", "both", "--out"]);
+    simulate.arg(&scene).assert().success();
+    scene.join("frames")
+}
+
+fn hands(folder: &Path, boxes: &Path) -> Command {
+    let mut command = sinew(&["evaluate", "hands", "--seeds", "2"]);
+    command.arg(folder).arg("--boxes").arg(boxes);
+    command
+}
+
+#[test]
+fn hands_are_scored_and_floors_are_required() {
+    let root = tempfile::tempdir().unwrap();
+    let (folder, boxes, json) = (frames(root.path()), root.path().join("boxes.csv"), root.path().join("hands.json"));
+    fs::write(&boxes, "frame,x,y,w,h\n0,0,0,640,480\n5,0,0,640,480\n").unwrap();
+    hands(&folder, &boxes).arg("--json").arg(&json).assert().success().stdout(contains("(2 boxes)"));
+    let report: serde_json::Value = serde_json::from_slice(&fs::read(&json).unwrap()).unwrap();
+    assert_eq!(report["whole"]["inside"]["median"], 1.0);
+    assert_eq!(report["frames"], 6);
+    fs::write(&boxes, "frame,x,y,w,h\n5,0,0,1,1\n").unwrap();
+    hands(&folder, &boxes).assert().success();
+    hands(&folder, &boxes).arg("--require").assert().code(1).stderr(contains("misses the floors"));
+}
+
+#[test]
+fn bad_boxes_and_windows_are_refused() {
+    let root = tempfile::tempdir().unwrap();
+    let (folder, boxes) = (frames(root.path()), root.path().join("boxes.csv"));
+    let refused = |part: &str| {
+        hands(&folder, &boxes).assert().code(1).stderr(contains(part).and(contains("boxes.csv")));
+    };
+    refused("boxes");
+    for (table, part) in [
+        ("frame,x,y,w,h\n", "has no row"),
+        ("frame,x,y\n0,1,2\n", "frame,x,y,w,h"),
+        ("frame,x,y,w,h\n6,1,2,3,4\n", "frame 6"),
+        ("frame,x,y,w,h\n1,1,2,0,4\n", "above zero"),
+    ] {
+        fs::write(&boxes, table).unwrap();
+        refused(part);
+    }
+    fs::write(&boxes, "frame,x,y,w,h\n0,1,2,3,4\n").unwrap();
+    hands(&folder, &boxes).args(["--window", "900,10"]).assert().code(1).stderr(contains("larger than the frames"));
+    hands(&folder, &boxes).args(["--window", "wide"]).assert().code(2).stderr(contains("440,360"));
+    hands(&folder.join("none"), &boxes).assert().code(1).stderr(contains("none"));
+}
