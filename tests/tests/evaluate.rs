@@ -63,3 +63,36 @@ fn bad_boxes_and_windows_are_refused() {
     hands(&folder, &boxes).args(["--window", "wide"]).assert().code(2).stderr(contains("440,360"));
     hands(&folder.join("none"), &boxes).assert().code(1).stderr(contains("none"));
 }
+
+#[test]
+fn evaluate_arm_compares_the_trackers_on_built_in_scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("arm");
+    let output = sinew_command()
+        .args(["evaluate", "arm", "--clips", "1", "--seeds", "1", "--frames", "110", "--particles", "20"])
+        .args(["--variants", "pik,standard", "--out"])
+        .arg(&out)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(text.contains("recovered within 5 frames") && text.contains("as the arm paper prints them"), "{text}");
+    for name in ["arm.json", "arm.csv", "error_3d.png", "error_2d.png", "options.png"] {
+        assert!(out.join(name).is_file(), "{name} is missing");
+    }
+}
+
+#[test]
+fn evaluate_arm_refuses_what_it_cannot_score() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |args: &[&str]| {
+        let out = folder.path().join("out");
+        let output = sinew_command().args(["evaluate", "arm", "--out"]).arg(out).args(args).output().unwrap();
+        assert!(!output.status.success());
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    assert!(refused(&["--frames", "100"]).contains("--frames"));
+    assert!(refused(&["--seeds", "0"]).contains("--seeds"));
+    assert!(refused(&["--mocap", "no-such-folder"]).contains("no-such-folder"));
+    assert!(refused(&["--variants", "magic"]).contains("magic"));
+}

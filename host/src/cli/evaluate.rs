@@ -1,5 +1,6 @@
 //! `sinew evaluate ...`
 
+use super::evaluate_arm::{self, EvaluateArmArgs};
 use super::evaluate_hands::{self, EvaluateHandsArgs};
 use super::evaluate_skin::{self, EvaluateSkinArgs};
 use clap::Subcommand;
@@ -7,6 +8,8 @@ use clap::Subcommand;
 /// What can be evaluated.
 #[derive(Debug, Subcommand)]
 pub enum Evaluate {
+    /// Compare the trackers on rendered scenes with known truth.
+    Arm(EvaluateArmArgs),
     /// Track both hands on real frames and compare with reference boxes.
     Hands(EvaluateHandsArgs),
     /// Score a skin model on images with masks.
@@ -19,6 +22,7 @@ pub enum Evaluate {
 /// As the chosen evaluation.
 pub fn run(evaluate: &Evaluate) -> anyhow::Result<()> {
     match evaluate {
+        Evaluate::Arm(args) => evaluate_arm::run(args),
         Evaluate::Hands(args) => evaluate_hands::run(args),
         Evaluate::Skin(args) => evaluate_skin::run(args),
     }

@@ -7,6 +7,7 @@ pub mod blobs;
 pub mod ctrl_c;
 pub mod demo;
 pub mod evaluate;
+pub mod evaluate_arm;
 pub mod evaluate_hands;
 pub mod evaluate_skin;
 pub mod image_run;

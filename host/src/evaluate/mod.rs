@@ -1,6 +1,7 @@
 //! Measuring the trackers where the truth is known.
 
 pub mod clips;
+pub mod experiments;
 pub mod hand_ranking;
 pub mod hands;
 pub mod hands_report;

@@ -72,8 +72,9 @@ impl BlobMemory {
             let away = elsewhere(index);
             let fallen = before.belief * exp(-dt_s * away / options.fall_time_s);
             let recovery = 1.0 - exp(-dt_s * (1.0 - away) / options.rise_time_s);
-            let belief = max(fallen + recovery * (1.0 - fallen), options.floor);
             let moved = before.anchor.distance_px(candidate.centre) > options.moved_per_radius * radius_px;
+            // What moves may be the hand after all, also where the tracker sits on something that rests.
+            let belief = if moved { 1.0 } else { max(fallen + recovery * (1.0 - fallen), options.floor) };
             let (anchor, still_s) =
                 if moved { (candidate.centre, 0.0) } else { (before.anchor, before.still_s + dt_s) };
             // One entry a candidate, of which there are not more than fit.
@@ -128,5 +129,6 @@ mod tests {
             memory.learn(&places, &[1.0, 0.0], |_| 25.0, 0.1, &OPTIONS);
         }
         assert!(memory.share(Pixel::new(100.0, 0.0), 25.0, &OPTIONS) >= OPTIONS.rest_share);
+        assert!(memory.share(Pixel::new(690.0, 0.0), 25.0, &OPTIONS) > 0.9);
     }
 }

@@ -13,13 +13,13 @@ use heapless::Vec;
 /// What a hand without any blob is as likely as; compared with a blob's odds times its nearness.
 const NO_BLOB: f32 = 0.1;
 /// What a blob at any distance from the prediction keeps of its nearness.
-const FAR_FLOOR: f32 = 0.1;
+const FAR_FLOOR: f32 = 0.05;
 /// No blob is more surely a hand than this when the sides are shared out.
 const MOST_LIKELY: f32 = 0.95;
 /// Share of its likelihood that a blob keeps for a side that has a likelier one of its own.
 const STRAY_SHARE: f32 = 0.25;
 /// Least standard deviation of where a hand is expected, metres: hands start and stop.
-const LEAST_STD_M: f32 = 0.1;
+const LEAST_STD_M: f32 = 0.15;
 /// A blob is split where both predictions lie within this many of its standard deviations.
 const SPLIT_REACH: f32 = 3.0;
 
