@@ -11,3 +11,4 @@ pub mod output;
 pub mod scene;
 pub mod skin;
 pub mod track;
+pub mod wording;

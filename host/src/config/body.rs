@@ -1,15 +1,12 @@
 //! Section `[body]`.
 
+use crate::motion::anthropometry as fraction;
 use serde::{Deserialize, Serialize};
 use sinew_core::error::{ParameterError, finite, positive, within};
 use sinew_core::math::{Mat3, Vec3, axis_rotation};
 use sinew_core::skeleton::arm::facing_camera;
 use sinew_core::skeleton::{ArmGeometry, Side};
 
-/// Upper arm as a share of the body's height (Drillis and Contini 1966, as in Winter 2009).
-const UPPER_ARM: f32 = 0.186;
-/// Elbow to the middle of the hand as a share of the body's height: forearm and half of the hand.
-const FOREARM: f32 = 0.2;
 /// Area of a half-open hand's image at one metre, over squared height: 0.0129 m^2 at 1.75 m.
 const HAND_AREA: f32 = 0.0042;
 
@@ -110,8 +107,8 @@ impl BodyConfig {
     /// # Errors
     /// Lengths have to be positive.
     pub fn arm(&self, side: Side) -> Result<ArmGeometry, ParameterError> {
-        let upper_arm_m = self.upper_arm_m.unwrap_or(UPPER_ARM * self.height_m);
-        let forearm_m = self.forearm_m.unwrap_or(FOREARM * self.height_m);
+        let upper_arm_m = self.upper_arm_m.unwrap_or(fraction::UPPER_ARM * self.height_m);
+        let forearm_m = self.forearm_m.unwrap_or(fraction::ELBOW_TO_HAND_CENTRE * self.height_m);
         Ok(ArmGeometry { torso: self.torso(), ..ArmGeometry::new(side, upper_arm_m, forearm_m)? })
     }
 

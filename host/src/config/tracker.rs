@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use sinew_core::error::{ParameterError, Rule, not_negative, positive, within};
 use sinew_core::observation::hough::HoughSettings;
 use sinew_core::tracker::arm::options::{
-    AreaCue, BlobMemoryOptions, DEFAULT_BLOB_MEMORY, DEFAULT_GATE, EstimateRule, Gate, LimbCombination,
+    AreaCue, BlobMemoryOptions, DEFAULT_BLOB_MEMORY, DEFAULT_GATE, DEFAULT_RADIUS_PER_FOCAL, EstimateRule, Gate,
+    LimbCombination,
 };
 use sinew_core::tracker::arm::{ArmOptions, Variant};
 
@@ -146,7 +147,7 @@ impl Default for TrackerConfig {
             estimate: EstimateName::Cluster,
             cluster_radius_per_focal: match options.estimate {
                 EstimateRule::HeaviestCluster { radius_per_focal } => radius_per_focal,
-                EstimateRule::MeanOfAll => 0.045,
+                EstimateRule::MeanOfAll => DEFAULT_RADIUS_PER_FOCAL,
             },
             velocity_persistence: options.velocity_persistence,
             velocity_gain: options.velocity_gain,

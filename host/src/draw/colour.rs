@@ -4,7 +4,6 @@
 
 use image::Rgb;
 use sinew_core::skeleton::Side;
-use sinew_core::tracker::arm::Status;
 
 /// All that belongs to the person's left arm: orange.
 pub const LEFT: Rgb<u8> = Rgb([236, 112, 0]);
@@ -27,24 +26,5 @@ pub fn of_side(side: Side) -> Rgb<u8> {
     match side {
         Side::Left => LEFT,
         Side::Right => RIGHT,
-    }
-}
-
-/// Word for `side`.
-#[must_use]
-pub fn side_name(side: Side) -> &'static str {
-    match side {
-        Side::Left => "left",
-        Side::Right => "right",
-    }
-}
-
-/// Word for `status`.
-#[must_use]
-pub fn status_name(status: Status) -> &'static str {
-    match status {
-        Status::Tracking => "tracking",
-        Status::Predicted => "predicted",
-        Status::Lost => "lost",
     }
 }

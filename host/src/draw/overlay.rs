@@ -1,9 +1,10 @@
 //! One frame with all that the arm tracker knew and found.
 
-use super::colour::{BLOB, EDGE, INK, SHADE, SKIN, of_side, side_name, status_name};
+use super::colour::{BLOB, EDGE, INK, SHADE, SKIN, of_side};
 use super::lettering::Lettering;
 use super::stroke::{Stroke, disc, line, tint, tint_rectangle};
 use super::top_view;
+use crate::wording::{side_name, status_name};
 use image::{GrayImage, Rgb, RgbImage};
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;

@@ -2,7 +2,7 @@
 
 use super::body::ArmJoints;
 use crate::motion::ArmSide;
-use crate::track::side_name;
+use crate::wording::side_name;
 use sinew_core::camera::{Camera, Pixel};
 use std::fmt::Write;
 

@@ -12,4 +12,4 @@ pub use arms::{ArmSet, ArmView, SideChoice};
 pub use input::{FrameFolder, SkippedImage};
 pub use report::{Inputs, RunReport, StatusCounts};
 pub use run::{Event, Interrupted, RATES_HZ, RunOutcome, TrackOptions, TrackRun};
-pub use table::{HEADER, TrackRow, side_name};
+pub use table::{HEADER, TrackRow};

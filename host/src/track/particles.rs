@@ -1,7 +1,7 @@
 //! The rows of `particles.csv`: every particle of every frame.
 
 use super::arms::ArmView;
-use super::table::side_name;
+use crate::wording::side_name;
 use sinew_core::camera::Camera;
 
 /// Column names of `particles.csv`.

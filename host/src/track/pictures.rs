@@ -1,11 +1,11 @@
 //! The pictures of a run: an overlay a frame, and the contact sheet.
 
 use super::arms::{ArmSet, ArmView};
-use super::table::{side_name, status_name};
 use crate::draw::contact_sheet::ContactSheet;
 use crate::draw::overlay::{Overlay, OverlayArm, OverlayBlob, draw};
 use crate::frames::FrameView;
 use crate::output::OutputDir;
+use crate::wording::{side_name, status_name};
 use anyhow::Result;
 use image::RgbImage;
 use rayon::prelude::*;

@@ -2,7 +2,7 @@
 
 use super::input::SkippedImage;
 use super::run::TrackOptions;
-use super::table::{side_name, status_name};
+use crate::wording::{side_name, status_name};
 use serde::Serialize;
 use sinew_core::tracker::arm::{ArmEstimate, Status};
 use std::collections::BTreeMap;

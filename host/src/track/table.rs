@@ -1,9 +1,9 @@
 //! The rows of `track.csv`.
 
 use super::arms::ArmView;
+use crate::wording::{side_name, status_name};
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::Vec3;
-use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::Status;
 
 /// Column names of `track.csv`.
@@ -56,25 +56,6 @@ pub struct TrackRow {
     pub blob_count: Option<usize>,
     /// Blobs that found no room.
     pub dropped_blobs: u32,
-}
-
-/// Word for a side in tables.
-#[must_use]
-pub fn side_name(side: Side) -> &'static str {
-    match side {
-        Side::Left => "left",
-        Side::Right => "right",
-    }
-}
-
-/// Word for a status in tables.
-#[must_use]
-pub fn status_name(status: Status) -> &'static str {
-    match status {
-        Status::Tracking => "tracking",
-        Status::Predicted => "predicted",
-        Status::Lost => "lost",
-    }
 }
 
 impl TrackRow {

@@ -16,12 +16,7 @@ const MIN_LIMB_IMAGE_PX: f32 = 6.0;
 impl FrameContext<'_> {
     /// Images of the joints of `particle`; `None` where one of them lies behind the camera.
     pub fn image_of(&self, particle: &Particle) -> Option<ArmImagePoints> {
-        let camera = self.model.camera();
-        Some(ArmImagePoints {
-            shoulder: camera.project(&self.shoulder_m)?,
-            elbow: camera.project(&particle.elbow_m)?,
-            hand: camera.project(&particle.hand_m)?,
-        })
+        self.model.image_points(&self.shoulder_m, &particle.elbow_m, &particle.hand_m)
     }
 
     /// ln of the particle's weight, up to a constant of the frame.

@@ -7,7 +7,6 @@
 use super::estimate::ArmJoints;
 use super::frame::ArmImage;
 use super::propose::FrameContext;
-use super::step::image_points;
 use crate::correction::elbow::nearest_elbow;
 use crate::math::max;
 use crate::observation::hough::dynamic_hough;
@@ -85,7 +84,8 @@ fn measure(
     stream: &mut Stream,
 ) -> LimbDensities {
     let options = context.model.options();
-    let Some(points) = image_points(context.model, arm) else { return *before };
+    let points = context.model.image_points(&arm.shoulder_m, &arm.elbow_m, &arm.hand_m);
+    let Some(points) = points else { return *before };
     let band_px = options.limb_band_m * context.model.camera().focal_px() / max(arm.elbow_m.z, 0.1);
     let pixels = split(edges, &points, band_px);
     let mut density = |pixels: &[EdgePixel], before: OrientationDensity| {

@@ -7,6 +7,7 @@ use crate::error::ParameterError;
 use crate::kinematics::forward::posture;
 use crate::math::{Vec3, max, sin_cos, sqrt};
 use crate::observation::candidate::HandCandidate;
+use crate::observation::limbs::ArmImagePoints;
 use crate::skeleton::arm::{ARM_ANGLES, ARM_BONES, ArmAngles, ArmGeometry, FOREARM, UPPER_ARM};
 use crate::skeleton::{Side, Skeleton};
 
@@ -79,6 +80,16 @@ impl ArmModel {
     pub fn elbow_and_hand(&self, shoulder_m: &Vec3, angles_rad: &ArmAngles) -> (Vec3, Vec3) {
         let there = posture(&self.skeleton, shoulder_m, angles_rad);
         (there.ends[UPPER_ARM], there.ends[FOREARM])
+    }
+
+    /// Images of shoulder, elbow and hand; `None` where one lies behind the camera.
+    #[must_use]
+    pub fn image_points(&self, shoulder_m: &Vec3, elbow_m: &Vec3, hand_m: &Vec3) -> Option<ArmImagePoints> {
+        Some(ArmImagePoints {
+            shoulder: self.camera.project(shoulder_m)?,
+            elbow: self.camera.project(elbow_m)?,
+            hand: self.camera.project(hand_m)?,
+        })
     }
 
     /// Distance from a blob's centre within which a hand lies at that blob, pixels: the radius of the disc of its area,

@@ -6,12 +6,11 @@ use super::limbs::{self, LimbDensities, LimbHypotheses};
 use super::memory::BlobMemory;
 use super::model::ArmModel;
 use super::propose::FrameContext;
-use crate::camera::Pixel;
+use crate::camera::Ray;
 use crate::correction::allocation::allot;
 use crate::error::{ParameterError, Rule};
 use crate::math::{Vec3, clamp, exp, length, max};
 use crate::observation::candidate::HandCandidate;
-use crate::observation::limbs::ArmImagePoints;
 use crate::observation::orientation::OrientationDensity;
 use crate::particle::Weights;
 use crate::particle::resampling::{permute, systematic};
@@ -128,12 +127,21 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     pub fn predicted_hand(&self, model: &ArmModel, timestamp_us: u64) -> (Vec3, f32) {
         let dt_s = self.elapsed_s(timestamp_us);
         let options = model.options();
-        if !self.ever_seen || self.unseen_s > options.lost_after_s {
+        if !self.knows_hand(model) {
             return (model.elbow_and_hand(&self.estimate.shoulder_m, &model.waiting_pose()).1, WAITING_STD_M);
         }
-        let hand = self.estimate.hand_m + self.hand_velocity_m_per_s * (options.velocity_persistence * dt_s);
         let std_m = options.hand_std_m_per_sqrt_s * crate::math::sqrt(dt_s + self.unseen_s);
-        (hand, std_m)
+        (self.extrapolated_hand_m(model, dt_s), std_m)
+    }
+
+    /// Whether a blob carried the estimate so recently that it still says where the hand is.
+    fn knows_hand(&self, model: &ArmModel) -> bool {
+        self.ever_seen && self.unseen_s <= model.options().lost_after_s
+    }
+
+    /// The last estimate's hand, moved on by its velocity.
+    fn extrapolated_hand_m(&self, model: &ArmModel, dt_s: f32) -> Vec3 {
+        self.estimate.hand_m + self.hand_velocity_m_per_s * (model.options().velocity_persistence * dt_s)
     }
 
     /// Answers one frame: the algorithm box of the arm paper, joined with PIK.
@@ -195,12 +203,14 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         candidates: Vec<HandCandidate, MAX_CANDIDATES>,
         dt_s: f32,
     ) -> FrameContext<'a> {
+        let rays: Vec<Ray, MAX_CANDIDATES> =
+            candidates.iter().map(|candidate| model.camera().back_project(candidate.centre)).collect();
         let mut counts = [0; MAX_CANDIDATES];
         let mut free = self.weights.len();
         let mut chances = [0.0; MAX_CANDIDATES];
         if model.options().variant.is_blob_driven() {
-            for (chance, candidate) in chances.iter_mut().zip(&candidates) {
-                *chance = self.chance(model, candidate, dt_s);
+            for ((chance, candidate), ray) in chances.iter_mut().zip(&candidates).zip(&rays) {
+                *chance = self.chance(model, candidate, ray, dt_s);
             }
             free = allot(self.weights.len(), &chances, &mut counts);
         }
@@ -212,7 +222,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             unseen_s: self.unseen_s,
             hand_velocity_m_per_s: self.hand_velocity_m_per_s,
             elbow_velocity_m_per_s: self.elbow_velocity_m_per_s,
-            rays: candidates.iter().map(|candidate| model.camera().back_project(candidate.centre)).collect(),
+            rays,
             candidates,
             counts,
             free,
@@ -222,16 +232,14 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
 
     /// Chance of a candidate to be the hand: its likelihood, less where it was not the hand before, less where it is far
     /// from what the last estimate lets expect.
-    fn chance(&self, model: &ArmModel, candidate: &HandCandidate, dt_s: f32) -> f32 {
+    fn chance(&self, model: &ArmModel, candidate: &HandCandidate, ray: &Ray, dt_s: f32) -> f32 {
         let options = model.options();
         let mut chance = candidate.likelihood;
         if let Some(memory) = &options.blob_memory {
             chance *= self.memory.share(candidate.centre, model.cluster_radius_px(candidate), memory);
         }
-        let known = self.ever_seen && self.unseen_s <= options.lost_after_s;
-        if let Some(gate) = options.gate.filter(|_| known) {
-            let ray = model.camera().back_project(candidate.centre);
-            let hand_m = self.estimate.hand_m + self.hand_velocity_m_per_s * (options.velocity_persistence * dt_s);
+        if let Some(gate) = options.gate.filter(|_| self.knows_hand(model)) {
+            let hand_m = self.extrapolated_hand_m(model, dt_s);
             let miss_m = length(&(ray.project(&hand_m) - hand_m));
             let reach_m = gate.allotment_reach * (gate.std_m + gate.growth_m_per_s * self.unseen_s);
             chance *= exp(-0.5 * miss_m * miss_m / (reach_m * reach_m)) * (1.0 - FAR_SHARE) + FAR_SHARE;
@@ -310,18 +318,5 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     }
 }
 
-/// Images of an arm's joints; `None` where one lies behind the camera.
-pub(super) fn image_points(model: &ArmModel, joints: &ArmJoints) -> Option<ArmImagePoints> {
-    let project = |point: &Vec3| -> Option<Pixel> { model.camera().project(point) };
-    Some(ArmImagePoints {
-        shoulder: project(&joints.shoulder_m)?,
-        elbow: project(&joints.elbow_m)?,
-        hand: project(&joints.hand_m)?,
-    })
-}
-
-/// An arm's whole state with 50 particles fits a small device.
-#[cfg(target_pointer_width = "32")]
-const _: () = assert!(size_of::<ArmTracker<50>>() <= 16 * 1024);
-#[cfg(not(target_pointer_width = "32"))]
+// An arm's whole state with 50 particles fits a small device.
 const _: () = assert!(size_of::<ArmTracker<50>>() <= 16 * 1024);
