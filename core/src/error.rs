@@ -24,6 +24,10 @@ pub enum Rule {
     OrderedInterval,
     /// A symmetric matrix has to be positive definite.
     PositiveDefinite,
+    /// A symmetric matrix must have no negative eigenvalue.
+    PositiveSemiDefinite,
+    /// A table of indices has to be its own inverse (left and right).
+    SelfInverse,
     /// A collection needs at least one element.
     NotEmpty,
     /// A collection holds more elements than the capacity it is meant for.
@@ -49,6 +53,8 @@ impl fmt::Display for Rule {
             Self::Within { low, high } => write!(formatter, "must lie from {low} to {high}"),
             Self::OrderedInterval => write!(formatter, "must have its lower end below its upper end"),
             Self::PositiveDefinite => write!(formatter, "must be positive definite"),
+            Self::PositiveSemiDefinite => write!(formatter, "must be positive semi-definite"),
+            Self::SelfInverse => write!(formatter, "must be its own inverse"),
             Self::NotEmpty => write!(formatter, "must not be empty"),
             Self::Capacity { capacity } => write!(formatter, "must hold at most {capacity} elements"),
             Self::SameLength { expected } => write!(formatter, "must have length {expected}"),

@@ -4,6 +4,7 @@
 pub mod angle;
 pub mod camera;
 pub mod correction;
+pub mod cyclic;
 pub mod error;
 pub mod kinematics;
 pub mod math;

@@ -1,7 +1,9 @@
 //! What a body is: rigid bones in a tree, their joints and limits. Immutable; poses are small arrays of angles.
 
 pub mod arm;
+pub mod stick_figure;
 pub mod tree;
 
 pub use arm::{ArmGeometry, Side};
+pub use stick_figure::{StickFigure, StickJoint};
 pub use tree::{Bone, Joint, Limit, Skeleton};

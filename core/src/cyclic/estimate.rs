@@ -1,0 +1,36 @@
+//! What every cyclic filter answers after a frame.
+
+/// Pose, phase and how sure they are. `N` is a capacity; entries beyond the model's angles are zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CyclicEstimate<const N: usize> {
+    /// Angles in (-pi, pi].
+    pub angles_rad: [f32; N],
+    /// Whole turns of each angle since the start: the unwrapped angle is `angles_rad` + 2 pi `turns`.
+    pub turns: [i32; N],
+    /// Variance of each angle, rad^2.
+    pub angle_variance_rad2: [f32; N],
+    /// Position c in the cycle, [0, 1).
+    pub cycle_position: f32,
+    /// Variance of c, cycles^2.
+    pub cycle_position_variance: f32,
+    /// Velocity v through the cycle, cycles per frame of the model's rate.
+    pub cycle_velocity_per_frame: f32,
+    /// Variance of v.
+    pub cycle_velocity_variance: f32,
+    /// Natural logarithm of the density of this frame's measurement given those before; 0 without a measurement.
+    pub log_likelihood: f32,
+    /// Whether this frame's measurement is too far from the prediction to belong to it (innovation gate).
+    pub outlier: bool,
+}
+
+impl<const N: usize> CyclicEstimate<N> {
+    /// Cycles per minute at `rate_hz` frames per second, and their standard deviation.
+    #[must_use]
+    pub fn cadence_per_min(&self, rate_hz: f32) -> (f32, f32) {
+        let per_minute = 60.0 * rate_hz;
+        (
+            self.cycle_velocity_per_frame * per_minute,
+            crate::math::sqrt(crate::math::max(self.cycle_velocity_variance, 0.0)) * per_minute,
+        )
+    }
+}

@@ -1,0 +1,197 @@
+//! The model between its stored positions: linear along the cycle, which closes on itself.
+
+use super::MotionModel;
+use super::phase::wrap_position;
+use super::semi_definite::packed_len;
+use crate::math::min;
+use core::f32::consts::TAU;
+
+/// A cycle position as two neighbouring stored positions and the part of the way between them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CyclePoint {
+    /// Index of the stored position at or before the point.
+    pub before: usize,
+    /// Index of the stored position after it; 0 follows the last.
+    pub after: usize,
+    /// Part of the way from `before` to `after`, in [0, 1].
+    pub fraction: f32,
+}
+
+impl MotionModel<'_> {
+    /// Where cycle position `position` (any real number, wrapped) lies between the stored ones.
+    #[inline]
+    #[must_use]
+    pub fn point(&self, position: f32) -> CyclePoint {
+        let count = self.position_count();
+        let along = wrap_position(position) * count as f32;
+        let before = (along as usize).min(count - 1);
+        let fraction = min(along - before as f32, 1.0);
+        CyclePoint { before, after: if before + 1 == count { 0 } else { before + 1 }, fraction }
+    }
+
+    /// Mean acceleration, rad per reference frame^2; entries beyond the model's angles are zero.
+    #[inline]
+    #[must_use]
+    pub fn mean_acceleration<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
+        self.row(self.parts().mean_acceleration, point)
+    }
+
+    /// Mean velocity, rad per reference frame; entries beyond the model's angles are zero.
+    #[inline]
+    #[must_use]
+    pub fn mean_velocity<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
+        self.row(self.parts().mean_velocity, point)
+    }
+
+    /// Mean pose, radians, unwrapped along the cycle (not in (-pi, pi]); entries beyond the model's angles are zero.
+    ///
+    /// From the last stored position on it leads to the first one plus the angle's turns.
+    #[must_use]
+    pub fn mean_pose_rad<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
+        let mut pose = self.row(self.parts().mean_pose_rad, point);
+        if point.after == 0 {
+            for (angle, &turns) in pose.iter_mut().zip(self.parts().turns_per_cycle) {
+                *angle += point.fraction * f32::from(turns) * TAU;
+            }
+        }
+        pose
+    }
+
+    /// Standard deviation of each angle about the mean cycle, radians; zero where the model has none.
+    #[must_use]
+    pub fn deviation_std_rad<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
+        self.row(self.parts().deviation.std_rad, point)
+    }
+
+    /// d mu / dc: slope of the mean acceleration by cycle position, rad per reference frame^2 and cycle.
+    #[must_use]
+    pub fn mean_acceleration_slope<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
+        self.slope(self.parts().mean_acceleration, point)
+    }
+
+    /// Slope of the mean velocity by cycle position, rad per reference frame and cycle.
+    #[must_use]
+    pub fn mean_velocity_slope<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
+        self.slope(self.parts().mean_velocity, point)
+    }
+
+    /// Slope of the mean pose by cycle position, rad per cycle.
+    #[must_use]
+    pub fn mean_pose_slope<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
+        let mut slope = self.slope(self.parts().mean_pose_rad, point);
+        if point.after == 0 {
+            for (value, &turns) in slope.iter_mut().zip(self.parts().turns_per_cycle) {
+                *value += f32::from(turns) * TAU * self.position_count() as f32;
+            }
+        }
+        slope
+    }
+
+    /// Writes the covariance of the acceleration, rad^2 per reference frame^4, as a packed lower triangle.
+    #[inline]
+    pub fn acceleration_covariance(&self, point: CyclePoint, packed: &mut [f32]) {
+        let (before, after) = self.covariance_pair(point);
+        for ((value, &a), &b) in packed.iter_mut().zip(before).zip(after) {
+            *value = a + point.fraction * (b - a);
+        }
+    }
+
+    /// The packed covariances stored on both sides of a point.
+    #[inline]
+    #[must_use]
+    pub fn covariance_pair(&self, point: CyclePoint) -> (&[f32], &[f32]) {
+        let packed = packed_len(self.angle_count());
+        let all = self.parts().acceleration_covariance;
+        (row_of(all, point.before, packed), row_of(all, point.after, packed))
+    }
+
+    #[inline]
+    fn row<const N: usize>(&self, table: &[f32], point: CyclePoint) -> [f32; N] {
+        let columns = self.angle_count();
+        let mut values = [0.0; N];
+        let neighbours = row_of(table, point.before, columns).iter().zip(row_of(table, point.after, columns));
+        for (value, (&a, &b)) in values.iter_mut().zip(neighbours) {
+            *value = a + point.fraction * (b - a);
+        }
+        values
+    }
+
+    #[inline]
+    fn slope<const N: usize>(&self, table: &[f32], point: CyclePoint) -> [f32; N] {
+        let columns = self.angle_count();
+        let mut values = [0.0; N];
+        let neighbours = row_of(table, point.before, columns).iter().zip(row_of(table, point.after, columns));
+        for (value, (&a, &b)) in values.iter_mut().zip(neighbours) {
+            *value = (b - a) * self.position_count() as f32;
+        }
+        values
+    }
+}
+
+#[inline]
+fn row_of(table: &[f32], row: usize, columns: usize) -> &[f32] {
+    table.get(row * columns..(row + 1) * columns).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::model::{ModelParts, MotionModel};
+    use super::super::{Deviation, phase::wrap_position};
+    use core::f32::consts::TAU;
+    use proptest::prelude::*;
+
+    /// One angle that swings as a sine, one that winds once a cycle.
+    fn tables() -> ([f32; 80], [f32; 120]) {
+        let mut pose = [0.0; 80];
+        let mut covariance = [0.0; 120];
+        for i in 0..40 {
+            let phase = i as f32 / 40.0;
+            pose[2 * i] = (TAU * phase).sin();
+            pose[2 * i + 1] = TAU * phase + 0.5;
+            covariance[3 * i] = 1.0 + phase;
+            covariance[3 * i + 2] = 1.0;
+        }
+        (pose, covariance)
+    }
+
+    fn model<'a>(pose: &'a [f32], covariance: &'a [f32]) -> MotionModel<'a> {
+        MotionModel::new(ModelParts {
+            angle_count: 2,
+            mean_acceleration: pose,
+            acceleration_covariance: covariance,
+            mean_pose_rad: pose,
+            mean_velocity: pose,
+            turns_per_cycle: &[0, 1],
+            mean_duration_frames: 70.0,
+            rate_hz: 60.0,
+            deviation: Deviation::default(),
+        })
+        .unwrap()
+    }
+
+    proptest! {
+        #[test]
+        fn poses_follow_the_curves_and_slopes_their_differences(position in -3.0_f32..3.0) {
+            let (pose, covariance) = tables();
+            let model = model(&pose, &covariance);
+            let c = wrap_position(position);
+            let point = model.point(position);
+            let [swing, wind] = model.mean_pose_rad::<2>(point);
+            prop_assert!((swing - (TAU * c).sin()).abs() < 4.0e-3);
+            prop_assert!((wind - (TAU * c + 0.5)).abs() < 1.0e-3);
+            let [swing_slope, wind_slope] = model.mean_pose_slope::<2>(point);
+            prop_assert!((swing_slope - TAU * (TAU * c).cos()).abs() < 0.6);
+            prop_assert!((wind_slope - TAU).abs() < 1.0e-3);
+        }
+    }
+
+    #[test]
+    fn the_covariance_is_interpolated_across_the_seam() {
+        let (pose, covariance) = tables();
+        let model = model(&pose, &covariance);
+        let mut packed = [0.0; 3];
+        model.acceleration_covariance(model.point(79.0 / 80.0), &mut packed);
+        assert!((packed[0] - 0.5 * (1.0 + 1.975)).abs() < 1.0e-4, "{packed:?}");
+        assert_eq!(model.mean_acceleration::<3>(model.point(0.0)), [0.0, 0.5, 0.0], "a greater capacity is filled up");
+    }
+}

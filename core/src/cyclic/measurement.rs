@@ -1,0 +1,120 @@
+//! What a frame says about the pose: any subset of the angles, each with its standard deviation.
+
+use crate::error::{ParameterError, positive};
+
+/// Longest step, frames at the model's rate: beyond it a tracker has forgotten the pose anyway, and work stays bounded.
+pub const MAX_STEP_FRAMES: f32 = 600.0;
+
+/// One frame's measured angles; `N` is a capacity, angles beyond the model's are ignored.
+///
+/// Invariant: the angles present are finite, all standard deviations finite and positive, the step in (0, 600] frames.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AngleMeasurement<const N: usize> {
+    angles_rad: [Option<f32>; N],
+    std_rad: [f32; N],
+    step_frames: f32,
+}
+
+impl<const N: usize> AngleMeasurement<N> {
+    /// No angle seen, one frame after the last.
+    #[must_use]
+    pub const fn nothing() -> Self {
+        Self { angles_rad: [None; N], std_rad: [1.0; N], step_frames: 1.0 }
+    }
+
+    /// `angles_rad` (any turn; NaN and infinity count as missing) with the same standard deviation for all.
+    ///
+    /// # Errors
+    /// `std_rad` has to be finite and positive.
+    pub fn new(angles_rad: &[Option<f32>; N], std_rad: f32) -> Result<Self, ParameterError> {
+        Self::with_std(angles_rad, &[std_rad; N])
+    }
+
+    /// `angles_rad` (any turn; NaN and infinity count as missing) with a standard deviation each.
+    ///
+    /// # Errors
+    /// Each `std_rad` has to be finite and positive.
+    pub fn with_std(angles_rad: &[Option<f32>; N], std_rad: &[f32; N]) -> Result<Self, ParameterError> {
+        for &std in std_rad {
+            positive("std_rad", std)?;
+        }
+        let angles_rad = angles_rad.map(|angle| angle.filter(|value| value.is_finite()));
+        Ok(Self { angles_rad, std_rad: *std_rad, step_frames: 1.0 })
+    }
+
+    /// The same, `step_frames` after the last measurement (frames at the model's rate).
+    ///
+    /// # Errors
+    /// The step has to be positive and at most [`MAX_STEP_FRAMES`].
+    pub fn after(mut self, step_frames: f32) -> Result<Self, ParameterError> {
+        positive("step_frames", step_frames)?;
+        self.step_frames = crate::error::within("step_frames", step_frames, 0.0, MAX_STEP_FRAMES)?;
+        Ok(self)
+    }
+
+    /// The angle at `index`, if it was seen.
+    #[inline]
+    #[must_use]
+    pub fn angle_rad(&self, index: usize) -> Option<f32> {
+        self.angles_rad.get(index).copied().flatten()
+    }
+
+    /// All angles.
+    #[inline]
+    #[must_use]
+    pub const fn angles_rad(&self) -> &[Option<f32>; N] {
+        &self.angles_rad
+    }
+
+    /// Standard deviation of each angle.
+    #[inline]
+    #[must_use]
+    pub const fn std_rad(&self) -> &[f32; N] {
+        &self.std_rad
+    }
+
+    /// Time since the last measurement (dt), frames at the model's rate.
+    #[inline]
+    #[must_use]
+    pub const fn step_frames(&self) -> f32 {
+        self.step_frames
+    }
+
+    /// Number of angles seen among the first `angle_count`.
+    #[must_use]
+    pub fn present(&self, angle_count: usize) -> usize {
+        self.angles_rad.iter().take(angle_count).flatten().count()
+    }
+
+    /// Whether the first `angle_count` angles are all missing.
+    #[must_use]
+    pub fn is_empty(&self, angle_count: usize) -> bool {
+        self.present(angle_count) == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Rule;
+
+    #[test]
+    fn what_is_not_a_number_counts_as_missing() {
+        let measurement = AngleMeasurement::new(&[Some(f32::NAN), Some(f32::INFINITY), Some(9.0), None], 0.1).unwrap();
+        assert_eq!(measurement.angles_rad(), &[None, None, Some(9.0), None]);
+        assert_eq!(measurement.present(4), 1);
+        assert!(measurement.is_empty(2));
+    }
+
+    #[test]
+    fn noise_and_step_have_to_be_positive() {
+        for std in [0.0, -1.0] {
+            assert_eq!(AngleMeasurement::new(&[None], std).unwrap_err().rule, Rule::Positive);
+        }
+        assert_eq!(AngleMeasurement::new(&[None], f32::NAN).unwrap_err().rule, Rule::Finite);
+        for step in [0.0, -1.0, f32::NAN, 601.0] {
+            assert!(AngleMeasurement::<1>::nothing().after(step).is_err(), "{step}");
+        }
+        assert_eq!(AngleMeasurement::<1>::nothing().after(2.5).unwrap().step_frames(), 2.5);
+    }
+}

@@ -1,0 +1,84 @@
+//! The numbers of a motion model as arrays of fixed size, to be placed in flash.
+
+use super::deviation::Deviation;
+use super::model::{ModelError, ModelParts, MotionModel};
+use super::semi_definite::packed_len;
+use crate::skeleton::stick_figure::HUMAN_ANGLES;
+
+/// Positions of the reference cycle in the paper.
+pub const PAPER_POSITIONS: usize = 100;
+
+/// A motion model of `ANGLES` angles and `POSITIONS` positions, `PACKED` = `ANGLES` (`ANGLES` + 1) / 2, as plain arrays.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelTable<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> {
+    /// See [`ModelParts::mean_acceleration`].
+    pub mean_acceleration: [[f32; ANGLES]; POSITIONS],
+    /// See [`ModelParts::acceleration_covariance`].
+    pub acceleration_covariance: [[f32; PACKED]; POSITIONS],
+    /// See [`ModelParts::mean_pose_rad`].
+    pub mean_pose_rad: [[f32; ANGLES]; POSITIONS],
+    /// See [`ModelParts::mean_velocity`].
+    pub mean_velocity: [[f32; ANGLES]; POSITIONS],
+    /// See [`Deviation::std_rad`].
+    pub deviation_std_rad: [[f32; ANGLES]; POSITIONS],
+    /// See [`Deviation::correlation_time_frames`].
+    pub correlation_time_frames: [f32; ANGLES],
+    /// See [`ModelParts::turns_per_cycle`].
+    pub turns_per_cycle: [i8; ANGLES],
+    /// See [`ModelParts::mean_duration_frames`].
+    pub mean_duration_frames: f32,
+    /// See [`ModelParts::rate_hz`].
+    pub rate_hz: f32,
+}
+
+/// The table of the paper's figure and reference cycle.
+pub type HumanModelTable = ModelTable<PAPER_POSITIONS, HUMAN_ANGLES, { packed_len(HUMAN_ANGLES) }>;
+
+const _: () = assert!(size_of::<HumanModelTable>() <= 64 * 1024, "the model has to fit 64 KiB of flash");
+
+impl<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> ModelTable<POSITIONS, ANGLES, PACKED> {
+    /// Checks the numbers and lends them as a model.
+    ///
+    /// # Errors
+    /// Those of [`MotionModel::new`].
+    pub fn model(&self) -> Result<MotionModel<'_>, ModelError> {
+        MotionModel::new(ModelParts {
+            angle_count: ANGLES,
+            mean_acceleration: self.mean_acceleration.as_flattened(),
+            acceleration_covariance: self.acceleration_covariance.as_flattened(),
+            mean_pose_rad: self.mean_pose_rad.as_flattened(),
+            mean_velocity: self.mean_velocity.as_flattened(),
+            turns_per_cycle: &self.turns_per_cycle,
+            mean_duration_frames: self.mean_duration_frames,
+            rate_hz: self.rate_hz,
+            deviation: Deviation {
+                std_rad: self.deviation_std_rad.as_flattened(),
+                correlation_time_frames: &self.correlation_time_frames,
+            },
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_static_table_lends_a_model() {
+        static TABLE: ModelTable<5, 1, 1> = ModelTable {
+            mean_acceleration: [[0.0]; 5],
+            acceleration_covariance: [[1.0]; 5],
+            mean_pose_rad: [[0.5]; 5],
+            mean_velocity: [[0.0]; 5],
+            deviation_std_rad: [[0.1]; 5],
+            correlation_time_frames: [30.0],
+            turns_per_cycle: [0],
+            mean_duration_frames: 60.0,
+            rate_hz: 60.0,
+        };
+        let model = TABLE.model().unwrap();
+        assert_eq!((model.angle_count(), model.position_count()), (1, 5));
+        let wrong = ModelTable::<5, 1, 1> { acceleration_covariance: [[-1.0]; 5], ..TABLE.clone() };
+        assert_eq!(wrong.model().unwrap_err().position, Some(0));
+    }
+}

@@ -1,0 +1,51 @@
+//! The cycle position c as a point on a circle of circumference one.
+
+use crate::math::floor;
+
+/// `position` moved by whole cycles into [0, 1); 0 for NaN and infinity.
+#[inline]
+#[must_use]
+pub fn wrap_position(position: f32) -> f32 {
+    let wrapped = position - floor(position);
+    if (0.0..1.0).contains(&wrapped) { wrapped } else { 0.0 }
+}
+
+/// The way from `from` to `to` by the shorter arc, in (-0.5, 0.5] cycles.
+#[inline]
+#[must_use]
+pub fn position_difference(to: f32, from: f32) -> f32 {
+    let difference = wrap_position(to - from);
+    if difference > 0.5 { difference - 1.0 } else { difference }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_wrapped_position_lies_in_the_cycle_and_differs_by_whole_cycles(position in -1.0e4_f32..1.0e4) {
+            let wrapped = wrap_position(position);
+            prop_assert!((0.0..1.0).contains(&wrapped));
+            let cycles = position - wrapped;
+            prop_assert!((cycles - cycles.round()).abs() < 2.0e-3);
+        }
+
+        #[test]
+        fn the_difference_leads_from_one_position_to_the_other(from in 0.0_f32..1.0, to in 0.0_f32..1.0) {
+            let difference = position_difference(to, from);
+            prop_assert!(difference > -0.5 && difference <= 0.5);
+            prop_assert!(position_difference(wrap_position(from + difference), to).abs() < 1.0e-6);
+        }
+    }
+
+    #[test]
+    fn the_seam_is_no_edge() {
+        assert!((position_difference(0.02, 0.98) - 0.04).abs() < 1.0e-6);
+        assert!((position_difference(0.98, 0.02) + 0.04).abs() < 1.0e-6);
+        assert_eq!(wrap_position(1.0), 0.0);
+        assert_eq!(wrap_position(-1.0e-9), 0.0, "rounds up to one, which is zero again");
+        assert_eq!(wrap_position(f32::NAN), 0.0);
+    }
+}
