@@ -2,6 +2,7 @@
 
 pub mod cli;
 pub mod config;
+pub mod cyclic;
 pub mod draw;
 pub mod evaluate;
 pub mod frames;

@@ -1,0 +1,59 @@
+//! What is wrong with a table, a cut list or a model, and where.
+
+use std::path::{Path, PathBuf};
+
+/// Input of the cyclic tracker that cannot be read or used.
+#[derive(Debug, thiserror::Error)]
+pub enum CyclicError {
+    /// The operating system refused the file.
+    #[error("`{}` cannot be read ({source}); check the path", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The operating system's reason.
+        source: std::io::Error,
+    },
+    /// A line breaks a rule of the format.
+    #[error("{}:{line}: {rule}", path.display())]
+    Broken {
+        /// The file.
+        path: PathBuf,
+        /// Line, counted from 1.
+        line: u64,
+        /// The rule, with what was found instead.
+        rule: String,
+    },
+    /// The file as a whole cannot be used.
+    #[error("`{}`: {rule}", path.display())]
+    Unusable {
+        /// The file.
+        path: PathBuf,
+        /// The rule it broke and the remedy.
+        rule: String,
+    },
+    /// A value that was handed in cannot be used.
+    #[error("`{parameter}` {rule}")]
+    Parameter {
+        /// Its name.
+        parameter: &'static str,
+        /// The rule it broke.
+        rule: String,
+    },
+}
+
+impl CyclicError {
+    pub(crate) fn broken(path: &Path, line: u64, rule: impl Into<String>) -> Self {
+        Self::Broken { path: path.to_path_buf(), line, rule: rule.into() }
+    }
+
+    pub(crate) fn parameter(parameter: &'static str, rule: impl Into<String>) -> Self {
+        Self::Parameter { parameter, rule: rule.into() }
+    }
+}
+
+/// Reads a text file; a byte order mark is dropped, bytes that are not UTF-8 are replaced.
+pub(crate) fn read_text(path: &Path) -> Result<String, CyclicError> {
+    let bytes = std::fs::read(path).map_err(|source| CyclicError::Unreadable { path: path.to_path_buf(), source })?;
+    let text = String::from_utf8_lossy(&bytes);
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned())
+}
