@@ -18,6 +18,7 @@ pub mod stdout;
 pub mod track;
 pub mod track_arm;
 pub mod train;
+pub mod train_cyclic;
 pub mod train_skin;
 
 use clap::{Parser, Subcommand};

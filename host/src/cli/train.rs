@@ -1,5 +1,6 @@
 //! `sinew train ...`
 
+use super::train_cyclic::{self, TrainCyclicArgs};
 use super::train_skin::{self, TrainSkinArgs};
 use clap::Subcommand;
 
@@ -8,6 +9,8 @@ use clap::Subcommand;
 pub enum Train {
     /// Train a skin model from labelled pixels or from images with masks.
     Skin(TrainSkinArgs),
+    /// Train a model of a cyclic motion from cut cycles of angle tables.
+    Cyclic(TrainCyclicArgs),
 }
 
 /// Runs the chosen training.
@@ -17,5 +20,6 @@ pub enum Train {
 pub fn run(train: &Train) -> anyhow::Result<()> {
     match train {
         Train::Skin(args) => train_skin::run(args),
+        Train::Cyclic(args) => train_cyclic::run(args),
     }
 }

@@ -1,7 +1,15 @@
 //! Cyclic motion on the host: angle tables, training, cutting of cycles, and what people read off them.
 
 pub mod angle_table;
+pub mod cuts;
 pub mod error;
+pub mod model;
+pub mod model_file;
+pub mod spline;
+pub mod training;
+pub mod turns;
 
 pub use angle_table::{AngleRow, AngleTable};
+pub use cuts::{Cut, CutList};
 pub use error::CyclicError;
+pub use model::CyclicModel;

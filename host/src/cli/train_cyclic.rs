@@ -1,0 +1,52 @@
+//! `sinew train cyclic`: a motion model from cut cycles.
+
+use crate::cyclic::cuts::CutList;
+use crate::cyclic::model_file;
+use crate::cyclic::training::{TrainingOptions, train};
+use crate::output::{check_writable_file, write_atomically};
+use anyhow::Result;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Options of `sinew train cyclic`.
+#[derive(Debug, Args)]
+pub struct TrainCyclicArgs {
+    /// Cycles to train on: a CSV file `file,start_frame,end_frame`, end excluded, file relative to CUTS or absolute.
+    #[arg(long, value_name = "CUTS.csv")]
+    pub cuts: PathBuf,
+    /// Model file to write.
+    #[arg(long, value_name = "MODEL.json")]
+    pub out: PathBuf,
+    /// Positions of the reference cycle, 10 to 1000.
+    #[arg(long, default_value_t = 100)]
+    pub length: usize,
+    /// Frames per second of the tables.
+    #[arg(long, value_name = "HZ", default_value_t = 60.0)]
+    pub rate: f64,
+}
+
+/// Trains, writes the model, says what it was made of.
+///
+/// # Errors
+/// Bad input, or an output that cannot be written.
+pub fn run(args: &TrainCyclicArgs) -> Result<()> {
+    check_writable_file(&args.out)?;
+    let list = CutList::read(&args.cuts)?;
+    let model = train(&list, TrainingOptions { length: args.length, rate_hz: args.rate })?;
+    let json = model_file::to_json(&model)?;
+    write_atomically(&args.out, |writer| Ok(writer.write_all(json.as_bytes())?))?;
+    let (numbers, on) = (model.numbers(), model.trained_on());
+    let report = format!(
+        "motion model of {} positions from {} cycles of {} tables\n\
+         mean cycle: {:.1} frames at {} frames per second, {:.1} cycles per minute\n\
+         wrote {}\n",
+        args.length,
+        on.cycles,
+        on.tables.len(),
+        numbers.mean_duration_frames,
+        numbers.rate_hz,
+        60.0 * numbers.rate_hz / numbers.mean_duration_frames,
+        args.out.display()
+    );
+    super::stdout::write_all(report.as_bytes())
+}

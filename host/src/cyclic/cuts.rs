@@ -1,0 +1,175 @@
+//! Cut lists: which frames of which angle tables are one cycle each.
+
+use super::error::{CyclicError, read_text};
+use crate::output::write_atomically;
+use anyhow::Result;
+use std::path::{Path, PathBuf};
+
+/// Columns of a cut list.
+pub const COLUMNS: [&str; 3] = ["file", "start_frame", "end_frame"];
+
+/// One cycle.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Cut {
+    /// The table's name as the list has it: absolute, or relative to the list.
+    pub file: String,
+    /// First frame of the cycle.
+    pub start_frame: u64,
+    /// Frame after the last one: the first of the next cycle.
+    pub end_frame: u64,
+    /// Line of the list, from 1.
+    pub line: u64,
+}
+
+impl Cut {
+    /// Length of the cycle, frames.
+    #[must_use]
+    pub fn duration_frames(&self) -> u64 {
+        self.end_frame - self.start_frame
+    }
+}
+
+/// Cycles in the order of their list.
+///
+/// Invariants: at least one cut; each ends after it starts.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CutList {
+    /// Where the list lies, for messages and relative names.
+    path: PathBuf,
+    cuts: Vec<Cut>,
+}
+
+impl CutList {
+    /// Reads a list from a CSV file with the header `file,start_frame,end_frame`.
+    ///
+    /// # Errors
+    /// Names the file, the line and the rule that it broke.
+    pub fn read(path: &Path) -> Result<Self, CyclicError> {
+        Self::parse(&read_text(path)?, path)
+    }
+
+    /// Parses the text of a list that lies at `path`.
+    ///
+    /// # Errors
+    /// Names the file, the line and the rule that it broke.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, CyclicError> {
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .from_reader(text.as_bytes());
+        let mut cuts = Vec::new();
+        for (index, record) in reader.records().enumerate() {
+            let record = record.map_err(|error| CyclicError::broken(path, index as u64 + 1, error.to_string()))?;
+            let line = record.position().map_or(0, csv::Position::line);
+            if index > 0 {
+                cuts.push(cut(&record, line).map_err(|rule| CyclicError::broken(path, line, rule))?);
+            } else if record.iter().ne(COLUMNS) {
+                let rule = format!("the header has to be `{}`", COLUMNS.join(","));
+                return Err(CyclicError::broken(path, line, rule));
+            }
+        }
+        if cuts.is_empty() {
+            return Err(CyclicError::broken(
+                path,
+                1,
+                "the list is empty; give at least one row file,start_frame,end_frame",
+            ));
+        }
+        Ok(Self { path: path.to_path_buf(), cuts })
+    }
+
+    /// The cuts, at least one.
+    #[must_use]
+    pub fn cuts(&self) -> &[Cut] {
+        &self.cuts
+    }
+
+    /// Where the list lies.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Where the table of `cut` lies.
+    #[must_use]
+    pub fn table_path(&self, cut: &Cut) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(&cut.file)
+    }
+}
+
+fn cut(record: &csv::StringRecord, line: u64) -> Result<Cut, String> {
+    let [file, start, end] = record.iter().collect::<Vec<_>>()[..] else {
+        return Err(format!("a row needs 3 columns, found {}", record.len()));
+    };
+    let frame = |name: &str, cell: &str| -> Result<u64, String> {
+        cell.parse().map_err(|_| format!("`{name}` has to be a whole number from 0, found `{cell}`"))
+    };
+    let (start_frame, end_frame) = (frame("start_frame", start)?, frame("end_frame", end)?);
+    if file.is_empty() {
+        return Err("`file` is empty; name an angle table".into());
+    }
+    if end_frame <= start_frame {
+        return Err(format!("`end_frame` {end_frame} has to lie after `start_frame` {start_frame}"));
+    }
+    Ok(Cut { file: file.to_owned(), start_frame, end_frame, line })
+}
+
+/// Writes a cut list under a temporary name, then renames it.
+///
+/// # Errors
+/// Names the path with what the operating system refused.
+pub fn write(path: &Path, cuts: &[Cut]) -> Result<()> {
+    write_atomically(path, |output| {
+        let mut writer = csv::Writer::from_writer(output);
+        writer.write_record(COLUMNS)?;
+        for cut in cuts {
+            writer.write_record([&cut.file, &cut.start_frame.to_string(), &cut.end_frame.to_string()])?;
+        }
+        Ok(writer.flush()?)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(rows: &str) -> Result<CutList, CyclicError> {
+        CutList::parse(&format!("file,start_frame,end_frame\n{rows}"), Path::new("a/cuts.csv"))
+    }
+
+    #[test]
+    fn tables_are_found_beside_the_list_or_by_their_absolute_name() {
+        let list = parsed("t.csv,3,70\n/x/u.csv,0,1\n").unwrap();
+        let paths: Vec<PathBuf> = list.cuts().iter().map(|cut| list.table_path(cut)).collect();
+        assert_eq!(paths, [PathBuf::from("a/t.csv"), PathBuf::from("/x/u.csv")]);
+        assert_eq!((list.cuts()[0].duration_frames(), list.cuts()[1].line), (67, 3));
+    }
+
+    #[test]
+    fn a_list_survives_its_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cuts.csv");
+        let list = parsed("a b.csv,3,70\nt.csv,0,1\n").unwrap();
+        write(&path, list.cuts()).unwrap();
+        assert_eq!(CutList::read(&path).unwrap().cuts(), list.cuts());
+    }
+
+    #[test]
+    fn broken_lists_name_file_line_and_rule() {
+        let cases = [
+            ("t.csv,3\n", "a/cuts.csv:2: a row needs 3 columns, found 2"),
+            ("t.csv,3,x\n", "a/cuts.csv:2: `end_frame` has to be a whole number"),
+            ("t.csv,3,70\nt.csv,-3,70\n", "a/cuts.csv:3: `start_frame` has to be a whole number"),
+            ("t.csv,70,70\n", "a/cuts.csv:2: `end_frame` 70 has to lie after"),
+            (",3,70\n", "a/cuts.csv:2: `file` is empty"),
+            ("", "a/cuts.csv:1: the list is empty"),
+        ];
+        for (rows, message) in cases {
+            let found = parsed(rows).unwrap_err().to_string();
+            assert!(found.starts_with(message), "{found}");
+        }
+        let header = CutList::parse("t.csv,1,2\n", Path::new("c.csv")).unwrap_err().to_string();
+        assert!(header.starts_with("c.csv:1: the header has to be `file,start_frame,end_frame`"), "{header}");
+    }
+}

@@ -1,0 +1,207 @@
+//! Motion models as JSON files.
+
+use super::angle_table::ANGLES;
+use super::model::{CyclicModel, DeviationNumbers, ModelNumbers, TrainedOn};
+use anyhow::{Context, Result, ensure};
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
+use sinew_core::cyclic::semi_definite::packed_len;
+use sinew_core::skeleton::stick_figure::HUMAN;
+use std::fs;
+use std::path::Path;
+
+/// Value of the field `format`.
+pub const FORMAT: &str = "sinew-cyclic";
+/// Value of the field `version`.
+pub const VERSION: u64 = 1;
+/// Largest file that is taken for a model, bytes.
+const MAX_FILE_BYTES: u64 = 64 << 20;
+
+type Rows<T> = Vec<Vec<T>>;
+
+/// The file: one row a position in every table.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ModelFile<Table> {
+    format: String,
+    version: u64,
+    trained_on: TrainedOn,
+    rate_hz: f32,
+    mean_duration_frames: f32,
+    angles: Vec<String>,
+    turns_per_cycle: Vec<i8>,
+    mean_pose_rad: Table,
+    mean_velocity: Table,
+    mean_acceleration: Table,
+    acceleration_covariance: Table,
+    #[serde(default = "none", skip_serializing_if = "Option::is_none")]
+    deviation: Option<DeviationFile<Table>>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DeviationFile<Table> {
+    std_rad: Table,
+    correlation_time_frames: Vec<f32>,
+}
+
+fn none<Table>() -> Option<DeviationFile<Table>> {
+    None
+}
+
+/// The JSON text of a model, one line for each position of a table.
+///
+/// # Errors
+/// None in practice: all fields can be written.
+pub fn to_json(model: &CyclicModel) -> Result<String> {
+    let numbers = model.numbers();
+    let n = numbers.angle_count;
+    let file = ModelFile {
+        format: FORMAT.to_owned(),
+        version: VERSION,
+        trained_on: model.trained_on().clone(),
+        rate_hz: numbers.rate_hz,
+        mean_duration_frames: numbers.mean_duration_frames,
+        angles: HUMAN.angle_names().map(str::to_owned).collect(),
+        turns_per_cycle: numbers.turns_per_cycle.clone(),
+        mean_pose_rad: lines(&numbers.mean_pose_rad, n)?,
+        mean_velocity: lines(&numbers.mean_velocity, n)?,
+        mean_acceleration: lines(&numbers.mean_acceleration, n)?,
+        acceleration_covariance: lines(&numbers.acceleration_covariance, packed_len(n))?,
+        deviation: match &numbers.deviation {
+            None => None,
+            Some(deviation) => Some(DeviationFile {
+                std_rad: lines(&deviation.std_rad, n)?,
+                correlation_time_frames: deviation.correlation_time_frames.clone(),
+            }),
+        },
+    };
+    Ok(serde_json::to_string_pretty(&file)? + "\n")
+}
+
+/// Rows of `width` numbers, each on one line.
+fn lines(values: &[f32], width: usize) -> Result<Vec<Box<RawValue>>> {
+    values.chunks(width).map(|row| Ok(RawValue::from_string(serde_json::to_string(row)?)?)).collect()
+}
+
+/// Reads a model file.
+///
+/// # Errors
+/// Names the file, what is wrong with it, and how to make one.
+pub fn read(path: &Path) -> Result<CyclicModel> {
+    let remedy = || {
+        let path = path.display();
+        format!(
+            "`{path}` cannot be used as a motion model; make one with `sinew train cyclic --cuts CUTS.csv --out {path}`"
+        )
+    };
+    let load = || -> Result<CyclicModel> {
+        let metadata = fs::metadata(path)?;
+        ensure!(metadata.is_file(), "it is not a file");
+        ensure!(metadata.len() <= MAX_FILE_BYTES, "it is larger than {MAX_FILE_BYTES} bytes");
+        let bytes = fs::read(path)?;
+        parse(std::str::from_utf8(&bytes).ok().context("it is not a text file")?)
+    };
+    load().with_context(remedy)
+}
+
+/// Reads a model from JSON text.
+///
+/// # Errors
+/// Says which field is missing or has a value that cannot be used.
+pub fn parse(text: &str) -> Result<CyclicModel> {
+    let value: serde_json::Value = serde_json::from_str(text).context("it is not JSON")?;
+    let format = value.get("format").and_then(serde_json::Value::as_str).unwrap_or("missing");
+    ensure!(format == FORMAT, "its field `format` is {format}, but has to be {FORMAT}");
+    let version = value.get("version").map_or_else(|| "missing".to_owned(), ToString::to_string);
+    ensure!(
+        version == VERSION.to_string(),
+        "its field `version` is {version}, but this program reads version {VERSION}"
+    );
+    let file: ModelFile<Rows<f32>> = serde_json::from_value(value)?;
+    let wanted: Vec<&str> = HUMAN.angle_names().collect();
+    ensure!(file.angles == wanted, "its field `angles` has to be {}", wanted.join(", "));
+    let l = file.mean_acceleration.len();
+    let table = |name: &str, rows: Rows<f32>, width: usize| -> Result<Vec<f32>> {
+        ensure!(rows.len() == l, "`{name}` has {} rows, but `mean_acceleration` has {l}", rows.len());
+        if let Some((index, row)) = rows.iter().enumerate().find(|(_, row)| row.len() != width) {
+            anyhow::bail!("`{name}` has {} numbers in row {index}, but {width} are needed", row.len());
+        }
+        Ok(rows.concat())
+    };
+    let deviation = match file.deviation {
+        None => None,
+        Some(deviation) => Some(DeviationNumbers {
+            std_rad: table("deviation.std_rad", deviation.std_rad, ANGLES)?,
+            correlation_time_frames: deviation.correlation_time_frames,
+        }),
+    };
+    let numbers = ModelNumbers {
+        angle_count: ANGLES,
+        mean_acceleration: table("mean_acceleration", file.mean_acceleration, ANGLES)?,
+        acceleration_covariance: table("acceleration_covariance", file.acceleration_covariance, packed_len(ANGLES))?,
+        mean_pose_rad: table("mean_pose_rad", file.mean_pose_rad, ANGLES)?,
+        mean_velocity: table("mean_velocity", file.mean_velocity, ANGLES)?,
+        turns_per_cycle: file.turns_per_cycle,
+        mean_duration_frames: file.mean_duration_frames,
+        rate_hz: file.rate_hz,
+        deviation,
+    };
+    Ok(CyclicModel::new(numbers, file.trained_on)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn walking_json() -> String {
+        to_json(&CyclicModel::from_option("walking").unwrap()).unwrap()
+    }
+
+    fn refusal(text: &str) -> String {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("model.json");
+        fs::write(&path, text).unwrap();
+        let message = format!("{:#}", read(&path).unwrap_err());
+        assert!(message.contains("model.json") && message.contains("sinew train cyclic"), "{message}");
+        message
+    }
+
+    fn changed(change: impl FnOnce(&mut serde_json::Value)) -> String {
+        let mut value: serde_json::Value = serde_json::from_str(&walking_json()).unwrap();
+        change(&mut value);
+        refusal(&value.to_string())
+    }
+
+    #[test]
+    fn a_model_survives_its_file() {
+        let text = walking_json();
+        assert!(text.len() < 300 * 1024, "{} bytes", text.len());
+        assert_eq!(to_json(&parse(&text).unwrap()).unwrap(), text);
+    }
+
+    #[test]
+    fn what_is_no_model_is_refused_with_the_reason() {
+        assert!(refusal("no json").contains("not JSON"));
+        assert!(refusal("{}").contains("`format` is missing"));
+        assert!(changed(|v| v["version"] = 2.into()).contains("`version` is 2, but this program reads version 1"));
+        assert!(changed(|v| v["rate_hz"] = 0.into()).contains("`rate_hz`"));
+        assert!(
+            changed(|v| v["mean_pose_rad"][3] = vec![1.0].into()).contains("`mean_pose_rad` has 1 numbers in row 3")
+        );
+        assert!(
+            changed(|v| drop(v["mean_velocity"].as_array_mut().unwrap().pop())).contains("`mean_velocity` has 99 rows")
+        );
+        assert!(changed(|v| v["angles"][2] = "elbow".into()).contains("`angles` has to be neck, l_shoulder"));
+        assert!(changed(|v| v["mean_velocity"][1][1] = 1.0e39.into()).contains("`mean_velocity` at cycle position 1"));
+        assert!(changed(|v| v["unknown"] = 1.into()).contains("unknown"));
+    }
+
+    #[test]
+    fn an_indefinite_covariance_is_refused_with_its_place() {
+        let message = changed(|v| v["acceleration_covariance"][7][1] = 1.0.into());
+        assert!(message.contains("cycle position 7") && message.contains("positive semi-definite"), "{message}");
+        let negative = changed(|v| v["acceleration_covariance"][0][0] = (-1.0e-6).into());
+        assert!(negative.contains("cycle position 0") && negative.contains("positive semi-definite"), "{negative}");
+    }
+}

@@ -1,0 +1,141 @@
+//! Training of a motion model from cut cycles (cyclic paper, section 2.3).
+
+pub mod cycle;
+pub mod statistics;
+
+pub use cycle::TrainingCycle;
+
+use super::angle_table::{ANGLES, AngleTable};
+use super::cuts::CutList;
+use super::error::CyclicError;
+use super::model::{CyclicModel, ModelNumbers, TrainedOn};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// How to train.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrainingOptions {
+    /// Positions l of the reference cycle, 10 to 1000; the paper's is 100.
+    pub length: usize,
+    /// Frames per second of the tables, greater than zero.
+    pub rate_hz: f64,
+}
+
+impl Default for TrainingOptions {
+    fn default() -> Self {
+        Self { length: 100, rate_hz: 60.0 }
+    }
+}
+
+/// Trains a model on the cycles of `list`.
+///
+/// # Errors
+/// A table that cannot be read, a cut that cannot be used (named with the list's line), less than two cycles, or options
+/// out of their range.
+pub fn train(list: &CutList, options: TrainingOptions) -> Result<CyclicModel, CyclicError> {
+    if !(10..=1000).contains(&options.length) {
+        return Err(CyclicError::parameter("length", format!("has to lie from 10 to 1000, not {}", options.length)));
+    }
+    if !(options.rate_hz > 0.0 && options.rate_hz.is_finite()) {
+        return Err(CyclicError::parameter("rate", format!("has to be greater than zero, not {}", options.rate_hz)));
+    }
+    let cycles = read_cycles(list)?;
+    if cycles.len() < 2 {
+        let rule = "one training cycle only: how cycles differ (the covariance) is then not known; add a second row";
+        return Err(CyclicError::broken(list.path(), list.cuts()[0].line, rule));
+    }
+    let numbers = numbers(&cycles, options);
+    let mut tables: Vec<String> = list.cuts().iter().map(|cut| file_name(&cut.file)).collect();
+    tables.sort();
+    tables.dedup();
+    let trained_on = TrainedOn { tables, cycles: cycles.len() as u64, shrinkage: 0.0 };
+    CyclicModel::new(numbers, trained_on).map_err(|error| {
+        CyclicError::broken(list.path(), list.cuts()[0].line, format!("the cycles give no usable model: {error}"))
+    })
+}
+
+/// The cycles of `list` in its order.
+///
+/// # Errors
+/// A table that cannot be read, or a cut that cannot be used, named with the list's line.
+pub fn read_cycles(list: &CutList) -> Result<Vec<TrainingCycle>, CyclicError> {
+    let mut tables: BTreeMap<PathBuf, AngleTable> = BTreeMap::new();
+    let mut cycles = Vec::with_capacity(list.cuts().len());
+    for cut in list.cuts() {
+        let path = list.table_path(cut);
+        if !tables.contains_key(&path) {
+            tables.insert(path.clone(), AngleTable::read(&path)?);
+        }
+        let cycle = TrainingCycle::new(&tables[&path], cut)
+            .map_err(|rule| CyclicError::broken(list.path(), cut.line, format!("`{}`: {rule}", path.display())))?;
+        cycles.push(cycle);
+    }
+    Ok(cycles)
+}
+
+/// The model's numbers, rounded to `f32`.
+fn numbers(cycles: &[TrainingCycle], options: TrainingOptions) -> ModelNumbers {
+    let statistics = statistics::of_positions(cycles, options.length);
+    let rows = |row: fn(&statistics::PositionStatistics) -> &[f64]| -> Vec<f32> {
+        statistics.iter().flat_map(row).map(|&value| value as f32).collect()
+    };
+    let mean_velocity = cycles.iter().map(|cycle| 1.0 / cycle.duration_frames()).sum::<f64>() / cycles.len() as f64;
+    ModelNumbers {
+        angle_count: ANGLES,
+        mean_acceleration: rows(|at| &at.mean_acceleration),
+        acceleration_covariance: rows(|at| &at.acceleration_covariance),
+        mean_pose_rad: rows(|at| &at.mean_pose_rad),
+        mean_velocity: rows(|at| &at.mean_velocity),
+        turns_per_cycle: statistics::turns_per_cycle(cycles, options.length).to_vec(),
+        mean_duration_frames: (1.0 / mean_velocity) as f32,
+        rate_hz: options.rate_hz as f32,
+        deviation: None,
+    }
+}
+
+fn file_name(file: &str) -> String {
+    Path::new(file).file_name().map_or_else(|| file.to_owned(), |name| name.to_string_lossy().into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn write_tables(folder: &Path) {
+        for (name, amplitude) in [("a.csv", 0.4), ("b.csv", 0.6)] {
+            let row = |frame: usize| [Some(amplitude * (std::f64::consts::TAU * frame as f64 / 60.0).sin()); ANGLES];
+            let table = AngleTable::from_angles(0, &(0..200).map(row).collect::<Vec<_>>()).unwrap();
+            table.write(&folder.join(name)).unwrap();
+        }
+    }
+
+    fn trained(folder: &Path, rows: &str) -> Result<CyclicModel, String> {
+        let list = CutList::parse(&format!("file,start_frame,end_frame\n{rows}"), &folder.join("cuts.csv"));
+        train(&list.unwrap(), TrainingOptions::default()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn two_cycles_give_a_model_that_the_core_accepts() {
+        let folder = tempfile::tempdir().unwrap();
+        write_tables(folder.path());
+        let model = trained(folder.path(), "a.csv,10,70\nb.csv,12,60\n").unwrap();
+        let view = model.view();
+        assert_eq!((view.position_count(), view.angle_count()), (100, ANGLES));
+        assert!((view.mean_cycle_velocity() - 0.5 * (1.0 / 60.0 + 1.0 / 48.0)).abs() < 1.0e-6);
+        assert_eq!(
+            (model.trained_on().cycles, model.trained_on().tables.as_slice()),
+            (2, &["a.csv".to_owned(), "b.csv".to_owned()][..])
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_trained_on_is_named_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        write_tables(folder.path());
+        let refusal = |rows: &str| trained(folder.path(), rows).unwrap_err();
+        assert!(refusal("a.csv,10,70\n").contains("cuts.csv:2: one training cycle only"));
+        let outside = refusal("a.csv,10,70\nb.csv,150,210\n");
+        assert!(outside.contains("cuts.csv:3: `") && outside.contains("b.csv`: the cut 150 to 210"), "{outside}");
+        assert!(refusal("a.csv,10,70\nc.csv,10,70\n").contains("c.csv` cannot be read"));
+    }
+}

@@ -1,0 +1,131 @@
+//! Mean and covariance over the training cycles at each position of the reference cycle (cyclic paper, section 2.3).
+
+use super::cycle::TrainingCycle;
+use crate::cyclic::angle_table::ANGLES;
+use crate::cyclic::turns::{circular_mean, unwrap_along_time};
+use std::f64::consts::TAU;
+
+/// Numbers of one position.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PositionStatistics {
+    /// Mean angular acceleration, rad per reference frame squared.
+    pub mean_acceleration: [f64; ANGLES],
+    /// Covariance of the acceleration as a packed lower triangle, rad^2 per reference frame^4; divided by cycles - 1.
+    pub acceleration_covariance: Vec<f64>,
+    /// Mean angles, radians; see [`mean_pose`].
+    pub mean_pose_rad: [f64; ANGLES],
+    /// Mean angular velocity, rad per reference frame.
+    pub mean_velocity: [f64; ANGLES],
+}
+
+/// Statistics at each of `length` positions. Derivatives are central differences over one reference frame, 1 / `length`
+/// of a cycle: for these k = v / `v_ref` is 1.
+#[must_use]
+pub fn of_positions(cycles: &[TrainingCycle], length: usize) -> Vec<PositionStatistics> {
+    let poses = mean_pose(cycles, length);
+    (0..length)
+        .map(|position| {
+            let derivatives: Vec<Derivatives> =
+                cycles.iter().map(|cycle| derivatives(cycle, position, length)).collect();
+            let accelerations: Vec<[f64; ANGLES]> = derivatives.iter().map(|d| d.acceleration).collect();
+            let velocities: Vec<[f64; ANGLES]> = derivatives.iter().map(|d| d.velocity).collect();
+            let mean_acceleration = mean(&accelerations);
+            PositionStatistics {
+                mean_acceleration,
+                acceleration_covariance: covariance(&accelerations, &mean_acceleration),
+                mean_pose_rad: poses[position],
+                mean_velocity: mean(&velocities),
+            }
+        })
+        .collect()
+}
+
+/// Mean angles at positions 0 to `length`, both included, radians: at each position the mean on the circle, so that cycles
+/// whose angles differ by whole turns agree; then unwrapped along the cycle. The last row is where the mean cycle ends.
+#[must_use]
+pub fn mean_pose(cycles: &[TrainingCycle], length: usize) -> Vec<[f64; ANGLES]> {
+    let mut poses = vec![[0.0; ANGLES]; length + 1];
+    for angle in 0..ANGLES {
+        let at = |position: usize| {
+            let place = position as f64 / length as f64;
+            circular_mean(&cycles.iter().map(|cycle| cycle.angle_at(angle, place)).collect::<Vec<_>>())
+        };
+        let mut series: Vec<Option<f64>> = (0..=length).map(at).collect();
+        unwrap_along_time(&mut series);
+        for (pose, value) in poses.iter_mut().zip(series) {
+            pose[angle] = value.unwrap_or(0.0);
+        }
+    }
+    poses
+}
+
+/// Whole turns that each angle of the mean cycle makes.
+#[must_use]
+pub fn turns_per_cycle(cycles: &[TrainingCycle], length: usize) -> [i8; ANGLES] {
+    let poses = mean_pose(cycles, length);
+    std::array::from_fn(|angle| ((poses[length][angle] - poses[0][angle]) / TAU).round() as i8)
+}
+
+struct Derivatives {
+    velocity: [f64; ANGLES],
+    acceleration: [f64; ANGLES],
+}
+
+fn derivatives(cycle: &TrainingCycle, position: usize, length: usize) -> Derivatives {
+    let place = |step: f64| (position as f64 + step) / length as f64;
+    let at = |step: f64| -> [f64; ANGLES] { std::array::from_fn(|angle| cycle.angle_at(angle, place(step))) };
+    let (before, here, after) = (at(-1.0), at(0.0), at(1.0));
+    Derivatives {
+        velocity: std::array::from_fn(|i| 0.5 * (after[i] - before[i])),
+        acceleration: std::array::from_fn(|i| after[i] - 2.0 * here[i] + before[i]),
+    }
+}
+
+fn mean(rows: &[[f64; ANGLES]]) -> [f64; ANGLES] {
+    std::array::from_fn(|i| rows.iter().map(|row| row[i]).sum::<f64>() / rows.len() as f64)
+}
+
+fn covariance(rows: &[[f64; ANGLES]], mean: &[f64; ANGLES]) -> Vec<f64> {
+    let entry = |i: usize, j: usize| {
+        let sum: f64 = rows.iter().map(|row| (row[i] - mean[i]) * (row[j] - mean[j])).sum();
+        sum / (rows.len() - 1) as f64
+    };
+    (0..ANGLES).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| entry(i, j)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cyclic::angle_table::AngleTable;
+    use crate::cyclic::cuts::Cut;
+
+    /// A swing of `amplitude` whose angles are all `turns` whole turns off, and an angle that winds.
+    fn cycle(amplitude: f64, turns: f64, frames: u64) -> TrainingCycle {
+        let row = |frame: u64| {
+            let phase = TAU * frame as f64 / frames as f64;
+            let mut angles = [Some(TAU * turns + amplitude * phase.sin()); ANGLES];
+            angles[3] = Some(amplitude - phase);
+            angles
+        };
+        let table = AngleTable::from_angles(0, &(0..3 * frames).map(row).collect::<Vec<_>>()).unwrap();
+        TrainingCycle::new(&table, &Cut { file: String::new(), start_frame: frames, end_frame: 2 * frames, line: 2 })
+            .unwrap()
+    }
+
+    #[test]
+    fn amplitudes_of_half_and_whole_give_their_mean_and_spread() {
+        let cycles = [cycle(0.5, 0.0, 50), cycle(1.0, 3.0, 80)];
+        let statistics = of_positions(&cycles, 100);
+        let step = TAU / 100.0;
+        for (position, found) in statistics.iter().enumerate() {
+            let sine = (step * position as f64).sin();
+            let (acceleration, spread) = (-0.75 * step * step * sine, 0.125 * (step * step * sine).powi(2));
+            assert!((found.mean_acceleration[0] - acceleration).abs() < 1.0e-5, "{position}");
+            assert!((found.acceleration_covariance[0] - spread).abs() < 2.0e-7, "{position}");
+            assert!((found.mean_pose_rad[0] - 0.75 * sine).abs() < 1.0e-4, "{position}: {}", found.mean_pose_rad[0]);
+            assert!((found.mean_velocity[0] - 0.75 * step * (step * position as f64).cos()).abs() < 1.0e-4);
+            assert!((found.mean_velocity[3] + step).abs() < 1.0e-9);
+        }
+        assert_eq!(turns_per_cycle(&cycles, 100)[..5], [0, 0, 0, -1, 0]);
+    }
+}

@@ -1,0 +1,125 @@
+//! `sinew train cyclic` as a user types it.
+
+use assert_cmd::Command;
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use sinew::cyclic::{CyclicModel, angle_table, model_file};
+use sinew_tests::{shared_data, sinew_command};
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+fn sinew(folder: &Path) -> Command {
+    let mut command = Command::from_std(sinew_command());
+    command.current_dir(folder).args(["train", "cyclic"]);
+    command
+}
+
+/// 200 frames in which every angle swings with a period of 60 frames; one cell can be given.
+fn table(amplitude: f64, change: Option<(usize, usize, &str)>) -> String {
+    let mut text = angle_table::COLUMNS.join(",") + "\n";
+    for frame in 0..200 {
+        let mut cells = vec![frame.to_string()];
+        cells.extend((0..13).map(|i| format!("{:.6}", amplitude * (TAU * (frame + i) as f64 / 60.0).sin())));
+        if let Some((row, column, cell)) = change
+            && row == frame
+        {
+            cells[column] = cell.to_owned();
+        }
+        writeln!(text, "{}", cells.join(",")).unwrap();
+    }
+    text
+}
+
+fn write_input(folder: &Path) {
+    fs::create_dir_all(folder.join("tables")).unwrap();
+    fs::write(folder.join("tables/a.csv"), table(0.4, None)).unwrap();
+    fs::write(folder.join("tables/b.csv"), table(0.6, None)).unwrap();
+    fs::write(folder.join("cuts.csv"), "file,start_frame,end_frame\ntables/a.csv,10,70\ntables/b.csv,20,80\n").unwrap();
+}
+
+#[test]
+fn two_cycles_train_a_model_and_the_same_one_each_time() {
+    let root = tempfile::tempdir().unwrap();
+    write_input(root.path());
+    for out in ["m.json", "deep/er/m.json"] {
+        let mut command = sinew(root.path());
+        command
+            .args(["--cuts", "cuts.csv", "--length", "50", "--rate", "30", "--out", out])
+            .assert()
+            .success()
+            .stdout(contains("50 positions from 2 cycles of 2 tables").and(contains("30.0 cycles per minute")));
+    }
+    let model = fs::read(root.path().join("m.json")).unwrap();
+    assert_eq!(model, fs::read(root.path().join("deep/er/m.json")).unwrap());
+    let model = CyclicModel::from_option(root.path().join("m.json").to_str().unwrap()).unwrap();
+    assert_eq!((model.view().position_count(), model.view().rate_hz()), (50, 30.0));
+}
+
+#[test]
+fn bad_input_is_refused_with_file_line_and_rule() {
+    let root = tempfile::tempdir().unwrap();
+    write_input(root.path());
+    let refused = |what: &str, tables: &str, cuts: &str, messages: &[&str]| {
+        fs::write(root.path().join("tables/c.csv"), tables).unwrap();
+        fs::write(root.path().join("c.csv"), format!("file,start_frame,end_frame\n{cuts}")).unwrap();
+        let mut command = sinew(root.path());
+        let mut run = command.args(["--cuts", "c.csv", "--out", "m.json"]).assert().code(1);
+        for message in messages {
+            run = run.stderr(contains(*message));
+        }
+        assert!(!root.path().join("m.json").exists(), "{what}");
+    };
+    let both = "tables/a.csv,10,70\ntables/c.csv,10,70\n";
+    let row = |line: &str| table(0.4, None).lines().take(10).collect::<Vec<_>>().join("\n") + "\n" + line + "\n";
+    refused(
+        "NaN",
+        &table(0.4, Some((20, 3, "NaN"))),
+        both,
+        &["c.csv:22", "`l_elbow_rad` is `NaN`, but has to be finite"],
+    );
+    refused("inf", &table(0.4, Some((20, 13, "-inf"))), both, &["c.csv:22", "`r_ankle_rad` is `-inf`"]);
+    refused("short row", &row("9,1,2"), both, &["c.csv:11", "14 columns as the header has, found 3"]);
+    refused("long row", &row("9,1,2,3,4,5,6,7,8,9,10,11,12,13,14"), both, &["c.csv:11", "found 15"]);
+    refused("frame back", &table(0.4, Some((20, 0, "5"))), both, &["c.csv:22", "frame 5 follows frame 19"]);
+    refused("header only", &(angle_table::COLUMNS.join(",") + "\n"), both, &["c.csv:2", "the table is empty"]);
+    refused("nothing", "", both, &["c.csv:1", "the table is empty"]);
+    refused("other header", "a,b\n1,2\n", both, &["c.csv:1", "column 1 has to be `frame`, found `a`"]);
+    let gone: String =
+        table(0.4, None).lines().filter(|line| !line.starts_with("3")).fold(String::new(), |t, l| t + l + "\n");
+    refused("a gap", &gone, both, &["c.csv:3", "`neck_rad` is missing between the frames 29 and 40"]);
+    let good = table(0.4, None);
+    refused("one cycle", &good, "tables/a.csv,10,70\n", &["c.csv:2", "one training cycle only", "covariance"]);
+    refused(
+        "outside",
+        &good,
+        "tables/a.csv,10,70\ntables/a.csv,150,201\n",
+        &["c.csv:3", "a.csv`", "150 to 201", "frames 0 to 199"],
+    );
+    refused("backwards", &good, "tables/a.csv,70,10\n", &["c.csv:2", "`end_frame` 10 has to lie after"]);
+    refused("no table", &good, "tables/d.csv,10,70\n", &["d.csv` cannot be read"]);
+    refused("no cut", &good, "", &["c.csv:1", "the list is empty"]);
+    let option = |option: [&str; 2], message: &'static str| {
+        let mut command = sinew(root.path());
+        command.args(["--cuts", "cuts.csv", "--out", "m.json"]).args(option).assert().code(1).stderr(contains(message));
+    };
+    option(["--rate", "0"], "`rate` has to be greater than zero, not 0");
+    option(["--rate", "NaN"], "`rate` has to be greater than zero");
+    option(["--length", "5"], "`length` has to lie from 10 to 1000, not 5");
+}
+
+/// The shipped models are what the training command makes of the development data.
+#[test]
+fn the_shipped_walking_is_what_the_command_makes() {
+    let Some(tables) = shared_data("cyclic-walking") else { return };
+    let root = tempfile::tempdir().unwrap();
+    let shipped = CyclicModel::from_option("walking").unwrap();
+    let list = include_str!("../../host/models/cuts/walking.csv");
+    let absolute: Vec<String> =
+        list.lines().skip(1).map(|line| tables.join(line).to_string_lossy().into_owned()).collect();
+    fs::write(root.path().join("cuts.csv"), format!("file,start_frame,end_frame\n{}\n", absolute.join("\n"))).unwrap();
+    sinew(root.path()).args(["--cuts", "cuts.csv", "--out", "m.json"]).assert().success();
+    let text = fs::read_to_string(root.path().join("m.json")).unwrap();
+    assert_eq!(text, model_file::to_json(&shipped).unwrap());
+}
