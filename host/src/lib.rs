@@ -7,6 +7,7 @@ pub mod draw;
 pub mod evaluate;
 pub mod frames;
 pub mod images;
+pub mod keypoints;
 pub mod motion;
 pub mod output;
 pub mod scene;

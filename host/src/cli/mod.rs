@@ -3,6 +3,7 @@
 //! To add a subcommand, write `cli/NAME.rs` with `pub struct NameArgs` (`clap::Args`) and
 //! `pub fn run(args: &NameArgs) -> anyhow::Result<()>`, then add a variant and an arm here.
 
+pub mod angles;
 pub mod blobs;
 pub mod ctrl_c;
 pub mod demo;
@@ -40,6 +41,8 @@ pub enum Command {
     /// Track a person in a folder of video frames.
     #[command(subcommand)]
     Track(track::Track),
+    /// Turn a motion in space or 2D keypoints into an angle table.
+    Angles(angles::AnglesArgs),
     /// Render scenes with known truth.
     Simulate(simulate::SimulateArgs),
     /// Write the skin mask of each image.
@@ -62,6 +65,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
     match &cli.command {
         Command::Demo(args) => demo::run(args),
         Command::Track(track) => track::run(track),
+        Command::Angles(args) => angles::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Segment(args) => segment::run(args),
         Command::Blobs(args) => blobs::run(args),

@@ -3,8 +3,13 @@
 pub mod angle_table;
 pub mod cuts;
 pub mod error;
+pub mod heading;
+pub mod image_joints;
 pub mod model;
 pub mod model_file;
+pub mod projection;
+pub mod recording;
+pub mod resample;
 pub mod spline;
 pub mod training;
 pub mod turns;

@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn shipped_models_are_sound_and_have_the_cadence_of_people() {
-        for (name, cycles_per_s) in [("walking", 0.7..1.2)] {
+        for (name, cycles_per_s) in [("walking", 0.7..1.2), ("walking", 0.7..1.2)] {
             let model = CyclicModel::from_option(name).unwrap();
             let view = model.view();
             let found = view.mean_cycle_velocity() * view.rate_hz();

@@ -57,6 +57,37 @@ const JOINTS: [Joint; 16] = [
     joint("RightHand", 32, 14, [-fraction::FOREARM, 0.0, 0.0]),
 ];
 
+/// One joint of the whole body: its name, number and parent as above, and its rest position from the parent in the length
+/// units of the CMU collection (0.0254 / 0.45 m).
+const fn cmu(name: &'static str, number: usize, parent: usize, offset: [f32; 3]) -> Joint {
+    Joint { name, number, parent, offset }
+}
+
+/// Trunk, arms and legs with the bones of an adult of the CMU collection (subject 35, sides averaged): there the legs of the
+/// rest pose stand 20 degrees apart, the collar bones rise, and the hips lie below the root.
+const WHOLE_BODY: [Joint; 20] = [
+    cmu("Hips", 0, ROOT, [0.0; 3]),
+    cmu("LHipJoint", 1, 0, [0.0; 3]),
+    cmu("LeftUpLeg", 2, 1, [1.68, -1.89, 0.48]),
+    cmu("LeftLeg", 3, 2, [2.57, -7.06, 0.0]),
+    cmu("LeftFoot", 4, 3, [2.72, -7.48, 0.0]),
+    cmu("RHipJoint", 7, 0, [0.0; 3]),
+    cmu("RightUpLeg", 8, 5, [-1.68, -1.89, 0.48]),
+    cmu("RightLeg", 9, 6, [-2.57, -7.06, 0.0]),
+    cmu("RightFoot", 10, 7, [-2.72, -7.48, 0.0]),
+    cmu("LowerBack", 13, 0, [0.0; 3]),
+    cmu("Spine", 14, 9, [0.0, 2.02, -0.22]),
+    cmu("Spine1", 15, 10, [0.0, 2.03, 0.01]),
+    cmu("LeftShoulder", 20, 11, [0.0, 2.05, 0.11]),
+    cmu("LeftArm", 21, 12, [3.43, 0.90, -0.54]),
+    cmu("LeftForeArm", 22, 13, [5.21, 0.0, 0.0]),
+    cmu("LeftHand", 23, 14, [3.59, 0.0, 0.0]),
+    cmu("RightShoulder", 29, 11, [0.0, 2.05, 0.11]),
+    cmu("RightArm", 30, 16, [-3.43, 0.90, -0.54]),
+    cmu("RightForeArm", 31, 17, [-5.21, 0.0, 0.0]),
+    cmu("RightHand", 32, 18, [-3.59, 0.0, 0.0]),
+];
+
 /// Reads a motion, recorded at `frames_per_second`.
 ///
 /// # Errors
@@ -65,12 +96,32 @@ pub fn read(path: &Path, frames_per_second: f32) -> Result<Motion, MotionError> 
     parse(&read_text(path)?, path, frames_per_second)
 }
 
+/// Reads the whole body of a motion, recorded at `frames_per_second`: legs too, with the bones of an adult of the CMU
+/// collection.
+///
+/// # Errors
+/// Names the file, the line and the rule that it broke.
+pub fn read_whole_body(path: &Path, frames_per_second: f32) -> Result<Motion, MotionError> {
+    parse_joints(&read_text(path)?, path, frames_per_second, &WHOLE_BODY, asf::CMU_METRES_PER_UNIT)
+}
+
 /// Parses the text of a motion; `path` is for messages only. The joints are those that place torso and arms.
 ///
 /// # Errors
 /// Names the file, the line and the rule that it broke.
 pub fn parse(text: &str, path: &Path, frames_per_second: f32) -> Result<Motion, MotionError> {
-    let joints = JOINTS.iter().map(|joint| joint.name.to_string()).collect();
+    parse_joints(text, path, frames_per_second, &JOINTS, HEIGHT_M)
+}
+
+/// Parses the text of a motion of `table`, whose offsets are in units of `unit_m` metres.
+fn parse_joints(
+    text: &str,
+    path: &Path,
+    frames_per_second: f32,
+    table: &[Joint],
+    unit_m: f32,
+) -> Result<Motion, MotionError> {
+    let joints = table.iter().map(|joint| joint.name.to_string()).collect();
     let mut motion = Motion { frames_per_second, joints, positions_m: Vec::new() };
     let mut rows = 0;
     for (index, content) in text.lines().enumerate().filter(|(_, content)| !content.trim().is_empty()) {
@@ -82,7 +133,7 @@ pub fn parse(text: &str, path: &Path, frames_per_second: f32) -> Result<Motion, 
         let values = words.iter().map(|word| number(path, index + 1, word)).collect::<Result<Vec<f32>, _>>()?;
         rows += 1;
         if rows > 1 {
-            place(&values, &mut motion.positions_m);
+            place(&values, table, unit_m, &mut motion.positions_m);
         }
     }
     if motion.is_empty() {
@@ -92,17 +143,17 @@ pub fn parse(text: &str, path: &Path, frames_per_second: f32) -> Result<Motion, 
 }
 
 /// Forward kinematics of one row.
-fn place(values: &[f32], positions_m: &mut Vec<Vec3>) {
+fn place(values: &[f32], table: &[Joint], unit_m: f32, positions_m: &mut Vec<Vec3>) {
     let root_m = Vec3::new(values[0], values[1], values[2]) * asf::CMU_METRES_PER_UNIT;
-    let mut globals: Vec<(Vec3, Mat3)> = Vec::with_capacity(JOINTS.len());
-    for joint in &JOINTS {
+    let mut globals: Vec<(Vec3, Mat3)> = Vec::with_capacity(table.len());
+    for joint in table {
         let at = 3 + 3 * joint.number;
         let vector = Vec3::new(values[at], values[at + 1], values[at + 2]);
         let angle_rad = length(&vector);
         let rotation =
             if angle_rad > 1.0e-9 { axis_rotation(&(vector / angle_rad), -angle_rad) } else { Mat3::identity() };
         let (parent, frame) = globals.get(joint.parent).copied().unwrap_or((root_m, Mat3::identity()));
-        globals.push((parent + frame * Vec3::from(joint.offset) * HEIGHT_M, frame * rotation));
+        globals.push((parent + frame * Vec3::from(joint.offset) * unit_m, frame * rotation));
     }
     positions_m.extend(globals.into_iter().map(|(position_m, _)| position_m));
 }

@@ -8,11 +8,15 @@ pub mod anthropometry;
 pub mod arm_motion;
 pub mod asf;
 pub mod bvh;
+pub mod c3d;
 pub mod clips;
 pub mod error;
 pub mod exponential_map;
+pub mod joint_names;
 pub mod landmarks;
+pub mod markers;
 pub mod reach;
+pub mod trc;
 
 pub use arm_motion::{ArmDirections, ArmMotion, ArmSide};
 pub use error::MotionError;

@@ -1,0 +1,79 @@
+//! `sinew angles`: a motion in space or 2D keypoints as an angle table.
+
+use crate::cyclic::projection::{UpAxis, View};
+use crate::cyclic::recording::{RecordingOptions, angles};
+use crate::keypoints::{DEFAULT_MIN_CONFIDENCE, Facing};
+use crate::output::check_writable_file;
+use anyhow::{Result, ensure};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Options of `sinew angles`.
+#[derive(Debug, Args)]
+pub struct AnglesArgs {
+    /// Motion in space (.bvh, .amc, .trc, .c3d, .txt of exponential maps) or 2D keypoints (a folder of OpenPose JSON, a COCO
+    /// .json, a .csv).
+    pub motion: PathBuf,
+    /// Skeleton of an AMC file [default: the only .asf in its folder].
+    #[arg(long, value_name = "FILE.asf")]
+    pub skeleton: Option<PathBuf>,
+    /// Frames per second of the table [default: those of the recording].
+    #[arg(long, value_name = "HZ")]
+    pub rate: Option<f64>,
+    /// Frames per second of the recording [default: what the file says; 120 for AMC and exponential maps].
+    #[arg(long, value_name = "HZ")]
+    pub input_rate: Option<f64>,
+    /// Angle table to write.
+    #[arg(long, value_name = "TABLE.csv")]
+    pub out: PathBuf,
+    /// From where a motion in space is seen.
+    #[arg(long, value_enum, default_value_t = View::Auto)]
+    pub view: View,
+    /// Coordinate that points up in space [default: the one that standing people lie along].
+    #[arg(long, value_enum)]
+    pub up: Option<UpAxis>,
+    /// Which way the person faces; left is mirrored [default: found in keypoints, right in space].
+    #[arg(long, value_enum)]
+    pub facing: Option<Facing>,
+    /// Keypoints of which the detector was less sure are missing.
+    #[arg(long, value_name = "C", default_value_t = DEFAULT_MIN_CONFIDENCE)]
+    pub min_confidence: f64,
+    /// Take a motion in space that lacks joints; their angles are missing.
+    #[arg(long)]
+    pub partial: bool,
+}
+
+/// Reads, projects or follows, and writes the table.
+///
+/// # Errors
+/// Bad input, or an output that cannot be written.
+pub fn run(args: &AnglesArgs) -> Result<()> {
+    let confidence = args.min_confidence;
+    ensure!(confidence >= 0.0 && confidence.is_finite(), "`--min-confidence {confidence}`: it has to be zero or more");
+    check_writable_file(&args.out)?;
+    let options = RecordingOptions {
+        skeleton: args.skeleton.clone(),
+        rate_hz: args.rate,
+        input_rate_hz: args.input_rate,
+        view: args.view,
+        up: args.up,
+        facing: args.facing,
+        min_confidence: confidence,
+        partial: args.partial,
+    };
+    let found = angles(&args.motion, &options)?;
+    found.table.write(&args.out)?;
+    for note in &found.notes {
+        eprintln!("{note}");
+    }
+    let rows = found.table.rows();
+    let missing = rows.iter().flat_map(|row| row.angles_rad).filter(Option::is_none).count();
+    let rate = found.rate_hz.map_or_else(|| "an unknown rate".to_owned(), |rate| format!("{rate} frames per second"));
+    let report = format!(
+        "{} frames at {rate}, {:.1} % of the angles missing\nwrote {}\n",
+        rows.len(),
+        100.0 * missing as f64 / (13 * rows.len()) as f64,
+        args.out.display()
+    );
+    super::stdout::write_all(report.as_bytes())
+}

@@ -1,0 +1,161 @@
+//! The joints of the stick figure in an image plane over time, and their angles.
+
+use super::angle_table::{ANGLES, AngleRow, AngleTable};
+use super::error::CyclicError;
+use super::turns::unwrap_along_time;
+use crate::motion::joint_names::JOINTS;
+use sinew_core::skeleton::stick_figure::HUMAN;
+
+/// A point of the plane: x right, y down.
+pub type Point = [f64; 2];
+
+/// One frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointFrame {
+    /// Number of the frame in the recording.
+    pub frame: u64,
+    /// The joints in the order of [`HUMAN`]; `None` where one was not seen.
+    pub joints: [Option<Point>; JOINTS],
+}
+
+/// Joints over time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImageJoints {
+    /// The frames, rising in number.
+    pub frames: Vec<JointFrame>,
+    /// Unit of the coordinates as it stands in column names: `px` or `m`.
+    pub unit: &'static str,
+}
+
+/// What an angle table tells beside the angles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExtraColumns {
+    /// Nothing.
+    None,
+    /// Where the root is, how long each segment is, and whether the person was mirrored: what an overlay needs.
+    RootAndLengths {
+        /// The person faced left and was mirrored; the root is still where it was in the image.
+        mirrored: bool,
+    },
+}
+
+/// Index of the parent of joint `joint`; the root is its own.
+fn parent(joint: usize) -> usize {
+    HUMAN.joints()[joint].parent.map_or(0, usize::from)
+}
+
+/// The mirror image: x changes its sign, the sides change places.
+#[must_use]
+pub fn mirrored(joints: &[Option<Point>; JOINTS]) -> [Option<Point>; JOINTS] {
+    std::array::from_fn(|joint| {
+        let other = usize::from(HUMAN.joints()[joint].mirror);
+        joints[other].map(|[x, y]| [-x, y])
+    })
+}
+
+impl ImageJoints {
+    /// The mirror image of each frame.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let frame = |frame: &JointFrame| JointFrame { frame: frame.frame, joints: mirrored(&frame.joints) };
+        Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
+    }
+
+    /// The angle of each segment, unwrapped along time.
+    ///
+    /// # Errors
+    /// If there is no frame.
+    pub fn angle_table(&self, extra: ExtraColumns) -> Result<AngleTable, CyclicError> {
+        let mut rows: Vec<AngleRow> = self.frames.iter().map(|frame| row(frame, extra)).collect();
+        for angle in 0..ANGLES {
+            unwrap_along_time(rows.iter_mut().map(|row| &mut row.angles_rad[angle]));
+        }
+        AngleTable::new(rows, extra_columns(extra, self.unit))
+    }
+}
+
+/// Names of the extra columns.
+fn extra_columns(extra: ExtraColumns, unit: &str) -> Vec<String> {
+    if extra == ExtraColumns::None {
+        return Vec::new();
+    }
+    let root = ["u", "v"].map(|axis| format!("hip_center_{axis}_{unit}"));
+    let lengths = HUMAN.angle_names().map(|name| format!("{name}_length_{unit}"));
+    root.into_iter().chain(lengths).chain(["mirrored".to_owned()]).collect()
+}
+
+fn row(frame: &JointFrame, extra: ExtraColumns) -> AngleRow {
+    let segment = |angle: usize| {
+        let (start, end) = (frame.joints[parent(angle + 1)]?, frame.joints[angle + 1]?);
+        Some([end[0] - start[0], end[1] - start[1]])
+    };
+    let angles_rad = std::array::from_fn(|angle| {
+        let [dx, dy] = segment(angle)?;
+        (dx != 0.0 || dy != 0.0).then(|| dy.atan2(dx))
+    });
+    let mut cells = Vec::new();
+    if let ExtraColumns::RootAndLengths { mirrored } = extra {
+        let cell = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.3}"));
+        let side = if mirrored { -1.0 } else { 1.0 };
+        cells.push(cell(frame.joints[0].map(|root| side * root[0])));
+        cells.push(cell(frame.joints[0].map(|root| root[1])));
+        cells.extend((0..ANGLES).map(|angle| cell(segment(angle).map(|[dx, dy]| dx.hypot(dy)))));
+        cells.push(u8::from(mirrored).to_string());
+    }
+    AngleRow { frame: frame.frame, angles_rad, extra: cells }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    fn standing() -> [Option<Point>; JOINTS] {
+        let mut joints = [None; JOINTS];
+        joints[0] = Some([100.0, 200.0]);
+        joints[1] = Some([100.0, 150.0]);
+        joints[8] = Some([97.0, 204.0]);
+        joints[9] = Some([97.0, 204.0]);
+        joints
+    }
+
+    #[test]
+    fn angles_lengths_and_root_are_those_of_the_points() {
+        let frames = vec![JointFrame { frame: 4, joints: standing() }];
+        let points = ImageJoints { frames, unit: "px" };
+        let table = points.angle_table(ExtraColumns::RootAndLengths { mirrored: false }).unwrap();
+        let row = table.row(4).unwrap();
+        assert!((row.angles_rad[0].unwrap() + FRAC_PI_2).abs() < 1.0e-12, "the neck is above");
+        assert!((row.angles_rad[7].unwrap() - 4.0_f64.atan2(-3.0)).abs() < 1.0e-12);
+        assert_eq!(row.angles_rad[8], None, "a segment without length has no angle");
+        assert_eq!(table.extra_columns()[..3], ["hip_center_u_px", "hip_center_v_px", "neck_length_px"]);
+        assert_eq!(row.extra[..4], ["100.000", "200.000", "50.000", ""]);
+        assert_eq!((row.extra[9].as_str(), row.extra[15].as_str()), ("5.000", "0"));
+    }
+
+    #[test]
+    fn a_mirrored_person_has_swapped_sides_and_angles_of_pi_minus_theta() {
+        let points = ImageJoints { frames: vec![JointFrame { frame: 0, joints: standing() }], unit: "px" };
+        let table = points.mirrored().angle_table(ExtraColumns::RootAndLengths { mirrored: true }).unwrap();
+        let row = &table.rows()[0];
+        assert!((row.angles_rad[10].unwrap() - (PI - 4.0_f64.atan2(-3.0))).abs() < 1.0e-12);
+        assert_eq!(row.angles_rad[7], None);
+        assert_eq!((row.extra[0].as_str(), row.extra[15].as_str()), ("100.000", "1"));
+        assert_eq!(points.mirrored().mirrored(), points);
+    }
+
+    #[test]
+    fn angles_are_unwrapped_along_time() {
+        let frame = |index: u64| {
+            let angle = 0.4 * index as f64;
+            let mut joints = [None; JOINTS];
+            joints[0] = Some([0.0, 0.0]);
+            joints[1] = Some([angle.cos(), angle.sin()]);
+            JointFrame { frame: index, joints }
+        };
+        let table =
+            ImageJoints { frames: (0..60).map(frame).collect(), unit: "m" }.angle_table(ExtraColumns::None).unwrap();
+        assert!((table.rows()[59].angles_rad[0].unwrap() - 23.6).abs() < 1.0e-9);
+        assert!(table.extra_columns().is_empty());
+    }
+}

@@ -1,0 +1,210 @@
+//! Motion in space as a camera sees it that stands beside, or before, the person.
+
+use super::heading::{headings, straightness};
+use super::image_joints::{ImageJoints, JointFrame};
+use crate::motion::joint_names::{HIP_CENTER, HIPS, JOINTS, NECK, SpatialJoints};
+use anyhow::{Context, Result, bail};
+use sinew_core::math::Vec3;
+
+/// From where the person is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum View {
+    /// `side`, but `path` for a person who turns.
+    #[default]
+    Auto,
+    /// From the person's right: x is forward, the mean direction of travel.
+    Side,
+    /// From the person's right wherever they turn: x is where the hips face. The root stays at 0.
+    Path,
+    /// From before: x is the person's left.
+    Front,
+}
+
+/// A coordinate axis that points up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum UpAxis {
+    /// The first coordinate.
+    X,
+    /// The second, as in BVH, ASF and OpenSim files.
+    Y,
+    /// The third, as in most C3D files.
+    Z,
+}
+
+/// What told which way is forward.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Forward {
+    /// The way from the first to the last frame.
+    Travel,
+    /// The hips: the person stays about where they are.
+    Hips,
+    /// The hips of each moment: the person turns.
+    Turning,
+}
+
+/// The plane of a view.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plane {
+    /// Right in the image: one for all frames, or one for each; `None` where nothing tells it.
+    pub right: Vec<Option<Vec3>>,
+    /// Up in the image.
+    pub up: Vec3,
+    /// What told which way is forward.
+    pub forward: Forward,
+}
+
+/// How far a person has to get, in lengths of the trunk, to count as travelling.
+const TRAVEL_TRUNKS: f32 = 1.0;
+/// Length of the mean heading below which a person turns: headings spread over more than about 50 degrees to each side.
+const TURNING_BELOW: f32 = 0.85;
+/// Ankles, for the direction that is up where a person stands.
+const ANKLES: [usize; 2] = [10, 13];
+
+impl Plane {
+    /// Chooses the plane of `view`. Up is the axis that the necks lie along from the ankles (or hips), unless `up` says it.
+    /// Forward is the mean direction of travel; of a person who gets less far than the trunk is long, it is square to the
+    /// line through the hips.
+    ///
+    /// # Errors
+    /// Neck and hips are in no frame together, or neither travel nor hips give a direction.
+    pub fn choose(frames: &[SpatialJoints], view: View, up: Option<UpAxis>, rate_hz: f64) -> Result<Self> {
+        let up = upwards(frames, up)?;
+        let headings = headings(frames, up, rate_hz);
+        if view == View::Path || (view == View::Auto && straightness(&headings) < TURNING_BELOW) {
+            return Ok(Self { right: headings, up, forward: Forward::Turning });
+        }
+        let (ahead, forward) = ahead(frames, up)?;
+        let right = if view == View::Front { up.cross(&ahead) } else { ahead };
+        Ok(Self { right: vec![Some(right)], up, forward })
+    }
+
+    /// Sees `frames` in this plane, metres; frames are counted from 0.
+    #[must_use]
+    pub fn project(&self, frames: &[SpatialJoints]) -> ImageJoints {
+        let frame = |index: usize, joints: &SpatialJoints| {
+            let right = if let [right] = self.right[..] { right } else { self.right.get(index).copied().flatten() };
+            let root = if self.forward == Forward::Turning { joints[HIP_CENTER] } else { Some(Vec3::zeros()) };
+            let point = |position: Option<Vec3>| {
+                let from_root = position? - root?;
+                Some([f64::from(from_root.dot(&right?)), -f64::from(from_root.dot(&self.up))])
+            };
+            JointFrame {
+                frame: index as u64,
+                joints: std::array::from_fn::<_, JOINTS, _>(|joint| point(joints[joint])),
+            }
+        };
+        ImageJoints {
+            frames: frames.iter().enumerate().map(|(index, joints)| frame(index, joints)).collect(),
+            unit: "m",
+        }
+    }
+}
+
+/// Up: as said, or the axis that the necks lie along from the ankles (or hips).
+fn upwards(frames: &[SpatialJoints], said: Option<UpAxis>) -> Result<Vec3> {
+    Ok(match said {
+        Some(UpAxis::X) => Vec3::x(),
+        Some(UpAxis::Y) => Vec3::y(),
+        Some(UpAxis::Z) => Vec3::z(),
+        None => {
+            let from_ankles = mean(frames, |joints| {
+                let [left, right] = ANKLES.map(|joint| joints[joint]);
+                Some(joints[NECK]? - (left? + right?) / 2.0)
+            });
+            let body = from_ankles.or_else(|| mean(frames, |joints| Some(joints[NECK]? - joints[HIP_CENTER]?)));
+            main_axis(body.context("neck and hips are in no frame together, so that nothing tells which way is up")?)
+        }
+    })
+}
+
+/// The one direction that is forward in all frames.
+fn ahead(frames: &[SpatialJoints], up: Vec3) -> Result<(Vec3, Forward)> {
+    let level = |vector: Vec3| vector - up * vector.dot(&up);
+    let mut roots = frames.iter().filter_map(|joints| joints[HIP_CENTER]);
+    let travel = match (roots.next(), roots.next_back()) {
+        (Some(first), Some(last)) => level(last - first),
+        _ => Vec3::zeros(),
+    };
+    let trunk_m = mean_trunk_m(frames).context("neck and hips are in no frame together")?;
+    let (direction, forward) = if travel.norm() > TRAVEL_TRUNKS * trunk_m {
+        (travel, Forward::Travel)
+    } else {
+        let left = mean(frames, |joints| Some(joints[HIPS[0]]? - joints[HIPS[1]]?)).map_or_else(Vec3::zeros, level);
+        (left.cross(&up), Forward::Hips)
+    };
+    let length = direction.norm();
+    if !(length > 1.0e-3 * trunk_m) {
+        bail!("neither the way that the person takes nor the hips tell which way is forward");
+    }
+    Ok((direction / length, forward))
+}
+
+fn mean(frames: &[SpatialJoints], vector: impl Fn(&SpatialJoints) -> Option<Vec3>) -> Option<Vec3> {
+    let vectors: Vec<Vec3> = frames.iter().filter_map(vector).collect();
+    (!vectors.is_empty()).then(|| vectors.iter().sum::<Vec3>() / vectors.len() as f32)
+}
+
+fn mean_trunk_m(frames: &[SpatialJoints]) -> Option<f32> {
+    let lengths: Vec<f32> =
+        frames.iter().filter_map(|joints| Some((joints[NECK]? - joints[HIP_CENTER]?).norm())).collect();
+    (!lengths.is_empty()).then(|| lengths.iter().sum::<f32>() / lengths.len() as f32)
+}
+
+/// The signed coordinate axis nearest to `vector`.
+fn main_axis(vector: Vec3) -> Vec3 {
+    let axis = vector.iamax();
+    let mut up = Vec3::zeros();
+    up[axis] = if vector[axis] < 0.0 { -1.0 } else { 1.0 };
+    up
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A person with z up who faces y (left is -x) and moves `speed` metres a frame along y.
+    fn person(speed: f32) -> Vec<SpatialJoints> {
+        let joints = |frame: usize| {
+            let root = Vec3::new(0.1, speed * frame as f32, 1.0);
+            let mut joints = [None; JOINTS];
+            joints[HIP_CENTER] = Some(root);
+            joints[NECK] = Some(root + Vec3::new(0.0, 0.05, 0.5));
+            joints[HIPS[0]] = Some(root + Vec3::new(-0.1, 0.0, 0.0));
+            joints[HIPS[1]] = Some(root + Vec3::new(0.1, 0.0, 0.0));
+            joints
+        };
+        (0..50).map(joints).collect()
+    }
+
+    #[test]
+    fn forward_is_the_way_or_square_to_the_hips() {
+        for (speed, forward) in [(0.02, Forward::Travel), (0.001, Forward::Hips), (-0.005, Forward::Hips)] {
+            let frames = person(speed);
+            let plane = Plane::choose(&frames, View::Auto, None, 60.0).unwrap();
+            assert_eq!(plane.forward, forward);
+            assert!(
+                (plane.right[0].unwrap() - Vec3::y()).norm() < 1.0e-6 && (plane.up - Vec3::z()).norm() < 1.0e-6,
+                "{plane:?}"
+            );
+            let seen = plane.project(&frames);
+            let [root, neck] = [HIP_CENTER, NECK].map(|joint| seen.frames[0].joints[joint].unwrap());
+            assert!((neck[0] - root[0] - 0.05).abs() < 1.0e-6 && (neck[1] - root[1] + 0.5).abs() < 1.0e-6);
+        }
+    }
+
+    #[test]
+    fn from_before_the_left_is_on_the_right() {
+        let plane = Plane::choose(&person(0.0), View::Front, None, 60.0).unwrap();
+        assert!((plane.right[0].unwrap() + Vec3::x()).norm() < 1.0e-6, "{plane:?}");
+    }
+
+    #[test]
+    fn without_a_direction_there_is_no_plane() {
+        let mut frames = person(0.0);
+        for joints in &mut frames {
+            joints[HIPS[0]] = None;
+        }
+        assert!(Plane::choose(&frames, View::Side, None, 60.0).is_err());
+        assert!(Plane::choose(&[[None; JOINTS]], View::Side, None, 60.0).is_err());
+    }
+}

@@ -1,0 +1,186 @@
+//! Any recording that holds a moving person, as an angle table.
+
+use super::angle_table::AngleTable;
+use super::image_joints::{ExtraColumns, ImageJoints};
+use super::projection::{Forward, Plane, UpAxis, View};
+use super::resample::resample;
+use crate::keypoints::{self, Facing};
+use crate::motion::joint_names::JointSources;
+use crate::motion::markers::MarkerMotion;
+use crate::motion::{self, DEFAULT_FRAMES_PER_SECOND, ReadOptions, c3d, exponential_map, trc};
+use anyhow::{Context, Result, bail, ensure};
+use std::path::{Path, PathBuf};
+
+/// How to turn a recording into an angle table.
+#[derive(Debug, Clone, Default)]
+pub struct RecordingOptions {
+    /// Skeleton of an AMC file; the only .asf of its folder where there is none.
+    pub skeleton: Option<PathBuf>,
+    /// Frames per second of the table; those of the recording where there is none.
+    pub rate_hz: Option<f64>,
+    /// Frames per second of a recording that does not say, or says wrong.
+    pub input_rate_hz: Option<f64>,
+    /// From where a motion in space is seen.
+    pub view: View,
+    /// Which coordinate points up in space; found where there is none.
+    pub up: Option<UpAxis>,
+    /// Which way the person faces in the image; found where there is none.
+    pub facing: Option<Facing>,
+    /// Least confidence of a keypoint.
+    pub min_confidence: f64,
+    /// Take a motion that lacks joints.
+    pub partial: bool,
+}
+
+/// An angle table and what was found on the way to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordedAngles {
+    /// The table.
+    pub table: AngleTable,
+    /// Frames per second of the table; `None` for keypoints of which nobody told.
+    pub rate_hz: Option<f64>,
+    /// What a user should know, one sentence a line.
+    pub notes: Vec<String>,
+}
+
+/// Reads a motion in space (.bvh, .amc, .txt of exponential maps, .trc, .c3d) or keypoints (a folder, .json, .csv) and gives
+/// its angles.
+///
+/// # Errors
+/// Names the file or option, the rule that it broke, and the remedy.
+pub fn angles(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
+    for (name, rate) in [("--rate", options.rate_hz), ("--input-rate", options.input_rate_hz)] {
+        if let Some(rate) = rate {
+            ensure!(rate > 0.0 && rate.is_finite(), "`{name} {rate}`: a rate has to be greater than zero");
+        }
+    }
+    let is_2d = path.is_dir() || has_extension(path, &["json", "csv"]);
+    if is_2d { from_keypoints(path, options) } else { from_space(path, options) }
+}
+
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+    extensions.iter().any(|other| extension.eq_ignore_ascii_case(other))
+}
+
+/// Reads any motion in space.
+///
+/// # Errors
+/// Names the file, the line and the rule that it broke.
+pub fn read_space(path: &Path, options: &RecordingOptions) -> Result<MarkerMotion> {
+    let rate = options.input_rate_hz.map(|rate| rate as f32);
+    let mut motion = if has_extension(path, &["trc"]) {
+        trc::read(path)?
+    } else if has_extension(path, &["c3d"]) {
+        c3d::read(path)?
+    } else if has_extension(path, &["txt"]) {
+        MarkerMotion::from(&exponential_map::read_whole_body(path, rate.unwrap_or(DEFAULT_FRAMES_PER_SECOND))?)
+    } else if has_extension(path, &["bvh", "amc"]) {
+        let read =
+            ReadOptions { skeleton: options.skeleton.as_deref(), frames_per_second: rate, metres_per_unit: None };
+        MarkerMotion::from(&motion::read(path, &read)?)
+    } else {
+        bail!(
+            "`{}` is of no known kind; give a .bvh, .amc, .txt (exponential maps), .trc, .c3d, a .json or .csv of keypoints, or a folder of OpenPose files",
+            path.display()
+        );
+    };
+    if let Some(rate) = rate {
+        motion.frames_per_second = rate;
+    }
+    Ok(motion)
+}
+
+fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
+    let motion = read_space(path, options)?;
+    let frames = JointSources::find(&motion.names, options.partial, path)?.of_motion(&motion);
+    let recorded_hz = rounded_rate(f64::from(motion.frames_per_second));
+    // The way from the table's first to its last frame, whatever the recording has after that.
+    let step = recorded_hz / options.rate_hz.unwrap_or(recorded_hz);
+    let last = ((frames.len() as f64 - 1.0) / step + 1.0e-6).floor() * step;
+    let covered = &frames[..(last.floor() as usize + 1).clamp(1, frames.len())];
+    let plane = Plane::choose(covered, options.view, options.up, recorded_hz)
+        .with_context(|| format!("`{}` cannot be seen from the side", path.display()))?;
+    let mut notes = Vec::new();
+    match plane.forward {
+        Forward::Travel => {}
+        Forward::Hips => {
+            notes.push("the person stays about where they are: forward was taken square to the hips".to_owned());
+        }
+        Forward::Turning => {
+            notes.push(
+                "the person turns: each frame was seen from where the hips face (--view side says otherwise)"
+                    .to_owned(),
+            );
+        }
+    }
+    let seen = plane.project(covered);
+    let mirrored = options.facing == Some(Facing::Left);
+    let table = finished(&seen, Some(recorded_hz), options, mirrored, ExtraColumns::None)?;
+    Ok(RecordedAngles { table, rate_hz: Some(options.rate_hz.unwrap_or(recorded_hz)), notes })
+}
+
+/// The rate without the rounding of a frame time in a file: 1 / 0.0083333 is 120.
+fn rounded_rate(rate_hz: f64) -> f64 {
+    let whole = rate_hz.round();
+    if (rate_hz - whole).abs() < 1.0e-3 * rate_hz { whole } else { rate_hz }
+}
+
+fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
+    let frames = keypoints::read(path)?;
+    let track = keypoints::track(&frames, options.min_confidence, path)?;
+    let mut notes = Vec::new();
+    if track.most_people > 1 {
+        notes.push(format!(
+            "up to {} people in a frame: the one that takes the most room at first was followed by nearness, and is missing in {} of {} frames",
+            track.most_people,
+            track.frames_without,
+            frames.len()
+        ));
+    } else if track.frames_without > 0 {
+        notes.push(format!(
+            "nobody is seen in {} of {} frames: all angles are missing there",
+            track.frames_without,
+            frames.len()
+        ));
+    }
+    let facing = match (options.facing, track.facing) {
+        (Some(facing), _) => facing,
+        (None, Some(Facing::Left)) => {
+            notes.push(
+                "the person faces left: angles are those of the mirror image, with left and right swapped".to_owned(),
+            );
+            Facing::Left
+        }
+        (None, Some(Facing::Right)) => Facing::Right,
+        (None, None) => {
+            notes.push(
+                "nothing tells which way the person faces: right is assumed (--facing says otherwise)".to_owned(),
+            );
+            Facing::Right
+        }
+    };
+    if options.rate_hz.is_some() && options.input_rate_hz.is_none() {
+        bail!("`--rate` needs `--input-rate HZ` for keypoints, which do not say how many frames a second they have");
+    }
+    let mirrored = facing == Facing::Left;
+    let extra = ExtraColumns::RootAndLengths { mirrored };
+    let table = finished(&track.joints, options.input_rate_hz, options, mirrored, extra)?;
+    Ok(RecordedAngles { table, rate_hz: options.rate_hz.or(options.input_rate_hz), notes })
+}
+
+/// Resamples, mirrors, and takes the angles.
+fn finished(
+    joints: &ImageJoints,
+    recorded_hz: Option<f64>,
+    options: &RecordingOptions,
+    mirror: bool,
+    extra: ExtraColumns,
+) -> Result<AngleTable> {
+    let joints = match (recorded_hz, options.rate_hz) {
+        (Some(from), Some(to)) => resample(joints, from, to)?,
+        _ => joints.clone(),
+    };
+    let joints = if mirror { joints.mirrored() } else { joints };
+    Ok(joints.angle_table(extra)?)
+}

@@ -1,0 +1,124 @@
+//! COCO JSON: one file for all frames, either results (a list of detections) or annotations.
+
+use super::DetectedFrame;
+use super::error::{KeypointError, json, read_text};
+use super::layout;
+use super::openpose::{numbers, people};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Reads a JSON file: a list of results, an object with `annotations` (and `images`), or one OpenPose frame.
+///
+/// # Errors
+/// Names the file, the entry and the rule that it broke.
+pub fn read(path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
+    let value = json(&read_text(path)?, path)?;
+    if value.get("people").is_some() {
+        return Ok(vec![DetectedFrame { frame: 0, people: people(&value, path)? }]);
+    }
+    let names = image_names(&value);
+    let list = value.as_array().or_else(|| value.get("annotations").and_then(Value::as_array));
+    let list = list.ok_or_else(|| {
+        KeypointError::unusable(path, "is neither a list of COCO results, nor has it `annotations` or `people`")
+    })?;
+    let mut entries: Vec<(String, Vec<layout::Keypoint>)> = Vec::with_capacity(list.len());
+    for (index, entry) in list.iter().enumerate() {
+        let broken = |rule: &str| KeypointError::broken(path, format!("entry {index}"), rule);
+        let image = match entry.get("image_id") {
+            Some(Value::String(name)) => name.clone(),
+            Some(id) if id.is_u64() => names.get(&id.to_string()).cloned().unwrap_or_else(|| id.to_string()),
+            _ => return Err(broken("`image_id` has to be a whole number or a name")),
+        };
+        let values = entry.get("keypoints").and_then(numbers);
+        let values = values.ok_or_else(|| broken("`keypoints` has to be a flat list of numbers x, y, confidence"))?;
+        entries.push((image, layout::person(&values).map_err(|rule| broken(&rule))?));
+    }
+    if entries.is_empty() {
+        return Err(KeypointError::unusable(path, "has no entry"));
+    }
+    Ok(by_frame(entries, names.values().cloned()))
+}
+
+/// File name of each image of an annotation file, by the text of its number.
+fn image_names(value: &Value) -> BTreeMap<String, String> {
+    let images = value.get("images").and_then(Value::as_array);
+    let name = |image: &Value| Some((image.get("id")?.to_string(), image.get("file_name")?.as_str()?.to_owned()));
+    images.into_iter().flatten().filter_map(name).collect()
+}
+
+/// Groups entries by image, images in natural order. The number at the end of each name is the number of its frame if they
+/// rise; else images are counted from 0. Images of `listed` without an entry are frames without a person.
+fn by_frame(entries: Vec<(String, Vec<layout::Keypoint>)>, listed: impl Iterator<Item = String>) -> Vec<DetectedFrame> {
+    let mut names: Vec<String> = entries.iter().map(|entry| entry.0.clone()).chain(listed).collect();
+    names.sort_by(|a, b| natord::compare(a, b).then_with(|| a.cmp(b)));
+    names.dedup();
+    let number = |name: &String| -> Option<u64> {
+        let stem = Path::new(name).file_stem()?.to_string_lossy().into_owned();
+        let digits = stem.trim_end_matches(|letter: char| letter.is_ascii_digit()).len();
+        stem.get(digits..)?.parse().ok()
+    };
+    let numbers: Option<Vec<u64>> = names.iter().map(number).collect();
+    let numbers = match numbers {
+        Some(numbers) if numbers.windows(2).all(|pair| pair[0] < pair[1]) => numbers,
+        _ => (0..names.len() as u64).collect(),
+    };
+    let mut people: BTreeMap<String, Vec<Vec<layout::Keypoint>>> = BTreeMap::new();
+    for (name, person) in entries {
+        people.entry(name).or_default().push(person);
+    }
+    let frame =
+        |(frame, name): (u64, &String)| DetectedFrame { frame, people: people.remove(name).unwrap_or_default() };
+    numbers.into_iter().zip(&names).map(frame).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn keypoints(shift: f64) -> Vec<f64> {
+        (0..17).flat_map(|i| [f64::from(i) + shift, 5.0, 2.0]).collect()
+    }
+
+    fn read_text(text: &str) -> Result<Vec<DetectedFrame>, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("k.json");
+        std::fs::write(&path, text).unwrap();
+        read(&path).map_err(|error| error.to_string())
+    }
+
+    fn counts(frames: &[DetectedFrame]) -> Vec<(u64, usize)> {
+        frames.iter().map(|frame| (frame.frame, frame.people.len())).collect()
+    }
+
+    #[test]
+    fn results_are_grouped_by_image() {
+        let entry = |id: Value| json!({ "image_id": id, "category_id": 1, "keypoints": keypoints(1.0), "score": 0.9 });
+        let frames =
+            read_text(&json!([entry(4.into()), entry(11.into()), entry(4.into()), entry(5.into())]).to_string());
+        assert_eq!(counts(&frames.unwrap()), [(4, 2), (5, 1), (11, 1)]);
+        let frames = read_text(&json!([entry("10.jpg".into()), entry("9.jpg".into())]).to_string()).unwrap();
+        assert_eq!(counts(&frames), [(9, 1), (10, 1)]);
+    }
+
+    #[test]
+    fn annotations_know_images_without_people() {
+        let text = json!({
+            "images": [{ "id": 70, "file_name": "f_2.png" }, { "id": 71, "file_name": "f_3.png" }],
+            "annotations": [{ "image_id": 71, "keypoints": keypoints(1.0) }],
+        });
+        assert_eq!(counts(&read_text(&text.to_string()).unwrap()), [(2, 0), (3, 1)]);
+    }
+
+    #[test]
+    fn broken_files_are_named() {
+        let refusal = |value: Value| read_text(&value.to_string()).unwrap_err();
+        assert!(refusal(json!({ "a": 1 })).contains("neither a list of COCO results"));
+        assert!(refusal(json!([])).contains("has no entry"));
+        assert!(refusal(json!([{ "keypoints": [] }])).contains("entry 0: `image_id`"));
+        assert!(refusal(json!([{ "image_id": 1 }])).contains("entry 0: `keypoints`"));
+        assert!(refusal(json!([{ "image_id": 1, "keypoints": [[1, 2]] }])).contains("flat list"));
+        assert!(read_text("[").unwrap_err().contains("k.json: line 1: this is no JSON"));
+    }
+}
