@@ -41,6 +41,9 @@ pub struct AnglesArgs {
     /// Take a motion in space that lacks joints; their angles are missing.
     #[arg(long)]
     pub partial: bool,
+    /// Exchange the names of left and right: the same motion led by the other side, a second one to train on.
+    #[arg(long)]
+    pub swap_sides: bool,
 }
 
 /// Reads, projects or follows, and writes the table.
@@ -60,6 +63,7 @@ pub fn run(args: &AnglesArgs) -> Result<()> {
         facing: args.facing,
         min_confidence: confidence,
         partial: args.partial,
+        swap_sides: args.swap_sides,
     };
     let found = angles(&args.motion, &options)?;
     found.table.write(&args.out)?;

@@ -6,6 +6,7 @@
 pub mod angles;
 pub mod blobs;
 pub mod ctrl_c;
+pub mod cut;
 pub mod demo;
 pub mod evaluate;
 pub mod evaluate_arm;
@@ -43,6 +44,8 @@ pub enum Command {
     Track(track::Track),
     /// Turn a motion in space or 2D keypoints into an angle table.
     Angles(angles::AnglesArgs),
+    /// Find the cycles in angle tables.
+    Cut(cut::CutArgs),
     /// Render scenes with known truth.
     Simulate(simulate::SimulateArgs),
     /// Write the skin mask of each image.
@@ -66,6 +69,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
         Command::Demo(args) => demo::run(args),
         Command::Track(track) => track::run(track),
         Command::Angles(args) => angles::run(args),
+        Command::Cut(args) => cut::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Segment(args) => segment::run(args),
         Command::Blobs(args) => blobs::run(args),

@@ -31,6 +31,14 @@ pub enum CyclicError {
         /// The rule it broke and the remedy.
         rule: String,
     },
+    /// A table in which no cycle was found.
+    #[error("no cycle in `{file}`: {reason}; cut it by hand, or record more cycles")]
+    NoCycle {
+        /// The table.
+        file: String,
+        /// Why, in words.
+        reason: String,
+    },
     /// A value that was handed in cannot be used.
     #[error("`{parameter}` {rule}")]
     Parameter {

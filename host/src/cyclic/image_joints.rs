@@ -61,6 +61,16 @@ impl ImageJoints {
         Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
     }
 
+    /// Each frame with the names of left and right exchanged, places as they are.
+    #[must_use]
+    pub fn sides_swapped(&self) -> Self {
+        let frame = |frame: &JointFrame| JointFrame {
+            frame: frame.frame,
+            joints: std::array::from_fn(|joint| frame.joints[usize::from(HUMAN.joints()[joint].mirror)]),
+        };
+        Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
+    }
+
     /// The angle of each segment, unwrapped along time.
     ///
     /// # Errors
@@ -142,6 +152,8 @@ mod tests {
         assert_eq!(row.angles_rad[7], None);
         assert_eq!((row.extra[0].as_str(), row.extra[15].as_str()), ("100.000", "1"));
         assert_eq!(points.mirrored().mirrored(), points);
+        assert_eq!(points.sides_swapped().frames[0].joints[11], Some([97.0, 204.0]));
+        assert_eq!(points.sides_swapped().frames[0].joints[8], None);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 pub mod angle_table;
 pub mod cuts;
+pub mod cutting;
 pub mod error;
 pub mod heading;
 pub mod image_joints;

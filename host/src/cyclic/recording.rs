@@ -30,6 +30,8 @@ pub struct RecordingOptions {
     pub min_confidence: f64,
     /// Take a motion that lacks joints.
     pub partial: bool,
+    /// Exchange the names of left and right.
+    pub swap_sides: bool,
 }
 
 /// An angle table and what was found on the way to it.
@@ -182,5 +184,6 @@ fn finished(
         _ => joints.clone(),
     };
     let joints = if mirror { joints.mirrored() } else { joints };
+    let joints = if options.swap_sides { joints.sides_swapped() } else { joints };
     Ok(joints.angle_table(extra)?)
 }

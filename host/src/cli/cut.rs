@@ -1,0 +1,76 @@
+//! `sinew cut`: the cycles of angle tables as a cut list.
+
+use crate::cyclic::AngleTable;
+use crate::cyclic::cuts::{self, Cut};
+use crate::cyclic::cutting::{CuttingOptions, cycles};
+use crate::output::check_writable_file;
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Options of `sinew cut`.
+#[derive(Debug, Args)]
+pub struct CutArgs {
+    /// Angle tables, as `sinew angles` writes them.
+    #[arg(required = true, value_name = "TABLE.csv")]
+    pub tables: Vec<PathBuf>,
+    /// Cut list to write: file,start_frame,end_frame, end excluded.
+    #[arg(long, value_name = "CUTS.csv")]
+    pub out: PathBuf,
+    /// Frames per second of the tables.
+    #[arg(long, value_name = "HZ", default_value_t = 60.0)]
+    pub rate: f64,
+    /// Shortest cycle, seconds.
+    #[arg(long, value_name = "S", default_value_t = 0.4)]
+    pub shortest: f64,
+    /// Longest cycle, seconds.
+    #[arg(long, value_name = "S", default_value_t = 6.0)]
+    pub longest: f64,
+}
+
+/// Finds the cycles of each table and writes them all; a table without cycles is named and left out.
+///
+/// # Errors
+/// Bad input, no cycle in any table, or an output that cannot be written.
+pub fn run(args: &CutArgs) -> Result<()> {
+    check_writable_file(&args.out)?;
+    let options = CuttingOptions { rate_hz: args.rate, shortest_s: args.shortest, longest_s: args.longest };
+    let mut all: Vec<Cut> = Vec::new();
+    let mut report = String::new();
+    for path in &args.tables {
+        let table = AngleTable::read(path)?;
+        match cycles(&table, &path.display().to_string(), options) {
+            Ok(mut found) => {
+                let frames: u64 = found.iter().map(Cut::duration_frames).sum();
+                let mean = frames as f64 / found.len() as f64;
+                writeln!(
+                    report,
+                    "{}: {} cycles of {mean:.1} frames on the mean, {:.1} a minute",
+                    path.display(),
+                    found.len(),
+                    60.0 * args.rate / mean
+                )?;
+                let name = name_from(&args.out, path)?;
+                found.iter_mut().for_each(|cut| cut.file.clone_from(&name));
+                all.extend(found);
+            }
+            Err(error) if args.tables.len() > 1 => eprintln!("left out: {error}"),
+            Err(error) => return Err(error.into()),
+        }
+    }
+    if all.is_empty() {
+        bail!("no table has a cycle; the reasons stand above");
+    }
+    cuts::write(&args.out, &all)?;
+    writeln!(report, "wrote {}", args.out.display())?;
+    super::stdout::write_all(report.as_bytes())
+}
+
+/// How a list at `list` names `table`: relative where the table lies in the list's folder or below it, else absolute.
+fn name_from(list: &Path, table: &Path) -> Result<String> {
+    let absolute = |path: &Path| path.canonicalize().with_context(|| format!("`{}` cannot be found", path.display()));
+    let folder = list.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let (folder, table) = (absolute(folder)?, absolute(table)?);
+    Ok(table.strip_prefix(&folder).unwrap_or(&table).to_string_lossy().into_owned())
+}

@@ -1,0 +1,81 @@
+//! `sinew cut` as a user types it.
+
+use assert_cmd::Command;
+use predicates::prelude::PredicateBooleanExt;
+use predicates::str::contains;
+use sinew::cyclic::CutList;
+use sinew_tests::{shared_data, sinew_command};
+use std::fs;
+use std::path::Path;
+
+fn sinew(folder: &Path) -> Command {
+    let mut command = Command::from_std(sinew_command());
+    command.current_dir(folder).arg("cut");
+    command
+}
+
+/// Every hand-made cut has a cycle at the same place whose length is the same to 3 %.
+#[test]
+fn recorded_walks_are_cut_as_by_hand() {
+    let Some(folder) = shared_data("cyclic-walking") else { return };
+    let root = tempfile::tempdir().unwrap();
+    let mut count = 0;
+    for list in ["train_cuts.csv", "test_cuts.csv"] {
+        for wanted in CutList::read(&folder.join(list)).unwrap().cuts() {
+            sinew(root.path()).arg(folder.join(&wanted.file)).args(["--out", "c.csv"]).assert().success();
+            let made = CutList::read(&root.path().join("c.csv")).unwrap();
+            let near = made.cuts().iter().min_by_key(|cut| cut.start_frame.abs_diff(wanted.start_frame)).unwrap();
+            let ratio = near.duration_frames() as f64 / wanted.duration_frames() as f64;
+            assert!((ratio - 1.0).abs() < 0.03, "{near:?} is not {wanted:?}");
+            assert!(
+                near.start_frame.abs_diff(wanted.start_frame) * 10 < wanted.duration_frames(),
+                "{near:?}, {wanted:?}"
+            );
+            assert!(Path::new(&near.file).is_absolute());
+            count += 1;
+        }
+    }
+    assert_eq!(count, 23);
+}
+
+/// Cycles of a long walk follow one another without a break, and their number is that of the steps counted by eye.
+#[test]
+fn long_walks_are_cut_without_a_break() {
+    let Some(data) = shared_data("mocap") else { return };
+    let root = tempfile::tempdir().unwrap();
+    for (file, cycles) in [
+        ("bandai/dataset-2_walk_elderly_001.bvh", 11..=13),
+        ("bandai/dataset-2_walk_normal_001.bvh", 6..=8),
+        ("pymo/AV_8Walk_Meredith_HVHA_Rep1.bvh", 8..=9),
+    ] {
+        let mut angles = Command::from_std(sinew_command());
+        angles.current_dir(root.path()).arg("angles").arg(data.join(file)).args(["--rate", "60", "--out", "t.csv"]);
+        angles.assert().success();
+        sinew(root.path()).args(["t.csv", "--out", "c.csv"]).assert().success().stdout(contains("cycles of"));
+        let list = CutList::read(&root.path().join("c.csv")).unwrap();
+        let cuts = list.cuts();
+        assert!(cycles.contains(&cuts.len()), "{file}: {} cycles", cuts.len());
+        assert!(cuts.windows(2).all(|pair| pair[0].end_frame == pair[1].start_frame), "{file}: {cuts:?}");
+        assert_eq!(cuts[0].file, "t.csv");
+    }
+}
+
+#[test]
+fn what_has_no_cycle_is_refused_with_the_reason() {
+    let root = tempfile::tempdir().unwrap();
+    let header = sinew::cyclic::angle_table::COLUMNS.join(",");
+    let still: String = (0..200).map(|frame| format!("{frame}{}\n", ",1.5".repeat(13))).collect();
+    fs::write(root.path().join("still.csv"), format!("{header}\n{still}")).unwrap();
+    fs::write(root.path().join("empty.csv"), format!("{header}\n")).unwrap();
+    let refused = |arguments: &[&str], message: &str| {
+        sinew(root.path()).args(arguments).args(["--out", "c.csv"]).assert().code(1).stderr(contains(message));
+        assert!(!root.path().join("c.csv").exists());
+    };
+    refused(&["still.csv"], "no cycle in `still.csv`: no angle moves");
+    refused(&["still.csv", "still.csv"], "no table has a cycle");
+    refused(&["empty.csv"], "empty.csv:2: the table is empty");
+    refused(&["still.csv", "--rate", "0"], "`rate` has to be greater than zero");
+    refused(&["still.csv", "--shortest", "3", "--longest", "2"], "`shortest cycle` has to be above zero and below");
+    let mut command = sinew(root.path());
+    command.args(["still.csv"]).assert().code(2).stderr(contains("--out").and(contains("required")));
+}
