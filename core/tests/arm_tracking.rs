@@ -59,11 +59,16 @@ fn run(model: &ArmModel, scene: &Scene, seed: u64) -> Vec<(ArmEstimate, f32, f32
             let image = camera.project(&hand).unwrap();
             let mut candidates = Vec::new();
             if !scene.hidden.contains(&frame) {
-                let size = camera.focal_px() / hand.z;
+                let forearm = (hand - elbow).normalize();
+                let cue = ArmOptions::default().area_cue.unwrap();
+                let size_px = camera.focal_px() / hand.z;
+                let area_px = cue.expected_area_m2(forearm.dot(&hand.normalize())) * size_px * size_px;
+                let oblong = HandCandidate { moments_px2: [350.0, 0.0, 100.0], ..HandCandidate::default() };
+                let scale = area_px * exp(0.25 * stream.normal()) / oblong.length_weighted_area_px(cue.length_share);
                 candidates.push(HandCandidate {
                     centre: Pixel::new(image.u_px + 4.0 * stream.normal(), image.v_px + 4.0 * stream.normal()),
-                    moments_px2: [200.0, 0.0, 200.0],
-                    area_px: 0.011 * size * size * exp(0.25 * stream.normal()),
+                    moments_px2: oblong.moments_px2.map(|moment| moment * scale),
+                    area_px,
                     likelihood: 0.75,
                 });
             }

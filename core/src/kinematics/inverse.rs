@@ -15,6 +15,9 @@ const MAX_HALVINGS: usize = 6;
 /// A step shorter than this (radians) ends the iteration.
 const STEP_TOLERANCE_RAD: f32 = 1.0e-3;
 
+/// A step that promises less log density than this ends the iteration: a draw around the mode costs a hundred times more.
+const LEAST_LOG_GAIN: f32 = 0.01;
+
 /// Where an end-effector wants to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
@@ -137,9 +140,13 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
             }
         }
         let mut converged = false;
+        let (mut gradient, mut hessian) = self.derivatives(&angles_rad, &here);
         for _ in 0..max_steps {
-            let (gradient, hessian) = self.derivatives(&angles_rad, &here);
-            let Some(direction) = self.free_direction(&angles_rad, &gradient, &hessian) else { break };
+            let Some((direction, gain)) = self.free_direction(&angles_rad, &gradient, &hessian) else { break };
+            if gain < LEAST_LOG_GAIN {
+                converged = true;
+                break;
+            }
             let Some((next, there, log_next)) = self.climb(&angles_rad, &direction, log_density) else {
                 converged = true;
                 break;
@@ -149,12 +156,12 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
                 longest = max(longest, abs(next[i] - angles_rad[i]));
             }
             (angles_rad, here, log_density) = (next, there, log_next);
+            (gradient, hessian) = self.derivatives(&angles_rad, &here);
             if longest < STEP_TOLERANCE_RAD {
                 converged = true;
                 break;
             }
         }
-        let (gradient, hessian) = self.derivatives(&angles_rad, &here);
         Mode { angles_rad, gradient, hessian, log_density, residual_m: self.residual_m(&here), converged }
     }
 
@@ -169,13 +176,14 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
         worst
     }
 
-    /// Gauss-Newton direction of the angles that no limit holds; `None` where the Hessian cannot be factored.
+    /// Gauss-Newton direction of the angles that no limit holds and the gain of log density that it promises; `None` where
+    /// the Hessian cannot be factored.
     fn free_direction(
         &self,
         angles_rad: &[f32; ANGLES],
         gradient: &[f32; ANGLES],
         hessian: &[[f32; ANGLES]; ANGLES],
-    ) -> Option<[f32; ANGLES]> {
+    ) -> Option<([f32; ANGLES], f32)> {
         let (mut reduced, mut right) = (*hessian, *gradient);
         for (i, limit) in self.skeleton.limits().iter().enumerate() {
             let held = (angles_rad[i] <= limit.low_rad && gradient[i] < 0.0)
@@ -189,7 +197,12 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
                 reduced[i][i] = 1.0;
             }
         }
-        Some(Cholesky::new(&reduced)?.solve(&right))
+        let direction = Cholesky::new(&reduced)?.solve(&right);
+        let mut gain = 0.0;
+        for i in 0..ANGLES {
+            gain += 0.5 * right[i] * direction[i];
+        }
+        Some((direction, gain))
     }
 
     /// The longest of the step and its halvings, cut to the limits, that raises the density.

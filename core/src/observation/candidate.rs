@@ -1,6 +1,8 @@
 //! A blob that may be a hand, as the trackers see it.
 
 use crate::camera::Pixel;
+use crate::math::{exp, ln, max, sqrt};
+use core::f32::consts::PI;
 
 /// The part of a blob that an arm tracker uses: a few numbers, so that a frame's list is small state.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -14,4 +16,64 @@ pub struct HandCandidate {
     pub area_px: f32,
     /// p(hand | blob) in [0, 1], eq. (6) of the arm paper or the default form.
     pub likelihood: f32,
+}
+
+impl HandCandidate {
+    /// Area of the ellipse with the blob's second moments, its long axis counting `length_share` and its short axis the
+    /// rest, square pixels; at one half it is the ellipse's own area.
+    ///
+    /// A hand that turns its edge to the camera loses width and keeps its length, so a size that leans on the length says
+    /// better how far the hand is.
+    #[must_use]
+    pub fn length_weighted_area_px(&self, length_share: f32) -> f32 {
+        let [uu, uv, vv] = self.moments_px2;
+        let (middle, half) = (0.5 * (uu + vv), 0.5 * (uu - vv));
+        let radius = sqrt(half * half + uv * uv);
+        // A pixel is itself a twelfth wide, so nothing is narrower.
+        let [long, short] = [middle + radius, middle - radius].map(|variance| max(variance, 1.0 / 12.0));
+        4.0 * PI * exp(length_share * ln(long) + (1.0 - length_share) * ln(short))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn ellipse(long_px: f32, short_px: f32, angle_rad: f32) -> HandCandidate {
+        let (sine, cosine) = crate::math::sin_cos(angle_rad);
+        let (a, b) = (0.25 * long_px * long_px, 0.25 * short_px * short_px);
+        let moments_px2 =
+            [a * cosine * cosine + b * sine * sine, (a - b) * sine * cosine, a * sine * sine + b * cosine * cosine];
+        HandCandidate { moments_px2, ..HandCandidate::default() }
+    }
+
+    proptest! {
+        #[test]
+        fn an_ellipse_has_its_own_area_at_one_half_in_any_direction(
+            long in 4.0_f32..200.0, ratio in 0.1_f32..1.0, angle in -3.0_f32..3.0,
+        ) {
+            let area = PI * long * long * ratio;
+            let measured = ellipse(long, long * ratio, angle).length_weighted_area_px(0.5);
+            prop_assert!((measured / area - 1.0).abs() < 0.02, "{} {}", measured, area);
+        }
+
+        #[test]
+        fn the_measure_grows_with_the_square_of_the_scale(share in 0.0_f32..=1.0, scale in 1.0_f32..5.0) {
+            let [small, large] = [1.0, scale].map(|s| ellipse(30.0 * s, 15.0 * s, 0.4).length_weighted_area_px(share));
+            prop_assert!((large / small / (scale * scale) - 1.0).abs() < 1.0e-3);
+        }
+    }
+
+    #[test]
+    fn a_hand_turned_edge_on_keeps_more_of_its_length_weighted_area() {
+        let [flat, edge] = [20.0, 10.0].map(|width| ellipse(40.0, width, 0.0));
+        let kept = |share| edge.length_weighted_area_px(share) / flat.length_weighted_area_px(share);
+        assert!(kept(0.63) > kept(0.5) + 0.05);
+    }
+
+    #[test]
+    fn a_blob_without_extent_has_a_positive_area() {
+        assert!(HandCandidate::default().length_weighted_area_px(0.6) > 0.5);
+    }
 }

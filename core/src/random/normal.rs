@@ -37,6 +37,17 @@ pub fn upper_tail(x: f32) -> f32 {
     0.5 * erfc(x * FRAC_1_SQRT_2)
 }
 
+/// Beyond this many standard deviations a tail adds nothing to a probability near one (1e-9).
+const NO_TAIL: f32 = 6.0;
+
+/// As [`upper_tail`], but zero where the tail is too small to change a probability near one: limits that are far away cost
+/// nothing.
+#[must_use]
+#[inline]
+pub fn tail_beside_one(x: f32) -> f32 {
+    if x > NO_TAIL { 0.0 } else { upper_tail(x) }
+}
+
 /// Natural logarithm of [`upper_tail`], without underflow: for large `x` by Laplace's continued fraction.
 #[must_use]
 pub fn log_upper_tail(x: f32) -> f32 {
@@ -68,7 +79,8 @@ pub fn log_interval_mass(low: f32, high: f32) -> f32 {
         return log_density(0.5 * (low + high)) + ln(width);
     }
     if low < 0.0 && high > 0.0 {
-        return ln(1.0 - upper_tail(high) - upper_tail(-low));
+        let outside = tail_beside_one(high) + tail_beside_one(-low);
+        return if outside > 0.0 { ln(1.0 - outside) } else { 0.0 };
     }
     let (near, far) = if low >= 0.0 { (low, high) } else { (-high, -low) };
     let near_log = log_upper_tail(near);

@@ -4,7 +4,7 @@
 //! far out the interval lies; beyond [`FAR_TAIL`] the inverse is taken in log space.
 
 use super::Stream;
-use super::normal::{log_upper_tail, upper_quantile, upper_tail};
+use super::normal::{log_upper_tail, tail_beside_one, upper_quantile, upper_tail};
 use crate::math::{clamp, exp, ln, max, min, sqrt};
 
 /// Where the probability itself would leave the range of `f32` soon and logarithms take over.
@@ -34,7 +34,7 @@ impl Stream {
 
 /// Draw from an interval around zero.
 fn straddling(low: f32, high: f32, u: f32) -> f32 {
-    let (below, above) = (upper_tail(-low), upper_tail(high));
+    let (below, above) = (tail_beside_one(-low), tail_beside_one(high));
     let lower = below + u * (1.0 - below - above);
     let upper = above + (1.0 - u) * (1.0 - below - above);
     if lower < upper {

@@ -44,6 +44,14 @@ pub const ARM_LIMITS: [Limit; ARM_ANGLES] = [
     Limit::from_degrees(0.0, 150.0),
 ];
 
+/// Limits that only keep an arm's angles unique: what an arm without joint limits is compared with.
+pub const WIDE_ARM_LIMITS: [Limit; ARM_ANGLES] = [
+    Limit::from_degrees(-180.0, 180.0),
+    Limit::from_degrees(-89.0, 89.0),
+    Limit::from_degrees(-180.0, 180.0),
+    Limit::from_degrees(0.0, 180.0),
+];
+
 /// Lengths, place and limits of one arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmGeometry {

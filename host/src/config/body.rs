@@ -7,8 +7,8 @@ use sinew_core::math::{Mat3, Vec3, axis_rotation};
 use sinew_core::skeleton::arm::facing_camera;
 use sinew_core::skeleton::{ArmGeometry, Side};
 
-/// Area of a half-open hand's image at one metre, over squared height: 0.0129 m^2 at 1.75 m.
-const HAND_AREA: f32 = 0.0042;
+/// Area of a half-open hand's image at one metre, over squared height: 0.0194 m^2 at 1.75 m.
+const HAND_AREA: f32 = 0.00632;
 
 /// Size and place of the person.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

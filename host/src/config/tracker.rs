@@ -84,7 +84,10 @@ pub struct TrackerConfig {
     pub gate_floor: f32,
     pub gate_missed_share: f32,
     pub gate_allotment_reach: f32,
+    pub joint_limits: bool,
     pub area_cue: bool,
+    pub area_length_share: f32,
+    pub area_foreshortening: f32,
     pub area_log_std: f32,
     pub depth_from_area: bool,
     pub blob_memory: bool,
@@ -100,6 +103,7 @@ pub struct TrackerConfig {
     pub hand_std_m_per_sqrt_s: f32,
     pub elbow_std_m_per_sqrt_s: f32,
     pub ray_std_m_per_sqrt_s: f32,
+    pub ray_std_per_path: f32,
     pub centre_std_per_focal: f32,
     pub reach_std_m: f32,
     pub reach_across_std_m: f32,
@@ -135,7 +139,10 @@ impl Default for TrackerConfig {
             gate_floor: gate.floor,
             gate_missed_share: gate.missed_share,
             gate_allotment_reach: gate.allotment_reach,
+            joint_limits: true,
             area_cue: options.area_cue.is_some(),
+            area_length_share: options.area_cue.map_or(0.65, |cue| cue.length_share),
+            area_foreshortening: options.area_cue.map_or(0.85, |cue| cue.foreshortening),
             area_log_std: options.area_cue.map_or(0.3, |cue| cue.log_std),
             depth_from_area: options.depth_from_area,
             blob_memory: options.blob_memory.is_some(),
@@ -154,6 +161,7 @@ impl Default for TrackerConfig {
             hand_std_m_per_sqrt_s: options.hand_std_m_per_sqrt_s,
             elbow_std_m_per_sqrt_s: options.elbow_std_m_per_sqrt_s,
             ray_std_m_per_sqrt_s: options.ray_std_m_per_sqrt_s,
+            ray_std_per_path: options.ray_std_per_path,
             centre_std_per_focal: options.centre_std_per_focal,
             reach_std_m: options.reach_std_m,
             reach_across_std_m: options.reach_across_std_m,
@@ -188,6 +196,8 @@ impl TrackerConfig {
         within("gate_missed_share", self.gate_missed_share, 0.0, 1.0)?;
         positive("gate_allotment_reach", self.gate_allotment_reach)?;
         within("product_floor", self.product_floor, 1.0e-6, 10.0)?;
+        within("area_length_share", self.area_length_share, 0.0, 1.0)?;
+        not_negative("area_foreshortening", self.area_foreshortening)?;
         positive("area_log_std", self.area_log_std)?;
         positive("blob_fall_time_s", self.blob_fall_time_s)?;
         positive("blob_rise_time_s", self.blob_rise_time_s)?;
@@ -196,6 +206,27 @@ impl TrackerConfig {
         positive("blob_rest_time_s", self.blob_rest_time_s)?;
         positive("cluster_radius_per_focal", self.cluster_radius_per_focal)?;
         self.options(true, 0.01).check()
+    }
+
+    fn gate_options(&self) -> Gate {
+        Gate {
+            std_m: self.gate_std_m,
+            growth_m_per_s: self.gate_growth_m_per_s,
+            floor: self.gate_floor,
+            missed_share: self.gate_missed_share,
+            allotment_reach: self.gate_allotment_reach,
+        }
+    }
+
+    fn memory_options(&self) -> BlobMemoryOptions {
+        BlobMemoryOptions {
+            fall_time_s: self.blob_fall_time_s,
+            rise_time_s: self.blob_rise_time_s,
+            floor: self.blob_floor,
+            rest_share: self.blob_rest_share,
+            rest_time_s: self.blob_rest_time_s,
+            ..DEFAULT_BLOB_MEMORY
+        }
     }
 
     /// The options of the core's tracker.
@@ -208,21 +239,6 @@ impl TrackerConfig {
             CombinationName::Mean => false,
             CombinationName::Product => true,
         };
-        let gate = Gate {
-            std_m: self.gate_std_m,
-            growth_m_per_s: self.gate_growth_m_per_s,
-            floor: self.gate_floor,
-            missed_share: self.gate_missed_share,
-            allotment_reach: self.gate_allotment_reach,
-        };
-        let memory = BlobMemoryOptions {
-            fall_time_s: self.blob_fall_time_s,
-            rise_time_s: self.blob_rise_time_s,
-            floor: self.blob_floor,
-            rest_share: self.blob_rest_share,
-            rest_time_s: self.blob_rest_time_s,
-            ..DEFAULT_BLOB_MEMORY
-        };
         ArmOptions {
             variant: self.variant.into(),
             particles: self.particles,
@@ -231,10 +247,15 @@ impl TrackerConfig {
             } else {
                 LimbCombination::Mean
             },
-            gate: self.gate.then_some(gate),
-            area_cue: self.area_cue.then_some(AreaCue { hand_area_m2, log_std: self.area_log_std * doubt }),
+            gate: self.gate.then_some(self.gate_options()),
+            area_cue: self.area_cue.then_some(AreaCue {
+                hand_area_m2,
+                length_share: self.area_length_share,
+                foreshortening: self.area_foreshortening,
+                log_std: self.area_log_std * doubt,
+            }),
             depth_from_area: self.depth_from_area,
-            blob_memory: self.blob_memory.then_some(memory),
+            blob_memory: self.blob_memory.then_some(self.memory_options()),
             estimate: match self.estimate {
                 EstimateName::Cluster => {
                     EstimateRule::HeaviestCluster { radius_per_focal: self.cluster_radius_per_focal }
@@ -246,6 +267,7 @@ impl TrackerConfig {
             hand_std_m_per_sqrt_s: self.hand_std_m_per_sqrt_s,
             elbow_std_m_per_sqrt_s: self.elbow_std_m_per_sqrt_s,
             ray_std_m_per_sqrt_s: self.ray_std_m_per_sqrt_s,
+            ray_std_per_path: self.ray_std_per_path,
             centre_std_per_focal: self.centre_std_per_focal,
             reach_std_m: self.reach_std_m,
             reach_across_std_m: self.reach_across_std_m,

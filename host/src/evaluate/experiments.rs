@@ -94,6 +94,8 @@ pub fn options(scenes: &[ObservedScene], variant: VariantName) -> Result<Vec<Row
         ("no gate", TrackerConfig { gate: false, ..base() }),
         ("no area cue", TrackerConfig { area_cue: false, ..base() }),
         ("area in the weight only", TrackerConfig { depth_from_area: false, ..base() }),
+        ("no joint limits", TrackerConfig { joint_limits: false, ..base() }),
+        ("area not foreshortened", TrackerConfig { area_foreshortening: 0.0, ..base() }),
         ("no blob memory", TrackerConfig { blob_memory: false, ..base() }),
         ("mean of all particles", TrackerConfig { estimate: EstimateName::Mean, ..base() }),
         ("mean of both limbs", TrackerConfig { combination: CombinationName::Mean, ..base() }),

@@ -8,6 +8,7 @@ use serde::Serialize;
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::Side;
+use sinew_core::skeleton::arm::WIDE_ARM_LIMITS;
 use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmPair, ArmTracker, PairFrame, Particle};
 
 /// Which arms are tracked.
@@ -109,7 +110,11 @@ fn shoulder_m(body: &BodyConfig, side: Side) -> Vec3 {
 
 fn model(config: &Config, camera: Camera, size_px: (u32, u32), side: Side) -> Result<ArmModel> {
     let options = config.tracker.options(config.body.knows_shoulders(), config.body.hand_area_m2());
-    Ok(ArmModel::new(camera, size_px, config.body.arm(side)?, options)?)
+    let mut geometry = config.body.arm(side)?;
+    if !config.tracker.joint_limits {
+        geometry.limits = WIDE_ARM_LIMITS;
+    }
+    Ok(ArmModel::new(camera, size_px, geometry, options)?)
 }
 
 impl<const CAPACITY: usize> Trackers<CAPACITY> {

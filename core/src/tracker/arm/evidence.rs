@@ -5,7 +5,7 @@ use super::options::{LimbCombination, Variant};
 use super::propose::{FrameContext, Proposed};
 use super::step::Particle;
 use crate::camera::Pixel;
-use crate::math::{atan2, exp, ln, max};
+use crate::math::{Vec3, atan2, exp, ln, max, unit};
 use crate::observation::candidate::HandCandidate;
 use crate::observation::limbs::ArmImagePoints;
 use crate::observation::orientation::OrientationDensity;
@@ -30,7 +30,7 @@ impl FrameContext<'_> {
         if self.model.options().variant.has_blob_term() {
             log_weight += self.log_blob_term(&proposed.particle, hand);
         } else if self.model.options().variant.is_blob_driven() {
-            log_weight += self.log_area_cue(&proposed.particle, hand);
+            log_weight += self.log_area_cue(proposed, hand);
         }
         log_weight
     }
@@ -64,12 +64,13 @@ impl FrameContext<'_> {
 
     /// Squared deviation of a blob's log area from what the hand's depth lets expect, in standard deviations; zero
     /// without the cue.
-    fn area_deviation(&self, particle: &Particle, candidate: &HandCandidate) -> f32 {
+    fn area_deviation(&self, particle: &Particle, forearm: &Vec3, candidate: &HandCandidate) -> f32 {
         let Some(cue) = self.model.options().area_cue else { return 0.0 };
         let focal_px = self.model.camera().focal_px();
         let depth_m = max(particle.hand_m.z, 0.05);
-        let expected_px = cue.hand_area_m2 * focal_px * focal_px / (depth_m * depth_m);
-        let deviation = ln(candidate.area_px / expected_px) / cue.log_std;
+        let pointing = unit(particle.hand_m).map_or(0.0, |view| forearm.dot(&view));
+        let expected_px = cue.expected_area_m2(pointing) * focal_px * focal_px / (depth_m * depth_m);
+        let deviation = ln(candidate.length_weighted_area_px(cue.length_share) / expected_px) / cue.log_std;
         deviation * deviation
     }
 
@@ -77,37 +78,41 @@ impl FrameContext<'_> {
     ///
     /// A particle at no blob gets what a fitting one has on average. With `depth_from_area` the area already placed the
     /// driven hands and is not counted again.
-    fn log_area_cue(&self, particle: &Particle, hand: Option<Pixel>) -> f32 {
+    fn log_area_cue(&self, proposed: &Proposed, hand: Option<Pixel>) -> f32 {
         const AVERAGE: f32 = -0.5;
         let options = self.model.options();
         if options.area_cue.is_none() || self.candidates.is_empty() {
             return 0.0;
         }
+        let particle = &proposed.particle;
         let own = particle.driver.map(usize::from);
+        let place = own.or_else(|| self.candidate_at(hand));
+        let Some(candidate) = place.and_then(|index| self.candidates.get(index)) else { return AVERAGE };
+        let log_area = -0.5 * self.area_deviation(particle, &particle.forearm(), candidate);
         if own.is_some() && options.depth_from_area {
-            return AVERAGE;
+            return AVERAGE + log_area + 0.5 * self.area_deviation(particle, &proposed.supposed_forearm, candidate);
         }
-        match own.or_else(|| self.candidate_at(hand)).and_then(|index| self.candidates.get(index)) {
-            Some(candidate) => -0.5 * self.area_deviation(particle, candidate),
-            None => AVERAGE,
-        }
+        log_area
     }
 
     /// ln p(blobs | hand) times the image's area: clutter + sum_b pi_b N(u(hand); CoG_b, R_b), with the area cue as a
-    /// factor of each blob.
+    /// factor of each blob. What the blobs' beliefs leave of one is clutter too: a blob that was not the hand before is
+    /// not the hand only because it is the only one.
     fn log_blob_term(&self, particle: &Particle, hand: Option<Pixel>) -> f32 {
-        let clutter = self.model.options().clutter_share;
-        let total: f32 = self.candidates.iter().map(|c| c.likelihood).sum();
-        let (Some(hand), true) = (hand, total > 0.0) else { return ln(clutter) };
+        let hand_share = 1.0 - self.model.options().clutter_share;
+        let sum_of_beliefs: f32 = self.beliefs.iter().sum();
+        let total = max(sum_of_beliefs, 1.0);
+        let clutter = 1.0 - hand_share * sum_of_beliefs / total;
+        let Some(hand) = hand else { return ln(clutter) };
         let std_px = self.model.options().centre_std_per_focal * self.model.camera().focal_px();
         let peak = self.model.image_area_px() / (core::f32::consts::TAU * std_px * std_px);
         let mut sum = 0.0;
-        for candidate in &self.candidates {
+        for (candidate, belief) in self.candidates.iter().zip(&self.beliefs) {
             let miss = hand.distance_px(candidate.centre) / std_px;
-            let exponent = -0.5 * (miss * miss + self.area_deviation(particle, candidate));
-            sum += candidate.likelihood / total * peak * exp(exponent);
+            let exponent = -0.5 * (miss * miss + self.area_deviation(particle, &particle.forearm(), candidate));
+            sum += belief / total * peak * exp(exponent);
         }
-        ln(clutter + (1.0 - clutter) * sum)
+        ln(clutter + hand_share * sum)
     }
 }
 
@@ -115,7 +120,6 @@ impl FrameContext<'_> {
 mod tests {
     use super::*;
     use crate::camera::Camera;
-    use crate::math::Vec3;
     use crate::skeleton::{ArmGeometry, Side};
     use crate::tracker::arm::{ArmModel, ArmOptions};
 
@@ -135,6 +139,7 @@ mod tests {
             elbow_velocity_m_per_s: Vec3::zeros(),
             candidates: heapless::Vec::new(),
             rays: heapless::Vec::new(),
+            beliefs: [0.0; 8],
             counts: [0; 8],
             free: 1,
             best_chance: 0.0,
@@ -150,7 +155,7 @@ mod tests {
         let angles_rad = [0.0, 0.0, 1.57, 1.57];
         let (elbow_m, hand_m) = model.elbow_and_hand(&context.shoulder_m, &angles_rad);
         let particle = Particle { angles_rad, elbow_m, hand_m, driver: None };
-        let proposed = Proposed { particle, jump_m: 0.0, log_payment: 0.0 };
+        let proposed = Proposed { particle, jump_m: 0.0, supposed_forearm: Vec3::zeros(), log_payment: 0.0 };
         let uniform = OrientationDensity::uniform(36).unwrap();
         let flat = only(uniform, uniform);
         let image = context.image_of(&proposed.particle).unwrap();

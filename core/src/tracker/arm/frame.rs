@@ -42,6 +42,7 @@ pub fn most_likely(candidates: &[HandCandidate]) -> (Vec<HandCandidate, MAX_CAND
             && candidate.centre.v_px.is_finite()
             && candidate.area_px > 0.0
             && candidate.area_px.is_finite()
+            && candidate.moments_px2.iter().all(|moment| moment.is_finite())
             && candidate.likelihood >= LEAST_LIKELIHOOD
             && candidate.likelihood <= 1.0;
         if !usable {
@@ -86,9 +87,10 @@ mod tests {
 
     #[test]
     fn a_candidate_that_is_not_a_number_is_dropped() {
-        let broken = HandCandidate { area_px: f32::NAN, likelihood: 0.5, ..HandCandidate::default() };
-        let (kept, dropped) = most_likely(&[broken]);
-        assert!(kept.is_empty());
-        assert_eq!(dropped, 1);
+        let whole = HandCandidate { area_px: 9.0, likelihood: 0.5, ..HandCandidate::default() };
+        let no_area = HandCandidate { area_px: f32::NAN, ..whole };
+        let no_moments = HandCandidate { moments_px2: [1.0, f32::INFINITY, 1.0], ..whole };
+        let (kept, dropped) = most_likely(&[no_area, no_moments, whole]);
+        assert_eq!((kept.len(), dropped), (1, 2));
     }
 }

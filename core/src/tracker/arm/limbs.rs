@@ -8,7 +8,7 @@ use super::estimate::ArmJoints;
 use super::frame::ArmImage;
 use super::propose::FrameContext;
 use crate::correction::elbow::nearest_elbow;
-use crate::math::max;
+use crate::math::{Vec3, max, unit};
 use crate::observation::hough::dynamic_hough;
 use crate::observation::limbs::split;
 use crate::observation::orientation::OrientationDensity;
@@ -68,7 +68,8 @@ pub(super) fn observe(
 
 /// The last estimate with its hand corrected to candidate `index` and its elbow made to fit.
 fn arm_to_blob(context: &FrameContext<'_>, last: &ArmJoints, index: usize) -> Option<ArmJoints> {
-    let (mean_m, ray, _) = context.corrected_hand(&last.hand_m, index)?;
+    let (mean_m, ray, _) =
+        context.corrected_hand(&last.hand_m, &unit(last.hand_m - last.elbow_m).unwrap_or(Vec3::zeros()), index)?;
     let hand_m = context.reachable.along_ray(&mean_m, &ray);
     let geometry = context.model.geometry();
     let elbow_m = nearest_elbow(&context.shoulder_m, &hand_m, geometry.upper_arm_m, geometry.forearm_m, &last.elbow_m);

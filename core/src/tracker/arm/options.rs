@@ -1,6 +1,7 @@
 //! Options of the arm tracker, each with its default and its reason.
 
 use crate::error::{ParameterError, Rule, not_negative, positive, within};
+use crate::math::exp;
 use crate::observation::hough::HoughSettings;
 use crate::skeleton::arm::ARM_ANGLES;
 
@@ -72,10 +73,24 @@ pub struct Gate {
 /// Area cue: the blob's area tells the hand's distance, since area times squared depth is about constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AreaCue {
-    /// Area of the hand's image times squared depth over squared focal length, square metres.
+    /// Length-weighted area of the image of a hand seen from the side of its forearm (see
+    /// [`crate::observation::candidate::HandCandidate::length_weighted_area_px`]) times squared depth over
+    /// squared focal length, square metres.
     pub hand_area_m2: f32,
+    /// Weight of the image's long axis in that area; the short axis has the rest.
+    pub length_share: f32,
+    /// How much smaller, in the area's logarithm, a hand is that points at the camera or away from it.
+    pub foreshortening: f32,
     /// Standard deviation of the logarithm of the area.
     pub log_std: f32,
+}
+
+impl AreaCue {
+    /// The area to expect where the forearm's direction and the line of sight have the cosine `pointing`, square metres.
+    #[must_use]
+    pub fn expected_area_m2(&self, pointing: f32) -> f32 {
+        self.hand_area_m2 * exp(-self.foreshortening * pointing * pointing)
+    }
 }
 
 /// Memory of blobs that were there and were not the hand.
@@ -152,6 +167,8 @@ pub struct ArmOptions {
     pub elbow_std_m_per_sqrt_s: f32,
     /// Spread along the ray of a hand that a blob corrected, after one second, metres.
     pub ray_std_m_per_sqrt_s: f32,
+    /// What a frame's path adds to that spread, as a share of the path: a fast hand may turn towards the camera.
+    pub ray_std_per_path: f32,
     /// Error of a blob's centre as the hand's place, as a share of the focal length.
     pub centre_std_per_focal: f32,
     /// Standard deviation of reaching a goal, W^(-1/2) of eq. (12); metres.
@@ -183,7 +200,7 @@ impl Default for ArmOptions {
             particles: 50,
             combination: LimbCombination::Product { floor: 0.1 },
             gate: Some(DEFAULT_GATE),
-            area_cue: Some(AreaCue { hand_area_m2: 0.011, log_std: 0.3 }),
+            area_cue: Some(AreaCue { hand_area_m2: 0.0194, length_share: 0.65, foreshortening: 0.85, log_std: 0.3 }),
             depth_from_area: true,
             blob_memory: Some(DEFAULT_BLOB_MEMORY),
             estimate: EstimateRule::HeaviestCluster { radius_per_focal: DEFAULT_RADIUS_PER_FOCAL },
@@ -192,11 +209,12 @@ impl Default for ArmOptions {
             hand_std_m_per_sqrt_s: 0.15,
             elbow_std_m_per_sqrt_s: 0.2,
             ray_std_m_per_sqrt_s: 0.3,
+            ray_std_per_path: 1.0,
             centre_std_per_focal: 0.01,
             reach_std_m: 0.05,
             reach_across_std_m: 0.008,
             angle_std_rad_per_sqrt_s: [0.4, 0.4, 0.4, 0.4],
-            solver_steps: 6,
+            solver_steps: 4,
             limb_band_m: 0.12,
             hough: HoughSettings::default(),
             orientation_memory_s: 0.7,
@@ -228,6 +246,8 @@ impl ArmOptions {
         }
         if let Some(cue) = self.area_cue {
             positive("area_cue.hand_area_m2", cue.hand_area_m2)?;
+            within("area_cue.length_share", cue.length_share, 0.0, 1.0)?;
+            not_negative("area_cue.foreshortening", cue.foreshortening)?;
             positive("area_cue.log_std", cue.log_std)?;
         }
         if let Some(memory) = self.blob_memory {
@@ -246,6 +266,7 @@ impl ArmOptions {
         positive("hand_std_m_per_sqrt_s", self.hand_std_m_per_sqrt_s)?;
         positive("elbow_std_m_per_sqrt_s", self.elbow_std_m_per_sqrt_s)?;
         positive("ray_std_m_per_sqrt_s", self.ray_std_m_per_sqrt_s)?;
+        not_negative("ray_std_per_path", self.ray_std_per_path)?;
         positive("centre_std_per_focal", self.centre_std_per_focal)?;
         positive("reach_std_m", self.reach_std_m)?;
         positive("reach_across_std_m", self.reach_across_std_m)?;

@@ -41,7 +41,7 @@ pub(super) fn log_transition(context: &FrameContext<'_>, extrapolated_m: &Vec3, 
 }
 
 /// ln of q_i(g) = (n_0/N) p_i(g) + sum_b (n_b/N) N(g; H1_ib, Sigma_ib), per cubic metre.
-pub(super) fn log_proposal(context: &FrameContext<'_>, extrapolated_m: &Vec3, goal_m: &Vec3) -> f32 {
+pub(super) fn log_proposal(context: &FrameContext<'_>, extrapolated_m: &Vec3, forearm: &Vec3, goal_m: &Vec3) -> f32 {
     let driven: u32 = context.counts.iter().map(|&n| u32::from(n)).sum();
     let total = context.free as f32 + driven as f32;
     let mut density = context.free as f32 / total * exp(log_transition(context, extrapolated_m, goal_m));
@@ -49,7 +49,7 @@ pub(super) fn log_proposal(context: &FrameContext<'_>, extrapolated_m: &Vec3, go
         if count == 0 {
             continue;
         }
-        if let Some((mean_m, ray, spread)) = context.corrected_hand(extrapolated_m, index) {
+        if let Some((mean_m, ray, spread)) = context.corrected_hand(extrapolated_m, forearm, index) {
             density += f32::from(count) / total * exp(log_density_on_ray(goal_m, &mean_m, &ray, &spread));
         }
     }

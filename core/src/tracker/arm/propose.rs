@@ -9,13 +9,17 @@ use crate::camera::Ray;
 use crate::correction::elbow::nearest_elbow;
 use crate::correction::hand::{HandSpread, ReachableShell, draw_on_ray};
 use crate::kinematics::inverse::{Goal, PoseDensity};
-use crate::math::{Mat3, Vec3, length, max, sqrt, unit};
+use crate::math::{Mat3, Vec3, clamp, length, max, sqrt, unit};
 use crate::observation::candidate::HandCandidate;
 use crate::pik::goal::{GoalProcess, LinearExtrapolation};
 use crate::pik::proposal::{LaplaceProposal, LimitMass};
 use crate::random::Stream;
 use crate::skeleton::arm::{ARM_ANGLES, FOREARM, UPPER_ARM};
 use heapless::Vec;
+
+/// Greatest part of a paid weight that the importance ratio of the pose may decide. The expansion's tails are thinner than
+/// those of the density, so rare draws would otherwise take the whole weight, the more so the more particles there are.
+const MAX_LOG_RATIO: f32 = 3.0;
 
 /// What all particles of one frame share.
 pub(super) struct FrameContext<'a> {
@@ -29,6 +33,8 @@ pub(super) struct FrameContext<'a> {
     pub elbow_velocity_m_per_s: Vec3,
     pub candidates: Vec<HandCandidate, MAX_CANDIDATES>,
     pub rays: Vec<Ray, MAX_CANDIDATES>,
+    /// Each candidate's likelihood, less where it was not the hand before.
+    pub beliefs: [f32; MAX_CANDIDATES],
     /// Particles that each candidate got.
     pub counts: [u16; MAX_CANDIDATES],
     /// Particles that ignore the candidates.
@@ -42,6 +48,8 @@ pub(super) struct Proposed {
     pub particle: Particle,
     /// Distance from the particle's own extrapolation to where a blob sent its hand; zero where none did.
     pub jump_m: f32,
+    /// Where the forearm was thought to point when the depth was drawn, a unit vector.
+    pub supposed_forearm: Vec3,
     /// ln of what the weight owes for the proposal (`pik-paid`), else zero.
     pub log_payment: f32,
 }
@@ -57,15 +65,23 @@ impl FrameContext<'_> {
     }
 
     /// H1 with its spread: the extrapolated hand on the ray of candidate `index`, its depth drawn towards what the
-    /// blob's area tells where that is wanted.
-    pub fn corrected_hand(&self, extrapolated_m: &Vec3, index: usize) -> Option<(Vec3, Ray, HandSpread)> {
+    /// blob's area tells where that is wanted. `forearm` is where the forearm is thought to point, a unit vector.
+    pub fn corrected_hand(
+        &self,
+        extrapolated_m: &Vec3,
+        forearm: &Vec3,
+        index: usize,
+    ) -> Option<(Vec3, Ray, HandSpread)> {
         let (ray, candidate) = (self.rays.get(index)?, self.candidates.get(index)?);
         let options = self.model.options();
         let mut depth_m = max((extrapolated_m - ray.origin).dot(&ray.direction), 0.0);
-        let mut along_std_m = options.ray_std_m_per_sqrt_s * sqrt(self.dt_s + self.unseen_s);
+        let drift_m = options.ray_std_m_per_sqrt_s * sqrt(self.dt_s + self.unseen_s);
+        let turn_m = options.ray_std_per_path * length(&self.hand_velocity_m_per_s) * self.dt_s;
+        let mut along_std_m = sqrt(drift_m * drift_m + turn_m * turn_m);
         if let Some(cue) = options.area_cue.filter(|_| options.depth_from_area) {
-            let z_m = self.model.camera().focal_px() * sqrt(cue.hand_area_m2 / candidate.area_px);
-            let told_m = z_m / max(ray.direction.z, 0.1);
+            let area_m2 = cue.expected_area_m2(forearm.dot(&ray.direction));
+            let area_px = candidate.length_weighted_area_px(cue.length_share);
+            let told_m = self.model.camera().focal_px() * sqrt(area_m2 / area_px) / max(ray.direction.z, 0.1);
             let told_std_m = 0.5 * cue.log_std * told_m;
             let (ours, theirs) = (1.0 / (along_std_m * along_std_m), 1.0 / (told_std_m * told_std_m));
             depth_m = (depth_m * ours + told_m * theirs) / (ours + theirs);
@@ -130,7 +146,7 @@ impl FrameContext<'_> {
         let fore = unit(hand_drawn - elbow_m).unwrap_or(upper);
         let mut hand_m = elbow_m + fore * geometry.forearm_m;
         let mut jump_m = 0.0;
-        if let Some((mean_m, ray, spread)) = driver.and_then(|index| self.corrected_hand(&hand_m, index)) {
+        if let Some((mean_m, ray, spread)) = driver.and_then(|index| self.corrected_hand(&hand_m, &fore, index)) {
             hand_m = self.reachable.along_ray(&draw_on_ray(&mean_m, &ray, &spread, stream), &ray);
             elbow_m = nearest_elbow(&self.shoulder_m, &hand_m, geometry.upper_arm_m, geometry.forearm_m, &elbow_m);
             jump_m = length(&(hand_m - extrapolated_m));
@@ -140,42 +156,54 @@ impl FrameContext<'_> {
             &(hand_m - self.shoulder_m),
             &ancestor.angles_rad,
         );
-        Proposed { particle: self.particle(angles_rad), jump_m, log_payment: 0.0 }
+        Proposed { particle: self.particle(angles_rad), jump_m, supposed_forearm: fore, log_payment: 0.0 }
     }
 
     /// PIK with the goal of a blob, or of the goal process.
     fn propose_by_goal(&self, ancestor: &Particle, driver: Option<usize>, stream: &mut Stream) -> Proposed {
         let process = self.hand_process();
         let extrapolated_m = process.mean(&ancestor.hand_m, &self.hand_velocity_m_per_s, self.dt_s);
-        let Some((mean_m, ray, spread)) = driver.and_then(|index| self.corrected_hand(&extrapolated_m, index)) else {
+        let Some((mean_m, ray, spread)) =
+            driver.and_then(|index| self.corrected_hand(&extrapolated_m, &ancestor.forearm(), index))
+        else {
             let drawn = process.draw(&ancestor.hand_m, &self.hand_velocity_m_per_s, self.dt_s, stream);
             let goal = self.free_goal(self.reachable.nearest(&drawn));
             let (particle, _) = self.pose_for(ancestor, &goal, stream);
-            return Proposed { particle, jump_m: 0.0, log_payment: 0.0 };
+            return Proposed { particle, jump_m: 0.0, supposed_forearm: ancestor.forearm(), log_payment: 0.0 };
         };
         let goal_m = self.reachable.along_ray(&draw_on_ray(&mean_m, &ray, &spread, stream), &ray);
         let (particle, _) = self.pose_for(ancestor, &self.driven_goal(goal_m, &ray), stream);
-        Proposed { particle, jump_m: length(&(particle.hand_m - extrapolated_m)), log_payment: 0.0 }
+        let jump_m = length(&(particle.hand_m - extrapolated_m));
+        Proposed { particle, jump_m, supposed_forearm: ancestor.forearm(), log_payment: 0.0 }
     }
 
     /// As [`Self::propose_by_goal`], but goals stay as drawn and the weight pays for them.
     fn propose_paid(&self, ancestor: &Particle, driver: Option<usize>, stream: &mut Stream) -> Proposed {
         let process = self.hand_process();
         let extrapolated_m = process.mean(&ancestor.hand_m, &self.hand_velocity_m_per_s, self.dt_s);
-        let goal_m = match driver.and_then(|index| self.corrected_hand(&extrapolated_m, index)) {
+        let goal_m = match driver.and_then(|index| self.corrected_hand(&extrapolated_m, &ancestor.forearm(), index)) {
             Some((mean_m, ray, spread)) => draw_on_ray(&mean_m, &ray, &spread, stream),
             None => payment::draw_transition(self, &extrapolated_m, stream),
         };
         let log_goal = payment::log_transition(self, &extrapolated_m, &goal_m)
-            - payment::log_proposal(self, &extrapolated_m, &goal_m);
-        let (particle, log_ratio) = self.pose_for(ancestor, &self.free_goal(goal_m), stream);
-        Proposed { particle, jump_m: 0.0, log_payment: log_goal + log_ratio }
+            - payment::log_proposal(self, &extrapolated_m, &ancestor.forearm(), &goal_m);
+        let (particle, log_ratio) = self.pose_for(ancestor, &self.paid_goal(goal_m), stream);
+        let log_payment = log_goal + clamp(log_ratio, -MAX_LOG_RATIO, MAX_LOG_RATIO);
+        Proposed { particle, jump_m: 0.0, supposed_forearm: ancestor.forearm(), log_payment }
     }
 
     /// A goal that is wanted alike in all directions.
     fn free_goal(&self, position_m: Vec3) -> Goal {
         let std_m = self.model.options().reach_std_m;
         Goal { bone: FOREARM, position_m, precision: Mat3::identity() / (std_m * std_m) }
+    }
+
+    /// A goal of a blob or of the transition alike, so that both have the same pose density. It is reached with the
+    /// geometric mean of both spreads: much wider than a blob's error, and the blob term would let hardly a draw live.
+    fn paid_goal(&self, position_m: Vec3) -> Goal {
+        let options = self.model.options();
+        let precision = Mat3::identity() / (options.reach_std_m * options.reach_across_std_m);
+        Goal { bone: FOREARM, position_m, precision }
     }
 
     /// A goal that is wanted more closely across the ray than along it: where limits forbid its depth, the hand slides

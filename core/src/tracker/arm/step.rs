@@ -9,7 +9,7 @@ use super::propose::FrameContext;
 use crate::camera::Ray;
 use crate::correction::allocation::allot;
 use crate::error::{ParameterError, Rule};
-use crate::math::{Vec3, clamp, exp, length, max};
+use crate::math::{Vec3, clamp, exp, length, max, unit};
 use crate::observation::candidate::HandCandidate;
 use crate::observation::orientation::OrientationDensity;
 use crate::particle::Weights;
@@ -48,6 +48,14 @@ pub struct Particle {
     pub hand_m: Vec3,
     /// The considered candidate that drove the particle in this frame.
     pub driver: Option<u8>,
+}
+
+impl Particle {
+    /// Where the forearm points, a unit vector.
+    #[must_use]
+    pub fn forearm(&self) -> Vec3 {
+        unit(self.hand_m - self.elbow_m).unwrap_or(Vec3::zeros())
+    }
 }
 
 /// State of one arm's tracker with room for `CAPACITY` particles.
@@ -207,10 +215,14 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             candidates.iter().map(|candidate| model.camera().back_project(candidate.centre)).collect();
         let mut counts = [0; MAX_CANDIDATES];
         let mut free = self.weights.len();
-        let mut chances = [0.0; MAX_CANDIDATES];
+        let mut beliefs = [0.0; MAX_CANDIDATES];
+        for (belief, candidate) in beliefs.iter_mut().zip(&candidates) {
+            *belief = self.belief(model, candidate);
+        }
+        let mut chances = beliefs;
         if model.options().variant.is_blob_driven() {
-            for ((chance, candidate), ray) in chances.iter_mut().zip(&candidates).zip(&rays) {
-                *chance = self.chance(model, candidate, ray, dt_s);
+            for (chance, ray) in chances.iter_mut().zip(&rays) {
+                *chance *= self.nearness(model, ray, dt_s);
             }
             free = allot(self.weights.len(), &chances, &mut counts);
         }
@@ -223,6 +235,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             hand_velocity_m_per_s: self.hand_velocity_m_per_s,
             elbow_velocity_m_per_s: self.elbow_velocity_m_per_s,
             rays,
+            beliefs,
             candidates,
             counts,
             free,
@@ -230,21 +243,19 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         }
     }
 
-    /// Chance of a candidate to be the hand: its likelihood, less where it was not the hand before, less where it is far
-    /// from what the last estimate lets expect.
-    fn chance(&self, model: &ArmModel, candidate: &HandCandidate, ray: &Ray, dt_s: f32) -> f32 {
-        let options = model.options();
-        let mut chance = candidate.likelihood;
-        if let Some(memory) = &options.blob_memory {
-            chance *= self.memory.share(candidate.centre, model.cluster_radius_px(candidate), memory);
-        }
-        if let Some(gate) = options.gate.filter(|_| self.knows_hand(model)) {
-            let hand_m = self.extrapolated_hand_m(model, dt_s);
-            let miss_m = length(&(ray.project(&hand_m) - hand_m));
-            let reach_m = gate.allotment_reach * (gate.std_m + gate.growth_m_per_s * self.unseen_s);
-            chance *= exp(-0.5 * miss_m * miss_m / (reach_m * reach_m)) * (1.0 - FAR_SHARE) + FAR_SHARE;
-        }
-        chance
+    /// Likelihood of a candidate, less where it was not the hand before.
+    fn belief(&self, model: &ArmModel, candidate: &HandCandidate) -> f32 {
+        let Some(memory) = &model.options().blob_memory else { return candidate.likelihood };
+        candidate.likelihood * self.memory.share(candidate.centre, model.cluster_radius_px(candidate), memory)
+    }
+
+    /// What a candidate on `ray` keeps of its chance, less where it is far from what the last estimate lets expect.
+    fn nearness(&self, model: &ArmModel, ray: &Ray, dt_s: f32) -> f32 {
+        let Some(gate) = model.options().gate.filter(|_| self.knows_hand(model)) else { return 1.0 };
+        let hand_m = self.extrapolated_hand_m(model, dt_s);
+        let miss_m = length(&(ray.project(&hand_m) - hand_m));
+        let reach_m = gate.allotment_reach * (gate.std_m + gate.growth_m_per_s * self.unseen_s);
+        exp(-0.5 * miss_m * miss_m / (reach_m * reach_m)) * (1.0 - FAR_SHARE) + FAR_SHARE
     }
 
     /// Systematic resampling, then a permutation, so that the order of the ancestors does not decide who drives them.
