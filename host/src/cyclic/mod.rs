@@ -1,9 +1,11 @@
 //! Cyclic motion on the host: angle tables, training, cutting of cycles, and what people read off them.
 
+pub mod anatomy;
 pub mod angle_table;
 pub mod cuts;
 pub mod cutting;
 pub mod error;
+pub mod export;
 pub mod heading;
 pub mod image_joints;
 pub mod model;

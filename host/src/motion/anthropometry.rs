@@ -19,3 +19,7 @@ pub const HEAD_HEIGHT: f32 = 0.130;
 pub const HIP_HALF_WIDTH: f32 = 0.0955;
 /// Hip joint to shoulder joint, upwards (0.818 - 0.530).
 pub const TRUNK: f32 = 0.288;
+/// Hip joint to knee joint (0.530 - 0.285).
+pub const THIGH: f32 = 0.245;
+/// Knee joint to ankle joint (0.285 - 0.039).
+pub const SHANK: f32 = 0.246;

@@ -1,0 +1,125 @@
+//! Left against right: ranges, and curves half a cycle apart.
+
+use super::curves::{CycleCurves, POINTS};
+use super::repetition::Repetition;
+use super::{PAIRS, Range};
+use serde::Serialize;
+
+/// How alike the two sides of one joint move.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Symmetry {
+    /// The angle, without its side.
+    pub angle: &'static str,
+    /// Mean range of motion of the left side, degrees.
+    pub left_range_deg: Option<f64>,
+    /// Mean range of motion of the right side, degrees.
+    pub right_range_deg: Option<f64>,
+    /// Symmetry index of the ranges: 200 (left - right) / (left + right) percent, 0 for equal sides (Robinson, Herzog and
+    /// Nigg, 1987).
+    pub symmetry_index_percent: Option<f64>,
+    /// By how much of a cycle the right side follows the left, in [0, 1): 0.5 for walking, 0 for sides that move together. The
+    /// shift at which the mean curves about their means are most alike.
+    pub right_lag_cycles: Option<f64>,
+    /// Root mean square difference of the mean curves at that shift, degrees.
+    pub curve_difference_deg: Option<f64>,
+}
+
+/// Symmetry of shoulders, elbows, hips and knees.
+#[must_use]
+pub fn symmetries(repetitions: &[Repetition], curves: &CycleCurves) -> Vec<Symmetry> {
+    let symmetry = |(name, left, right): (&'static str, usize, usize)| {
+        let (left_range_deg, right_range_deg) = (mean_range(repetitions, left), mean_range(repetitions, right));
+        let symmetry_index_percent = left_range_deg.zip(right_range_deg).and_then(|(left, right)| {
+            let sum = left + right;
+            (sum > 0.0).then(|| 200.0 * (left - right) / sum)
+        });
+        let shift = best_shift(&curves.means_deg(left), &curves.means_deg(right));
+        Symmetry {
+            angle: name,
+            left_range_deg,
+            right_range_deg,
+            symmetry_index_percent,
+            right_lag_cycles: shift.map(|(lag, _)| lag),
+            curve_difference_deg: shift.map(|(_, difference)| difference),
+        }
+    };
+    PAIRS.into_iter().map(symmetry).collect()
+}
+
+/// As CSV, one row a joint.
+#[must_use]
+pub fn to_csv(symmetries: &[Symmetry]) -> String {
+    let mut text =
+        "angle,left_range_deg,right_range_deg,symmetry_index_percent,right_lag_cycles,curve_difference_deg\n"
+            .to_owned();
+    let cell = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.4}"));
+    for row in symmetries {
+        let values = [
+            row.left_range_deg,
+            row.right_range_deg,
+            row.symmetry_index_percent,
+            row.right_lag_cycles,
+            row.curve_difference_deg,
+        ];
+        text.push_str(&format!("{},{}\n", row.angle, values.map(cell).join(",")));
+    }
+    text
+}
+
+fn mean_range(repetitions: &[Repetition], angle: usize) -> Option<f64> {
+    let ranges: Vec<f64> =
+        repetitions.iter().filter_map(|one| one.ranges[angle].as_ref().map(Range::extent_deg)).collect();
+    (!ranges.is_empty()).then(|| ranges.iter().sum::<f64>() / ranges.len() as f64)
+}
+
+/// The shift of `right` in cycles that makes it most like `left` when both are taken about their means, and the root mean
+/// square difference there with the means left in.
+fn best_shift(left: &[Option<f64>], right: &[Option<f64>]) -> Option<(f64, f64)> {
+    const PERCENTS: usize = POINTS - 1;
+    let known = |curve: &[Option<f64>]| curve.iter().take(PERCENTS).copied().collect::<Option<Vec<f64>>>();
+    let (left, right) = (known(left)?, known(right)?);
+    let mean = |curve: &[f64]| curve.iter().sum::<f64>() / PERCENTS as f64;
+    let offset = mean(&left) - mean(&right);
+    let difference = |shift: usize, offset: f64| {
+        let square = |i: usize| (left[i] - right[(i + shift) % PERCENTS] - offset).powi(2);
+        (0..PERCENTS).map(square).sum::<f64>() / PERCENTS as f64
+    };
+    let best = (0..PERCENTS).min_by(|a, b| difference(*a, offset).total_cmp(&difference(*b, offset)))?;
+    Some((best as f64 / PERCENTS as f64, difference(best, 0.0).sqrt()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{AnatomicalSeries, COUNT, repetition::repetitions};
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn equal_sides_half_a_cycle_apart_are_symmetric() {
+        let pose = |frame: u64| {
+            let phase = TAU * frame as f64 / 60.0;
+            let mut pose = [Some(30.0 * phase.sin()); COUNT];
+            pose[7] = Some(-30.0 * phase.sin());
+            pose[8] = Some(20.0 * (phase - 0.25 * TAU).sin());
+            pose[1] = None;
+            pose
+        };
+        let series =
+            AnatomicalSeries { frames: (0..200).collect(), angles_deg: (0..200).map(pose).collect(), rate_hz: 60.0 };
+        let cycles = [[0.0, 60.0], [60.0, 120.0], [120.0, 180.0]];
+        let found = symmetries(&repetitions(&series, &cycles), &CycleCurves::new(&series, &cycles));
+        let by_name = |name: &str| found.iter().find(|one| one.angle == name).unwrap().clone();
+        let hip = by_name("hip_flexion");
+        assert!(hip.symmetry_index_percent.unwrap().abs() < 1.0e-9);
+        assert!(
+            (hip.right_lag_cycles.unwrap() - 0.5).abs() < 1.0e-9 && hip.curve_difference_deg.unwrap() < 0.05,
+            "{hip:?}"
+        );
+        let knee = by_name("knee_flexion");
+        assert!((knee.symmetry_index_percent.unwrap() - 40.0).abs() < 1.0e-6, "{knee:?}");
+        assert!((knee.right_lag_cycles.unwrap() - 0.25).abs() < 1.0e-9, "{knee:?}");
+        assert!((knee.curve_difference_deg.unwrap() - 10.0 / 2.0_f64.sqrt()).abs() < 0.05, "{knee:?}");
+        assert!(by_name("shoulder_flexion").symmetry_index_percent.is_none());
+        assert_eq!(to_csv(&found).lines().count(), 5);
+    }
+}
