@@ -104,7 +104,7 @@ pub struct HandScores {
     pub inside: f64,
     /// Boxes with the nearer side's hand near the centre.
     pub centred: f64,
-    /// Frames in which the sides traded boxes or sat in one box while two were there.
+    /// Of all frames, those in which the sides traded boxes or sat in one box while two were there.
     pub confused: f64,
     /// Boxes that counted.
     pub boxes: usize,
@@ -179,15 +179,13 @@ fn summarise(answers: &[Answered], size: (u32, u32)) -> HandScores {
     }
 }
 
-/// Share of the frames with two boxes in which both hands are in one box, or each is in the box that the other had.
+/// Share of all frames in which both hands are in one box while two are there, or each is in the box that the other had.
 fn confused_share(answers: &[Answered]) -> f64 {
-    let mut two = 0;
-    let mut confused = 0;
+    let mut confused = 0_u32;
     // Whether the left hand was in the box further to the right, when that was last clear.
     let mut order: Option<bool> = None;
     for answer in answers {
         let ([first, second], [Some(left), Some(right)]) = (answer.boxes.as_slice(), answer.hands) else { continue };
-        two += 1;
         let (west, east) = if first.centre().u_px < second.centre().u_px { (first, second) } else { (second, first) };
         let same = (west.contains(left) && west.contains(right)) || (east.contains(left) && east.contains(right));
         let now = if east.contains(left) && west.contains(right) {
@@ -198,10 +196,10 @@ fn confused_share(answers: &[Answered]) -> f64 {
             None
         };
         let traded = now.is_some() && order.is_some() && now != order;
-        confused += usize::from(same || traded);
+        confused += u32::from(same || traded);
         order = now.or(order);
     }
-    f64::from(confused as u32) / f64::from(two.max(1) as u32)
+    f64::from(confused) / answers.len().max(1) as f64
 }
 
 /// Share of the boxes that the best pair of fixed points meets, on a grid of ten pixels.
