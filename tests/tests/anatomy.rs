@@ -6,8 +6,8 @@ use sinew::cyclic::anatomy::{AnatomicalSeries, CycleCurves};
 use sinew::cyclic::{AngleTable, CutList};
 use sinew_tests::shared_data;
 
-/// Sagittal ranges of healthy walking: knee about 60 degrees, hip about 40, elbow and shoulder less than 90; one side half a cycle
-/// after the other; sides alike to 25 %.
+/// Sagittal ranges of healthy walking: knee about 60 degrees, hip 40 to 70 (brisk walkers), elbow and shoulder less than 90; one side half a cycle
+/// after the other; ranges alike to 35 %, since some speed up.
 #[test]
 fn walking_has_the_ranges_of_healthy_gait() {
     let Some(folder) = shared_data("cyclic-walking") else { return };
@@ -20,7 +20,7 @@ fn walking_has_the_ranges_of_healthy_gait() {
         for symmetry in symmetries(&found, &CycleCurves::new(&series, &cycles)) {
             let bounds = match symmetry.angle {
                 "knee_flexion" => 45.0..80.0,
-                "hip_flexion" => 28.0..65.0,
+                "hip_flexion" => 35.0..72.0,
                 _ => 4.0..90.0,
             };
             for range in [symmetry.left_range_deg, symmetry.right_range_deg] {
@@ -28,7 +28,7 @@ fn walking_has_the_ranges_of_healthy_gait() {
             }
             if ["knee_flexion", "hip_flexion"].contains(&symmetry.angle) {
                 assert!((symmetry.right_lag_cycles.unwrap() - 0.5).abs() < 0.06, "{cut:?}: {symmetry:?}");
-                assert!(symmetry.symmetry_index_percent.unwrap().abs() < 25.0, "{cut:?}: {symmetry:?}");
+                assert!(symmetry.symmetry_index_percent.unwrap().abs() < 35.0, "{cut:?}: {symmetry:?}");
             }
         }
         // A knee does not bend forwards, apart from the few degrees by which marker joints are off.

@@ -123,3 +123,22 @@ fn the_shipped_walking_is_what_the_command_makes() {
     let text = fs::read_to_string(root.path().join("m.json")).unwrap();
     assert_eq!(text, model_file::to_json(&shipped).unwrap());
 }
+
+#[test]
+fn the_shipped_running_is_what_the_commands_make() {
+    let Some(runs) = shared_data("mocap/cmu-expmap") else { return };
+    let root = tempfile::tempdir().unwrap();
+    let list = include_str!("../../host/models/cuts/running.csv");
+    fs::write(root.path().join("cuts.csv"), list).unwrap();
+    for number in 1..=3 {
+        for (end, more) in [("", None), ("_swapped", Some("--swap-sides"))] {
+            let mut command = Command::from_std(sinew_command());
+            command.current_dir(root.path()).arg("angles").arg(runs.join(format!("train_running_{number}.txt")));
+            command.args(["--rate", "60", "--out", &format!("running_{number}{end}.csv")]).args(more);
+            command.assert().success();
+        }
+    }
+    sinew(root.path()).args(["--cuts", "cuts.csv", "--out", "m.json"]).assert().success();
+    let text = fs::read_to_string(root.path().join("m.json")).unwrap();
+    assert_eq!(text, model_file::to_json(&CyclicModel::from_option("running").unwrap()).unwrap());
+}

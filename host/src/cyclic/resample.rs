@@ -10,7 +10,8 @@ const MOST_FRAMES: f64 = 1.0e7;
 /// How near to a recorded frame a time counts as that frame, frames.
 const SAME_FRAME: f64 = 1.0e-6;
 
-/// `joints` at `to_hz` instead of `from_hz` frames a second; frames are counted from 0 at the first one.
+/// `joints` at `to_hz` instead of `from_hz` frames a second. Frame f of the recording is
+/// frame f times `to_hz` over `from_hz` of the result, rounded at the first one.
 ///
 /// A rate that divides the other picks every n-th frame. Else each coordinate is a cubic spline through each run of
 /// frames in which the joint was seen; between runs it stays missing.
@@ -32,8 +33,9 @@ pub fn resample(joints: &ImageJoints, from_hz: f64, to_hz: f64) -> Result<ImageJ
             format!("{to_hz} gives {count} frames; at most {MOST_FRAMES} are made"),
         ));
     }
+    let base = (first.frame as f64 / step).round() as u64;
     let mut frames: Vec<JointFrame> =
-        (0..count as u64).map(|frame| JointFrame { frame, joints: [None; JOINTS] }).collect();
+        (base..base + count as u64).map(|frame| JointFrame { frame, joints: [None; JOINTS] }).collect();
     for joint in 0..JOINTS {
         for run in runs(joints, joint, first.frame) {
             let first_inside = ((run.start - SAME_FRAME) / step).ceil().max(0.0) as usize;
@@ -112,11 +114,12 @@ mod tests {
 
     #[test]
     fn half_the_rate_picks_every_second_frame() {
-        let original = swinging(5..26);
+        let original = swinging(6..27);
+        assert_eq!(resample(&original, 60.0, 60.0).unwrap(), original);
         let halved = resample(&original, 120.0, 60.0).unwrap();
         assert_eq!(halved.frames.len(), 11);
         for (index, frame) in halved.frames.iter().enumerate() {
-            assert_eq!((frame.frame, frame.joints), (index as u64, original.frames[2 * index].joints));
+            assert_eq!((frame.frame, frame.joints), (index as u64 + 3, original.frames[2 * index].joints));
         }
     }
 

@@ -1,4 +1,4 @@
-//! COCO JSON: one file for all frames, either results (a list of detections) or annotations.
+//! One JSON file for all frames: COCO results (a list of detections), COCO annotations, or MMPose predictions.
 
 use super::DetectedFrame;
 use super::error::{KeypointError, json, read_text};
@@ -8,7 +8,8 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Reads a JSON file: a list of results, an object with `annotations` (and `images`), or one OpenPose frame.
+/// Reads a JSON file: a list of results, an object with `annotations` (and `images`) or with `instance_info`
+/// (MMPose), or one OpenPose frame.
 ///
 /// # Errors
 /// Names the file, the entry and the rule that it broke.
@@ -16,6 +17,9 @@ pub fn read(path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
     let value = json(&read_text(path)?, path)?;
     if value.get("people").is_some() {
         return Ok(vec![DetectedFrame { frame: 0, people: people(&value, path)? }]);
+    }
+    if let Some(frames) = value.get("instance_info").and_then(Value::as_array) {
+        return frames.iter().enumerate().map(|(index, frame)| mmpose_frame(frame, index, path)).collect();
     }
     let names = image_names(&value);
     let list = value.as_array().or_else(|| value.get("annotations").and_then(Value::as_array));
@@ -31,13 +35,35 @@ pub fn read(path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
             _ => return Err(broken("`image_id` has to be a whole number or a name")),
         };
         let values = entry.get("keypoints").and_then(numbers);
-        let values = values.ok_or_else(|| broken("`keypoints` has to be a flat list of numbers x, y, confidence"))?;
+        let values = values.ok_or_else(|| broken("`keypoints` has to be a list of numbers x, y, confidence"))?;
         entries.push((image, layout::person(&values).map_err(|rule| broken(&rule))?));
     }
     if entries.is_empty() {
         return Err(KeypointError::unusable(path, "has no entry"));
     }
     Ok(by_frame(entries, names.values().cloned()))
+}
+
+/// One frame of an MMPose prediction file: points and scores in separate lists.
+fn mmpose_frame(frame: &Value, index: usize, path: &Path) -> Result<DetectedFrame, KeypointError> {
+    let place = format!("instance_info[{index}]");
+    let broken = |rule: &str| KeypointError::broken(path, place.as_str(), rule);
+    let number = frame.get("frame_id").and_then(Value::as_u64).unwrap_or(index as u64);
+    let instances = frame.get("instances").and_then(Value::as_array);
+    let mut people = Vec::new();
+    for instance in instances.ok_or_else(|| broken("has no list `instances`"))? {
+        let points = instance.get("keypoints").and_then(numbers);
+        let points = points.ok_or_else(|| broken("`keypoints` has to be a list of points"))?;
+        let scores = instance.get("keypoint_scores").and_then(numbers);
+        let scores = scores.ok_or_else(|| broken("`keypoint_scores` has to be a list of numbers"))?;
+        if points.len() != 2 * scores.len() {
+            return Err(broken("`keypoints` and `keypoint_scores` have to be as many"));
+        }
+        let flat: Vec<f64> =
+            points.chunks(2).zip(&scores).flat_map(|(point, &score)| [point[0], point[1], score]).collect();
+        people.push(layout::person(&flat).map_err(|rule| broken(&rule))?);
+    }
+    Ok(DetectedFrame { frame: number, people })
 }
 
 /// File name of each image of an annotation file, by the text of its number.
@@ -112,13 +138,28 @@ mod tests {
     }
 
     #[test]
+    fn predictions_with_scores_apart_are_read() {
+        let points: Vec<[f64; 2]> = (0..17).map(|i| [f64::from(i) + 1.0, 5.0]).collect();
+        let instance = json!({ "keypoints": points, "keypoint_scores": vec![0.7; 17], "bbox": [] });
+        let text = json!({ "instance_info": [{ "frame_id": 1, "instances": [instance] }, { "frame_id": 2, "instances": [] }] });
+        let frames = read_text(&text.to_string()).unwrap();
+        assert_eq!(counts(&frames), [(1, 1), (2, 0)]);
+        assert_eq!((frames[0].people[0][5].position_px, frames[0].people[0][5].confidence), ([6.0, 5.0], 0.7));
+        let text = json!({ "instance_info": [{ "instances": [{ "keypoints": points, "keypoint_scores": [1] }] }] });
+        assert!(read_text(&text.to_string()).unwrap_err().contains("have to be as many"));
+        let nested: Vec<[f64; 3]> = (0..17).map(|i| [f64::from(i) + 1.0, 5.0, 0.5]).collect();
+        assert_eq!(counts(&read_text(&json!([{ "image_id": 3, "keypoints": nested }]).to_string()).unwrap()), [(3, 1)]);
+    }
+
+    #[test]
     fn broken_files_are_named() {
         let refusal = |value: Value| read_text(&value.to_string()).unwrap_err();
         assert!(refusal(json!({ "a": 1 })).contains("neither a list of COCO results"));
         assert!(refusal(json!([])).contains("has no entry"));
         assert!(refusal(json!([{ "keypoints": [] }])).contains("entry 0: `image_id`"));
         assert!(refusal(json!([{ "image_id": 1 }])).contains("entry 0: `keypoints`"));
-        assert!(refusal(json!([{ "image_id": 1, "keypoints": [[1, 2]] }])).contains("flat list"));
+        assert!(refusal(json!([{ "image_id": 1, "keypoints": [[1, 2]] }])).contains("2 numbers; each keypoint needs"));
+        assert!(refusal(json!([{ "image_id": 1, "keypoints": ["x"] }])).contains("has to be a list of numbers"));
         assert!(read_text("[").unwrap_err().contains("k.json: line 1: this is no JSON"));
     }
 }

@@ -71,9 +71,17 @@ pub fn people(value: &Value, path: &Path) -> Result<Vec<Vec<layout::Keypoint>>, 
     list.iter().enumerate().map(person).collect()
 }
 
-/// A flat list of numbers; null is NaN.
+/// A list of numbers, flat or one list a point; null is NaN.
 pub(super) fn numbers(value: &Value) -> Option<Vec<f64>> {
-    value.as_array()?.iter().map(|number| if number.is_null() { Some(f64::NAN) } else { number.as_f64() }).collect()
+    let number = |number: &Value| if number.is_null() { Some(f64::NAN) } else { number.as_f64() };
+    let mut flat = Vec::new();
+    for entry in value.as_array()? {
+        match entry.as_array() {
+            Some(point) => flat.extend(point.iter().map(number).collect::<Option<Vec<f64>>>()?),
+            None => flat.push(number(entry)?),
+        }
+    }
+    Some(flat)
 }
 
 #[cfg(test)]
