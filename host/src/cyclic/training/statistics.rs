@@ -19,7 +19,7 @@ pub struct PositionStatistics {
 }
 
 /// Statistics at each of `length` positions. Derivatives are central differences over one reference frame, 1 / `length`
-/// of a cycle: for these k = v / `v_ref` is 1.
+/// of a cycle (for these k = v / `v_ref` is 1); the acceleration is the difference of differences.
 #[must_use]
 pub fn of_positions(cycles: &[TrainingCycle], length: usize) -> Vec<PositionStatistics> {
     let poses = mean_pose(cycles, length);
@@ -74,10 +74,12 @@ struct Derivatives {
 fn derivatives(cycle: &TrainingCycle, position: usize, length: usize) -> Derivatives {
     let place = |step: f64| (position as f64 + step) / length as f64;
     let at = |step: f64| -> [f64; ANGLES] { std::array::from_fn(|angle| cycle.angle_at(angle, place(step))) };
-    let (before, here, after) = (at(-1.0), at(0.0), at(1.0));
+    let (before, after) = (at(-1.0), at(1.0));
+    let (far_before, here, far_after) = (at(-2.0), at(0.0), at(2.0));
     Derivatives {
         velocity: std::array::from_fn(|i| 0.5 * (after[i] - before[i])),
-        acceleration: std::array::from_fn(|i| after[i] - 2.0 * here[i] + before[i]),
+        // The central filter applied twice.
+        acceleration: std::array::from_fn(|i| 0.25 * (far_after[i] - 2.0 * here[i] + far_before[i])),
     }
 }
 
