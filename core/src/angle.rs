@@ -1,6 +1,26 @@
 //! Angles on the circle: weighted means that do not break where the circle closes.
 
-use crate::math::{atan2, ln, sin_cos, sqrt};
+use crate::math::{atan2, ln, round, sin_cos, sqrt, wrap_angle};
+use core::f32::consts::{PI, TAU};
+
+/// `angle_rad` in (-pi, pi] and the whole turns taken off it: unwrapped = wrapped + 2 pi turns.
+#[inline]
+#[must_use]
+pub fn split_turns(angle_rad: f32) -> (f32, i32) {
+    if angle_rad > -PI && angle_rad <= PI {
+        return (angle_rad, 0);
+    }
+    let wrapped = wrap_angle(angle_rad);
+    (wrapped, round((angle_rad - wrapped) / TAU) as i32)
+}
+
+/// The shorter way from `from_rad` to `to_rad`, in (-pi, pi].
+#[inline]
+#[must_use]
+pub fn angle_difference(to_rad: f32, from_rad: f32) -> f32 {
+    let difference = to_rad - from_rad;
+    if difference > -PI && difference <= PI { difference } else { wrap_angle(difference) }
+}
 
 /// Sums of cosines and sines of weighted angles.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -47,7 +67,6 @@ impl CircularSum {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use core::f32::consts::PI;
 
     #[test]
     fn the_mean_of_angles_around_the_seam_lies_at_the_seam() {
@@ -56,6 +75,19 @@ mod tests {
         sum.add(-PI + 0.1, 1.0);
         assert!((sum.mean_rad().unwrap().abs() - PI).abs() < 1.0e-5);
         assert!((sum.std_rad().unwrap() - 0.1).abs() < 1.0e-3);
+    }
+
+    #[test]
+    fn turns_and_the_rest_make_up_the_angle() {
+        for i in -400..=400_i32 {
+            let angle = i as f32 * 0.1;
+            let (rest, turns) = split_turns(angle);
+            assert!(rest > -PI && rest <= PI);
+            assert!((rest + turns as f32 * TAU - angle).abs() < 1.0e-4, "{angle}: {rest} and {turns}");
+        }
+        assert_eq!(split_turns(PI), (PI, 0));
+        assert_eq!(split_turns(-PI), (PI, -1));
+        assert!((angle_difference(-3.1, 3.1) - (TAU - 6.2)).abs() < 1.0e-5);
     }
 
     #[test]

@@ -1,17 +1,34 @@
 //! Cyclic motion of a stick figure (the cyclic paper): a motion model learned from a few cycles, and what tracks with it.
 
+pub mod covariance;
+pub mod cycle_state;
 pub mod deviation;
 pub mod estimate;
+pub mod gate;
 pub mod interpolation;
+pub mod kalman;
+pub mod kalman_options;
+#[cfg(test)]
+mod kalman_tests;
+pub mod log_product;
 pub mod measurement;
 pub mod model;
 pub mod model_table;
+pub mod particle;
+pub mod particle_moments;
 pub mod phase;
 pub mod semi_definite;
+pub mod start;
+pub mod substeps;
+#[cfg(test)]
+pub mod synthetic;
 
 pub use deviation::Deviation;
 pub use estimate::CyclicEstimate;
 pub use interpolation::CyclePoint;
+pub use kalman::KalmanFilter;
+pub use kalman_options::{CovarianceScaling, GainReach, KalmanOptions};
 pub use measurement::AngleMeasurement;
 pub use model::{ModelError, ModelParts, MotionModel};
 pub use model_table::{HumanModelTable, ModelTable};
+pub use start::CycleStart;

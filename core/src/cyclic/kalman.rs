@@ -1,0 +1,216 @@
+//! The Kalman filter of the cyclic paper, eqs. (2) to (12), in the structure that its kinematics have.
+//!
+//! The measured angles are taken in one after the other, which for independent noise is the same as all at once. Position
+//! and velocity in the cycle are never corrected: no measurement bears on them in this model (see the phase-coupled filter).
+
+use super::covariance::KinematicCovariance;
+use super::cycle_state::CycleState;
+use super::gate::is_outlier;
+use super::kalman_options::{CovarianceScaling, GainReach, KalmanOptions};
+use super::log_product::LogProduct;
+use super::substeps::Substeps;
+use super::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
+use crate::angle::{angle_difference, split_turns};
+use crate::error::{ParameterError, Rule};
+use crate::math::clamp;
+use crate::random::normal::LOG_SQRT_TAU;
+use crate::skeleton::stick_figure::HUMAN_ANGLES;
+use core::f32::consts::PI;
+
+/// State of the filters `paper` and `paper-cut` for models of up to `N` angles.
+///
+/// Invariants: all numbers finite, angles in (-pi, pi], covariance symmetric and positive semi-definite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KalmanFilter<const N: usize> {
+    angles_rad: [f32; N],
+    turns: [i32; N],
+    velocities: [f32; N],
+    covariance: KinematicCovariance<N>,
+    cycle: CycleState,
+}
+
+const _: () = assert!(size_of::<KalmanFilter<HUMAN_ANGLES>>() <= 2560, "the state has to fit 2.5 KiB");
+
+/// What a frame's measurement was like, seen from the prediction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Innovation {
+    /// ln of the density of the measurement given those before; 0 where nothing was seen.
+    pub log_likelihood: f32,
+    /// Normalised innovation squared, chi-square distributed with [`Self::present`] degrees of freedom.
+    pub squared: f32,
+    /// Angles seen.
+    pub present: usize,
+}
+
+impl<const N: usize> KalmanFilter<N> {
+    /// A filter at its start.
+    ///
+    /// # Errors
+    /// At most `N` angles in the model; sound `options`; finite angles and velocities.
+    pub fn new(
+        model: &MotionModel<'_>,
+        options: &KalmanOptions,
+        start: &CycleStart<N>,
+    ) -> Result<Self, ParameterError> {
+        options.check()?;
+        if model.angle_count() > N {
+            return Err(ParameterError::new("angles of the model", Rule::Capacity { capacity: N }));
+        }
+        start.check()?;
+        let mut angle_variance = [0.0; N];
+        let mut velocity_variance = [0.0; N];
+        for i in 0..model.angle_count() {
+            angle_variance[i] = options.angle_variance + start.extra_variance_rad2[i];
+            velocity_variance[i] = options.velocity_variance;
+        }
+        let split = start.angles_rad.map(split_turns);
+        Ok(Self {
+            angles_rad: split.map(|(angle, _)| angle),
+            turns: split.map(|(_, turns)| turns),
+            velocities: start.velocities,
+            covariance: KinematicCovariance::diagonal(&angle_variance, &velocity_variance),
+            cycle: CycleState {
+                position: start.cycle_position,
+                velocity: start.cycle_velocity,
+                position_variance: options.cycle_position_variance,
+                covariance: 0.0,
+                velocity_variance: options.cycle_velocity_variance,
+            },
+        })
+    }
+
+    /// One frame: predict over the measurement's step, then correct by the angles seen.
+    pub fn step(
+        &mut self,
+        model: &MotionModel<'_>,
+        options: &KalmanOptions,
+        measurement: &AngleMeasurement<N>,
+    ) -> CyclicEstimate<N> {
+        self.predict(model, options, measurement.step_frames());
+        let predicted = options.protect_from_outliers.then_some(*self);
+        let innovation = self.correct(model, options.gain, measurement);
+        let outlier = is_outlier(innovation.squared, innovation.present, options.gate_sigmas);
+        if let (true, Some(predicted)) = (outlier, predicted) {
+            *self = predicted;
+        }
+        self.estimate(&innovation, outlier)
+    }
+
+    /// The state transition of eqs. (11) and (12) over `step_frames`, in substeps of at most one frame.
+    pub fn predict(&mut self, model: &MotionModel<'_>, options: &KalmanOptions, step_frames: f32) {
+        let temporal_variance = options.temporal_acceleration_std * options.temporal_acceleration_std;
+        for step in Substeps::of(step_frames) {
+            let point = model.point(self.cycle.position);
+            let ratio = model.speed_ratio(self.cycle.velocity);
+            let squared_ratio = ratio * ratio;
+            let covariance_scale = match options.scaling {
+                CovarianceScaling::FourthPower => squared_ratio * squared_ratio,
+                CovarianceScaling::Square => squared_ratio,
+            };
+            let acceleration = model.mean_acceleration::<N>(point);
+            for i in 0..N {
+                self.move_angle(i, step, squared_ratio * acceleration[i]);
+            }
+            let (before, after) = model.covariance_pair(point);
+            // White noise per frame: a part of a frame has its part of the velocity's variance.
+            self.covariance.advance(step, before, after, point.fraction, covariance_scale / step);
+            self.covariance.saturate();
+            self.cycle.advance(step, temporal_variance / step);
+        }
+    }
+
+    /// Eqs. (2) and (3) for one angle.
+    #[inline]
+    fn move_angle(&mut self, index: usize, step: f32, acceleration: f32) {
+        let moved = self.angles_rad[index] + step * self.velocities[index] + 0.5 * step * step * acceleration;
+        self.set_angle(index, moved);
+        self.velocities[index] = clamp(self.velocities[index] + step * acceleration, -PI, PI);
+    }
+
+    #[inline]
+    fn set_angle(&mut self, index: usize, angle_rad: f32) {
+        let (angle, turns) = split_turns(angle_rad);
+        self.angles_rad[index] = angle;
+        self.turns[index] = self.turns[index].saturating_add(turns);
+    }
+
+    /// The measurement update, angle by angle; innovations are wrapped relative to the prediction.
+    pub fn correct(
+        &mut self,
+        model: &MotionModel<'_>,
+        gain: GainReach,
+        measurement: &AngleMeasurement<N>,
+    ) -> Innovation {
+        let mut innovation = Innovation { log_likelihood: 0.0, squared: 0.0, present: 0 };
+        if measurement.is_empty(model.angle_count()) {
+            return innovation;
+        }
+        let (mut angle_shift, mut velocity_shift) = ([0.0; N], [0.0; N]);
+        let mut variances = LogProduct::one();
+        for i in 0..N.min(model.angle_count()) {
+            let Some(measured) = measurement.angle_rad(i) else { continue };
+            let std = measurement.std_rad()[i];
+            let column = self.covariance.column(i, std * std);
+            let rest = angle_difference(measured, self.angles_rad[i]) - angle_shift[i];
+            let scaled = rest * column.inverse_std;
+            shift(&mut angle_shift, &column.angle, scaled);
+            match gain {
+                GainReach::Full => {
+                    shift(&mut velocity_shift, &column.velocity, scaled);
+                    self.covariance.reduce(&column);
+                }
+                GainReach::AnglesOnly => self.covariance.reduce_angles(&column),
+            }
+            innovation.squared += scaled * scaled;
+            innovation.present += 1;
+            variances.multiply(column.innovation_variance);
+        }
+        for i in 0..N {
+            self.set_angle(i, self.angles_rad[i] + angle_shift[i]);
+            self.velocities[i] = clamp(self.velocities[i] + velocity_shift[i], -PI, PI);
+        }
+        innovation.log_likelihood =
+            -0.5 * (innovation.squared + variances.ln()) - innovation.present as f32 * LOG_SQRT_TAU;
+        innovation
+    }
+
+    fn estimate(&self, innovation: &Innovation, outlier: bool) -> CyclicEstimate<N> {
+        CyclicEstimate {
+            angles_rad: self.angles_rad,
+            turns: self.turns,
+            angle_variance_rad2: self.covariance.angle_variances(),
+            cycle_position: self.cycle.position,
+            cycle_position_variance: self.cycle.position_variance,
+            cycle_velocity_per_frame: self.cycle.velocity,
+            cycle_velocity_variance: self.cycle.velocity_variance,
+            log_likelihood: innovation.log_likelihood,
+            outlier,
+        }
+    }
+
+    /// Angular velocities, rad per frame.
+    #[must_use]
+    pub const fn velocities(&self) -> &[f32; N] {
+        &self.velocities
+    }
+
+    /// Covariance of angles and velocities.
+    #[must_use]
+    pub const fn covariance(&self) -> &KinematicCovariance<N> {
+        &self.covariance
+    }
+
+    /// Position and velocity in the cycle with their covariance.
+    #[must_use]
+    pub const fn cycle(&self) -> &CycleState {
+        &self.cycle
+    }
+}
+
+/// `target` += `factor` `direction`.
+#[inline]
+fn shift<const N: usize>(target: &mut [f32; N], direction: &[f32; N], factor: f32) {
+    for (value, part) in target.iter_mut().zip(direction) {
+        *value += factor * part;
+    }
+}

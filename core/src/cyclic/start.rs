@@ -1,0 +1,110 @@
+//! Where a filter begins: pose, velocities, cycle position and velocity (cyclic paper, sections 3.2 and 3.3).
+
+use super::MotionModel;
+use super::phase::wrap_position;
+use crate::angle::angle_difference;
+use crate::error::{ParameterError, finite};
+
+/// Variance of an angle that the first frame does not show and about whose spread the model says nothing, rad^2.
+const UNSEEN_VARIANCE: f32 = 0.25;
+/// Least spread that an angle is given when poses are compared, rad: so that no single angle decides alone.
+const LEAST_SPREAD_RAD: f32 = 0.05;
+/// Greatest cycle velocity that makes sense, cycles per frame: two frames a cycle.
+pub const MAX_CYCLE_VELOCITY: f32 = 0.5;
+
+/// First state of a filter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CycleStart<const N: usize> {
+    /// Angles, radians, any turn.
+    pub angles_rad: [f32; N],
+    /// Extra variance of each angle, rad^2: 0 where the first frame shows it.
+    pub extra_variance_rad2: [f32; N],
+    /// Angular velocities, rad per frame.
+    pub velocities: [f32; N],
+    /// Position in the cycle, [0, 1).
+    pub cycle_position: f32,
+    /// Velocity through the cycle, cycles per frame.
+    pub cycle_velocity: f32,
+}
+
+impl<const N: usize> CycleStart<N> {
+    /// The standard start: the angles of the first frame, the model's mean velocities times k.
+    ///
+    /// Without a `position` the one whose mean pose matches best is taken, without a `velocity` the mean of the training
+    /// cycles. An angle that is missing starts at the model's mean pose with its spread.
+    ///
+    /// # Errors
+    /// `position` finite; `velocity` within +-0.5 cycles a frame.
+    pub fn standard(
+        model: &MotionModel<'_>,
+        first_rad: &[Option<f32>; N],
+        position: Option<f32>,
+        velocity: Option<f32>,
+    ) -> Result<Self, ParameterError> {
+        let cycle_position = match position {
+            Some(position) => wrap_position(finite("initial cycle position", position)?),
+            None => best_position(model, first_rad),
+        };
+        let cycle_velocity = velocity.unwrap_or(model.mean_cycle_velocity());
+        crate::error::within("initial cycle velocity", cycle_velocity, -MAX_CYCLE_VELOCITY, MAX_CYCLE_VELOCITY)?;
+        let point = model.point(cycle_position);
+        let ratio = model.speed_ratio(cycle_velocity);
+        let mut start = Self {
+            angles_rad: model.mean_pose_rad(point),
+            extra_variance_rad2: model.deviation_std_rad::<N>(point).map(|std| std * std),
+            velocities: model.mean_velocity::<N>(point).map(|velocity| ratio * velocity),
+            cycle_position,
+            cycle_velocity,
+        };
+        if model.parts().deviation.is_absent() {
+            start.extra_variance_rad2 = [UNSEEN_VARIANCE; N];
+        }
+        for i in 0..N {
+            if let Some(angle) = first_rad[i].filter(|angle| angle.is_finite()) {
+                start.angles_rad[i] = angle;
+                start.extra_variance_rad2[i] = 0.0;
+            }
+        }
+        Ok(start)
+    }
+
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// Finite angles, velocities and position; extra variances not negative; cycle velocity within +-0.5.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        for i in 0..N {
+            finite("initial angle", self.angles_rad[i])?;
+            finite("initial angular velocity", self.velocities[i])?;
+            crate::error::not_negative("initial angle variance", self.extra_variance_rad2[i])?;
+        }
+        crate::error::within("initial cycle position", self.cycle_position, 0.0, 1.0)?;
+        crate::error::within("initial cycle velocity", self.cycle_velocity, -MAX_CYCLE_VELOCITY, MAX_CYCLE_VELOCITY)?;
+        Ok(())
+    }
+}
+
+/// The stored position whose mean pose is nearest to the angles seen, each difference relative to the angle's spread;
+/// 0 where nothing is seen.
+#[must_use]
+pub fn best_position<const N: usize>(model: &MotionModel<'_>, angles_rad: &[Option<f32>; N]) -> f32 {
+    let count = model.position_count();
+    let mut best = (f32::INFINITY, 0.0);
+    for index in 0..count {
+        let position = index as f32 / count as f32;
+        let point = model.point(position);
+        let pose = model.mean_pose_rad::<N>(point);
+        let spread = model.deviation_std_rad::<N>(point);
+        let mut distance = 0.0;
+        for i in 0..N.min(model.angle_count()) {
+            if let Some(angle) = angles_rad[i].filter(|angle| angle.is_finite()) {
+                let scaled = angle_difference(angle, pose[i]) / crate::math::max(spread[i], LEAST_SPREAD_RAD);
+                distance += scaled * scaled;
+            }
+        }
+        if distance < best.0 {
+            best = (distance, position);
+        }
+    }
+    best.1
+}
