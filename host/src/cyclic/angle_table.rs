@@ -25,6 +25,9 @@ pub const COLUMNS: [&str; ANGLES + 1] = [
     "r_ankle_rad",
 ];
 
+/// Greatest number of a frame; more is taken for a mistake.
+pub const MAX_FRAME: u64 = 1_000_000_000_000;
+
 /// One frame of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AngleRow {
@@ -55,6 +58,9 @@ impl AngleTable {
         let refuse = |rule: String| Err(CyclicError::parameter("rows", rule));
         if rows.is_empty() {
             return refuse("need at least one frame".into());
+        }
+        if let Some(row) = rows.iter().find(|row| row.frame > MAX_FRAME) {
+            return refuse(format!("need frame numbers up to {MAX_FRAME}, not {}", row.frame));
         }
         if let Some(pair) = rows.windows(2).find(|pair| pair[1].frame <= pair[0].frame) {
             return refuse(format!("have to rise in frame number: {} follows {}", pair[1].frame, pair[0].frame));
@@ -216,8 +222,9 @@ fn row(record: &csv::StringRecord, width: usize, path: &Path) -> Result<AngleRow
         let rule = format!("a row needs {width} columns as the header has, found {}", record.len());
         return Err(CyclicError::broken(path, line, rule));
     }
-    let frame = record[0].parse().map_err(|_| {
-        CyclicError::broken(path, line, format!("`frame` has to be a whole number from 0, found `{}`", &record[0]))
+    let frame = record[0].parse().ok().filter(|frame| *frame <= MAX_FRAME).ok_or_else(|| {
+        let rule = format!("`frame` has to be a whole number from 0 to {MAX_FRAME}, found `{}`", &record[0]);
+        CyclicError::broken(path, line, rule)
     })?;
     let mut angles_rad = [None; ANGLES];
     for ((angle, cell), name) in angles_rad.iter_mut().zip(record.iter().skip(1)).zip(&COLUMNS[1..]) {
@@ -286,6 +293,7 @@ mod tests {
             ),
             (format!("{row}{row}"), "t.csv:3: frame 0 follows frame 0"),
             ("-1,1,2,3,4,5,6,7,8,9,10,11,12,13".into(), "t.csv:2: `frame` has to be a whole number"),
+            ("18446744073709551615,1,2,3,4,5,6,7,8,9,10,11,12,13".into(), "t.csv:2: `frame` has to be a whole number"),
             (String::new(), "t.csv:2: the table is empty"),
         ];
         for (rows, message) in cases {

@@ -13,6 +13,9 @@ use super::cuts::Cut;
 use super::error::CyclicError;
 use channels::Channels;
 
+/// Most frames that are searched.
+const MOST_FRAMES: u64 = 2_000_000;
+
 /// What counts as a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CuttingOptions {
@@ -44,6 +47,12 @@ pub fn cycles(table: &AngleTable, file: &str, options: CuttingOptions) -> Result
         return Err(CyclicError::parameter("shortest cycle", rule));
     }
     let refuse = |reason: String| Err(CyclicError::NoCycle { file: file.to_owned(), reason });
+    let frames = table.end_frame() - table.first_frame();
+    if frames > MOST_FRAMES {
+        return refuse(format!(
+            "it spans {frames} frames, from its first to its last; {MOST_FRAMES} are searched at most"
+        ));
+    }
     let Some(channels) = Channels::of(table) else {
         return refuse("no angle moves by more than a few degrees in it".into());
     };
@@ -133,6 +142,9 @@ mod tests {
         let rows: Vec<_> = (0..300).map(|_| std::array::from_fn::<_, ANGLES, _>(|_| Some(random()))).collect();
         let restless = AngleTable::from_angles(0, &rows).unwrap();
         assert!(refusal(&restless).contains("nothing comes back"), "{}", refusal(&restless));
+        let mut rows = still.rows().to_vec();
+        rows[299].frame = 10_000_000;
+        assert!(refusal(&AngleTable::new(rows, Vec::new()).unwrap()).contains("it spans 10000001 frames"));
         let options = CuttingOptions { shortest_s: 2.0, longest_s: 1.0, ..CuttingOptions::default() };
         assert!(cycles(&still, "t.csv", options).is_err());
         assert!(cycles(&still, "t.csv", CuttingOptions { rate_hz: 0.0, ..CuttingOptions::default() }).is_err());

@@ -9,6 +9,8 @@ use std::f64::consts::TAU;
 /// Frames on each side of the cut that the curve is laid through, where the recording has them: what lies farther off
 /// changes a cubic spline inside the cut by less than a millionth.
 const MARGIN_FRAMES: u64 = 10;
+/// Longest cycle, frames; more is taken for a mistake.
+const LONGEST_CYCLE_FRAMES: u64 = 1_000_000;
 /// Longest gap that is bridged, as a fraction of the cycle.
 const LONGEST_GAP: f64 = 0.1;
 
@@ -27,7 +29,7 @@ impl TrainingCycle {
     /// where the recording ends at the cut, it is continued by the cycle's own other end.
     ///
     /// # Errors
-    /// The cut lies outside of the table, is shorter than four frames, or an angle is missing for more than a tenth of it.
+    /// The cut lies outside of the table, is shorter than four frames or longer than a million, or an angle is missing for more than a tenth of it.
     pub fn new(table: &AngleTable, cut: &Cut) -> Result<Self, String> {
         let (start, end) = (cut.start_frame, cut.end_frame);
         if start < table.first_frame() || end > table.end_frame() {
@@ -38,6 +40,9 @@ impl TrainingCycle {
         }
         if cut.duration_frames() < 4 {
             return Err(format!("the cut {start} to {end} is shorter than four frames"));
+        }
+        if cut.duration_frames() > LONGEST_CYCLE_FRAMES {
+            return Err(format!("the cut {start} to {end} is longer than {LONGEST_CYCLE_FRAMES} frames"));
         }
         let curves = (0..ANGLES).map(|angle| curve(table, angle, start, end)).collect::<Result<_, _>>()?;
         Ok(Self { start_frame: start as f64, duration_frames: (end - start) as f64, curves })
