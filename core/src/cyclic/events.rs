@@ -1,0 +1,111 @@
+//! Cycles counted and phases passed, from the cycle positions that a filter estimates.
+
+use super::phase::{position_difference, wrap_position};
+use crate::math::floor;
+
+/// Counts cycles from one estimate to the next.
+///
+/// Invariant: whole cycles and the part of a cycle are kept apart, so that the count stays exact however long it runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CycleCounter {
+    start: f32,
+    position: f32,
+    laps: i32,
+}
+
+/// The way through the cycle between two frames.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CycleStep {
+    /// Position before, [0, 1).
+    pub from: f32,
+    /// Cycles passed since; negative backwards.
+    pub advance: f32,
+    /// Time between both, frames.
+    pub step_frames: f32,
+}
+
+impl CycleCounter {
+    /// Counts from `position` on.
+    #[must_use]
+    pub fn new(position: f32) -> Self {
+        let position = wrap_position(position);
+        Self { start: position, position, laps: 0 }
+    }
+
+    /// Goes on to `position`, reached after `step_frames` at about `velocity_per_frame`.
+    ///
+    /// Which lap it is of follows from the velocity: the way is the one nearest to velocity times time.
+    pub fn advance(&mut self, position: f32, velocity_per_frame: f32, step_frames: f32) -> CycleStep {
+        let position = wrap_position(position);
+        let expected = velocity_per_frame * step_frames;
+        let expected = if expected.is_finite() { expected } else { 0.0 };
+        let from = self.position;
+        let advance = expected + position_difference(position, wrap_position(from + expected));
+        self.laps = self.laps.saturating_add(crate::math::round(from + advance - position) as i32);
+        self.position = position;
+        CycleStep { from, advance, step_frames }
+    }
+
+    /// Whole cycles completed since the start; negative if the motion ran backwards.
+    #[must_use]
+    pub fn completed(&self) -> i32 {
+        self.laps.saturating_add(floor(self.position - self.start) as i32)
+    }
+
+    /// Cycles since the start with their part.
+    #[must_use]
+    pub fn cycles(&self) -> f32 {
+        self.laps as f32 + (self.position - self.start)
+    }
+}
+
+impl CycleStep {
+    /// When `phase` was passed forwards, frames after the earlier estimate, in (0, step]; `None` if it was not.
+    ///
+    /// Linear between both estimates; the first passage where a long step holds several.
+    #[must_use]
+    pub fn passed(&self, phase: f32) -> Option<f32> {
+        let ahead = wrap_position(phase - self.from);
+        let ahead = if ahead > 0.0 { ahead } else { 1.0 };
+        (self.advance > 0.0 && ahead <= self.advance).then(|| ahead / self.advance * self.step_frames)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn cycles_are_counted_whatever_the_velocity_and_the_start(
+            start in 0.0_f32..1.0, velocity in -0.3_f32..0.3, step in 0.3_f32..8.0,
+        ) {
+            let mut counter = CycleCounter::new(start);
+            let mut passages = 0_i32;
+            for i in 1..=200_u16 {
+                let way = velocity * step * f32::from(i);
+                let advance = counter.advance(start + way, velocity, step);
+                passages += i32::from(advance.passed(0.25).is_some());
+                prop_assert!((advance.advance - velocity * step).abs() < 1.0e-3);
+            }
+            let cycles = velocity * step * 200.0;
+            prop_assert!((counter.cycles() - cycles).abs() < 1.0e-2);
+            prop_assert!((counter.completed() as f32 - cycles.floor()).abs() <= 1.0);
+            if velocity > 0.0 && velocity * step < 0.9 {
+                prop_assert!((passages as f32 - cycles).abs() <= 1.01);
+            }
+        }
+    }
+
+    #[test]
+    fn a_phase_is_passed_between_frames() {
+        let mut counter = CycleCounter::new(0.96);
+        let step = counter.advance(0.04, 0.08, 1.0);
+        assert!((step.passed(0.0).unwrap() - 0.5).abs() < 1.0e-4);
+        assert_eq!(step.passed(0.5), None);
+        let back = counter.advance(0.96, -0.08, 1.0);
+        assert_eq!(back.passed(0.0), None, "backwards does not count");
+        assert_eq!(counter.completed(), 0);
+    }
+}
