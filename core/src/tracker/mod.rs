@@ -1,3 +1,4 @@
 //! The trackers: each frame's step reads like the algorithm box in its paper.
 
 pub mod arm;
+pub mod cyclic;
