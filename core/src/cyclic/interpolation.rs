@@ -3,7 +3,7 @@
 use super::MotionModel;
 use super::phase::wrap_position;
 use super::semi_definite::packed_len;
-use crate::math::min;
+use crate::math::{min, sqrt};
 use core::f32::consts::TAU;
 
 /// A cycle position as two neighbouring stored positions and the part of the way between them.
@@ -57,10 +57,19 @@ impl MotionModel<'_> {
         pose
     }
 
-    /// Standard deviation of each angle about the mean cycle, radians; zero where the model has none.
+    /// Standard deviation of each angle about the mean cycle, radians, the same along the cycle; zero where the model has
+    /// none.
     #[must_use]
-    pub fn deviation_std_rad<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
-        self.row(self.parts().deviation.std_rad, point)
+    pub fn deviation_std_rad<const N: usize>(&self) -> [f32; N] {
+        let deviation = &self.parts().deviation;
+        let mut std = [0.0; N];
+        for (i, value) in std.iter_mut().enumerate() {
+            let part = |parts: &[f32]| parts.get(i).map_or(0.0, |part| part * part);
+            let variance =
+                part(deviation.offset_std_rad) + part(deviation.swing_std_rad) + part(deviation.rest_std_rad);
+            *value = sqrt(variance);
+        }
+        std
     }
 
     /// d mu / dc: slope of the mean acceleration by cycle position, rad per reference frame^2 and cycle.

@@ -6,7 +6,7 @@
 
 use super::deviation::Deviation;
 use super::semi_definite::{MAX_ROWS, is_positive_semi_definite, packed_len};
-use crate::error::{ParameterError, Rule, finite, not_negative, positive};
+use crate::error::{ParameterError, Rule, finite, positive};
 use core::fmt;
 
 /// Most angles of a model.
@@ -82,7 +82,7 @@ impl<'a> MotionModel<'a> {
     ///
     /// # Errors
     /// From 1 to [`MAX_ANGLES`] angles, at least 4 positions, lengths that agree, finite numbers, a positive duration
-    /// and rate, covariances without a negative eigenvalue, deviations not negative, correlation times positive.
+    /// and rate, covariances without a negative eigenvalue, spreads and rates of the deviation positive.
     pub fn new(parts: ModelParts<'a>) -> Result<Self, ModelError> {
         let n = parts.angle_count;
         let fail = |parameter, rule| Err(ModelError::of_all(ParameterError::new(parameter, rule)));
@@ -105,8 +105,11 @@ impl<'a> MotionModel<'a> {
         check_rows("mean_pose_rad", parts.mean_pose_rad, l, n, finite)?;
         check_rows("mean_velocity", parts.mean_velocity, l, n, finite)?;
         if !parts.deviation.is_absent() {
-            check_rows("deviation.std_rad", parts.deviation.std_rad, l, n, not_negative)?;
-            check_rows("deviation.correlation_time_frames", parts.deviation.correlation_time_frames, 1, n, positive)?;
+            let deviation = &parts.deviation;
+            check_rows("deviation.offset_std_rad", deviation.offset_std_rad, 1, n, positive)?;
+            check_rows("deviation.swing_std_rad", deviation.swing_std_rad, 1, n, positive)?;
+            check_rows("deviation.rest_std_rad", deviation.rest_std_rad, 1, n, positive)?;
+            check_rows("deviation.rest_rate_per_cycle", deviation.rest_rate_per_cycle, 1, n, positive)?;
         }
         check_covariances(parts.acceleration_covariance, l, n)?;
         Ok(Self { parts, position_count: l })
@@ -209,6 +212,13 @@ mod tests {
     static ACCELERATION: [f32; 2 * L] = [0.0, 0.1, 0.2, 0.3, 0.0, -0.1, -0.2, -0.3];
     static COVARIANCE: [f32; 3 * L] = [1.0, 0.5, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0, 2.0, 0.0, 2.0];
 
+    const DEVIATION: Deviation<'static> = Deviation {
+        offset_std_rad: &[0.1; 2],
+        swing_std_rad: &[0.1; 2],
+        rest_std_rad: &[0.05; 2],
+        rest_rate_per_cycle: &[9.0, 8.0],
+    };
+
     fn parts() -> ModelParts<'static> {
         ModelParts {
             angle_count: 2,
@@ -219,7 +229,7 @@ mod tests {
             turns_per_cycle: &[0, 1],
             mean_duration_frames: 5.0,
             rate_hz: 60.0,
-            deviation: Deviation { std_rad: &[0.1; 2 * L], correlation_time_frames: &[9.0, 8.0] },
+            deviation: DEVIATION,
         }
     }
 
@@ -255,9 +265,9 @@ mod tests {
         covariance[0] = f32::INFINITY;
         let error = MotionModel::new(ModelParts { acceleration_covariance: &covariance, ..parts() }).unwrap_err();
         assert_eq!(error.error.rule, Rule::Finite);
-        let negative = Deviation { std_rad: &[-0.1; 2 * L], correlation_time_frames: &[9.0, 8.0] };
+        let negative = Deviation { swing_std_rad: &[0.1, -0.1], ..DEVIATION };
         let error = MotionModel::new(ModelParts { deviation: negative, ..parts() }).unwrap_err();
-        assert_eq!(error.error.rule, Rule::NotNegative);
+        assert_eq!((error.error.rule, error.angle), (Rule::Positive, Some(1)));
     }
 
     #[test]

@@ -19,10 +19,14 @@ pub struct ModelTable<const POSITIONS: usize, const ANGLES: usize, const PACKED:
     pub mean_pose_rad: [[f32; ANGLES]; POSITIONS],
     /// See [`ModelParts::mean_velocity`].
     pub mean_velocity: [[f32; ANGLES]; POSITIONS],
-    /// See [`Deviation::std_rad`].
-    pub deviation_std_rad: [[f32; ANGLES]; POSITIONS],
-    /// See [`Deviation::correlation_time_frames`].
-    pub correlation_time_frames: [f32; ANGLES],
+    /// See [`Deviation::offset_std_rad`].
+    pub offset_std_rad: [f32; ANGLES],
+    /// See [`Deviation::swing_std_rad`].
+    pub swing_std_rad: [f32; ANGLES],
+    /// See [`Deviation::rest_std_rad`].
+    pub rest_std_rad: [f32; ANGLES],
+    /// See [`Deviation::rest_rate_per_cycle`].
+    pub rest_rate_per_cycle: [f32; ANGLES],
     /// See [`ModelParts::turns_per_cycle`].
     pub turns_per_cycle: [i8; ANGLES],
     /// See [`ModelParts::mean_duration_frames`].
@@ -52,8 +56,10 @@ impl<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> ModelTabl
             mean_duration_frames: self.mean_duration_frames,
             rate_hz: self.rate_hz,
             deviation: Deviation {
-                std_rad: self.deviation_std_rad.as_flattened(),
-                correlation_time_frames: &self.correlation_time_frames,
+                offset_std_rad: &self.offset_std_rad,
+                swing_std_rad: &self.swing_std_rad,
+                rest_std_rad: &self.rest_std_rad,
+                rest_rate_per_cycle: &self.rest_rate_per_cycle,
             },
         })
     }
@@ -70,8 +76,10 @@ mod tests {
             acceleration_covariance: [[1.0]; 5],
             mean_pose_rad: [[0.5]; 5],
             mean_velocity: [[0.0]; 5],
-            deviation_std_rad: [[0.1]; 5],
-            correlation_time_frames: [30.0],
+            offset_std_rad: [0.1],
+            swing_std_rad: [0.1],
+            rest_std_rad: [0.1],
+            rest_rate_per_cycle: [12.0],
             turns_per_cycle: [0],
             mean_duration_frames: 60.0,
             rate_hz: 60.0,

@@ -24,12 +24,21 @@ pub struct TrainedOn {
 }
 
 /// Spread about the mean cycle: see [`Deviation`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct DeviationNumbers {
-    /// See [`Deviation::std_rad`].
-    pub std_rad: Vec<f32>,
-    /// See [`Deviation::correlation_time_frames`].
-    pub correlation_time_frames: Vec<f32>,
+    /// What the variances of constant and swing were multiplied by, for the few people that they come from.
+    pub inflation: f32,
+    /// Part of each variance that was replaced by the mean over the angles.
+    pub shrinkage: f32,
+    /// See [`Deviation::offset_std_rad`].
+    pub offset_std_rad: Vec<f32>,
+    /// See [`Deviation::swing_std_rad`].
+    pub swing_std_rad: Vec<f32>,
+    /// See [`Deviation::rest_std_rad`].
+    pub rest_std_rad: Vec<f32>,
+    /// See [`Deviation::rest_rate_per_cycle`].
+    pub rest_rate_per_cycle: Vec<f32>,
 }
 
 /// The numbers of a model: see [`ModelParts`] for each field.
@@ -71,8 +80,10 @@ impl ModelNumbers {
             mean_duration_frames: self.mean_duration_frames,
             rate_hz: self.rate_hz,
             deviation: self.deviation.as_ref().map_or_else(Deviation::default, |deviation| Deviation {
-                std_rad: &deviation.std_rad,
-                correlation_time_frames: &deviation.correlation_time_frames,
+                offset_std_rad: &deviation.offset_std_rad,
+                swing_std_rad: &deviation.swing_std_rad,
+                rest_std_rad: &deviation.rest_std_rad,
+                rest_rate_per_cycle: &deviation.rest_rate_per_cycle,
             }),
         })
     }

@@ -34,19 +34,8 @@ struct ModelFile<Table> {
     mean_velocity: Table,
     mean_acceleration: Table,
     acceleration_covariance: Table,
-    #[serde(default = "none", skip_serializing_if = "Option::is_none")]
-    deviation: Option<DeviationFile<Table>>,
-}
-
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DeviationFile<Table> {
-    std_rad: Table,
-    correlation_time_frames: Vec<f32>,
-}
-
-fn none<Table>() -> Option<DeviationFile<Table>> {
-    None
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    deviation: Option<DeviationNumbers>,
 }
 
 /// The JSON text of a model, one line for each position of a table.
@@ -68,13 +57,7 @@ pub fn to_json(model: &CyclicModel) -> Result<String> {
         mean_velocity: lines(&numbers.mean_velocity, n)?,
         mean_acceleration: lines(&numbers.mean_acceleration, n)?,
         acceleration_covariance: lines(&numbers.acceleration_covariance, packed_len(n))?,
-        deviation: match &numbers.deviation {
-            None => None,
-            Some(deviation) => Some(DeviationFile {
-                std_rad: lines(&deviation.std_rad, n)?,
-                correlation_time_frames: deviation.correlation_time_frames.clone(),
-            }),
-        },
+        deviation: numbers.deviation.clone(),
     };
     Ok(serde_json::to_string_pretty(&file)? + "\n")
 }
@@ -129,13 +112,6 @@ pub fn parse(text: &str) -> Result<CyclicModel> {
         }
         Ok(rows.concat())
     };
-    let deviation = match file.deviation {
-        None => None,
-        Some(deviation) => Some(DeviationNumbers {
-            std_rad: table("deviation.std_rad", deviation.std_rad, ANGLES)?,
-            correlation_time_frames: deviation.correlation_time_frames,
-        }),
-    };
     let numbers = ModelNumbers {
         angle_count: ANGLES,
         mean_acceleration: table("mean_acceleration", file.mean_acceleration, ANGLES)?,
@@ -145,7 +121,7 @@ pub fn parse(text: &str) -> Result<CyclicModel> {
         turns_per_cycle: file.turns_per_cycle,
         mean_duration_frames: file.mean_duration_frames,
         rate_hz: file.rate_hz,
-        deviation,
+        deviation: file.deviation,
     };
     Ok(CyclicModel::new(numbers, file.trained_on)?)
 }

@@ -1,6 +1,7 @@
 //! Training of a motion model from cut cycles (cyclic paper, section 2.3).
 
 pub mod cycle;
+pub mod deviation;
 pub mod statistics;
 
 pub use cycle::TrainingCycle;
@@ -89,7 +90,7 @@ fn numbers(cycles: &[TrainingCycle], options: TrainingOptions) -> ModelNumbers {
         turns_per_cycle: statistics::turns_per_cycle(cycles, options.length).to_vec(),
         mean_duration_frames: (1.0 / mean_velocity) as f32,
         rate_hz: options.rate_hz as f32,
-        deviation: None,
+        deviation: Some(deviation::of_cycles(cycles, options.length)),
     }
 }
 

@@ -1,0 +1,173 @@
+//! How people differ from the mean cycle, learned from a few cycles of a few people (see [`sinew_core::cyclic::Deviation`]).
+//!
+//! Each cycle's deviation from the mean is split into a constant, a swing with the cycle's own period, and a rest. Variances
+//! are taken from pairs of cycles: half the squared difference of two is an unbiased estimate. Ten cycles seldom come from
+//! ten people, and two cycles of one person say little about the next one; as nobody tells whose cycle it is, only the half
+//! of the pairs that differ most is used.
+
+use super::cycle::TrainingCycle;
+use super::statistics::mean_pose;
+use crate::cyclic::angle_table::ANGLES;
+use crate::cyclic::model::DeviationNumbers;
+use crate::cyclic::turns::wrapped;
+use std::f64::consts::TAU;
+
+/// What variances of constant and swing are multiplied by: they come from about three people, so the spread of a new
+/// person is that of a t distribution with few degrees of freedom, and the mean cycle is itself that uncertain.
+const INFLATION: f64 = 20.0 / 3.0;
+/// Part of each variance that is replaced by the mean over the angles.
+const SHRINKAGE: f64 = 0.2;
+/// The same for the rest, which differs from cycle to cycle as well and is known from more than a few people.
+const REST_INFLATION: f64 = 2.0;
+/// Least standard deviation, radians (a third of a degree): labels are no better.
+const LEAST_STD_RAD: f64 = 0.006;
+/// Bounds of the rest's rate per cycle: slower is a swing, faster is noise.
+const RATE_PER_CYCLE: (f64, f64) = (6.0, 60.0);
+
+/// Constant, cosine and sine of one angle in one cycle, and the rest at each position.
+struct Parts {
+    coefficients: [f64; 3],
+    rest: Vec<f64>,
+}
+
+/// Learns the deviation's spread from two or more cycles at `length` positions.
+#[must_use]
+pub fn of_cycles(cycles: &[TrainingCycle], length: usize) -> DeviationNumbers {
+    let poses = mean_pose(cycles, length);
+    let parts: Vec<Vec<Parts>> =
+        cycles.iter().map(|cycle| (0..ANGLES).map(|angle| split(cycle, angle, &poses, length)).collect()).collect();
+    let pairs = far_pairs(&parts);
+    let over_pairs = |value: &dyn Fn(&Parts, &Parts) -> f64, angle: usize| {
+        pairs.iter().map(|&(i, k)| value(&parts[i][angle], &parts[k][angle])).sum::<f64>() / pairs.len() as f64
+    };
+    let coefficient = |which: usize| {
+        std::array::from_fn::<f64, ANGLES, _>(|angle| {
+            over_pairs(&|a, b| half_square(a.coefficients[which] - b.coefficients[which]), angle)
+        })
+    };
+    let (offset, cosine, sine) = (coefficient(0), coefficient(1), coefficient(2));
+    let swing = std::array::from_fn(|i| 0.5 * (cosine[i] + sine[i]));
+    let rest = std::array::from_fn(|angle| over_pairs(&rest_variance, angle));
+    let rate = |angle: usize| {
+        let slope = over_pairs(&slope_variance, angle);
+        (slope / rest[angle].max(f64::MIN_POSITIVE)).sqrt().clamp(RATE_PER_CYCLE.0, RATE_PER_CYCLE.1)
+    };
+    DeviationNumbers {
+        inflation: INFLATION as f32,
+        shrinkage: SHRINKAGE as f32,
+        offset_std_rad: stds(offset, INFLATION),
+        swing_std_rad: stds(swing, INFLATION),
+        rest_std_rad: stds(rest, REST_INFLATION),
+        rest_rate_per_cycle: (0..ANGLES).map(|angle| rate(angle) as f32).collect(),
+    }
+}
+
+/// Least-squares fit of constant, cosine and sine to the deviation at equidistant positions, where they are orthogonal.
+fn split(cycle: &TrainingCycle, angle: usize, poses: &[[f64; ANGLES]], length: usize) -> Parts {
+    let place = |position: usize| position as f64 / length as f64;
+    let mut deviation: Vec<f64> =
+        (0..length).map(|position| wrapped(cycle.angle_at(angle, place(position)) - poses[position][angle])).collect();
+    let mean = |weight: &dyn Fn(f64) -> f64| {
+        deviation.iter().enumerate().map(|(i, value)| value * weight(TAU * place(i))).sum::<f64>() / length as f64
+    };
+    let coefficients = [mean(&|_| 1.0), 2.0 * mean(&f64::cos), 2.0 * mean(&f64::sin)];
+    for (i, value) in deviation.iter_mut().enumerate() {
+        let phase = TAU * place(i);
+        *value -= coefficients[0] + coefficients[1] * phase.cos() + coefficients[2] * phase.sin();
+    }
+    Parts { coefficients, rest: deviation }
+}
+
+/// The half of the pairs of cycles that differ most, each coefficient of each angle relative to its own spread.
+fn far_pairs(parts: &[Vec<Parts>]) -> Vec<(usize, usize)> {
+    let all: Vec<(usize, usize)> = (0..parts.len()).flat_map(|i| (0..i).map(move |k| (i, k))).collect();
+    let squares = |&(i, k): &(usize, usize)| -> Vec<f64> {
+        let both = parts[i].iter().zip(&parts[k]);
+        both.flat_map(|(a, b)| (0..3).map(|c| half_square(a.coefficients[c] - b.coefficients[c]))).collect()
+    };
+    let table: Vec<Vec<f64>> = all.iter().map(squares).collect();
+    let scale: Vec<f64> = (0..3 * ANGLES)
+        .map(|column| table.iter().map(|row| row[column]).sum::<f64>() / table.len() as f64 + f64::MIN_POSITIVE)
+        .collect();
+    let distance = |row: &Vec<f64>| row.iter().zip(&scale).map(|(value, scale)| value / scale).sum::<f64>();
+    let mut ranked: Vec<(f64, (usize, usize))> = table.iter().map(distance).zip(all).collect();
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+    ranked.truncate(ranked.len().div_ceil(2));
+    ranked.into_iter().map(|(_, pair)| pair).collect()
+}
+
+fn half_square(difference: f64) -> f64 {
+    0.5 * difference * difference
+}
+
+/// Half the mean squared difference of two rests.
+fn rest_variance(a: &Parts, b: &Parts) -> f64 {
+    a.rest.iter().zip(&b.rest).map(|(a, b)| half_square(a - b)).sum::<f64>() / a.rest.len() as f64
+}
+
+/// The same of their slopes per cycle, from central differences inside the cycle.
+fn slope_variance(a: &Parts, b: &Parts) -> f64 {
+    let length = a.rest.len();
+    let difference: Vec<f64> = a.rest.iter().zip(&b.rest).map(|(a, b)| a - b).collect();
+    let slope = |window: &[f64]| half_square(0.5 * (window[2] - window[0]) * length as f64);
+    difference.windows(3).map(slope).sum::<f64>() / (length - 2) as f64
+}
+
+/// Standard deviations of variances, shrunk to their mean and multiplied by `factor`.
+fn stds(variances: [f64; ANGLES], factor: f64) -> Vec<f32> {
+    let mean = variances.iter().sum::<f64>() / ANGLES as f64;
+    let std = |variance: &f64| (factor * ((1.0 - SHRINKAGE) * variance + SHRINKAGE * mean)).sqrt().max(LEAST_STD_RAD);
+    variances.iter().map(|variance| std(variance) as f32).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cyclic::angle_table::AngleTable;
+    use crate::cyclic::cuts::Cut;
+
+    /// Angle 0 differs by `offset`, angle 1 by `swing` times a cosine, angle 2 by a ripple of three periods a cycle.
+    fn cycle(offset: f64, swing: f64, ripple: f64) -> TrainingCycle {
+        let row = |frame: u32| {
+            let phase = TAU * f64::from(frame) / 60.0;
+            let mut angles = [Some(0.5 * phase.sin()); ANGLES];
+            angles[0] = angles[0].map(|value| value + offset);
+            angles[1] = angles[1].map(|value| value + swing * phase.cos());
+            angles[2] = angles[2].map(|value| value + ripple * (3.0 * phase).sin());
+            angles
+        };
+        let table = AngleTable::from_angles(0, &(0..180).map(row).collect::<Vec<_>>()).unwrap();
+        TrainingCycle::new(&table, &Cut { file: String::new(), start_frame: 60, end_frame: 120, line: 2 }).unwrap()
+    }
+
+    #[test]
+    fn each_part_goes_where_it_belongs() {
+        let numbers = of_cycles(&[cycle(0.0, 0.0, 0.0), cycle(0.4, 0.3, 0.2)], 100);
+        let pooled = |own: f64, of: f64, factor: f64| (factor * (0.8 * own + 0.2 * of / ANGLES as f64)).sqrt() as f32;
+        let offset = half_square(0.4);
+        assert!((numbers.offset_std_rad[0] - pooled(offset, offset, INFLATION)).abs() < 1.0e-3);
+        assert!((numbers.offset_std_rad[1] - pooled(0.0, offset, INFLATION)).abs() < 1.0e-3);
+        let swing = 0.5 * half_square(0.3);
+        assert!((numbers.swing_std_rad[1] - pooled(swing, swing, INFLATION)).abs() < 1.0e-3);
+        let rest = 0.5 * half_square(0.2);
+        assert!((numbers.rest_std_rad[2] - pooled(rest, rest, REST_INFLATION)).abs() < 1.0e-3);
+        assert!((f64::from(numbers.rest_rate_per_cycle[2]) - 3.0 * TAU).abs() < 0.5, "a sine has its own rate");
+    }
+
+    /// Three cycles of one person and one of another: the pairs of both people count, those of one do not.
+    #[test]
+    fn cycles_of_one_person_do_not_hide_how_people_differ() {
+        let cycles = [cycle(0.0, 0.0, 0.0), cycle(0.01, 0.0, 0.0), cycle(0.02, 0.0, 0.0), cycle(0.8, 0.0, 0.0)];
+        let numbers = of_cycles(&cycles, 100);
+        let mean = (half_square(0.8) + half_square(0.79) + half_square(0.78)) / 3.0;
+        let wanted = (INFLATION * mean * (0.8 + 0.2 / ANGLES as f64)).sqrt();
+        assert!((f64::from(numbers.offset_std_rad[0]) - wanted).abs() < 0.02, "{numbers:?}");
+    }
+
+    #[test]
+    fn equal_cycles_still_leave_some_doubt() {
+        let numbers = of_cycles(&[cycle(0.1, 0.0, 0.0), cycle(0.1, 0.0, 0.0)], 100);
+        assert!(numbers.offset_std_rad.iter().all(|&std| f64::from(std) >= 0.99 * LEAST_STD_RAD && std < 0.01));
+        assert!(numbers.rest_rate_per_cycle.iter().all(|rate| (6.0..=60.0).contains(rate)));
+    }
+}
