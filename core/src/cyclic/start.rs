@@ -51,7 +51,7 @@ impl<const N: usize> CycleStart<N> {
         let ratio = model.speed_ratio(cycle_velocity);
         let mut start = Self {
             angles_rad: model.mean_pose_rad(point),
-            extra_variance_rad2: model.deviation_std_rad::<N>(point).map(|std| std * std),
+            extra_variance_rad2: model.deviation_std_rad::<N>().map(|std| std * std),
             velocities: model.mean_velocity::<N>(point).map(|velocity| ratio * velocity),
             cycle_position,
             cycle_velocity,
@@ -94,7 +94,7 @@ pub fn best_position<const N: usize>(model: &MotionModel<'_>, angles_rad: &[Opti
         let position = index as f32 / count as f32;
         let point = model.point(position);
         let pose = model.mean_pose_rad::<N>(point);
-        let spread = model.deviation_std_rad::<N>(point);
+        let spread = model.deviation_std_rad::<N>();
         let mut distance = 0.0;
         for i in 0..N.min(model.angle_count()) {
             if let Some(angle) = angles_rad[i].filter(|angle| angle.is_finite()) {
