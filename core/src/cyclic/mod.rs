@@ -1,5 +1,9 @@
 //! Cyclic motion of a stick figure (the cyclic paper): a motion model learned from a few cycles, and what tracks with it.
 
+pub mod coupled;
+pub mod coupled_block;
+#[cfg(test)]
+mod coupled_tests;
 pub mod covariance;
 pub mod cycle_state;
 pub mod deviation;
@@ -26,6 +30,7 @@ pub mod substeps;
 #[cfg(test)]
 pub mod synthetic;
 
+pub use coupled::CoupledFilter;
 pub use deviation::Deviation;
 pub use estimate::CyclicEstimate;
 pub use interpolation::CyclePoint;

@@ -1,0 +1,189 @@
+//! One angle's deviation from the mean cycle in the phase-coupled filter: five numbers, known given the cycle's state.
+//!
+//! The five are a, p, q of `a + p cos 2 pi c + q sin 2 pi c`, the rest d and its slope per cycle. Their density given
+//! z = (c, v) is normal with mean `mean + regression (z - z_mean)` and covariance `covariance`: angles are independent of
+//! each other given z, so no covariance between angles is stored.
+
+use crate::math::{exp, max, sin_cos};
+use core::f32::consts::TAU;
+
+/// Numbers of a block.
+pub const PARTS: usize = 5;
+const REST: usize = 3;
+const SLOPE: usize = 4;
+
+/// Direction in which an angle depends on its parts at a cycle position.
+#[derive(Debug, Clone, Copy)]
+pub struct Basis {
+    /// (1, cos, sin, 1, 0).
+    pub value: [f32; PARTS],
+    /// Its derivative by c.
+    pub slope: [f32; PARTS],
+}
+
+impl Basis {
+    /// At cycle position `position`.
+    #[must_use]
+    pub fn at(position: f32) -> Self {
+        let (sine, cosine) = sin_cos(TAU * position);
+        Self { value: [1.0, cosine, sine, 1.0, 0.0], slope: [0.0, -TAU * sine, TAU * cosine, 0.0, 0.0] }
+    }
+}
+
+/// Stationary spread of a block.
+#[derive(Debug, Clone, Copy)]
+pub struct Spread {
+    /// Variance of a, rad^2.
+    pub offset: f32,
+    /// Variance of p and of q, rad^2.
+    pub swing: f32,
+    /// Variance of d, rad^2.
+    pub rest: f32,
+    /// Rate of d per cycle.
+    pub rate: f32,
+}
+
+impl Spread {
+    fn diagonal(&self) -> [f32; PARTS] {
+        [self.offset, self.swing, self.swing, self.rest, self.rest * self.rate * self.rate]
+    }
+}
+
+/// Gain-free view of a measured angle: what it says about z.
+#[derive(Debug, Clone, Copy)]
+pub struct Outlook {
+    /// Derivative of the angle by (c, v).
+    pub gradient: [f32; 2],
+    /// Covariance of the parts with the angle, given z.
+    pub column: [f32; PARTS],
+    /// Variance of the angle given z, rad^2.
+    pub variance: f32,
+}
+
+/// Five parts given z.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AngleBlock {
+    /// Means at the mean of z.
+    pub mean: [f32; PARTS],
+    /// Change of the means with (c, v).
+    pub regression: [[f32; 2]; PARTS],
+    /// Covariance given z, symmetric.
+    pub covariance: [[f32; PARTS]; PARTS],
+}
+
+impl AngleBlock {
+    /// Nothing known but the spread between people.
+    #[must_use]
+    pub fn unknown(spread: &Spread) -> Self {
+        let mut covariance = [[0.0; PARTS]; PARTS];
+        for (i, variance) in spread.diagonal().into_iter().enumerate() {
+            covariance[i][i] = variance;
+        }
+        Self { mean: [0.0; PARTS], regression: [[0.0; 2]; PARTS], covariance }
+    }
+
+    /// Moves on by `phase` cycles: a, p, q keep the part `memory`, d follows its process; `z_map` is the regression of the
+    /// old z on the new one, `z_rest` (cc, cv, vv) what it leaves unexplained.
+    pub fn advance(&mut self, spread: &Spread, phase: f32, memory: f32, z_map: &[[f32; 2]; 2], z_rest: &[f32; 3]) {
+        let scaled = spread.rate * phase;
+        let decay = exp(-scaled);
+        let rest_map =
+            [[decay * (1.0 + scaled), decay * phase], [-decay * spread.rate * scaled, decay * (1.0 - scaled)]];
+        let apply = |v: [f32; PARTS]| -> [f32; PARTS] {
+            [
+                memory * v[0],
+                memory * v[1],
+                memory * v[2],
+                rest_map[0][0] * v[REST] + rest_map[0][1] * v[SLOPE],
+                rest_map[1][0] * v[REST] + rest_map[1][1] * v[SLOPE],
+            ]
+        };
+        let b = &self.regression;
+        let mut rows = self.covariance;
+        for i in 0..PARTS {
+            let left = [b[i][0] * z_rest[0] + b[i][1] * z_rest[1], b[i][0] * z_rest[1] + b[i][1] * z_rest[2]];
+            for j in 0..PARTS {
+                rows[i][j] += left[0] * b[j][0] + left[1] * b[j][1];
+            }
+        }
+        // Phi C Phi': rows, then columns by symmetry.
+        let half = rows.map(apply);
+        let mut moved = [[0.0; PARTS]; PARTS];
+        for j in 0..PARTS {
+            let column = apply([half[0][j], half[1][j], half[2][j], half[3][j], half[4][j]]);
+            for i in 0..PARTS {
+                moved[i][j] = column[i];
+            }
+        }
+        let stationary = spread.diagonal();
+        let forget = 1.0 - memory * memory;
+        for i in 0..REST {
+            moved[i][i] += forget * stationary[i];
+        }
+        let (p, r) = (stationary[REST], stationary[SLOPE]);
+        let m = &rest_map;
+        moved[REST][REST] += max(p - (m[0][0] * m[0][0] * p + m[0][1] * m[0][1] * r), 0.0);
+        let cross = -(m[0][0] * m[1][0] * p + m[0][1] * m[1][1] * r);
+        moved[REST][SLOPE] += cross;
+        moved[SLOPE][SLOPE] += max(r - (m[1][0] * m[1][0] * p + m[1][1] * m[1][1] * r), 0.0);
+        for i in 0..PARTS {
+            for j in 0..i {
+                moved[i][j] = moved[j][i];
+            }
+        }
+        self.covariance = moved;
+        self.mean = apply(self.mean);
+        let column = |k: usize| -> [f32; PARTS] { core::array::from_fn(|i| b[i][k]) };
+        let moved = [apply(column(0)), apply(column(1))];
+        self.regression =
+            core::array::from_fn(|i| core::array::from_fn(|k| moved[0][i] * z_map[0][k] + moved[1][i] * z_map[1][k]));
+    }
+
+    /// Deviation at a basis, radians.
+    #[must_use]
+    pub fn deviation(&self, basis: &Basis) -> f32 {
+        dot(&basis.value, &self.mean)
+    }
+
+    /// What the angle depends on; `mean_slope` is that of the mean cycle, rad per cycle.
+    #[must_use]
+    pub fn outlook(&self, basis: &Basis, mean_slope: f32) -> Outlook {
+        let h = &basis.value;
+        let mut gradient = [mean_slope + dot(&basis.slope, &self.mean), 0.0];
+        let mut column = [0.0; PARTS];
+        for i in 0..PARTS {
+            gradient[0] += h[i] * self.regression[i][0];
+            gradient[1] += h[i] * self.regression[i][1];
+            column[i] = dot(&self.covariance[i], h);
+        }
+        Outlook { gradient, column, variance: max(dot(&column, h), 0.0) }
+    }
+
+    /// Takes in a measured angle that lies `residual` off; z has moved by `shift` at the same time.
+    pub fn correct(&mut self, outlook: &Outlook, noise_variance: f32, residual: f32, shift: [f32; 2]) {
+        let inverse = 1.0 / (outlook.variance + noise_variance);
+        let g = &outlook.gradient;
+        let rest = residual - g[0] * shift[0] - g[1] * shift[1];
+        for i in 0..PARTS {
+            let gain = outlook.column[i] * inverse;
+            self.mean[i] += gain * rest;
+            self.regression[i][0] -= gain * g[0];
+            self.regression[i][1] -= gain * g[1];
+            for j in 0..PARTS {
+                self.covariance[i][j] -= outlook.column[i] * outlook.column[j] * inverse;
+            }
+            self.covariance[i][i] = max(self.covariance[i][i], 1.0e-10);
+        }
+    }
+
+    /// The means follow z by `shift`.
+    pub fn follow(&mut self, shift: [f32; 2]) {
+        for i in 0..PARTS {
+            self.mean[i] += self.regression[i][0] * shift[0] + self.regression[i][1] * shift[1];
+        }
+    }
+}
+
+fn dot(a: &[f32; PARTS], b: &[f32; PARTS]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,96 @@
+//! The phase-coupled filter on made-up motion.
+
+use super::synthetic::{mean_angle, table};
+use super::{AngleMeasurement, CoupledFilter};
+use crate::math::wrap_angle;
+use crate::random::Stream;
+use core::f32::consts::TAU;
+
+const N: usize = 13;
+
+/// A person who differs from the mean cycle by a constant and a swing.
+fn person(index: usize, position: f32) -> f32 {
+    let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
+    mean_angle(index, position) + 0.1 * sign + 0.06 * (TAU * position).cos()
+}
+
+/// Ten cycles at a cadence 8 % above the model's, with noise of 0.1 rad and every seventh frame missing.
+#[test]
+fn it_follows_another_person_at_another_cadence() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let velocity = 1.08 / 65.0;
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    let mut filter = CoupledFilter::<N>::new(&model, &first, Some(0.0), None).unwrap();
+    let mut stream = Stream::new(5, 0, 0);
+    let (mut inside, mut all, mut error) = (0, 0, 0.0_f32);
+    let frames = 602;
+    let mut last = None;
+    for frame in 1..=frames {
+        let position = velocity * frame as f32;
+        let seen = core::array::from_fn(|i| {
+            let angle = person(i, position) + 0.1 * stream.normal();
+            (frame % 7 != 0).then_some(angle)
+        });
+        let estimate = filter.step(&model, &AngleMeasurement::new(&seen, 0.1).unwrap());
+        for i in 0..N {
+            let off = wrap_angle(estimate.angles_rad[i] - person(i, position)).abs();
+            inside += i32::from(off <= 1.645 * estimate.angle_variance_rad2[i].sqrt());
+            all += 1;
+            error += off;
+        }
+        last = Some(estimate);
+    }
+    let estimate = last.unwrap();
+    let phase = velocity * frames as f32 - (filter.cycles() as f32 + estimate.cycle_position);
+    assert!(phase.abs() < 0.05, "phase is off by {phase} cycles");
+    assert_eq!(filter.cycles(), 10 - i32::from(estimate.cycle_position > 0.5));
+    assert!((estimate.cycle_velocity_per_frame / velocity - 1.0).abs() < 0.02);
+    assert!((9..=10).contains(&estimate.turns[12]), "angle 12 winds once a cycle: {}", estimate.turns[12]);
+    let mean_error = error / all as f32;
+    assert!(mean_error < 0.035, "a third of the noise, not {mean_error}");
+    let share = inside as f32 / all as f32;
+    assert!((0.85..=0.99).contains(&share), "{share} of the truth lies in the 90 % band");
+}
+
+/// Gaps of random length: blocks stay symmetric with variances above zero, and every number finite.
+#[test]
+fn it_stays_sound_through_random_gaps() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    let mut filter = CoupledFilter::<N>::new(&model, &first, None, None).unwrap();
+    let mut stream = Stream::new(9, 0, 0);
+    let mut time = 0.0;
+    for _ in 0..20_000 {
+        let gap = stream.normal().abs() > 2.5;
+        let step = if gap { 1.0 + 40.0 * stream.normal().abs() } else { 1.0 };
+        time += step / 65.0;
+        time -= time.floor();
+        let seen = core::array::from_fn(|i| (stream.normal() > -0.5).then_some(person(i, time)));
+        let estimate = filter.step(&model, &AngleMeasurement::new(&seen, 0.05).unwrap().after(step).unwrap());
+        assert!(estimate.angles_rad.iter().all(|angle| angle.is_finite()));
+        assert!(estimate.angle_variance_rad2.iter().all(|variance| variance.is_finite() && *variance > 0.0));
+        assert!((0.0..1.0).contains(&estimate.cycle_position) && estimate.cycle_velocity_variance > 0.0);
+    }
+}
+
+/// After a gap in which the phase is lost, the position is found again.
+#[test]
+fn a_lost_phase_is_found_again() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    let mut filter = CoupledFilter::<N>::new(&model, &first, Some(0.0), None).unwrap();
+    filter.predict(&model, 600.0);
+    let mut last = 0.0;
+    for frame in 0..65 {
+        let position = 0.37 + frame as f32 / 65.0;
+        let seen = core::array::from_fn(|i| Some(person(i, position)));
+        last = super::phase::position_difference(
+            filter.step(&model, &AngleMeasurement::new(&seen, 0.05).unwrap()).cycle_position,
+            super::phase::wrap_position(position),
+        );
+    }
+    assert!(last.abs() < 0.05, "off by {last} cycles");
+}
