@@ -69,7 +69,12 @@ pub fn erfc(x: f32) -> f32 {
 #[inline]
 #[must_use]
 pub fn floor(x: f32) -> f32 {
-    libm::floorf(x)
+    if x > -ROUND_SMALL_LIMIT && x < ROUND_SMALL_LIMIT {
+        let nearest = round_small(x);
+        if nearest > x { nearest - 1.0 } else { nearest }
+    } else {
+        libm::floorf(x)
+    }
 }
 
 /// Nearest whole number, halves away from zero.
@@ -78,6 +83,54 @@ pub fn floor(x: f32) -> f32 {
 pub fn round(x: f32) -> f32 {
     libm::roundf(x)
 }
+
+/// Size of an argument below which [`round_small`] gives whole numbers: 2^22.
+pub const ROUND_SMALL_LIMIT: f32 = 4_194_304.0;
+
+/// Nearest whole number, halves to the even one, for arguments below [`ROUND_SMALL_LIMIT`] in size. Two additions without a branch, so that loops over arrays are vectorised.
+#[inline]
+#[must_use]
+pub fn round_small(x: f32) -> f32 {
+    const SHIFT: f32 = 12_582_912.0;
+    (x + SHIFT) - SHIFT
+}
+
+/// `angle_rad` moved by whole turns to within rounding of [-pi, pi], where either end will do. Without a branch.
+#[inline]
+#[must_use]
+pub fn least_angle(angle_rad: f32) -> f32 {
+    angle_rad - TAU * round_small(angle_rad * (1.0 / TAU))
+}
+
+/// As [`wrap_angle`], without a branch or a call: for loops over many angles of few turns.
+#[inline]
+#[must_use]
+pub fn wrap_angle_small(angle_rad: f32) -> f32 {
+    let wrapped = least_angle(angle_rad);
+    let above = if wrapped > PI { PI } else { wrapped };
+    if above <= -PI { PI } else { above }
+}
+
+/// e to the power of `x` in [-80, 0], relative error below [`EXP_SMALL_MAX_ERROR`], exactly 1 at 0. Without a branch or a
+/// call: for loops over many numbers. Outside of the interval the result means nothing.
+#[inline]
+#[must_use]
+pub fn exp_small(x: f32) -> f32 {
+    const SHIFT: f32 = 12_582_912.0;
+    const LN_2_HIGH: f32 = 0.693_359_375;
+    const LN_2_LOW: f32 = -2.121_944_4e-4;
+    let shifted = x * core::f32::consts::LOG2_E + SHIFT;
+    let whole = shifted - SHIFT;
+    let r = (x - whole * LN_2_HIGH) - whole * LN_2_LOW;
+    let power = 1.0
+        + r * (1.0
+            + r * (0.5 + r * (1.666_666_7e-1 + r * (4.166_666_7e-2 + r * (8.333_333_3e-3 + r * 1.388_888_9e-3)))));
+    let exponent = shifted.to_bits().wrapping_sub(SHIFT.to_bits()).wrapping_add(127);
+    power * f32::from_bits(exponent << 23)
+}
+
+/// Largest relative error of [`exp_small`] (asserted by a test against `f64`).
+pub const EXP_SMALL_MAX_ERROR: f32 = 3.0e-7;
 
 /// Absolute value.
 #[inline]
@@ -190,6 +243,44 @@ pub fn axis_rotation(axis: &Vec3, angle_rad: f32) -> Mat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_branch_free_exponential_is_the_exponential() {
+        let mut worst = 0.0_f64;
+        for i in 0..=80_000_u32 {
+            let x = -(i as f32) * 1.0e-3;
+            let exact = f64::from(x).exp();
+            worst = worst.max(((f64::from(exp_small(x)) - exact) / exact).abs());
+        }
+        assert!(worst < f64::from(EXP_SMALL_MAX_ERROR) && worst > 0.2 * f64::from(EXP_SMALL_MAX_ERROR), "{worst:e}");
+        assert_eq!(exp_small(0.0), 1.0);
+    }
+
+    #[test]
+    fn the_short_floor_is_the_floor() {
+        for i in -40_000..=40_000_i32 {
+            for x in [i as f32 * 0.25, i as f32 * 104.857_6, i as f32 * 1.0e-7, i as f32 * 1.0e6] {
+                assert_eq!(floor(x), x.floor(), "{x}");
+            }
+        }
+        assert!(floor(f32::NAN).is_nan());
+        assert_eq!(floor(f32::NEG_INFINITY), f32::NEG_INFINITY);
+    }
+
+    #[test]
+    fn the_branch_free_wrap_is_the_wrap() {
+        for i in -4000..=4000_i32 {
+            let angle = i as f32 * 0.01;
+            let wrapped = wrap_angle_small(angle);
+            assert!(wrapped > -PI && wrapped <= PI);
+            let off = wrap_angle(wrapped - wrap_angle(angle)).abs();
+            assert!(off < 1.0e-5, "{angle}: {wrapped}");
+            assert!((least_angle(angle).abs() - wrapped.abs()).abs() < 1.0e-5, "{angle}");
+        }
+        assert_eq!(wrap_angle_small(-PI), PI);
+        assert_eq!(wrap_angle_small(PI), PI);
+        assert_eq!(wrap_angle_small(0.3), 0.3, "no turn, no change");
+    }
 
     #[test]
     fn sine_and_cosine_stay_within_the_stated_error() {

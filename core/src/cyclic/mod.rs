@@ -1,5 +1,6 @@
 //! Cyclic motion of a stick figure (the cyclic paper): a motion model learned from a few cycles, and what tracks with it.
 
+mod angle_blocks;
 pub mod coupled;
 pub mod coupled_block;
 #[cfg(test)]
@@ -23,6 +24,7 @@ pub mod model_table;
 pub mod motion_bank;
 pub mod particle;
 pub mod particle_moments;
+pub mod particle_table;
 pub mod phase;
 pub mod semi_definite;
 pub mod start;

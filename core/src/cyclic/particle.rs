@@ -3,15 +3,18 @@
 //! Each particle draws from its own stream, and sums are taken over chunks of [`CHUNK`] particles whose results are added
 //! in order: the result has the same bits however the chunks are spread over threads.
 
+use super::angle_blocks::{AngleBlocks, BLOCK, blocks_of, used_blocks, write_back};
+use super::particle_table::ParticleTable;
 use super::phase::wrap_position;
-use super::semi_definite::{packed_len, semi_cholesky};
 use super::start::CycleStart;
 use super::substeps::Substeps;
 use super::{AngleMeasurement, MotionModel};
-use crate::angle::angle_difference;
-use crate::math::{exp, max, sqrt, wrap_angle};
-use crate::random::Stream;
+use crate::math::{clamp, exp_small, least_angle, max, sqrt, wrap_angle, wrap_angle_small};
+use crate::random::lanes::LANES;
+use crate::random::{Stream, StreamLanes};
 use core::f32::consts::PI;
+
+pub use super::particle_table::{factors_len, fill_factors};
 
 /// Particles whose sums are taken together.
 pub const CHUNK: usize = 1024;
@@ -72,15 +75,6 @@ impl Default for ParticleOptions {
     }
 }
 
-/// Writes the Cholesky factors of the covariances at all positions: l packed lower triangles, computed once a model.
-pub fn fill_factors(model: &MotionModel<'_>, factors: &mut [f32]) {
-    let packed = packed_len(model.angle_count());
-    let covariances = model.parts().acceleration_covariance.chunks_exact(packed);
-    for (covariance, factor) in covariances.zip(factors.chunks_exact_mut(packed)) {
-        semi_cholesky(covariance, model.angle_count(), factor);
-    }
-}
-
 /// Particle number `index` of the first generation.
 #[must_use]
 pub fn first_particle<const N: usize>(
@@ -114,51 +108,102 @@ pub fn first_particle<const N: usize>(
     particle
 }
 
-impl<const N: usize> CyclicParticle<N> {
-    /// A draw from the transition of eq. (11) over `step` <= 1 frame.
-    ///
-    /// Between two stored positions the noise is that of one of them, drawn with the probabilities of linear
-    /// interpolation: the covariance is then exactly the interpolated one.
-    #[inline]
-    pub fn advance(
-        &mut self,
-        model: &MotionModel<'_>,
-        factors: &[f32],
-        temporal_std: f32,
-        step: f32,
-        stream: &mut Stream,
-    ) {
-        let n = model.angle_count().min(N).min(MAX_ANGLES);
-        let point = model.point(self.cycle_position);
-        let ratio = model.speed_ratio(self.cycle_velocity);
-        let squared_ratio = ratio * ratio;
-        let noise_scale = if step < 1.0 { squared_ratio / sqrt(step) } else { squared_ratio };
-        let place = if stream.uniform() < point.fraction { point.after } else { point.before };
-        let packed = packed_len(model.angle_count());
-        let mut factor = factors.get(place * packed..(place + 1) * packed).unwrap_or_default();
-        let mean = model.mean_acceleration::<N>(point);
-        let mut draws = [0.0; N];
-        for i in 0..n {
-            draws[i] = stream.normal();
-            let Some((row, rest)) = factor.split_at_checked(i + 1) else { break };
-            factor = rest;
-            let mut noise = 0.0;
-            for (a, b) in row.iter().zip(&draws) {
-                noise += a * b;
-            }
-            let acceleration = squared_ratio * mean[i] + noise_scale * noise;
-            let moved = self.angles_rad[i] + step * self.velocities[i] + 0.5 * step * step * acceleration;
-            self.angles_rad[i] = angle_difference(moved, 0.0);
-            self.velocities[i] = crate::math::clamp(self.velocities[i] + step * acceleration, -PI, PI);
+/// A draw for each of up to [`LANES`] particles from the transition of eq. (11) over `step` <= 1 frame.
+///
+/// Between two stored positions the noise is that of one of them, drawn with the probabilities of linear
+/// interpolation: the covariance is then exactly the interpolated one.
+#[inline]
+fn advance<const N: usize>(
+    model: &MotionModel<'_>,
+    table: &ParticleTable<'_>,
+    temporal_std: f32,
+    step: f32,
+    (streams, draws): (&mut StreamLanes, &mut [AngleBlocks; LANES]),
+    particles: &mut [CyclicParticle<N>],
+) {
+    let noise_factor = if step < 1.0 { 1.0 / sqrt(step) } else { 1.0 };
+    let side = streams.uniform();
+    for i in 0..model.angle_count().min(MAX_ANGLES) {
+        let drawn = streams.normal();
+        for lane in 0..LANES {
+            draws[lane].as_flattened_mut()[i] = drawn[lane];
         }
-        let temporal = temporal_std * stream.normal() / if step < 1.0 { sqrt(step) } else { 1.0 };
-        let position = self.cycle_position + step * self.cycle_velocity + 0.5 * step * step * temporal;
+    }
+    let temporal = streams.normal();
+    let temporal_scale = temporal_std * noise_factor;
+    for (lane, particle) in particles.iter_mut().enumerate().take(LANES) {
+        let point = model.point(particle.cycle_position);
+        let ratio = model.speed_ratio(particle.cycle_velocity);
+        let squared_ratio = ratio * ratio;
+        let place = if side[lane] < point.fraction { point.after } else { point.before };
+        let accelerations = table.accelerations(
+            (point.before, point.after, point.fraction),
+            place,
+            (squared_ratio, squared_ratio * noise_factor),
+            &draws[lane],
+        );
+        particle.move_by(&accelerations, temporal_scale * temporal[lane], step);
+    }
+}
+
+impl<const N: usize> CyclicParticle<N> {
+    /// Moves angles and cycle over `step` with constant accelerations. An angle beyond the model's keeps its velocity.
+    #[inline]
+    fn move_by(&mut self, accelerations: &AngleBlocks, temporal: f32, step: f32) {
+        let half_square = 0.5 * step * step;
+        let (mut angles, mut velocities) = (blocks_of(&self.angles_rad), blocks_of(&self.velocities));
+        for block in 0..const { used_blocks::<N>() } {
+            let (angle, velocity, acceleration) = (&mut angles[block], &mut velocities[block], &accelerations[block]);
+            for i in 0..BLOCK {
+                angle[i] = wrap_angle_small(angle[i] + step * velocity[i] + half_square * acceleration[i]);
+                velocity[i] = clamp(velocity[i] + step * acceleration[i], -PI, PI);
+            }
+        }
+        write_back(&angles, &mut self.angles_rad);
+        write_back(&velocities, &mut self.velocities);
+        let position = self.cycle_position + step * self.cycle_velocity + half_square * temporal;
         self.cycle_position = wrap_position(position);
         self.cycle_velocity += step * temporal;
     }
 }
 
+/// Measured angles with a precision of zero where nothing was seen, so that weighing needs no question.
+struct Target<const N: usize> {
+    angles_rad: AngleBlocks,
+    root_precision: AngleBlocks,
+}
+
+impl<const N: usize> Target<N> {
+    fn new(measurement: &AngleMeasurement<N>, angle_count: usize) -> Self {
+        let (mut angles_rad, mut root_precision) = ([0.0; N], [0.0; N]);
+        for i in 0..N.min(angle_count) {
+            if let Some(measured) = measurement.angle_rad(i) {
+                angles_rad[i] = wrap_angle(measured);
+                root_precision[i] = 1.0 / measurement.std_rad()[i];
+            }
+        }
+        Self { angles_rad: blocks_of(&angles_rad), root_precision: blocks_of(&root_precision) }
+    }
+
+    /// -1/2 of the sum of squared differences in standard deviations, summed in four parts.
+    #[inline]
+    fn log_weight(&self, angles_rad: &[f32; N]) -> f32 {
+        let angles = blocks_of(angles_rad);
+        let mut sums = [0.0; BLOCK];
+        for block in 0..const { used_blocks::<N>() } {
+            for i in 0..BLOCK {
+                let difference = least_angle(self.angles_rad[block][i] - angles[block][i]);
+                let scaled = difference * self.root_precision[block][i];
+                sums[i] += scaled * scaled;
+            }
+        }
+        -0.5 * ((sums[0] + sums[1]) + (sums[2] + sums[3]))
+    }
+}
+
 /// Moves `particles`, of which the first has number `first_index`, over the measurement's step and writes their log-weights.
+///
+/// `factors` is what [`super::particle_table::fill_factors`] wrote; `key` is (seed, frame, `first_index`).
 pub fn advance_and_weigh<const N: usize>(
     model: &MotionModel<'_>,
     factors: &[f32],
@@ -169,32 +214,43 @@ pub fn advance_and_weigh<const N: usize>(
     log_weights: &mut [f32],
 ) {
     let (seed, frame, first_index) = key;
-    let precision: [f32; N] = measurement.std_rad().map(|std| 1.0 / std);
-    for (offset, (particle, log_weight)) in particles.iter_mut().zip(log_weights).enumerate() {
-        let mut stream = Stream::new(seed, frame, first_index.wrapping_add(offset as u32));
+    let table = ParticleTable::new(model, factors);
+    let target = Target::new(measurement, model.angle_count());
+    let mut draws = [AngleBlocks::default(); LANES];
+    let blocks = particles.chunks_mut(LANES).zip(log_weights.chunks_mut(LANES));
+    for (block, (particles, log_weights)) in blocks.enumerate() {
+        let mut streams = StreamLanes::new(seed, frame, first_index.wrapping_add((block * LANES) as u32));
         for step in Substeps::of(measurement.step_frames()) {
-            particle.advance(model, factors, options.temporal_acceleration_std, step, &mut stream);
+            let random = (&mut streams, &mut draws);
+            advance(model, &table, options.temporal_acceleration_std, step, random, particles);
         }
-        let mut squared = 0.0;
-        for i in 0..N.min(model.angle_count()) {
-            if let Some(measured) = measurement.angle_rad(i) {
-                let scaled = angle_difference(wrap_angle(measured), particle.angles_rad[i]) * precision[i];
-                squared += scaled * scaled;
-            }
+        for (particle, log_weight) in particles.iter().zip(log_weights) {
+            *log_weight = target.log_weight(&particle.angles_rad);
         }
-        *log_weight = -0.5 * squared;
     }
 }
 
-/// Turns log-weights into weights relative to `greatest` and returns their sum; NaN weighs nothing.
+/// Turns log-weights into weights relative to `greatest` and returns their sum, taken in eight parts; NaN weighs nothing.
 pub fn exponentiate(greatest: f32, weights: &mut [f32]) -> f32 {
-    let mut sum = 0.0;
-    for weight in weights {
-        let below = *weight - greatest;
-        *weight = if below > -40.0 { exp(below) } else { 0.0 };
-        sum += *weight;
+    let weight = |log_weight: f32| {
+        let below = log_weight - greatest;
+        let value = exp_small(below);
+        if below > -40.0 { value } else { 0.0 }
+    };
+    let mut sums = [0.0; 8];
+    let (eights, rest) = weights.as_chunks_mut::<8>();
+    for eight in eights {
+        for i in 0..8 {
+            eight[i] = weight(eight[i]);
+            sums[i] += eight[i];
+        }
     }
-    sum
+    let mut sum = 0.0;
+    for value in rest {
+        *value = weight(*value);
+        sum += *value;
+    }
+    sums.iter().fold(sum, |all, part| all + part)
 }
 
 /// Greatest of the log-weights; negative infinity where there is none.
@@ -242,6 +298,7 @@ mod tests {
     use super::super::particle_moments::ParticleMoments;
     use super::super::synthetic;
     use super::*;
+    use crate::angle::angle_difference;
 
     const N: usize = 13;
 
@@ -249,7 +306,7 @@ mod tests {
     fn run(count: usize, split: usize, options: &ParticleOptions) -> [f32; N] {
         let table = synthetic::table(4.0e-3, 9);
         let model = table.model().unwrap();
-        let mut factors = vec![0.0; model.parts().acceleration_covariance.len()];
+        let mut factors = vec![0.0; factors_len(&model)];
         fill_factors(&model, &mut factors);
         let first = core::array::from_fn(|i| Some(synthetic::mean_angle(i, 0.0)));
         let start = CycleStart::standard(&model, &first, Some(0.0), None).unwrap();

@@ -1,17 +1,23 @@
 //! The particles' estimate: weighted circular means and spreads, from sums that chunks contribute to.
 
 use super::CyclicEstimate;
+use super::angle_blocks::{AngleBlocks, BLOCK, MAX_BLOCKS, blocks_of, used_blocks};
 use super::particle::CyclicParticle;
-use crate::angle::angle_difference;
-use crate::math::{atan2, clamp, max, sqrt, wrap_angle};
+use crate::math::{atan2, clamp, least_angle, max, round_small, sqrt, wrap_angle};
 use core::f32::consts::TAU;
+
+/// Weighted sums of the sines, cosines and squares of four angles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct AngleSums {
+    sine: [f32; BLOCK],
+    cosine: [f32; BLOCK],
+    square: [f32; BLOCK],
+}
 
 /// Weighted sums over particles, angles relative to a reference particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParticleMoments<const N: usize> {
-    sine: [f32; N],
-    cosine: [f32; N],
-    square: [f32; N],
+    angles: [AngleSums; MAX_BLOCKS],
     phase_sine: f32,
     phase_cosine: f32,
     velocity: f32,
@@ -19,20 +25,18 @@ pub struct ParticleMoments<const N: usize> {
     weight: f32,
 }
 
-/// Sine and cosine of an angle in [-pi, pi] by Taylor's series of half of it; error below 1e-6. No branch, so that
+/// Sine and cosine of an angle in [-pi, pi] by least-squares polynomials of half of it; error below 1e-6. No branch, so that
 /// compilers work on several angles at once.
 #[inline]
 fn sin_cos_of_difference(angle_rad: f32) -> (f32, f32) {
     let h = 0.5 * angle_rad;
     let h2 = h * h;
     let sine = h
-        * (1.0
-            + h2 * (-1.666_666_7e-1
-                + h2 * (8.333_333e-3 + h2 * (-1.984_127e-4 + h2 * (2.755_732e-6 - h2 * 2.505_211e-8)))));
-    let cosine = 1.0
-        + h2 * (-0.5
-            + h2 * (4.166_666_6e-2
-                + h2 * (-1.388_888_9e-3 + h2 * (2.480_158_7e-5 + h2 * (-2.755_732e-7 + h2 * 2.087_675_7e-9)))));
+        * (9.99999977e-01
+            + h2 * (-1.66666476e-01 + h2 * (8.33289922e-03 + h2 * (-1.98008653e-04 + h2 * (2.59043003e-06)))));
+    let cosine = 1.00000000e+00
+        + h2 * (-4.99999994e-01
+            + h2 * (4.16666362e-02 + h2 * (-1.38883608e-03 + h2 * (2.47601355e-05 + h2 * (-2.60510763e-07)))));
     (2.0 * sine * cosine, 1.0 - 2.0 * sine * sine)
 }
 
@@ -40,11 +44,8 @@ impl<const N: usize> ParticleMoments<N> {
     /// No particle.
     #[must_use]
     pub const fn nothing() -> Self {
-        let zero = [0.0; N];
         Self {
-            sine: zero,
-            cosine: zero,
-            square: zero,
+            angles: [AngleSums { sine: [0.0; BLOCK], cosine: [0.0; BLOCK], square: [0.0; BLOCK] }; MAX_BLOCKS],
             phase_sine: 0.0,
             phase_cosine: 0.0,
             velocity: 0.0,
@@ -57,24 +58,36 @@ impl<const N: usize> ParticleMoments<N> {
     #[must_use]
     pub fn of(particles: &[CyclicParticle<N>], weights: &[f32], reference: &CyclicParticle<N>) -> Self {
         let mut moments = Self::nothing();
+        let references = blocks_of(&reference.angles_rad);
         for (particle, &weight) in particles.iter().zip(weights) {
             if weight > 0.0 {
-                moments.add(particle, weight, reference);
+                moments.add(particle, weight, reference, &references);
             }
         }
         moments
     }
 
     #[inline]
-    fn add(&mut self, particle: &CyclicParticle<N>, weight: f32, reference: &CyclicParticle<N>) {
-        for i in 0..N {
-            let difference = angle_difference(particle.angles_rad[i], reference.angles_rad[i]);
-            let (sine, cosine) = sin_cos_of_difference(difference);
-            self.sine[i] += weight * sine;
-            self.cosine[i] += weight * cosine;
-            self.square[i] += weight * difference * difference;
+    fn add(
+        &mut self,
+        particle: &CyclicParticle<N>,
+        weight: f32,
+        reference: &CyclicParticle<N>,
+        references: &AngleBlocks,
+    ) {
+        let angles = blocks_of(&particle.angles_rad);
+        for block in 0..const { used_blocks::<N>() } {
+            let sums = &mut self.angles[block];
+            for i in 0..BLOCK {
+                let difference = least_angle(angles[block][i] - references[block][i]);
+                let (sine, cosine) = sin_cos_of_difference(difference);
+                sums.sine[i] += weight * sine;
+                sums.cosine[i] += weight * cosine;
+                sums.square[i] += weight * difference * difference;
+            }
         }
-        let phase = TAU * super::phase::position_difference(particle.cycle_position, reference.cycle_position);
+        let lead = particle.cycle_position - reference.cycle_position;
+        let phase = TAU * (lead - round_small(lead));
         let (sine, cosine) = sin_cos_of_difference(phase);
         self.phase_sine += weight * sine;
         self.phase_cosine += weight * cosine;
@@ -86,10 +99,12 @@ impl<const N: usize> ParticleMoments<N> {
 
     /// Adds the sums of another chunk with the same reference.
     pub fn merge(&mut self, other: &Self) {
-        for i in 0..N {
-            self.sine[i] += other.sine[i];
-            self.cosine[i] += other.cosine[i];
-            self.square[i] += other.square[i];
+        for (sums, others) in self.angles.iter_mut().zip(&other.angles) {
+            for i in 0..BLOCK {
+                sums.sine[i] += others.sine[i];
+                sums.cosine[i] += others.cosine[i];
+                sums.square[i] += others.square[i];
+            }
         }
         self.phase_sine += other.phase_sine;
         self.phase_cosine += other.phase_cosine;
@@ -104,14 +119,18 @@ impl<const N: usize> ParticleMoments<N> {
     #[must_use]
     pub fn estimate(&self, reference: &CyclicParticle<N>) -> CyclicEstimate<N> {
         let share = if self.weight > 0.0 { 1.0 / self.weight } else { 0.0 };
-        let shift: [f32; N] = core::array::from_fn(|i| atan2(self.sine[i], self.cosine[i]));
+        let shift: [f32; N] = core::array::from_fn(|i| {
+            let sums = &self.angles[i / BLOCK];
+            atan2(sums.sine[i % BLOCK], sums.cosine[i % BLOCK])
+        });
+        let square = |i: usize| self.angles[i / BLOCK].square[i % BLOCK];
         let phase_shift = atan2(self.phase_sine, self.phase_cosine) / TAU;
         let resultant = sqrt(self.phase_sine * self.phase_sine + self.phase_cosine * self.phase_cosine) * share;
         let velocity = self.velocity * share;
         CyclicEstimate {
             angles_rad: core::array::from_fn(|i| wrap_angle(reference.angles_rad[i] + shift[i])),
             turns: [0; N],
-            angle_variance_rad2: core::array::from_fn(|i| max(self.square[i] * share - shift[i] * shift[i], 0.0)),
+            angle_variance_rad2: core::array::from_fn(|i| max(square(i) * share - shift[i] * shift[i], 0.0)),
             cycle_position: super::phase::wrap_position(reference.cycle_position + phase_shift),
             cycle_position_variance: -2.0 * crate::math::ln(clamp(resultant, 1.0e-3, 1.0)) / (TAU * TAU),
             cycle_velocity_per_frame: reference.cycle_velocity + velocity,
@@ -127,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_short_series_are_accurate_over_the_circle() {
+    fn the_polynomials_are_accurate_over_the_circle() {
         for i in -1000..=1000_i32 {
             let angle = i as f32 * (core::f32::consts::PI / 1000.0);
             let (sine, cosine) = sin_cos_of_difference(angle);

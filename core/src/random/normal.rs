@@ -14,12 +14,21 @@ pub const LOG_SQRT_TAU: f32 = 0.918_938_5;
 #[must_use]
 pub fn upper_quantile(tail: f32) -> f32 {
     let q = 0.5 - tail;
-    if q <= 0.425 {
-        let r = 0.180_625 - q * q;
-        return q * (((59.109_375 * r + 159.291_13) * r + 50.434_27) * r + 3.387_132_7)
-            / (((67.187_56 * r + 78.757_76) * r + 17.895_17) * r + 1.0);
-    }
-    let depth = sqrt(-ln(tail));
+    if q <= NEAR_MIDDLE { quantile_near_middle(q) } else { quantile_in_tail(sqrt(-ln(tail))) }
+}
+
+/// Distance from the median, as a probability, up to which [`quantile_near_middle`] holds.
+pub(super) const NEAR_MIDDLE: f32 = 0.425;
+
+/// z with probability `q` in [0, 0.425] between it and the median.
+pub(super) const fn quantile_near_middle(q: f32) -> f32 {
+    let r = 0.180_625 - q * q;
+    q * (((59.109_375 * r + 159.291_13) * r + 50.434_27) * r + 3.387_132_7)
+        / (((67.187_56 * r + 78.757_76) * r + 17.895_17) * r + 1.0)
+}
+
+/// z whose upper tail has probability exp(-`depth`^2), for tails below 0.075.
+pub(super) const fn quantile_in_tail(depth: f32) -> f32 {
     if depth <= 5.0 {
         let r = depth - 1.6;
         (((0.170_238_21 * r + 1.306_728_5) * r + 2.756_815_4) * r + 1.423_437_3)

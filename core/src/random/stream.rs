@@ -4,10 +4,25 @@ use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 
 /// Finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every input bit reaches every output bit.
+#[inline]
 fn scramble(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)
+}
+
+const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+
+/// What all streams of a frame have in common.
+pub(super) fn frame_key(seed: u64, frame: u64) -> u64 {
+    scramble(scramble(seed.wrapping_add(GOLDEN)) ^ frame.wrapping_mul(GOLDEN))
+}
+
+/// First state of stream `index`: 128 bits.
+#[inline]
+pub(super) fn first_state(frame_key: u64, index: u32) -> [u64; 2] {
+    let first = scramble(frame_key.wrapping_add(u64::from(index).wrapping_mul(GOLDEN)));
+    [first, scramble(first.wrapping_add(GOLDEN))]
 }
 
 /// A generator (xoshiro128++) that belongs to one particle in one frame.
@@ -18,10 +33,7 @@ impl Stream {
     /// The stream of particle `index` in `frame` under `seed`.
     #[must_use]
     pub fn new(seed: u64, frame: u64, index: u32) -> Self {
-        const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
-        let frame_key = scramble(scramble(seed.wrapping_add(GOLDEN)) ^ frame.wrapping_mul(GOLDEN));
-        let first = scramble(frame_key.wrapping_add(u64::from(index).wrapping_mul(GOLDEN)));
-        let second = scramble(first.wrapping_add(GOLDEN));
+        let [first, second] = first_state(frame_key(seed, frame), index);
         let mut state = [0; 16];
         for (byte, value) in state.iter_mut().zip(first.to_le_bytes().into_iter().chain(second.to_le_bytes())) {
             *byte = value;

@@ -1,0 +1,83 @@
+//! Streams of neighbouring particles side by side: the same numbers as [`Stream`](super::Stream) gives one by one.
+
+use super::normal_table::from_bits;
+use super::stream::{first_state, frame_key};
+
+/// Streams that advance together: enough that compilers keep loops over them, which they then vectorise.
+pub const LANES: usize = 32;
+
+/// The streams of [`LANES`] particles with successive indices.
+///
+/// The generator is xoshiro128++ (Blackman and Vigna 2021), whose steps are additions, shifts and exclusive ors of 32 bits:
+/// on arrays of lanes compilers turn them into vector instructions.
+#[derive(Debug, Clone)]
+pub struct StreamLanes([[u32; LANES]; 4]);
+
+impl StreamLanes {
+    /// The streams of the particles `first_index`, `first_index + 1`, ... in `frame` under `seed`.
+    #[inline]
+    #[must_use]
+    pub fn new(seed: u64, frame: u64, first_index: u32) -> Self {
+        let key = frame_key(seed, frame);
+        let mut state = [[0; LANES]; 4];
+        for lane in 0..LANES {
+            let [first, second] = first_state(key, first_index.wrapping_add(lane as u32));
+            state[0][lane] = first as u32;
+            state[1][lane] = (first >> 32) as u32;
+            state[2][lane] = second as u32;
+            state[3][lane] = (second >> 32) as u32;
+        }
+        Self(state)
+    }
+
+    /// 32 random bits of each stream.
+    #[inline]
+    pub fn bits(&mut self) -> [u32; LANES] {
+        let mut drawn = [0; LANES];
+        let [a, b, c, d] = &mut self.0;
+        for lane in 0..LANES {
+            drawn[lane] = a[lane].wrapping_add(d[lane]).rotate_left(7).wrapping_add(a[lane]);
+            let shifted = b[lane] << 9;
+            c[lane] ^= a[lane];
+            d[lane] ^= b[lane];
+            b[lane] ^= c[lane];
+            a[lane] ^= d[lane];
+            c[lane] ^= shifted;
+            d[lane] = d[lane].rotate_left(11);
+        }
+        drawn
+    }
+
+    /// Uniform in the half-open interval [0, 1), 24 bits.
+    #[inline]
+    pub fn uniform(&mut self) -> [f32; LANES] {
+        let bits = self.bits();
+        let mut drawn = [0.0; LANES];
+        for lane in 0..LANES {
+            drawn[lane] = (bits[lane] >> 8) as i32 as f32 * (1.0 / 16_777_216.0);
+        }
+        drawn
+    }
+
+    /// A draw from the standard normal distribution for each stream, by the table of [`super::normal_table`].
+    #[inline]
+    pub fn normal(&mut self) -> [f32; LANES] {
+        from_bits(&self.bits())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Stream;
+    use super::*;
+
+    #[test]
+    fn the_lanes_are_the_single_streams() {
+        let mut lanes = StreamLanes::new(5, 9, u32::MAX - 3);
+        let mut single: Vec<_> = (0..LANES as u32).map(|i| Stream::new(5, 9, (u32::MAX - 3).wrapping_add(i))).collect();
+        for _ in 0..50 {
+            assert_eq!(lanes.bits().to_vec(), single.iter_mut().map(Stream::bits).collect::<Vec<_>>());
+            assert_eq!(lanes.uniform().to_vec(), single.iter_mut().map(Stream::uniform).collect::<Vec<_>>());
+        }
+    }
+}
