@@ -93,7 +93,7 @@ pub fn options(scenes: &[ObservedScene], variant: VariantName) -> Result<Vec<Row
         ("default", base()),
         ("no gate", TrackerConfig { gate: false, ..base() }),
         ("no area cue", TrackerConfig { area_cue: false, ..base() }),
-        ("area in the weight only", TrackerConfig { depth_from_area: false, ..base() }),
+        ("depth from area", TrackerConfig { depth_from_area: true, ..base() }),
         ("no joint limits", TrackerConfig { joint_limits: false, ..base() }),
         ("area not foreshortened", TrackerConfig { area_foreshortening: 0.0, ..base() }),
         ("no blob memory", TrackerConfig { blob_memory: false, ..base() }),

@@ -124,7 +124,7 @@ pub enum EstimateRule {
 
 /// Default of the gate.
 pub const DEFAULT_GATE: Gate =
-    Gate { std_m: 0.2, growth_m_per_s: 1.0, floor: 0.02, missed_share: 0.1, allotment_reach: 3.0 };
+    Gate { std_m: 0.4, growth_m_per_s: 1.0, floor: 0.02, missed_share: 0.1, allotment_reach: 3.0 };
 /// Default of the memory of blobs.
 pub const DEFAULT_BLOB_MEMORY: BlobMemoryOptions = BlobMemoryOptions {
     fall_time_s: 0.15,
@@ -201,14 +201,14 @@ impl Default for ArmOptions {
             combination: LimbCombination::Product { floor: 0.1 },
             gate: Some(DEFAULT_GATE),
             area_cue: Some(AreaCue { hand_area_m2: 0.0194, length_share: 0.65, foreshortening: 0.85, log_std: 0.3 }),
-            depth_from_area: true,
+            depth_from_area: false,
             blob_memory: Some(DEFAULT_BLOB_MEMORY),
             estimate: EstimateRule::HeaviestCluster { radius_per_focal: DEFAULT_RADIUS_PER_FOCAL },
             velocity_persistence: 0.9,
             velocity_gain: 0.8,
             hand_std_m_per_sqrt_s: 0.15,
             elbow_std_m_per_sqrt_s: 0.2,
-            ray_std_m_per_sqrt_s: 0.3,
+            ray_std_m_per_sqrt_s: 1.0,
             ray_std_per_path: 1.0,
             centre_std_per_focal: 0.01,
             reach_std_m: 0.05,
