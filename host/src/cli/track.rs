@@ -1,6 +1,7 @@
 //! `sinew track ...`
 
 use super::track_arm::{self, TrackArmArgs};
+use super::track_cyclic::{self, TrackCyclicArgs};
 use clap::Subcommand;
 
 /// What can be tracked.
@@ -8,6 +9,8 @@ use clap::Subcommand;
 pub enum Track {
     /// Track the arms of the person in a folder of video frames.
     Arm(TrackArmArgs),
+    /// Track a cyclic motion, walking or another, in an angle table.
+    Cyclic(TrackCyclicArgs),
 }
 
 /// Runs the chosen tracker.
@@ -17,5 +20,6 @@ pub enum Track {
 pub fn run(track: &Track) -> anyhow::Result<()> {
     match track {
         Track::Arm(args) => track_arm::run(args),
+        Track::Cyclic(args) => track_cyclic::run(args),
     }
 }

@@ -1,6 +1,7 @@
 //! Measuring the trackers where the truth is known.
 
 pub mod clips;
+pub mod cyclic;
 pub mod experiments;
 pub mod hand_ranking;
 pub mod hands;

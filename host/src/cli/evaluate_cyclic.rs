@@ -1,0 +1,104 @@
+//! `sinew evaluate cyclic`
+
+use crate::cyclic::training::{TrainingOptions, train};
+use crate::cyclic::{CutList, CyclicModel};
+use crate::evaluate::cyclic::experiments::FILTERS;
+use crate::evaluate::cyclic::{CyclicReport, Setting, figures::figures, long_runs, test_cycles};
+use crate::output::OutputDir;
+use anyhow::{Result, ensure};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Options of `sinew evaluate cyclic`.
+#[derive(Debug, Args)]
+pub struct EvaluateCyclicArgs {
+    /// Cut list of the cycles to train on; without it the model of --model is used.
+    #[arg(long, value_name = "CUTS.csv", conflicts_with = "model")]
+    pub train: Option<PathBuf>,
+    /// Model that is tested: walking, running, or a file of `sinew train cyclic`.
+    #[arg(long, value_name = "MODEL.json|walking|running", default_value = "walking")]
+    pub model: String,
+    /// Cut list of the cycles to test on.
+    #[arg(long, value_name = "CUTS.csv")]
+    pub test: PathBuf,
+    /// Cut list of cycles that follow each other: how well the position in the cycle holds without a break.
+    #[arg(long, value_name = "CUTS.csv")]
+    pub long: Option<PathBuf>,
+    /// Frames per second of the tables.
+    #[arg(long, value_name = "HZ", default_value_t = 60.0)]
+    pub rate: f64,
+    /// Repetitions where noise or particles are drawn.
+    #[arg(long, default_value_t = 5)]
+    pub seeds: u64,
+    /// Numbers of particles of table 2 and figure 5b; "none" leaves the particle filter out.
+    #[arg(long, value_delimiter = ',', default_value = "500,1000,5000,10000,20000,50000,100000")]
+    pub particles: Vec<String>,
+    /// Folder for the tables and plots.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+/// Particles of figure 5a, as in the paper.
+const SPARSE_PARTICLES: [usize; 2] = [10_000, 50_000];
+
+/// Measures all tables and figures and writes them.
+///
+/// # Errors
+/// A list, table or model that cannot be read, an output that cannot be written.
+pub fn run(args: &EvaluateCyclicArgs) -> Result<()> {
+    ensure!(args.seeds > 0, "--seeds must be greater than zero");
+    ensure!(args.rate > 0.0 && args.rate.is_finite(), "--rate must be greater than zero, not {}", args.rate);
+    let particles = particles(&args.particles)?;
+    let output = OutputDir::create(&args.out)?;
+    let (model, name) = match &args.train {
+        Some(path) => {
+            let options = TrainingOptions { length: 100, rate_hz: args.rate };
+            (train(&CutList::read(path)?, options)?, format!("trained on {}", path.display()))
+        }
+        None => (CyclicModel::from_option(&args.model)?, args.model.clone()),
+    };
+    let list = CutList::read(&args.test)?;
+    let cycles = test_cycles(&list)?;
+    let setting = Setting { cycles: &cycles, model: &model, rate_hz: args.rate, seeds: args.seeds };
+    let sparse_particles: Vec<usize> = if particles.is_empty() { Vec::new() } else { SPARSE_PARTICLES.to_vec() };
+    let report = CyclicReport {
+        format: "sinew-evaluate-cyclic",
+        version: 1,
+        sinew_version: env!("CARGO_PKG_VERSION"),
+        model: name,
+        test: args.test.display().to_string(),
+        cycles: cycles.len(),
+        frames: cycles.iter().map(|cycle| cycle.truth.rows().len()).sum(),
+        seeds: args.seeds,
+        noise: setting.noise_table()?,
+        particles: setting.particle_table(&particles)?,
+        sparse: setting.sparse_measurements()?,
+        sparse_particles: setting.sparse_particles(&sparse_particles)?,
+        starts: setting.starts(&particles)?,
+        long_runs: match &args.long {
+            Some(path) => long_runs(&CutList::read(path)?, &model, args.rate, &FILTERS)?,
+            None => Vec::new(),
+        },
+    };
+    output.write("cyclic.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
+    output.write("cyclic.csv", |writer| Ok(writer.write_all(report.to_csv().as_bytes())?))?;
+    for (name, picture) in figures(&setting, &report)? {
+        output.write_png(&name, &picture)?;
+    }
+    let text = format!("{}tables and plots: {}\n", report.to_text(), args.out.display());
+    super::stdout::write_all(text.as_bytes())
+}
+
+fn particles(list: &[String]) -> Result<Vec<usize>> {
+    if let [only] = list
+        && only == "none"
+    {
+        return Ok(Vec::new());
+    }
+    list.iter()
+        .map(|count| match count.parse() {
+            Ok(count) if count > 0 => Ok(count),
+            _ => anyhow::bail!("`--particles {count}`: give whole numbers above zero with commas between, or none"),
+        })
+        .collect()
+}

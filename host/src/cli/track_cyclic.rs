@@ -1,0 +1,95 @@
+//! `sinew track cyclic`: angles, phase and cadence from an angle table.
+
+use crate::cyclic::tracking::{FilterName, StartName, Summary, TrackingOptions, Updates, table, track};
+use crate::cyclic::{AngleTable, CyclicModel};
+use crate::output::check_writable_file;
+use anyhow::Result;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Options of `sinew track cyclic`.
+#[derive(Debug, Args)]
+pub struct TrackCyclicArgs {
+    /// Angle table, made by `sinew angles` from a motion in space or from keypoints.
+    pub table: PathBuf,
+    /// Motion: walking, running, or a file of `sinew train cyclic`.
+    #[arg(long, value_name = "MODEL.json|walking|running")]
+    pub model: String,
+    /// Filter.
+    #[arg(long, value_enum, default_value_t = FilterName::Coupled)]
+    pub filter: FilterName,
+    /// Standard deviation of a measured angle, degrees.
+    #[arg(long, value_name = "DEGREES", default_value_t = 6.0)]
+    pub sigma_deg: f64,
+    /// Number of particles.
+    #[arg(long, value_name = "N", default_value_t = 10_000)]
+    pub particles: usize,
+    /// What is known of the first state.
+    #[arg(long, value_enum, default_value_t = StartName::Standard)]
+    pub init: StartName,
+    /// Position in the cycle at the first frame, [0, 1) [default: where the model's pose fits best].
+    #[arg(long, value_name = "X")]
+    pub initial_cycle_position: Option<f64>,
+    /// Cycles per frame at the first frame [default: the model's mean].
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub initial_cycle_velocity: Option<f64>,
+    /// Use only every K-th measurement after the first.
+    #[arg(long, value_name = "K", conflicts_with = "update_at")]
+    pub update_every: Option<u64>,
+    /// Use only the measurements of these frames.
+    #[arg(long, value_name = "F1,F2,...", value_delimiter = ',')]
+    pub update_at: Option<Vec<u64>>,
+    /// Frames per second of the recording [default: those of the model].
+    #[arg(long, value_name = "HZ")]
+    pub rate: Option<f64>,
+    /// Seed of everything that is drawn.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Table of estimates to write.
+    #[arg(long, value_name = "EST.csv")]
+    pub out: PathBuf,
+}
+
+/// Tracks the table, writes the estimates, prints cycles and cadence.
+///
+/// # Errors
+/// A table or model that cannot be used, an option out of range, an output that cannot be written.
+pub fn run(args: &TrackCyclicArgs) -> Result<()> {
+    let options = options(args);
+    options.check()?;
+    check_writable_file(&args.out)?;
+    let model = CyclicModel::from_option(&args.model)?;
+    let angles = AngleTable::read(&args.table)?;
+    let tracked = track(&angles, &model, &options)?;
+    table::write(&tracked, &args.out)?;
+    let summary = Summary::of(&tracked);
+    let report = format!(
+        "{} frames, {:.2} s: {:.2} cycles, {:.2} a minute, {} outliers\nwrote {}\n",
+        summary.frames,
+        summary.duration_s,
+        summary.cycles,
+        summary.cadence_per_min,
+        summary.outliers,
+        args.out.display()
+    );
+    super::stdout::write_all(report.as_bytes())
+}
+
+fn options(args: &TrackCyclicArgs) -> TrackingOptions {
+    let updates = match (&args.update_every, &args.update_at) {
+        (Some(every), _) => Updates::Every(*every),
+        (None, Some(frames)) => Updates::At(frames.clone()),
+        (None, None) => Updates::All,
+    };
+    TrackingOptions {
+        filter: args.filter,
+        sigma_rad: args.sigma_deg.to_radians(),
+        start: args.init,
+        initial_cycle_position: args.initial_cycle_position,
+        initial_cycle_velocity: args.initial_cycle_velocity,
+        updates,
+        rate_hz: args.rate,
+        particles: args.particles,
+        seed: args.seed,
+    }
+}

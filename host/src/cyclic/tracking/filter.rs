@@ -1,0 +1,98 @@
+//! The core's filters behind one type.
+
+use super::options::{FilterName, StartName, TrackingOptions};
+use super::particles::ParticleFilter;
+use anyhow::{Result, ensure};
+use sinew_core::angle::split_turns;
+use sinew_core::cyclic::particle::{ParticleOptions, Spread};
+use sinew_core::cyclic::{
+    AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel,
+};
+use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
+
+type Angles = [Option<f32>; HUMAN_ANGLES];
+
+/// A filter with its model and its first state.
+#[derive(Debug)]
+pub struct Filter<'m> {
+    model: MotionModel<'m>,
+    start: CycleStart<HUMAN_ANGLES>,
+    kind: Kind,
+}
+
+#[derive(Debug)]
+enum Kind {
+    Kalman(Box<KalmanFilter<HUMAN_ANGLES>>, KalmanOptions),
+    Particle(Box<ParticleFilter>),
+    Coupled(Box<CoupledFilter<HUMAN_ANGLES>>),
+}
+
+impl<'m> Filter<'m> {
+    /// The filter of `options` at its first state; `first` is the first row, `step_frames` a frame of the recording in frames
+    /// of the model.
+    ///
+    /// # Errors
+    /// A first row without any angle, a position or velocity out of range.
+    pub fn new(model: MotionModel<'m>, options: &TrackingOptions, first: &Angles, step_frames: f64) -> Result<Self> {
+        ensure!(
+            first.iter().any(Option::is_some),
+            "the first row of the table has no angle to start from; begin the table where joints are seen"
+        );
+        let position = options.initial_cycle_position.map(|position| position as f32);
+        let velocity = options.initial_cycle_velocity.map(|velocity| (velocity / step_frames) as f32);
+        let start = CycleStart::standard(&model, first, position, velocity)?;
+        let kind = match options.filter {
+            FilterName::Paper => {
+                let kalman = KalmanOptions::default();
+                Kind::Kalman(Box::new(KalmanFilter::new(&model, &kalman, &start)?), kalman)
+            }
+            FilterName::PaperCut => {
+                let kalman = KalmanOptions::cut();
+                Kind::Kalman(Box::new(KalmanFilter::new(&model, &kalman, &start)?), kalman)
+            }
+            FilterName::Particle => {
+                let spread = match options.start {
+                    StartName::Standard => Spread::Standard,
+                    StartName::Uniform => Spread::UniformPosition,
+                    StartName::Random => Spread::Random,
+                };
+                let particle = ParticleOptions { spread, ..ParticleOptions::default() };
+                let first = first_estimate(&start);
+                let filter = ParticleFilter::new(&model, particle, &start, first, options.particles, options.seed);
+                Kind::Particle(Box::new(filter))
+            }
+            FilterName::Coupled => Kind::Coupled(Box::new(CoupledFilter::new(&model, first, position, velocity)?)),
+        };
+        Ok(Self { model, start, kind })
+    }
+
+    /// The first state as an estimate.
+    #[must_use]
+    pub fn first_estimate(&self) -> CyclicEstimate<HUMAN_ANGLES> {
+        first_estimate(&self.start)
+    }
+
+    /// One frame.
+    pub fn step(&mut self, measurement: &AngleMeasurement<HUMAN_ANGLES>) -> CyclicEstimate<HUMAN_ANGLES> {
+        match &mut self.kind {
+            Kind::Kalman(filter, options) => filter.step(&self.model, options, measurement),
+            Kind::Particle(filter) => filter.step(&self.model, measurement),
+            Kind::Coupled(filter) => filter.step(&self.model, measurement),
+        }
+    }
+}
+
+fn first_estimate(start: &CycleStart<HUMAN_ANGLES>) -> CyclicEstimate<HUMAN_ANGLES> {
+    let split = start.angles_rad.map(split_turns);
+    CyclicEstimate {
+        angles_rad: split.map(|(angle, _)| angle),
+        turns: split.map(|(_, turns)| turns),
+        angle_variance_rad2: start.extra_variance_rad2,
+        cycle_position: start.cycle_position,
+        cycle_position_variance: 0.0,
+        cycle_velocity_per_frame: start.cycle_velocity,
+        cycle_velocity_variance: 0.0,
+        log_likelihood: 0.0,
+        outlier: false,
+    }
+}

@@ -1,0 +1,12 @@
+//! Tracking a recording with one of the core's cyclic filters.
+
+pub mod filter;
+pub mod options;
+pub mod particles;
+pub mod run;
+pub mod summary;
+pub mod table;
+
+pub use options::{FilterName, StartName, TrackingOptions, Updates};
+pub use run::{Tracked, TrackedFrame, track};
+pub use summary::Summary;

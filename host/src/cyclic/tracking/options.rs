@@ -1,0 +1,194 @@
+//! How a recording is tracked.
+
+use crate::cyclic::CyclicError;
+use clap::ValueEnum;
+use serde::Serialize;
+
+/// Which filter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FilterName {
+    /// The phase-coupled filter: measurements correct the position in the cycle too.
+    #[default]
+    Coupled,
+    /// The cyclic paper's Kalman filter.
+    Paper,
+    /// The paper's other reading: measurements correct the angles only.
+    PaperCut,
+    /// The paper's particle filter.
+    Particle,
+}
+
+impl FilterName {
+    /// The name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Coupled => "coupled",
+            Self::Paper => "paper",
+            Self::PaperCut => "paper-cut",
+            Self::Particle => "particle",
+        }
+    }
+
+    /// Whether the seed changes the result.
+    #[must_use]
+    pub const fn is_random(self) -> bool {
+        matches!(self, Self::Particle)
+    }
+}
+
+/// What is known of the first state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StartName {
+    /// The first row's angles, the model's velocities, the best matching (or given) position in the cycle.
+    #[default]
+    Standard,
+    /// Nothing of the position in the cycle (coupled, particle).
+    Uniform,
+    /// Nothing at all: random angles and velocities too (particle).
+    Random,
+}
+
+/// Which rows' measurements the filter sees; the others are only compared with.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Updates {
+    /// All.
+    #[default]
+    All,
+    /// Every k-th after the first.
+    Every(u64),
+    /// Those of these frames.
+    At(Vec<u64>),
+}
+
+impl Updates {
+    /// Whether the measurement of `frame` is used in a table that begins at `first_frame`.
+    #[must_use]
+    pub fn uses(&self, first_frame: u64, frame: u64) -> bool {
+        match self {
+            Self::All => true,
+            Self::Every(every) => (frame - first_frame).is_multiple_of(*every),
+            Self::At(frames) => frames.contains(&frame),
+        }
+    }
+}
+
+/// Options of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrackingOptions {
+    /// Filter.
+    pub filter: FilterName,
+    /// Standard deviation of every measured angle, radians.
+    pub sigma_rad: f64,
+    /// First state.
+    pub start: StartName,
+    /// First position in the cycle, [0, 1); the best match where `None`.
+    pub initial_cycle_position: Option<f64>,
+    /// First velocity, cycles per frame of the recording; that of the model's mean cycle where `None`.
+    pub initial_cycle_velocity: Option<f64>,
+    /// Rows that are used.
+    pub updates: Updates,
+    /// Frames per second of the recording; the model's where `None`.
+    pub rate_hz: Option<f64>,
+    /// Number of particles.
+    pub particles: usize,
+    /// Seed of everything that is drawn.
+    pub seed: u64,
+}
+
+impl Default for TrackingOptions {
+    fn default() -> Self {
+        Self {
+            filter: FilterName::Coupled,
+            sigma_rad: 6.0_f64.to_radians(),
+            start: StartName::Standard,
+            initial_cycle_position: None,
+            initial_cycle_velocity: None,
+            updates: Updates::All,
+            rate_hz: None,
+            particles: 10_000,
+            seed: 1,
+        }
+    }
+}
+
+/// Most particles that a run is asked for.
+pub const MOST_PARTICLES: usize = 10_000_000;
+
+impl TrackingOptions {
+    /// Checks every option.
+    ///
+    /// # Errors
+    /// Names the option and the rule it broke.
+    pub fn check(&self) -> Result<(), CyclicError> {
+        let refuse = |parameter, rule: String| Err(CyclicError::parameter(parameter, rule));
+        if !(self.sigma_rad > 0.0 && self.sigma_rad.is_finite()) {
+            return refuse(
+                "sigma",
+                format!("has to be greater than zero, not {} degrees", self.sigma_rad.to_degrees()),
+            );
+        }
+        if let Some(rate) = self.rate_hz.filter(|rate| !(*rate > 0.0 && rate.is_finite())) {
+            return refuse("rate", format!("has to be greater than zero, not {rate}"));
+        }
+        if let Some(position) = self.initial_cycle_position.filter(|position| !(0.0..1.0).contains(position)) {
+            return refuse("initial-cycle-position", format!("has to lie in [0, 1), not {position}"));
+        }
+        if let Some(velocity) = self.initial_cycle_velocity.filter(|velocity| !(velocity.abs() <= 0.5)) {
+            return refuse("initial-cycle-velocity", format!("has to lie within +-0.5 cycles a frame, not {velocity}"));
+        }
+        if self.updates == Updates::Every(0) {
+            return refuse("update-every", "has to be at least 1".into());
+        }
+        if self.filter == FilterName::Particle && !(1..=MOST_PARTICLES).contains(&self.particles) {
+            return refuse("particles", format!("have to be 1 to {MOST_PARTICLES}, not {}", self.particles));
+        }
+        let start_fits = match self.start {
+            StartName::Standard => true,
+            StartName::Uniform => matches!(self.filter, FilterName::Coupled | FilterName::Particle),
+            StartName::Random => self.filter == FilterName::Particle,
+        };
+        if !start_fits {
+            let rule = format!(
+                "{:?} is not known to `{}`; use standard, or --filter particle",
+                self.start,
+                self.filter.name()
+            );
+            return refuse("init", rule.to_lowercase());
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_second_frame_after_the_first_is_used() {
+        let used: Vec<u64> = (7..14).filter(|&frame| Updates::Every(3).uses(7, frame)).collect();
+        assert_eq!(used, [7, 10, 13]);
+        assert!(Updates::At(vec![9]).uses(7, 9) && !Updates::At(vec![9]).uses(7, 10));
+    }
+
+    #[test]
+    fn each_option_is_checked_by_name() {
+        let good = TrackingOptions::default();
+        good.check().unwrap();
+        let bad = [
+            (TrackingOptions { sigma_rad: 0.0, ..good.clone() }, "sigma"),
+            (TrackingOptions { rate_hz: Some(-1.0), ..good.clone() }, "rate"),
+            (TrackingOptions { initial_cycle_position: Some(1.0), ..good.clone() }, "initial-cycle-position"),
+            (TrackingOptions { initial_cycle_velocity: Some(f64::NAN), ..good.clone() }, "initial-cycle-velocity"),
+            (TrackingOptions { updates: Updates::Every(0), ..good.clone() }, "update-every"),
+            (TrackingOptions { filter: FilterName::Particle, particles: 0, ..good.clone() }, "particles"),
+            (TrackingOptions { filter: FilterName::Paper, start: StartName::Uniform, ..good.clone() }, "init"),
+        ];
+        for (options, name) in bad {
+            let error = options.check().unwrap_err().to_string();
+            assert!(error.contains(name), "{error}");
+        }
+    }
+}

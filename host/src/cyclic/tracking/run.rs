@@ -1,0 +1,82 @@
+//! One pass of a filter over an angle table.
+
+use super::filter::Filter;
+use super::options::TrackingOptions;
+use crate::cyclic::angle_table::ANGLES;
+use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
+use anyhow::{Result, ensure};
+use sinew_core::cyclic::measurement::MAX_STEP_FRAMES;
+use sinew_core::cyclic::{AngleMeasurement, CyclicEstimate};
+use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
+use std::f64::consts::TAU;
+
+/// What the filter answered to one row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrackedFrame {
+    /// Number of the frame in the table.
+    pub frame: u64,
+    /// The estimate; velocities are per frame of the model's rate.
+    pub estimate: CyclicEstimate<HUMAN_ANGLES>,
+    /// Estimated angles, radians, unwrapped along time.
+    pub angles_rad: [f64; ANGLES],
+    /// Cycles since the first row, with their fraction.
+    pub cycles: f64,
+}
+
+/// A whole run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tracked {
+    /// One entry a row of the table.
+    pub frames: Vec<TrackedFrame>,
+    /// Frames per second of the recording.
+    pub rate_hz: f64,
+    /// Frames of the model's rate in one of the recording's.
+    pub step_frames: f64,
+}
+
+/// Tracks `table`. The first row gives the first state (see [`super::StartName`]) and is answered with it.
+///
+/// # Errors
+/// An option out of range, a rate so low that a step is too long, a first row without any angle in the standard start.
+pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions) -> Result<Tracked> {
+    options.check()?;
+    let view = model.view();
+    let model_hz = f64::from(view.rate_hz());
+    let rate_hz = options.rate_hz.unwrap_or(model_hz);
+    let step_frames = model_hz / rate_hz;
+    ensure!(
+        step_frames <= f64::from(MAX_STEP_FRAMES),
+        "`--rate {rate_hz}`: one frame is {step_frames:.0} of the model's; at most {MAX_STEP_FRAMES} can be bridged"
+    );
+    let mut filter = Filter::new(view, options, &measured(&table.rows()[0]), step_frames)?;
+    let mut frames: Vec<TrackedFrame> = Vec::with_capacity(table.rows().len());
+    frames.push(tracked(table.first_frame(), filter.first_estimate(), None));
+    for pair in table.rows().windows(2) {
+        let [before, row] = pair else { continue };
+        // A gap longer than the longest step says no more than that one.
+        let step = (step_frames * (row.frame - before.frame) as f64).min(f64::from(MAX_STEP_FRAMES));
+        let used = options.updates.uses(table.first_frame(), row.frame);
+        let angles = if used { measured(row) } else { [None; HUMAN_ANGLES] };
+        let measurement = AngleMeasurement::new(&angles, options.sigma_rad as f32)?.after(step as f32)?;
+        let estimate = filter.step(&measurement);
+        let next = tracked(row.frame, estimate, frames.last());
+        frames.push(next);
+    }
+    Ok(Tracked { frames, rate_hz, step_frames })
+}
+
+fn measured(row: &AngleRow) -> [Option<f32>; HUMAN_ANGLES] {
+    row.angles_rad.map(|angle| angle.map(|angle| angle as f32))
+}
+
+fn tracked(frame: u64, estimate: CyclicEstimate<HUMAN_ANGLES>, before: Option<&TrackedFrame>) -> TrackedFrame {
+    let angles_rad = std::array::from_fn(|i| f64::from(estimate.angles_rad[i]) + TAU * f64::from(estimate.turns[i]));
+    let position = f64::from(estimate.cycle_position);
+    let cycles = before.map_or(0.0, |before| {
+        let change = position - f64::from(before.estimate.cycle_position);
+        // The turn that fits the velocity: a step may be longer than half a cycle.
+        let expected = f64::from(estimate.cycle_velocity_per_frame) * (frame - before.frame) as f64;
+        before.cycles + change + (expected - change).round()
+    });
+    TrackedFrame { frame, estimate, angles_rad, cycles }
+}

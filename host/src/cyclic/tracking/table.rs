@@ -1,0 +1,59 @@
+//! The estimates as a CSV table: the columns of an angle table first, so that every tool for those reads it.
+
+use super::run::Tracked;
+use crate::cyclic::angle_table::COLUMNS;
+use crate::output::write_atomically;
+use anyhow::Result;
+use std::path::Path;
+
+/// Columns after the angles.
+pub const ESTIMATE_COLUMNS: [&str; 7] = [
+    "cycle_position",
+    "cycle_velocity_per_frame",
+    "cadence_per_min",
+    "log_likelihood",
+    "outlier",
+    "cadence_std_per_min",
+    "cycles",
+];
+
+/// The text of the table; after [`ESTIMATE_COLUMNS`] come the angles' standard deviations.
+///
+/// `cycle_velocity_per_frame` is per frame of the recording; `outlier` is 0 or 1.
+///
+/// # Errors
+/// None in practice: text can always be written to memory.
+pub fn to_csv(tracked: &Tracked) -> Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let std_columns = COLUMNS[1..].iter().map(|name| name.replace("_rad", "_std_rad"));
+    let header = COLUMNS.iter().chain(&ESTIMATE_COLUMNS).map(ToString::to_string).chain(std_columns);
+    writer.write_record(header)?;
+    for frame in &tracked.frames {
+        let estimate = &frame.estimate;
+        let velocity = f64::from(estimate.cycle_velocity_per_frame) * tracked.step_frames;
+        let per_min = 60.0 * tracked.rate_hz;
+        let velocity_std = f64::from(estimate.cycle_velocity_variance.max(0.0).sqrt()) * tracked.step_frames;
+        let derived = [
+            format!("{:.6}", estimate.cycle_position),
+            format!("{velocity:.8}"),
+            format!("{:.4}", velocity * per_min),
+            format!("{:.4}", estimate.log_likelihood),
+            u8::from(estimate.outlier).to_string(),
+            format!("{:.4}", velocity_std * per_min),
+            format!("{:.5}", frame.cycles),
+        ];
+        let angles = frame.angles_rad.iter().map(|angle| format!("{angle:.6}"));
+        let stds = estimate.angle_variance_rad2.iter().map(|variance| format!("{:.6}", variance.max(0.0).sqrt()));
+        writer.write_record(std::iter::once(frame.frame.to_string()).chain(angles).chain(derived).chain(stds))?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
+/// Writes the table under a temporary name, then renames it.
+///
+/// # Errors
+/// Names the path with what the operating system refused.
+pub fn write(tracked: &Tracked, path: &Path) -> Result<()> {
+    let text = to_csv(tracked)?;
+    write_atomically(path, |writer| Ok(writer.write_all(text.as_bytes())?))
+}

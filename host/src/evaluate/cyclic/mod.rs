@@ -1,0 +1,12 @@
+//! The cyclic tracker where the true angles are known: the paper's tables and figures on any cut cycles.
+
+pub mod experiments;
+pub mod figures;
+pub mod long_runs;
+pub mod protocol;
+pub mod report;
+
+pub use experiments::{Cell, Setting};
+pub use long_runs::{LongRun, long_runs};
+pub use protocol::{Errors, Protocol, TestCycle, test_cycles};
+pub use report::CyclicReport;
