@@ -46,6 +46,19 @@ fn every_sinew_command_of_the_readme_is_understood() {
     assert!(count >= 6, "only {count} commands");
 }
 
+#[test]
+fn every_sinew_command_of_the_pages_for_users_is_understood() {
+    for (name, least) in [("coach.md", 5), ("keypoints.md", 5)] {
+        let page = fs::read_to_string(workspace_root().join("docs").join(name)).unwrap();
+        let commands: Vec<&str> = page.lines().filter_map(|line| line.strip_prefix("    sinew ")).collect();
+        assert!(commands.len() >= least, "{name}: only {} commands", commands.len());
+        for command in commands {
+            let words = std::iter::once("sinew").chain(command.split_whitespace());
+            Cli::try_parse_from(words).unwrap_or_else(|error| panic!("{name}: {command}\n{error}"));
+        }
+    }
+}
+
 fn pages(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     entries.filter(|path| path.extension().is_some_and(|extension| extension == "md")).collect()

@@ -1,9 +1,10 @@
 //! `sinew track cyclic`: angles, phase and cadence from an angle table.
 
-use crate::cyclic::tracking::{FilterName, StartName, Summary, TrackingOptions, Updates, table, track};
+use crate::cyclic::report::{Origin, Report};
+use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates, table, track};
 use crate::cyclic::{AngleTable, CyclicModel};
-use crate::output::check_writable_file;
-use anyhow::Result;
+use crate::output::{OutputDir, check_writable_file};
+use anyhow::{Result, ensure};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -48,6 +49,12 @@ pub struct TrackCyclicArgs {
     /// Table of estimates to write.
     #[arg(long, value_name = "EST.csv")]
     pub out: PathBuf,
+    /// Folder for what a coach reads: summary, repetitions, curves over the cycle, symmetry, plots, TRC and MOT files.
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Height of the person, metres: the scale of the report's joints.trc.
+    #[arg(long, value_name = "METRES", default_value_t = 1.75)]
+    pub height: f64,
 }
 
 /// Tracks the table, writes the estimates, prints cycles and cadence.
@@ -57,22 +64,40 @@ pub struct TrackCyclicArgs {
 pub fn run(args: &TrackCyclicArgs) -> Result<()> {
     let options = options(args);
     options.check()?;
+    ensure!((0.3..=3.0).contains(&args.height), "`height` has to lie from 0.3 to 3 metres, not {}", args.height);
     check_writable_file(&args.out)?;
+    let output = args.report.as_deref().map(OutputDir::create).transpose()?;
     let model = CyclicModel::from_option(&args.model)?;
     let angles = AngleTable::read(&args.table)?;
     let tracked = track(&angles, &model, &options)?;
     table::write(&tracked, &args.out)?;
-    let summary = Summary::of(&tracked);
-    let report = format!(
-        "{} frames, {:.2} s: {:.2} cycles, {:.2} a minute, {} outliers\nwrote {}\n",
-        summary.frames,
-        summary.duration_s,
-        summary.cycles,
-        summary.cadence_per_min,
-        summary.outliers,
-        args.out.display()
+    let report = Report::new(&angles, &tracked, &options);
+    let mut text = told(&report);
+    text.push_str(&format!("wrote {}\n", args.out.display()));
+    if let Some(output) = output {
+        let name = args.table.display().to_string();
+        let origin = Origin { table: &name, model: &args.model, options: &options, height_m: args.height };
+        report.write(&origin, &angles, &tracked, &output)?;
+        text.push_str(&format!("report: {}\n", output.path().display()));
+    }
+    super::stdout::write_all(text.as_bytes())
+}
+
+/// Cycles and cadence, and how alike the sides are, for a terminal.
+fn told(report: &Report) -> String {
+    let summary = &report.summary;
+    let mut text = format!(
+        "{} frames, {:.2} s: {:.2} cycles, {:.2} a minute, {} outliers\n",
+        summary.frames, summary.duration_s, summary.cycles, summary.cadence_per_min, summary.outliers
     );
-    super::stdout::write_all(report.as_bytes())
+    for joint in &report.symmetries {
+        if let (Some(left), Some(right)) = (joint.left_range_deg, joint.right_range_deg) {
+            let index = joint.symmetry_index_percent.map_or_else(String::new, |index| format!(", index {index:+.0} %"));
+            let name = joint.angle.replace('_', " ");
+            text.push_str(&format!("{name}: range left {left:.1}, right {right:.1} degrees{index}\n"));
+        }
+    }
+    text
 }
 
 fn options(args: &TrackCyclicArgs) -> TrackingOptions {

@@ -12,6 +12,7 @@ pub mod model;
 pub mod model_file;
 pub mod projection;
 pub mod recording;
+pub mod report;
 pub mod resample;
 pub mod spline;
 pub mod tracking;

@@ -25,6 +25,9 @@ pub const MARKERS: [&str; JOINTS] = [
     "RAnkle",
 ];
 
+/// Places of all joints in one frame.
+pub type JointPositions = [Option<Point>; JOINTS];
+
 /// Segment lengths in the side view of an adult of `height_m` metres: hip and shoulder links point at the camera and are
 /// short there. For angles that came without lengths.
 #[must_use]
@@ -44,7 +47,7 @@ pub fn joint_positions(
     root: Option<Point>,
     lengths: &[f64; ANGLES],
     angles_rad: &[Option<f64>; ANGLES],
-) -> [Option<Point>; JOINTS] {
+) -> JointPositions {
     let mut joints = [None; JOINTS];
     joints[0] = root;
     for (index, joint) in HUMAN.joints().iter().enumerate().skip(1) {
@@ -57,17 +60,12 @@ pub fn joint_positions(
     joints
 }
 
-/// The text of a TRC file in metres: x forward, y up, z zero. `frames` hold joints in units of `metres_per_unit` metres, x
-/// right and y down; `first_frame` is the number of the first. Missing joints are empty cells.
+/// The text of a TRC file in metres: x forward, y up, z zero. `frames` hold each frame's number and joints in units of
+/// `metres_per_unit` metres, x right and y down. Missing joints are empty cells.
 #[must_use]
-pub fn to_trc(
-    frames: &[[Option<Point>; JOINTS]],
-    first_frame: u64,
-    rate_hz: f64,
-    metres_per_unit: f64,
-    name: &str,
-) -> String {
+pub fn to_trc(frames: &[(u64, JointPositions)], rate_hz: f64, metres_per_unit: f64, name: &str) -> String {
     let count = frames.len();
+    let first_frame = frames.first().map_or(0, |frame| frame.0);
     let mut text = format!(
         "PathFileType\t4\t(X/Y/Z)\t{}\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n\
         {rate_hz}\t{rate_hz}\t{count}\t{JOINTS}\tm\t{rate_hz}\t{first_frame}\t{count}\nFrame#\tTime",
@@ -81,9 +79,9 @@ pub fn to_trc(
         text.push_str(&format!("\tX{marker}\tY{marker}\tZ{marker}"));
     }
     text.push_str("\n\n");
-    for (frame, joints) in (first_frame..).zip(frames) {
+    for (frame, joints) in frames {
         // Writing to a string cannot fail.
-        let _ = write!(text, "{frame}\t{:.6}", frame as f64 / rate_hz);
+        let _ = write!(text, "{frame}\t{:.6}", *frame as f64 / rate_hz);
         for joint in joints {
             let _ = match joint {
                 None => write!(text, "\t\t\t"),
@@ -112,7 +110,7 @@ mod tests {
         angles[9] = None;
         let lacking = joint_positions(Some([101.0, 50.0]), &standard_lengths_m(180.0), &angles);
         assert!(lacking[10].is_none() && lacking[9].is_some());
-        let text = to_trc(&[standing, lacking], 7, 60.0, 0.01, "walk");
+        let text = to_trc(&[(7, standing), (8, lacking)], 60.0, 0.01, "walk");
         let motion = trc::parse(&text, Path::new("m.trc")).unwrap();
         assert!((motion.frames_per_second - 60.0).abs() < 1.0e-6);
         let sources = JointSources::find(&motion.names, false, Path::new("m.trc")).unwrap();

@@ -34,7 +34,7 @@ pub fn to_csv(tracked: &Tracked) -> Result<String> {
         let per_min = 60.0 * tracked.rate_hz;
         let velocity_std = f64::from(estimate.cycle_velocity_variance.max(0.0).sqrt()) * tracked.step_frames;
         let derived = [
-            format!("{:.6}", estimate.cycle_position),
+            position_cell(f64::from(estimate.cycle_position)),
             format!("{velocity:.8}"),
             format!("{:.4}", velocity * per_min),
             format!("{:.4}", estimate.log_likelihood),
@@ -49,6 +49,11 @@ pub fn to_csv(tracked: &Tracked) -> Result<String> {
     Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
+/// Six decimals in [0, 1): what would round up to one is the start of the next cycle.
+fn position_cell(position: f64) -> String {
+    format!("{:.6}", if position < 0.999_999_5 { position } else { 0.0 })
+}
+
 /// Writes the table under a temporary name, then renames it.
 ///
 /// # Errors
@@ -56,4 +61,17 @@ pub fn to_csv(tracked: &Tracked) -> Result<String> {
 pub fn write(tracked: &Tracked, path: &Path) -> Result<()> {
     let text = to_csv(tracked)?;
     write_atomically(path, |writer| Ok(writer.write_all(text.as_bytes())?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_position_stays_below_one_in_text() {
+        assert_eq!(
+            [0.0, 0.25, 0.999_999_4, 0.999_999_9].map(position_cell),
+            ["0.000000", "0.250000", "0.999999", "0.000000"]
+        );
+    }
 }

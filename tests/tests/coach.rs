@@ -1,0 +1,76 @@
+//! The way that docs/coach.md goes: a table of keypoints in pixels, angles, cadence, joints in pixels again.
+
+mod cyclic_walk;
+
+use assert_cmd::Command;
+use cyclic_walk::walk;
+use sinew::cyclic::export::trc::{joint_positions, standard_lengths_m};
+use sinew_core::skeleton::stick_figure::HUMAN;
+use sinew_tests::sinew_command;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+fn sinew(folder: &Path, arguments: &[&str]) {
+    let mut command = Command::from_std(sinew_command());
+    command.current_dir(folder).args(arguments).assert().success();
+}
+
+/// Joints of a walker who is 400 px high, at 30 frames a second and 50 cycles a minute; hips unseen now and then.
+fn keypoints(frames: u64, faces_left: bool) -> String {
+    let names: Vec<&str> = std::iter::once("hip_center").chain(HUMAN.angle_names()).collect();
+    let mut text = "frame".to_owned();
+    names.iter().for_each(|name| write!(text, ",{name}_x_px,{name}_y_px").unwrap());
+    text.push('\n');
+    let lengths = standard_lengths_m(400.0);
+    for row in walk(frames, 50.0 / 60.0 / 30.0).rows() {
+        let root = [100.0 + 10.0 * row.frame as f64, 300.0];
+        let joints = joint_positions(Some(root), &lengths, &row.angles_rad);
+        write!(text, "{}", row.frame).unwrap();
+        for (index, joint) in HUMAN.joints().iter().enumerate() {
+            let hidden = index == 0 && row.frame % 7 == 3;
+            // Seen from the other side the picture is mirrored and the limbs change places.
+            let [x, y] = joints[if faces_left { usize::from(joint.mirror) } else { index }].unwrap();
+            let x = if faces_left { 4000.0 - x } else { x };
+            if hidden { text.push_str(",,") } else { write!(text, ",{x:.3},{y:.3}").unwrap() }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Column of a table; an empty cell is `None`.
+fn column(path: &Path, name: &str) -> Vec<Option<f64>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let index = reader.headers().unwrap().iter().position(|header| header == name).unwrap();
+    reader.records().map(|record| record.unwrap()[index].parse().ok()).collect()
+}
+
+#[test]
+fn keypoints_become_cadence_and_joints_whichever_way_the_person_faces() {
+    let root = tempfile::tempdir().unwrap();
+    for (name, faces_left) in [("right", false), ("left", true)] {
+        let points = root.path().join(format!("{name}_points.csv"));
+        fs::write(&points, keypoints(260, faces_left)).unwrap();
+        let (table, report) = (format!("{name}.csv"), format!("{name}_run"));
+        sinew(root.path(), &["angles", points.to_str().unwrap(), "--input-rate", "30", "--out", &table]);
+        let estimate = format!("{name}_estimate.csv");
+        let track = ["track", "cyclic", &table, "--model", "walking", "--rate", "30", "--sigma-deg", "2"];
+        sinew(root.path(), &[&track[..], &["--out", &estimate, "--report", &report, "--height", "1.8"]].concat());
+        let folder = root.path().join(report);
+        let json: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap();
+        let cadence = json["cadence_per_min"].as_f64().unwrap();
+        assert!((cadence - 50.0).abs() < 1.0, "{name}: {cadence}");
+        for joint in ["l_ankle", "r_wrist", "neck"] {
+            for axis in ["x", "y"] {
+                let name = format!("{joint}_{axis}_px");
+                let (truth, found) = (column(&points, &name), column(&folder.join("joints_px.csv"), &name));
+                let errors: Vec<f64> =
+                    truth[30..].iter().zip(&found[30..]).map(|(t, f)| (t.unwrap() - f.unwrap()).abs()).collect();
+                let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+                assert!(mean < 6.0, "{name}, left {faces_left}: {mean} px");
+            }
+        }
+    }
+}
