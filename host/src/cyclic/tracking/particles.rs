@@ -6,8 +6,8 @@
 use rayon::prelude::*;
 use sinew_core::angle::split_turns;
 use sinew_core::cyclic::particle::{
-    CHUNK, CyclicParticle, ParticleOptions, advance_and_weigh, ancestors, copy_ancestors, exponentiate, fill_factors,
-    first_particle, greatest,
+    CHUNK, CyclicParticle, ParticleOptions, advance_and_weigh, ancestors, copy_ancestors, exponentiate, factors_len,
+    fill_factors, first_particle, greatest,
 };
 use sinew_core::cyclic::particle_moments::ParticleMoments;
 use sinew_core::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
@@ -45,7 +45,7 @@ impl ParticleFilter {
         count: usize,
         seed: u64,
     ) -> Self {
-        let mut factors = vec![0.0; model.parts().acceleration_covariance.len()];
+        let mut factors = vec![0.0; factors_len(model)];
         fill_factors(model, &mut factors);
         let particles: Vec<Particle> =
             (0..count as u32).into_par_iter().map(|index| first_particle(start, &options, seed, index)).collect();
