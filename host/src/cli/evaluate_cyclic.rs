@@ -3,7 +3,7 @@
 use crate::cyclic::training::{TrainingOptions, train};
 use crate::cyclic::{CutList, CyclicModel};
 use crate::evaluate::cyclic::experiments::FILTERS;
-use crate::evaluate::cyclic::{CyclicReport, Setting, figures::figures, long_runs, test_cycles};
+use crate::evaluate::cyclic::{CyclicReport, Setting, figures::figures, long_runs, synthetic, test_cycles};
 use crate::output::OutputDir;
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -18,9 +18,9 @@ pub struct EvaluateCyclicArgs {
     /// Model that is tested: walking, running, or a file of `sinew train cyclic`.
     #[arg(long, value_name = "MODEL.json|walking|running", default_value = "walking")]
     pub model: String,
-    /// Cut list of the cycles to test on.
+    /// Cut list of the cycles to test on [default: synthetic cycles drawn from the model, which only show that it runs].
     #[arg(long, value_name = "CUTS.csv")]
-    pub test: PathBuf,
+    pub test: Option<PathBuf>,
     /// Cut list of cycles that follow each other: how well the position in the cycle holds without a break.
     #[arg(long, value_name = "CUTS.csv")]
     pub long: Option<PathBuf>,
@@ -57,8 +57,10 @@ pub fn run(args: &EvaluateCyclicArgs) -> Result<()> {
         }
         None => (CyclicModel::from_option(&args.model)?, args.model.clone()),
     };
-    let list = CutList::read(&args.test)?;
-    let cycles = test_cycles(&list)?;
+    let cycles = match &args.test {
+        Some(path) => test_cycles(&CutList::read(path)?)?,
+        None => synthetic::cycles(&model, args.rate)?,
+    };
     let setting = Setting { cycles: &cycles, model: &model, rate_hz: args.rate, seeds: args.seeds };
     let sparse_particles: Vec<usize> = if particles.is_empty() { Vec::new() } else { SPARSE_PARTICLES.to_vec() };
     let report = CyclicReport {
@@ -66,7 +68,7 @@ pub fn run(args: &EvaluateCyclicArgs) -> Result<()> {
         version: 1,
         sinew_version: env!("CARGO_PKG_VERSION"),
         model: name,
-        test: args.test.display().to_string(),
+        test: args.test.as_ref().map_or_else(|| "synthetic".to_owned(), |path| path.display().to_string()),
         cycles: cycles.len(),
         frames: cycles.iter().map(|cycle| cycle.truth.rows().len()).sum(),
         seeds: args.seeds,

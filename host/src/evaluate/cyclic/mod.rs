@@ -5,6 +5,7 @@ pub mod figures;
 pub mod long_runs;
 pub mod protocol;
 pub mod report;
+pub mod synthetic;
 
 pub use experiments::{Cell, Setting};
 pub use long_runs::{LongRun, long_runs};
