@@ -2,7 +2,7 @@
 
 use super::options::{FilterName, StartName, TrackingOptions};
 use super::particles::ParticleFilter;
-use anyhow::{Result, ensure};
+use anyhow::Result;
 use sinew_core::angle::split_turns;
 use sinew_core::cyclic::particle::{ParticleOptions, Spread};
 use sinew_core::cyclic::{
@@ -32,12 +32,8 @@ impl<'m> Filter<'m> {
     /// of the model.
     ///
     /// # Errors
-    /// A first row without any angle, a position or velocity out of range.
+    /// A position or velocity out of range.
     pub fn new(model: MotionModel<'m>, options: &TrackingOptions, first: &Angles, step_frames: f64) -> Result<Self> {
-        ensure!(
-            first.iter().any(Option::is_some),
-            "the first row of the table has no angle to start from; begin the table where joints are seen"
-        );
         let position = options.initial_cycle_position.map(|position| position as f32);
         let velocity = options.initial_cycle_velocity.map(|velocity| (velocity / step_frames) as f32);
         let start = CycleStart::standard(&model, first, position, velocity)?;

@@ -45,7 +45,7 @@ pub enum StartName {
     /// The first row's angles, the model's velocities, the best matching (or given) position in the cycle.
     #[default]
     Standard,
-    /// Nothing of the position in the cycle (coupled, particle).
+    /// Nothing of the position in the cycle (particle).
     Uniform,
     /// Nothing at all: random angles and velocities too (particle).
     Random,
@@ -147,8 +147,7 @@ impl TrackingOptions {
         }
         let start_fits = match self.start {
             StartName::Standard => true,
-            StartName::Uniform => matches!(self.filter, FilterName::Coupled | FilterName::Particle),
-            StartName::Random => self.filter == FilterName::Particle,
+            StartName::Uniform | StartName::Random => self.filter == FilterName::Particle,
         };
         if !start_fits {
             let rule = format!(

@@ -90,8 +90,8 @@ impl CyclicReport {
     #[must_use]
     pub fn to_text(&self) -> String {
         let mut text = format!(
-            "{} test cycles ({}), {} frames; model: {}; mean absolute error over 13 angles (nine long ones), degrees\n",
-            self.cycles, self.test, self.frames, self.model
+            "{} test cycles, {} frames ({}); model: {}; mean absolute error over 13 angles (nine long ones), degrees\n",
+            self.cycles, self.frames, self.test, self.model
         );
         for row in self.noise.chunks(SIGMAS_DEG.len()) {
             let Some(first) = row.first() else { continue };
