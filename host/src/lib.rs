@@ -8,6 +8,7 @@ pub mod evaluate;
 pub mod frames;
 pub mod images;
 pub mod keypoints;
+pub mod model_text;
 pub mod motion;
 pub mod output;
 pub mod scene;

@@ -2,20 +2,20 @@
 
 use super::angle_table::ANGLES;
 use super::model::{CyclicModel, DeviationNumbers, ModelNumbers, TrainedOn};
+use crate::model_text::{self, ModelFileKind};
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use sinew_core::cyclic::semi_definite::packed_len;
 use sinew_core::skeleton::stick_figure::HUMAN;
-use std::fs;
 use std::path::Path;
 
+const KIND: ModelFileKind =
+    ModelFileKind { name: "motion", command: "sinew train cyclic --cuts CUTS.csv", max_file_bytes: 64 << 20 };
 /// Value of the field `format`.
 pub const FORMAT: &str = "sinew-cyclic";
 /// Value of the field `version`.
 pub const VERSION: u64 = 1;
-/// Largest file that is taken for a model, bytes.
-const MAX_FILE_BYTES: u64 = 64 << 20;
 
 type Rows<T> = Vec<Vec<T>>;
 
@@ -72,20 +72,7 @@ fn lines(values: &[f32], width: usize) -> Result<Vec<Box<RawValue>>> {
 /// # Errors
 /// Names the file, what is wrong with it, and how to make one.
 pub fn read(path: &Path) -> Result<CyclicModel> {
-    let remedy = || {
-        let path = path.display();
-        format!(
-            "`{path}` cannot be used as a motion model; make one with `sinew train cyclic --cuts CUTS.csv --out {path}`"
-        )
-    };
-    let load = || -> Result<CyclicModel> {
-        let metadata = fs::metadata(path)?;
-        ensure!(metadata.is_file(), "it is not a file");
-        ensure!(metadata.len() <= MAX_FILE_BYTES, "it is larger than {MAX_FILE_BYTES} bytes");
-        let bytes = fs::read(path)?;
-        parse(std::str::from_utf8(&bytes).ok().context("it is not a text file")?)
-    };
-    load().with_context(remedy)
+    model_text::read(path, &KIND, parse)
 }
 
 /// Reads a model from JSON text.
@@ -129,6 +116,7 @@ pub fn parse(text: &str) -> Result<CyclicModel> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn walking_json() -> String {
         to_json(&CyclicModel::from_option("walking").unwrap()).unwrap()

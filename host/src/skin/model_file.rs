@@ -5,18 +5,18 @@ use super::confusion::Scores;
 use super::gaussian::GaussianModel;
 use super::histogram::{EVIDENCE_LEVELS, HistogramModel};
 use super::model::{ModelKind, ModelNumbers, SkinModel};
+use crate::model_text::{self, ModelFileKind};
 use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
-use std::fs;
 use std::path::Path;
 
+const KIND: ModelFileKind =
+    ModelFileKind { name: "skin", command: "sinew train skin --pixels FILE", max_file_bytes: 4 << 20 };
 /// Value of the field `format`.
 pub const FORMAT: &str = "sinew-skin";
 /// Value of the field `version`.
 pub const VERSION: u64 = 1;
-/// Largest file that is taken for a model, bytes.
-const MAX_FILE_BYTES: u64 = 4 << 20;
 /// Cells in one line of the file: all blues of a red and a green.
 const CELLS_PER_LINE: usize = 32;
 
@@ -81,18 +81,7 @@ pub fn to_json(model: &SkinModel) -> Result<String> {
 /// # Errors
 /// Names the file, what is wrong with it, and how to make one.
 pub fn read(path: &Path) -> Result<SkinModel> {
-    let remedy = || {
-        let path = path.display();
-        format!("`{path}` cannot be used as a skin model; make one with `sinew train skin --pixels FILE --out {path}`")
-    };
-    let load = || -> Result<SkinModel> {
-        let metadata = fs::metadata(path)?;
-        ensure!(metadata.is_file(), "it is not a file");
-        ensure!(metadata.len() <= MAX_FILE_BYTES, "it is larger than {MAX_FILE_BYTES} bytes");
-        let bytes = fs::read(path)?;
-        parse(std::str::from_utf8(&bytes).ok().context("it is not a text file")?)
-    };
-    load().with_context(remedy)
+    model_text::read(path, &KIND, parse)
 }
 
 /// Reads a model from JSON text.
@@ -152,6 +141,7 @@ fn histogram_from_text(text: &HistogramText) -> Result<HistogramModel> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn gaussian_json() -> String {
         to_json(&SkinModel::from_option("gaussian").unwrap()).unwrap()
