@@ -34,6 +34,28 @@ impl Channels {
         (!signals.is_empty()).then_some(Self { signals, frames })
     }
 
+    /// The same signals made ready to be compared over `period` frames: each about its own mean over one period, so that a
+    /// person who slowly turns or leans does not look like one whose steps come later and later; and each by how closely it
+    /// comes back after a period, so that links that wind as they please say little.
+    #[must_use]
+    pub fn over_period(&self, period: usize) -> Self {
+        let weighed = |signal: &Vec<f64>| {
+            let level = about_running_mean(signal, period);
+            let differences = level.iter().zip(level.iter().skip(period)).map(|(a, b)| (b - a).powi(2));
+            let known: Vec<f64> = differences.filter(|square| !square.is_nan()).collect();
+            let spread = if known.is_empty() { 1.0 } else { known.iter().sum::<f64>() / known.len() as f64 };
+            let weight = 1.0 / (spread + LEAST_MOTION * LEAST_MOTION).sqrt();
+            level.into_iter().map(|value| weight * value).collect()
+        };
+        Self { signals: self.signals.iter().map(weighed).collect(), frames: self.frames }
+    }
+
+    /// The signals, each as long as the recording.
+    #[must_use]
+    pub fn signals(&self) -> &[Vec<f64>] {
+        &self.signals
+    }
+
     /// Number of frames.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -83,6 +105,22 @@ impl Channels {
         }
         (count > 0).then(|| sum / count as f64)
     }
+}
+
+/// Each value less the mean of those known in the window of `period` frames round it, which is shifted inwards at the ends.
+fn about_running_mean(signal: &[f64], period: usize) -> Vec<f64> {
+    let (mut sums, mut counts) = (vec![0.0], vec![0_usize]);
+    for (index, value) in signal.iter().enumerate() {
+        sums.push(sums[index] + if value.is_nan() { 0.0 } else { *value });
+        counts.push(counts[index] + usize::from(!value.is_nan()));
+    }
+    let last = signal.len().saturating_sub(period);
+    let level = |(frame, value): (usize, &f64)| {
+        let from = frame.saturating_sub(period / 2).min(last);
+        let to = (from + period).min(signal.len());
+        value - (sums[to] - sums[from]) / (counts[to] - counts[from]).max(1) as f64
+    };
+    signal.iter().enumerate().map(level).collect()
 }
 
 /// The signal about its mean, if it is there often enough and moves.

@@ -4,6 +4,7 @@
 //! farthest forward, in the swing of one period; the next one starts where everything round that moment comes back
 //! ([`recurrence`]), which is steadier than looking for the next peak.
 
+pub mod alignment;
 pub mod channels;
 pub mod period;
 pub mod recurrence;
@@ -61,7 +62,7 @@ pub fn cycles(table: &AngleTable, file: &str, options: CuttingOptions) -> Result
         Ok(period) => period,
         Err(reason) => return refuse(reason),
     };
-    let boundaries = recurrence::boundaries(table, &channels, period);
+    let boundaries = recurrence::boundaries(table, &channels.over_period(period), period);
     let cuts: Vec<Cut> = boundaries
         .iter()
         .map(|&[start, end]| Cut {

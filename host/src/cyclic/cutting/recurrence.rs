@@ -1,5 +1,6 @@
 //! Where cycles begin: the first by the swing of a limb, each next by the return of the whole pose.
 
+use super::alignment::{align, median};
 use super::channels::Channels;
 use crate::cyclic::angle_table::AngleTable;
 use std::f64::consts::TAU;
@@ -17,27 +18,48 @@ const LEAST_RETURN: f64 = 0.5;
 /// Start and end of each cycle, frames from the table's first.
 #[must_use]
 pub fn boundaries(table: &AngleTable, channels: &Channels, period: usize) -> Vec<[usize; 2]> {
-    let starts = swing_peaks(table, channels.len(), period);
-    let mut cycles = Vec::new();
+    let peaks = swing_peaks(table, channels.len(), period);
+    let mut starts: Vec<usize> = Vec::new();
+    // Whether a cycle leads to the start of this index from the one before.
+    let mut follows: Vec<bool> = Vec::new();
     let mut next_start = 0;
-    for start in starts {
-        if start < next_start {
+    for &peak in &peaks {
+        if peak < next_start {
             continue;
         }
-        let mut at = start;
+        let mut at = peak;
         while let Some(end) = next(channels, at, period) {
-            cycles.push([at, end]);
+            if at == peak {
+                starts.push(at);
+                follows.push(false);
+            }
+            starts.push(end);
+            follows.push(true);
             at = end;
         }
         // After a break the next peak is tried, not less than half a period on.
-        next_start = at.max(start) + period / 2;
+        next_start = at + period / 2;
     }
-    cycles
+    align(channels, &mut starts, period);
+    let shift = to_peaks(&starts, &peaks, period);
+    let moved = |start: usize| start.checked_add_signed(shift).filter(|&start| start <= channels.len());
+    let cycle = |(pair, follows): (&[usize], &bool)| follows.then_some([moved(pair[0])?, moved(pair[1])?]);
+    starts.windows(2).zip(follows.iter().skip(1)).filter_map(cycle).collect()
+}
+
+/// By how many frames the swing's peaks lie later than the starts: the middle one of all, so that no single step tells where
+/// a person's cycles begin.
+fn to_peaks(starts: &[usize], peaks: &[usize], period: usize) -> isize {
+    let from_start = |&start: &usize| {
+        let distances = peaks.iter().map(|&peak| peak as i64 - start as i64);
+        distances.min_by_key(|distance| distance.abs()).filter(|distance| 4 * distance.abs() <= period as i64)
+    };
+    median(starts.iter().filter_map(from_start).collect()) as isize
 }
 
 /// Where the pose round `start` comes back.
 fn next(channels: &Channels, start: usize, period: usize) -> Option<usize> {
-    let half = period / 4;
+    let half = period / 2;
     let slack = ((STRETCH * period as f64) as usize).max(1);
     let mut best: Option<(usize, f64)> = None;
     for lag in period - slack..=period + slack {

@@ -26,6 +26,8 @@ pub struct LongRun {
     pub counted_cycles: f64,
     /// Root of the mean squared error of the position, cycles.
     pub phase_rms: f64,
+    /// The same about the errors' mean: where a person's cycle is said to begin is then left out.
+    pub phase_spread: f64,
     /// Greatest error of the position, cycles.
     pub phase_max: f64,
     /// Relative error of the mean cadence from the third cycle on.
@@ -108,12 +110,15 @@ fn long_run(recording: &Recording, model: &CyclicModel, rate_hz: f64, filter: Fi
     let settled = tracked.frames.iter().find(|frame| true_cycles(frame.frame) >= 2.0).unwrap_or(&tracked.frames[0]);
     let last = &tracked.frames[tracked.frames.len() - 1];
     let true_span = true_cycles(last.frame) - true_cycles(settled.frame);
+    let rms =
+        |about: f64| (errors.iter().map(|error| (error - about).powi(2)).sum::<f64>() / errors.len() as f64).sqrt();
     Ok(LongRun {
         name: recording.cycle.name.clone(),
         filter,
         cycles: true_cycles(last.frame),
         counted_cycles: Summary::of(&tracked).cycles,
-        phase_rms: (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt(),
+        phase_rms: rms(0.0),
+        phase_spread: rms(errors.iter().sum::<f64>() / errors.len() as f64),
         phase_max: errors.iter().fold(0.0, |worst: f64, error| worst.max(error.abs())),
         cadence_error: (last.cycles - settled.cycles) / true_span - 1.0,
     })

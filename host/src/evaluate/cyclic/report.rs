@@ -138,18 +138,26 @@ impl CyclicReport {
 
 fn long_runs_text(runs: &[LongRun]) -> String {
     let mut text = format!(
-        "\n{:<40}{:<12}{:>8}{:>9}{:>11}{:>11}{:>10}\n",
-        "without a break (noisy, sigma 6)", "filter", "cycles", "counted", "phase rms", "phase max", "cadence"
+        "\n{:<40}{:<12}{:>8}{:>9}{:>11}{:>12}{:>11}{:>10}\n",
+        "without a break (noisy, sigma 6)",
+        "filter",
+        "cycles",
+        "counted",
+        "phase rms",
+        "about mean",
+        "phase max",
+        "cadence"
     );
     for run in runs {
         let _ = writeln!(
             text,
-            "{:<40}{:<12}{:>8.2}{:>9.2}{:>11.3}{:>11.3}{:>8.1} %",
+            "{:<40}{:<12}{:>8.2}{:>9.2}{:>11.3}{:>12.3}{:>11.3}{:>8.1} %",
             run.name,
             run.filter.name(),
             run.cycles,
             run.counted_cycles,
             run.phase_rms,
+            run.phase_spread,
             run.phase_max,
             100.0 * run.cadence_error
         );
