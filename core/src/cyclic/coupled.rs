@@ -77,7 +77,12 @@ impl<const N: usize> CoupledFilter<N> {
         };
         filter.correct(model, &first);
         filter.cycles = 0;
-        filter.turns = [0; N];
+        // Whole turns of the first row (of the mean pose where an angle is missing) are kept, so that nothing jumps after it.
+        let pose = model.mean_pose_rad::<N>(model.point(filter.position));
+        filter.turns = core::array::from_fn(|i| {
+            let first = first_rad[i].unwrap_or(pose[i]);
+            round((first - filter.angles_rad[i]) / TAU) as i32
+        });
         Ok(filter)
     }
 

@@ -53,6 +53,27 @@ fn it_follows_another_person_at_another_cadence() {
     assert!((0.85..=0.99).contains(&share), "{share} of the truth lies in the 90 % band");
 }
 
+/// Angles of a table are unwrapped and may begin many turns away from zero: the count goes on from there, whichever way the angle winds,
+/// without a jump.
+#[test]
+fn turns_are_counted_from_those_of_the_first_row() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    for direction in [1.0_f32, -1.0] {
+        let truth = |i: usize, frame: u16| person(i, direction * f32::from(frame) / 65.0) + TAU * (i as f32 - 5.0);
+        let first = core::array::from_fn(|i| Some(truth(i, 0)));
+        let mut filter = CoupledFilter::<N>::new(&model, &first, Some(0.0), Some(direction / 65.0)).unwrap();
+        for frame in 1..=400 {
+            let seen = core::array::from_fn(|i| Some(truth(i, frame)));
+            let estimate = filter.step(&model, &AngleMeasurement::new(&seen, 0.1).unwrap());
+            for i in 0..N {
+                let unwrapped = estimate.angles_rad[i] + TAU * estimate.turns[i] as f32;
+                assert!((unwrapped - truth(i, frame)).abs() < 0.3, "angle {i} in frame {frame}: {unwrapped}");
+            }
+        }
+    }
+}
+
 /// Gaps of random length: blocks stay symmetric with variances above zero, and every number finite.
 #[test]
 fn it_stays_sound_through_random_gaps() {
