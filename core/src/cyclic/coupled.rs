@@ -20,7 +20,7 @@ const FORGETTING: f32 = 0.02;
 /// Angles deviate together, so that thirteen of them say less about the phase than thirteen independent ones would.
 const PHASE_TEMPERING: f32 = 2.5;
 /// An angle this many standard deviations off says nothing about the phase, and its own constant is learned anew.
-const GATE_SIGMAS: f32 = 4.0;
+pub(super) const GATE_SIGMAS: f32 = 4.0;
 /// Beyond this standard deviation of c, in cycles, the linearisation is void and the position is searched for.
 const LOST_STD: f32 = 0.15;
 /// Frames in a row with most angles beyond the gate after which the position is searched for.
@@ -29,15 +29,17 @@ const LOST_FRAMES: u8 = 8;
 /// State of the filter `coupled` for models of up to `N` angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoupledFilter<const N: usize> {
-    blocks: [AngleBlock; N],
+    pub(super) blocks: [AngleBlock; N],
     angles_rad: [f32; N],
     turns: [i32; N],
-    position: f32,
-    velocity: f32,
+    pub(super) position: f32,
+    pub(super) velocity: f32,
     /// Covariance of (c, v): cc, cv, vv.
-    cycle: [f32; 3],
+    pub(super) cycle: [f32; 3],
     cycles: i32,
     strange_frames: u8,
+    /// Times that the position was searched for anew.
+    pub(super) relocks: u16,
 }
 
 const _: () = assert!(size_of::<CoupledFilter<13>>() <= 2560, "the state has to fit 2.5 KiB");
@@ -69,6 +71,7 @@ impl<const N: usize> CoupledFilter<N> {
             cycle: [1.0e-5, 0.0, 1.0e-6],
             cycles: 0,
             strange_frames: 0,
+            relocks: 0,
         };
         let first = AngleMeasurement::with_std(first_rad, &[crate::math::sqrt(FIRST_VARIANCE); N])?;
         filter.position = match position {
@@ -211,6 +214,7 @@ impl<const N: usize> CoupledFilter<N> {
         }
         let speed = 0.2 * model.mean_cycle_velocity();
         self.cycle = [0.0025, 0.0, max(speed * speed, self.cycle[2])];
+        self.relocks = self.relocks.wrapping_add(1);
         self.strange_frames = 0;
     }
 
@@ -297,6 +301,6 @@ fn inverse(matrix: &[f32; 3]) -> [f32; 3] {
     [scale / cc, -scale * correlation / root, scale / vv]
 }
 
-fn quadratic(g: &[f32; 2], matrix: &[f32; 3]) -> f32 {
+pub(super) fn quadratic(g: &[f32; 2], matrix: &[f32; 3]) -> f32 {
     max(g[0] * g[0] * matrix[0] + 2.0 * g[0] * g[1] * matrix[1] + g[1] * g[1] * matrix[2], 0.0)
 }

@@ -188,6 +188,12 @@ impl<const N: usize> KalmanFilter<N> {
         }
     }
 
+    /// Angles in (-pi, pi].
+    #[must_use]
+    pub const fn angles_rad(&self) -> &[f32; N] {
+        &self.angles_rad
+    }
+
     /// Angular velocities, rad per frame.
     #[must_use]
     pub const fn velocities(&self) -> &[f32; N] {

@@ -3,6 +3,7 @@
 mod angle_blocks;
 pub mod coupled;
 pub mod coupled_block;
+pub mod coupled_moments;
 #[cfg(test)]
 mod coupled_tests;
 pub mod covariance;
@@ -33,6 +34,7 @@ pub mod substeps;
 pub mod synthetic;
 
 pub use coupled::CoupledFilter;
+pub use coupled_moments::{BlockTransition, CoupledTransition};
 pub use deviation::Deviation;
 pub use estimate::CyclicEstimate;
 pub use interpolation::CyclePoint;

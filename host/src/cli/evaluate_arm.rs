@@ -134,7 +134,13 @@ fn curves(rows: &[Row], values: fn(&Row) -> [f64; 3]) -> Vec<Curve> {
             Some(at) => at,
             None => {
                 let name = row.name.clone();
-                curves.push(Curve { name, points: Vec::new(), low: Some(Vec::new()), high: Some(Vec::new()) });
+                curves.push(Curve {
+                    name,
+                    points: Vec::new(),
+                    low: Some(Vec::new()),
+                    high: Some(Vec::new()),
+                    ..Curve::default()
+                });
                 curves.len() - 1
             }
         };

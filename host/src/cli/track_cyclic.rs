@@ -40,6 +40,9 @@ pub struct TrackCyclicArgs {
     /// Use only the measurements of these frames.
     #[arg(long, value_name = "F1,F2,...", value_delimiter = ',')]
     pub update_at: Option<Vec<u64>>,
+    /// Give each frame the estimate that the whole recording speaks for, later frames included (not with `particle`).
+    #[arg(long)]
+    pub smooth: bool,
     /// Frames per second of the recording [default: those of the model].
     #[arg(long, value_name = "HZ")]
     pub rate: Option<f64>,
@@ -116,5 +119,6 @@ fn options(args: &TrackCyclicArgs) -> TrackingOptions {
         rate_hz: args.rate,
         particles: args.particles,
         seed: args.seed,
+        smooth: args.smooth,
     }
 }

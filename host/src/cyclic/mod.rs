@@ -14,6 +14,7 @@ pub mod projection;
 pub mod recording;
 pub mod report;
 pub mod resample;
+pub mod smoothing;
 pub mod spline;
 pub mod tracking;
 pub mod training;

@@ -24,6 +24,7 @@ pub struct OptionsRecord {
     update_at: Option<Vec<u64>>,
     rate_hz: f64,
     particles: Option<usize>,
+    smooth: bool,
     height_m: f64,
 }
 
@@ -45,6 +46,7 @@ impl OptionsRecord {
             update_at,
             rate_hz,
             particles: (options.filter == FilterName::Particle).then_some(options.particles),
+            smooth: options.smooth,
             height_m,
         }
     }

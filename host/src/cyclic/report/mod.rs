@@ -80,7 +80,7 @@ impl Report {
         if body.is_in_pixels() {
             text("joints_px.csv", joints::to_csv_px(&positions, table, &body))?;
         }
-        for (name, picture) in plots::plots(self, tracked)? {
+        for (name, picture) in plots::plots(self, table, tracked, &origin.options.updates)? {
             output.write_png(&name, &picture)?;
         }
         let document = document::Document::new(self, origin, tracked);

@@ -1,13 +1,15 @@
 //! The plots of a run.
 
 use super::Report;
+use crate::cyclic::AngleTable;
 use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, COUNT, CyclePointStatistics, PAIRS};
 use crate::cyclic::angle_table::COLUMNS;
-use crate::cyclic::tracking::Tracked;
 use crate::cyclic::tracking::summary::cadence_per_min;
+use crate::cyclic::tracking::{Tracked, Updates};
 use crate::draw::plot::{Curve, bars_plot, curves_plot};
 use anyhow::Result;
 use image::RgbImage;
+use std::f64::consts::TAU;
 
 /// Half width of a normal's 90 % band, standard deviations.
 const HALF_90: f64 = 1.644_853_626_951;
@@ -24,7 +26,12 @@ const GROUPS: [(&str, &[usize]); 5] = [
 ///
 /// # Errors
 /// A plot that cannot be drawn.
-pub fn plots(report: &Report, tracked: &Tracked) -> Result<Vec<(String, RgbImage)>> {
+pub fn plots(
+    report: &Report,
+    table: &AngleTable,
+    tracked: &Tracked,
+    updates: &Updates,
+) -> Result<Vec<(String, RgbImage)>> {
     let mut all = Vec::new();
     let mut add = |name: String, title: &str, x: &str, y: &str, curves: &[Curve]| -> Result<()> {
         if curves.iter().flat_map(|curve| &curve.points).any(|(x, y)| x.is_finite() && y.is_finite()) {
@@ -33,8 +40,8 @@ pub fn plots(report: &Report, tracked: &Tracked) -> Result<Vec<(String, RgbImage
         Ok(())
     };
     for (name, angles) in GROUPS {
-        let curves: Vec<Curve> = angles.iter().map(|&angle| trajectory(tracked, angle)).collect();
-        let title = format!("Angles of the stick figure, {name}: estimate and 90 % band");
+        let curves: Vec<Curve> = angles.iter().map(|&angle| trajectory(table, tracked, updates, angle)).collect();
+        let title = format!("Angles of the stick figure, {name}: estimate, 90 % band and what was measured (dots)");
         let file = format!("trajectories_{}.png", name.replace(' ', "_"));
         add(file, &title, "time, seconds", "angle, degrees", &curves)?;
     }
@@ -75,16 +82,23 @@ fn banded(name: &str, points: impl Iterator<Item = (f64, f64, f64)>) -> Curve {
         low.push(middle - half);
         high.push(middle + half);
     }
-    Curve { name: name.to_owned(), points: line, low: Some(low), high: Some(high) }
+    Curve { name: name.to_owned(), points: line, low: Some(low), high: Some(high), marks: Vec::new() }
 }
 
-fn trajectory(tracked: &Tracked, angle: usize) -> Curve {
+/// The estimate with its band; what the filter saw stands beside it as dots, in the turn that is nearest.
+fn trajectory(table: &AngleTable, tracked: &Tracked, updates: &Updates, angle: usize) -> Curve {
     let name = COLUMNS[angle + 1].trim_end_matches("_rad");
     let points = tracked.frames.iter().map(|frame| {
         let std = f64::from(frame.estimate.angle_variance_rad2[angle]).max(0.0).sqrt();
         (seconds(tracked, frame.frame), frame.angles_rad[angle].to_degrees(), HALF_90 * std.to_degrees())
     });
-    banded(name, points)
+    let marks = table.rows().iter().zip(&tracked.frames).filter_map(|(row, frame)| {
+        let estimate = frame.angles_rad[angle];
+        let off = row.angles_rad[angle].filter(|_| updates.sees(table.first_frame(), row.frame))? - estimate;
+        Some((seconds(tracked, row.frame), (estimate + off - TAU * (off / TAU).round()).to_degrees()))
+    });
+    let marks = marks.collect();
+    Curve { marks, ..banded(name, points) }
 }
 
 /// Position in [0, 1) with a break where a cycle ends.

@@ -13,11 +13,8 @@ const LONGEST_BRIDGE_CYCLES: f64 = 0.1;
 pub fn measured_shares(table: &AngleTable, updates: &Updates) -> [f64; ANGLES] {
     let rows = table.rows();
     std::array::from_fn(|angle| {
-        let seen = rows.iter().enumerate().filter(|(index, row)| {
-            // The first row gives the first state in any case.
-            let used = *index == 0 || updates.uses(table.first_frame(), row.frame);
-            used && row.angles_rad[angle].is_some()
-        });
+        let seen =
+            rows.iter().filter(|row| updates.sees(table.first_frame(), row.frame) && row.angles_rad[angle].is_some());
         seen.count() as f64 / rows.len() as f64
     })
 }

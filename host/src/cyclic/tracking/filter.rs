@@ -2,6 +2,7 @@
 
 use super::options::{FilterName, StartName, TrackingOptions};
 use super::particles::ParticleFilter;
+use crate::cyclic::smoothing::{CoupledState, KalmanState, Smoothed, backward};
 use anyhow::Result;
 use sinew_core::angle::split_turns;
 use sinew_core::cyclic::particle::{ParticleOptions, Spread};
@@ -74,6 +75,61 @@ impl<'m> Filter<'m> {
             Kind::Kalman(filter, options) => filter.step(&self.model, options, measurement),
             Kind::Particle(filter) => filter.step(&self.model, measurement),
             Kind::Coupled(filter) => filter.step(&self.model, measurement),
+        }
+    }
+}
+
+/// The states of a run, for the way back.
+#[derive(Debug)]
+pub struct Pass<'m> {
+    model: MotionModel<'m>,
+    states: States,
+    measurements: Vec<AngleMeasurement<HUMAN_ANGLES>>,
+}
+
+#[derive(Debug)]
+enum States {
+    Kalman(Vec<KalmanState<HUMAN_ANGLES>>),
+    Coupled(Vec<CoupledState<HUMAN_ANGLES>>),
+}
+
+impl<'m> Pass<'m> {
+    /// A pass from the first state of `filter` on; `None` for a filter that cannot be smoothed.
+    #[must_use]
+    pub fn begin(filter: &Filter<'m>) -> Option<Self> {
+        let states = match &filter.kind {
+            Kind::Kalman(..) => States::Kalman(Vec::new()),
+            Kind::Coupled(_) => States::Coupled(Vec::new()),
+            Kind::Particle(_) => return None,
+        };
+        let mut pass = Self { model: filter.model, states, measurements: Vec::new() };
+        pass.keep(filter);
+        Some(pass)
+    }
+
+    /// Keeps the state that `filter` came to by `measurement`.
+    pub fn add(&mut self, filter: &Filter<'m>, measurement: AngleMeasurement<HUMAN_ANGLES>) {
+        self.measurements.push(measurement);
+        self.keep(filter);
+    }
+
+    fn keep(&mut self, filter: &Filter<'m>) {
+        match (&mut self.states, &filter.kind) {
+            (States::Kalman(states), Kind::Kalman(filter, options)) => {
+                states.push(KalmanState { filter: **filter, options: *options });
+            }
+            (States::Coupled(states), Kind::Coupled(filter)) => states.push(CoupledState(**filter)),
+            // `begin` took the kind from the same filter.
+            _ => {}
+        }
+    }
+
+    /// What each state tells given all measurements.
+    #[must_use]
+    pub fn smoothed(&self) -> Vec<Smoothed<HUMAN_ANGLES>> {
+        match &self.states {
+            States::Kalman(states) => backward(&self.model, states, &self.measurements),
+            States::Coupled(states) => backward(&self.model, states, &self.measurements),
         }
     }
 }

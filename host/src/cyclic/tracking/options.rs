@@ -73,6 +73,12 @@ impl Updates {
             Self::At(frames) => frames.contains(&frame),
         }
     }
+
+    /// The same, and the first row, which gives the first state in any case.
+    #[must_use]
+    pub fn sees(&self, first_frame: u64, frame: u64) -> bool {
+        frame == first_frame || self.uses(first_frame, frame)
+    }
 }
 
 /// Options of a run.
@@ -96,6 +102,8 @@ pub struct TrackingOptions {
     pub particles: usize,
     /// Seed of everything that is drawn.
     pub seed: u64,
+    /// Whether each estimate is the one given the whole recording, by a pass backwards over the filter's.
+    pub smooth: bool,
 }
 
 impl Default for TrackingOptions {
@@ -110,6 +118,7 @@ impl Default for TrackingOptions {
             rate_hz: None,
             particles: 10_000,
             seed: 1,
+            smooth: false,
         }
     }
 }
@@ -144,6 +153,13 @@ impl TrackingOptions {
         }
         if self.filter == FilterName::Particle && !(1..=MOST_PARTICLES).contains(&self.particles) {
             return refuse("particles", format!("have to be 1 to {MOST_PARTICLES}, not {}", self.particles));
+        }
+        if self.smooth && self.filter == FilterName::Particle {
+            return refuse(
+                "smooth",
+                "needs a filter whose answer is a mean and a covariance; `particle` has a cloud: use --filter coupled, paper or paper-cut"
+                    .into(),
+            );
         }
         let start_fits = match self.start {
             StartName::Standard => true,
@@ -183,6 +199,7 @@ mod tests {
             (TrackingOptions { initial_cycle_velocity: Some(f64::NAN), ..good.clone() }, "initial-cycle-velocity"),
             (TrackingOptions { updates: Updates::Every(0), ..good.clone() }, "update-every"),
             (TrackingOptions { filter: FilterName::Particle, particles: 0, ..good.clone() }, "particles"),
+            (TrackingOptions { filter: FilterName::Particle, smooth: true, ..good.clone() }, "smooth"),
             (TrackingOptions { filter: FilterName::Paper, start: StartName::Uniform, ..good.clone() }, "init"),
         ];
         for (options, name) in bad {

@@ -1,8 +1,9 @@
 //! One pass of a filter over an angle table.
 
-use super::filter::Filter;
+use super::filter::{Filter, Pass};
 use super::options::TrackingOptions;
 use crate::cyclic::angle_table::ANGLES;
+use crate::cyclic::smoothing::replace_estimates;
 use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
 use anyhow::{Result, bail, ensure};
 use sinew_core::cyclic::measurement::MAX_STEP_FRAMES;
@@ -53,6 +54,7 @@ pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions)
         bail!("the table has no angle in any row, so there is nothing to track; see `sinew angles --min-confidence`")
     };
     let mut filter = Filter::new(view, options, &measured(&table.rows()[first]), step_frames)?;
+    let mut pass = if options.smooth { Pass::begin(&filter) } else { None };
     let mut frames: Vec<TrackedFrame> = Vec::with_capacity(table.rows().len());
     // Rows before the first one with an angle are answered with the first state as well.
     frames.extend(table.rows()[..=first].iter().map(|row| tracked(row.frame, filter.first_estimate(), None)));
@@ -64,8 +66,18 @@ pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions)
         let angles = if used { measured(row) } else { [None; HUMAN_ANGLES] };
         let measurement = AngleMeasurement::new(&angles, options.sigma_rad as f32)?.after(step as f32)?;
         let estimate = filter.step(&measurement);
+        if let Some(pass) = &mut pass {
+            pass.add(&filter, measurement);
+        }
         let next = tracked(row.frame, estimate, frames.last().map(|before| (before, step)));
         frames.push(next);
+    }
+    if let Some(pass) = pass {
+        replace_estimates(&mut frames[first..], &pass.smoothed());
+        let start = frames[first].clone();
+        for frame in &mut frames[..first] {
+            *frame = TrackedFrame { frame: frame.frame, ..start.clone() };
+        }
     }
     Ok(Tracked { frames, rate_hz, step_frames })
 }

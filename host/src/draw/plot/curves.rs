@@ -19,6 +19,8 @@ const COLOURS: [RGBColor; 7] = [
 ];
 /// Curves with more points than this get no dots.
 const MAX_DOTS: usize = 60;
+/// Radius of a mark, pixels of the doubled drawing.
+const MARK_RADIUS: i32 = 3;
 
 /// One line of [`curves_plot`].
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -31,6 +33,8 @@ pub struct Curve {
     pub low: Option<Vec<f64>>,
     /// Upper rim of the band, one for each point.
     pub high: Option<Vec<f64>>,
+    /// Points that stand beside the line, such as what was measured: small dots in its colour. Those that are not finite are absent.
+    pub marks: Vec<(f64, f64)>,
 }
 
 impl Curve {
@@ -53,7 +57,7 @@ impl Curve {
             self.low.is_some() == self.high.is_some(),
             "curve `{name}`: a band needs both `low` and `high`; give both or none"
         );
-        let bad = self.points.iter().find(|point| log_x && point.0 <= 0.0);
+        let bad = self.points.iter().chain(&self.marks).find(|point| log_x && point.0 <= 0.0);
         let bad = bad.map_or(1.0, |point| point.0);
         ensure!(bad > 0.0, "curve `{name}`: x = {bad} on a logarithmic axis, which needs x > 0; use a linear one");
         Ok(())
@@ -69,9 +73,10 @@ pub fn curves_plot(title: &str, x_label: &str, y_label: &str, log_x: bool, curve
     let place = |x: f64| if log_x { log_place(x) } else { plottable(x).then_some(x) };
     let seen = curves.iter().flat_map(|curve| &curve.points).any(|(x, y)| place(*x).is_some() && plottable(*y));
     ensure!(seen, "plot `{title}`: no curve has a finite point; give one at least");
-    let xs = curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0));
+    let all = |curve: &'_ Curve| curve.points.iter().chain(&curve.marks).copied().collect::<Vec<_>>();
+    let xs = curves.iter().flat_map(all).map(|point| point.0);
     let x_axis = if log_x { Axis::logarithmic(xs) } else { Axis::over(xs) };
-    let lines = curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1));
+    let lines = curves.iter().flat_map(all).map(|point| point.1);
     let bands = curves.iter().flat_map(Curve::band).flat_map(|(_, low, high)| [low, high]);
     let y_axis = Axis::over(lines.chain(bands));
     render(SIZE_PX.0, SIZE_PX.1, |area| {
@@ -82,6 +87,10 @@ pub fn curves_plot(title: &str, x_label: &str, y_label: &str, log_x: bool, curve
                 place(x).filter(|_| plottable(low) && plottable(high)).map(|x| (x, low.min(high), high.max(low)))
             });
             band(&mut chart, rims, *colour, 0.18)?;
+        }
+        for (curve, colour) in curves.iter().zip(COLOURS.iter().cycle()) {
+            let marks = curve.marks.iter().filter_map(|(x, y)| place(*x).filter(|_| plottable(*y)).map(|x| (x, *y)));
+            chart.draw_series(marks.map(|mark| Circle::new(mark, MARK_RADIUS, colour.mix(0.45).filled())))?;
         }
         for (index, curve) in curves.iter().enumerate() {
             let colour = COLOURS[index % COLOURS.len()];
@@ -144,6 +153,22 @@ mod tests {
             assert!((500..20_000).contains(&count), "{count} pixels of {colour:?}");
         }
         assert_eq!(pixels_near(&image, COLOURS[2]), 0);
+    }
+
+    /// Marks are dots off the line, in a lighter shade of its colour, and widen the axes.
+    #[test]
+    fn marks_appear_beside_the_line_and_what_is_not_finite_is_absent() {
+        let line = curve(&[(0.0, 0.0), (1.0, 0.0)]);
+        let plot = |marks: &[(f64, f64)]| {
+            let marked = Curve { marks: marks.to_vec(), ..line.clone() };
+            let image = curves_plot("", "x", "y", false, &[marked]).unwrap();
+            image.pixels().filter(|p| p[2] > 180 && p[0] < 180 && p[2] > p[0] + 40).count()
+        };
+        let [none, missing, some] = [&[][..], &[(0.5, f64::NAN)], &[(0.3, 0.4), (0.6, 0.5), (0.9, -0.4)]].map(plot);
+        assert_eq!(none, missing);
+        assert!(some > none + 15, "{some} beside {none} pixels");
+        let bad = Curve { marks: vec![(-1.0, 1.0)], ..curve(&[(1.0, 1.0)]) };
+        assert!(curves_plot("t", "x", "y", true, &[bad]).unwrap_err().to_string().contains("x = -1"));
     }
 
     #[test]

@@ -1,0 +1,175 @@
+//! What a smoother over a whole recording reads of the phase-coupled filter: moments, and the linear step between two frames.
+
+use super::coupled::{CoupledFilter, GATE_SIGMAS, quadratic};
+use super::coupled_block::{AngleBlock, Basis, PARTS};
+use super::cycle_state::CycleState;
+use super::{AngleMeasurement, MotionModel};
+use crate::math::wrap_angle;
+
+/// How one angle's parts move on: parts <- map parts + noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BlockTransition {
+    /// Row: new part, column: old part.
+    pub map: [[f32; PARTS]; PARTS],
+    /// Covariance of the noise.
+    pub noise: [[f32; PARTS]; PARTS],
+}
+
+/// A step of the phase-coupled filter as a linear map with noise. (c, v) move by [1, `step_frames`; 0, 1]; the angles' parts move
+/// on each by themselves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoupledTransition<const N: usize> {
+    /// Length of the step, frames at the model's rate.
+    pub step_frames: f32,
+    /// Covariance of the noise of (c, v): cc, cv, vv.
+    pub cycle_noise: [f32; 3],
+    /// Each angle's parts.
+    pub blocks: [BlockTransition; N],
+}
+
+impl<const N: usize> CoupledFilter<N> {
+    /// Position and velocity in the cycle with their covariance.
+    #[must_use]
+    pub const fn cycle(&self) -> CycleState {
+        let [position_variance, covariance, velocity_variance] = self.cycle;
+        CycleState {
+            position: self.position,
+            velocity: self.velocity,
+            position_variance,
+            covariance,
+            velocity_variance,
+        }
+    }
+
+    /// The parts of each angle, given the cycle's state; those beyond the model's angles mean nothing.
+    #[must_use]
+    pub const fn blocks(&self) -> &[AngleBlock; N] {
+        &self.blocks
+    }
+
+    /// How often the position was searched for anew, which a frame before says nothing about (wraps at 65536).
+    #[must_use]
+    pub const fn relocks(&self) -> u16 {
+        self.relocks
+    }
+
+    /// The step that [`Self::predict`] would take from here: found by letting it move unit vectors, and noise alone.
+    #[must_use]
+    pub fn transition(&self, model: &MotionModel<'_>, step_frames: f32) -> CoupledTransition<N> {
+        let mut still = *self;
+        still.cycle = [0.0; 3];
+        for block in &mut still.blocks {
+            *block =
+                AngleBlock { mean: [0.0; PARTS], regression: [[0.0; 2]; PARTS], covariance: [[0.0; PARTS]; PARTS] };
+        }
+        let mut noise = still;
+        noise.predict(model, step_frames);
+        let mut blocks =
+            core::array::from_fn(|i| BlockTransition { map: [[0.0; PARTS]; PARTS], noise: noise.blocks[i].covariance });
+        for part in 0..PARTS {
+            let mut unit = still;
+            for block in &mut unit.blocks {
+                block.mean[part] = 1.0;
+            }
+            unit.predict(model, step_frames);
+            for (block, moved) in blocks.iter_mut().zip(&unit.blocks) {
+                for (row, value) in block.map.iter_mut().zip(moved.mean) {
+                    row[part] = value;
+                }
+            }
+        }
+        CoupledTransition { step_frames, cycle_noise: noise.cycle, blocks }
+    }
+
+    /// Variance by which [`Self::correct`] opens the constant of each angle that lies beyond the gate, rad^2; 0 for the others.
+    /// Called before it, on the predicted filter.
+    #[must_use]
+    pub fn gated_variance_rad2(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> [f32; N] {
+        let point = model.point(self.position);
+        let (pose, slope) = (model.mean_pose_rad::<N>(point), model.mean_pose_slope::<N>(point));
+        let basis = Basis::at(self.position);
+        let mut opened = [0.0; N];
+        for i in 0..model.angle_count().min(N) {
+            let Some(measured) = measurement.angle_rad(i) else { continue };
+            let noise = measurement.std_rad()[i] * measurement.std_rad()[i];
+            let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
+            let outlook = self.blocks[i].outlook(&basis, slope[i]);
+            let total = outlook.variance + noise + quadratic(&outlook.gradient, &self.cycle);
+            if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total {
+                opened[i] = residual * residual;
+            }
+        }
+        opened
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::synthetic::{mean_angle, table};
+    use super::*;
+
+    const N: usize = 13;
+
+    fn started(model: &MotionModel<'_>) -> CoupledFilter<N> {
+        let first = core::array::from_fn(|i| Some(mean_angle(i, 0.2) + 0.05));
+        let mut filter = CoupledFilter::<N>::new(model, &first, Some(0.2), None).unwrap();
+        for frame in 1..20 {
+            let seen = core::array::from_fn(|i| Some(mean_angle(i, 0.2 + frame as f32 / 65.0) + 0.05));
+            filter.step(model, &AngleMeasurement::new(&seen, 0.05).unwrap());
+        }
+        filter
+    }
+
+    /// What predict does to means and, where no regression on (c, v) is left, to covariances.
+    #[test]
+    fn the_transition_is_that_of_predict() {
+        let table = table(0.001, 9);
+        let model = table.model().unwrap();
+        let mut filter = started(&model);
+        for block in &mut filter.blocks {
+            block.regression = [[0.0; 2]; PARTS];
+        }
+        let transition = filter.transition(&model, 2.5);
+        let mut moved = filter;
+        moved.predict(&model, 2.5);
+        for ((old, new), step) in filter.blocks.iter().zip(&moved.blocks).zip(&transition.blocks) {
+            for i in 0..PARTS {
+                let mean: f32 = (0..PARTS).map(|j| step.map[i][j] * old.mean[j]).sum();
+                assert!((mean - new.mean[i]).abs() < 1.0e-5, "{mean} beside {}", new.mean[i]);
+                for j in 0..PARTS {
+                    let sum = (0..PARTS * PARTS).map(|k| {
+                        let (a, b) = (k / PARTS, k % PARTS);
+                        step.map[i][a] * old.covariance[a][b] * step.map[j][b]
+                    });
+                    let moved = sum.sum::<f32>() + step.noise[i][j];
+                    let scale = (new.covariance[i][i] * new.covariance[j][j]).sqrt();
+                    assert!((moved - new.covariance[i][j]).abs() < 1.0e-4 * scale, "{i} {j}");
+                }
+            }
+        }
+        let (old, new) = (filter.cycle(), moved.cycle());
+        let vv = old.velocity_variance + transition.cycle_noise[2];
+        assert!((vv / new.velocity_variance - 1.0).abs() < 1.0e-5);
+        let cc =
+            old.position_variance + 5.0 * old.covariance + 6.25 * old.velocity_variance + transition.cycle_noise[0];
+        assert!((cc / new.position_variance - 1.0).abs() < 1.0e-4);
+    }
+
+    #[test]
+    fn what_lies_beyond_the_gate_opens_its_constant() {
+        let table = table(0.001, 9);
+        let model = table.model().unwrap();
+        let mut filter = started(&model);
+        filter.predict(&model, 1.0);
+        let position = filter.cycle().position;
+        let seen = core::array::from_fn(|i| Some(mean_angle(i, position) + if i == 4 { 2.0 } else { 0.05 }));
+        let measurement = AngleMeasurement::new(&seen, 0.05).unwrap();
+        let opened = filter.gated_variance_rad2(&model, &measurement);
+        assert!(opened[4] > 1.0 && opened.iter().filter(|variance| **variance > 0.0).count() == 1, "{opened:?}");
+        let mut corrected = filter;
+        corrected.correct(&model, &measurement);
+        assert!(corrected.blocks()[4].covariance[0][0] < opened[4]);
+        assert!((corrected.blocks()[4].mean[0] - filter.blocks()[4].mean[0]).abs() > 1.0, "learned anew");
+        assert_eq!(corrected.relocks(), 0);
+    }
+}

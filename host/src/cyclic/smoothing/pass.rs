@@ -1,0 +1,82 @@
+//! The pass backwards over the states of a filter.
+
+use super::least_angle;
+use super::recursion::{Moments, smooth_step};
+use nalgebra::{DMatrix, DVector};
+use sinew_core::cyclic::{AngleMeasurement, MotionModel};
+
+/// How two neighbouring states hang together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Link {
+    /// Mean of the later state before its measurement.
+    pub predicted_mean: DVector<f64>,
+    /// Covariance of the earlier state with the later one before its measurement.
+    pub cross: DMatrix<f64>,
+    /// Covariance of the later state before its measurement.
+    pub predicted_covariance: DMatrix<f64>,
+}
+
+/// What is told of a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Smoothed<const N: usize> {
+    /// Angles, any turn.
+    pub angles_rad: [f64; N],
+    /// Their variances, rad^2.
+    pub angle_variance_rad2: [f64; N],
+    /// Position in the cycle, [0, 1).
+    pub cycle_position: f64,
+    /// Its variance, cycles^2.
+    pub cycle_position_variance: f64,
+    /// Cycles per frame of the model's rate.
+    pub cycle_velocity: f64,
+    /// Its variance.
+    pub cycle_velocity_variance: f64,
+}
+
+/// State of a filter after a frame, from which a smoother can go back.
+pub trait Smoothable<const N: usize> {
+    /// What the numbers of the state wrap around at: a turn, a cycle, or nothing.
+    fn period(&self, model: &MotionModel<'_>, index: usize) -> Option<f64>;
+
+    /// Mean and covariance given the measurements up to this frame.
+    fn moments(&self, model: &MotionModel<'_>) -> Moments;
+
+    /// The step to the state `next`, which came out of `measurement`; `None` where that one does not follow from this.
+    fn link(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, next: &Self) -> Option<Link>;
+
+    /// What moments of this kind of state tell of the frame. What no later measurement can change is that of this state.
+    fn told(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N>;
+}
+
+/// Smooths: `measurements` at k led from the state k to the state k + 1.
+#[must_use]
+pub fn backward<const N: usize, S: Smoothable<N>>(
+    model: &MotionModel<'_>,
+    states: &[S],
+    measurements: &[AngleMeasurement<N>],
+) -> Vec<Smoothed<N>> {
+    let mut all = Vec::with_capacity(states.len());
+    let mut later: Option<(&S, Moments)> = None;
+    for (index, state) in states.iter().enumerate().rev() {
+        let filtered = state.moments(model);
+        let linked = later.as_ref().and_then(|(next, moments)| {
+            let link = state.link(model, measurements.get(index)?, next)?;
+            let mut surprise = &moments.mean - &link.predicted_mean;
+            for (i, value) in surprise.iter_mut().enumerate() {
+                if let Some(period) = state.period(model, i) {
+                    *value -= period * (*value / period).round();
+                }
+            }
+            smooth_step(&filtered, &link.cross, &link.predicted_covariance, &moments.covariance, &surprise)
+        });
+        let moments = linked.unwrap_or(filtered);
+        let mut told = state.told(model, &moments);
+        for angle in &mut told.angles_rad {
+            *angle = least_angle(*angle);
+        }
+        all.push(told);
+        later = Some((state, moments));
+    }
+    all.reverse();
+    all
+}
