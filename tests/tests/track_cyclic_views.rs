@@ -6,7 +6,7 @@ use assert_cmd::Command;
 use cyclic_walk::walk;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
-use sinew::cyclic::AngleTable;
+use sinew::cyclic::{AngleRow, AngleTable};
 use sinew::evaluate::cyclic::Protocol;
 use sinew::evaluate::cyclic::protocol::measurements;
 use sinew_tests::sinew_command;
@@ -58,4 +58,52 @@ fn a_cloud_of_particles_is_not_looked_back_over() {
     let mut command = sinew(root.path(), "walk.csv", "est.csv", &["--smooth", "--filter", "particle"]);
     command.assert().code(1).stderr(contains("`smooth` needs a filter").and(contains("--filter coupled")));
     assert!(!root.path().join("est.csv").exists());
+}
+
+/// The walk as a table of keypoints: hips at (100 + f, 90) pixels, trunk 60.
+fn keypoints(frames: u64) -> AngleTable {
+    let columns = ["hip_center_u_px", "hip_center_v_px", "neck_length_px", "mirrored"].map(str::to_owned);
+    let whole = walk(frames, 1.0 / 63.0);
+    let rows = whole.rows().iter().map(|row| AngleRow {
+        extra: vec![(100 + row.frame).to_string(), "90".into(), "60".into(), "0".into()],
+        ..row.clone()
+    });
+    AngleTable::new(rows.collect(), columns.to_vec()).unwrap()
+}
+
+#[test]
+fn overlays_and_an_animation_lie_beside_the_estimates() {
+    let root = tempfile::tempdir().unwrap();
+    keypoints(12).write(&root.path().join("walk.csv")).unwrap();
+    let frames = root.path().join("frames");
+    fs::create_dir(&frames).unwrap();
+    for index in 0..10 {
+        image::RgbImage::new(240, 200).save(frames.join(format!("frame_{index}.png"))).unwrap();
+    }
+    let more = ["--overlay", "frames", "--animation", "walk.gif"];
+    let run = sinew(root.path(), "walk.csv", "est.csv", &more).assert().success();
+    run.stdout(contains("overlay: 10 pictures in est_overlay").and(contains("animation: walk.gif")))
+        .stderr(contains("2 rows have no image"));
+    let drawn = image::open(root.path().join("est_overlay/frame_9.png")).unwrap().into_rgb8();
+    assert!(drawn.pixels().filter(|pixel| pixel.0 != [0; 3]).count() > 500);
+    assert!(fs::read(root.path().join("walk.gif")).unwrap().starts_with(b"GIF89a"));
+    assert_eq!(column(&root.path().join("est.csv"), "frame").len(), 12);
+}
+
+#[test]
+fn views_that_cannot_be_made_are_refused_before_the_run() {
+    let root = tempfile::tempdir().unwrap();
+    walk(12, 1.0 / 63.0).write(&root.path().join("walk.csv")).unwrap();
+    fs::create_dir(root.path().join("empty")).unwrap();
+    fs::create_dir(root.path().join("frames")).unwrap();
+    image::RgbImage::new(40, 40).save(root.path().join("frames/0.png")).unwrap();
+    let refused = |more: &[&str], message: &str| {
+        sinew(root.path(), "walk.csv", "est.csv", more).assert().code(1).stderr(contains(message));
+        assert!(!root.path().join("est.csv").exists() && !root.path().join("est_overlay").exists(), "{more:?}");
+    };
+    refused(&["--overlay", "gone"], "no such folder");
+    refused(&["--overlay", "empty"], "is empty");
+    refused(&["--overlay", "frames"], "`overlay` needs a table that tells where the person is");
+    refused(&["--animation", "walk.mp4"], "`animation` has to end in .gif");
+    refused(&["--animation", "empty"], "has to end in .gif");
 }

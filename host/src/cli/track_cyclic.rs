@@ -1,12 +1,15 @@
 //! `sinew track cyclic`: angles, phase and cadence from an angle table.
 
+use crate::cyclic::pictures::{OverlayFrames, animation};
+use crate::cyclic::report::body::Body;
+use crate::cyclic::report::joints::figures;
 use crate::cyclic::report::{Origin, Report};
-use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates, table, track};
+use crate::cyclic::tracking::{FilterName, StartName, Tracked, TrackingOptions, Updates, table, track};
 use crate::cyclic::{AngleTable, CyclicModel};
 use crate::output::{OutputDir, check_writable_file};
 use anyhow::{Result, ensure};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Options of `sinew track cyclic`.
 #[derive(Debug, Args)]
@@ -55,6 +58,13 @@ pub struct TrackCyclicArgs {
     /// Folder for what a coach reads: summary, repetitions, curves over the cycle, symmetry, plots, TRC and MOT files.
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
+    /// Draw the figure on the images of this folder, frame k of the table on image k in natural order, counted from 0; they are written
+    /// into `EST_overlay` beside the estimates. Needs a table from keypoints.
+    #[arg(long, value_name = "FRAMES_DIR")]
+    pub overlay: Option<PathBuf>,
+    /// Write the stick figure alone as an animation, what was measured thin and grey behind the estimate.
+    #[arg(long, value_name = "FILE.gif")]
+    pub animation: Option<PathBuf>,
     /// Height of the person, metres: the scale of the report's joints.trc.
     #[arg(long, value_name = "METRES", default_value_t = 1.75)]
     pub height: f64,
@@ -69,9 +79,22 @@ pub fn run(args: &TrackCyclicArgs) -> Result<()> {
     options.check()?;
     ensure!((0.3..=3.0).contains(&args.height), "`height` has to lie from 0.3 to 3 metres, not {}", args.height);
     check_writable_file(&args.out)?;
+    let frames = args.overlay.as_deref().map(OverlayFrames::open).transpose()?;
+    if let Some(path) = &args.animation {
+        let is_gif = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gif"));
+        ensure!(is_gif, "`animation` has to end in .gif, not `{}`", path.display());
+        check_writable_file(path)?;
+    }
     let output = args.report.as_deref().map(OutputDir::create).transpose()?;
     let model = CyclicModel::from_option(&args.model)?;
     let angles = AngleTable::read(&args.table)?;
+    let overlay = match &frames {
+        Some(frames) => {
+            OverlayFrames::check(&angles)?;
+            Some((frames, OutputDir::create(&overlay_folder(&args.out))?))
+        }
+        None => None,
+    };
     let tracked = track(&angles, &model, &options)?;
     table::write(&tracked, &args.out)?;
     let report = Report::new(&angles, &tracked, &options);
@@ -83,7 +106,51 @@ pub fn run(args: &TrackCyclicArgs) -> Result<()> {
         report.write(&origin, &angles, &tracked, &output)?;
         text.push_str(&format!("report: {}\n", output.path().display()));
     }
+    if overlay.is_some() || args.animation.is_some() {
+        text.push_str(&show(args, &angles, &tracked, &report, overlay)?);
+    }
     super::stdout::write_all(text.as_bytes())
+}
+
+/// `estimate_overlay` beside `estimate.csv`.
+fn overlay_folder(out: &Path) -> PathBuf {
+    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+    out.with_file_name(format!("{stem}_overlay"))
+}
+
+/// Most reasons for skipped overlays that are told.
+const TOLD_REASONS: usize = 5;
+
+/// Draws overlays and animation; tells on standard error what was skipped.
+fn show(
+    args: &TrackCyclicArgs,
+    angles: &AngleTable,
+    tracked: &Tracked,
+    report: &Report,
+    overlay: Option<(&OverlayFrames, OutputDir)>,
+) -> Result<String> {
+    let body = Body::of_table(angles, args.height);
+    let figures = figures(angles, tracked, &report.measured_shares, &body, args.sigma_deg.to_radians())?;
+    let mut text = String::new();
+    if let Some((frames, folder)) = overlay {
+        let overlaid = frames.draw(angles, tracked, &figures, &body, &folder)?;
+        for reason in overlaid.skipped.iter().take(TOLD_REASONS) {
+            eprintln!("overlay: {reason}; skipped");
+        }
+        if overlaid.skipped.len() > TOLD_REASONS {
+            eprintln!("overlay: {} more of the kind", overlaid.skipped.len() - TOLD_REASONS);
+        }
+        text.push_str(&format!("overlay: {} pictures in {}\n", overlaid.written, folder.path().display()));
+    }
+    if let Some(path) = &args.animation {
+        animation::write(path, angles, &figures, &body, tracked.rate_hz)?;
+        let longest = animation::LONGEST_S;
+        if tracked.frames.len() as f64 > longest * tracked.rate_hz {
+            eprintln!("animation: only the first {longest} seconds are shown");
+        }
+        text.push_str(&format!("animation: {}\n", path.display()));
+    }
+    Ok(text)
 }
 
 /// Cycles and cadence, and how alike the sides are, for a terminal.

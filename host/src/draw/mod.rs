@@ -8,5 +8,6 @@ pub mod contact_sheet;
 mod lettering;
 pub mod overlay;
 pub mod plot;
+pub mod stick_figure;
 mod stroke;
 mod top_view;

@@ -3,7 +3,7 @@
 mod arms;
 mod input;
 mod particles;
-mod pictures;
+pub(crate) mod pictures;
 mod report;
 mod run;
 mod table;

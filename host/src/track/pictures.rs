@@ -83,7 +83,7 @@ impl Pictures {
 }
 
 /// File name and overlay name of each frame: the stem with `.png`, or the whole name where two files share a stem.
-fn overlay_names(files: &[PathBuf]) -> Vec<(String, String)> {
+pub(crate) fn overlay_names(files: &[PathBuf]) -> Vec<(String, String)> {
     let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
     let stem = |file: &Path| part(file.file_stem());
     let mut uses: BTreeMap<String, usize> = BTreeMap::new();

@@ -73,6 +73,27 @@ impl PlaceFilter {
     }
 }
 
+/// Root, lengths and angles of a row: x forward, y down, in the table's unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// Number of the frame.
+    pub frame: u64,
+    /// Where the root is; (0, 0) where the table tells no place, `None` where it is not known any more.
+    pub root: Option<Point>,
+    /// Length of each segment.
+    pub lengths: [f64; ANGLES],
+    /// Angles of the estimate; one that was never measured is missing.
+    pub angles_rad: [Option<f64>; ANGLES],
+}
+
+impl Figure {
+    /// The joints about `root`.
+    #[must_use]
+    pub fn joints_about(&self, root: Option<Point>) -> JointPositions {
+        joint_positions(root, &self.lengths, &self.angles_rad)
+    }
+}
+
 /// Joints of each row with its frame number: x forward, y down, in the table's unit; in metres about a root at (0, 0) where the
 /// table tells no place. Joints that hang on an angle that was never measured are missing.
 ///
@@ -85,6 +106,21 @@ pub fn positions(
     body: &Body,
     sigma_rad: f64,
 ) -> Result<Vec<(u64, JointPositions)>> {
+    let figures = figures(table, tracked, &report.measured_shares, body, sigma_rad)?;
+    Ok(figures.iter().map(|figure| (figure.frame, figure.joints_about(figure.root))).collect())
+}
+
+/// The figure of each row, root and lengths filtered.
+///
+/// # Errors
+/// None in practice: lengths and noise are positive.
+pub fn figures(
+    table: &AngleTable,
+    tracked: &Tracked,
+    measured_shares: &[f64; ANGLES],
+    body: &Body,
+    sigma_rad: f64,
+) -> Result<Vec<Figure>> {
     let mut place = PlaceFilter::new(body, sigma_rad, tracked.rate_hz)?;
     let mut before = table.first_frame();
     let mut all = Vec::with_capacity(tracked.frames.len());
@@ -94,11 +130,21 @@ pub fn positions(
         before = frame.frame;
         let root = if body.has_root() { place.root() } else { Some([0.0, 0.0]) };
         let lengths = std::array::from_fn(|angle| f64::from(place.lengths[angle].value()));
-        let measured = |angle: usize| report.measured_shares[angle] > 0.0;
-        let angles = std::array::from_fn(|angle| measured(angle).then_some(frame.angles_rad[angle]));
-        all.push((frame.frame, joint_positions(root, &lengths, &angles)));
+        let measured = |angle: usize| measured_shares[angle] > 0.0;
+        let angles_rad = std::array::from_fn(|angle| measured(angle).then_some(frame.angles_rad[angle]));
+        all.push(Figure { frame: frame.frame, root, lengths, angles_rad });
     }
     Ok(all)
+}
+
+/// Joints as they lie in the image of a person whose `side` is -1 where they face left: x is turned back, and left is the person's own
+/// left again.
+#[must_use]
+pub fn in_image(joints: &JointPositions, side: f64) -> JointPositions {
+    std::array::from_fn(|index| {
+        let place = if side < 0.0 { joints[usize::from(HUMAN.joints()[index].mirror)] } else { joints[index] };
+        place.map(|[x, y]| [side * x, y])
+    })
 }
 
 /// `frame`, then x and y of each joint in the pixels of the image. Of a person who faces left, too, left is their own left here:
@@ -115,10 +161,9 @@ pub fn to_csv_px(positions: &[(u64, JointPositions)], table: &AngleTable, body: 
     for ((frame, joints), row) in positions.iter().zip(table.rows()) {
         let side = body.side(&row.extra);
         let _ = write!(text, "{frame}");
-        for (index, joint) in HUMAN.joints().iter().enumerate() {
-            let place = if side < 0.0 { joints[usize::from(joint.mirror)] } else { joints[index] };
+        for place in in_image(joints, side) {
             let _ = match place {
-                Some([x, y]) => write!(text, ",{:.2},{y:.2}", side * x),
+                Some([x, y]) => write!(text, ",{x:.2},{y:.2}"),
                 None => write!(text, ",,"),
             };
         }
