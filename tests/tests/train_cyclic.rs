@@ -142,3 +142,21 @@ fn the_shipped_running_is_what_the_commands_make() {
     let text = fs::read_to_string(root.path().join("m.json")).unwrap();
     assert_eq!(text, model_file::to_json(&CyclicModel::from_option("running").unwrap()).unwrap());
 }
+
+#[test]
+fn the_shipped_arm_circles_are_what_the_commands_make() {
+    let Some(mocap) = shared_data("mocap") else { return };
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("cuts.csv"), include_str!("../../host/models/cuts/arm-circles.csv")).unwrap();
+    for trial in ["13_29", "13_31"] {
+        for (end, more) in [("", None), ("_swapped", Some("--swap-sides"))] {
+            let mut command = Command::from_std(sinew_command());
+            command.current_dir(root.path()).arg("angles").arg(mocap.join(format!("cmu-exercise/{trial}.amc")));
+            command.arg("--skeleton").arg(mocap.join("cmu-walk/35/35.asf"));
+            command.args(["--rate", "60", "--out", &format!("{trial}{end}.csv")]).args(more).assert().success();
+        }
+    }
+    sinew(root.path()).args(["--cuts", "cuts.csv", "--out", "m.json"]).assert().success();
+    let text = fs::read_to_string(root.path().join("m.json")).unwrap();
+    assert_eq!(text, model_file::to_json(&CyclicModel::from_option("arm-circles").unwrap()).unwrap());
+}

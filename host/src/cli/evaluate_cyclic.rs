@@ -78,7 +78,7 @@ pub fn run(args: &EvaluateCyclicArgs) -> Result<()> {
         sparse_particles: setting.sparse_particles(&sparse_particles)?,
         starts: setting.starts(&particles)?,
         long_runs: match &args.long {
-            Some(path) => long_runs(&CutList::read(path)?, &model, args.rate, &FILTERS)?,
+            Some(path) => long_runs(&CutList::read(path)?, &model, args.rate, &FILTERS, 1)?,
             None => Vec::new(),
         },
     };

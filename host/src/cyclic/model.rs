@@ -10,6 +10,8 @@ use std::path::Path;
 const SHIPPED_WALKING: &str = include_str!("../../models/walking.json");
 /// Running, as shipped: `models/cuts/running.csv` tells on which cycles it was trained.
 const SHIPPED_RUNNING: &str = include_str!("../../models/running.json");
+/// Arms that circle forwards, as shipped: `models/cuts/arm-circles.csv` tells on which cycles it was trained.
+const SHIPPED_ARM_CIRCLES: &str = include_str!("../../models/arm-circles.json");
 
 /// What a model was trained on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -106,7 +108,7 @@ impl CyclicModel {
         Ok(Self { numbers, trained_on })
     }
 
-    /// The model that an option names: `walking` or `running` as shipped, else a file.
+    /// The model that an option names: `walking`, `running` or `arm-circles` as shipped, else a file.
     ///
     /// # Errors
     /// No such file, or a file that is no model.
@@ -114,9 +116,10 @@ impl CyclicModel {
         match option {
             "walking" => model_file::parse(SHIPPED_WALKING),
             "running" => model_file::parse(SHIPPED_RUNNING),
+            "arm-circles" => model_file::parse(SHIPPED_ARM_CIRCLES),
             path if Path::new(path).exists() => model_file::read(Path::new(path)),
             other => bail!(
-                "`--model {other}`: there is no such file; give walking, running, or a file made by `sinew train cyclic`"
+                "`--model {other}`: there is no such file; give walking, running, arm-circles, or a file made by `sinew train cyclic`"
             ),
         }
     }
@@ -149,7 +152,7 @@ mod tests {
 
     #[test]
     fn shipped_models_are_sound_and_have_the_cadence_of_people() {
-        for (name, cycles_per_s) in [("walking", 0.7..1.2), ("running", 1.1..1.7)] {
+        for (name, cycles_per_s) in [("walking", 0.7..1.2), ("running", 1.1..1.7), ("arm-circles", 0.8..1.4)] {
             let model = CyclicModel::from_option(name).unwrap();
             let view = model.view();
             let found = view.mean_cycle_velocity() * view.rate_hz();

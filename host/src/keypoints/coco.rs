@@ -1,15 +1,15 @@
-//! One JSON file for all frames: COCO results (a list of detections), COCO annotations, or MMPose predictions.
+//! One JSON file for all frames: COCO results (a list of detections), COCO annotations, MMPose predictions, or bare lists of
+//! points.
 
-use super::DetectedFrame;
 use super::error::{KeypointError, json, read_text};
-use super::layout;
 use super::openpose::{numbers, people};
+use super::{DetectedFrame, layout, point_lists};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Reads a JSON file: a list of results, an object with `annotations` (and `images`) or with `instance_info`
-/// (MMPose), or one OpenPose frame.
+/// (MMPose), one OpenPose frame, or a list of lists of numbers ([`point_lists`]).
 ///
 /// # Errors
 /// Names the file, the entry and the rule that it broke.
@@ -20,6 +20,9 @@ pub fn read(path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
     }
     if let Some(frames) = value.get("instance_info").and_then(Value::as_array) {
         return frames.iter().enumerate().map(|(index, frame)| mmpose_frame(frame, index, path)).collect();
+    }
+    if let Some(list) = value.as_array().filter(|list| list.iter().any(Value::is_array)) {
+        return point_lists::frames(list, path);
     }
     let names = image_names(&value);
     let list = value.as_array().or_else(|| value.get("annotations").and_then(Value::as_array));

@@ -43,6 +43,9 @@ const fn joint(number: usize) -> Part {
     Part::Joint(number)
 }
 
+/// Head and arms of a swimmer, 7 points: head, shoulder, elbow and wrist of the right arm, then of the left.
+const HEAD_AND_ARMS: [Part; 7] = [Part::Other, joint(5), joint(6), joint(7), joint(2), joint(3), joint(4)];
+
 /// COCO, 17 points: face, then left and right shoulders, elbows, wrists, hips, knees, ankles.
 const COCO_17: [Part; 17] = [
     Part::Nose,
@@ -138,6 +141,7 @@ const BODY_25: [Part; 25] = [
 #[must_use]
 pub fn parts(count: usize) -> Option<Vec<Part>> {
     let parts = match count {
+        7 => HEAD_AND_ARMS.to_vec(),
         17 => COCO_17.to_vec(),
         18 => OPENPOSE_18.to_vec(),
         25 => BODY_25.to_vec(),
@@ -153,7 +157,7 @@ pub fn parts(count: usize) -> Option<Vec<Part>> {
 #[must_use]
 pub fn unknown_count(count: usize) -> String {
     format!(
-        "{count} keypoints; 17 (COCO), 18 (OpenPose COCO), 25 (OpenPose BODY_25), 26 (HALPE) and 133 (COCO-WholeBody) are known"
+        "{count} keypoints; 7 (head and arms), 17 (COCO), 18 (OpenPose COCO), 25 (OpenPose BODY_25), 26 (HALPE) and 133 (COCO-WholeBody) are known"
     )
 }
 
@@ -229,7 +233,7 @@ mod tests {
         assert_eq!(joints(25), body_25.map(Some));
         let openpose_18 = [9.5, 1.0, 5.0, 6.0, 7.0, 2.0, 3.0, 4.0, 11.0, 12.0, 13.0, 8.0, 9.0, 10.0];
         assert_eq!(joints(18), openpose_18.map(Some));
-        assert!(person(&[0.0; 21]).unwrap_err().starts_with("7 keypoints; 17 (COCO)"));
+        assert!(person(&[0.0; 24]).unwrap_err().starts_with("8 keypoints; 7 (head and arms), 17 (COCO)"));
         assert!(person(&[0.0; 50]).unwrap_err().contains("x, y and confidence"));
     }
 

@@ -8,6 +8,7 @@ pub mod facing;
 pub mod layout;
 pub mod openpose;
 pub mod person;
+pub mod point_lists;
 pub mod table;
 
 pub use error::KeypointError;

@@ -126,6 +126,9 @@ mod tests {
             refusal(r#"{"people":[{"pose_keypoints_2d":"x"}]}"#)
                 .contains("people[0].pose_keypoints_2d: has to be a list")
         );
-        assert!(refusal(r#"{"people":[{"pose_keypoints_2d":[1,2,3]}]}"#).contains("1 keypoints; 17 (COCO)"));
+        assert!(
+            refusal(r#"{"people":[{"pose_keypoints_2d":[1,2,3]}]}"#)
+                .contains("1 keypoints; 7 (head and arms), 17 (COCO)")
+        );
     }
 }

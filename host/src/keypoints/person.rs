@@ -10,9 +10,14 @@ const FARTHEST_STEP: f64 = 0.25;
 const FARTHER_PER_FRAME: f64 = 0.05;
 const FARTHEST: f64 = 1.0;
 
-/// For each frame the index of the person that is followed, or `None` where nobody is near enough.
+/// For each frame the index of the person that is followed, or `None` where nobody is near enough. Where no frame has more
+/// than one person it is that one: there is nobody to be taken for them, and a box of the few points that were seen says
+/// nothing about a person's size.
 #[must_use]
 pub fn follow(frames: &[DetectedFrame]) -> Vec<Option<usize>> {
+    if frames.iter().all(|frame| frame.people.len() <= 1) {
+        return frames.iter().map(|frame| (!frame.people.is_empty()).then_some(0)).collect();
+    }
     let mut last: Option<(usize, &Vec<Keypoint>)> = None;
     let mut chosen = Vec::with_capacity(frames.len());
     for (now, frame) in frames.iter().enumerate() {
@@ -125,6 +130,17 @@ mod tests {
             let wanted = if (10..15).contains(&frame) { None } else { Some(frame % 2) };
             assert_eq!(*choice, wanted, "frame {frame}");
         }
+    }
+
+    /// A swimmer of whom a wrist is seen, then the other, then nothing.
+    #[test]
+    fn the_only_person_is_never_lost() {
+        let point =
+            |joint: usize, u: f64| Keypoint { part: Part::Joint(joint), position_px: [u, 9.0], confidence: 1.0 };
+        let people = [vec![vec![point(4, 10.0)]], vec![vec![point(7, 300.0)]], Vec::new(), vec![vec![point(4, 600.0)]]];
+        let frames: Vec<DetectedFrame> =
+            (0..).zip(people).map(|(frame, people)| DetectedFrame { frame, people }).collect();
+        assert_eq!(follow(&frames), [Some(0), Some(0), None, Some(0)]);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! its duration.
 
 use super::protocol::{Protocol, TestCycle, measurements};
-use crate::cyclic::tracking::{FilterName, Summary, TrackingOptions, track};
+use crate::cyclic::tracking::{FilterName, Summary, TrackedFrame, TrackingOptions, track};
 use crate::cyclic::{AngleRow, AngleTable, Cut, CutList, CyclicModel};
 use anyhow::{Result, ensure};
 use rayon::prelude::*;
@@ -30,7 +30,8 @@ pub struct LongRun {
     pub phase_spread: f64,
     /// Greatest error of the position, cycles.
     pub phase_max: f64,
-    /// Relative error of the mean cadence from the third cycle on.
+    /// Relative error of the mean of the reported cadence from the third cycle on, beside the true number of cycles in that
+    /// time.
     pub cadence_error: f64,
 }
 
@@ -77,18 +78,30 @@ fn recordings(list: &CutList) -> Result<Vec<Recording>> {
     Ok(all)
 }
 
-/// Tracks every recording of `list` with every filter, with noisy measurements.
+/// Tracks every recording of `list` with every filter, with measurements whose noise is drawn from `seed`.
 ///
 /// # Errors
 /// A table that cannot be read, no three cycles in a row, a filter that cannot start.
-pub fn long_runs(list: &CutList, model: &CyclicModel, rate_hz: f64, filters: &[FilterName]) -> Result<Vec<LongRun>> {
+pub fn long_runs(
+    list: &CutList,
+    model: &CyclicModel,
+    rate_hz: f64,
+    filters: &[FilterName],
+    seed: u64,
+) -> Result<Vec<LongRun>> {
     let recordings = recordings(list)?;
     let jobs: Vec<(&Recording, FilterName)> =
         recordings.iter().flat_map(|recording| filters.iter().map(move |&filter| (recording, filter))).collect();
-    jobs.into_par_iter().map(|(recording, filter)| long_run(recording, model, rate_hz, filter)).collect()
+    jobs.into_par_iter().map(|(recording, filter)| long_run(recording, model, rate_hz, filter, seed)).collect()
 }
 
-fn long_run(recording: &Recording, model: &CyclicModel, rate_hz: f64, filter: FilterName) -> Result<LongRun> {
+fn long_run(
+    recording: &Recording,
+    model: &CyclicModel,
+    rate_hz: f64,
+    filter: FilterName,
+    seed: u64,
+) -> Result<LongRun> {
     let options = TrackingOptions {
         filter,
         sigma_rad: SIGMA_DEG.to_radians(),
@@ -97,7 +110,7 @@ fn long_run(recording: &Recording, model: &CyclicModel, rate_hz: f64, filter: Fi
         ..TrackingOptions::default()
     };
     let truth = &recording.cycle.truth;
-    let tracked = track(&measurements(truth, Protocol::Noisy, options.sigma_rad, 1), model, &options)?;
+    let tracked = track(&measurements(truth, Protocol::Noisy, options.sigma_rad, seed), model, &options)?;
     let true_cycles = |frame: u64| recording.true_cycles(frame);
     let errors: Vec<f64> = tracked
         .frames
@@ -107,9 +120,14 @@ fn long_run(recording: &Recording, model: &CyclicModel, rate_hz: f64, filter: Fi
             error - error.round()
         })
         .collect();
-    let settled = tracked.frames.iter().find(|frame| true_cycles(frame.frame) >= 2.0).unwrap_or(&tracked.frames[0]);
+    // A frame's velocity belongs to the way to it, so the first frame of the third cycle is the first one left out.
+    let settled: Vec<&TrackedFrame> = tracked.frames.iter().filter(|frame| true_cycles(frame.frame) > 2.0).collect();
+    let velocities =
+        settled.iter().map(|frame| f64::from(frame.estimate.cycle_velocity_per_frame) * tracked.step_frames);
+    let velocity = velocities.sum::<f64>() / settled.len() as f64;
     let last = &tracked.frames[tracked.frames.len() - 1];
-    let true_span = true_cycles(last.frame) - true_cycles(settled.frame);
+    let third = recording.borders[2];
+    let true_velocity = (true_cycles(last.frame) - 2.0) / (last.frame - third) as f64;
     let rms =
         |about: f64| (errors.iter().map(|error| (error - about).powi(2)).sum::<f64>() / errors.len() as f64).sqrt();
     Ok(LongRun {
@@ -120,6 +138,6 @@ fn long_run(recording: &Recording, model: &CyclicModel, rate_hz: f64, filter: Fi
         phase_rms: rms(0.0),
         phase_spread: rms(errors.iter().sum::<f64>() / errors.len() as f64),
         phase_max: errors.iter().fold(0.0, |worst: f64, error| worst.max(error.abs())),
-        cadence_error: (last.cycles - settled.cycles) / true_span - 1.0,
+        cadence_error: velocity / true_velocity - 1.0,
     })
 }

@@ -1,0 +1,102 @@
+//! Arms that go round: real arm circles of one person in two recordings, forwards and backwards. Runs in release where
+//! `../shared/data` is at hand, and says so where not.
+
+use sinew::cyclic::recording::{RecordingOptions, angles};
+use sinew::cyclic::tracking::{FilterName, TrackingOptions, track};
+use sinew::cyclic::training::{TrainingOptions, train};
+use sinew::cyclic::{AngleRow, AngleTable, CutList, CyclicModel};
+use sinew::evaluate::cyclic::Protocol;
+use sinew::evaluate::cyclic::protocol::measurements;
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Cycles, found by `sinew cut` in the frames of each direction, of the trials 13_29 and 13_31 at 60 frames a second.
+const FORWARDS: [&str; 2] =
+    ["13_29.csv,639,694\n13_29.csv,694,752\n13_29.csv,752,821\n", "13_31.csv,1031,1074\n13_31.csv,1074,1124\n"];
+const BACKWARDS: &str = "13_29.csv,844,914\n13_31.csv,1186,1252\n";
+
+fn data() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/mocap");
+    if cfg!(debug_assertions) || !folder.is_dir() {
+        eprintln!("skipped: only in release and with ../shared/data beside the project");
+        return None;
+    }
+    Some(folder)
+}
+
+/// Both trials as angle tables in `folder`.
+fn write_tables(data: &Path, folder: &Path) {
+    let skeleton = Some(data.join("cmu-walk/35/35.asf"));
+    let options = RecordingOptions { skeleton, rate_hz: Some(60.0), ..RecordingOptions::default() };
+    for trial in ["13_29", "13_31"] {
+        let motion = data.join(format!("cmu-exercise/{trial}.amc"));
+        angles(&motion, &options).unwrap().table.write(&folder.join(format!("{trial}.csv"))).unwrap();
+    }
+}
+
+fn trained(folder: &Path, cuts: &str) -> CyclicModel {
+    let list = CutList::parse(&format!("file,start_frame,end_frame\n{cuts}"), &folder.join("cuts.csv")).unwrap();
+    train(&list, TrainingOptions::default()).unwrap()
+}
+
+fn frames(folder: &Path, trial: &str, frames: Range<u64>) -> AngleTable {
+    let table = AngleTable::read(&folder.join(format!("{trial}.csv"))).unwrap();
+    let rows: Vec<AngleRow> = table.rows().iter().filter(|row| frames.contains(&row.frame)).cloned().collect();
+    AngleTable::new(rows, Vec::new()).unwrap()
+}
+
+/// Angles whose whole turns at the end are not those of the truth, and the mean error, degrees.
+fn wrong_turns(model: &CyclicModel, truth: &AngleTable, protocol: Protocol, sigma_deg: f64, seed: u64) -> (usize, f64) {
+    let sigma_rad = sigma_deg.to_radians();
+    let options = TrackingOptions { filter: FilterName::Coupled, sigma_rad, ..TrackingOptions::default() };
+    let tracked = track(&measurements(truth, protocol, sigma_rad, seed), model, &options).unwrap();
+    let (mut wrong, mut sum, mut count) = (0, 0.0, 0);
+    for angle in 0..13 {
+        let apart = |(frame, row): (&sinew::cyclic::tracking::TrackedFrame, &AngleRow)| {
+            frame.angles_rad[angle] - row.angles_rad[angle].unwrap()
+        };
+        let apart: Vec<f64> = tracked.frames.iter().zip(truth.rows()).map(apart).collect();
+        wrong += usize::from((apart[apart.len() - 1] / TAU).round() != 0.0);
+        assert!(apart[0].abs() < PI && apart[1].abs() < PI, "angle {angle} jumps after the first row: {apart:?}");
+        sum += apart.iter().map(|apart| (apart - (apart / TAU).round() * TAU).abs()).sum::<f64>();
+        count += apart.len();
+    }
+    (wrong, (sum / f64::from(count as u32)).to_degrees())
+}
+
+#[test]
+fn turns_of_circling_arms_are_counted_both_ways() {
+    let Some(data) = data() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write_tables(&data, folder);
+    let backwards = trained(folder, BACKWARDS);
+    assert_eq!(backwards.view().parts().turns_per_cycle[6], -1, "the right forearm goes round once");
+    let [first, second] = FORWARDS.map(|cuts| trained(folder, cuts));
+    assert_eq!([&first, &second].map(|model| model.view().parts().turns_per_cycle[6]), [1, 1]);
+    // Each recording by the model of the other one; of the way backwards there are two cycles in all.
+    let cases = [
+        (&second, frames(folder, "13_29", 639..821)),
+        (&first, frames(folder, "13_31", 1031..1124)),
+        (&backwards, frames(folder, "13_29", 844..914)),
+        (&backwards, frames(folder, "13_31", 1186..1252)),
+    ];
+    for (model, truth) in &cases {
+        for (protocol, sigma_deg, most_deg) in [
+            (Protocol::ExactMean, 6.0, 2.0),
+            (Protocol::Noisy, 6.0, 6.0),
+            (Protocol::ExactMean, 29.0, 14.0),
+            (Protocol::Noisy, 29.0, 20.0),
+        ] {
+            for seed in 1..=5 {
+                let (wrong, error_deg) = wrong_turns(model, truth, protocol, sigma_deg, seed);
+                let first = truth.first_frame();
+                println!("{first}: {protocol:?} {sigma_deg}, seed {seed}: {wrong} wrong, {error_deg:.1} degrees");
+                assert!(error_deg > 0.1 && error_deg < most_deg, "{first}: {error_deg}");
+                // With noise of half a radian an arm that points at the camera may go round either way.
+                assert!(wrong <= if sigma_deg < 10.0 { 0 } else { 2 }, "{first}: {wrong} angles");
+            }
+        }
+    }
+}
