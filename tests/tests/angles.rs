@@ -190,7 +190,7 @@ fn bad_motions_are_refused_with_file_line_and_rule() {
 fn recorded_walks_give_the_tables_of_the_data_folder() {
     let (Some(tables), Some(walks)) = (shared_data("cyclic-walking"), shared_data("mocap/cmu-walk")) else { return };
     let root = tempfile::tempdir().unwrap();
-    let mut names: Vec<String> = std::fs::read_dir(&tables)
+    let mut names: Vec<String> = fs::read_dir(&tables)
         .unwrap()
         .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
         .filter(|name| name.len() == 5 && name.as_bytes()[2] == b'_')
