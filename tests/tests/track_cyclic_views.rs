@@ -107,3 +107,12 @@ fn views_that_cannot_be_made_are_refused_before_the_run() {
     refused(&["--animation", "walk.mp4"], "`animation` has to end in .gif");
     refused(&["--animation", "empty"], "has to end in .gif");
 }
+
+/// Keypoints have no depth.
+#[test]
+fn two_angles_a_joint_need_a_motion_in_space() {
+    let root = tempfile::tempdir().unwrap();
+    let mut command = Command::from_std(sinew_command());
+    command.current_dir(root.path()).args(["angles", "points.csv", "--view", "space", "--out", "t.csv"]);
+    command.assert().code(1).stderr(contains("`--view space` needs a motion in space"));
+}

@@ -71,12 +71,14 @@ pub fn run(args: &AnglesArgs) -> Result<()> {
         eprintln!("{note}");
     }
     let rows = found.table.rows();
-    let missing = rows.iter().flat_map(|row| row.angles_rad).filter(Option::is_none).count();
+    let count = found.table.angle_count();
+    let cells = (0..rows.len()).flat_map(|row| (0..count).map(move |angle| (row, angle)));
+    let missing = cells.filter(|(row, angle)| found.table.row_angle_rad(*row, *angle).is_none()).count();
     let rate = found.rate_hz.map_or_else(|| "an unknown rate".to_owned(), |rate| format!("{rate} frames per second"));
     let report = format!(
         "{} frames at {rate}, {:.1} % of the angles missing\nwrote {}\n",
         rows.len(),
-        100.0 * missing as f64 / (13 * rows.len()) as f64,
+        100.0 * missing as f64 / (count * rows.len()) as f64,
         args.out.display()
     );
     super::stdout::write_all(report.as_bytes())

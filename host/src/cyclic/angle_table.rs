@@ -25,6 +25,32 @@ pub const COLUMNS: [&str; ANGLES + 1] = [
     "r_ankle_rad",
 ];
 
+/// Columns of a motion in space, right after [`COLUMNS`]: how far each segment points out of the side view's plane, to the
+/// person's left, radians.
+pub const SIDE_COLUMNS: [&str; ANGLES] = [
+    "neck_side_rad",
+    "l_shoulder_side_rad",
+    "l_elbow_side_rad",
+    "l_wrist_side_rad",
+    "r_shoulder_side_rad",
+    "r_elbow_side_rad",
+    "r_wrist_side_rad",
+    "l_hip_side_rad",
+    "l_knee_side_rad",
+    "l_ankle_side_rad",
+    "r_hip_side_rad",
+    "r_knee_side_rad",
+    "r_ankle_side_rad",
+];
+
+/// Two angles a joint.
+pub const SPACE_ANGLES: usize = 2 * ANGLES;
+
+/// Columns of all angles: in the plane, then out of it.
+pub fn angle_columns() -> impl Iterator<Item = &'static str> {
+    COLUMNS[1..].iter().chain(&SIDE_COLUMNS).copied()
+}
+
 /// Greatest number of a frame; more is taken for a mistake.
 pub const MAX_FRAME: u64 = 1_000_000_000_000;
 
@@ -42,11 +68,14 @@ pub struct AngleRow {
 /// Angles over time.
 ///
 /// Invariants: at least one row; frame numbers rise from row to row (a number that is left out is a frame without a
-/// measurement); every angle is finite; every row has as many extra cells as there are extra columns.
+/// measurement); every angle is finite; every row has as many extra cells as there are extra columns; side angles are those of all
+/// rows or of none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AngleTable {
     rows: Vec<AngleRow>,
     extra_columns: Vec<String>,
+    /// Angles of [`SIDE_COLUMNS`], one entry a row.
+    side_rad: Option<Vec<[Option<f64>; ANGLES]>>,
 }
 
 impl AngleTable {
@@ -72,7 +101,48 @@ impl AngleTable {
             let (found, wanted) = (row.extra.len(), extra_columns.len());
             return refuse(format!("need {wanted} extra cells; frame {} has {found}", row.frame));
         }
-        Ok(Self { rows, extra_columns })
+        Ok(Self { rows, extra_columns, side_rad: None })
+    }
+
+    /// The same with the angles out of the plane, one entry a row.
+    ///
+    /// # Errors
+    /// As many entries as rows, all finite.
+    pub fn with_side(mut self, side_rad: Vec<[Option<f64>; ANGLES]>) -> Result<Self, CyclicError> {
+        if side_rad.len() != self.rows.len() || side_rad.iter().flatten().flatten().any(|angle| !angle.is_finite()) {
+            let rule = format!("need {} rows of finite angles, found {}", self.rows.len(), side_rad.len());
+            return Err(CyclicError::parameter("side angles", rule));
+        }
+        self.side_rad = Some(side_rad);
+        Ok(self)
+    }
+
+    /// The angles out of the plane, one entry a row; `None` for a motion in the plane.
+    #[must_use]
+    pub fn side_rad(&self) -> Option<&[[Option<f64>; ANGLES]]> {
+        self.side_rad.as_deref()
+    }
+
+    /// Angles of a row: 13, or 26 of a motion in space.
+    #[must_use]
+    pub const fn angle_count(&self) -> usize {
+        if self.side_rad.is_some() { SPACE_ANGLES } else { ANGLES }
+    }
+
+    /// Angle `angle` (of [`angle_columns`]) in `frame`; `None` where it is missing.
+    #[must_use]
+    pub fn angle_rad(&self, frame: u64, angle: usize) -> Option<f64> {
+        let index = self.rows.binary_search_by_key(&frame, |row| row.frame).ok()?;
+        self.row_angle_rad(index, angle)
+    }
+
+    /// Angle `angle` (of [`angle_columns`]) in the row at `index`; `None` where it is missing.
+    #[must_use]
+    pub fn row_angle_rad(&self, index: usize, angle: usize) -> Option<f64> {
+        match angle.checked_sub(ANGLES) {
+            None => *self.rows.get(index)?.angles_rad.get(angle)?,
+            Some(side) => *self.side_rad.as_ref()?.get(index)?.get(side)?,
+        }
     }
 
     /// A table without extra columns, frames counted from `first_frame`.
@@ -146,11 +216,17 @@ impl AngleTable {
             ));
         };
         let header = header.map_err(|error| csv_error(path, &error))?;
-        let extra_columns = extra_columns(&header, path)?;
+        let mut extra_columns = extra_columns(&header, path)?;
+        let mut side_rad: Option<Vec<[Option<f64>; ANGLES]>> = is_spatial(&extra_columns, path)?.then(Vec::new);
+        extra_columns.drain(..if side_rad.is_some() { ANGLES } else { 0 });
         let mut rows: Vec<AngleRow> = Vec::new();
         for record in records {
             let record = record.map_err(|error| csv_error(path, &error))?;
-            let row = row(&record, header.len(), path)?;
+            let mut row = row(&record, header.len(), path)?;
+            if let Some(side_rad) = &mut side_rad {
+                let cells: Vec<String> = row.extra.drain(..ANGLES).collect();
+                side_rad.push(angles(cells.iter().map(String::as_str), &SIDE_COLUMNS, line_of(&record), path)?);
+            }
             if let Some(before) = rows.last().filter(|before| row.frame <= before.frame) {
                 let rule = format!("frame {} follows frame {}; frame numbers have to rise", row.frame, before.frame);
                 return Err(CyclicError::broken(path, line_of(&record), rule));
@@ -164,7 +240,7 @@ impl AngleTable {
                 "the table is empty; at least one frame has to follow the header",
             ));
         }
-        Ok(Self { rows, extra_columns })
+        Ok(Self { rows, extra_columns, side_rad })
     }
 
     /// The text of the CSV file, angles with six decimals.
@@ -173,10 +249,11 @@ impl AngleTable {
     /// None in practice: text can always be written to memory.
     pub fn to_csv(&self) -> Result<String> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(COLUMNS.into_iter().chain(self.extra_columns.iter().map(String::as_str)))?;
-        for row in &self.rows {
-            let angle = |angle: &Option<f64>| angle.map_or_else(String::new, |angle| format!("{angle:.6}"));
-            let angles = row.angles_rad.iter().map(angle);
+        let columns = std::iter::once(COLUMNS[0]).chain(angle_columns().take(self.angle_count())).map(str::to_owned);
+        writer.write_record(columns.chain(self.extra_columns.iter().cloned()))?;
+        for (index, row) in self.rows.iter().enumerate() {
+            let angle = |angle: Option<f64>| angle.map_or_else(String::new, |angle| format!("{angle:.6}"));
+            let angles = (0..self.angle_count()).map(|column| angle(self.row_angle_rad(index, column)));
             writer
                 .write_record(std::iter::once(row.frame.to_string()).chain(angles).chain(row.extra.iter().cloned()))?;
         }
@@ -226,11 +303,35 @@ fn row(record: &csv::StringRecord, width: usize, path: &Path) -> Result<AngleRow
         let rule = format!("`frame` has to be a whole number from 0 to {MAX_FRAME}, found `{}`", &record[0]);
         CyclicError::broken(path, line, rule)
     })?;
+    let angles_rad = angles(record.iter().skip(1), &COLUMNS[1..], line, path)?;
+    Ok(AngleRow { frame, angles_rad, extra: record.iter().skip(COLUMNS.len()).map(str::to_owned).collect() })
+}
+
+/// Angles of the cells under `names`.
+fn angles<'a>(
+    cells: impl Iterator<Item = &'a str>,
+    names: &[&str],
+    line: u64,
+    path: &Path,
+) -> Result<[Option<f64>; ANGLES], CyclicError> {
     let mut angles_rad = [None; ANGLES];
-    for ((angle, cell), name) in angles_rad.iter_mut().zip(record.iter().skip(1)).zip(&COLUMNS[1..]) {
+    for ((angle, cell), name) in angles_rad.iter_mut().zip(cells).zip(names) {
         *angle = finite_cell(cell).map_err(|rule| CyclicError::broken(path, line, format!("`{name}` {rule}")))?;
     }
-    Ok(AngleRow { frame, angles_rad, extra: record.iter().skip(COLUMNS.len()).map(str::to_owned).collect() })
+    Ok(angles_rad)
+}
+
+/// Whether the columns after the first angles are [`SIDE_COLUMNS`]: all of them in their order, or none.
+fn is_spatial(extra_columns: &[String], path: &Path) -> Result<bool, CyclicError> {
+    let is_side = |name: &String| SIDE_COLUMNS.contains(&name.as_str());
+    if !extra_columns.iter().any(is_side) {
+        return Ok(false);
+    }
+    if extra_columns.len() >= ANGLES && extra_columns[..ANGLES] == SIDE_COLUMNS {
+        return Ok(true);
+    }
+    let rule = format!("side angles have to be all 13 right after `{}`: {}", COLUMNS[ANGLES], SIDE_COLUMNS.join(","));
+    Err(CyclicError::broken(path, 1, rule))
 }
 
 /// A cell that is empty (missing) or a finite number.
@@ -277,6 +378,27 @@ mod tests {
         );
         table.write(&path).unwrap();
         assert_eq!(AngleTable::read(&path).unwrap(), table);
+    }
+
+    #[test]
+    fn two_angles_a_joint_are_read_and_written_and_all_or_none() {
+        let header = [&COLUMNS[..], &SIDE_COLUMNS[..], &["speed"]].concat().join(",");
+        let row = (1..=26).map(|i| format!("{:.6}", f64::from(i))).collect::<Vec<_>>().join(",");
+        let text = format!("{header}\n5,{row},9.5\n");
+        let table = AngleTable::parse(&text, Path::new("t.csv")).unwrap();
+        assert_eq!((table.angle_count(), table.extra_columns()), (26, &["speed".to_owned()][..]));
+        assert_eq!(
+            (table.angle_rad(5, 0), table.angle_rad(5, 13), table.angle_rad(5, 25)),
+            (Some(1.0), Some(14.0), Some(26.0))
+        );
+        assert_eq!((table.angle_rad(5, 26), table.angle_rad(4, 0)), (None, None));
+        assert_eq!(table.to_csv().unwrap(), text);
+        let broken = text.replace(",20.000000,", ",x,");
+        let message = AngleTable::parse(&broken, Path::new("t.csv")).unwrap_err().to_string();
+        assert!(message.starts_with("t.csv:2: `r_wrist_side_rad` has to be a number"), "{message}");
+        let some = text.replace("neck_side_rad,", "");
+        let message = AngleTable::parse(&some, Path::new("t.csv")).unwrap_err().to_string();
+        assert!(message.starts_with("t.csv:1: side angles have to be all 13"), "{message}");
     }
 
     #[test]

@@ -61,6 +61,34 @@ impl ImageJoints {
         Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
     }
 
+    /// The same with the sign of x changed.
+    #[must_use]
+    pub fn x_negated(&self) -> Self {
+        let frame = |frame: &JointFrame| JointFrame {
+            frame: frame.frame,
+            joints: frame.joints.map(|joint| joint.map(|[x, y]| [-x, y])),
+        };
+        Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
+    }
+
+    /// How far each segment points out of the plane that these joints are seen in, to the person's left, radians in [-pi/2, pi/2]: the
+    /// arc tangent of its part along the left over its length in the plane. `front` are the same frames seen from before.
+    #[must_use]
+    pub fn side_angles_rad(&self, front: &Self) -> Vec<[Option<f64>; ANGLES]> {
+        let segment = |frame: &JointFrame, angle: usize| -> Option<Point> {
+            let (start, end) = (frame.joints[parent(angle + 1)]?, frame.joints[angle + 1]?);
+            Some([end[0] - start[0], end[1] - start[1]])
+        };
+        let both = self.frames.iter().zip(&front.frames);
+        both.map(|(side, front)| {
+            std::array::from_fn(|angle| {
+                let ([dx, dy], [left, _]) = (segment(side, angle)?, segment(front, angle)?);
+                (dx != 0.0 || dy != 0.0).then(|| left.atan2(dx.hypot(dy)))
+            })
+        })
+        .collect()
+    }
+
     /// Each frame with the names of left and right exchanged, places as they are.
     #[must_use]
     pub fn sides_swapped(&self) -> Self {
@@ -154,6 +182,23 @@ mod tests {
         assert_eq!(points.mirrored().mirrored(), points);
         assert_eq!(points.sides_swapped().frames[0].joints[11], Some([97.0, 204.0]));
         assert_eq!(points.sides_swapped().frames[0].joints[8], None);
+    }
+
+    /// A segment 3 ahead, 4 down and 5 to the left leans out of the plane by 45 degrees; seen in a mirror, to the other side.
+    #[test]
+    fn a_segment_leans_out_of_the_plane_to_the_left() {
+        let seen = |neck: Point| {
+            let mut joints = [None; JOINTS];
+            joints[0] = Some([1.0, 1.0]);
+            joints[1] = Some([1.0 + neck[0], 1.0 + neck[1]]);
+            ImageJoints { frames: vec![JointFrame { frame: 0, joints }], unit: "m" }
+        };
+        let (side, front) = (seen([3.0, 4.0]), seen([5.0, 4.0]));
+        let lean = |front: &ImageJoints| side.side_angles_rad(front)[0];
+        assert!((lean(&front)[0].unwrap() - PI / 4.0).abs() < 1.0e-12);
+        assert!((lean(&front.x_negated())[0].unwrap() + PI / 4.0).abs() < 1.0e-12);
+        assert_eq!(lean(&front)[8], None, "what was not seen has no angle");
+        assert_eq!(seen([0.0, 0.0]).side_angles_rad(&front)[0][0], None, "nor has what points straight at the camera");
     }
 
     #[test]

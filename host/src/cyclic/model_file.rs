@@ -1,13 +1,12 @@
 //! Motion models as JSON files.
 
-use super::angle_table::ANGLES;
+use super::angle_table::{ANGLES, angle_columns};
 use super::model::{CyclicModel, DeviationNumbers, ModelNumbers, TrainedOn};
 use crate::model_text::{self, ModelFileKind};
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use sinew_core::cyclic::semi_definite::packed_len;
-use sinew_core::skeleton::stick_figure::HUMAN;
 use std::path::Path;
 
 const KIND: ModelFileKind =
@@ -51,7 +50,7 @@ pub fn to_json(model: &CyclicModel) -> Result<String> {
         trained_on: model.trained_on().clone(),
         rate_hz: numbers.rate_hz,
         mean_duration_frames: numbers.mean_duration_frames,
-        angles: HUMAN.angle_names().map(str::to_owned).collect(),
+        angles: angle_names(n),
         turns_per_cycle: numbers.turns_per_cycle.clone(),
         mean_pose_rad: lines(&numbers.mean_pose_rad, n)?,
         mean_velocity: lines(&numbers.mean_velocity, n)?,
@@ -60,6 +59,11 @@ pub fn to_json(model: &CyclicModel) -> Result<String> {
         deviation: numbers.deviation.clone(),
     };
     Ok(serde_json::to_string_pretty(&file)? + "\n")
+}
+
+/// Names of the first `count` angles: the joints', then with `_side`.
+fn angle_names(count: usize) -> Vec<String> {
+    angle_columns().take(count).map(|column| column.trim_end_matches("_rad").to_owned()).collect()
 }
 
 /// Rows of `width` numbers, each on one line.
@@ -89,7 +93,8 @@ pub fn parse(text: &str) -> Result<CyclicModel> {
         "its field `version` is {version}, but this program reads version {VERSION}"
     );
     let file: ModelFile<Rows<f32>> = serde_json::from_value(value)?;
-    let wanted: Vec<&str> = HUMAN.angle_names().collect();
+    let n = if file.angles.len() > ANGLES { 2 * ANGLES } else { ANGLES };
+    let wanted = angle_names(n);
     ensure!(file.angles == wanted, "its field `angles` has to be {}", wanted.join(", "));
     let l = file.mean_acceleration.len();
     let table = |name: &str, rows: Rows<f32>, width: usize| -> Result<Vec<f32>> {
@@ -100,11 +105,11 @@ pub fn parse(text: &str) -> Result<CyclicModel> {
         Ok(rows.concat())
     };
     let numbers = ModelNumbers {
-        angle_count: ANGLES,
-        mean_acceleration: table("mean_acceleration", file.mean_acceleration, ANGLES)?,
-        acceleration_covariance: table("acceleration_covariance", file.acceleration_covariance, packed_len(ANGLES))?,
-        mean_pose_rad: table("mean_pose_rad", file.mean_pose_rad, ANGLES)?,
-        mean_velocity: table("mean_velocity", file.mean_velocity, ANGLES)?,
+        angle_count: n,
+        mean_acceleration: table("mean_acceleration", file.mean_acceleration, n)?,
+        acceleration_covariance: table("acceleration_covariance", file.acceleration_covariance, packed_len(n))?,
+        mean_pose_rad: table("mean_pose_rad", file.mean_pose_rad, n)?,
+        mean_velocity: table("mean_velocity", file.mean_velocity, n)?,
         turns_per_cycle: file.turns_per_cycle,
         mean_duration_frames: file.mean_duration_frames,
         rate_hz: file.rate_hz,

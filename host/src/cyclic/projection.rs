@@ -18,6 +18,8 @@ pub enum View {
     Path,
     /// From before: x is the person's left.
     Front,
+    /// As `auto`, and beside each angle how far the segment points out of that plane: two angles a joint.
+    Space,
 }
 
 /// A coordinate axis that points up.
@@ -70,12 +72,19 @@ impl Plane {
     pub fn choose(frames: &[SpatialJoints], view: View, up: Option<UpAxis>, rate_hz: f64) -> Result<Self> {
         let up = upwards(frames, up)?;
         let headings = headings(frames, up, rate_hz);
-        if view == View::Path || (view == View::Auto && straightness(&headings) < TURNING_BELOW) {
+        if view == View::Path || (matches!(view, View::Auto | View::Space) && straightness(&headings) < TURNING_BELOW) {
             return Ok(Self { right: headings, up, forward: Forward::Turning });
         }
         let (ahead, forward) = ahead(frames, up)?;
         let right = if view == View::Front { up.cross(&ahead) } else { ahead };
         Ok(Self { right: vec![Some(right)], up, forward })
+    }
+
+    /// The plane square to this one that is seen from before: x is the person's left.
+    #[must_use]
+    pub fn from_before(&self) -> Self {
+        let left = |ahead: &Option<Vec3>| ahead.map(|ahead| self.up.cross(&ahead));
+        Self { right: self.right.iter().map(left).collect(), ..self.clone() }
     }
 
     /// Sees `frames` in this plane, metres; frames are counted from 0.
@@ -196,6 +205,17 @@ mod tests {
     fn from_before_the_left_is_on_the_right() {
         let plane = Plane::choose(&person(0.0), View::Front, None, 60.0).unwrap();
         assert!((plane.right[0].unwrap() + Vec3::x()).norm() < 1.0e-6, "{plane:?}");
+    }
+
+    /// Left, up and forward are a right-handed system: what is to the left of the person has a positive x from before.
+    #[test]
+    fn the_view_from_before_goes_with_that_from_the_side() {
+        let frames = person(0.02);
+        let plane = Plane::choose(&frames, View::Space, None, 60.0).unwrap();
+        assert_eq!(plane, Plane::choose(&frames, View::Auto, None, 60.0).unwrap());
+        let front = plane.from_before().project(&frames);
+        let [left, right] = HIPS.map(|joint| front.frames[7].joints[joint].unwrap());
+        assert!((left[0] - right[0] - 0.2).abs() < 1.0e-6, "{left:?} {right:?}");
     }
 
     #[test]

@@ -118,8 +118,31 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
     }
     let seen = plane.project(covered);
     let mirrored = options.facing == Some(Facing::Left);
-    let table = finished(&seen, Some(recorded_hz), options, mirrored, ExtraColumns::None)?;
+    let table = if options.view == View::Space {
+        in_space(&seen, &plane.from_before().project(covered), recorded_hz, options)?
+    } else {
+        finished(&seen, Some(recorded_hz), options, mirrored, ExtraColumns::None)?
+    };
     Ok(RecordedAngles { table, rate_hz: Some(options.rate_hz.unwrap_or(recorded_hz)), notes })
+}
+
+/// Two angles a joint: those of `side`, and how far each segment points out of its plane.
+fn in_space(
+    side: &ImageJoints,
+    front: &ImageJoints,
+    recorded_hz: f64,
+    options: &RecordingOptions,
+) -> Result<AngleTable> {
+    ensure!(
+        options.facing.is_none(),
+        "`--facing` says from where a picture was taken; a motion seen with `--view space` has none: leave it out"
+    );
+    let rate_hz = options.rate_hz.unwrap_or(recorded_hz);
+    let [mut side, mut front] = [resample(side, recorded_hz, rate_hz)?, resample(front, recorded_hz, rate_hz)?];
+    if options.swap_sides {
+        (side, front) = (side.sides_swapped(), front.sides_swapped().x_negated());
+    }
+    Ok(side.angle_table(ExtraColumns::None)?.with_side(side.side_angles_rad(&front))?)
 }
 
 /// The rate without the rounding of a frame time in a file: 1 / 0.0083333 is 120.
@@ -129,6 +152,10 @@ fn rounded_rate(rate_hz: f64) -> f64 {
 }
 
 fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
+    ensure!(
+        options.view != View::Space,
+        "`--view space` needs a motion in space (.bvh, .amc, .trc, .c3d); keypoints of a picture have one angle a joint"
+    );
     let frames = keypoints::read(path)?;
     let track = keypoints::track(&frames, options.min_confidence, path)?;
     let mut notes = Vec::new();

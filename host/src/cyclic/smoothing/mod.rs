@@ -14,6 +14,7 @@ pub use kalman::KalmanState;
 pub use pass::{Link, Smoothable, Smoothed, backward};
 pub use recursion::{Moments, smooth_step};
 
+use super::angle_table::ANGLES;
 use super::tracking::TrackedFrame;
 use std::f64::consts::TAU;
 
@@ -31,6 +32,15 @@ pub fn replace_estimates<const N: usize>(frames: &mut [TrackedFrame], smoothed: 
             estimate.angles_rad[i] = (*angle - TAU * turns) as f32;
             estimate.turns[i] = turns as i32;
             estimate.angle_variance_rad2[i] = smoothed.angle_variance_rad2[i] as f32;
+        }
+        if let Some(side) = &mut frame.side {
+            let later = smoothed.angles_rad.iter().zip(&smoothed.angle_variance_rad2).skip(ANGLES);
+            for ((angle, variance), (to, new)) in
+                side.angles_rad.iter_mut().zip(&mut side.angle_variance_rad2).zip(later)
+            {
+                *angle += least_angle(to - *angle);
+                *variance = *new as f32;
+            }
         }
         let change = smoothed.cycle_position - f64::from(estimate.cycle_position);
         let shift = change - change.round();

@@ -9,32 +9,34 @@ use sinew_core::cyclic::particle::{ParticleOptions, Spread};
 use sinew_core::cyclic::{
     AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel,
 };
-use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
-
-type Angles = [Option<f32>; HUMAN_ANGLES];
 
 /// A filter with its model and its first state.
 #[derive(Debug)]
-pub struct Filter<'m> {
+pub struct Filter<'m, const N: usize> {
     model: MotionModel<'m>,
-    start: CycleStart<HUMAN_ANGLES>,
-    kind: Kind,
+    start: CycleStart<N>,
+    kind: Kind<N>,
 }
 
 #[derive(Debug)]
-enum Kind {
-    Kalman(Box<KalmanFilter<HUMAN_ANGLES>>, KalmanOptions),
-    Particle(Box<ParticleFilter>),
-    Coupled(Box<CoupledFilter<HUMAN_ANGLES>>),
+enum Kind<const N: usize> {
+    Kalman(Box<KalmanFilter<N>>, KalmanOptions),
+    Particle(Box<ParticleFilter<N>>),
+    Coupled(Box<CoupledFilter<N>>),
 }
 
-impl<'m> Filter<'m> {
+impl<'m, const N: usize> Filter<'m, N> {
     /// The filter of `options` at its first state; `first` is the first row, `step_frames` a frame of the recording in frames
     /// of the model.
     ///
     /// # Errors
     /// A position or velocity out of range.
-    pub fn new(model: MotionModel<'m>, options: &TrackingOptions, first: &Angles, step_frames: f64) -> Result<Self> {
+    pub fn new(
+        model: MotionModel<'m>,
+        options: &TrackingOptions,
+        first: &[Option<f32>; N],
+        step_frames: f64,
+    ) -> Result<Self> {
         let position = options.initial_cycle_position.map(|position| position as f32);
         let velocity = options.initial_cycle_velocity.map(|velocity| (velocity / step_frames) as f32);
         let start = CycleStart::standard(&model, first, position, velocity)?;
@@ -65,12 +67,12 @@ impl<'m> Filter<'m> {
 
     /// The first state as an estimate.
     #[must_use]
-    pub fn first_estimate(&self) -> CyclicEstimate<HUMAN_ANGLES> {
+    pub fn first_estimate(&self) -> CyclicEstimate<N> {
         first_estimate(&self.start)
     }
 
     /// One frame.
-    pub fn step(&mut self, measurement: &AngleMeasurement<HUMAN_ANGLES>) -> CyclicEstimate<HUMAN_ANGLES> {
+    pub fn step(&mut self, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
         match &mut self.kind {
             Kind::Kalman(filter, options) => filter.step(&self.model, options, measurement),
             Kind::Particle(filter) => filter.step(&self.model, measurement),
@@ -81,22 +83,22 @@ impl<'m> Filter<'m> {
 
 /// The states of a run, for the way back.
 #[derive(Debug)]
-pub struct Pass<'m> {
+pub struct Pass<'m, const N: usize> {
     model: MotionModel<'m>,
-    states: States,
-    measurements: Vec<AngleMeasurement<HUMAN_ANGLES>>,
+    states: States<N>,
+    measurements: Vec<AngleMeasurement<N>>,
 }
 
 #[derive(Debug)]
-enum States {
-    Kalman(Vec<KalmanState<HUMAN_ANGLES>>),
-    Coupled(Vec<CoupledState<HUMAN_ANGLES>>),
+enum States<const N: usize> {
+    Kalman(Vec<KalmanState<N>>),
+    Coupled(Vec<CoupledState<N>>),
 }
 
-impl<'m> Pass<'m> {
+impl<'m, const N: usize> Pass<'m, N> {
     /// A pass from the first state of `filter` on; `None` for a filter that cannot be smoothed.
     #[must_use]
-    pub fn begin(filter: &Filter<'m>) -> Option<Self> {
+    pub fn begin(filter: &Filter<'m, N>) -> Option<Self> {
         let states = match &filter.kind {
             Kind::Kalman(..) => States::Kalman(Vec::new()),
             Kind::Coupled(_) => States::Coupled(Vec::new()),
@@ -108,12 +110,12 @@ impl<'m> Pass<'m> {
     }
 
     /// Keeps the state that `filter` came to by `measurement`.
-    pub fn add(&mut self, filter: &Filter<'m>, measurement: AngleMeasurement<HUMAN_ANGLES>) {
+    pub fn add(&mut self, filter: &Filter<'m, N>, measurement: AngleMeasurement<N>) {
         self.measurements.push(measurement);
         self.keep(filter);
     }
 
-    fn keep(&mut self, filter: &Filter<'m>) {
+    fn keep(&mut self, filter: &Filter<'m, N>) {
         match (&mut self.states, &filter.kind) {
             (States::Kalman(states), Kind::Kalman(filter, options)) => {
                 states.push(KalmanState { filter: **filter, options: *options });
@@ -126,7 +128,7 @@ impl<'m> Pass<'m> {
 
     /// What each state tells given all measurements.
     #[must_use]
-    pub fn smoothed(&self) -> Vec<Smoothed<HUMAN_ANGLES>> {
+    pub fn smoothed(&self) -> Vec<Smoothed<N>> {
         match &self.states {
             States::Kalman(states) => backward(&self.model, states, &self.measurements),
             States::Coupled(states) => backward(&self.model, states, &self.measurements),
@@ -134,7 +136,7 @@ impl<'m> Pass<'m> {
     }
 }
 
-fn first_estimate(start: &CycleStart<HUMAN_ANGLES>) -> CyclicEstimate<HUMAN_ANGLES> {
+fn first_estimate<const N: usize>(start: &CycleStart<N>) -> CyclicEstimate<N> {
     let split = start.angles_rad.map(split_turns);
     CyclicEstimate {
         angles_rad: split.map(|(angle, _)| angle),

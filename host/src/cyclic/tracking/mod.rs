@@ -8,5 +8,5 @@ pub mod summary;
 pub mod table;
 
 pub use options::{FilterName, StartName, TrackingOptions, Updates};
-pub use run::{Tracked, TrackedFrame, track};
+pub use run::{SideEstimate, Tracked, TrackedFrame, track};
 pub use summary::Summary;

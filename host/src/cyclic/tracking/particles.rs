@@ -13,41 +13,38 @@ use sinew_core::cyclic::particle_moments::ParticleMoments;
 use sinew_core::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
 use sinew_core::random::Stream;
 use sinew_core::random::normal::LOG_SQRT_TAU;
-use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
-
-type Particle = CyclicParticle<HUMAN_ANGLES>;
 
 /// Stream that the resampling of a frame draws from; particles have the numbers below.
 const RESAMPLING_STREAM: u32 = u32::MAX;
 
 /// State of a particle filter.
 #[derive(Debug, Clone)]
-pub struct ParticleFilter {
+pub struct ParticleFilter<const N: usize> {
     options: ParticleOptions,
     seed: u64,
     frame: u64,
     factors: Vec<f32>,
-    particles: Vec<Particle>,
-    next: Vec<Particle>,
+    particles: Vec<CyclicParticle<N>>,
+    next: Vec<CyclicParticle<N>>,
     weights: Vec<f32>,
     ancestors: Vec<u32>,
-    last: CyclicEstimate<HUMAN_ANGLES>,
+    last: CyclicEstimate<N>,
 }
 
-impl ParticleFilter {
+impl<const N: usize> ParticleFilter<N> {
     /// `count` particles about `start`, whose estimate is `first`.
     #[must_use]
     pub fn new(
         model: &MotionModel<'_>,
         options: ParticleOptions,
-        start: &CycleStart<HUMAN_ANGLES>,
-        first: CyclicEstimate<HUMAN_ANGLES>,
+        start: &CycleStart<N>,
+        first: CyclicEstimate<N>,
         count: usize,
         seed: u64,
     ) -> Self {
         let mut factors = vec![0.0; factors_len(model)];
         fill_factors(model, &mut factors);
-        let particles: Vec<Particle> =
+        let particles: Vec<CyclicParticle<N>> =
             (0..count as u32).into_par_iter().map(|index| first_particle(start, &options, seed, index)).collect();
         Self {
             options,
@@ -63,11 +60,7 @@ impl ParticleFilter {
     }
 
     /// One frame: predict, weigh, estimate, resample.
-    pub fn step(
-        &mut self,
-        model: &MotionModel<'_>,
-        measurement: &AngleMeasurement<HUMAN_ANGLES>,
-    ) -> CyclicEstimate<HUMAN_ANGLES> {
+    pub fn step(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
         self.frame += 1;
         let best = self.predict(model, measurement);
         let (total, mut estimate) = self.estimate(best);
@@ -86,7 +79,7 @@ impl ParticleFilter {
     }
 
     /// Moves and weighs all particles; returns the greatest log-weight.
-    fn predict(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<HUMAN_ANGLES>) -> f32 {
+    fn predict(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> f32 {
         let (factors, options, seed, frame) = (&self.factors, &self.options, self.seed, self.frame);
         let chunks = self.particles.par_chunks_mut(CHUNK).zip(self.weights.par_chunks_mut(CHUNK));
         let best: Vec<f32> = chunks
@@ -101,10 +94,10 @@ impl ParticleFilter {
     }
 
     /// Sum of the weights relative to `best`, and the weighted circular means.
-    fn estimate(&mut self, best: f32) -> (f32, CyclicEstimate<HUMAN_ANGLES>) {
+    fn estimate(&mut self, best: f32) -> (f32, CyclicEstimate<N>) {
         let reference = self.particles[0];
         let chunks = self.particles.par_chunks(CHUNK).zip(self.weights.par_chunks_mut(CHUNK));
-        let sums: Vec<(f32, ParticleMoments<HUMAN_ANGLES>)> = chunks
+        let sums: Vec<(f32, ParticleMoments<N>)> = chunks
             .map(|(particles, weights)| {
                 let total = exponentiate(best, weights);
                 (total, ParticleMoments::of(particles, weights, &reference))
@@ -129,8 +122,8 @@ impl ParticleFilter {
     }
 
     /// Whole turns since the start, by the shorter way from the last estimate.
-    fn count_turns(&self, estimate: &mut CyclicEstimate<HUMAN_ANGLES>) {
-        for i in 0..HUMAN_ANGLES {
+    fn count_turns(&self, estimate: &mut CyclicEstimate<N>) {
+        for i in 0..N {
             let (_, turned) = split_turns(estimate.angles_rad[i] - self.last.angles_rad[i]);
             // A difference beyond half a turn went over the seam.
             estimate.turns[i] = self.last.turns[i] - turned;

@@ -2,13 +2,12 @@
 
 use super::filter::{Filter, Pass};
 use super::options::TrackingOptions;
-use crate::cyclic::angle_table::ANGLES;
+use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
 use crate::cyclic::smoothing::replace_estimates;
 use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
 use anyhow::{Result, bail, ensure};
 use sinew_core::cyclic::measurement::MAX_STEP_FRAMES;
-use sinew_core::cyclic::{AngleMeasurement, CyclicEstimate};
-use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
+use sinew_core::cyclic::{AngleMeasurement, CyclicEstimate, MotionModel};
 use std::f64::consts::TAU;
 
 /// What the filter answered to one row.
@@ -17,11 +16,22 @@ pub struct TrackedFrame {
     /// Number of the frame in the table.
     pub frame: u64,
     /// The estimate; velocities are per frame of the model's rate.
-    pub estimate: CyclicEstimate<HUMAN_ANGLES>,
+    pub estimate: CyclicEstimate<ANGLES>,
     /// Estimated angles, radians, unwrapped along time.
     pub angles_rad: [f64; ANGLES],
+    /// Angles out of the plane, for a model of motion in space.
+    pub side: Option<SideEstimate>,
     /// Cycles since the first row, with their fraction.
     pub cycles: f64,
+}
+
+/// Angles out of the plane of the side view.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SideEstimate {
+    /// Radians, unwrapped along time.
+    pub angles_rad: [f64; ANGLES],
+    /// Their variances, rad^2.
+    pub angle_variance_rad2: [f32; ANGLES],
 }
 
 /// A whole run.
@@ -53,23 +63,43 @@ pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions)
     let Some(first) = table.rows().iter().position(seen) else {
         bail!("the table has no angle in any row, so there is nothing to track; see `sinew angles --min-confidence`")
     };
-    let mut filter = Filter::new(view, options, &measured(&table.rows()[first]), step_frames)?;
+    let frames = if view.angle_count() > ANGLES {
+        ensure!(
+            table.angle_count() == SPACE_ANGLES,
+            "the model has two angles a joint, the table one; make the table with `sinew angles --view space`, or train a model on such tables"
+        );
+        frames_of::<SPACE_ANGLES>(table, view, options, first, step_frames)?
+    } else {
+        frames_of::<ANGLES>(table, view, options, first, step_frames)?
+    };
+    Ok(Tracked { frames, rate_hz, step_frames })
+}
+
+/// Every row's answer by a filter for `N` angles that begins at the row `first`.
+fn frames_of<const N: usize>(
+    table: &AngleTable,
+    view: MotionModel<'_>,
+    options: &TrackingOptions,
+    first: usize,
+    step_frames: f64,
+) -> Result<Vec<TrackedFrame>> {
+    let mut filter = Filter::<N>::new(view, options, &measured(table, first), step_frames)?;
     let mut pass = if options.smooth { Pass::begin(&filter) } else { None };
     let mut frames: Vec<TrackedFrame> = Vec::with_capacity(table.rows().len());
     // Rows before the first one with an angle are answered with the first state as well.
-    frames.extend(table.rows()[..=first].iter().map(|row| tracked(row.frame, filter.first_estimate(), None)));
-    for pair in table.rows()[first..].windows(2) {
+    frames.extend(table.rows()[..=first].iter().map(|row| tracked(row.frame, &filter.first_estimate(), None)));
+    for (index, pair) in table.rows().windows(2).enumerate().skip(first) {
         let [before, row] = pair else { continue };
         // A gap longer than the longest step says no more than that one.
         let step = (step_frames * (row.frame - before.frame) as f64).min(f64::from(MAX_STEP_FRAMES));
         let used = options.updates.uses(table.first_frame(), row.frame);
-        let angles = if used { measured(row) } else { [None; HUMAN_ANGLES] };
+        let angles = if used { measured(table, index + 1) } else { [None; N] };
         let measurement = AngleMeasurement::new(&angles, options.sigma_rad as f32)?.after(step as f32)?;
         let estimate = filter.step(&measurement);
         if let Some(pass) = &mut pass {
             pass.add(&filter, measurement);
         }
-        let next = tracked(row.frame, estimate, frames.last().map(|before| (before, step)));
+        let next = tracked(row.frame, &estimate, frames.last().map(|before| (before, step)));
         frames.push(next);
     }
     if let Some(pass) = pass {
@@ -79,16 +109,20 @@ pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions)
             *frame = TrackedFrame { frame: frame.frame, ..start.clone() };
         }
     }
-    Ok(Tracked { frames, rate_hz, step_frames })
+    Ok(frames)
 }
 
-fn measured(row: &AngleRow) -> [Option<f32>; HUMAN_ANGLES] {
-    row.angles_rad.map(|angle| angle.map(|angle| angle as f32))
+fn measured<const N: usize>(table: &AngleTable, index: usize) -> [Option<f32>; N] {
+    std::array::from_fn(|angle| table.row_angle_rad(index, angle).map(|angle| angle as f32))
 }
 
 /// The answer of a frame that came `step` frames of the model after the one `before`.
-fn tracked(frame: u64, estimate: CyclicEstimate<HUMAN_ANGLES>, before: Option<(&TrackedFrame, f64)>) -> TrackedFrame {
-    let angles_rad = std::array::from_fn(|i| f64::from(estimate.angles_rad[i]) + TAU * f64::from(estimate.turns[i]));
+fn tracked<const N: usize>(
+    frame: u64,
+    estimate: &CyclicEstimate<N>,
+    before: Option<(&TrackedFrame, f64)>,
+) -> TrackedFrame {
+    let unwrapped = |i: usize| f64::from(estimate.angles_rad[i]) + TAU * f64::from(estimate.turns[i]);
     let position = f64::from(estimate.cycle_position);
     let cycles = before.map_or(0.0, |(before, step)| {
         let change = position - f64::from(before.estimate.cycle_position);
@@ -96,5 +130,24 @@ fn tracked(frame: u64, estimate: CyclicEstimate<HUMAN_ANGLES>, before: Option<(&
         let expected = f64::from(estimate.cycle_velocity_per_frame) * step;
         before.cycles + change + (expected - change).round()
     });
-    TrackedFrame { frame, estimate, angles_rad, cycles }
+    let side = (N == SPACE_ANGLES).then(|| SideEstimate {
+        angles_rad: std::array::from_fn(|i| unwrapped(ANGLES + i)),
+        angle_variance_rad2: std::array::from_fn(|i| estimate.angle_variance_rad2[ANGLES + i]),
+    });
+    TrackedFrame { frame, estimate: in_plane(estimate), angles_rad: std::array::from_fn(unwrapped), side, cycles }
+}
+
+/// The estimate with the angles in the plane only.
+fn in_plane<const N: usize>(estimate: &CyclicEstimate<N>) -> CyclicEstimate<ANGLES> {
+    CyclicEstimate {
+        angles_rad: std::array::from_fn(|i| estimate.angles_rad[i]),
+        turns: std::array::from_fn(|i| estimate.turns[i]),
+        angle_variance_rad2: std::array::from_fn(|i| estimate.angle_variance_rad2[i]),
+        cycle_position: estimate.cycle_position,
+        cycle_position_variance: estimate.cycle_position_variance,
+        cycle_velocity_per_frame: estimate.cycle_velocity_per_frame,
+        cycle_velocity_variance: estimate.cycle_velocity_variance,
+        log_likelihood: estimate.log_likelihood,
+        outlier: estimate.outlier,
+    }
 }

@@ -105,6 +105,7 @@ mod tests {
                 outlier: index == 1,
             },
             angles_rad: [0.0; ANGLES],
+            side: None,
             cycles: *cycles,
         };
         Tracked { frames: (0..).zip(cycles).map(frame).collect(), rate_hz: 2.0, step_frames: 0.5 }

@@ -1,7 +1,7 @@
 //! The estimates as a CSV table: the columns of an angle table first, so that every tool for those reads it.
 
 use super::run::Tracked;
-use crate::cyclic::angle_table::COLUMNS;
+use crate::cyclic::angle_table::{ANGLES, COLUMNS, SPACE_ANGLES, angle_columns};
 use crate::output::write_atomically;
 use anyhow::Result;
 use std::path::Path;
@@ -17,7 +17,8 @@ pub const ESTIMATE_COLUMNS: [&str; 7] = [
     "cycles",
 ];
 
-/// The text of the table; after [`ESTIMATE_COLUMNS`] come the angles' standard deviations.
+/// The text of the table; after [`ESTIMATE_COLUMNS`] come the angles' standard deviations. A model with two angles a joint gives the angles out of
+/// the plane after those in it.
 ///
 /// `cycle_velocity_per_frame` is per frame of the recording; `outlier` is 0 or 1.
 ///
@@ -25,9 +26,11 @@ pub const ESTIMATE_COLUMNS: [&str; 7] = [
 /// None in practice: text can always be written to memory.
 pub fn to_csv(tracked: &Tracked) -> Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let std_columns = COLUMNS[1..].iter().map(|name| name.replace("_rad", "_std_rad"));
-    let header = COLUMNS.iter().chain(&ESTIMATE_COLUMNS).map(ToString::to_string).chain(std_columns);
-    writer.write_record(header)?;
+    let is_spatial = tracked.frames.iter().any(|frame| frame.side.is_some());
+    let count = if is_spatial { SPACE_ANGLES } else { ANGLES };
+    let columns = COLUMNS[..1].iter().copied().chain(angle_columns().take(count)).chain(ESTIMATE_COLUMNS);
+    let std_columns = angle_columns().take(count).map(|name| name.replace("_rad", "_std_rad"));
+    writer.write_record(columns.map(str::to_owned).chain(std_columns))?;
     for frame in &tracked.frames {
         let estimate = &frame.estimate;
         let velocity = f64::from(estimate.cycle_velocity_per_frame) * tracked.step_frames;
@@ -42,8 +45,15 @@ pub fn to_csv(tracked: &Tracked) -> Result<String> {
             format!("{:.4}", velocity_std * per_min),
             format!("{:.5}", frame.cycles),
         ];
-        let angles = frame.angles_rad.iter().map(|angle| format!("{angle:.6}"));
-        let stds = estimate.angle_variance_rad2.iter().map(|variance| format!("{:.6}", variance.max(0.0).sqrt()));
+        let side = frame.side.as_ref();
+        let side_angles = side.iter().flat_map(|side| side.angles_rad);
+        let angles = frame.angles_rad.into_iter().chain(side_angles).map(|angle| format!("{angle:.6}"));
+        let side_variances = side.iter().flat_map(|side| &side.angle_variance_rad2);
+        let stds = estimate
+            .angle_variance_rad2
+            .iter()
+            .chain(side_variances)
+            .map(|variance| format!("{:.6}", variance.max(0.0).sqrt()));
         writer.write_record(std::iter::once(frame.frame.to_string()).chain(angles).chain(derived).chain(stds))?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)

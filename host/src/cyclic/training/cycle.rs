@@ -1,6 +1,6 @@
 //! One training cycle as a smooth curve over the cycle position.
 
-use crate::cyclic::angle_table::{ANGLES, AngleTable, COLUMNS};
+use crate::cyclic::angle_table::{AngleTable, angle_columns};
 use crate::cyclic::cuts::Cut;
 use crate::cyclic::spline::CubicSpline;
 use crate::cyclic::turns::unwrap_along_time;
@@ -44,7 +44,7 @@ impl TrainingCycle {
         if cut.duration_frames() > LONGEST_CYCLE_FRAMES {
             return Err(format!("the cut {start} to {end} is longer than {LONGEST_CYCLE_FRAMES} frames"));
         }
-        let curves = (0..ANGLES).map(|angle| curve(table, angle, start, end)).collect::<Result<_, _>>()?;
+        let curves = (0..table.angle_count()).map(|angle| curve(table, angle, start, end)).collect::<Result<_, _>>()?;
         Ok(Self { start_frame: start as f64, duration_frames: (end - start) as f64, curves })
     }
 
@@ -52,6 +52,12 @@ impl TrainingCycle {
     #[must_use]
     pub fn duration_frames(&self) -> f64 {
         self.duration_frames
+    }
+
+    /// Number of angles: 13, or 26 of a motion in space.
+    #[must_use]
+    pub fn angle_count(&self) -> usize {
+        self.curves.len()
     }
 
     /// Angle `angle` at `position`, radians, unwrapped; positions a few frames outside of 0 to 1 are known too.
@@ -64,7 +70,7 @@ impl TrainingCycle {
 fn curve(table: &AngleTable, angle: usize, start: u64, end: u64) -> Result<CubicSpline, String> {
     let first = start.saturating_sub(MARGIN_FRAMES);
     let mut series: Vec<Option<f64>> =
-        (first..end + MARGIN_FRAMES).map(|frame| table.row(frame).and_then(|row| row.angles_rad[angle])).collect();
+        (first..end + MARGIN_FRAMES).map(|frame| table.angle_rad(frame, angle)).collect();
     unwrap_along_time(&mut series);
     let margin = (start - first) as usize;
     let mut knots: Vec<(f64, f64)> = Vec::with_capacity(series.len() + margin);
@@ -80,11 +86,12 @@ fn curve(table: &AngleTable, angle: usize, start: u64, end: u64) -> Result<Cubic
     check_gaps(&knots, start as f64, end as f64).map_err(|(from, to)| {
         format!(
             "`{}` is missing between the frames {from} and {to}; a training cycle may lack an angle for a tenth of its length at most",
-            COLUMNS[angle + 1]
+            angle_columns().nth(angle).unwrap_or_default()
         )
     })?;
     let (places, values) = knots.into_iter().unzip();
-    CubicSpline::natural(places, values).ok_or_else(|| format!("`{}` has less than two values", COLUMNS[angle + 1]))
+    CubicSpline::natural(places, values)
+        .ok_or_else(|| format!("`{}` has less than two values", angle_columns().nth(angle).unwrap_or_default()))
 }
 
 /// Knots before the first frame of `series`, as (frames back, value), from the end of the cycle of `duration` frames that
@@ -135,6 +142,7 @@ fn check_gaps(knots: &[(f64, f64)], start: f64, end: f64) -> Result<(), (f64, f6
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cyclic::angle_table::ANGLES;
     use proptest::prelude::*;
 
     fn cut(start_frame: u64, end_frame: u64) -> Cut {

@@ -6,8 +6,7 @@
 //! of the pairs that differ most is used.
 
 use super::cycle::TrainingCycle;
-use super::statistics::mean_pose;
-use crate::cyclic::angle_table::ANGLES;
+use super::statistics::{angle_count, mean_pose};
 use crate::cyclic::model::DeviationNumbers;
 use crate::cyclic::turns::wrapped;
 use std::f64::consts::TAU;
@@ -33,21 +32,20 @@ struct Parts {
 /// Learns the deviation's spread from two or more cycles at `length` positions.
 #[must_use]
 pub fn of_cycles(cycles: &[TrainingCycle], length: usize) -> DeviationNumbers {
-    let poses = mean_pose(cycles, length);
+    let (poses, count) = (mean_pose(cycles, length), angle_count(cycles));
     let parts: Vec<Vec<Parts>> =
-        cycles.iter().map(|cycle| (0..ANGLES).map(|angle| split(cycle, angle, &poses, length)).collect()).collect();
+        cycles.iter().map(|cycle| (0..count).map(|angle| split(cycle, angle, &poses, length)).collect()).collect();
     let pairs = far_pairs(&parts);
     let over_pairs = |value: &dyn Fn(&Parts, &Parts) -> f64, angle: usize| {
         pairs.iter().map(|&(i, k)| value(&parts[i][angle], &parts[k][angle])).sum::<f64>() / pairs.len() as f64
     };
-    let coefficient = |which: usize| {
-        std::array::from_fn::<f64, ANGLES, _>(|angle| {
-            over_pairs(&|a, b| half_square(a.coefficients[which] - b.coefficients[which]), angle)
-        })
+    let coefficient = |which: usize| -> Vec<f64> {
+        let of_angle = |angle| over_pairs(&|a, b| half_square(a.coefficients[which] - b.coefficients[which]), angle);
+        (0..count).map(of_angle).collect()
     };
     let (offset, cosine, sine) = (coefficient(0), coefficient(1), coefficient(2));
-    let swing = std::array::from_fn(|i| 0.5 * (cosine[i] + sine[i]));
-    let rest = std::array::from_fn(|angle| over_pairs(&rest_variance, angle));
+    let swing: Vec<f64> = cosine.iter().zip(&sine).map(|(cosine, sine)| 0.5 * (cosine + sine)).collect();
+    let rest: Vec<f64> = (0..count).map(|angle| over_pairs(&rest_variance, angle)).collect();
     let rate = |angle: usize| {
         let slope = over_pairs(&slope_variance, angle);
         (slope / rest[angle].max(f64::MIN_POSITIVE)).sqrt().clamp(RATE_PER_CYCLE.0, RATE_PER_CYCLE.1)
@@ -55,15 +53,15 @@ pub fn of_cycles(cycles: &[TrainingCycle], length: usize) -> DeviationNumbers {
     DeviationNumbers {
         inflation: INFLATION as f32,
         shrinkage: SHRINKAGE as f32,
-        offset_std_rad: stds(offset, INFLATION),
-        swing_std_rad: stds(swing, INFLATION),
-        rest_std_rad: stds(rest, REST_INFLATION),
-        rest_rate_per_cycle: (0..ANGLES).map(|angle| rate(angle) as f32).collect(),
+        offset_std_rad: stds(&offset, INFLATION),
+        swing_std_rad: stds(&swing, INFLATION),
+        rest_std_rad: stds(&rest, REST_INFLATION),
+        rest_rate_per_cycle: (0..count).map(|angle| rate(angle) as f32).collect(),
     }
 }
 
 /// Least-squares fit of constant, cosine and sine to the deviation at equidistant positions, where they are orthogonal.
-fn split(cycle: &TrainingCycle, angle: usize, poses: &[[f64; ANGLES]], length: usize) -> Parts {
+fn split(cycle: &TrainingCycle, angle: usize, poses: &[Vec<f64>], length: usize) -> Parts {
     let place = |position: usize| position as f64 / length as f64;
     let mut deviation: Vec<f64> =
         (0..length).map(|position| wrapped(cycle.angle_at(angle, place(position)) - poses[position][angle])).collect();
@@ -86,7 +84,7 @@ fn far_pairs(parts: &[Vec<Parts>]) -> Vec<(usize, usize)> {
         both.flat_map(|(a, b)| (0..3).map(|c| half_square(a.coefficients[c] - b.coefficients[c]))).collect()
     };
     let table: Vec<Vec<f64>> = all.iter().map(squares).collect();
-    let scale: Vec<f64> = (0..3 * ANGLES)
+    let scale: Vec<f64> = (0..table.first().map_or(0, Vec::len))
         .map(|column| table.iter().map(|row| row[column]).sum::<f64>() / table.len() as f64 + f64::MIN_POSITIVE)
         .collect();
     let distance = |row: &Vec<f64>| row.iter().zip(&scale).map(|(value, scale)| value / scale).sum::<f64>();
@@ -114,8 +112,8 @@ fn slope_variance(a: &Parts, b: &Parts) -> f64 {
 }
 
 /// Standard deviations of variances, shrunk to their mean and multiplied by `factor`.
-fn stds(variances: [f64; ANGLES], factor: f64) -> Vec<f32> {
-    let mean = variances.iter().sum::<f64>() / ANGLES as f64;
+fn stds(variances: &[f64], factor: f64) -> Vec<f32> {
+    let mean = variances.iter().sum::<f64>() / variances.len() as f64;
     let std = |variance: &f64| (factor * ((1.0 - SHRINKAGE) * variance + SHRINKAGE * mean)).sqrt().max(LEAST_STD_RAD);
     variances.iter().map(|variance| std(variance) as f32).collect()
 }
@@ -123,6 +121,7 @@ fn stds(variances: [f64; ANGLES], factor: f64) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cyclic::angle_table::ANGLES;
     use crate::cyclic::angle_table::AngleTable;
     use crate::cyclic::cuts::Cut;
 

@@ -6,7 +6,7 @@ pub mod statistics;
 
 pub use cycle::TrainingCycle;
 
-use super::angle_table::{ANGLES, AngleTable};
+use super::angle_table::AngleTable;
 use super::cuts::CutList;
 use super::error::CyclicError;
 use super::model::{CyclicModel, ModelNumbers, TrainedOn};
@@ -69,6 +69,16 @@ pub fn read_cycles(list: &CutList) -> Result<Vec<TrainingCycle>, CyclicError> {
         }
         let cycle = TrainingCycle::new(&tables[&path], cut)
             .map_err(|rule| CyclicError::broken(list.path(), cut.line, format!("`{}`: {rule}", path.display())))?;
+        if let Some(first) =
+            cycles.first().map(TrainingCycle::angle_count).filter(|first| *first != cycle.angle_count())
+        {
+            let rule = format!(
+                "`{}` has {} angles a frame, the first table {first}; train on tables of one kind (sinew angles --view space or not)",
+                path.display(),
+                cycle.angle_count()
+            );
+            return Err(CyclicError::broken(list.path(), cut.line, rule));
+        }
         cycles.push(cycle);
     }
     Ok(cycles)
@@ -82,12 +92,12 @@ fn numbers(cycles: &[TrainingCycle], options: TrainingOptions) -> ModelNumbers {
     };
     let mean_velocity = cycles.iter().map(|cycle| 1.0 / cycle.duration_frames()).sum::<f64>() / cycles.len() as f64;
     ModelNumbers {
-        angle_count: ANGLES,
+        angle_count: statistics::angle_count(cycles),
         mean_acceleration: rows(|at| &at.mean_acceleration),
         acceleration_covariance: rows(|at| &at.acceleration_covariance),
         mean_pose_rad: rows(|at| &at.mean_pose_rad),
         mean_velocity: rows(|at| &at.mean_velocity),
-        turns_per_cycle: statistics::turns_per_cycle(cycles, options.length).to_vec(),
+        turns_per_cycle: statistics::turns_per_cycle(cycles, options.length),
         mean_duration_frames: (1.0 / mean_velocity) as f32,
         rate_hz: options.rate_hz as f32,
         deviation: Some(deviation::of_cycles(cycles, options.length)),
@@ -101,6 +111,7 @@ fn file_name(file: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cyclic::angle_table::ANGLES;
 
     fn write_tables(folder: &Path) {
         for (name, amplitude) in [("a.csv", 0.4), ("b.csv", 0.6)] {

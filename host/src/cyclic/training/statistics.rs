@@ -1,7 +1,6 @@
 //! Mean and covariance over the training cycles at each position of the reference cycle (cyclic paper, section 2.3).
 
 use super::cycle::TrainingCycle;
-use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::turns::{circular_mean, unwrap_along_time};
 use std::f64::consts::TAU;
 
@@ -9,13 +8,13 @@ use std::f64::consts::TAU;
 #[derive(Debug, Clone, PartialEq)]
 pub struct PositionStatistics {
     /// Mean angular acceleration, rad per reference frame squared.
-    pub mean_acceleration: [f64; ANGLES],
+    pub mean_acceleration: Vec<f64>,
     /// Covariance of the acceleration as a packed lower triangle, rad^2 per reference frame^4; divided by cycles - 1.
     pub acceleration_covariance: Vec<f64>,
     /// Mean angles, radians; see [`mean_pose`].
-    pub mean_pose_rad: [f64; ANGLES],
+    pub mean_pose_rad: Vec<f64>,
     /// Mean angular velocity, rad per reference frame.
-    pub mean_velocity: [f64; ANGLES],
+    pub mean_velocity: Vec<f64>,
 }
 
 /// Statistics at each of `length` positions. Derivatives are central differences over one reference frame, 1 / `length`
@@ -27,13 +26,13 @@ pub fn of_positions(cycles: &[TrainingCycle], length: usize) -> Vec<PositionStat
         .map(|position| {
             let derivatives: Vec<Derivatives> =
                 cycles.iter().map(|cycle| derivatives(cycle, position, length)).collect();
-            let accelerations: Vec<[f64; ANGLES]> = derivatives.iter().map(|d| d.acceleration).collect();
-            let velocities: Vec<[f64; ANGLES]> = derivatives.iter().map(|d| d.velocity).collect();
+            let accelerations: Vec<&[f64]> = derivatives.iter().map(|d| d.acceleration.as_slice()).collect();
+            let velocities: Vec<&[f64]> = derivatives.iter().map(|d| d.velocity.as_slice()).collect();
             let mean_acceleration = mean(&accelerations);
             PositionStatistics {
-                mean_acceleration,
                 acceleration_covariance: covariance(&accelerations, &mean_acceleration),
-                mean_pose_rad: poses[position],
+                mean_acceleration,
+                mean_pose_rad: poses[position].clone(),
                 mean_velocity: mean(&velocities),
             }
         })
@@ -43,9 +42,10 @@ pub fn of_positions(cycles: &[TrainingCycle], length: usize) -> Vec<PositionStat
 /// Mean angles at positions 0 to `length`, both included, radians: at each position the mean on the circle, so that cycles
 /// whose angles differ by whole turns agree; then unwrapped along the cycle. The last row is where the mean cycle ends.
 #[must_use]
-pub fn mean_pose(cycles: &[TrainingCycle], length: usize) -> Vec<[f64; ANGLES]> {
-    let mut poses = vec![[0.0; ANGLES]; length + 1];
-    for angle in 0..ANGLES {
+pub fn mean_pose(cycles: &[TrainingCycle], length: usize) -> Vec<Vec<f64>> {
+    let count = angle_count(cycles);
+    let mut poses = vec![vec![0.0; count]; length + 1];
+    for angle in 0..count {
         let at = |position: usize| {
             let place = position as f64 / length as f64;
             circular_mean(&cycles.iter().map(|cycle| cycle.angle_at(angle, place)).collect::<Vec<_>>())
@@ -59,45 +59,55 @@ pub fn mean_pose(cycles: &[TrainingCycle], length: usize) -> Vec<[f64; ANGLES]> 
     poses
 }
 
+/// Angles that all the cycles have.
+#[must_use]
+pub fn angle_count(cycles: &[TrainingCycle]) -> usize {
+    cycles.iter().map(TrainingCycle::angle_count).min().unwrap_or(0)
+}
+
 /// Whole turns that each angle of the mean cycle makes.
 #[must_use]
-pub fn turns_per_cycle(cycles: &[TrainingCycle], length: usize) -> [i8; ANGLES] {
+pub fn turns_per_cycle(cycles: &[TrainingCycle], length: usize) -> Vec<i8> {
     let poses = mean_pose(cycles, length);
-    std::array::from_fn(|angle| ((poses[length][angle] - poses[0][angle]) / TAU).round() as i8)
+    let ends = poses[length].iter().zip(&poses[0]);
+    ends.map(|(last, first)| ((last - first) / TAU).round() as i8).collect()
 }
 
 struct Derivatives {
-    velocity: [f64; ANGLES],
-    acceleration: [f64; ANGLES],
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
 }
 
 fn derivatives(cycle: &TrainingCycle, position: usize, length: usize) -> Derivatives {
     let place = |step: f64| (position as f64 + step) / length as f64;
-    let at = |step: f64| -> [f64; ANGLES] { std::array::from_fn(|angle| cycle.angle_at(angle, place(step))) };
+    let count = cycle.angle_count();
+    let at = |step: f64| -> Vec<f64> { (0..count).map(|angle| cycle.angle_at(angle, place(step))).collect() };
     let (before, after) = (at(-1.0), at(1.0));
     let (far_before, here, far_after) = (at(-2.0), at(0.0), at(2.0));
     Derivatives {
-        velocity: std::array::from_fn(|i| 0.5 * (after[i] - before[i])),
+        velocity: (0..count).map(|i| 0.5 * (after[i] - before[i])).collect(),
         // The central filter applied twice.
-        acceleration: std::array::from_fn(|i| 0.25 * (far_after[i] - 2.0 * here[i] + far_before[i])),
+        acceleration: (0..count).map(|i| 0.25 * (far_after[i] - 2.0 * here[i] + far_before[i])).collect(),
     }
 }
 
-fn mean(rows: &[[f64; ANGLES]]) -> [f64; ANGLES] {
-    std::array::from_fn(|i| rows.iter().map(|row| row[i]).sum::<f64>() / rows.len() as f64)
+fn mean(rows: &[&[f64]]) -> Vec<f64> {
+    let count = rows.first().map_or(0, |row| row.len());
+    (0..count).map(|i| rows.iter().map(|row| row[i]).sum::<f64>() / rows.len() as f64).collect()
 }
 
-fn covariance(rows: &[[f64; ANGLES]], mean: &[f64; ANGLES]) -> Vec<f64> {
+fn covariance(rows: &[&[f64]], mean: &[f64]) -> Vec<f64> {
     let entry = |i: usize, j: usize| {
         let sum: f64 = rows.iter().map(|row| (row[i] - mean[i]) * (row[j] - mean[j])).sum();
         sum / (rows.len() - 1) as f64
     };
-    (0..ANGLES).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| entry(i, j)).collect()
+    (0..mean.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| entry(i, j)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cyclic::angle_table::ANGLES;
     use crate::cyclic::angle_table::AngleTable;
     use crate::cyclic::cuts::Cut;
 
