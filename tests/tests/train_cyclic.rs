@@ -109,6 +109,39 @@ fn bad_input_is_refused_with_file_line_and_rule() {
     option(["--length", "5"], "`length` has to lie from 10 to 1000, not 5");
 }
 
+#[test]
+fn an_angle_that_winds_in_some_cycles_only_is_told() {
+    let root = tempfile::tempdir().unwrap();
+    write_input(root.path());
+    let train = |cuts: &str| {
+        fs::write(root.path().join("c.csv"), format!("file,start_frame,end_frame\n{cuts}")).unwrap();
+        sinew(root.path()).args(["--cuts", "c.csv", "--out", "m.json"]).assert().success()
+    };
+    train("tables/a.csv,10,70\ntables/b.csv,20,80\n").stderr(predicates::str::is_empty());
+    // The right wrist goes round once in 60 frames, backwards.
+    let winding = table(0.4, None).lines().enumerate().fold(String::new(), |mut text, (line, row)| {
+        let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
+        if line > 0 {
+            cells[7] = format!("{:.6}", -TAU * (line as f64 / 60.0).fract());
+        }
+        writeln!(text, "{}", cells.join(",")).unwrap();
+        text
+    });
+    fs::write(root.path().join("tables/w.csv"), winding).unwrap();
+    let told = "note: `r_wrist_rad` winds unevenly: -1 turns in 1 of the cycles, 0 turns in 2 of the cycles;";
+    train("tables/a.csv,10,70\ntables/b.csv,20,80\ntables/w.csv,20,80\n")
+        .stderr(contains(told).and(contains("note").count(1)));
+    train("tables/w.csv,10,70\ntables/w.csv,20,80\n").stderr(predicates::str::is_empty());
+}
+
+#[test]
+fn help_names_every_shipped_model() {
+    for command in [["track", "cyclic"], ["evaluate", "cyclic"]] {
+        let mut help = Command::from_std(sinew_command());
+        help.args(command).arg("--help").assert().success().stdout(contains("MODEL.json|walking|running|arm-circles"));
+    }
+}
+
 /// The shipped models are what the training command makes of the development data.
 #[test]
 fn the_shipped_walking_is_what_the_command_makes() {

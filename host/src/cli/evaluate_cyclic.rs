@@ -1,5 +1,6 @@
 //! `sinew evaluate cyclic`
 
+use crate::cyclic::model::MODEL_VALUE;
 use crate::cyclic::training::{TrainingOptions, train};
 use crate::cyclic::{CutList, CyclicModel};
 use crate::evaluate::cyclic::experiments::FILTERS;
@@ -15,8 +16,8 @@ pub struct EvaluateCyclicArgs {
     /// Cut list of the cycles to train on; without it the model of --model is used.
     #[arg(long, value_name = "CUTS.csv", conflicts_with = "model")]
     pub train: Option<PathBuf>,
-    /// Model that is tested: walking, running, or a file of `sinew train cyclic`.
-    #[arg(long, value_name = "MODEL.json|walking|running", default_value = "walking")]
+    /// Model that is tested: a shipped one, or a file of `sinew train cyclic`.
+    #[arg(long, value_name = MODEL_VALUE, default_value = "walking")]
     pub model: String,
     /// Cut list of the cycles to test on [default: synthetic cycles drawn from the model, which only show that it runs].
     #[arg(long, value_name = "CUTS.csv")]

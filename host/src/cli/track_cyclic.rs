@@ -1,5 +1,6 @@
 //! `sinew track cyclic`: angles, phase and cadence from an angle table.
 
+use crate::cyclic::model::MODEL_VALUE;
 use crate::cyclic::pictures::{OverlayFrames, animation};
 use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::figures;
@@ -16,8 +17,8 @@ use std::path::{Path, PathBuf};
 pub struct TrackCyclicArgs {
     /// Angle table, made by `sinew angles` from a motion in space or from keypoints.
     pub table: PathBuf,
-    /// Motion: walking, running, or a file of `sinew train cyclic`.
-    #[arg(long, value_name = "MODEL.json|walking|running")]
+    /// Motion: a shipped one, or a file of `sinew train cyclic`.
+    #[arg(long, value_name = MODEL_VALUE)]
     pub model: String,
     /// Filter.
     #[arg(long, value_enum, default_value_t = FilterName::Coupled)]

@@ -2,7 +2,7 @@
 
 use crate::cyclic::cuts::CutList;
 use crate::cyclic::model_file;
-use crate::cyclic::training::{TrainingOptions, train};
+use crate::cyclic::training::{TrainingOptions, read_cycles, train_on, uneven_turns};
 use crate::output::{check_writable_file, write_atomically};
 use anyhow::Result;
 use clap::Args;
@@ -32,7 +32,8 @@ pub struct TrainCyclicArgs {
 pub fn run(args: &TrainCyclicArgs) -> Result<()> {
     check_writable_file(&args.out)?;
     let list = CutList::read(&args.cuts)?;
-    let model = train(&list, TrainingOptions { length: args.length, rate_hz: args.rate })?;
+    let cycles = read_cycles(&list)?;
+    let model = train_on(&cycles, &list, TrainingOptions { length: args.length, rate_hz: args.rate })?;
     let json = model_file::to_json(&model)?;
     write_atomically(&args.out, |writer| Ok(writer.write_all(json.as_bytes())?))?;
     let (numbers, on) = (model.numbers(), model.trained_on());
@@ -48,5 +49,8 @@ pub fn run(args: &TrainCyclicArgs) -> Result<()> {
         60.0 * numbers.rate_hz / numbers.mean_duration_frames,
         args.out.display()
     );
+    for angle in uneven_turns(&cycles) {
+        eprintln!("note: {angle}");
+    }
     super::stdout::write_all(report.as_bytes())
 }

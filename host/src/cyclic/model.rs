@@ -6,12 +6,15 @@ use serde::{Deserialize, Serialize};
 use sinew_core::cyclic::{Deviation, ModelError, ModelParts, MotionModel};
 use std::path::Path;
 
-/// Walking, as shipped: `models/cuts/walking.csv` tells on which cycles it was trained.
-const SHIPPED_WALKING: &str = include_str!("../../models/walking.json");
-/// Running, as shipped: `models/cuts/running.csv` tells on which cycles it was trained.
-const SHIPPED_RUNNING: &str = include_str!("../../models/running.json");
-/// Arms that circle forwards, as shipped: `models/cuts/arm-circles.csv` tells on which cycles it was trained.
-const SHIPPED_ARM_CIRCLES: &str = include_str!("../../models/arm-circles.json");
+/// The models that are shipped, by name; `models/cuts/NAME.csv` tells on which cycles each was trained.
+const SHIPPED: [(&str, &str); 3] = [
+    ("walking", include_str!("../../models/walking.json")),
+    ("running", include_str!("../../models/running.json")),
+    ("arm-circles", include_str!("../../models/arm-circles.json")),
+];
+
+/// What an option for a model takes, for help texts.
+pub const MODEL_VALUE: &str = "MODEL.json|walking|running|arm-circles";
 
 /// What a model was trained on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -108,20 +111,20 @@ impl CyclicModel {
         Ok(Self { numbers, trained_on })
     }
 
-    /// The model that an option names: `walking`, `running` or `arm-circles` as shipped, else a file.
+    /// The model that an option names: one of those shipped (see [`MODEL_VALUE`]), else a file.
     ///
     /// # Errors
     /// No such file, or a file that is no model.
     pub fn from_option(option: &str) -> Result<Self> {
-        match option {
-            "walking" => model_file::parse(SHIPPED_WALKING),
-            "running" => model_file::parse(SHIPPED_RUNNING),
-            "arm-circles" => model_file::parse(SHIPPED_ARM_CIRCLES),
-            path if Path::new(path).exists() => model_file::read(Path::new(path)),
-            other => bail!(
-                "`--model {other}`: there is no such file; give walking, running, arm-circles, or a file made by `sinew train cyclic`"
-            ),
+        if let Some((_, text)) = SHIPPED.iter().find(|(name, _)| *name == option) {
+            return model_file::parse(text);
         }
+        let path = Path::new(option);
+        if !path.exists() {
+            let names = SHIPPED.map(|(name, _)| name).join(", ");
+            bail!("`--model {option}`: there is no such file; give {names}, or a file made by `sinew train cyclic`");
+        }
+        model_file::read(path)
     }
 
     /// The model as the core's filters read it.
@@ -164,6 +167,8 @@ mod tests {
     #[test]
     fn an_unknown_name_is_refused_with_the_choices() {
         let message = CyclicModel::from_option("wlaking").unwrap_err().to_string();
-        assert!(message.contains("walking, running") && message.contains("wlaking"), "{message}");
+        assert!(message.contains("walking, running, arm-circles") && message.contains("wlaking"), "{message}");
+        let named = SHIPPED.map(|(name, _)| name).join("|");
+        assert_eq!(MODEL_VALUE, format!("MODEL.json|{named}"));
     }
 }

@@ -65,6 +65,11 @@ impl TrainingCycle {
     pub fn angle_at(&self, angle: usize, position: f64) -> f64 {
         self.curves[angle].at(self.start_frame + position * self.duration_frames)
     }
+    /// Whole turns that the angle makes from the beginning of the cycle to its end.
+    #[must_use]
+    pub fn turns(&self, angle: usize) -> i32 {
+        ((self.angle_at(angle, 1.0) - self.angle_at(angle, 0.0)) / TAU).round() as i32
+    }
 }
 
 fn curve(table: &AngleTable, angle: usize, start: u64, end: u64) -> Result<CubicSpline, String> {

@@ -3,8 +3,10 @@
 pub mod cycle;
 pub mod deviation;
 pub mod statistics;
+pub mod winding;
 
 pub use cycle::TrainingCycle;
+pub use winding::{UnevenTurns, uneven_turns};
 
 use super::angle_table::AngleTable;
 use super::cuts::CutList;
@@ -34,18 +36,29 @@ impl Default for TrainingOptions {
 /// A table that cannot be read, a cut that cannot be used (named with the list's line), less than two cycles, or options
 /// out of their range.
 pub fn train(list: &CutList, options: TrainingOptions) -> Result<CyclicModel, CyclicError> {
+    train_on(&read_cycles(list)?, list, options)
+}
+
+/// Trains a model on `cycles`, which were read from `list`.
+///
+/// # Errors
+/// Less than two cycles, or options out of their range.
+pub fn train_on(
+    cycles: &[TrainingCycle],
+    list: &CutList,
+    options: TrainingOptions,
+) -> Result<CyclicModel, CyclicError> {
     if !(10..=1000).contains(&options.length) {
         return Err(CyclicError::parameter("length", format!("has to lie from 10 to 1000, not {}", options.length)));
     }
     if !(options.rate_hz > 0.0 && options.rate_hz.is_finite()) {
         return Err(CyclicError::parameter("rate", format!("has to be greater than zero, not {}", options.rate_hz)));
     }
-    let cycles = read_cycles(list)?;
     if cycles.len() < 2 {
         let rule = "one training cycle only: how cycles differ (the covariance) is then not known; add a second row";
         return Err(CyclicError::broken(list.path(), list.cuts()[0].line, rule));
     }
-    let numbers = numbers(&cycles, options);
+    let numbers = numbers(cycles, options);
     let mut tables: Vec<String> = list.cuts().iter().map(|cut| file_name(&cut.file)).collect();
     tables.sort();
     tables.dedup();
