@@ -6,8 +6,8 @@
 use super::covariance::KinematicCovariance;
 use super::cycle_state::CycleState;
 use super::gate::is_outlier;
+use super::joint_update::SeenAngles;
 use super::kalman_options::{CovarianceScaling, GainReach, KalmanOptions};
-use super::log_product::LogProduct;
 use super::substeps::Substeps;
 use super::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
 use crate::angle::{angle_difference, split_turns};
@@ -141,37 +141,43 @@ impl<const N: usize> KalmanFilter<N> {
         gain: GainReach,
         measurement: &AngleMeasurement<N>,
     ) -> Innovation {
-        let mut innovation = Innovation { log_likelihood: 0.0, squared: 0.0, present: 0 };
-        if measurement.is_empty(model.angle_count()) {
-            return innovation;
+        let seen = self.seen(model, measurement);
+        if seen.count == 0 {
+            return Innovation { log_likelihood: 0.0, squared: 0.0, present: 0 };
         }
-        let (mut angle_shift, mut velocity_shift) = ([0.0; N], [0.0; N]);
-        let mut variances = LogProduct::one();
-        for i in 0..N.min(model.angle_count()) {
-            let Some(measured) = measurement.angle_rad(i) else { continue };
-            let std = measurement.std_rad()[i];
-            let column = self.covariance.column(i, std * std);
-            let rest = angle_difference(measured, self.angles_rad[i]) - angle_shift[i];
-            let scaled = rest * column.inverse_std;
-            shift(&mut angle_shift, &column.angle, scaled);
-            match gain {
-                GainReach::Full => {
-                    shift(&mut velocity_shift, &column.velocity, scaled);
-                    self.covariance.reduce(&column);
-                }
-                GainReach::AnglesOnly => self.covariance.reduce_angles(&column),
-            }
-            innovation.squared += scaled * scaled;
-            innovation.present += 1;
-            variances.multiply(column.innovation_variance);
-        }
+        let shift = self.covariance.correct(&seen, gain == GainReach::AnglesOnly);
         for i in 0..N {
-            self.set_angle(i, self.angles_rad[i] + angle_shift[i]);
-            self.velocities[i] = clamp(self.velocities[i] + velocity_shift[i], -PI, PI);
+            self.set_angle(i, self.angles_rad[i] + shift.angles_rad[i]);
+            self.velocities[i] = clamp(self.velocities[i] + shift.velocities[i], -PI, PI);
         }
-        innovation.log_likelihood =
-            -0.5 * (innovation.squared + variances.ln()) - innovation.present as f32 * LOG_SQRT_TAU;
-        innovation
+        let log_likelihood = -0.5 * (shift.squared + shift.determinant.ln()) - seen.count as f32 * LOG_SQRT_TAU;
+        Innovation { log_likelihood, squared: shift.squared, present: seen.count }
+    }
+
+    /// The angles of a measurement beside what is predicted, those seen first.
+    #[inline]
+    fn seen(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> SeenAngles<N> {
+        let mut seen = SeenAngles { order: [0; N], count: 0, innovation_rad: [0.0; N], noise_variance: [0.0; N] };
+        let angles = model.angle_count();
+        for i in 0..N.min(angles) {
+            if let Some(measured) = measurement.angle_rad(i) {
+                let std = measurement.std_rad()[i];
+                seen.order[seen.count] = i;
+                seen.innovation_rad[seen.count] = angle_difference(measured, self.angles_rad[i]);
+                seen.noise_variance[seen.count] = std * std;
+                seen.count += 1;
+            }
+        }
+        let mut place = seen.count;
+        if place < N {
+            for i in 0..N {
+                if i >= angles || measurement.angle_rad(i).is_none() {
+                    seen.order[place] = i;
+                    place += 1;
+                }
+            }
+        }
+        seen
     }
 
     fn estimate(&self, innovation: &Innovation, outlier: bool) -> CyclicEstimate<N> {
@@ -210,13 +216,5 @@ impl<const N: usize> KalmanFilter<N> {
     #[must_use]
     pub const fn cycle(&self) -> &CycleState {
         &self.cycle
-    }
-}
-
-/// `target` += `factor` `direction`.
-#[inline]
-fn shift<const N: usize>(target: &mut [f32; N], direction: &[f32; N], factor: f32) {
-    for (value, part) in target.iter_mut().zip(direction) {
-        *value += factor * part;
     }
 }

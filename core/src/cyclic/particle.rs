@@ -6,9 +6,10 @@
 use super::angle_blocks::{AngleBlocks, BLOCK, blocks_of, used_blocks, write_back};
 use super::particle_table::ParticleTable;
 use super::phase::wrap_position;
-use super::start::CycleStart;
+use super::start::{CycleStart, LEAST_SPREAD_RAD};
 use super::substeps::Substeps;
 use super::{AngleMeasurement, MotionModel};
+use crate::angle::angle_difference;
 use crate::math::{clamp, exp_small, least_angle, max, sqrt, wrap_angle, wrap_angle_small};
 use crate::random::lanes::LANES;
 use crate::random::{Stream, StreamLanes};
@@ -41,7 +42,8 @@ pub enum Spread {
     /// About the start, with the standard deviations of [`ParticleOptions`].
     #[default]
     Standard,
-    /// The same, but uniform over the cycle position.
+    /// Any position of the cycle, as far as the first pose allows (see [`fill_positions`]), each particle with the mean
+    /// velocities of its own position.
     UniformPosition,
     /// Angles and velocities uniform in [-pi, pi], cycle position uniform: the paper's random start.
     Random,
@@ -76,12 +78,15 @@ impl Default for ParticleOptions {
 }
 
 /// Particle number `index` of the first generation.
+///
+/// `positions` says where in the cycle a uniform start may be, as [`fill_positions`] wrote it; the other starts do not read it.
 #[must_use]
 pub fn first_particle<const N: usize>(
+    model: &MotionModel<'_>,
+    positions: &[f32],
     start: &CycleStart<N>,
     options: &ParticleOptions,
-    seed: u64,
-    index: u32,
+    (seed, index): (u64, u32),
 ) -> CyclicParticle<N> {
     let mut stream = Stream::new(seed, 0, index);
     let mut particle = CyclicParticle {
@@ -90,6 +95,12 @@ pub fn first_particle<const N: usize>(
         cycle_position: start.cycle_position,
         cycle_velocity: start.cycle_velocity + options.velocity_std * stream.normal(),
     };
+    if options.spread == Spread::UniformPosition {
+        particle.cycle_position = drawn_position(positions, stream.uniform());
+        let ratio = model.speed_ratio(particle.cycle_velocity);
+        let point = model.point(particle.cycle_position);
+        particle.velocities = model.mean_velocity::<N>(point).map(|velocity| ratio * velocity);
+    }
     for i in 0..N {
         if options.spread == Spread::Random {
             particle.angles_rad[i] = wrap_angle(PI * (2.0 * stream.uniform() - 1.0));
@@ -100,12 +111,51 @@ pub fn first_particle<const N: usize>(
             particle.velocities[i] += options.start_std * stream.normal();
         }
     }
-    particle.cycle_position = if options.spread == Spread::Standard {
-        wrap_position(start.cycle_position + options.position_std * stream.normal())
-    } else {
-        stream.uniform()
-    };
+    match options.spread {
+        Spread::Standard => {
+            particle.cycle_position = wrap_position(start.cycle_position + options.position_std * stream.normal());
+        }
+        Spread::Random => particle.cycle_position = stream.uniform(),
+        Spread::UniformPosition => {}
+    }
     particle
+}
+
+/// Writes how far a uniform start is spread over the model's stored positions, as running sums: each has a weight by how well
+/// its mean pose, with the model's spread between people, agrees with the angles that the first frame shows.
+///
+/// Every position is as likely as any other before the first frame, which is known when the particles are drawn. Without any
+/// angle seen, or a spread in the model, the sums rise evenly. `positions` has one number for each stored position.
+pub fn fill_positions<const N: usize>(model: &MotionModel<'_>, start: &CycleStart<N>, positions: &mut [f32]) {
+    let spread = model.deviation_std_rad::<N>();
+    let count = model.position_count() as f32;
+    for (index, value) in positions.iter_mut().enumerate() {
+        let pose = model.mean_pose_rad::<N>(model.point(index as f32 / count));
+        let mut squared = 0.0;
+        for i in (0..N.min(model.angle_count())).filter(|&i| start.extra_variance_rad2[i] == 0.0 && spread[i] > 0.0) {
+            let scaled = angle_difference(start.angles_rad[i], pose[i]) / max(spread[i], LEAST_SPREAD_RAD);
+            squared += scaled * scaled;
+        }
+        *value = -0.5 * squared;
+    }
+    let best = greatest(positions);
+    let mut sum = 0.0;
+    for value in positions {
+        sum += crate::math::exp(*value - best);
+        *value = sum;
+    }
+}
+
+/// The position at which the running sums reach `uniform` of their last; `uniform` itself without sums.
+fn drawn_position(sums: &[f32], uniform: f32) -> f32 {
+    let Some(&total) = sums.last() else { return uniform };
+    let wanted = uniform * total;
+    let index = sums.partition_point(|&sum| sum <= wanted).min(sums.len() - 1);
+    let below = if index == 0 { 0.0 } else { sums.get(index - 1).copied().unwrap_or(0.0) };
+    let weight = sums.get(index).map_or(0.0, |sum| sum - below);
+    let part = if weight > 0.0 { (wanted - below) / weight } else { 0.5 };
+    // A stored position stands for what is nearer to it than to its neighbours.
+    wrap_position((index as f32 + part - 0.5) / sums.len() as f32)
 }
 
 /// A draw for each of up to [`LANES`] particles from the transition of eq. (11) over `step` <= 1 frame.
@@ -298,7 +348,6 @@ mod tests {
     use super::super::particle_moments::ParticleMoments;
     use super::super::synthetic;
     use super::*;
-    use crate::angle::angle_difference;
 
     const N: usize = 13;
 
@@ -310,7 +359,10 @@ mod tests {
         fill_factors(&model, &mut factors);
         let first = core::array::from_fn(|i| Some(synthetic::mean_angle(i, 0.0)));
         let start = CycleStart::standard(&model, &first, Some(0.0), None).unwrap();
-        let mut particles: Vec<_> = (0..count).map(|i| first_particle(&start, options, 3, i as u32)).collect();
+        let mut positions = vec![0.0; model.position_count()];
+        fill_positions(&model, &start, &mut positions);
+        let first = |i| first_particle(&model, &positions, &start, options, (3, i as u32));
+        let mut particles: Vec<_> = (0..count).map(first).collect();
         let mut next = particles.clone();
         let (mut weights, mut from) = (vec![0.0; count], vec![0; count]);
         let mut mean = [0.0; N];

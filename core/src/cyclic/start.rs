@@ -1,14 +1,14 @@
 //! Where a filter begins: pose, velocities, cycle position and velocity (cyclic paper, sections 3.2 and 3.3).
 
-use super::MotionModel;
 use super::phase::wrap_position;
-use crate::angle::angle_difference;
+use super::{CyclicEstimate, MotionModel};
+use crate::angle::{angle_difference, split_turns};
 use crate::error::{ParameterError, finite};
 
 /// Variance of an angle that the first frame does not show and about whose spread the model says nothing, rad^2.
 const UNSEEN_VARIANCE: f32 = 0.25;
 /// Least spread that an angle is given when poses are compared, rad: so that no single angle decides alone.
-const LEAST_SPREAD_RAD: f32 = 0.05;
+pub(super) const LEAST_SPREAD_RAD: f32 = 0.05;
 /// Greatest cycle velocity that makes sense, cycles per frame: two frames a cycle.
 pub const MAX_CYCLE_VELOCITY: f32 = 0.5;
 
@@ -66,6 +66,23 @@ impl<const N: usize> CycleStart<N> {
             }
         }
         Ok(start)
+    }
+
+    /// The start as an estimate: its angles and their extra variance, no spread in the cycle.
+    #[must_use]
+    pub fn estimate(&self) -> CyclicEstimate<N> {
+        let split = self.angles_rad.map(split_turns);
+        CyclicEstimate {
+            angles_rad: split.map(|(angle, _)| angle),
+            turns: split.map(|(_, turns)| turns),
+            angle_variance_rad2: self.extra_variance_rad2,
+            cycle_position: self.cycle_position,
+            cycle_position_variance: 0.0,
+            cycle_velocity_per_frame: self.cycle_velocity,
+            cycle_velocity_variance: 0.0,
+            log_likelihood: 0.0,
+            outlier: false,
+        }
     }
 
     /// Checks the numbers.

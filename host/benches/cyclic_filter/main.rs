@@ -1,9 +1,13 @@
-//! The cyclic filters' steps: `paper` and `coupled` against dense filters of other crates, and the particle filter by stage.
+//! The cyclic filters' steps: `paper` and `coupled` against dense filters of other crates; the particle filter by stage, on one
+//! thread and two, and beside numpy and the Python package `particles` where they are installed.
 //!
-//! Medians taken in turns in this process on one thread, and ratios of them.
+//! Medians taken in turns in this process, on one thread unless said otherwise, and ratios of them. The Python filters run
+//! between two halves of the particle filter's rounds; `PYTHON` names the interpreter (default: python3).
 
 mod dense_peers;
 mod particle_step;
+mod particle_threads;
+mod python_peers;
 mod walk;
 
 use dense_peers::{KfilterPeer, minikalman_step};
@@ -68,12 +72,20 @@ fn print_kalman(model: &MotionModel<'_>, walk: &Walk) {
 
 fn print_particles(model: &MotionModel<'_>, walk: &Walk) {
     let mut filter = ParticleStep::new(*model, walk, PARTICLES);
-    let rounds: Vec<_> = (0..PARTICLE_ROUNDS).map(|_| filter.run()).collect();
-    println!("\n{:<22}{:>10}", "100,000 particles", "ms");
+    let mut rounds: Vec<_> = (0..PARTICLE_ROUNDS).map(|_| filter.run()).collect();
+    let peers = python_peers::run(PARTICLES, PARTICLE_ROUNDS);
+    rounds.extend((0..PARTICLE_ROUNDS).map(|_| filter.run()));
+    println!("\n{:<24}{:>10}{:>18}", "100,000 particles", "ms", "times `particle`");
     for (i, name) in STAGES.iter().enumerate() {
-        println!("{name:<22}{:>10.2}", 1.0e3 * median(rounds.iter().map(|round| round[i]).collect()));
+        println!("{name:<24}{:>10.2}", 1.0e3 * median(rounds.iter().map(|round| round[i]).collect()));
     }
-    println!("{:<22}{:>10.2}", "step", 1.0e3 * median(rounds.iter().map(|round| round.iter().sum()).collect()));
+    let step = 1.0e3 * median(rounds.iter().map(|round| round.iter().sum()).collect());
+    println!("{:<24}{step:>10.2}{:>18.2}", "particle", 1.0);
+    for (name, milliseconds) in peers {
+        println!("{name:<24}{milliseconds:>10.2}{:>18.2}", milliseconds / step);
+    }
+    let [one, two] = particle_threads::milliseconds(model, walk, PARTICLES, PARTICLE_ROUNDS).map(median);
+    println!("\none thread {one:.2} ms, two threads {two:.2} ms: {:.2} times as fast", one / two);
 }
 
 fn main() {

@@ -32,7 +32,8 @@ impl<'a> ParticleStep<'a> {
         fill_factors(&model, &mut factors);
         let start = CycleStart::standard(&model, walk.angles(0), None, None).expect("a sound start");
         let options = ParticleOptions::default();
-        let particles: Vec<_> = (0..count as u32).map(|index| first_particle(&start, &options, 1, index)).collect();
+        let draw = |index| first_particle(&model, &[], &start, &options, (1, index));
+        let particles: Vec<_> = (0..count as u32).map(draw).collect();
         Self {
             model,
             walk,

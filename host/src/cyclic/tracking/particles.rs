@@ -4,18 +4,13 @@
 //! any number of threads.
 
 use rayon::prelude::*;
-use sinew_core::angle::split_turns;
 use sinew_core::cyclic::particle::{
     CHUNK, CyclicParticle, ParticleOptions, advance_and_weigh, ancestors, copy_ancestors, exponentiate, factors_len,
-    fill_factors, first_particle, greatest,
+    fill_factors, fill_positions, first_particle, greatest,
 };
 use sinew_core::cyclic::particle_moments::ParticleMoments;
+use sinew_core::cyclic::particle_tracker::{count_turns, log_likelihood, resampling_offset};
 use sinew_core::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
-use sinew_core::random::Stream;
-use sinew_core::random::normal::LOG_SQRT_TAU;
-
-/// Stream that the resampling of a frame draws from; particles have the numbers below.
-const RESAMPLING_STREAM: u32 = u32::MAX;
 
 /// State of a particle filter.
 #[derive(Debug, Clone)]
@@ -44,8 +39,10 @@ impl<const N: usize> ParticleFilter<N> {
     ) -> Self {
         let mut factors = vec![0.0; factors_len(model)];
         fill_factors(model, &mut factors);
-        let particles: Vec<CyclicParticle<N>> =
-            (0..count as u32).into_par_iter().map(|index| first_particle(start, &options, seed, index)).collect();
+        let mut positions = vec![0.0; model.position_count()];
+        fill_positions(model, start, &mut positions);
+        let draw = |index| first_particle(model, &positions, start, &options, (seed, index));
+        let particles: Vec<CyclicParticle<N>> = (0..count as u32).into_par_iter().map(draw).collect();
         Self {
             options,
             seed,
@@ -64,14 +61,10 @@ impl<const N: usize> ParticleFilter<N> {
         self.frame += 1;
         let best = self.predict(model, measurement);
         let (total, mut estimate) = self.estimate(best);
-        self.count_turns(&mut estimate);
-        let present = measurement.present(model.angle_count());
-        if present > 0 {
-            let scale: f32 = (0..model.angle_count())
-                .filter(|&i| measurement.angle_rad(i).is_some())
-                .map(|i| measurement.std_rad()[i].ln() + LOG_SQRT_TAU)
-                .sum();
-            estimate.log_likelihood = best + (total / self.particles.len() as f32).ln() - scale;
+        count_turns(&mut estimate, &self.last);
+        if measurement.present(model.angle_count()) > 0 {
+            let count = self.particles.len();
+            estimate.log_likelihood = log_likelihood(measurement, model.angle_count(), (best, total), count);
             self.resample(total);
         }
         self.last = estimate;
@@ -113,20 +106,58 @@ impl<const N: usize> ParticleFilter<N> {
     }
 
     fn resample(&mut self, total: f32) {
-        let offset = Stream::new(self.seed, self.frame, RESAMPLING_STREAM).uniform();
+        let offset = resampling_offset(self.seed, self.frame);
         ancestors(&self.weights, total, offset, &mut self.ancestors);
         let particles = &self.particles;
         let jobs = self.next.par_chunks_mut(CHUNK).zip(self.ancestors.par_chunks(CHUNK));
         jobs.for_each(|(next, from)| copy_ancestors(particles, from, next));
         std::mem::swap(&mut self.particles, &mut self.next);
     }
+}
 
-    /// Whole turns since the start, by the shorter way from the last estimate.
-    fn count_turns(&self, estimate: &mut CyclicEstimate<N>) {
-        for i in 0..N {
-            let (_, turned) = split_turns(estimate.angles_rad[i] - self.last.angles_rad[i]);
-            // A difference beyond half a turn went over the seam.
-            estimate.turns[i] = self.last.turns[i] - turned;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cyclic::CyclicModel;
+    use sinew_core::cyclic::ParticleTracker;
+    use sinew_core::cyclic::particle::Spread;
+    use sinew_core::cyclic::particle_tracker::ParticleTables;
+    use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
+
+    const PARTICLES: usize = 1500;
+
+    fn pool(threads: usize) -> rayon::ThreadPool {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap()
+    }
+
+    #[test]
+    fn any_number_of_threads_and_the_firmware_filter_give_the_same_bits() {
+        let shipped = CyclicModel::from_option("walking").unwrap();
+        let model = shipped.view();
+        let pose = |frame: u8| {
+            let position = f32::from(frame) * model.mean_cycle_velocity();
+            model.mean_pose_rad::<HUMAN_ANGLES>(model.point(position)).map(Some)
+        };
+        let (mut factors, mut positions) = (vec![0.0; factors_len(&model)], vec![0.0; model.position_count()]);
+        fill_factors(&model, &mut factors);
+        for spread in [Spread::Standard, Spread::UniformPosition] {
+            let options = ParticleOptions { spread, ..ParticleOptions::default() };
+            let start = CycleStart::standard(&model, &pose(0), None, None).unwrap();
+            fill_positions(&model, &start, &mut positions);
+            let tables = ParticleTables { factors: &factors, positions: &positions };
+            let new = || ParticleFilter::new(&model, options, &start, start.estimate(), PARTICLES, 7);
+            let (mut one, mut three) = (pool(1).install(new), pool(3).install(new));
+            let mut small =
+                Box::new(ParticleTracker::<HUMAN_ANGLES, PARTICLES>::new(&model, tables, options, &start, 7));
+            for frame in 1..=20 {
+                let mut seen = pose(frame);
+                seen[usize::from(frame) % HUMAN_ANGLES] = None;
+                let measurement = AngleMeasurement::new(&seen, 0.3).unwrap();
+                let estimate = pool(1).install(|| one.step(&model, &measurement));
+                assert_eq!(pool(3).install(|| three.step(&model, &measurement)), estimate);
+                assert_eq!(small.step(&model, tables, &measurement), estimate);
+            }
+            assert_eq!(one.particles.as_slice(), small.particles().as_slice());
         }
     }
 }

@@ -1,0 +1,262 @@
+//! The measurement update by all angles seen in a frame, for independent noise.
+//!
+//! It is the update by one angle after the other, P <- P - w w' with w the measured column over the root of the innovation
+//! variance, in another order of the same sums: first all columns w, which are a Cholesky factor of the innovation's
+//! covariance continued to the rest of the state, then each entry of P at once. The angles seen come first, in `order`.
+//!
+//! Once an angle is measured with variance r, row and column become r / s of what they were before that measurement; later
+//! columns are taken off that. So a precise measurement after a long gap leaves no difference of large numbers.
+
+use super::angle_blocks::BLOCK;
+use super::covariance::{KinematicCovariance, MARGIN, SEVERE, mirror};
+use super::log_product::LogProduct;
+use crate::math::sqrt;
+
+/// The angles that a frame shows, in front, and what it says about them.
+#[derive(Debug, Clone, Copy)]
+pub struct SeenAngles<const N: usize> {
+    /// Numbers of the angles: those seen, then the others.
+    pub order: [usize; N],
+    /// Number of angles seen.
+    pub count: usize,
+    /// Measured less predicted angle, in that order; zero beyond `count`.
+    pub innovation_rad: [f32; N],
+    /// Variance of each measurement, in that order.
+    pub noise_variance: [f32; N],
+}
+
+/// What an update says about the mean.
+#[derive(Debug, Clone, Copy)]
+pub struct MeanShift<const N: usize> {
+    /// To be added to the angles.
+    pub angles_rad: [f32; N],
+    /// To be added to the velocities.
+    pub velocities: [f32; N],
+    /// Normalised innovation squared.
+    pub squared: f32,
+    /// Determinant of the innovation's covariance.
+    pub determinant: LogProduct,
+}
+
+/// Columns of the covariance that the angles seen call for, scaled by the roots of their innovation variances. A row here is
+/// a column there; angles in the order of [`SeenAngles`].
+struct Columns<const N: usize> {
+    /// Covariances with the angles when the measurement is taken in.
+    angle: [[f32; N]; N],
+    /// What of them bears on angles that are measured by then or never: minus [`Self::left`] at the angle itself.
+    settled: [[f32; N]; N],
+    /// Covariances with the velocities.
+    velocity: [[f32; N]; N],
+    /// 1 for angles that are not seen, else 0.
+    unseen: [f32; N],
+    /// Part of the covariances that is left after the measurement, times the root of the innovation variance.
+    left: [f32; N],
+    /// Whether the measurement takes nearly all of the angle's variance away.
+    is_severe: [bool; N],
+}
+
+impl<const N: usize> KinematicCovariance<N> {
+    /// The update by all angles seen.
+    ///
+    /// With `keeps_velocities` the gain moves the angles only (Joseph's form): the velocities keep their covariance.
+    #[inline]
+    pub fn correct(&mut self, seen: &SeenAngles<N>, keeps_velocities: bool) -> MeanShift<N> {
+        let count = seen.count.min(N);
+        let mut columns = Columns {
+            angle: self.angles_in(seen),
+            unseen: core::array::from_fn(|j| if j < count { 0.0 } else { 1.0 }),
+            settled: [[0.0; N]; N],
+            velocity: [[0.0; N]; N],
+            left: [0.0; N],
+            is_severe: [false; N],
+        };
+        let mut shift =
+            MeanShift { angles_rad: [0.0; N], velocities: [0.0; N], squared: 0.0, determinant: LogProduct::one() };
+        for place in 0..count {
+            let (variance, inverse_std) = columns.find(place, seen, &self.cross);
+            let scaled = (seen.innovation_rad[place] - shift.angles_rad[place]) * inverse_std;
+            add_scaled(&mut shift.angles_rad, scaled, &columns.angle[place]);
+            add_scaled(&mut shift.velocities, scaled, &columns.velocity[place]);
+            shift.squared += scaled * scaled;
+            shift.determinant.multiply(variance);
+        }
+        shift.angles_rad = in_place(seen, &shift.angles_rad);
+        if keeps_velocities {
+            shift.velocities = [0.0; N];
+        } else {
+            self.reduce_velocities(&columns.velocity[..count]);
+        }
+        self.reduce_angles(&columns, seen, count);
+        shift
+    }
+
+    /// The angles' covariance in the order of those seen.
+    #[inline]
+    fn angles_in(&self, seen: &SeenAngles<N>) -> [[f32; N]; N] {
+        if seen.count == N {
+            return self.angle;
+        }
+        seen.order.map(|i| seen.order.map(|j| self.entry(i, j)))
+    }
+
+    /// Rows of the angles after all measurements.
+    #[inline]
+    fn reduce_angles(&mut self, columns: &Columns<N>, seen: &SeenAngles<N>, count: usize) {
+        for place in 0..N {
+            let index = seen.order[place];
+            let (mut angle, mut cross) = columns.start(place, count, &self.cross[index]);
+            let first = if place < count { place + 1 } else { 0 };
+            for later in first..count {
+                let factor = columns.angle[later][place];
+                subtract_scaled(&mut angle, factor, &columns.settled[later]);
+                subtract_scaled(&mut cross, factor, &columns.velocity[later]);
+            }
+            self.angle[index] = if count == N { angle } else { in_place(seen, &angle) };
+            self.cross[index] = cross;
+        }
+        for place in (0..count).filter(|&place| columns.is_severe[place]) {
+            let angle = in_place(seen, &columns.angle[place]);
+            for i in 0..N {
+                let velocity = columns.velocity[place][i];
+                self.angle[i][i] += MARGIN * angle[i] * angle[i];
+                self.velocity[i][i] += MARGIN * velocity * velocity;
+            }
+        }
+    }
+
+    /// The velocities' covariance less the sum of w w', in squares of four rows and columns.
+    #[inline]
+    fn reduce_velocities(&mut self, columns: &[[f32; N]]) {
+        let (row_blocks, last_rows) = self.velocity.as_chunks_mut::<BLOCK>();
+        let first_of_last = BLOCK * row_blocks.len();
+        for (block, rows) in row_blocks.iter_mut().enumerate() {
+            for part in 0..=block {
+                let mut square = [[0.0; BLOCK]; BLOCK];
+                for column in columns {
+                    let blocks = column.as_chunks::<BLOCK>().0;
+                    let (Some(w), Some(v)) = (blocks.get(block), blocks.get(part)) else { break };
+                    for i in 0..BLOCK {
+                        for j in 0..BLOCK {
+                            square[i][j] += w[i] * v[j];
+                        }
+                    }
+                }
+                for (row, sums) in rows.iter_mut().zip(&square) {
+                    if let Some(row) = row.as_chunks_mut::<BLOCK>().0.get_mut(part) {
+                        for j in 0..BLOCK {
+                            row[j] -= sums[j];
+                        }
+                    }
+                }
+            }
+        }
+        for (i, row) in last_rows.iter_mut().enumerate() {
+            let mut sums = *row;
+            for column in columns {
+                subtract_scaled(&mut sums, column[first_of_last + i], column);
+            }
+            *row = sums;
+        }
+        mirror(&mut self.velocity);
+    }
+}
+
+impl<const N: usize> Columns<N> {
+    /// Row i: 1 for angles before i, else 0. Products with these numbers choose without a branch.
+    const BEFORE: [[f32; N]; N] = {
+        let mut matrix = [[0.0; N]; N];
+        let mut place = 0;
+        while place < N * N {
+            if place % N < place / N {
+                matrix[place / N][place % N] = 1.0;
+            }
+            place += 1;
+        }
+        matrix
+    };
+    /// Row i: 1 for angle i, else 0.
+    const OWN: [[f32; N]; N] = {
+        let mut matrix = [[0.0; N]; N];
+        let mut place = 0;
+        while place < N {
+            matrix[place][place] = 1.0;
+            place += 1;
+        }
+        matrix
+    };
+
+    /// Finds the columns of the measurement at `place` from those before; returns variance and inverse standard deviation of
+    /// its innovation.
+    #[inline]
+    fn find(&mut self, place: usize, seen: &SeenAngles<N>, cross: &[[f32; N]; N]) -> (f32, f32) {
+        let (mut angle, mut settled, mut velocity) = (self.angle[place], [0.0; N], cross[seen.order[place]]);
+        for earlier in 0..place {
+            let factor = self.angle[earlier][place];
+            subtract_scaled(&mut angle, factor, &self.angle[earlier]);
+            subtract_scaled(&mut settled, factor, &self.settled[earlier]);
+            subtract_scaled(&mut velocity, factor, &self.velocity[earlier]);
+        }
+        let noise_variance = seen.noise_variance[place];
+        let variance = angle[place] + noise_variance;
+        let inverse_std = 1.0 / sqrt(variance);
+        self.left[place] = noise_variance * inverse_std;
+        self.is_severe[place] = noise_variance < SEVERE * variance;
+        let (before, own, left) = (&Self::BEFORE[place], &Self::OWN[place], self.left[place]);
+        for j in 0..N {
+            angle[j] = inverse_std * (before[j] * settled[j] + (1.0 - before[j]) * angle[j]);
+        }
+        for j in 0..N {
+            settled[j] = (before[j] + self.unseen[j]) * angle[j] - left * own[j];
+        }
+        self.velocity[place] = velocity.map(|covariance| covariance * inverse_std);
+        (self.angle[place], self.settled[place]) = (angle, settled);
+        (variance, inverse_std)
+    }
+
+    /// Covariances of the angle at `place` with angles and velocities right after its own measurement, where later
+    /// measurements have not been taken in; before all of them where the angle is not seen.
+    #[inline]
+    fn start(&self, place: usize, count: usize, cross: &[f32; N]) -> ([f32; N], [f32; N]) {
+        let (mut angle, mut velocity) = (self.angle[place], *cross);
+        if place < count {
+            let (before, own, left) = (&Self::BEFORE[place], &Self::OWN[place], self.left[place]);
+            for j in 0..N {
+                angle[j] *= left * (before[j] + own[j] + self.unseen[j]);
+            }
+            velocity = self.velocity[place].map(|covariance| left * covariance);
+        } else {
+            for j in 0..N {
+                angle[j] *= self.unseen[j];
+            }
+        }
+        (angle, velocity)
+    }
+}
+
+/// Values in the order of the angles seen, put at the angles' own places.
+#[inline]
+fn in_place<const N: usize>(seen: &SeenAngles<N>, ordered: &[f32; N]) -> [f32; N] {
+    let mut values = [0.0; N];
+    for (&index, value) in seen.order.iter().zip(ordered) {
+        if let Some(slot) = values.get_mut(index) {
+            *slot = *value;
+        }
+    }
+    values
+}
+
+/// `target` += `factor` `direction`.
+#[inline]
+fn add_scaled<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
+    for j in 0..N {
+        target[j] += factor * direction[j];
+    }
+}
+
+/// `target` -= `factor` `direction`.
+#[inline]
+fn subtract_scaled<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
+    for j in 0..N {
+        target[j] -= factor * direction[j];
+    }
+}

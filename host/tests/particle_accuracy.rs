@@ -1,0 +1,55 @@
+//! What the book says about the particle filter's accuracy on real walkers. Runs in release where `../shared/data` is at hand,
+//! and says so where not.
+
+use sinew::cyclic::CutList;
+use sinew::cyclic::tracking::StartName;
+use sinew::cyclic::training::{TrainingOptions, train};
+use sinew::evaluate::cyclic::{Cell, Setting, test_cycles};
+use std::path::{Path, PathBuf};
+
+/// Particles that are compared with a known start, and with an unknown one; seeds.
+const PARTICLES: [usize; 3] = [1000, 20_000, 100_000];
+const START_PARTICLES: [usize; 2] = [1000, 10_000];
+const SEEDS: u64 = 2;
+/// Greatest error with 20,000 particles, degrees.
+const GREATEST_DEG: f64 = 9.0;
+/// Error of the exact posterior, which `paper` computes (`cyclic_accuracy.rs`): no number of particles goes below it.
+const EXACT_DEG: f64 = 3.80;
+/// Greatest error with 100,000 particles beyond the exact one's, as a share of that with 1000.
+const GREATEST_SHARE: f64 = 0.3;
+/// Greatest distance of a uniform start from the standard one, from the fifth frame on.
+const GREATEST_DISTANCE: f64 = 0.1;
+
+fn data() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/cyclic-walking");
+    if cfg!(debug_assertions) || !folder.is_dir() {
+        eprintln!("skipped: only in release and with ../shared/data beside the project");
+        return None;
+    }
+    Some(folder)
+}
+
+#[test]
+fn more_particles_and_an_unknown_phase_do_what_the_book_says() {
+    let Some(folder) = data() else { return };
+    let list = CutList::read(&folder.join("train_cuts.csv")).unwrap();
+    let model = train(&list, TrainingOptions { length: 100, rate_hz: 60.0 }).unwrap();
+    let cycles = test_cycles(&CutList::read(&folder.join("test_cuts.csv")).unwrap()).unwrap();
+    let setting = Setting { cycles: &cycles, model: &model, rate_hz: 60.0, seeds: SEEDS };
+    let table = setting.particle_table(&PARTICLES).unwrap();
+    let [few, more, most] = std::array::from_fn(|i| table[i].error_deg);
+    println!("standard start: {few:.2}, {more:.2}, {most:.2} degrees; the last {:.3} of the first", most / few);
+    assert!(more > EXACT_DEG && more < GREATEST_DEG, "{more}");
+    let share = (most - EXACT_DEG) / (few - EXACT_DEG);
+    assert!(share > 0.0 && share < GREATEST_SHARE, "{most} beside {few}");
+    let cells = setting.starts(&START_PARTICLES).unwrap();
+    let cell = |start: StartName, particles: usize| -> &Cell {
+        cells.iter().find(|cell| cell.start == start && cell.particles == Some(particles)).unwrap()
+    };
+    for particles in START_PARTICLES {
+        let [standard, uniform] =
+            [StartName::Standard, StartName::Uniform].map(|start| cell(start, particles).late_error_deg);
+        println!("{particles}: from the fifth frame on {standard:.2}, uniform over the cycle {uniform:.2}");
+        assert!((uniform / standard - 1.0).abs() < GREATEST_DISTANCE, "{particles}: {uniform} beside {standard}");
+    }
+}
