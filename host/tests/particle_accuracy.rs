@@ -17,8 +17,9 @@ const GREATEST_DEG: f64 = 9.0;
 const EXACT_DEG: f64 = 3.80;
 /// Greatest error with 100,000 particles beyond the exact one's, as a share of that with 1000.
 const GREATEST_SHARE: f64 = 0.3;
-/// Greatest distance of a uniform start from the standard one, from the fifth frame on.
-const GREATEST_DISTANCE: f64 = 0.1;
+/// Error of a uniform start as a share of the standard one's, from the fifth frame on: never much above, and with few particles
+/// sometimes below, since it looks at more positions.
+const UNIFORM_SHARE: [f64; 2] = [0.85, 1.1];
 
 fn data() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/cyclic-walking");
@@ -50,6 +51,7 @@ fn more_particles_and_an_unknown_phase_do_what_the_book_says() {
         let [standard, uniform] =
             [StartName::Standard, StartName::Uniform].map(|start| cell(start, particles).late_error_deg);
         println!("{particles}: from the fifth frame on {standard:.2}, uniform over the cycle {uniform:.2}");
-        assert!((uniform / standard - 1.0).abs() < GREATEST_DISTANCE, "{particles}: {uniform} beside {standard}");
+        let share = uniform / standard;
+        assert!((UNIFORM_SHARE[0]..UNIFORM_SHARE[1]).contains(&share), "{particles}: {uniform} beside {standard}");
     }
 }

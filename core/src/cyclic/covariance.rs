@@ -8,7 +8,7 @@
 //! full rank ([`DIAGONAL_EXCESS`]), so that no direction's variance sinks below what `f32` resolves. A test runs ten
 //! million frames with gaps and finds no eigenvalue below zero.
 
-use super::semi_definite::{DIAGONAL_EXCESS, packed_index};
+use super::semi_definite::DIAGONAL_EXCESS;
 use crate::math::sqrt;
 
 /// What rounding may do to an entry, relative to the variances, where numbers nearly cancel or correlations reach one.
@@ -123,16 +123,19 @@ impl<const N: usize> KinematicCovariance<N> {
 /// raised by [`DIAGONAL_EXCESS`]; zeros where the triangles end.
 #[inline]
 fn interpolated<const N: usize>(before: &[f32], after: &[f32], fraction: f32, scale: f32) -> [[f32; N]; N] {
+    let mut packed = [[0.0; N]; N];
+    for ((value, a), b) in packed.as_flattened_mut().iter_mut().zip(before).zip(after) {
+        *value = scale * (a + fraction * (b - a));
+    }
+    let mut entries = packed.as_flattened().iter();
     let mut matrix = [[0.0; N]; N];
     for i in 0..N {
-        let (from, to) = (packed_index(i, 0), packed_index(i, i) + 1);
-        let (Some(before), Some(after)) = (before.get(from..to), after.get(from..to)) else { break };
-        for ((value, a), b) in matrix[i].iter_mut().zip(before).zip(after) {
-            *value = scale * (a + fraction * (b - a));
+        for (j, value) in (0..=i).zip(entries.by_ref()) {
+            matrix[i][j] = *value;
+            matrix[j][i] = *value;
         }
         matrix[i][i] *= 1.0 + DIAGONAL_EXCESS;
     }
-    mirror(&mut matrix);
     matrix
 }
 

@@ -7,22 +7,59 @@
 //! Once an angle is measured with variance r, row and column become r / s of what they were before that measurement; later
 //! columns are taken off that. So a precise measurement after a long gap leaves no difference of large numbers.
 
+use super::AngleMeasurement;
 use super::angle_blocks::BLOCK;
 use super::covariance::{KinematicCovariance, MARGIN, SEVERE, mirror};
 use super::log_product::LogProduct;
+use crate::angle::angle_difference;
 use crate::math::sqrt;
 
 /// The angles that a frame shows, in front, and what it says about them.
+///
+/// Invariant: `order` has each number below N once, and `count` is at most N.
 #[derive(Debug, Clone, Copy)]
 pub struct SeenAngles<const N: usize> {
     /// Numbers of the angles: those seen, then the others.
-    pub order: [usize; N],
+    order: [usize; N],
     /// Number of angles seen.
-    pub count: usize,
+    count: usize,
     /// Measured less predicted angle, in that order; zero beyond `count`.
-    pub innovation_rad: [f32; N],
+    innovation_rad: [f32; N],
     /// Variance of each measurement, in that order.
-    pub noise_variance: [f32; N],
+    noise_variance: [f32; N],
+}
+
+impl<const N: usize> SeenAngles<N> {
+    /// What a measurement shows of the first `angle_count` angles, relative to those predicted: the shorter way round.
+    #[inline]
+    #[must_use]
+    pub fn of(measurement: &AngleMeasurement<N>, predicted_rad: &[f32; N], angle_count: usize) -> Self {
+        let mut seen = Self { order: [0; N], count: 0, innovation_rad: [0.0; N], noise_variance: [0.0; N] };
+        let mut unseen = N;
+        for i in (0..N).rev() {
+            if i >= angle_count || measurement.angle_rad(i).is_none() {
+                unseen -= 1;
+                seen.order[unseen] = i;
+            }
+        }
+        for i in 0..N.min(angle_count) {
+            if let Some(measured_rad) = measurement.angle_rad(i) {
+                let std_rad = measurement.std_rad()[i];
+                seen.order[seen.count] = i;
+                seen.innovation_rad[seen.count] = angle_difference(measured_rad, predicted_rad[i]);
+                seen.noise_variance[seen.count] = std_rad * std_rad;
+                seen.count += 1;
+            }
+        }
+        seen
+    }
+
+    /// Number of angles seen.
+    #[inline]
+    #[must_use]
+    pub const fn count(&self) -> usize {
+        self.count
+    }
 }
 
 /// What an update says about the mean.

@@ -10,7 +10,7 @@ use super::joint_update::SeenAngles;
 use super::kalman_options::{CovarianceScaling, GainReach, KalmanOptions};
 use super::substeps::Substeps;
 use super::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
-use crate::angle::{angle_difference, split_turns};
+use crate::angle::split_turns;
 use crate::error::{ParameterError, Rule};
 use crate::math::clamp;
 use crate::random::normal::LOG_SQRT_TAU;
@@ -141,8 +141,8 @@ impl<const N: usize> KalmanFilter<N> {
         gain: GainReach,
         measurement: &AngleMeasurement<N>,
     ) -> Innovation {
-        let seen = self.seen(model, measurement);
-        if seen.count == 0 {
+        let seen = SeenAngles::of(measurement, &self.angles_rad, model.angle_count());
+        if seen.count() == 0 {
             return Innovation { log_likelihood: 0.0, squared: 0.0, present: 0 };
         }
         let shift = self.covariance.correct(&seen, gain == GainReach::AnglesOnly);
@@ -150,34 +150,8 @@ impl<const N: usize> KalmanFilter<N> {
             self.set_angle(i, self.angles_rad[i] + shift.angles_rad[i]);
             self.velocities[i] = clamp(self.velocities[i] + shift.velocities[i], -PI, PI);
         }
-        let log_likelihood = -0.5 * (shift.squared + shift.determinant.ln()) - seen.count as f32 * LOG_SQRT_TAU;
-        Innovation { log_likelihood, squared: shift.squared, present: seen.count }
-    }
-
-    /// The angles of a measurement beside what is predicted, those seen first.
-    #[inline]
-    fn seen(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> SeenAngles<N> {
-        let mut seen = SeenAngles { order: [0; N], count: 0, innovation_rad: [0.0; N], noise_variance: [0.0; N] };
-        let angles = model.angle_count();
-        for i in 0..N.min(angles) {
-            if let Some(measured) = measurement.angle_rad(i) {
-                let std = measurement.std_rad()[i];
-                seen.order[seen.count] = i;
-                seen.innovation_rad[seen.count] = angle_difference(measured, self.angles_rad[i]);
-                seen.noise_variance[seen.count] = std * std;
-                seen.count += 1;
-            }
-        }
-        let mut place = seen.count;
-        if place < N {
-            for i in 0..N {
-                if i >= angles || measurement.angle_rad(i).is_none() {
-                    seen.order[place] = i;
-                    place += 1;
-                }
-            }
-        }
-        seen
+        let log_likelihood = -0.5 * (shift.squared + shift.determinant.ln()) - seen.count() as f32 * LOG_SQRT_TAU;
+        Innovation { log_likelihood, squared: shift.squared, present: seen.count() }
     }
 
     fn estimate(&self, innovation: &Innovation, outlier: bool) -> CyclicEstimate<N> {
