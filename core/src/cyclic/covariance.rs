@@ -8,7 +8,7 @@
 //! full rank ([`DIAGONAL_EXCESS`]), so that no direction's variance sinks below what `f32` resolves. A test runs ten
 //! million frames with gaps and finds no eigenvalue below zero.
 
-use super::semi_definite::DIAGONAL_EXCESS;
+use super::semi_definite::{DIAGONAL_EXCESS, packed_index};
 use crate::math::sqrt;
 
 /// What rounding may do to an entry, relative to the variances, where numbers nearly cancel or correlations reach one.
@@ -76,21 +76,17 @@ impl<const N: usize> KinematicCovariance<N> {
     /// Only as many rows of noise are added as the triangles hold.
     #[inline]
     pub fn advance(&mut self, step: f32, before: &[f32], after: &[f32], fraction: f32, scale: f32) {
-        let square = step * step;
-        let (angle_noise, cross_noise, velocity_noise) = (0.25 * square * square, 0.5 * square * step, square);
-        let noise: [[f32; N]; N] = interpolated(before, after, fraction, scale);
+        // Half of what the velocities gain, of which the other blocks are made up.
+        let half: [[f32; N]; N] = interpolated(before, after, fraction, 0.5 * scale * step * step);
         let transposed = transpose(&self.cross);
+        let angle_excess = 0.5 * step * step;
         for i in 0..N {
             let (mut angle, mut cross, mut velocity) = (self.angle[i], self.cross[i], self.velocity[i]);
             for j in 0..N {
-                let kinematic = step * (cross[j] + transposed[i][j]) + square * velocity[j];
-                angle[j] += kinematic + angle_noise * noise[i][j];
-            }
-            for j in 0..N {
-                cross[j] += step * velocity[j] + cross_noise * noise[i][j];
-            }
-            for j in 0..N {
-                velocity[j] += velocity_noise * noise[i][j];
+                let middle = velocity[j] + half[i][j];
+                cross[j] += step * middle;
+                angle[j] += step * (cross[j] + transposed[i][j]) - angle_excess * half[i][j];
+                velocity[j] = middle + half[i][j];
             }
             (self.angle[i], self.cross[i], self.velocity[i]) = (angle, cross, velocity);
         }
@@ -123,20 +119,31 @@ impl<const N: usize> KinematicCovariance<N> {
 /// raised by [`DIAGONAL_EXCESS`]; zeros where the triangles end.
 #[inline]
 fn interpolated<const N: usize>(before: &[f32], after: &[f32], fraction: f32, scale: f32) -> [[f32; N]; N] {
-    let mut packed = [[0.0; N]; N];
-    for ((value, a), b) in packed.as_flattened_mut().iter_mut().zip(before).zip(after) {
-        *value = scale * (a + fraction * (b - a));
-    }
-    let mut entries = packed.as_flattened().iter();
     let mut matrix = [[0.0; N]; N];
     for i in 0..N {
-        for (j, value) in (0..=i).zip(entries.by_ref()) {
-            matrix[i][j] = *value;
-            matrix[j][i] = *value;
+        let (from, row) = (packed_index(i, 0), &mut matrix[i]);
+        // Where the triangles have N rows, N numbers are at hand from there; those beyond the diagonal are written over.
+        if let (Some(before), Some(after)) = (numbers_from::<N>(before, from), numbers_from::<N>(after, from)) {
+            for j in 0..N {
+                row[j] = scale * (before[j] + fraction * (after[j] - before[j]));
+            }
+        } else {
+            let to = packed_index(i, i) + 1;
+            let (Some(before), Some(after)) = (before.get(from..to), after.get(from..to)) else { break };
+            for ((value, a), b) in row.iter_mut().zip(before).zip(after) {
+                *value = scale * (a + fraction * (b - a));
+            }
         }
-        matrix[i][i] *= 1.0 + DIAGONAL_EXCESS;
+        row[i] *= 1.0 + DIAGONAL_EXCESS;
     }
+    mirror(&mut matrix);
     matrix
+}
+
+/// The N numbers from place `from` on.
+#[inline]
+fn numbers_from<const N: usize>(values: &[f32], from: usize) -> Option<&[f32; N]> {
+    values.get(from..)?.first_chunk()
 }
 
 /// Copies what stands below the diagonal to above it.

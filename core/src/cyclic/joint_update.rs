@@ -78,15 +78,15 @@ pub struct MeanShift<const N: usize> {
 /// Columns of the covariance that the angles seen call for, scaled by the roots of their innovation variances. A row here is
 /// a column there; angles in the order of [`SeenAngles`].
 struct Columns<const N: usize> {
-    /// Covariances with the angles when the measurement is taken in.
-    angle: [[f32; N]; N],
-    /// What of them bears on angles that are measured by then or never: minus [`Self::left`] at the angle itself.
+    /// Covariances with this angle and those after it when the measurement is taken in; what stands before has no meaning.
+    ahead: [[f32; N]; N],
+    /// Those with the angles measured before, minus [`Self::left`] at the angle itself, and those with the angles never seen.
     settled: [[f32; N]; N],
     /// Covariances with the velocities.
     velocity: [[f32; N]; N],
-    /// 1 for angles that are not seen, else 0.
-    unseen: [f32; N],
-    /// Part of the covariances that is left after the measurement, times the root of the innovation variance.
+    /// Covariance of each angle with itself.
+    own: [f32; N],
+    /// Part of it that is left after the measurement, times the root of the innovation variance.
     left: [f32; N],
     /// Whether the measurement takes nearly all of the angle's variance away.
     is_severe: [bool; N],
@@ -100,19 +100,26 @@ impl<const N: usize> KinematicCovariance<N> {
     pub fn correct(&mut self, seen: &SeenAngles<N>, keeps_velocities: bool) -> MeanShift<N> {
         let count = seen.count.min(N);
         let mut columns = Columns {
-            angle: self.angles_in(seen),
-            unseen: core::array::from_fn(|j| if j < count { 0.0 } else { 1.0 }),
+            ahead: self.angle,
             settled: [[0.0; N]; N],
-            velocity: [[0.0; N]; N],
+            velocity: self.cross,
+            own: [0.0; N],
             left: [0.0; N],
             is_severe: [false; N],
         };
+        if count < N {
+            columns.ahead = seen.order.map(|i| seen.order.map(|j| self.entry(i, j)));
+            columns.velocity = seen.order.map(|i| self.cross.get(i).copied().unwrap_or([0.0; N]));
+        }
         let mut shift =
             MeanShift { angles_rad: [0.0; N], velocities: [0.0; N], squared: 0.0, determinant: LogProduct::one() };
+        let mut ahead_rad = [0.0; N];
         for place in 0..count {
-            let (variance, inverse_std) = columns.find(place, seen, &self.cross);
-            let scaled = (seen.innovation_rad[place] - shift.angles_rad[place]) * inverse_std;
-            add_scaled(&mut shift.angles_rad, scaled, &columns.angle[place]);
+            let (variance, inverse_std) = columns.find(place, count, seen.noise_variance[place]);
+            let scaled = (seen.innovation_rad[place] - ahead_rad[place]) * inverse_std;
+            add_scaled(&mut ahead_rad, scaled, &columns.ahead[place]);
+            add_scaled(&mut shift.angles_rad, scaled, &columns.settled[place]);
+            shift.angles_rad[place] = ahead_rad[place];
             add_scaled(&mut shift.velocities, scaled, &columns.velocity[place]);
             shift.squared += scaled * scaled;
             shift.determinant.multiply(variance);
@@ -124,35 +131,53 @@ impl<const N: usize> KinematicCovariance<N> {
             self.reduce_velocities(&columns.velocity[..count]);
         }
         self.reduce_angles(&columns, seen, count);
+        self.loosen(&columns, seen, count);
         shift
     }
 
-    /// The angles' covariance in the order of those seen.
-    #[inline]
-    fn angles_in(&self, seen: &SeenAngles<N>) -> [[f32; N]; N] {
-        if seen.count == N {
-            return self.angle;
-        }
-        seen.order.map(|i| seen.order.map(|j| self.entry(i, j)))
-    }
-
-    /// Rows of the angles after all measurements.
+    /// Rows of the angles after all measurements: up to the diagonal at least, the rest from the rows below.
     #[inline]
     fn reduce_angles(&mut self, columns: &Columns<N>, seen: &SeenAngles<N>, count: usize) {
         for place in 0..N {
-            let index = seen.order[place];
-            let (mut angle, mut cross) = columns.start(place, count, &self.cross[index]);
+            let (mut angle, mut cross) = columns.start(place, count);
             let first = if place < count { place + 1 } else { 0 };
-            for later in first..count {
-                let factor = columns.angle[later][place];
-                subtract_scaled(&mut angle, factor, &columns.settled[later]);
-                subtract_scaled(&mut cross, factor, &columns.velocity[later]);
+            if place < half::<N>() {
+                for later in first..count {
+                    let factor = columns.settled[later][place];
+                    subtract_first_half(&mut angle, factor, &columns.settled[later]);
+                    subtract_scaled(&mut cross, factor, &columns.velocity[later]);
+                }
+            } else {
+                for later in first..count {
+                    let factor = columns.settled[later][place];
+                    subtract_scaled(&mut angle, factor, &columns.settled[later]);
+                    subtract_scaled(&mut cross, factor, &columns.velocity[later]);
+                }
             }
-            self.angle[index] = if count == N { angle } else { in_place(seen, &angle) };
-            self.cross[index] = cross;
+            self.angle[place] = angle;
+            self.cross[seen.order[place]] = cross;
         }
+        for i in 0..half::<N>() {
+            for j in half::<N>()..N {
+                self.angle[i][j] = self.angle[j][i];
+            }
+        }
+        if count < N {
+            let ordered = self.angle;
+            for (&index, row) in seen.order.iter().zip(&ordered) {
+                if let Some(slot) = self.angle.get_mut(index) {
+                    *slot = in_place(seen, row);
+                }
+            }
+        }
+    }
+
+    /// Raises the diagonal by what rounding may have taken where a measurement took nearly all of an angle's variance away.
+    #[inline]
+    fn loosen(&mut self, columns: &Columns<N>, seen: &SeenAngles<N>, count: usize) {
         for place in (0..count).filter(|&place| columns.is_severe[place]) {
-            let angle = in_place(seen, &columns.angle[place]);
+            let (settled, ahead) = (&columns.settled[place], &columns.ahead[place]);
+            let angle = in_place(seen, &core::array::from_fn(|j| if j < place { settled[j] } else { ahead[j] }));
             for i in 0..N {
                 let velocity = columns.velocity[place][i];
                 self.angle[i][i] += MARGIN * angle[i] * angle[i];
@@ -199,75 +224,75 @@ impl<const N: usize> KinematicCovariance<N> {
 }
 
 impl<const N: usize> Columns<N> {
-    /// Row i: 1 for angles before i, else 0. Products with these numbers choose without a branch.
-    const BEFORE: [[f32; N]; N] = {
-        let mut matrix = [[0.0; N]; N];
-        let mut place = 0;
-        while place < N * N {
-            if place % N < place / N {
-                matrix[place / N][place % N] = 1.0;
-            }
-            place += 1;
-        }
-        matrix
-    };
-    /// Row i: 1 for angle i, else 0.
-    const OWN: [[f32; N]; N] = {
-        let mut matrix = [[0.0; N]; N];
-        let mut place = 0;
-        while place < N {
-            matrix[place][place] = 1.0;
-            place += 1;
-        }
-        matrix
-    };
-
     /// Finds the columns of the measurement at `place` from those before; returns variance and inverse standard deviation of
     /// its innovation.
     #[inline]
-    fn find(&mut self, place: usize, seen: &SeenAngles<N>, cross: &[[f32; N]; N]) -> (f32, f32) {
-        let (mut angle, mut settled, mut velocity) = (self.angle[place], [0.0; N], cross[seen.order[place]]);
-        for earlier in 0..place {
-            let factor = self.angle[earlier][place];
-            subtract_scaled(&mut angle, factor, &self.angle[earlier]);
-            subtract_scaled(&mut settled, factor, &self.settled[earlier]);
-            subtract_scaled(&mut velocity, factor, &self.velocity[earlier]);
+    fn find(&mut self, place: usize, count: usize, noise_variance: f32) -> (f32, f32) {
+        let (mut ahead, mut settled, mut velocity) = (self.ahead[place], [0.0; N], self.velocity[place]);
+        if place < half::<N>() {
+            for earlier in 0..place {
+                let factor = self.ahead[earlier][place];
+                subtract_scaled(&mut ahead, factor, &self.ahead[earlier]);
+                subtract_first_half(&mut settled, factor, &self.settled[earlier]);
+                subtract_scaled(&mut velocity, factor, &self.velocity[earlier]);
+            }
+        } else {
+            for earlier in 0..half::<N>() {
+                let factor = self.ahead[earlier][place];
+                subtract_second_half(&mut ahead, factor, &self.ahead[earlier]);
+                subtract_first_half(&mut settled, factor, &self.settled[earlier]);
+                subtract_scaled(&mut velocity, factor, &self.velocity[earlier]);
+            }
+            for earlier in half::<N>()..place {
+                let factor = self.ahead[earlier][place];
+                subtract_second_half(&mut ahead, factor, &self.ahead[earlier]);
+                subtract_scaled(&mut settled, factor, &self.settled[earlier]);
+                subtract_scaled(&mut velocity, factor, &self.velocity[earlier]);
+            }
         }
-        let noise_variance = seen.noise_variance[place];
-        let variance = angle[place] + noise_variance;
+        let variance = ahead[place] + noise_variance;
         let inverse_std = 1.0 / sqrt(variance);
+        self.own[place] = inverse_std * ahead[place];
         self.left[place] = noise_variance * inverse_std;
         self.is_severe[place] = noise_variance < SEVERE * variance;
-        let (before, own, left) = (&Self::BEFORE[place], &Self::OWN[place], self.left[place]);
         for j in 0..N {
-            angle[j] = inverse_std * (before[j] * settled[j] + (1.0 - before[j]) * angle[j]);
+            ahead[j] *= inverse_std;
+            settled[j] *= inverse_std;
+            velocity[j] *= inverse_std;
         }
-        for j in 0..N {
-            settled[j] = (before[j] + self.unseen[j]) * angle[j] - left * own[j];
+        (self.ahead[place], self.settled[place], self.velocity[place]) = (ahead, settled, velocity);
+        self.settled[place][place] = -self.left[place];
+        for j in count..N {
+            self.settled[place][j] = self.ahead[place][j];
         }
-        self.velocity[place] = velocity.map(|covariance| covariance * inverse_std);
-        (self.angle[place], self.settled[place]) = (angle, settled);
         (variance, inverse_std)
     }
 
     /// Covariances of the angle at `place` with angles and velocities right after its own measurement, where later
     /// measurements have not been taken in; before all of them where the angle is not seen.
     #[inline]
-    fn start(&self, place: usize, count: usize, cross: &[f32; N]) -> ([f32; N], [f32; N]) {
-        let (mut angle, mut velocity) = (self.angle[place], *cross);
+    fn start(&self, place: usize, count: usize) -> ([f32; N], [f32; N]) {
         if place < count {
-            let (before, own, left) = (&Self::BEFORE[place], &Self::OWN[place], self.left[place]);
+            let left = self.left[place];
+            let (mut angle, mut velocity) = (self.settled[place], self.velocity[place]);
             for j in 0..N {
-                angle[j] *= left * (before[j] + own[j] + self.unseen[j]);
+                angle[j] *= left;
+                velocity[j] *= left;
             }
-            velocity = self.velocity[place].map(|covariance| left * covariance);
+            angle[place] = left * self.own[place];
+            (angle, velocity)
         } else {
-            for j in 0..N {
-                angle[j] *= self.unseen[j];
-            }
+            let mut angle = self.ahead[place];
+            angle.iter_mut().take(count).for_each(|covariance| *covariance = 0.0);
+            (angle, self.velocity[place])
         }
-        (angle, velocity)
     }
+}
+
+/// Numbers of a row that come first, whole blocks: the rows of a triangle that begin or end there need the other half alone.
+const fn half<const N: usize>() -> usize {
+    let half = (N / 2).div_ceil(BLOCK) * BLOCK;
+    if half < N { half } else { N }
 }
 
 /// Values in the order of the angles seen, put at the angles' own places.
@@ -294,6 +319,22 @@ fn add_scaled<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f
 #[inline]
 fn subtract_scaled<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
     for j in 0..N {
+        target[j] -= factor * direction[j];
+    }
+}
+
+/// As [`subtract_scaled`], the first [`half`] of the numbers.
+#[inline]
+fn subtract_first_half<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
+    for j in 0..const { half::<N>() } {
+        target[j] -= factor * direction[j];
+    }
+}
+
+/// As [`subtract_scaled`], the numbers from [`half`] on.
+#[inline]
+fn subtract_second_half<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
+    for j in const { half::<N>() }..N {
         target[j] -= factor * direction[j];
     }
 }

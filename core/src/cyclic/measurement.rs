@@ -27,7 +27,8 @@ impl<const N: usize> AngleMeasurement<N> {
     /// # Errors
     /// `std_rad` has to be finite and positive.
     pub fn new(angles_rad: &[Option<f32>; N], std_rad: f32) -> Result<Self, ParameterError> {
-        Self::with_std(angles_rad, &[std_rad; N])
+        positive("std_rad", std_rad)?;
+        Ok(Self::checked(angles_rad, &[std_rad; N]))
     }
 
     /// `angles_rad` (any turn; NaN and infinity count as missing) with a standard deviation each.
@@ -38,8 +39,13 @@ impl<const N: usize> AngleMeasurement<N> {
         for &std in std_rad {
             positive("std_rad", std)?;
         }
+        Ok(Self::checked(angles_rad, std_rad))
+    }
+
+    #[inline]
+    fn checked(angles_rad: &[Option<f32>; N], std_rad: &[f32; N]) -> Self {
         let angles_rad = angles_rad.map(|angle| angle.filter(|value| value.is_finite()));
-        Ok(Self { angles_rad, std_rad: *std_rad, step_frames: 1.0 })
+        Self { angles_rad, std_rad: *std_rad, step_frames: 1.0 }
     }
 
     /// The same, `step_frames` after the last measurement (frames at the model's rate).
