@@ -128,7 +128,7 @@ fn walks_in_space_are_tracked_with_two_angles_a_joint() {
     }
     assert!(misses.is_empty(), "{misses:?}");
     let run = track(&truths[0], &model, &TrackingOptions { smooth: true, ..TrackingOptions::default() }).unwrap();
-    let text = table::to_csv(&run).unwrap();
+    let text = table::to_csv(&run, None).unwrap();
     let again = AngleTable::parse(&text, Path::new("est.csv")).unwrap();
     assert_eq!((again.angle_count(), again.rows().len()), (SPACE_ANGLES, truths[0].rows().len()));
     let flat = AngleTable::new(truths[0].rows().to_vec(), Vec::new()).unwrap();

@@ -29,7 +29,9 @@ fn the_tables_and_figures_come_from_one_command() {
     for out in ["one", "two"] {
         let mut command = sinew(root.path());
         command.args(["--test", "cuts.csv", "--seeds", "1", "--particles", "none", "--out", out]);
-        command.assert().success().stdout(contains("2 test cycles, 124 frames").and(contains("exact-mean")));
+        command.assert().success().stdout(
+            contains("2 test cycles, 124 frames").and(contains("exact-mean").and(contains("\n  --smooth").count(2))),
+        );
     }
     let folder = root.path().join("one");
     for name in ["cyclic.json", "cyclic.csv"] {
@@ -39,7 +41,7 @@ fn the_tables_and_figures_come_from_one_command() {
     let headers = reader.headers().unwrap().clone();
     let place = |name: &str| headers.iter().position(|header| header == name).unwrap();
     let error = place("error_deg");
-    let mut cells = 0;
+    let (mut cells, mut filtered, mut smoothed) = (0, 0.0, 0.0);
     for record in reader.records() {
         let record = record.unwrap();
         let error: f64 = record[error].parse().unwrap();
@@ -47,9 +49,14 @@ fn the_tables_and_figures_come_from_one_command() {
         if &record[place("sigma_deg")] == "1" {
             assert!(error < 1.5, "{record:?}");
         }
+        if &record[place("protocol")] == "noisy" && &record[place("filter")] == "coupled" {
+            filtered += if &record[0] == "table-1" { error } else { 0.0 };
+            smoothed += if &record[0] == "smoothed" { error } else { 0.0 };
+        }
         cells += 1;
     }
     assert!(cells >= 24, "{cells} cells");
+    assert!(smoothed > 0.3 * filtered && smoothed < filtered, "looking back helps: {smoothed} beside {filtered}");
     for name in ["figure_3_left_foot.png", "figure_3_left_hand.png", "figure_4a_paper.png", "figure_4b.png"] {
         assert!(image::open(folder.join(name)).is_ok(), "{name}");
     }

@@ -57,6 +57,13 @@ impl CycleCounter {
     pub fn cycles(&self) -> f32 {
         self.laps as f32 + (self.position - self.start)
     }
+
+    /// The same in two parts, so that the second stays as fine as the position however many cycles there are: passages of
+    /// position 0, and the position less the first one.
+    #[must_use]
+    pub fn laps_and_part(&self) -> (i32, f32) {
+        (self.laps, self.position - self.start)
+    }
 }
 
 impl CycleStep {
@@ -107,5 +114,6 @@ mod tests {
         let back = counter.advance(0.96, -0.08, 1.0);
         assert_eq!(back.passed(0.0), None, "backwards does not count");
         assert_eq!(counter.completed(), 0);
+        assert_eq!(counter.laps_and_part(), (0, 0.0));
     }
 }

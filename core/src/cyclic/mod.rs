@@ -1,6 +1,7 @@
 //! Cyclic motion of a stick figure (the cyclic paper): a motion model learned from a few cycles, and what tracks with it.
 
 mod angle_blocks;
+pub mod angle_walk;
 pub mod coupled;
 pub mod coupled_block;
 pub mod coupled_moments;
@@ -11,6 +12,8 @@ pub mod cycle_state;
 pub mod deviation;
 pub mod estimate;
 pub mod events;
+pub mod figure_place;
+pub mod filter;
 pub mod gate;
 pub mod image_filter;
 pub mod interpolation;
@@ -39,6 +42,8 @@ pub use coupled::CoupledFilter;
 pub use coupled_moments::{BlockTransition, CoupledTransition};
 pub use deviation::Deviation;
 pub use estimate::CyclicEstimate;
+pub use figure_place::{FigurePlace, PlaceOptions};
+pub use filter::{CyclicFilter, FilterChoice};
 pub use interpolation::CyclePoint;
 pub use kalman::KalmanFilter;
 pub use kalman_options::{CovarianceScaling, GainReach, KalmanOptions};

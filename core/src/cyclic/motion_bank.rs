@@ -1,84 +1,161 @@
-//! Which of several motions is it? The likelihoods of filters that run side by side, compared with a bounded memory.
+//! Which of several motions is it? Filters that run side by side, compared with a bounded memory.
 
-use super::CyclicEstimate;
-use crate::math::{exp, max};
-use core::f32::consts::TAU;
+use super::angle_walk::AngleWalk;
+use super::{AngleMeasurement, MotionModel};
+use crate::math::{clamp, exp, ln, max, min, wrap_angle};
+use core::f32::consts::{LN_2, TAU};
 
-/// Frames after which a frame's evidence counts 1/e.
-pub const DEFAULT_MEMORY_FRAMES: f32 = 60.0;
+/// Seconds after which a frame's evidence counts 1/e.
+pub const DEFAULT_MEMORY_S: f32 = 1.0;
+/// Spread of people's poses about the mean cycle, rad (25 degrees): the same for every motion and angle.
+const POSE_SPREAD_RAD: f32 = 0.44;
+/// Beyond so many standard deviations an angle counts no more: short links that wind in a side view would decide alone.
+const POSE_LIMIT_SIGMAS: f32 = 1.5;
 
-/// Recursive log-likelihood of `MOTIONS` motions against "none of these".
+/// What a frame says of one motion.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MotionEvidence {
+    /// Log-likelihood that the motion's filter gave the frame.
+    pub log_likelihood: f32,
+    /// Half the squared distance of the angles seen from the motion's mean pose, relative to their spread.
+    pub pose_distance: f32,
+}
+
+impl MotionEvidence {
+    /// From a measurement and what the filter of `model` answered to it.
+    #[must_use]
+    pub fn new<const N: usize>(
+        model: &MotionModel<'_>,
+        measurement: &AngleMeasurement<N>,
+        cycle_position: f32,
+        log_likelihood: f32,
+    ) -> Self {
+        let pose = model.mean_pose_rad::<N>(model.point(cycle_position));
+        let limit = POSE_LIMIT_SIGMAS * POSE_LIMIT_SIGMAS;
+        let distance = |i: usize| {
+            let apart = wrap_angle(measurement.angle_rad(i)? - pose[i]);
+            let std = measurement.std_rad()[i];
+            Some(0.5 * min(apart * apart / (POSE_SPREAD_RAD * POSE_SPREAD_RAD + std * std), limit))
+        };
+        Self { log_likelihood, pose_distance: (0..model.angle_count().min(N)).filter_map(distance).sum() }
+    }
+}
+
+/// Recursive comparison of `MOTIONS` motions of up to `N` angles with each other and with "none of these".
 ///
-/// "None" says that every angle is uniform on the circle, ln 1 / (2 pi) an angle. Older evidence fades, so that the scores
-/// stay bounded and a change of motion is noticed.
+/// Among the motions the one whose mean cycle the pose lies nearest to is the likeliest, by one spread for all: after a few
+/// cycles a filter has learned the person's deviations, whatever the motion, and predicts almost as well with a wrong model as with the right one.
+/// It is named if its filter predicts better than "none", which is one half a walk at random from where each angle was
+/// ([`AngleWalk`]), as any motion may be taken, and one half an angle anywhere on the circle. Older evidence fades, so that the
+/// scores stay bounded and a change of motion is noticed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MotionBank<const MOTIONS: usize> {
-    /// Log-likelihood of each motion above that of none.
+pub struct MotionBank<const MOTIONS: usize, const N: usize> {
+    /// Log-likelihood of each motion above that of uniform angles.
     scores: [f32; MOTIONS],
-    keep: f32,
+    /// Sum of each motion's pose distances.
+    distances: [f32; MOTIONS],
+    /// Log-likelihood of the walk above that of uniform angles.
+    walk_score: f32,
+    walk: AngleWalk<N>,
+    motions: usize,
+    memory_s: f32,
 }
 
 /// Greatest size of a score: beyond it there is no doubt.
 const SCORE_LIMIT: f32 = 1.0e4;
+/// Least memory, seconds.
+const LEAST_MEMORY_S: f32 = 0.01;
 
-impl<const MOTIONS: usize> MotionBank<MOTIONS> {
-    /// No evidence yet; `memory_frames` below one counts as one.
+impl<const MOTIONS: usize, const N: usize> MotionBank<MOTIONS, N> {
+    /// No evidence yet: `first` is the measurement from which the filters of the first `motions` (at most `MOTIONS`) began.
+    /// A memory of less than a hundredth of a second counts as that.
     #[must_use]
-    pub fn new(memory_frames: f32) -> Self {
-        Self { scores: [0.0; MOTIONS], keep: exp(-1.0 / max(memory_frames, 1.0)) }
-    }
-
-    /// Takes in a frame with `present_angles` angles seen and the log-likelihood that each motion's filter gave it.
-    pub fn add(&mut self, log_likelihoods: &[f32; MOTIONS], present_angles: usize) {
-        let none = -(present_angles as f32) * crate::math::ln(TAU);
-        for (score, &log_likelihood) in self.scores.iter_mut().zip(log_likelihoods) {
-            let gain = if log_likelihood.is_finite() { log_likelihood - none } else { -SCORE_LIMIT };
-            *score = crate::math::clamp(self.keep * *score + gain, -SCORE_LIMIT, SCORE_LIMIT);
+    pub fn new(motions: usize, first: &AngleMeasurement<N>, memory_s: f32) -> Self {
+        let mut walk = AngleWalk::default();
+        walk.step(first, 0.0);
+        Self {
+            scores: [0.0; MOTIONS],
+            distances: [0.0; MOTIONS],
+            walk_score: 0.0,
+            walk,
+            motions: motions.min(MOTIONS),
+            memory_s: max(memory_s, LEAST_MEMORY_S),
         }
     }
 
-    /// The same from the estimates of the filters.
-    pub fn add_estimates<const N: usize>(&mut self, estimates: &[CyclicEstimate<N>; MOTIONS], present_angles: usize) {
-        self.add(&core::array::from_fn(|i| estimates[i].log_likelihood), present_angles);
+    /// Takes in a frame that came `step_s` seconds after the last, with what it says of each motion.
+    pub fn add(&mut self, measurement: &AngleMeasurement<N>, step_s: f32, evidence: &[MotionEvidence]) {
+        let keep = exp(-max(step_s, 0.0) / self.memory_s);
+        let uniform = -(measurement.present(N) as f32) * ln(TAU);
+        let faded = |score: f32, log_likelihood: f32| {
+            let gain = if log_likelihood.is_finite() { log_likelihood - uniform } else { -SCORE_LIMIT };
+            clamp(keep * score + gain, -SCORE_LIMIT, SCORE_LIMIT)
+        };
+        for ((score, distance), evidence) in self.scores.iter_mut().zip(&mut self.distances).zip(evidence) {
+            *score = faded(*score, evidence.log_likelihood);
+            *distance = keep * *distance + min(evidence.pose_distance, SCORE_LIMIT);
+        }
+        self.walk_score = faded(self.walk_score, self.walk.step(measurement, max(step_s, 0.0)));
     }
 
-    /// Index of the likeliest motion; `None` where none of these is likelier.
+    /// Log-likelihood of "none of these" above that of uniform angles.
+    fn none_score(&self) -> f32 {
+        let greater = max(self.walk_score, 0.0);
+        greater + ln(exp(-greater) + exp(self.walk_score - greater)) - LN_2
+    }
+
+    /// Index of the motion that is likeliest among them, whether or not it is likelier than none; 0 where there is no evidence.
     #[must_use]
-    pub fn likeliest(&self) -> Option<usize> {
-        let mut best = (0.0, None);
-        for (index, &score) in self.scores.iter().enumerate() {
-            if score > best.0 {
-                best = (score, Some(index));
+    pub fn best(&self) -> usize {
+        let mut best = (f32::INFINITY, 0);
+        for (index, &distance) in self.distances.iter().take(self.motions).enumerate() {
+            if distance < best.0 {
+                best = (distance, index);
             }
         }
         best.1
     }
 
-    /// Probability of each motion, all motions and "none of these" being equally likely before.
+    /// Index of the likeliest motion; `None` where none of these is likelier.
+    #[must_use]
+    pub fn likeliest(&self) -> Option<usize> {
+        let best = self.best();
+        self.scores.get(best).is_some_and(|score| *score > self.none_score()).then_some(best)
+    }
+
+    /// Probability of each motion, 0 beyond the motions there are: that the likeliest is one at all, times its share among them.
     #[must_use]
     pub fn probabilities(&self) -> [f32; MOTIONS] {
-        let greatest = self.scores.iter().fold(0.0, |best, &score| max(score, best));
-        let weights = self.scores.map(|score| exp(score - greatest));
-        let sum = exp(-greatest) + weights.iter().sum::<f32>();
+        let (best, mut weights) = (self.best(), [0.0; MOTIONS]);
+        let (Some(&score), Some(&least)) = (self.scores.get(best), self.distances.get(best)) else { return weights };
+        for (weight, &distance) in weights.iter_mut().zip(&self.distances).take(self.motions) {
+            *weight = exp(least - distance);
+        }
+        let sum = (1.0 + exp(min(self.none_score() - score, 80.0))) * max(weights.iter().sum::<f32>(), 1.0);
         weights.map(|weight| weight / sum)
+    }
+
+    /// Probability of "none of these".
+    #[must_use]
+    pub fn none_probability(&self) -> f32 {
+        max(1.0 - self.probabilities().iter().sum::<f32>(), 0.0)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::kalman::KalmanFilter;
-    use super::super::{AngleMeasurement, CycleStart, KalmanOptions, synthetic};
+    use super::super::{CycleStart, KalmanOptions, synthetic};
     use super::*;
     use crate::random::Stream;
 
+    /// Three seconds of the motion, of another one, and of nonsense, watched by both models.
     #[test]
-    fn the_motion_is_named_and_nonsense_is_none_of_these() {
+    fn the_motion_is_named_and_anything_else_is_none_of_these() {
         let table = synthetic::table(4.0e-3, 9);
         let mut other = table.clone();
-        for row in &mut other.mean_acceleration {
-            for value in row {
-                *value *= -1.0;
-            }
+        for value in other.mean_acceleration.iter_mut().chain(&mut other.mean_pose_rad).flatten() {
+            *value *= -1.0;
         }
         let models = [other.model().unwrap(), table.model().unwrap()];
         let first: [_; 13] = core::array::from_fn(|i| Some(synthetic::mean_angle(i, 0.0)));
@@ -87,25 +164,45 @@ mod tests {
             let start = CycleStart::standard(&model, &first, Some(0.0), None).unwrap();
             KalmanFilter::<13>::new(&model, &options, &start).unwrap()
         });
-        let mut bank = MotionBank::<2>::new(DEFAULT_MEMORY_FRAMES);
+        let first = AngleMeasurement::new(&first, 0.05).unwrap();
+        let mut bank = MotionBank::<4, 13>::new(2, &first, 1.0);
         let mut stream = Stream::new(4, 0, 0);
-        assert_eq!(bank.likeliest(), None);
-        for frame in 1..130_u8 {
-            let seen = core::array::from_fn(|i| {
-                Some(synthetic::mean_angle(i, f32::from(frame) / 65.0) + 0.05 * stream.normal())
-            });
-            let seen = AngleMeasurement::new(&seen, 0.05).unwrap();
-            let estimates = core::array::from_fn(|m| filters[m].step(&models[m], &options, &seen));
-            bank.add_estimates(&estimates, 13);
-        }
+        assert_eq!((bank.likeliest(), bank.best()), (None, 0));
+        let mut watch = |angle: &dyn Fn(usize, f32, &mut Stream) -> f32| {
+            for frame in 1..=180_u8 {
+                let seen = core::array::from_fn(|i| Some(angle(i, f32::from(frame), &mut stream)));
+                let seen = AngleMeasurement::new(&seen, 0.05).unwrap();
+                let all: [_; 2] = core::array::from_fn(|m| {
+                    let estimate = filters[m].step(&models[m], &options, &seen);
+                    MotionEvidence::new(&models[m], &seen, estimate.cycle_position, estimate.log_likelihood)
+                });
+                bank.add(&seen, 1.0 / 60.0, &all);
+            }
+            let sum = bank.probabilities().iter().sum::<f32>() + bank.none_probability();
+            assert!((sum - 1.0).abs() < 1.0e-5, "{sum}");
+            bank
+        };
+        let named = watch(&|i, frame, stream| synthetic::mean_angle(i, frame / 65.0) + 0.05 * stream.normal());
+        assert_eq!(named.likeliest(), Some(1));
+        assert!(named.probabilities()[1] > 0.9);
+        let squats = watch(&|i, frame, stream| (0.3 * i as f32 * (frame / 40.0).sin()) + 0.05 * stream.normal());
+        assert_eq!(squats.likeliest(), None);
+        assert!(squats.none_probability() > 0.9);
+        assert_eq!(watch(&|_, _, stream| TAU * stream.uniform()).likeliest(), None);
+    }
+
+    #[test]
+    fn without_measurements_nothing_changes_its_place() {
+        let mut bank = MotionBank::<2, 13>::new(2, &AngleMeasurement::nothing(), 1.0);
+        let seen = AngleMeasurement::new(&[Some(0.3); 13], 0.1).unwrap();
+        let evidence = |log_likelihood, pose_distance| MotionEvidence { log_likelihood, pose_distance };
+        bank.add(&seen, 0.1, &[evidence(10.0, 9.0), evidence(10.0, 3.0)]);
         assert_eq!(bank.likeliest(), Some(1));
-        assert!(bank.probabilities()[1] > 0.9);
-        for _ in 0..130 {
-            let seen = core::array::from_fn(|_| Some(TAU * stream.uniform()));
-            let seen = AngleMeasurement::new(&seen, 0.05).unwrap();
-            let estimates = core::array::from_fn(|m| filters[m].step(&models[m], &options, &seen));
-            bank.add_estimates(&estimates, 13);
-        }
-        assert_eq!(bank.likeliest(), None);
+        bank.add(&AngleMeasurement::nothing(), 2.0, &[MotionEvidence::default(); 2]);
+        assert_eq!(bank.likeliest(), Some(1));
+        let probabilities = bank.probabilities();
+        assert!(probabilities[1] > 0.5 && probabilities[0] > 0.2, "little is known any more: {probabilities:?}");
+        bank.add(&seen, 0.1, &[evidence(0.0, 9.0), evidence(f32::NAN, 3.0)]);
+        assert_eq!((bank.best(), bank.likeliest()), (1, None));
     }
 }

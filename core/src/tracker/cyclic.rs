@@ -1,23 +1,103 @@
-//! The cyclic tracker: a filter of the pose and the phase, the cycles counted, the cadence.
+//! The cyclic tracker: pose and phase by a filter, the cycles counted, the cadence, root and segment lengths.
 
 use crate::cyclic::events::{CycleCounter, CycleStep};
-use crate::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel};
+use crate::cyclic::figure_place::{FigurePlace, PlaceOptions};
+use crate::cyclic::filter::{CyclicFilter, FilterChoice};
+use crate::cyclic::{AngleMeasurement, CyclicEstimate, MotionModel};
 use crate::error::ParameterError;
+use crate::skeleton::stick_figure::{ImagePoint, StickFigure};
+use core::f32::consts::{PI, SQRT_2};
 
-/// State of a tracker for models of up to `N` angles, with the filter `paper` or `paper-cut` as its options say.
+/// What may be chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CyclicTrackerOptions {
+    /// Filter.
+    pub filter: FilterChoice,
+    /// How root and lengths are filtered (at the model's rate); `None` where there are angles only.
+    pub place: Option<PlaceOptions>,
+}
+
+/// First position and velocity in the cycle; where absent the position fits best and the velocity is the model's mean.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FirstPhase {
+    /// Position in the cycle, [0, 1).
+    pub position: Option<f32>,
+    /// Cycles per frame of the model's rate.
+    pub velocity_per_frame: Option<f32>,
+}
+
+/// What a frame shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CyclicFrameInput<const N: usize> {
+    /// Angles with their noise, and the time since the last frame.
+    pub angles: AngleMeasurement<N>,
+    /// The root, if it was seen, px.
+    pub root_px: Option<ImagePoint>,
+    /// Length of each segment that was seen, px.
+    pub lengths_px: [Option<f32>; N],
+}
+
+impl<const N: usize> From<AngleMeasurement<N>> for CyclicFrameInput<N> {
+    fn from(angles: AngleMeasurement<N>) -> Self {
+        Self { angles, root_px: None, lengths_px: [None; N] }
+    }
+}
+
+impl<const N: usize> CyclicFrameInput<N> {
+    /// From the joints of `figure` as a picture shows them, each coordinate with a standard deviation of `keypoint_std_px`, one
+    /// frame after the last.
+    ///
+    /// An angle's standard deviation is sqrt(2) times that over the segment's length, at most pi: a short segment says little.
+    ///
+    /// # Errors
+    /// `keypoint_std_px` has to be positive.
+    pub fn from_joints(
+        figure: &StickFigure<'_>,
+        joints_px: &[Option<ImagePoint>],
+        keypoint_std_px: f32,
+    ) -> Result<Self, ParameterError> {
+        crate::error::positive("keypoint_std_px", keypoint_std_px)?;
+        let (mut angles_rad, mut std_rad, mut lengths_px) = ([None; N], [PI; N], [None; N]);
+        for index in 0..N {
+            if let Some(segment) = figure.segment(joints_px, index) {
+                angles_rad[index] = segment.angle_rad;
+                lengths_px[index] = Some(segment.length_px);
+                if segment.length_px * PI > SQRT_2 * keypoint_std_px {
+                    std_rad[index] = SQRT_2 * keypoint_std_px / segment.length_px;
+                }
+            }
+        }
+        let angles = AngleMeasurement::with_std(&angles_rad, &std_rad)?;
+        Ok(Self { angles, root_px: joints_px.first().copied().flatten(), lengths_px })
+    }
+
+    /// The same, `step_frames` after the last frame (frames of the model's rate).
+    ///
+    /// # Errors
+    /// Those of [`AngleMeasurement::after`].
+    pub fn after(mut self, step_frames: f32) -> Result<Self, ParameterError> {
+        self.angles = self.angles.after(step_frames)?;
+        Ok(self)
+    }
+}
+
+/// State of a tracker for models of up to `N` angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicTracker<const N: usize> {
-    options: KalmanOptions,
-    filter: KalmanFilter<N>,
+    options: CyclicTrackerOptions,
+    filter: CyclicFilter<N>,
     counter: CycleCounter,
+    place: Option<FigurePlace<N>>,
 }
+
+const _: () = assert!(size_of::<CyclicTracker<13>>() <= 4096, "the tracker has to fit 4 KiB");
 
 /// What the tracker says after a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicFrame<const N: usize> {
-    /// Pose, phase and how sure they are.
+    /// Pose, phase and how sure they are; likelihood and outlier.
     pub estimate: CyclicEstimate<N>,
-    /// Whole cycles since the start.
+    /// Whole cycles since the first frame.
     pub cycles_completed: i32,
     /// Cycles per minute.
     pub cadence_per_min: f32,
@@ -28,65 +108,175 @@ pub struct CyclicFrame<const N: usize> {
 }
 
 impl<const N: usize> CyclicTracker<N> {
-    /// A tracker at its start.
+    /// A tracker that begins with the frame `first`.
     ///
     /// # Errors
-    /// Those of [`KalmanFilter::new`].
-    pub fn new(model: &MotionModel<'_>, options: KalmanOptions, start: &CycleStart<N>) -> Result<Self, ParameterError> {
-        let filter = KalmanFilter::new(model, &options, start)?;
-        Ok(Self { options, filter, counter: CycleCounter::new(start.cycle_position) })
+    /// Those of [`CyclicFilter::new`] and [`PlaceOptions::check`].
+    pub fn new(
+        model: &MotionModel<'_>,
+        options: CyclicTrackerOptions,
+        first: &CyclicFrameInput<N>,
+        phase: FirstPhase,
+    ) -> Result<Self, ParameterError> {
+        let filter =
+            CyclicFilter::new(model, &options.filter, &first.angles, phase.position, phase.velocity_per_frame)?;
+        let mut place = options.place.map(FigurePlace::new).transpose()?;
+        if let Some(place) = &mut place {
+            place.step(first.angles.step_frames(), first.root_px, &first.lengths_px);
+        }
+        let counter = CycleCounter::new(filter.cycle_position());
+        Ok(Self { options, filter, counter, place })
     }
 
     /// Begins anew with the same options; cycles are counted from zero.
     ///
     /// # Errors
-    /// Those of [`KalmanFilter::new`]; the tracker is as before then.
-    pub fn reset(&mut self, model: &MotionModel<'_>, start: &CycleStart<N>) -> Result<(), ParameterError> {
-        *self = Self::new(model, self.options, start)?;
+    /// Those of [`Self::new`]; the tracker is as before then.
+    pub fn reset(
+        &mut self,
+        model: &MotionModel<'_>,
+        first: &CyclicFrameInput<N>,
+        phase: FirstPhase,
+    ) -> Result<(), ParameterError> {
+        *self = Self::new(model, self.options, first, phase)?;
         Ok(())
     }
 
-    /// One frame: predict and correct, then count.
-    pub fn step(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicFrame<N> {
-        let estimate = self.filter.step(model, &self.options, measurement);
-        let cycle_step =
-            self.counter.advance(estimate.cycle_position, estimate.cycle_velocity_per_frame, measurement.step_frames());
+    /// One frame: predict and correct, count, follow root and lengths.
+    pub fn step(&mut self, model: &MotionModel<'_>, input: &CyclicFrameInput<N>) -> CyclicFrame<N> {
+        let step_frames = input.angles.step_frames();
+        let estimate = self.filter.step(model, &self.options.filter, &input.angles);
+        let cycle_step = self.counter.advance(estimate.cycle_position, estimate.cycle_velocity_per_frame, step_frames);
+        if let Some(place) = &mut self.place {
+            place.step(step_frames, input.root_px, &input.lengths_px);
+        }
         let (cadence_per_min, cadence_std_per_min) = estimate.cadence_per_min(model.rate_hz());
         let cycles_completed = self.counter.completed();
         CyclicFrame { estimate, cycles_completed, cadence_per_min, cadence_std_per_min, cycle_step }
     }
 
+    /// Writes the joints of `figure`, px, at the angles of an estimate; see [`FigurePlace::joints_px`]. All are missing where the
+    /// tracker follows angles only.
+    pub fn joints_px(
+        &self,
+        figure: &StickFigure<'_>,
+        estimate: &CyclicEstimate<N>,
+        joints_px: &mut [Option<ImagePoint>],
+    ) {
+        match &self.place {
+            Some(place) => place.joints_px(figure, &estimate.angles_rad, joints_px),
+            None => joints_px.fill(None),
+        }
+    }
+
     /// The filter.
     #[must_use]
-    pub const fn filter(&self) -> &KalmanFilter<N> {
+    pub const fn filter(&self) -> &CyclicFilter<N> {
         &self.filter
+    }
+
+    /// Root and lengths, if they are followed.
+    #[must_use]
+    pub const fn place(&self) -> Option<&FigurePlace<N>> {
+        self.place.as_ref()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cyclic::synthetic;
+    use crate::cyclic::{KalmanOptions, synthetic};
+    use crate::skeleton::stick_figure::{HUMAN, HUMAN_JOINTS};
+
+    const LENGTHS_PX: [f32; 13] = [60.0; 13];
+
+    fn pose(frame: f32) -> [f32; 13] {
+        core::array::from_fn(|i| synthetic::mean_angle(i, frame / 65.0))
+    }
+
+    fn seen(frame: f32) -> CyclicFrameInput<13> {
+        AngleMeasurement::new(&pose(frame).map(Some), 0.1).unwrap().into()
+    }
+
+    const START: FirstPhase = FirstPhase { position: Some(0.0), velocity_per_frame: None };
 
     #[test]
     fn cycles_cadence_and_phases_come_out_of_a_steady_motion() {
         let table = synthetic::table(4.0e-3, 9);
         let model = table.model().unwrap();
-        let first: [_; 13] = core::array::from_fn(|i| Some(synthetic::mean_angle(i, 0.0)));
-        let start = CycleStart::standard(&model, &first, Some(0.0), None).unwrap();
-        let mut tracker = CyclicTracker::new(&model, KalmanOptions::default(), &start).unwrap();
-        let mut passages = 0;
-        for frame in 1..=200_u8 {
-            let seen = core::array::from_fn(|i| Some(synthetic::mean_angle(i, f32::from(frame) / 65.0)));
-            let answer = tracker.step(&model, &AngleMeasurement::new(&seen, 0.1).unwrap());
-            passages += i32::from(answer.cycle_step.passed(0.5).is_some());
-            assert_eq!(answer.cycles_completed, i32::from(frame) * 100 / 6500, "frame {frame}");
-            assert!((answer.cadence_per_min - 3600.0 / 65.0).abs() < 1.0e-3);
-            assert!(answer.cadence_std_per_min > 0.0);
+        for filter in [FilterChoice::Coupled, FilterChoice::Kalman(KalmanOptions::default())] {
+            let options = CyclicTrackerOptions { filter, place: None };
+            let mut tracker = CyclicTracker::new(&model, options, &seen(0.0), START).unwrap();
+            let mut passages = Vec::new();
+            for frame in 1..=200_u8 {
+                let answer = tracker.step(&model, &seen(f32::from(frame)));
+                let passed = answer.cycle_step.passed(0.5);
+                passages.extend(passed.map(|after| f32::from(frame - 1) + after));
+                let cycles = f32::from(frame) / 65.0;
+                let near_a_border = (cycles - cycles.round()).abs() < 0.02;
+                assert!(near_a_border || answer.cycles_completed == cycles as i32, "frame {frame}: {answer:?}");
+                assert!((answer.cadence_per_min - 3600.0 / 65.0).abs() < 1.0, "{}", answer.cadence_per_min);
+                assert!(answer.cadence_std_per_min > 0.0 && !answer.estimate.outlier);
+            }
+            assert_eq!(passages.len(), 3, "{passages:?}");
+            for (index, passage) in passages.iter().enumerate() {
+                assert!((passage - 65.0 * (index as f32 + 0.5)).abs() < 1.0, "between frames: {passages:?}");
+            }
+            let unchanged = tracker;
+            let bad = FirstPhase { velocity_per_frame: Some(3.0), ..START };
+            assert!(tracker.reset(&model, &seen(0.0), bad).is_err() && tracker == unchanged);
+            tracker.reset(&model, &seen(0.0), START).unwrap();
+            let answer = tracker.step(&model, &AngleMeasurement::nothing().into());
+            assert_eq!(answer.cycles_completed, 0);
         }
-        assert_eq!(passages, 3);
-        tracker.reset(&model, &start).unwrap();
-        let answer = tracker.step(&model, &AngleMeasurement::nothing());
-        assert_eq!(answer.cycles_completed, 0);
+    }
+
+    #[test]
+    fn joints_are_followed_in_the_picture_through_a_gap() {
+        let table = synthetic::table(4.0e-3, 9);
+        let model = table.model().unwrap();
+        let place = PlaceOptions::of_person(60.0, 0.008, 0.05, 60.0).unwrap();
+        let drawn = |frame: f32| {
+            let mut joints = [[0.0; 2]; HUMAN_JOINTS];
+            HUMAN.joint_positions([100.0 + 1.5 * frame, 200.0], &LENGTHS_PX, &pose(frame), &mut joints);
+            joints
+        };
+        let input = |frame: f32| CyclicFrameInput::<13>::from_joints(&HUMAN, &drawn(frame).map(Some), 2.0).unwrap();
+        let options = CyclicTrackerOptions { place: Some(place), ..Default::default() };
+        let mut tracker = CyclicTracker::new(&model, options, &input(0.0), START).unwrap();
+        let mut joints = [None; HUMAN_JOINTS];
+        for frame in 1..=150_u8 {
+            let frame = f32::from(frame);
+            let hidden = (120.0..125.0).contains(&frame);
+            let input = if hidden { AngleMeasurement::nothing().into() } else { input(frame) };
+            let answer = tracker.step(&model, &input);
+            tracker.joints_px(&HUMAN, &answer.estimate, &mut joints);
+            if frame > 60.0 {
+                for (truth, found) in drawn(frame).iter().zip(joints) {
+                    let [x, y] = found.unwrap();
+                    assert!((truth[0] - x).hypot(truth[1] - y) < 6.0, "frame {frame}: {truth:?}, {x}, {y}");
+                }
+            }
+        }
+        assert!(tracker.place().unwrap().lengths_px().iter().all(|length| (length.unwrap() - 60.0).abs() < 0.5));
+        let angles_only = CyclicTracker::new(&model, CyclicTrackerOptions::default(), &input(0.0), START).unwrap();
+        let mut joints = [Some([0.0; 2]); HUMAN_JOINTS];
+        let estimate = { angles_only }.step(&model, &input(1.0)).estimate;
+        angles_only.joints_px(&HUMAN, &estimate, &mut joints);
+        assert_eq!(joints, [None; HUMAN_JOINTS]);
+    }
+
+    #[test]
+    fn a_short_segment_is_a_noisy_angle_and_a_joint_that_is_missing_none() {
+        let mut joints = [Some([0.0, 0.0]); HUMAN_JOINTS];
+        joints[1] = Some([0.0, -100.0]);
+        joints[2] = Some([1.0, -100.0]);
+        joints[9] = None;
+        let input = CyclicFrameInput::<13>::from_joints(&HUMAN, &joints, 2.0).unwrap().after(2.0).unwrap();
+        assert!((input.angles.std_rad()[0] - SQRT_2 * 0.02).abs() < 1.0e-6);
+        assert_eq!((input.angles.std_rad()[1], input.lengths_px[1]), (SQRT_2 * 2.0, Some(1.0)));
+        assert_eq!((input.angles.angle_rad(8), input.lengths_px[8], input.angles.angle_rad(9)), (None, None, None));
+        assert_eq!((input.angles.step_frames(), input.root_px), (2.0, Some([0.0, 0.0])));
+        assert!(CyclicFrameInput::<13>::from_joints(&HUMAN, &joints, 0.0).is_err());
     }
 }

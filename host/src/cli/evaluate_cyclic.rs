@@ -74,6 +74,7 @@ pub fn run(args: &EvaluateCyclicArgs) -> Result<()> {
         frames: cycles.iter().map(|cycle| cycle.truth.rows().len()).sum(),
         seeds: args.seeds,
         noise: setting.noise_table()?,
+        smoothed: setting.smoothed()?,
         particles: setting.particle_table(&particles)?,
         sparse: setting.sparse_measurements()?,
         sparse_particles: setting.sparse_particles(&sparse_particles)?,

@@ -5,7 +5,10 @@ use crate::cyclic::pictures::{OverlayFrames, animation};
 use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::figures;
 use crate::cyclic::report::{Origin, Report};
-use crate::cyclic::tracking::{FilterName, StartName, Tracked, TrackingOptions, Updates, table, track};
+use crate::cyclic::tracking::table::{self, MotionCells, NO_MOTION};
+use crate::cyclic::tracking::{
+    FilterName, NamedMotion, StartName, Tracked, TrackingOptions, Updates, track, track_bank,
+};
 use crate::cyclic::{AngleTable, CyclicModel};
 use crate::output::{OutputDir, check_writable_file};
 use anyhow::{Result, ensure};
@@ -17,9 +20,10 @@ use std::path::{Path, PathBuf};
 pub struct TrackCyclicArgs {
     /// Angle table, made by `sinew angles` from a motion in space or from keypoints.
     pub table: PathBuf,
-    /// Motion: a shipped one, or a file of `sinew train cyclic`.
-    #[arg(long, value_name = MODEL_VALUE)]
-    pub model: String,
+    /// Motion: a shipped one, or a file of `sinew train cyclic`. Given several times, the motion of each frame is named, or none
+    /// of these, and tracked by its own model.
+    #[arg(long, value_name = MODEL_VALUE, required = true)]
+    pub model: Vec<String>,
     /// Filter.
     #[arg(long, value_enum, default_value_t = FilterName::Coupled)]
     pub filter: FilterName,
@@ -87,7 +91,7 @@ pub fn run(args: &TrackCyclicArgs) -> Result<()> {
         check_writable_file(path)?;
     }
     let output = args.report.as_deref().map(OutputDir::create).transpose()?;
-    let model = CyclicModel::from_option(&args.model)?;
+    let models = args.model.iter().map(|name| CyclicModel::from_option(name)).collect::<Result<Vec<_>>>()?;
     let angles = AngleTable::read(&args.table)?;
     let overlay = match &frames {
         Some(frames) => {
@@ -96,14 +100,25 @@ pub fn run(args: &TrackCyclicArgs) -> Result<()> {
         }
         None => None,
     };
-    let tracked = track(&angles, &model, &options)?;
-    table::write(&tracked, &args.out)?;
+    let (tracked, motions) = match models.as_slice() {
+        [model] => (track(&angles, model, &options)?, None),
+        several => {
+            let bank = track_bank(&angles, several, &options)?;
+            let cells = motion_cells(&args.model, &bank.motions);
+            (bank.tracked, Some(cells))
+        }
+    };
+    table::write(&tracked, motions.as_ref(), &args.out)?;
     let report = Report::new(&angles, &tracked, &options);
     let mut text = told(&report);
+    if let Some(motions) = &motions {
+        text.push_str(&told_motions(&args.model, motions));
+    }
     text.push_str(&format!("wrote {}\n", args.out.display()));
     if let Some(output) = output {
         let name = args.table.display().to_string();
-        let origin = Origin { table: &name, model: &args.model, options: &options, height_m: args.height };
+        let model = args.model.join(", ");
+        let origin = Origin { table: &name, model: &model, options: &options, height_m: args.height };
         report.write(&origin, &angles, &tracked, &output)?;
         text.push_str(&format!("report: {}\n", output.path().display()));
     }
@@ -111,6 +126,19 @@ pub fn run(args: &TrackCyclicArgs) -> Result<()> {
         text.push_str(&show(args, &angles, &tracked, &report, overlay)?);
     }
     super::stdout::write_all(text.as_bytes())
+}
+
+fn motion_cells(names: &[String], motions: &[NamedMotion]) -> MotionCells {
+    let name = |motion: &NamedMotion| motion.motion.map_or_else(|| NO_MOTION.to_owned(), |index| names[index].clone());
+    motions.iter().map(|motion| (name(motion), motion.probability)).collect()
+}
+
+/// In how many frames each motion was named.
+fn told_motions(names: &[String], motions: &MotionCells) -> String {
+    let count = |name: &str| motions.iter().filter(|(other, _)| other == name).count();
+    let counts = names.iter().map(String::as_str).chain([NO_MOTION]);
+    let counts: Vec<String> = counts.map(|name| format!("{name} in {}", count(name))).collect();
+    format!("motion: {} frames\n", counts.join(", "))
 }
 
 /// `estimate_overlay` beside `estimate.csv`.

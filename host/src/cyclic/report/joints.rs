@@ -1,4 +1,4 @@
-//! Joint positions of the estimate: root and segment lengths filtered beside the angles (cyclic paper, section 3).
+//! Joint positions of the estimate: root and segment lengths filtered beside the angles by the core.
 
 use super::Report;
 use super::body::Body;
@@ -9,69 +9,12 @@ use crate::cyclic::image_joints::Point;
 use crate::cyclic::tracking::Tracked;
 use crate::motion::joint_names::JOINTS;
 use anyhow::Result;
-use sinew_core::cyclic::image_filter::ScalarFilter;
+use sinew_core::cyclic::{FigurePlace, PlaceOptions};
 use sinew_core::skeleton::stick_figure::HUMAN;
-use std::f64::consts::SQRT_2;
 use std::fmt::Write as _;
 
-/// Acceleration of the hips of a walker, who rises and sinks by 2.5 cm twice a second.
-const ROOT_ACCELERATION_M_PER_S2: f64 = 4.0;
-/// By which part of itself a segment's length in the picture changes in a second, as limbs leave the plane.
-const LENGTH_WALK_PER_S: f64 = 0.1;
-/// Beyond this standard deviation, in lengths of the trunk, the place of the root is not known any more.
-const ROOT_LOST_TRUNKS: f64 = 0.5;
 /// The segment whose length scales the noise of a keypoint.
 const TRUNK: usize = 0;
-
-/// Root and lengths over time, in the unit of the table.
-struct PlaceFilter {
-    root: Option<[ScalarFilter; 2]>,
-    lengths: Vec<ScalarFilter>,
-    keypoint_std: f64,
-    root_acceleration: f64,
-    lost_std: f64,
-}
-
-impl PlaceFilter {
-    fn new(body: &Body, sigma_rad: f64, rate_hz: f64) -> Result<Self> {
-        // An angle that is off by sigma is that of a segment whose ends are off by sigma L / sqrt(2) each.
-        let keypoint_std = sigma_rad * body.lengths[TRUNK] / SQRT_2;
-        let length = |length: f64| {
-            let walk = LENGTH_WALK_PER_S * length / rate_hz.sqrt();
-            ScalarFilter::new(length as f32, (SQRT_2 * keypoint_std) as f32, walk as f32, 0.0)
-        };
-        Ok(Self {
-            root: None,
-            lengths: body.lengths.iter().map(|value| length(*value)).collect::<Result<_, _>>()?,
-            keypoint_std,
-            root_acceleration: ROOT_ACCELERATION_M_PER_S2 / body.metres_per_unit / (rate_hz * rate_hz),
-            lost_std: ROOT_LOST_TRUNKS * body.lengths[TRUNK],
-        })
-    }
-
-    fn step(&mut self, step_frames: f64, root: Option<Point>, lengths: [Option<f64>; ANGLES]) -> Result<()> {
-        let std = self.keypoint_std as f32;
-        if let Some(filters) = &mut self.root {
-            for (axis, filter) in filters.iter_mut().enumerate() {
-                filter.step(step_frames as f32, root.map(|seen| seen[axis] as f32), std);
-            }
-        } else if let Some([x, y]) = root {
-            let first = |value: f64| ScalarFilter::new(value as f32, std, 0.0, self.root_acceleration as f32);
-            self.root = Some([first(x)?, first(y)?]);
-        }
-        for (filter, seen) in self.lengths.iter_mut().zip(lengths) {
-            filter.step(step_frames as f32, seen.map(|seen| seen as f32), SQRT_2 as f32 * std);
-        }
-        Ok(())
-    }
-
-    /// The root, unless it was not seen for so long that nobody knows.
-    fn root(&self) -> Option<Point> {
-        let filters = self.root?;
-        let known = filters.iter().all(|filter| f64::from(filter.variance()).sqrt() <= self.lost_std);
-        known.then(|| filters.map(|filter| f64::from(filter.value())))
-    }
-}
 
 /// Root, lengths and angles of a row: x forward, y down, in the table's unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,15 +64,20 @@ pub fn figures(
     body: &Body,
     sigma_rad: f64,
 ) -> Result<Vec<Figure>> {
-    let mut place = PlaceFilter::new(body, sigma_rad, tracked.rate_hz)?;
+    let trunk = body.lengths[TRUNK] as f32;
+    let options =
+        PlaceOptions::of_person(trunk, body.metres_per_unit as f32, sigma_rad as f32, tracked.rate_hz as f32)?;
+    let mut place = FigurePlace::<ANGLES>::with_lengths(options, &body.lengths.map(|length| length as f32))?;
     let mut before = table.first_frame();
     let mut all = Vec::with_capacity(tracked.frames.len());
     for (row, frame) in table.rows().iter().zip(&tracked.frames) {
-        let lengths = std::array::from_fn(|angle| body.length(&row.extra, angle));
-        place.step((frame.frame - before) as f64, body.root(&row.extra), lengths)?;
+        let lengths = std::array::from_fn(|angle| body.length(&row.extra, angle).map(|length| length as f32));
+        let root = body.root(&row.extra).map(|root| root.map(|value| value as f32));
+        place.step((frame.frame - before) as f32, root, &lengths);
         before = frame.frame;
-        let root = if body.has_root() { place.root() } else { Some([0.0, 0.0]) };
-        let lengths = std::array::from_fn(|angle| f64::from(place.lengths[angle].value()));
+        let root = if body.has_root() { place.root_px().map(|root| root.map(f64::from)) } else { Some([0.0, 0.0]) };
+        let filtered = place.lengths_px();
+        let lengths = std::array::from_fn(|angle| filtered[angle].map_or(body.lengths[angle], f64::from));
         let measured = |angle: usize| measured_shares[angle] > 0.0;
         let angles_rad = std::array::from_fn(|angle| measured(angle).then_some(frame.angles_rad[angle]));
         all.push(Figure { frame: frame.frame, root, lengths, angles_rad });

@@ -1,5 +1,6 @@
 //! Tracking a recording with one of the core's cyclic filters.
 
+pub mod bank;
 pub mod filter;
 pub mod options;
 pub mod particles;
@@ -7,6 +8,7 @@ pub mod run;
 pub mod summary;
 pub mod table;
 
+pub use bank::{BankTracked, NamedMotion, track_bank};
 pub use options::{FilterName, StartName, TrackingOptions, Updates};
 pub use run::{SideEstimate, Tracked, TrackedFrame, track};
 pub use summary::Summary;

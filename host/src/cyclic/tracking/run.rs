@@ -6,6 +6,7 @@ use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
 use crate::cyclic::smoothing::replace_estimates;
 use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
 use anyhow::{Result, bail, ensure};
+use sinew_core::cyclic::events::CycleCounter;
 use sinew_core::cyclic::measurement::MAX_STEP_FRAMES;
 use sinew_core::cyclic::{AngleMeasurement, CyclicEstimate, MotionModel};
 use std::f64::consts::TAU;
@@ -59,10 +60,7 @@ pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions)
         step_frames <= f64::from(MAX_STEP_FRAMES),
         "`--rate {rate_hz}`: one frame is {step_frames:.0} of the model's; at most {MAX_STEP_FRAMES} can be bridged"
     );
-    let seen = |row: &AngleRow| row.angles_rad.iter().any(Option::is_some);
-    let Some(first) = table.rows().iter().position(seen) else {
-        bail!("the table has no angle in any row, so there is nothing to track; see `sinew angles --min-confidence`")
-    };
+    let first = first_seen(table)?;
     let frames = if view.angle_count() > ANGLES {
         ensure!(
             table.angle_count() == SPACE_ANGLES,
@@ -73,6 +71,20 @@ pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions)
         frames_of::<ANGLES>(table, view, options, first, step_frames)?
     };
     Ok(Tracked { frames, rate_hz, step_frames })
+}
+
+/// Index of the first row with an angle.
+pub(super) fn first_seen(table: &AngleTable) -> Result<usize> {
+    let seen = |row: &AngleRow| row.angles_rad.iter().any(Option::is_some);
+    let Some(first) = table.rows().iter().position(seen) else {
+        bail!("the table has no angle in any row, so there is nothing to track; see `sinew angles --min-confidence`")
+    };
+    Ok(first)
+}
+
+/// Frames of the model from one row to the next. A gap longer than the longest step says no more than that one.
+pub(super) fn step_of(before: &AngleRow, row: &AngleRow, step_frames: f64) -> f64 {
+    (step_frames * (row.frame - before.frame) as f64).min(f64::from(MAX_STEP_FRAMES))
 }
 
 /// Every row's answer by a filter for `N` angles that begins at the row `first`.
@@ -87,11 +99,12 @@ fn frames_of<const N: usize>(
     let mut pass = if options.smooth { Pass::begin(&filter) } else { None };
     let mut frames: Vec<TrackedFrame> = Vec::with_capacity(table.rows().len());
     // Rows before the first one with an angle are answered with the first state as well.
-    frames.extend(table.rows()[..=first].iter().map(|row| tracked(row.frame, &filter.first_estimate(), None)));
+    let start = filter.first_estimate();
+    let mut counter = CycleCounter::new(start.cycle_position);
+    frames.extend(table.rows()[..=first].iter().map(|row| tracked(row.frame, &start, 0.0)));
     for (index, pair) in table.rows().windows(2).enumerate().skip(first) {
         let [before, row] = pair else { continue };
-        // A gap longer than the longest step says no more than that one.
-        let step = (step_frames * (row.frame - before.frame) as f64).min(f64::from(MAX_STEP_FRAMES));
+        let step = step_of(before, row, step_frames);
         let used = options.updates.uses(table.first_frame(), row.frame);
         let angles = if used { measured(table, index + 1) } else { [None; N] };
         let measurement = AngleMeasurement::new(&angles, options.sigma_rad as f32)?.after(step as f32)?;
@@ -99,8 +112,8 @@ fn frames_of<const N: usize>(
         if let Some(pass) = &mut pass {
             pass.add(&filter, measurement);
         }
-        let next = tracked(row.frame, &estimate, frames.last().map(|before| (before, step)));
-        frames.push(next);
+        counter.advance(estimate.cycle_position, estimate.cycle_velocity_per_frame, step as f32);
+        frames.push(tracked(row.frame, &estimate, cycles(&counter)));
     }
     if let Some(pass) = pass {
         replace_estimates(&mut frames[first..], &pass.smoothed());
@@ -112,24 +125,19 @@ fn frames_of<const N: usize>(
     Ok(frames)
 }
 
-fn measured<const N: usize>(table: &AngleTable, index: usize) -> [Option<f32>; N] {
+/// Cycles since the start, with their part.
+pub(super) fn cycles(counter: &CycleCounter) -> f64 {
+    let (laps, part) = counter.laps_and_part();
+    f64::from(laps) + f64::from(part)
+}
+
+pub(super) fn measured<const N: usize>(table: &AngleTable, index: usize) -> [Option<f32>; N] {
     std::array::from_fn(|angle| table.row_angle_rad(index, angle).map(|angle| angle as f32))
 }
 
-/// The answer of a frame that came `step` frames of the model after the one `before`.
-fn tracked<const N: usize>(
-    frame: u64,
-    estimate: &CyclicEstimate<N>,
-    before: Option<(&TrackedFrame, f64)>,
-) -> TrackedFrame {
+/// The answer of a frame, so many cycles after the first.
+fn tracked<const N: usize>(frame: u64, estimate: &CyclicEstimate<N>, cycles: f64) -> TrackedFrame {
     let unwrapped = |i: usize| f64::from(estimate.angles_rad[i]) + TAU * f64::from(estimate.turns[i]);
-    let position = f64::from(estimate.cycle_position);
-    let cycles = before.map_or(0.0, |(before, step)| {
-        let change = position - f64::from(before.estimate.cycle_position);
-        // The turn that fits the velocity: a step may be longer than half a cycle.
-        let expected = f64::from(estimate.cycle_velocity_per_frame) * step;
-        before.cycles + change + (expected - change).round()
-    });
     let side = (N == SPACE_ANGLES).then(|| SideEstimate {
         angles_rad: std::array::from_fn(|i| unwrapped(ANGLES + i)),
         angle_variance_rad2: std::array::from_fn(|i| estimate.angle_variance_rad2[ANGLES + i]),

@@ -17,21 +17,30 @@ pub const ESTIMATE_COLUMNS: [&str; 7] = [
     "cycles",
 ];
 
+/// Columns at the end where several motions were told apart.
+pub const MOTION_COLUMNS: [&str; 2] = ["motion", "motion_probability"];
+/// What stands in the column `motion` where it is none of them.
+pub const NO_MOTION: &str = "none";
+
+/// Name and probability of the motion of each row.
+pub type MotionCells = Vec<(String, f64)>;
+
 /// The text of the table; after [`ESTIMATE_COLUMNS`] come the angles' standard deviations. A model with two angles a joint gives the angles out of
-/// the plane after those in it.
+/// the plane after those in it. `motions`, if there are any, come last.
 ///
 /// `cycle_velocity_per_frame` is per frame of the recording; `outlier` is 0 or 1.
 ///
 /// # Errors
 /// None in practice: text can always be written to memory.
-pub fn to_csv(tracked: &Tracked) -> Result<String> {
+pub fn to_csv(tracked: &Tracked, motions: Option<&MotionCells>) -> Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let is_spatial = tracked.frames.iter().any(|frame| frame.side.is_some());
     let count = if is_spatial { SPACE_ANGLES } else { ANGLES };
     let columns = COLUMNS[..1].iter().copied().chain(angle_columns().take(count)).chain(ESTIMATE_COLUMNS);
     let std_columns = angle_columns().take(count).map(|name| name.replace("_rad", "_std_rad"));
-    writer.write_record(columns.map(str::to_owned).chain(std_columns))?;
-    for frame in &tracked.frames {
+    let motion_columns = motions.iter().flat_map(|_| MOTION_COLUMNS.map(str::to_owned));
+    writer.write_record(columns.map(str::to_owned).chain(std_columns).chain(motion_columns))?;
+    for (index, frame) in tracked.frames.iter().enumerate() {
         let estimate = &frame.estimate;
         let velocity = f64::from(estimate.cycle_velocity_per_frame) * tracked.step_frames;
         let per_min = 60.0 * tracked.rate_hz;
@@ -54,7 +63,10 @@ pub fn to_csv(tracked: &Tracked) -> Result<String> {
             .iter()
             .chain(side_variances)
             .map(|variance| format!("{:.6}", variance.max(0.0).sqrt()));
-        writer.write_record(std::iter::once(frame.frame.to_string()).chain(angles).chain(derived).chain(stds))?;
+        let motion = motions.and_then(|motions| motions.get(index));
+        let motion = motion.into_iter().flat_map(|(name, probability)| [name.clone(), format!("{probability:.6}")]);
+        let cells = std::iter::once(frame.frame.to_string()).chain(angles).chain(derived).chain(stds).chain(motion);
+        writer.write_record(cells)?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)
 }
@@ -68,8 +80,8 @@ fn position_cell(position: f64) -> String {
 ///
 /// # Errors
 /// Names the path with what the operating system refused.
-pub fn write(tracked: &Tracked, path: &Path) -> Result<()> {
-    let text = to_csv(tracked)?;
+pub fn write(tracked: &Tracked, motions: Option<&MotionCells>, path: &Path) -> Result<()> {
+    let text = to_csv(tracked, motions)?;
     write_atomically(path, |writer| Ok(writer.write_all(text.as_bytes())?))
 }
 

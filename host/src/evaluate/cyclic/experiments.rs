@@ -134,6 +134,19 @@ impl Setting<'_> {
         Ok(cells)
     }
 
+    /// Beside table 1: `coupled` with the whole recording known (`--smooth`).
+    ///
+    /// # Errors
+    /// As [`pooled`].
+    pub fn smoothed(&self) -> Result<Vec<Cell>> {
+        let jobs = PROTOCOLS.into_iter().flat_map(|protocol| SIGMAS_DEG.map(|sigma| (protocol, sigma)));
+        jobs.map(|(protocol, sigma)| {
+            let options = TrackingOptions { smooth: true, ..self.options(FilterName::Coupled, sigma) };
+            self.measure(protocol, &options, Density::Every(1))
+        })
+        .collect()
+    }
+
     /// Table 2: the particle filter at sigma 29 degrees with more and more particles.
     ///
     /// # Errors

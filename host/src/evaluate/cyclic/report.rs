@@ -28,6 +28,8 @@ pub struct CyclicReport {
     pub seeds: u64,
     /// Table 1 and what figure 4a shows.
     pub noise: Vec<Cell>,
+    /// `coupled --smooth` under the conditions of table 1.
+    pub smoothed: Vec<Cell>,
     /// Table 2.
     pub particles: Vec<Cell>,
     /// Figure 4b.
@@ -45,6 +47,7 @@ impl CyclicReport {
     pub fn cells(&self) -> impl Iterator<Item = (&'static str, &Cell)> {
         let tables = [
             ("table-1", &self.noise),
+            ("smoothed", &self.smoothed),
             ("table-2", &self.particles),
             ("figure-4b", &self.sparse),
             ("figure-5a", &self.sparse_particles),
@@ -100,11 +103,13 @@ impl CyclicReport {
                     SIGMAS_DEG.iter().map(|sigma| format!("{:>16}", format!("sigma {sigma}"))).collect();
                 let _ = writeln!(text, "\n{:<12}{sigmas}", first.protocol.name());
             }
-            let cells: String = row
-                .iter()
-                .map(|cell| format!("{:>16}", format!("{:.2} ({:.2})", cell.error_deg, cell.long_error_deg)))
-                .collect();
-            let _ = writeln!(text, "{:<12}{cells}", first.filter.name());
+            let _ = writeln!(text, "{:<12}{}", first.filter.name(), errors_text(row));
+            if first.filter == FilterName::Coupled {
+                let same = |cell: &&[Cell]| cell.first().is_some_and(|cell| cell.protocol == first.protocol);
+                for smoothed in self.smoothed.chunks(SIGMAS_DEG.len()).filter(same) {
+                    let _ = writeln!(text, "{:<12}{}", "  --smooth", errors_text(smoothed));
+                }
+            }
         }
         let inside = |filter: FilterName| {
             let cells: Vec<f64> = self
@@ -134,6 +139,11 @@ impl CyclicReport {
         }
         text
     }
+}
+
+fn errors_text(row: &[Cell]) -> String {
+    let cell = |cell: &Cell| format!("{:>16}", format!("{:.2} ({:.2})", cell.error_deg, cell.long_error_deg));
+    row.iter().map(cell).collect()
 }
 
 fn long_runs_text(runs: &[LongRun]) -> String {

@@ -1,0 +1,74 @@
+//! The filters that need no cloud of particles, behind one type.
+
+use super::{AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel};
+use crate::error::ParameterError;
+
+/// Which filter, with what may be chosen in it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum FilterChoice {
+    /// The phase-coupled filter (`coupled`).
+    #[default]
+    Coupled,
+    /// The cyclic paper's filter in one of its readings (`paper`, `paper-cut`).
+    Kalman(KalmanOptions),
+}
+
+/// State of one of the filters for models of up to `N` angles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CyclicFilter<const N: usize> {
+    /// Of [`FilterChoice::Coupled`].
+    Coupled(CoupledFilter<N>),
+    /// Of [`FilterChoice::Kalman`].
+    Kalman(KalmanFilter<N>),
+}
+
+const _: () = assert!(size_of::<CyclicFilter<13>>() <= 2560, "the state has to fit 2.5 KiB");
+
+impl<const N: usize> CyclicFilter<N> {
+    /// The standard start: the angles of the first row; the position in the cycle by best match and the velocity (cycles a frame
+    /// of the model) by the model's mean where absent.
+    ///
+    /// # Errors
+    /// Those of the filter's own `new`.
+    pub fn new(
+        model: &MotionModel<'_>,
+        choice: &FilterChoice,
+        first: &AngleMeasurement<N>,
+        position: Option<f32>,
+        velocity: Option<f32>,
+    ) -> Result<Self, ParameterError> {
+        match choice {
+            FilterChoice::Coupled => {
+                CoupledFilter::new(model, first.angles_rad(), position, velocity).map(Self::Coupled)
+            }
+            FilterChoice::Kalman(options) => {
+                let start = CycleStart::standard(model, first.angles_rad(), position, velocity)?;
+                KalmanFilter::new(model, options, &start).map(Self::Kalman)
+            }
+        }
+    }
+
+    /// One frame: predict over the measurement's step, then correct. `choice` is that of [`Self::new`]; the options of another
+    /// filter are not looked at.
+    pub fn step(
+        &mut self,
+        model: &MotionModel<'_>,
+        choice: &FilterChoice,
+        measurement: &AngleMeasurement<N>,
+    ) -> CyclicEstimate<N> {
+        match (self, choice) {
+            (Self::Coupled(filter), _) => filter.step(model, measurement),
+            (Self::Kalman(filter), FilterChoice::Kalman(options)) => filter.step(model, options, measurement),
+            (Self::Kalman(filter), FilterChoice::Coupled) => filter.step(model, &KalmanOptions::default(), measurement),
+        }
+    }
+
+    /// Position in the cycle, [0, 1).
+    #[must_use]
+    pub const fn cycle_position(&self) -> f32 {
+        match self {
+            Self::Coupled(filter) => filter.cycle().position,
+            Self::Kalman(filter) => filter.cycle().position,
+        }
+    }
+}
