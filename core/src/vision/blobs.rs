@@ -22,10 +22,29 @@ pub struct LikelyBlob {
     pub likelihood: f32,
 }
 
+/// A blob that can be put in order and shown to a tracker.
+pub trait Ranked {
+    /// Likelihood of being a hand, 0 to 1.
+    fn likelihood(&self) -> f32;
+
+    /// What the trackers need to know of it.
+    fn candidate(&self) -> HandCandidate;
+}
+
+impl Ranked for LikelyBlob {
+    fn likelihood(&self) -> f32 {
+        self.likelihood
+    }
+
+    fn candidate(&self) -> HandCandidate {
+        self.blob.candidate(self.likelihood)
+    }
+}
+
 /// The most likely blobs of a frame, most likely first, and what found no room.
-#[derive(Debug, Clone, Default)]
-pub struct BlobList<const N: usize> {
-    blobs: Vec<LikelyBlob, N>,
+#[derive(Debug, Clone)]
+pub struct BlobList<const N: usize, B = LikelyBlob> {
+    blobs: Vec<B, N>,
     /// Blobs that were less likely than all that were kept.
     pub dropped_blobs: u32,
     /// Components that found no room while the mask was scanned, see [`ComponentScanner::dropped_components`].
@@ -34,7 +53,13 @@ pub struct BlobList<const N: usize> {
     pub specks: u32,
 }
 
-impl<const N: usize> BlobList<N> {
+impl<const N: usize, B: Ranked> Default for BlobList<N, B> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const N: usize, B: Ranked> BlobList<N, B> {
     /// An empty list.
     #[must_use]
     pub const fn new() -> Self {
@@ -43,13 +68,13 @@ impl<const N: usize> BlobList<N> {
 
     /// The blobs, most likely first.
     #[must_use]
-    pub fn as_slice(&self) -> &[LikelyBlob] {
+    pub fn as_slice(&self) -> &[B] {
         &self.blobs
     }
 
     /// What the trackers need to know of them, most likely first.
     pub fn candidates(&self) -> impl Iterator<Item = HandCandidate> + '_ {
-        self.blobs.iter().map(|entry| entry.blob.candidate(entry.likelihood))
+        self.blobs.iter().map(Ranked::candidate)
     }
 
     /// Empties the list and its counts.
@@ -61,13 +86,13 @@ impl<const N: usize> BlobList<N> {
     }
 
     /// Whether a blob of at most this likelihood would find no room.
-    fn refuses(&self, likelihood: f32) -> bool {
-        self.blobs.is_full() && self.blobs.last().is_none_or(|least| likelihood <= least.likelihood)
+    pub(super) fn refuses(&self, likelihood: f32) -> bool {
+        self.blobs.is_full() && self.blobs.last().is_none_or(|least| likelihood <= least.likelihood())
     }
 
     /// Puts a blob in its place; the least likely one goes when there is no room.
-    pub fn insert(&mut self, entry: LikelyBlob) {
-        if self.refuses(entry.likelihood) {
+    pub fn insert(&mut self, entry: B) {
+        if self.refuses(entry.likelihood()) {
             self.dropped_blobs = self.dropped_blobs.saturating_add(1);
             return;
         }
@@ -75,7 +100,7 @@ impl<const N: usize> BlobList<N> {
             self.blobs.pop();
             self.dropped_blobs = self.dropped_blobs.saturating_add(1);
         }
-        let place = self.blobs.iter().position(|other| other.likelihood < entry.likelihood);
+        let place = self.blobs.iter().position(|other| other.likelihood() < entry.likelihood());
         // There is room, so neither can fail.
         let _ = self.blobs.insert(place.unwrap_or(self.blobs.len()), entry);
     }

@@ -1,6 +1,6 @@
 //! 8-connected components in one pass over lines, as a camera delivers them.
 
-use super::components::Component;
+use super::components::{Component, overlaps};
 use super::mask::Mask;
 use super::runs::{LineRun, NO_SLOT, RunPool, find_runs};
 
@@ -139,7 +139,7 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
             while first < self.counts[above] && self.lines[above][first].end < start {
                 first += 1;
             }
-            let mut grown = Component::from_run(start, end, self.row);
+            let mut pairs = [0; 3];
             let mut slot = NO_SLOT;
             let mut touches_dropped = false;
             let mut next = first;
@@ -151,7 +151,8 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
                     touches_dropped = true;
                     continue;
                 }
-                grown.link((over.start, over.end), (start, end));
+                let more = overlaps((over.start, over.end), (start, end));
+                pairs.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
                 if slot == NO_SLOT {
                     slot = root;
                 } else if slot != root {
@@ -159,25 +160,26 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
                 }
             }
             if slot == NO_SLOT {
-                slot = self.take_slot(grown.area_px(), touches_dropped, pool);
+                slot = self.take_slot(u32::from(end - start), touches_dropped, pool);
             }
             self.lines[here][i].slot = slot;
-            self.grow(slot, grown, (start, end), pool);
+            self.grow(slot, (start, end), pairs, pool);
         }
     }
 
-    /// Adds the run that `grown` consists of to the component in `slot`, or makes it the first of it.
-    fn grow(&mut self, slot: u16, mut grown: Component, (start, end): (u16, u16), pool: &mut RunPool<'_>) {
+    /// Adds a run of the current row to the component in `slot`, or makes it the first of it.
+    fn grow(&mut self, slot: u16, (start, end): (u16, u16), pairs: [u32; 3], pool: &mut RunPool<'_>) {
         let now = self.row;
         match self.slots.get_mut(usize::from(slot)) {
             Some(Slot::Root { component, row }) => {
-                component.merge(&grown, pool);
+                component.add_run(start, end, now, pairs);
                 component.record(start, end, now, pool);
                 *row = now;
             }
             Some(free) => {
-                grown.record(start, end, now, pool);
-                *free = Slot::Root { component: grown, row: now };
+                let mut component = Component::from_run(start, end, now);
+                component.record(start, end, now, pool);
+                *free = Slot::Root { component, row: now };
             }
             None => {}
         }

@@ -52,24 +52,48 @@ pub struct Component {
 }
 
 impl Component {
+    /// A component without pixels.
+    const EMPTY: Self = Self {
+        area_px: 0,
+        sum_u: 0,
+        sum_v: 0,
+        sum_uu: 0,
+        sum_uv: 0,
+        sum_vv: 0,
+        bounding_box: BoundingBox { min_u: u16::MAX, min_v: u16::MAX, max_u: 0, max_v: 0 },
+        run_count: 0,
+        pairs: [0; 3],
+        runs: RunList::EMPTY,
+        unrecorded_px: 0,
+    };
+
     /// The component of one run `start..end` (not empty) of line `row`.
     pub(super) fn from_run(start: u16, end: u16, row: u16) -> Self {
-        let (first, next, v) = (u64::from(start), u64::from(end), u64::from(row));
+        let mut component = Self::EMPTY;
+        component.add_run(start, end, row, [0; 3]);
+        component
+    }
+
+    /// Adds the run `start..end` (not empty) of line `row`, and its `pairs` with runs of the line above it, see [`overlaps`].
+    pub(super) fn add_run(&mut self, start: u16, end: u16, row: u16, pairs: [u32; 3]) {
+        // No product of two factors exceeds 32 bits: sides are at most 8192 pixels.
+        let (first, next, v) = (u32::from(start), u32::from(end), u32::from(row));
         let area = next - first;
-        let sum_u = area * (first + next - 1) / 2;
-        Self {
-            area_px: area as u32,
-            sum_u,
-            sum_v: area * v,
-            sum_uu: squares_below(next) - squares_below(first),
-            sum_uv: sum_u * v,
-            sum_vv: area * v * v,
-            bounding_box: BoundingBox { min_u: start, min_v: row, max_u: end - 1, max_v: row },
-            run_count: 1,
-            pairs: [0; 3],
-            runs: RunList::EMPTY,
-            unrecorded_px: area as u32,
-        }
+        let (sum_u, sum_v) = (area * (first + next - 1) / 2, area * v);
+        self.area_px += area;
+        self.sum_u += u64::from(sum_u);
+        self.sum_v += u64::from(sum_v);
+        self.sum_uu += squares(first, next);
+        self.sum_uv += u64::from(sum_u) * u64::from(v);
+        self.sum_vv += u64::from(sum_v) * u64::from(v);
+        let bounds = &mut self.bounding_box;
+        bounds.min_u = bounds.min_u.min(start);
+        bounds.min_v = bounds.min_v.min(row);
+        bounds.max_u = bounds.max_u.max(end - 1);
+        bounds.max_v = bounds.max_v.max(row);
+        self.run_count += 1;
+        self.pairs.iter_mut().zip(pairs).for_each(|(mine, more)| *mine += more);
+        self.unrecorded_px += area;
     }
 
     /// Takes over all of `other`'s pixels and runs.
@@ -97,14 +121,6 @@ impl Component {
     pub(super) fn record(&mut self, start: u16, end: u16, row: u16, pool: &mut RunPool<'_>) {
         if pool.append(&mut self.runs, start, end, row) {
             self.unrecorded_px -= u32::from(end - start);
-        }
-    }
-
-    /// Notes that the runs `above` and `below` of two lines on end, columns from and to, belong to this component.
-    pub(super) fn link(&mut self, above: (u16, u16), below: (u16, u16)) {
-        let (a0, a1, b0, b1) = (i32::from(above.0), i32::from(above.1), i32::from(below.0), i32::from(below.1));
-        for (pairs, shift) in self.pairs.iter_mut().zip(-1..=1) {
-            *pairs += ((a1 + shift).min(b1) - (a0 + shift).max(b0)).max(0) as u32;
         }
     }
 
@@ -161,9 +177,20 @@ impl Component {
     }
 }
 
-/// 0^2 + 1^2 + ... + (n - 1)^2.
-fn squares_below(n: u64) -> u64 {
-    if n == 0 { 0 } else { (n - 1) * n * (2 * n - 1) / 6 }
+/// Pairs of pixels (u, v), (u + d, v + 1), d = -1, 0, 1, of two runs of lines on end, columns from and to.
+#[inline]
+pub(super) fn overlaps(above: (u16, u16), below: (u16, u16)) -> [u32; 3] {
+    let (a0, a1, b0, b1) = (i32::from(above.0), i32::from(above.1), i32::from(below.0), i32::from(below.1));
+    [-1, 0, 1].map(|shift| ((a1 + shift).min(b1) - (a0 + shift).max(b0)).max(0) as u32)
+}
+
+/// first^2 + ... + (next - 1)^2, both at most [`super::mask::MAX_SIDE_PX`].
+#[inline]
+fn squares(first: u32, next: u32) -> u64 {
+    /// 3 x `THIRD` = 1 modulo 2^64: a product by it divides what is divisible by 3, without a division in 64 bits.
+    const THIRD: u64 = 0xAAAA_AAAA_AAAA_AAAB;
+    let three_times_below = |n: u32| u64::from((n * n - n) / 2) * u64::from((2 * n).saturating_sub(1));
+    (three_times_below(next) - three_times_below(first)).wrapping_mul(THIRD)
 }
 
 /// Perimeter of a set of pixels from how often lines in four directions cross its outline (Cauchy-Crofton).
@@ -194,6 +221,16 @@ mod tests {
         let mut found = None;
         scanner.scan(&mask.view(), &mut RunPool::new(&mut []), &mut |c, _| assert!(found.replace(*c).is_none()));
         found.unwrap()
+    }
+
+    #[test]
+    fn sums_of_squares_are_exact() {
+        let mut sum = 0;
+        for n in 0..=MAX_SIDE_PX as u32 {
+            assert_eq!(squares(0, n), sum);
+            assert_eq!(squares(n / 3, n), sum - squares(0, n / 3));
+            sum += u64::from(n) * u64::from(n);
+        }
     }
 
     #[test]

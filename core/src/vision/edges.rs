@@ -46,6 +46,16 @@ impl<const N: usize> EdgeList<N> {
         self.dropped = 0;
     }
 
+    fn keep_every_second(&mut self) {
+        let kept = self.pixels.len().div_ceil(2);
+        for i in 0..kept {
+            if let Some(&pixel) = self.pixels.get(2 * i) {
+                self.pixels[i] = pixel;
+            }
+        }
+        self.pixels.truncate(kept);
+    }
+
     /// Takes the set pixels of a mask; of more than fit every n-th, n a fraction, in the order of rows.
     pub fn take_mask(&mut self, bits: &[u32], width: usize) {
         self.clear();
@@ -67,6 +77,45 @@ impl<const N: usize> EdgeList<N> {
             }
         }
         self.dropped = total - self.pixels.len() as u32;
+    }
+}
+
+/// Thins edge pixels that come one by one, their number not known beforehand: every 2^k-th is kept, in the order in which they come.
+///
+/// Invariant: the list holds the pixels number 0, `stride`, 2 `stride` ... of those offered so far. A full list is thus at least half full again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EdgeThinning {
+    stride: u32,
+    offered: u32,
+}
+
+impl Default for EdgeThinning {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl EdgeThinning {
+    /// Before the first pixel; for an empty list.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { stride: 1, offered: 0 }
+    }
+
+    /// Offers the next pixel.
+    pub fn offer<const N: usize>(&mut self, pixel: EdgePixel, list: &mut EdgeList<N>) {
+        if self.offered & (self.stride - 1) == 0 {
+            if list.pixels.is_full() && self.stride < 1 << 31 {
+                list.keep_every_second();
+                self.stride *= 2;
+            }
+            if self.offered & (self.stride - 1) == 0 {
+                // A list without any room stays empty.
+                let _ = list.pixels.push(pixel);
+            }
+        }
+        self.offered = self.offered.saturating_add(1);
+        list.dropped = self.offered - list.pixels.len() as u32;
     }
 }
 
@@ -270,6 +319,21 @@ mod tests {
         for v in 0..32 {
             assert_eq!(list.as_slice().iter().filter(|p| p.v == v).count(), 4);
         }
+    }
+
+    #[test]
+    fn pixels_that_come_one_by_one_are_thinned_evenly() {
+        fn thinned<const N: usize>(count: u16) -> (std::vec::Vec<u16>, u32) {
+            let (mut thinning, mut list) = (EdgeThinning::new(), EdgeList::<N>::new());
+            (0..count).for_each(|u| thinning.offer(EdgePixel { u, v: 0 }, &mut list));
+            (list.as_slice().iter().map(|pixel| pixel.u).collect(), list.dropped)
+        }
+        assert_eq!(thinned::<5>(5), (vec![0, 1, 2, 3, 4], 0));
+        assert_eq!(thinned::<5>(6), (vec![0, 2, 4], 3));
+        assert_eq!(thinned::<4>(5), (vec![0, 2, 4], 2));
+        assert_eq!(thinned::<5>(33), (vec![0, 8, 16, 24, 32], 28));
+        assert_eq!(thinned::<0>(3), (vec![], 3));
+        assert_eq!(thinned::<1>(9), (vec![0], 8));
     }
 
     #[test]

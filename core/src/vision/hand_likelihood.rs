@@ -91,14 +91,19 @@ impl HandLikelihood {
             LikelihoodForm::Paper => &blob.plain,
             LikelihoodForm::Filled => &blob.filled,
         };
-        let area = self.area_term(blob.area_px as f32, image_area_px);
-        self.scaled([area, shape.centrality(), shape.ellipse_iou])
+        self.of_features(blob.area_px as f32, image_area_px, shape.centrality(), shape.ellipse_iou)
+    }
+
+    /// Eq. (6) for an area and two shape features in [0, 1], wherever they come from.
+    #[must_use]
+    pub fn of_features(&self, area_px: f32, image_area_px: f32, centrality: f32, ellipse_iou: f32) -> f32 {
+        self.scaled([self.area_term(area_px, image_area_px), centrality, ellipse_iou])
     }
 
     /// The most that a blob of this area can reach, whatever its shape.
     #[must_use]
     pub fn upper_bound(&self, area_px: f32, image_area_px: f32) -> f32 {
-        self.scaled([self.area_term(area_px, image_area_px), 1.0, 1.0])
+        self.of_features(area_px, image_area_px, 1.0, 1.0)
     }
 
     /// Eq. (6), or its default form.

@@ -57,8 +57,14 @@ pub fn close_by(mask: &mut MaskMut<'_>, steps: u8, scratch: &mut [u32]) -> Resul
 }
 
 #[inline]
-fn join<const ERODE: bool>(a: u32, b: u32) -> u32 {
+pub(super) fn join<const ERODE: bool>(a: u32, b: u32) -> u32 {
     if ERODE { a & b } else { a | b }
+}
+
+/// A word joined with itself moved by one pixel to either side, given the words before and after it.
+#[inline]
+pub(super) fn spread<const ERODE: bool>(before: u32, word: u32, after: u32) -> u32 {
+    join::<ERODE>(join::<ERODE>(word, word << 1 | before >> 31), word >> 1 | after << 31)
 }
 
 /// One row joined with itself moved by one pixel to either side.
@@ -72,7 +78,7 @@ fn spread_row<const ERODE: bool>(row: &[u32], padding: u32, to: &mut [u32]) {
             Some(&next) => next,
             None => outside,
         };
-        *out = join::<ERODE>(join::<ERODE>(word, word << 1 | before >> 31), word >> 1 | after << 31);
+        *out = spread::<ERODE>(before, word, after);
         before = word;
     }
 }

@@ -1,0 +1,257 @@
+//! From a camera's lines, as they arrive, to blobs and temporal edge pixels: no frame buffer, no mask of a frame.
+//!
+//! A line becomes skin bits by one look-up a pixel ([`skin_table`]), is opened and closed four lines later ([`super::line_morphology`]), and
+//! goes into the same scanner for components as the host's masks ([`super::component_scanner`]); its luminances are judged against the lines
+//! around it and the 1-bit edge map of the frame before ([`edge_lines`]).
+
+pub mod calibration;
+pub mod edge_lines;
+pub mod moment_blob;
+pub mod pixel_format;
+pub mod skin_table;
+
+use super::blobs::{BlobList, DEFAULT_MIN_AREA_FRACTION};
+use super::component_scanner::ComponentScanner;
+use super::components::Component;
+use super::edges::{EdgeList, EdgePixel};
+use super::hand_likelihood::HandLikelihood;
+use super::line_morphology::LineMorphology;
+use super::runs::RunPool;
+use crate::error::{ParameterError, Rule};
+use crate::observation::candidate::HandCandidate;
+use edge_lines::{EdgeLines, EdgeSteps};
+use moment_blob::MomentBlob;
+use pixel_format::PixelFormat;
+use skin_table::SkinTable;
+
+/// What found no room in a frame, or did not come; all zero means that the frame's results are exact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct FrameLosses {
+    /// Components that found no room in the table of open ones, see [`ComponentScanner::dropped_components`].
+    pub dropped_components: u32,
+    /// Pixels of those, and of runs that found no room in their line.
+    pub dropped_px: u32,
+    /// Blobs less likely than all in the list.
+    pub dropped_blobs: u32,
+    /// Temporal edge pixels that were thinned out.
+    pub dropped_edges: u32,
+    /// Lines that did not come, or shorter than the frame's width: without skin where pixels are missing.
+    pub missing_lines: u32,
+    /// Lines that came twice, too late, or from beyond the frame: ignored.
+    pub ignored_lines: u32,
+}
+
+/// What a frame showed.
+#[derive(Debug, Clone, Copy)]
+pub struct FrameLines<'a> {
+    /// Blobs, the most likely first.
+    pub blobs: &'a [MomentBlob],
+    /// The same as the trackers see them.
+    pub candidates: &'a [HandCandidate],
+    /// Temporal edge pixels, in the order of rows, at even columns and rows.
+    pub edges: &'a [EdgePixel],
+    /// What was lost.
+    pub losses: FrameLosses,
+}
+
+/// Reads frames line by line.
+///
+/// | parameter | what it bounds |
+/// |---|---|
+/// | `WORDS` | width: 32 `WORDS` pixels |
+/// | `RUNS` | runs of a line after opening and closing; a sixth of the width, and one, always suffices |
+/// | `OPEN` | components that grow at the same time; as many as runs always suffice |
+/// | `BLOBS` | blobs of a frame |
+/// | `EDGES` | temporal edge pixels of a frame |
+/// | `MAP_ROWS` | height: 2 `MAP_ROWS` lines have edges |
+#[derive(Debug, Clone)]
+pub struct LineFrontEnd<
+    const WORDS: usize,
+    const RUNS: usize,
+    const OPEN: usize,
+    const BLOBS: usize,
+    const EDGES: usize,
+    const MAP_ROWS: usize,
+> {
+    edge_lines: EdgeLines<WORDS, MAP_ROWS>,
+    morphology: LineMorphology<WORDS>,
+    scanner: ComponentScanner<RUNS, OPEN>,
+    likelihood: HandLikelihood,
+    min_area_fraction: f32,
+    width: usize,
+    height: usize,
+    /// The line that has to come next.
+    next_line: usize,
+    blobs: BlobList<BLOBS, MomentBlob>,
+    candidates: [HandCandidate; BLOBS],
+    edges: EdgeList<EDGES>,
+    losses: FrameLosses,
+}
+
+/// A front end for 320 x 240 pixels.
+pub type QvgaFrontEnd = LineFrontEnd<10, 32, 24, 8, 512, 120>;
+
+/// Bytes that vision may take for 320 x 240 pixels, the table included, the edge map not.
+const QVGA_BYTES: usize = 16 * 1024;
+const _: () = assert!(
+    size_of::<QvgaFrontEnd>() - EdgeLines::<10, 120>::MAP_BYTES + size_of::<SkinTable<pixel_format::Rgb565>>()
+        <= QVGA_BYTES
+);
+const _: () = assert!(EdgeLines::<10, 120>::MAP_BYTES == 2400);
+
+impl<
+    const WORDS: usize,
+    const RUNS: usize,
+    const OPEN: usize,
+    const BLOBS: usize,
+    const EDGES: usize,
+    const MAP_ROWS: usize,
+> LineFrontEnd<WORDS, RUNS, OPEN, BLOBS, EDGES, MAP_ROWS>
+{
+    /// A front end for frames of `width` x `height` pixels, before its first line.
+    ///
+    /// # Errors
+    /// A width from 1 to 32 `WORDS`, a height from 1 to 2 `MAP_ROWS`, both at most [`super::mask::MAX_SIDE_PX`].
+    pub fn new(
+        (width, height): (usize, usize),
+        likelihood: HandLikelihood,
+        steps: EdgeSteps,
+    ) -> Result<Self, ParameterError> {
+        side("width", width, 32 * WORDS)?;
+        side("height", height, edge_lines::EDGE_CELL_PX * MAP_ROWS)?;
+        Ok(Self {
+            edge_lines: EdgeLines::new(steps),
+            morphology: LineMorphology::new(),
+            scanner: ComponentScanner::new(),
+            likelihood,
+            min_area_fraction: DEFAULT_MIN_AREA_FRACTION,
+            width,
+            height,
+            next_line: 0,
+            blobs: BlobList::new(),
+            candidates: [HandCandidate::default(); BLOBS],
+            edges: EdgeList::new(),
+            losses: FrameLosses::default(),
+        })
+    }
+
+    /// The same front end with components below another part of the image's area left out ([`DEFAULT_MIN_AREA_FRACTION`] if not set).
+    #[must_use]
+    pub fn with_min_area_fraction(self, min_area_fraction: f32) -> Self {
+        Self { min_area_fraction, ..self }
+    }
+
+    /// Forgets the last frame: the next one has no temporal edges, as after a missing image.
+    pub fn forget_last_frame(&mut self) {
+        self.edge_lines.forget_last_frame();
+    }
+
+    /// Begins a frame; what was read of one that did not end is dropped.
+    pub fn begin_frame(&mut self) {
+        if self.next_line > 0 {
+            // Half of the map is that of the dropped frame.
+            self.edge_lines.forget_last_frame();
+        }
+        self.morphology.restart();
+        self.scanner.restart();
+        self.blobs.clear();
+        self.edge_lines.begin_frame(&mut self.edges);
+        self.losses = FrameLosses::default();
+        self.next_line = 0;
+    }
+
+    /// Reads line `v`. Lines that were left out before it have no skin and this line's luminances.
+    pub fn line<F: PixelFormat>(&mut self, v: usize, line: &[u16], skin: &SkinTable<F>) {
+        if v < self.next_line || v >= self.height {
+            self.losses.ignored_lines = self.losses.ignored_lines.saturating_add(1);
+            return;
+        }
+        for missing in self.next_line..v {
+            self.take_bits(&[0; WORDS]);
+            self.losses.missing_lines += 1;
+            self.edge_lines.line::<F, EDGES>(missing, line, self.width, &mut self.edges);
+        }
+        let line = &line[..line.len().min(self.width)];
+        self.losses.missing_lines += u32::from(line.len() < self.width);
+        let mut bits = [0; WORDS];
+        skin.classify_line(line, &mut bits);
+        self.take_bits(&bits);
+        self.edge_lines.line::<F, EDGES>(v, line, self.width, &mut self.edges);
+        self.next_line = v + 1;
+    }
+
+    /// Ends the frame: what its lines showed.
+    pub fn end_frame(&mut self) -> FrameLines<'_> {
+        let missing = self.height.saturating_sub(self.next_line);
+        for _ in 0..missing {
+            self.take_bits(&[0; WORDS]);
+        }
+        self.losses.missing_lines += missing as u32;
+        let Self { morphology, scanner, blobs, likelihood, min_area_fraction, width, height, .. } = self;
+        let image_area_px = (*width * *height) as f32;
+        let mut take = |component: &Component, _: &RunPool<'_>| {
+            take_component(component, blobs, likelihood, *min_area_fraction, image_area_px);
+        };
+        morphology.finish(*width, |row| scanner.line(row, &mut RunPool::new(&mut []), &mut take));
+        scanner.finish(&mut RunPool::new(&mut []), &mut take);
+        self.edge_lines.end_frame();
+        if missing > 0 {
+            // The map's lower rows are those of an older frame.
+            self.edge_lines.forget_last_frame();
+        }
+        self.next_line = 0;
+        self.losses.dropped_components = self.scanner.dropped_components();
+        self.losses.dropped_px = self.scanner.dropped_px();
+        self.losses.dropped_blobs = self.blobs.dropped_blobs;
+        self.losses.dropped_edges = self.edges.dropped;
+        let mut count = 0;
+        for (slot, candidate) in self.candidates.iter_mut().zip(self.blobs.candidates()) {
+            *slot = candidate;
+            count += 1;
+        }
+        FrameLines {
+            blobs: self.blobs.as_slice(),
+            candidates: &self.candidates[..count],
+            edges: self.edges.as_slice(),
+            losses: self.losses,
+        }
+    }
+
+    /// Opens and closes the next line of skin bits and hands on what is finished.
+    fn take_bits(&mut self, bits: &[u32; WORDS]) {
+        let Self { morphology, scanner, blobs, likelihood, min_area_fraction, width, height, .. } = self;
+        let image_area_px = (*width * *height) as f32;
+        let mut take = |component: &Component, _: &RunPool<'_>| {
+            take_component(component, blobs, likelihood, *min_area_fraction, image_area_px);
+        };
+        morphology.line(bits, *width, |row| scanner.line(row, &mut RunPool::new(&mut []), &mut take));
+    }
+}
+
+/// Puts a component into the list if it is large enough.
+fn take_component<const BLOBS: usize>(
+    component: &Component,
+    blobs: &mut BlobList<BLOBS, MomentBlob>,
+    likelihood: &HandLikelihood,
+    min_area_fraction: f32,
+    image_area_px: f32,
+) {
+    if component.area_px() as f32 >= min_area_fraction * image_area_px {
+        blobs.insert(MomentBlob::of(component, likelihood, image_area_px));
+    } else {
+        blobs.specks = blobs.specks.saturating_add(1);
+    }
+}
+
+fn side(name: &'static str, side: usize, capacity: usize) -> Result<(), ParameterError> {
+    let capacity = capacity.min(super::mask::MAX_SIDE_PX);
+    match side {
+        0 => Err(ParameterError::new(name, Rule::Positive)),
+        _ if side > capacity => Err(ParameterError::new(name, Rule::Capacity { capacity })),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

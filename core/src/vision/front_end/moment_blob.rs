@@ -1,0 +1,89 @@
+//! A blob as one pass over its lines knows it, and how likely it is a hand.
+
+use crate::camera::Pixel;
+use crate::math::{clamp, max, sqrt};
+use crate::observation::candidate::HandCandidate;
+use crate::vision::blobs::Ranked;
+use crate::vision::components::{BoundingBox, Component};
+use crate::vision::hand_likelihood::HandLikelihood;
+use core::f32::consts::PI;
+
+/// A connected component's sums, made into features; the same numbers as [`crate::vision::features::Blob`] has of the same pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct MomentBlob {
+    /// Number of pixels.
+    pub area_px: u32,
+    /// Centre of gravity.
+    pub centroid: Pixel,
+    /// Second central moments of the pixels: uu, uv, vv, square pixels.
+    pub moments_px2: [f32; 3],
+    /// Length of the outline, holes' outlines too, pixels; see [`crate::vision::components::crofton_perimeter`].
+    pub perimeter_px: f32,
+    /// Smallest upright rectangle around all pixels.
+    pub bounding_box: BoundingBox,
+    /// Moment likelihood of being a hand, 0 to 1; see [`moment_likelihood`].
+    pub moment_likelihood: f32,
+}
+
+impl MomentBlob {
+    /// Measures a component of an image of `image_area_px` pixels.
+    #[must_use]
+    pub fn of(component: &Component, likelihood: &HandLikelihood, image_area_px: f32) -> Self {
+        let mut blob = Self {
+            area_px: component.area_px(),
+            centroid: component.centroid(),
+            moments_px2: component.moments_px2(),
+            perimeter_px: component.perimeter_px(),
+            bounding_box: component.bounding_box(),
+            moment_likelihood: 0.0,
+        };
+        blob.moment_likelihood = moment_likelihood(&blob, likelihood, image_area_px);
+        blob
+    }
+
+    /// Area as a part of that of the ellipse with the same second moments, 0 to 1: one for an ellipse, 0.95 for a rectangle, less
+    /// for what is bent, branched or hollow.
+    #[must_use]
+    pub fn ellipse_fill(&self) -> f32 {
+        // A pixel is itself a twelfth wide in both directions.
+        let [uu, uv, vv] = self.moments_px2;
+        let (uu, vv) = (max(uu, 0.0) + 1.0 / 12.0, max(vv, 0.0) + 1.0 / 12.0);
+        let area = 4.0 * PI * sqrt(max(uu * vv - uv * uv, 1.0 / 144.0));
+        clamp(self.area_px as f32 / area, 0.0, 1.0)
+    }
+
+    /// 4 pi A / P^2, 0 to 1: one for a disc, less the longer the outline.
+    #[must_use]
+    pub fn roundness(&self) -> f32 {
+        let square = self.perimeter_px * self.perimeter_px;
+        clamp(4.0 * PI * self.area_px as f32 / max(square, 1.0), 0.0, 1.0)
+    }
+}
+
+/// The hand likelihood of one pass, the *moment likelihood*: F of the area term of `likelihood` and of shape features without a
+/// distance transform and without a rotated ellipse.
+///
+/// [`MomentBlob::ellipse_fill`] stands in for both: what fills the ellipse of its own moments has its mass about its centre, and is covered by an
+/// ellipse. The perimeter does not count: the host's shape features are those of a blob with its fingers filled, and an
+/// open hand's outline before that is long.
+#[must_use]
+pub fn moment_likelihood(blob: &MomentBlob, likelihood: &HandLikelihood, image_area_px: f32) -> f32 {
+    let fill = blob.ellipse_fill();
+    likelihood.of_features(blob.area_px as f32, image_area_px, fill, fill)
+}
+
+impl Ranked for MomentBlob {
+    fn likelihood(&self) -> f32 {
+        self.moment_likelihood
+    }
+
+    fn candidate(&self) -> HandCandidate {
+        HandCandidate {
+            centre: self.centroid,
+            moments_px2: self.moments_px2,
+            area_px: self.area_px as f32,
+            likelihood: self.moment_likelihood,
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! Skin-coloured or not, by one look-up a pixel in a table of 65536 bits.
+
+use super::pixel_format::{PixelFormat, odd_pair};
+use crate::vision::skin::{PIXELS_PER_WORD, SkinClassifier};
+use core::marker::PhantomData;
+use core::ops::Range;
+
+/// Words of a table: one bit a key, 8 KiB.
+pub const TABLE_WORDS: usize = 1 << 11;
+
+/// One decision bit for each of the 65536 keys of a [`PixelFormat`]: bit `key % 32` of word `key / 32`.
+///
+/// Made from a skin model when the program starts, and again whenever the model changes; or by a program and put in flash.
+#[derive(Debug, Clone)]
+pub struct SkinTable<F> {
+    words: [u32; TABLE_WORDS],
+    format: PhantomData<F>,
+}
+
+impl<F: PixelFormat> Default for SkinTable<F> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<F: PixelFormat> SkinTable<F> {
+    /// A table by which nothing is skin.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self::from_words([0; TABLE_WORDS])
+    }
+
+    /// A table that was made before.
+    #[must_use]
+    pub const fn from_words(words: [u32; TABLE_WORDS]) -> Self {
+        Self { words, format: PhantomData }
+    }
+
+    /// The bits.
+    #[must_use]
+    pub const fn words(&self) -> &[u32; TABLE_WORDS] {
+        &self.words
+    }
+
+    /// Takes over the decisions of `skin` on the colours in the middle of all cells.
+    pub fn learn(&mut self, skin: &impl SkinClassifier) {
+        self.learn_words(skin, 0..TABLE_WORDS);
+    }
+
+    /// Takes over a part of the decisions, the `words` of [`TABLE_WORDS`], so that a new model can be taken over in the pauses of several frames.
+    pub fn learn_words(&mut self, skin: &impl SkinClassifier, words: Range<usize>) {
+        let from = words.start.min(TABLE_WORDS);
+        let to = words.end.clamp(from, TABLE_WORDS);
+        for (index, word) in self.words.iter_mut().enumerate().take(to).skip(from) {
+            let mut rgb = [0; 3 * PIXELS_PER_WORD];
+            let first = (index * PIXELS_PER_WORD) as u16;
+            for (key, pixel) in (first..=first | 31).zip(rgb.as_chunks_mut::<3>().0) {
+                *pixel = F::rgb(key);
+            }
+            skin.classify_line(&rgb, core::slice::from_mut(word));
+        }
+    }
+
+    /// Whether a key's colour counts as skin.
+    #[inline]
+    #[must_use]
+    pub fn is_skin(&self, key: u16) -> bool {
+        self.at(key) & 1 == 1
+    }
+
+    /// Writes one bit a pixel of `line` into `bits`, lowest bit first; bits beyond the line become zero.
+    pub fn classify_line(&self, line: &[u16], bits: &mut [u32]) {
+        let (whole, rest) = line.as_chunks::<PIXELS_PER_WORD>();
+        let count = whole.len().min(bits.len());
+        let (first, last) = bits.split_at_mut(count);
+        for (word, block) in first.iter_mut().zip(whole) {
+            *word = self.classify_pairs(block.as_chunks::<2>().0);
+        }
+        last.fill(0);
+        if let Some(word) = last.first_mut() {
+            let (pairs, _) = rest.as_chunks::<2>();
+            let judged = 2 * pairs.len() as u32;
+            if judged > 0 {
+                *word = self.classify_pairs(pairs) >> (PIXELS_PER_WORD as u32 - judged);
+            }
+            if let Some(pair) = odd_pair(line) {
+                *word |= u32::from(self.is_skin(F::keys(pair)[0])) << judged;
+            }
+        }
+    }
+
+    /// Bits of up to 16 pairs, the last one in the highest bit.
+    #[inline]
+    fn classify_pairs(&self, pairs: &[[u16; 2]]) -> u32 {
+        let mut bits = 0;
+        for &pair in pairs {
+            for key in F::keys(pair) {
+                bits = bits >> 1 | self.at(key) << 31;
+            }
+        }
+        bits
+    }
+
+    /// The word of a key, turned so that the key's bit is the lowest.
+    #[inline]
+    fn at(&self, key: u16) -> u32 {
+        self.words[usize::from(key >> 5)].rotate_right(u32::from(key))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pixel_format::{Rgb565, SwappedRgb565, Yuyv};
+    use super::*;
+    use crate::vision::skin::GaussianSkin;
+    use proptest::prelude::*;
+
+    fn model() -> GaussianSkin {
+        GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60).unwrap()
+    }
+
+    fn learned<F: PixelFormat>() -> SkinTable<F> {
+        let mut table = SkinTable::new();
+        table.learn(&model());
+        table
+    }
+
+    fn agrees<F: PixelFormat>(line: &[u16], words: usize) -> bool {
+        let table = learned::<F>();
+        let mut bits = vec![u32::MAX; words];
+        table.classify_line(line, &mut bits);
+        (0..32 * words).all(|u| {
+            let bit = bits[u / 32] >> (u % 32) & 1 == 1;
+            let pair = match (line.get(u & !1), line.get(u | 1)) {
+                (Some(&left), Some(&right)) => [left, right],
+                (Some(&left), None) => [left, line[u.saturating_sub(1)]],
+                (None, _) => return !bit,
+            };
+            u < line.len() && bit == table.is_skin(F::keys(pair)[u & 1]) || u >= line.len() && !bit
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+        #[test]
+        fn a_line_equals_its_pixels(line in prop::collection::vec(any::<u16>(), 0..100), words in 0_usize..5) {
+            prop_assert!(agrees::<Rgb565>(&line, words));
+            prop_assert!(agrees::<SwappedRgb565>(&line, words));
+            prop_assert!(agrees::<Yuyv>(&line, words));
+        }
+    }
+
+    #[test]
+    fn the_table_decides_as_the_model_in_the_middle_of_every_cell() {
+        let (plain, video) = (learned::<Rgb565>(), learned::<Yuyv>());
+        let decides = |rgb: [u8; 3]| {
+            let mut word = [0];
+            model().classify_line(&rgb, &mut word);
+            word[0] == 1
+        };
+        assert!((0..=u16::MAX).all(|key| plain.is_skin(key) == decides(Rgb565::rgb(key))));
+        assert!((0..=u16::MAX).all(|key| video.is_skin(key) == decides(Yuyv::rgb(key))));
+        let skin = (0..=u16::MAX).filter(|&key| plain.is_skin(key)).count();
+        assert!((1000..20_000).contains(&skin), "{skin} of 65536 colours");
+    }
+
+    #[test]
+    fn a_table_learns_in_parts() {
+        let mut parts = SkinTable::<Rgb565>::new();
+        for first in (0..TABLE_WORDS).step_by(300) {
+            parts.learn_words(&model(), first..first + 300);
+        }
+        assert_eq!(parts.words(), learned::<Rgb565>().words());
+        parts.learn_words(&model(), 5000..6000);
+        let reversed = Range { start: 9, end: 2 };
+        parts.learn_words(&model(), reversed);
+        assert_eq!(parts.words(), learned::<Rgb565>().words());
+    }
+}
