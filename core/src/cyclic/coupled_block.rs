@@ -4,6 +4,7 @@
 //! z = (c, v) is normal with mean `mean + regression (z - z_mean)` and covariance `covariance`: angles are independent of
 //! each other given z, so no covariance between angles is stored.
 
+use super::semi_definite::{packed_index, packed_len};
 use crate::math::{exp, max, sin_cos};
 use core::f32::consts::TAU;
 
@@ -67,19 +68,46 @@ pub struct AngleBlock {
     pub mean: [f32; PARTS],
     /// Change of the means with (c, v).
     pub regression: [[f32; 2]; PARTS],
-    /// Covariance given z, symmetric.
-    pub covariance: [[f32; PARTS]; PARTS],
+    /// Covariance given z: the packed lower triangle.
+    covariance: [f32; PACKED],
 }
+
+/// Numbers of a packed covariance.
+const PACKED: usize = packed_len(PARTS);
 
 impl AngleBlock {
     /// Nothing known but the spread between people.
     #[must_use]
     pub fn unknown(spread: &Spread) -> Self {
-        let mut covariance = [[0.0; PARTS]; PARTS];
+        let mut covariance = [0.0; PACKED];
         for (i, variance) in spread.diagonal().into_iter().enumerate() {
-            covariance[i][i] = variance;
+            covariance[packed_index(i, i)] = variance;
         }
         Self { mean: [0.0; PARTS], regression: [[0.0; 2]; PARTS], covariance }
+    }
+
+    /// Nothing at all, known exactly.
+    #[must_use]
+    pub const fn zero() -> Self {
+        Self { mean: [0.0; PARTS], regression: [[0.0; 2]; PARTS], covariance: [0.0; PACKED] }
+    }
+
+    /// The whole covariance given z.
+    #[must_use]
+    pub fn covariance_matrix(&self) -> [[f32; PARTS]; PARTS] {
+        core::array::from_fn(|i| core::array::from_fn(|j| self.covariance(i, j)))
+    }
+
+    /// Covariance of parts `i` and `j` given z.
+    #[inline]
+    #[must_use]
+    pub fn covariance(&self, i: usize, j: usize) -> f32 {
+        self.covariance[packed_index(i, j)]
+    }
+
+    /// The constant is as uncertain as `variance` more.
+    pub fn loosen_offset(&mut self, variance: f32) {
+        self.covariance[0] += variance;
     }
 
     /// Moves on by `phase` cycles: a, p, q keep the part `memory`, d follows its process; `z_map` is the regression of the
@@ -99,7 +127,7 @@ impl AngleBlock {
             ]
         };
         let b = &self.regression;
-        let mut rows = self.covariance;
+        let mut rows = self.covariance_matrix();
         for i in 0..PARTS {
             let left = [b[i][0] * z_rest[0] + b[i][1] * z_rest[1], b[i][0] * z_rest[1] + b[i][1] * z_rest[2]];
             for j in 0..PARTS {
@@ -127,11 +155,10 @@ impl AngleBlock {
         moved[REST][SLOPE] += cross;
         moved[SLOPE][SLOPE] += max(r - (m[1][0] * m[1][0] * p + m[1][1] * m[1][1] * r), 0.0);
         for i in 0..PARTS {
-            for j in 0..i {
-                moved[i][j] = moved[j][i];
+            for j in 0..=i {
+                self.covariance[packed_index(i, j)] = moved[j][i];
             }
         }
-        self.covariance = moved;
         self.mean = apply(self.mean);
         let column = |k: usize| -> [f32; PARTS] { core::array::from_fn(|i| b[i][k]) };
         let moved = [apply(column(0)), apply(column(1))];
@@ -154,7 +181,7 @@ impl AngleBlock {
         for i in 0..PARTS {
             gradient[0] += h[i] * self.regression[i][0];
             gradient[1] += h[i] * self.regression[i][1];
-            column[i] = dot(&self.covariance[i], h);
+            column[i] = (0..PARTS).map(|j| self.covariance(i, j) * h[j]).sum();
         }
         Outlook { gradient, column, variance: max(dot(&column, h), 0.0) }
     }
@@ -169,10 +196,11 @@ impl AngleBlock {
             self.mean[i] += gain * rest;
             self.regression[i][0] -= gain * g[0];
             self.regression[i][1] -= gain * g[1];
-            for j in 0..PARTS {
-                self.covariance[i][j] -= outlook.column[i] * outlook.column[j] * inverse;
+            for j in 0..=i {
+                self.covariance[packed_index(i, j)] -= outlook.column[i] * outlook.column[j] * inverse;
             }
-            self.covariance[i][i] = max(self.covariance[i][i], 1.0e-10);
+            let variance = &mut self.covariance[packed_index(i, i)];
+            *variance = max(*variance, 1.0e-10);
         }
     }
 

@@ -1,7 +1,8 @@
 //! What a smoother over a whole recording reads of the phase-coupled filter: moments, and the linear step between two frames.
 
-use super::coupled::{CoupledFilter, GATE_SIGMAS, quadratic};
+use super::coupled::{CoupledFilter, GATE_SIGMAS};
 use super::coupled_block::{AngleBlock, Basis, PARTS};
+use super::cycle_pair::CyclePair;
 use super::cycle_state::CycleState;
 use super::{AngleMeasurement, MotionModel};
 use crate::math::wrap_angle;
@@ -31,13 +32,13 @@ impl<const N: usize> CoupledFilter<N> {
     /// Position and velocity in the cycle with their covariance.
     #[must_use]
     pub const fn cycle(&self) -> CycleState {
-        let [position_variance, covariance, velocity_variance] = self.cycle;
+        let CyclePair { cc, cv, vv } = self.pair;
         CycleState {
             position: self.position,
             velocity: self.velocity,
-            position_variance,
-            covariance,
-            velocity_variance,
+            position_variance: cc,
+            covariance: cv,
+            velocity_variance: vv,
         }
     }
 
@@ -57,15 +58,16 @@ impl<const N: usize> CoupledFilter<N> {
     #[must_use]
     pub fn transition(&self, model: &MotionModel<'_>, step_frames: f32) -> CoupledTransition<N> {
         let mut still = *self;
-        still.cycle = [0.0; 3];
+        still.pair = CyclePair { cc: 0.0, cv: 0.0, vv: 0.0 };
         for block in &mut still.blocks {
-            *block =
-                AngleBlock { mean: [0.0; PARTS], regression: [[0.0; 2]; PARTS], covariance: [[0.0; PARTS]; PARTS] };
+            *block = AngleBlock::zero();
         }
         let mut noise = still;
         noise.predict(model, step_frames);
-        let mut blocks =
-            core::array::from_fn(|i| BlockTransition { map: [[0.0; PARTS]; PARTS], noise: noise.blocks[i].covariance });
+        let mut blocks = core::array::from_fn(|i| BlockTransition {
+            map: [[0.0; PARTS]; PARTS],
+            noise: noise.blocks[i].covariance_matrix(),
+        });
         for part in 0..PARTS {
             let mut unit = still;
             for block in &mut unit.blocks {
@@ -78,7 +80,7 @@ impl<const N: usize> CoupledFilter<N> {
                 }
             }
         }
-        CoupledTransition { step_frames, cycle_noise: noise.cycle, blocks }
+        CoupledTransition { step_frames, cycle_noise: [noise.pair.cc, noise.pair.cv, noise.pair.vv], blocks }
     }
 
     /// Variance by which [`Self::correct`] opens the constant of each angle that lies beyond the gate, rad^2; 0 for the others.
@@ -94,7 +96,7 @@ impl<const N: usize> CoupledFilter<N> {
             let noise = measurement.std_rad()[i] * measurement.std_rad()[i];
             let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
             let outlook = self.blocks[i].outlook(&basis, slope[i]);
-            let total = outlook.variance + noise + quadratic(&outlook.gradient, &self.cycle);
+            let total = outlook.variance + noise + self.pair.along(&outlook.gradient);
             if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total {
                 opened[i] = residual * residual;
             }
@@ -112,6 +114,7 @@ mod tests {
 
     fn started(model: &MotionModel<'_>) -> CoupledFilter<N> {
         let first = core::array::from_fn(|i| Some(mean_angle(i, 0.2) + 0.05));
+        let first = AngleMeasurement::new(&first, 0.01).unwrap();
         let mut filter = CoupledFilter::<N>::new(model, &first, Some(0.2), None).unwrap();
         for frame in 1..20 {
             let seen = core::array::from_fn(|i| Some(mean_angle(i, 0.2 + frame as f32 / 65.0) + 0.05));
@@ -139,11 +142,11 @@ mod tests {
                 for j in 0..PARTS {
                     let sum = (0..PARTS * PARTS).map(|k| {
                         let (a, b) = (k / PARTS, k % PARTS);
-                        step.map[i][a] * old.covariance[a][b] * step.map[j][b]
+                        step.map[i][a] * old.covariance(a, b) * step.map[j][b]
                     });
                     let moved = sum.sum::<f32>() + step.noise[i][j];
-                    let scale = (new.covariance[i][i] * new.covariance[j][j]).sqrt();
-                    assert!((moved - new.covariance[i][j]).abs() < 1.0e-4 * scale, "{i} {j}");
+                    let scale = (new.covariance(i, i) * new.covariance(j, j)).sqrt();
+                    assert!((moved - new.covariance(i, j)).abs() < 1.0e-4 * scale, "{i} {j}");
                 }
             }
         }
@@ -168,7 +171,7 @@ mod tests {
         assert!(opened[4] > 1.0 && opened.iter().filter(|variance| **variance > 0.0).count() == 1, "{opened:?}");
         let mut corrected = filter;
         corrected.correct(&model, &measurement);
-        assert!(corrected.blocks()[4].covariance[0][0] < opened[4]);
+        assert!(corrected.blocks()[4].covariance(0, 0) < opened[4]);
         assert!((corrected.blocks()[4].mean[0] - filter.blocks()[4].mean[0]).abs() > 1.0, "learned anew");
         assert_eq!(corrected.relocks(), 0);
     }

@@ -8,6 +8,11 @@ use core::f32::consts::TAU;
 
 const N: usize = 13;
 
+/// The first row without noise.
+fn exact(angles_rad: &[Option<f32>; N]) -> AngleMeasurement<N> {
+    AngleMeasurement::new(angles_rad, 0.01).unwrap()
+}
+
 /// A person who differs from the mean cycle by a constant and a swing.
 fn person(index: usize, position: f32) -> f32 {
     let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -21,7 +26,7 @@ fn it_follows_another_person_at_another_cadence() {
     let model = table.model().unwrap();
     let velocity = 1.08 / 65.0;
     let first = core::array::from_fn(|i| Some(person(i, 0.0)));
-    let mut filter = CoupledFilter::<N>::new(&model, &first, Some(0.0), None).unwrap();
+    let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
     let mut stream = Stream::new(5, 0, 0);
     let (mut inside, mut all, mut error) = (0, 0, 0.0_f32);
     let frames = 602;
@@ -62,7 +67,7 @@ fn turns_are_counted_from_those_of_the_first_row() {
     for direction in [1.0_f32, -1.0] {
         let truth = |i: usize, frame: u16| person(i, direction * f32::from(frame) / 65.0) + TAU * (i as f32 - 5.0);
         let first = core::array::from_fn(|i| Some(truth(i, 0)));
-        let mut filter = CoupledFilter::<N>::new(&model, &first, Some(0.0), Some(direction / 65.0)).unwrap();
+        let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), Some(direction / 65.0)).unwrap();
         for frame in 1..=400 {
             let seen = core::array::from_fn(|i| Some(truth(i, frame)));
             let estimate = filter.step(&model, &AngleMeasurement::new(&seen, 0.1).unwrap());
@@ -80,7 +85,7 @@ fn it_stays_sound_through_random_gaps() {
     let table = table(0.001, 9);
     let model = table.model().unwrap();
     let first = core::array::from_fn(|i| Some(person(i, 0.0)));
-    let mut filter = CoupledFilter::<N>::new(&model, &first, None, None).unwrap();
+    let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), None, None).unwrap();
     let mut stream = Stream::new(9, 0, 0);
     let mut time = 0.0;
     for _ in 0..20_000 {
@@ -102,7 +107,7 @@ fn a_lost_phase_is_found_again() {
     let table = table(0.001, 9);
     let model = table.model().unwrap();
     let first = core::array::from_fn(|i| Some(person(i, 0.0)));
-    let mut filter = CoupledFilter::<N>::new(&model, &first, Some(0.0), None).unwrap();
+    let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
     filter.predict(&model, 600.0);
     let mut last = 0.0;
     for frame in 0..65 {

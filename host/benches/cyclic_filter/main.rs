@@ -13,7 +13,7 @@ mod walk;
 use dense_peers::{KfilterPeer, minikalman_step};
 use particle_step::{ParticleStep, STAGES};
 use sinew::cyclic::model::CyclicModel;
-use sinew_core::cyclic::coupled::CoupledFilter;
+use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
 use sinew_core::cyclic::{CycleStart, KalmanFilter, KalmanOptions, MotionModel};
 use std::hint::black_box;
 use std::time::Instant;
@@ -46,7 +46,8 @@ fn kalman_rounds(model: &MotionModel<'_>, walk: &Walk) -> Vec<[f64; 4]> {
     let options = KalmanOptions::default();
     let start = CycleStart::standard(model, walk.angles(0), None, None).expect("a sound start");
     let mut paper = KalmanFilter::new(model, &options, &start).expect("sound options");
-    let mut coupled = CoupledFilter::<ANGLES>::new(model, walk.angles(0), None, None).expect("a model with spread");
+    let first = AngleMeasurement::new(walk.angles(0), walk::STD_RAD).expect("positive noise");
+    let mut coupled = CoupledFilter::<ANGLES>::new(model, &first, None, None).expect("a model with spread");
     let (mut kfilter, mut minikalman) = (KfilterPeer::new(), minikalman_step());
     let round = |round: usize| {
         let first = 1 + round * STEPS;

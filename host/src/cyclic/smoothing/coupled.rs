@@ -51,11 +51,9 @@ impl<const N: usize> CoupledState<N> {
         }
         let mut covariance = &regression * cc * regression.transpose();
         for (angle, parts) in self.0.blocks().iter().take(model.angle_count()).enumerate() {
-            for (row, values) in parts.covariance.iter().enumerate() {
-                for column in 0..PARTS {
-                    // The filter's rounding differs between the two triangles.
-                    let value = 0.5 * (values[column] + parts.covariance[column][row]);
-                    covariance[(block(angle) + row, block(angle) + column)] += f64::from(value);
+            for (row, values) in parts.covariance_matrix().iter().enumerate() {
+                for (column, value) in values.iter().enumerate() {
+                    covariance[(block(angle) + row, block(angle) + column)] += f64::from(*value);
                 }
             }
         }
@@ -77,10 +75,10 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
         Moments { mean: self.mean(model), covariance: self.covariance(model) }
     }
 
-    /// There is none where the position was searched for anew. An angle whose constant was opened at the gate has that much more noise,
+    /// There is none where the position is searched for or was found anew. An angle whose constant was opened at the gate has that much more noise,
     /// so that what is learned anew after it says nothing about what was before.
     fn link(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, next: &Self) -> Option<Link> {
-        if next.0.relocks() != self.0.relocks() {
+        if next.0.relocks() != self.0.relocks() || next.0.is_searching() {
             return None;
         }
         let size = Self::size(model);

@@ -14,7 +14,7 @@ use sinew_core::cyclic::{
 #[derive(Debug)]
 pub struct Filter<'m, const N: usize> {
     model: MotionModel<'m>,
-    start: CycleStart<N>,
+    first: CyclicEstimate<N>,
     kind: Kind<N>,
 }
 
@@ -40,6 +40,7 @@ impl<'m, const N: usize> Filter<'m, N> {
         let position = options.initial_cycle_position.map(|position| position as f32);
         let velocity = options.initial_cycle_velocity.map(|velocity| (velocity / step_frames) as f32);
         let start = CycleStart::standard(&model, first, position, velocity)?;
+        let mut first_told = first_estimate(&start);
         let kind = match options.filter {
             FilterName::Paper => {
                 let kalman = KalmanOptions::default();
@@ -56,19 +57,29 @@ impl<'m, const N: usize> Filter<'m, N> {
                     StartName::Random => Spread::Random,
                 };
                 let particle = ParticleOptions { spread, ..ParticleOptions::default() };
-                let first = first_estimate(&start);
-                let filter = ParticleFilter::new(&model, particle, &start, first, options.particles, options.seed);
+                let filter = ParticleFilter::new(&model, particle, &start, first_told, options.particles, options.seed);
                 Kind::Particle(Box::new(filter))
             }
-            FilterName::Coupled => Kind::Coupled(Box::new(CoupledFilter::new(&model, first, position, velocity)?)),
+            FilterName::Coupled => {
+                let first = AngleMeasurement::new(first, options.sigma_rad as f32)?;
+                let filter = match options.start {
+                    StartName::Standard => CoupledFilter::new(&model, &first, position, velocity)?,
+                    StartName::Uniform | StartName::Random => {
+                        let mut filter = CoupledFilter::anywhere(&model, &first)?;
+                        first_told = filter.present(&model, &first);
+                        filter
+                    }
+                };
+                Kind::Coupled(Box::new(filter))
+            }
         };
-        Ok(Self { model, start, kind })
+        Ok(Self { model, first: first_told, kind })
     }
 
     /// The first state as an estimate.
     #[must_use]
-    pub fn first_estimate(&self) -> CyclicEstimate<N> {
-        first_estimate(&self.start)
+    pub const fn first_estimate(&self) -> CyclicEstimate<N> {
+        self.first
     }
 
     /// One frame.

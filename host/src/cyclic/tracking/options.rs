@@ -45,7 +45,7 @@ pub enum StartName {
     /// The first row's angles, the model's velocities, the best matching (or given) position in the cycle.
     #[default]
     Standard,
-    /// Nothing of the position in the cycle (particle).
+    /// Nothing of the position in the cycle (coupled, particle).
     Uniform,
     /// Nothing at all: random angles and velocities too (particle).
     Random,
@@ -163,7 +163,8 @@ impl TrackingOptions {
         }
         let start_fits = match self.start {
             StartName::Standard => true,
-            StartName::Uniform | StartName::Random => self.filter == FilterName::Particle,
+            StartName::Uniform => matches!(self.filter, FilterName::Particle | FilterName::Coupled),
+            StartName::Random => self.filter == FilterName::Particle,
         };
         if !start_fits {
             let rule = format!(

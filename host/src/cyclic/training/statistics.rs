@@ -2,6 +2,7 @@
 
 use super::cycle::TrainingCycle;
 use crate::cyclic::turns::{circular_mean, unwrap_along_time};
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// Numbers of one position.
@@ -41,14 +42,18 @@ pub fn of_positions(cycles: &[TrainingCycle], length: usize) -> Vec<PositionStat
 
 /// Mean angles at positions 0 to `length`, both included, radians: at each position the mean on the circle, so that cycles
 /// whose angles differ by whole turns agree; then unwrapped along the cycle. The last row is where the mean cycle ends.
+///
+/// Where an angle winds in some cycles and not in others (a limb that points at the camera may turn either way), it is that
+/// of the cycles that do as most do: the mean of both ways is a pose that nobody takes.
 #[must_use]
 pub fn mean_pose(cycles: &[TrainingCycle], length: usize) -> Vec<Vec<f64>> {
     let count = angle_count(cycles);
     let mut poses = vec![vec![0.0; count]; length + 1];
     for angle in 0..count {
+        let usual = usual_cycles(cycles, angle);
         let at = |position: usize| {
             let place = position as f64 / length as f64;
-            circular_mean(&cycles.iter().map(|cycle| cycle.angle_at(angle, place)).collect::<Vec<_>>())
+            circular_mean(&usual.iter().map(|cycle| cycle.angle_at(angle, place)).collect::<Vec<_>>())
         };
         let mut series: Vec<Option<f64>> = (0..=length).map(at).collect();
         unwrap_along_time(&mut series);
@@ -57,6 +62,22 @@ pub fn mean_pose(cycles: &[TrainingCycle], length: usize) -> Vec<Vec<f64>> {
         }
     }
     poses
+}
+
+/// The cycles in which an angle makes as many whole turns as in most; all where no number is the most frequent one.
+fn usual_cycles(cycles: &[TrainingCycle], angle: usize) -> Vec<&TrainingCycle> {
+    let turns =
+        |cycle: &TrainingCycle| ((cycle.angle_at(angle, 1.0) - cycle.angle_at(angle, 0.0)) / TAU).round() as i32;
+    let mut groups: BTreeMap<i32, Vec<&TrainingCycle>> = BTreeMap::new();
+    for cycle in cycles {
+        groups.entry(turns(cycle)).or_default().push(cycle);
+    }
+    let most = groups.values().map(Vec::len).max().unwrap_or(0);
+    let mut largest = groups.into_values().filter(|group| group.len() == most);
+    match (largest.next(), largest.next()) {
+        (Some(group), None) => group,
+        _ => cycles.iter().collect(),
+    }
 }
 
 /// Angles that all the cycles have.

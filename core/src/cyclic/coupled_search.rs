@@ -1,0 +1,164 @@
+//! Where the phase-coupled filter's linearisation is not to be believed: the grid says so, and says where the motion is.
+
+use super::coupled::{CoupledFilter, spread};
+use super::coupled_block::{AngleBlock, Basis, PARTS};
+use super::cycle_pair::CyclePair;
+use super::gate::{DEFAULT_GATE_SIGMAS, is_outlier};
+use super::log_product::LogProduct;
+use super::phase::position_difference;
+use super::phase_grid::{POSITIONS, PhaseMode};
+use super::{AngleMeasurement, CyclicEstimate, MotionModel};
+use crate::math::{abs, clamp, max, wrap_angle};
+use core::f32::consts::TAU;
+
+/// Beyond this standard deviation of c, in cycles, the linearisation is void and the position is searched for.
+const LOST_STD: f32 = 0.15;
+/// Frames between two looks at the grid while the position is known.
+const WATCH_FRAMES: f32 = 2.0;
+/// Weight of a place of which the grid is sure.
+const SURE: f32 = 0.9;
+/// Way beyond the usual one between the filter's position and the grid's that is strange, cycles.
+const STRANGE_WAY: f32 = 0.08;
+/// Frames in a row of a strange way after which the filter takes the grid's place: a tenth of a second at 60 Hz.
+const STRANGE_FRAMES: f32 = 6.0;
+/// Frames over which the usual way is averaged.
+const USUAL_FRAMES: f32 = 120.0;
+/// Greatest usual way, cycles: people who move a little earlier or later than the mean are known by it.
+const USUAL_LIMIT: f32 = 0.1;
+/// Most frames for which one measurement stands in the grid.
+const MOST_FRAMES: f32 = 4.0;
+
+/// How the filter stands to the grid.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Watch {
+    /// Frames since the grid last moved.
+    pub(super) unwatched_frames: f32,
+    /// Way from the filter's position to the grid's, cycles, averaged: the grid knows nothing of the person.
+    usual_way: f32,
+    /// Frames in a row in which the way was another one.
+    strange_frames: f32,
+    /// Whether the position is unknown, so that the pose is that of all places together.
+    pub(super) searching: bool,
+}
+
+impl Watch {
+    /// Compares the place `mode` with the filter's `position`, `frames` after the last time.
+    fn compare(&mut self, mode: &PhaseMode, position: f32, frames: f32) {
+        let strange = position_difference(position_difference(mode.position, position), self.usual_way);
+        self.usual_way = clamp(self.usual_way + frames / USUAL_FRAMES * strange, -USUAL_LIMIT, USUAL_LIMIT);
+        let is_strange = mode.weight > SURE && abs(strange) > STRANGE_WAY;
+        self.strange_frames = if is_strange { self.strange_frames + frames } else { 0.0 };
+    }
+}
+
+impl<const N: usize> CoupledFilter<N> {
+    /// Whether the position in the cycle is unknown at the moment, so that estimates are those of all places together.
+    #[must_use]
+    pub const fn is_searching(&self) -> bool {
+        self.watch.searching
+    }
+
+    /// Shows the grid a measurement, and takes its place where the filter has none or the wrong one.
+    pub(super) fn watch(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
+        let frames = self.watch.unwatched_frames;
+        if self.pair.cc > LOST_STD * LOST_STD {
+            self.watch.searching = true;
+        }
+        if !self.watch.searching && frames < WATCH_FRAMES {
+            return;
+        }
+        self.watch.unwatched_frames = 0.0;
+        self.grid.advance(model, frames);
+        let frames = clamp(frames, 1.0, MOST_FRAMES);
+        self.grid.weigh(model, measurement, frames);
+        let mode = self.grid.mode(model);
+        if self.watch.searching {
+            if mode.weight > SURE {
+                self.settle(&mode);
+            }
+            return;
+        }
+        self.watch.compare(&mode, self.position, frames);
+        if self.watch.strange_frames > STRANGE_FRAMES {
+            // What was learned of the person since was learned at the wrong place.
+            self.blocks = core::array::from_fn(|i| AngleBlock::unknown(&spread(model, i)));
+            let position = mode.position - self.watch.usual_way;
+            self.settle(&PhaseMode { position, ..mode });
+        }
+    }
+
+    /// Goes on from the place `mode`, on which nothing learned so far depends.
+    fn settle(&mut self, mode: &PhaseMode) {
+        self.move_by(position_difference(mode.position, self.position));
+        self.velocity = mode.velocity;
+        let [cc, cv, vv] = mode.covariance;
+        self.pair = CyclePair { cc, cv, vv };
+        for block in &mut self.blocks {
+            block.regression = [[0.0; 2]; PARTS];
+        }
+        self.watch.searching = false;
+        self.relocks = self.relocks.wrapping_add(1);
+        self.watch.strange_frames = 0.0;
+    }
+
+    /// The pose over all places of the grid, each with its weight, corrected angle by angle.
+    pub(super) fn estimate_of_all_places(
+        &mut self,
+        model: &MotionModel<'_>,
+        measurement: &AngleMeasurement<N>,
+    ) -> CyclicEstimate<N> {
+        let mode = self.grid.mode(model);
+        self.move_by(position_difference(mode.position, self.position));
+        self.velocity = mode.velocity;
+        let (mean, mut variance) = self.pose_of_all_places(model);
+        let (mut squares, mut volume, mut count) = (0.0, LogProduct::one(), 0);
+        for i in 0..model.angle_count().min(N) {
+            let mut angle = mean[i];
+            if let Some(measured) = measurement.angle_rad(i) {
+                let total = variance[i] + measurement.std_rad()[i] * measurement.std_rad()[i];
+                let residual = wrap_angle(measured - angle);
+                squares += residual * residual / total;
+                volume.multiply(TAU * total);
+                count += 1;
+                angle += variance[i] / total * residual;
+                variance[i] -= variance[i] * variance[i] / total;
+            }
+            self.turn_to(i, wrap_angle(angle));
+        }
+        let elsewhere = 1.0 - mode.weight;
+        CyclicEstimate {
+            angles_rad: self.angles_rad,
+            turns: self.turns,
+            angle_variance_rad2: variance,
+            cycle_position: self.position,
+            // Elsewhere means anywhere: the variance of a uniform position.
+            cycle_position_variance: mode.weight * mode.covariance[0] + elsewhere / 12.0,
+            cycle_velocity_per_frame: self.velocity,
+            cycle_velocity_variance: mode.covariance[2],
+            log_likelihood: -0.5 * (squares + volume.ln()),
+            outlier: is_outlier(squares, count, DEFAULT_GATE_SIGMAS),
+        }
+    }
+
+    /// Mean and variance of each angle over the grid's positions, with what is known of the person.
+    fn pose_of_all_places(&self, model: &MotionModel<'_>) -> ([f32; N], [f32; N]) {
+        let reference = model.mean_pose_rad::<N>(model.point(self.position));
+        let (mut mean, mut square) = ([0.0; N], [0.0; N]);
+        for (cell, weight) in self.grid.by_position().into_iter().enumerate() {
+            let pose = model.mean_pose_rad::<N>(model.point(cell as f32 / POSITIONS as f32));
+            for i in 0..model.angle_count().min(N) {
+                let off = wrap_angle(pose[i] - reference[i]);
+                mean[i] += weight * off;
+                square[i] += weight * off * off;
+            }
+        }
+        let basis = Basis::at(self.position);
+        let mut variance = [0.0; N];
+        for i in 0..model.angle_count().min(N) {
+            let outlook = self.blocks[i].outlook(&basis, 0.0);
+            variance[i] = max(square[i] - mean[i] * mean[i], 0.0) + outlook.variance;
+            mean[i] += reference[i] + self.blocks[i].deviation(&basis);
+        }
+        (mean, variance)
+    }
+}

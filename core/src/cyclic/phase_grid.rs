@@ -1,0 +1,219 @@
+//! The whole cycle watched on a grid: a histogram filter over position and speed, for a motion whose person is not known.
+//!
+//! The phase-coupled filter believes in one place of the cycle. This one believes in all of them, each with a weight, knows nothing
+//! of the person, and so cannot be led astray with it. (Histogram filter: Thrun, Burgard, Fox, Probabilistic Robotics, section 4.1.)
+
+use super::phase::{position_difference, wrap_position};
+use super::{AngleMeasurement, MotionModel};
+use crate::math::{exp, least_angle, max, min, round};
+
+/// Positions of the grid.
+pub const POSITIONS: usize = 32;
+/// Positions at which a measurement's likelihood is computed; between them it is linear.
+const TABLE: usize = 64;
+/// Speeds of the grid, as parts of the model's mean speed.
+pub const SPEED_RATIOS: [f32; 6] = [0.0, 0.5, 0.7, 1.0, 1.4, 2.0];
+const SPEEDS: usize = SPEED_RATIOS.len();
+/// Part of the weight that goes to each neighbouring speed in a frame at the mean speed.
+const SPEED_CHANGE: f32 = 0.01;
+/// Part of the weight that goes to each neighbouring position in a frame: speeds lie between those of the grid.
+const BLUR: f32 = 0.05;
+/// A person differs from the mean in the same way for many frames, so a frame's deviations are evidence for this part only.
+const REPEATED_FRAMES: f32 = 4.0;
+/// Angles deviate together: what each says counts this many times less.
+const TEMPERING: f32 = 2.5;
+/// A single angle's distance counts at most this many standard deviations.
+const LIMIT_SIGMAS: f32 = 4.0;
+
+/// Weights of position and speed; their sum is one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhaseGrid {
+    weights: [[f32; POSITIONS]; SPEEDS],
+    /// Way of each speed's grid since the start, cycles, [0, 1).
+    travelled: [f32; SPEEDS],
+}
+
+/// A place of the cycle: means and covariance of position and velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhaseMode {
+    /// Part of the weight within [`MODE_REACH`] of the position.
+    pub weight: f32,
+    /// Position, [0, 1).
+    pub position: f32,
+    /// Velocity, cycles per frame.
+    pub velocity: f32,
+    /// Covariance: cc, cv, vv.
+    pub covariance: [f32; 3],
+}
+
+/// Half the width of a place, cycles.
+pub const MODE_REACH: f32 = 0.15;
+
+impl PhaseGrid {
+    /// Nothing known.
+    #[must_use]
+    pub fn uniform() -> Self {
+        let weight = 1.0 / (POSITIONS * SPEEDS) as f32;
+        Self { weights: [[weight; POSITIONS]; SPEEDS], travelled: [0.0; SPEEDS] }
+    }
+
+    /// About `position`, known to about a twentieth of a cycle, and a speed near the model's mean.
+    #[must_use]
+    pub fn near(position: f32) -> Self {
+        let mut grid = Self::uniform();
+        grid.reweigh(|_, at| {
+            let scaled = 20.0 * position_difference(at, position);
+            exp(-0.5 * scaled * scaled)
+        });
+        grid
+    }
+
+    /// Position of a cell, [0, 1).
+    fn position(&self, speed: usize, cell: usize) -> f32 {
+        wrap_position(cell as f32 / POSITIONS as f32 + self.travelled[speed])
+    }
+
+    fn reweigh(&mut self, factor: impl Fn(usize, f32) -> f32) {
+        let mut sum = 0.0;
+        for speed in 0..SPEEDS {
+            for cell in 0..POSITIONS {
+                let at = self.position(speed, cell);
+                self.weights[speed][cell] *= factor(speed, at);
+                sum += self.weights[speed][cell];
+            }
+        }
+        if !(sum > 1.0e-30 && sum.is_finite()) {
+            *self = Self::uniform();
+            return;
+        }
+        let scale = 1.0 / sum;
+        self.weights.iter_mut().flatten().for_each(|weight| *weight *= scale);
+    }
+
+    /// Moves on by `step_frames`; speeds may change to the next slower or faster one.
+    pub fn advance(&mut self, model: &MotionModel<'_>, step_frames: f32) {
+        for (travelled, ratio) in self.travelled.iter_mut().zip(SPEED_RATIOS) {
+            *travelled = wrap_position(*travelled + ratio * model.mean_cycle_velocity() * step_frames);
+        }
+        let change = min(SPEED_CHANGE * step_frames, 0.3);
+        let blur = min(BLUR * step_frames, 0.3);
+        let old = self.weights;
+        for speed in 0..SPEEDS {
+            let others = [speed.checked_sub(1), (speed + 1 < SPEEDS).then_some(speed + 1)];
+            let stay = 1.0 - change * others.iter().flatten().count() as f32;
+            let mut row = old[speed].map(|weight| stay * weight);
+            for other in others.into_iter().flatten() {
+                let shift = round((self.travelled[speed] - self.travelled[other]) * POSITIONS as f32) as i32;
+                let shift = shift.rem_euclid(POSITIONS as i32) as usize;
+                for (cell, weight) in row.iter_mut().enumerate() {
+                    *weight += change * old[other][(cell + shift) % POSITIONS];
+                }
+            }
+            for (cell, weight) in self.weights[speed].iter_mut().enumerate() {
+                let neighbours = row[(cell + 1) % POSITIONS] + row[(cell + POSITIONS - 1) % POSITIONS];
+                *weight = row[cell] + blur * (neighbours - 2.0 * row[cell]);
+            }
+        }
+    }
+
+    /// Takes in a measurement of a person about whom nothing but the spread between people is known.
+    pub fn weigh<const N: usize>(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) {
+        let likelihood = likelihood_table(model, measurement, frames);
+        self.reweigh(|_, at| {
+            let along = at * TABLE as f32;
+            let before = (along as usize).min(TABLE - 1);
+            let (a, b) = (likelihood[before], likelihood[(before + 1) % TABLE]);
+            a + (along - before as f32) * (b - a)
+        });
+    }
+
+    /// Part of the weight within [`MODE_REACH`] of `position`.
+    #[must_use]
+    pub fn weight_near(&self, position: f32) -> f32 {
+        self.sum_near(position, |_, _| 1.0)
+    }
+
+    /// Sum of weight times `value(speed, way from the position)` near a position.
+    fn sum_near(&self, position: f32, value: impl Fn(usize, f32) -> f32) -> f32 {
+        let mut sum = 0.0;
+        for speed in 0..SPEEDS {
+            for cell in 0..POSITIONS {
+                let way = position_difference(self.position(speed, cell), position);
+                if way.abs() <= MODE_REACH {
+                    sum += self.weights[speed][cell] * value(speed, way);
+                }
+            }
+        }
+        sum
+    }
+
+    /// Weight by position alone, on positions i / [`POSITIONS`].
+    #[must_use]
+    pub fn by_position(&self) -> [f32; POSITIONS] {
+        let mut sums = [0.0; POSITIONS];
+        for speed in 0..SPEEDS {
+            for cell in 0..POSITIONS {
+                let along = self.position(speed, cell) * POSITIONS as f32;
+                let before = (along as usize).min(POSITIONS - 1);
+                let part = along - before as f32;
+                sums[before] += (1.0 - part) * self.weights[speed][cell];
+                sums[(before + 1) % POSITIONS] += part * self.weights[speed][cell];
+            }
+        }
+        sums
+    }
+
+    /// The place with the most weight.
+    #[must_use]
+    pub fn mode(&self, model: &MotionModel<'_>) -> PhaseMode {
+        let sums = self.by_position();
+        let reach = (MODE_REACH * POSITIONS as f32) as usize;
+        let near = |cell: usize| (0..=2 * reach).map(|k| sums[(cell + POSITIONS + k - reach) % POSITIONS]).sum::<f32>();
+        let mut best = (0, 0.0);
+        for cell in 0..POSITIONS {
+            let weight = near(cell);
+            if weight > best.1 {
+                best = (cell, weight);
+            }
+        }
+        let centre = best.0 as f32 / POSITIONS as f32;
+        let weight = max(self.weight_near(centre), 1.0e-6);
+        let velocity_of = |speed: usize| SPEED_RATIOS[speed] * model.mean_cycle_velocity();
+        let mean = |value: &dyn Fn(usize, f32) -> f32| self.sum_near(centre, value) / weight;
+        let way = mean(&|_, way| way);
+        let velocity = mean(&|speed, _| velocity_of(speed));
+        let cc = mean(&|_, at| (at - way) * (at - way));
+        let cv = mean(&|speed, at| (at - way) * (velocity_of(speed) - velocity));
+        let vv = mean(&|speed, _| (velocity_of(speed) - velocity) * (velocity_of(speed) - velocity));
+        let (cell, step) = (1.0 / POSITIONS as f32, 0.15 * model.mean_cycle_velocity());
+        let covariance = [cc + cell * cell / 12.0, cv, vv + step * step];
+        PhaseMode { weight, position: wrap_position(centre + way), velocity, covariance }
+    }
+}
+
+/// Likelihood of a measurement at each position of the table, the greatest being one.
+fn likelihood_table<const N: usize>(
+    model: &MotionModel<'_>,
+    measurement: &AngleMeasurement<N>,
+    frames: f32,
+) -> [f32; TABLE] {
+    let repeated = max(REPEATED_FRAMES / frames, 1.0);
+    let spread = model.deviation_std_rad::<N>();
+    let count = model.angle_count().min(N);
+    let mut scores = [0.0_f32; TABLE];
+    let precision: [f32; N] = core::array::from_fn(|i| {
+        let std = measurement.std_rad()[i];
+        0.5 / (TEMPERING * (repeated * spread[i] * spread[i] + std * std))
+    });
+    let limit = 0.5 * LIMIT_SIGMAS * LIMIT_SIGMAS / TEMPERING;
+    for (index, score) in scores.iter_mut().enumerate() {
+        let pose = model.mean_pose_rad::<N>(model.point(index as f32 / TABLE as f32));
+        for i in 0..count {
+            let Some(measured) = measurement.angle_rad(i) else { continue };
+            let off = least_angle(measured - pose[i]);
+            *score -= min(precision[i] * off * off, limit);
+        }
+    }
+    let greatest = scores.iter().fold(f32::NEG_INFINITY, |best, &score| max(best, score));
+    scores.map(|score| exp(score - greatest))
+}
