@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 
 /// What variances of constant and swing are multiplied by: they come from about three people, so the spread of a new
 /// person is that of a t distribution with few degrees of freedom, and the mean cycle is itself that uncertain.
-const INFLATION: f64 = 20.0 / 3.0;
+const INFLATION: f64 = 4.0;
 /// Part of each variance that is replaced by the mean over the angles.
 const SHRINKAGE: f64 = 0.2;
 /// The same for the rest, which differs from cycle to cycle as well and is known from more than a few people.
