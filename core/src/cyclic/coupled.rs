@@ -3,8 +3,8 @@
 //! An angle is the mean cycle at c plus its deviation ([`super::Deviation`]). Given (c, v) the angles are taken as
 //! independent of each other: each has a block of five numbers, all together inform (c, v), and (c, v) informs each.
 
-use super::coupled_block::{AngleBlock, Basis, Outlook, Spread};
-use super::coupled_search::Watch;
+use super::coupled_block::{AngleBlock, Basis, Outlook, PARTS, Spread};
+use super::coupled_search::{LOST_STD, Watch};
 use super::cycle_pair::{CyclePair, Information};
 use super::gate::{DEFAULT_GATE_SIGMAS, is_outlier};
 use super::log_product::LogProduct;
@@ -140,7 +140,12 @@ impl<const N: usize> CoupledFilter<N> {
         let (map, rest) = self.pair.advance(step);
         let phase = step * max(abs(self.velocity), 0.1 * model.mean_cycle_velocity());
         let memory = exp(-FORGETTING * phase);
+        let lost = self.pair.cc > LOST_STD * LOST_STD;
         for i in 0..model.angle_count().min(N) {
+            if lost {
+                // Nothing is a straight line of (c, v) any more.
+                self.blocks[i].regression = [[0.0; 2]; PARTS];
+            }
             self.blocks[i].advance(&spread(model, i), phase, memory, &map, &rest);
         }
         self.move_by(step * self.velocity);

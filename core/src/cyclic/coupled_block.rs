@@ -13,6 +13,10 @@ pub const PARTS: usize = 5;
 const REST: usize = 3;
 const SLOPE: usize = 4;
 
+/// Part of a variance that is added to it in every step. Rounding changes entry (i, j) by no more than 2^-23 of the root of both
+/// variances; five times that on the diagonal of five rows keeps the matrix positive semi-definite.
+const ROUNDING: f32 = 5.0 / 8_388_608.0;
+
 /// Direction in which an angle depends on its parts at a cycle position.
 #[derive(Debug, Clone, Copy)]
 pub struct Basis {
@@ -158,6 +162,7 @@ impl AngleBlock {
             for j in 0..=i {
                 self.covariance[packed_index(i, j)] = moved[j][i];
             }
+            self.covariance[packed_index(i, i)] *= 1.0 + ROUNDING;
         }
         self.mean = apply(self.mean);
         let column = |k: usize| -> [f32; PARTS] { core::array::from_fn(|i| b[i][k]) };
@@ -196,11 +201,12 @@ impl AngleBlock {
             self.mean[i] += gain * rest;
             self.regression[i][0] -= gain * g[0];
             self.regression[i][1] -= gain * g[1];
+            let rounding = ROUNDING * self.covariance(i, i);
             for j in 0..=i {
                 self.covariance[packed_index(i, j)] -= outlook.column[i] * outlook.column[j] * inverse;
             }
             let variance = &mut self.covariance[packed_index(i, i)];
-            *variance = max(*variance, 1.0e-10);
+            *variance = max(*variance + rounding, 1.0e-10);
         }
     }
 

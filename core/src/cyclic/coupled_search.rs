@@ -12,13 +12,13 @@ use crate::math::{abs, clamp, max, wrap_angle};
 use core::f32::consts::TAU;
 
 /// Beyond this standard deviation of c, in cycles, the linearisation is void and the position is searched for.
-const LOST_STD: f32 = 0.15;
+pub(super) const LOST_STD: f32 = 0.15;
 /// Frames between two looks at the grid while the position is known.
 const WATCH_FRAMES: f32 = 2.0;
 /// Weight of a place of which the grid is sure.
 const SURE: f32 = 0.9;
 /// Way beyond the usual one between the filter's position and the grid's that is strange, cycles.
-const STRANGE_WAY: f32 = 0.08;
+const STRANGE_WAY: f32 = 0.12;
 /// Frames in a row of a strange way after which the filter takes the grid's place: a tenth of a second at 60 Hz.
 const STRANGE_FRAMES: f32 = 6.0;
 /// Frames over which the usual way is averaged.
@@ -76,6 +76,10 @@ impl<const N: usize> CoupledFilter<N> {
             if mode.weight > SURE {
                 self.settle(&mode);
             }
+            return;
+        }
+        if self.velocity < 0.0 {
+            // The grid knows forward motion only.
             return;
         }
         self.watch.compare(&mode, self.position, frames);

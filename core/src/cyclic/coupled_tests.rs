@@ -1,10 +1,12 @@
 //! The phase-coupled filter on made-up motion.
 
+use super::phase::{position_difference, wrap_position};
 use super::synthetic::{mean_angle, table};
-use super::{AngleMeasurement, CoupledFilter};
+use super::{AngleMeasurement, CoupledFilter, MotionModel};
 use crate::math::wrap_angle;
 use crate::random::Stream;
 use core::f32::consts::TAU;
+use std::vec::Vec;
 
 const N: usize = 13;
 
@@ -113,10 +115,93 @@ fn a_lost_phase_is_found_again() {
     for frame in 0..65 {
         let position = 0.37 + frame as f32 / 65.0;
         let seen = core::array::from_fn(|i| Some(person(i, position)));
-        last = super::phase::position_difference(
+        last = position_difference(
             filter.step(&model, &AngleMeasurement::new(&seen, 0.05).unwrap()).cycle_position,
-            super::phase::wrap_position(position),
+            wrap_position(position),
         );
     }
     assert!(last.abs() < 0.05, "off by {last} cycles");
+}
+
+/// Way from the person's position to the filter's after each of `positions` was shown with noise of 0.1 rad.
+fn ways(filter: &mut CoupledFilter<N>, model: &MotionModel<'_>, seed: u64, positions: &[f32]) -> Vec<f32> {
+    let mut stream = Stream::new(seed, 0, 0);
+    let mut way = |&position: &f32| {
+        let seen = core::array::from_fn(|i| Some(person(i, position) + 0.1 * stream.normal()));
+        let estimate = filter.step(model, &AngleMeasurement::new(&seen, 0.1).unwrap());
+        position_difference(estimate.cycle_position, wrap_position(position))
+    };
+    positions.iter().map(&mut way).collect()
+}
+
+/// Positions of a person whose speed, in parts of the model's, is `ratio(frame)`.
+fn walked(frames: u16, ratio: impl Fn(u16) -> f32) -> Vec<f32> {
+    let mut position = 0.0;
+    (1..=frames)
+        .map(|frame| {
+            position += ratio(frame) / 65.0;
+            position
+        })
+        .collect()
+}
+
+#[test]
+fn it_follows_a_person_who_hurries_dawdles_or_stops_and_goes_on() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    for (name, ratio) in [("hurries", 1.5), ("dawdles", 0.6), ("stops", 0.0)] {
+        for seed in 1..=5 {
+            let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
+            let positions = walked(400, |frame| if (131..261).contains(&frame) { ratio } else { 1.0 });
+            let ways = ways(&mut filter, &model, seed, &positions);
+            // Two cycles later at the most the filter is with the person again, and stays there.
+            let settled = |range: core::ops::Range<usize>| ways[range].iter().all(|way| way.abs() < 0.12);
+            assert!(settled(60..131), "{name}, seed {seed}: steady before");
+            assert!(settled(380..400), "{name}, seed {seed}: {:?}", &ways[380..]);
+        }
+    }
+}
+
+#[test]
+fn a_steady_motion_is_never_searched_for_anew() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
+    ways(&mut filter, &model, 3, &walked(3000, |_| 1.08));
+    assert_eq!(filter.relocks(), 0);
+}
+
+#[test]
+fn from_anywhere_the_position_is_found_and_the_bands_hold_meanwhile() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let (mut inside, mut all) = (0_u32, 0_u32);
+    for start in 0..10_u8 {
+        let begin = f32::from(start) / 10.0;
+        let mut stream = Stream::new(u64::from(start), 1, 0);
+        let mut seen = |frame: u16| {
+            let position = begin + f32::from(frame) / 65.0;
+            let noisy = core::array::from_fn(|i| Some(person(i, position) + 0.5 * stream.normal()));
+            (position, AngleMeasurement::new(&noisy, 0.5).unwrap())
+        };
+        let mut filter = CoupledFilter::<N>::anywhere(&model, &seen(0).1).unwrap();
+        let mut way = 1.0;
+        for frame in 1..=130 {
+            let (position, measurement) = seen(frame);
+            let estimate = filter.step(&model, &measurement);
+            way = position_difference(estimate.cycle_position, wrap_position(position));
+            if filter.is_searching() {
+                for i in 0..N {
+                    let off = wrap_angle(estimate.angles_rad[i] - person(i, position)).abs();
+                    inside += u32::from(off <= 1.645 * estimate.angle_variance_rad2[i].sqrt());
+                    all += 1;
+                }
+            }
+        }
+        assert!(!filter.is_searching() && way.abs() < 0.1, "start {begin}: {way} off");
+    }
+    let share = f64::from(inside) / f64::from(all);
+    assert!(all > 13 && (0.8..=1.0).contains(&share), "{share} of {all} inside the band while searching");
 }

@@ -47,11 +47,10 @@ impl CyclePair {
         let Self { cc, cv, vv } = *self;
         let noise = TEMPORAL_STD * TEMPORAL_STD * step;
         let square = step * step;
-        *self = Self {
-            cc: min(cc + 2.0 * step * cv + square * vv + 0.25 * square * noise, 1.0),
-            cv: cv + step * vv + 0.5 * step * noise,
-            vv: min(vv + noise, 0.01),
-        };
+        let moved_cc = min(cc + 2.0 * step * cv + square * vv + 0.25 * square * noise, 1.0);
+        let moved_vv = min(vv + noise, 0.01);
+        let bound = 0.999 * sqrt(moved_cc * moved_vv);
+        *self = Self { cc: moved_cc, cv: clamp(cv + step * vv + 0.5 * step * noise, -bound, bound), vv: moved_vv };
         let cross = [[cc + step * cv, cv], [cv + step * vv, vv]];
         let [a, b, d] = self.inverse();
         let map: [[f32; 2]; 2] =
