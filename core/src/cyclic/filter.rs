@@ -15,6 +15,7 @@ pub enum FilterChoice {
 
 /// State of one of the filters for models of up to `N` angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is no allocator, and at 13 angles both variants are of like size")]
 pub enum CyclicFilter<const N: usize> {
     /// Of [`FilterChoice::Coupled`].
     Coupled(CoupledFilter<N>),
@@ -38,9 +39,7 @@ impl<const N: usize> CyclicFilter<N> {
         velocity: Option<f32>,
     ) -> Result<Self, ParameterError> {
         match choice {
-            FilterChoice::Coupled => {
-                CoupledFilter::new(model, first.angles_rad(), position, velocity).map(Self::Coupled)
-            }
+            FilterChoice::Coupled => CoupledFilter::new(model, first, position, velocity).map(Self::Coupled),
             FilterChoice::Kalman(options) => {
                 let start = CycleStart::standard(model, first.angles_rad(), position, velocity)?;
                 KalmanFilter::new(model, options, &start).map(Self::Kalman)

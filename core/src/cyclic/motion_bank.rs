@@ -63,6 +63,9 @@ pub struct MotionBank<const MOTIONS: usize, const N: usize> {
 
 /// Greatest size of a score: beyond it there is no doubt.
 const SCORE_LIMIT: f32 = 1.0e4;
+/// Most that one frame speaks against a motion and for none, nats: frames far off a model whose normal density has no tails would
+/// outweigh many good ones.
+const SURPRISE_LIMIT: f32 = 1.5;
 /// Least memory, seconds.
 const LEAST_MEMORY_S: f32 = 0.01;
 
@@ -91,11 +94,12 @@ impl<const MOTIONS: usize, const N: usize> MotionBank<MOTIONS, N> {
             let gain = if log_likelihood.is_finite() { log_likelihood - uniform } else { -SCORE_LIMIT };
             clamp(keep * score + gain, -SCORE_LIMIT, SCORE_LIMIT)
         };
+        let walked = self.walk.step(measurement, max(step_s, 0.0));
         for ((score, distance), evidence) in self.scores.iter_mut().zip(&mut self.distances).zip(evidence) {
-            *score = faded(*score, evidence.log_likelihood);
+            *score = faded(*score, max(evidence.log_likelihood, walked - SURPRISE_LIMIT));
             *distance = keep * *distance + min(evidence.pose_distance, SCORE_LIMIT);
         }
-        self.walk_score = faded(self.walk_score, self.walk.step(measurement, max(step_s, 0.0)));
+        self.walk_score = faded(self.walk_score, walked);
     }
 
     /// Log-likelihood of "none of these" above that of uniform angles.

@@ -22,6 +22,8 @@ const BLUR: f32 = 0.05;
 const REPEATED_FRAMES: f32 = 4.0;
 /// Angles deviate together: what each says counts this many times less.
 const TEMPERING: f32 = 2.5;
+/// Number of angles up to which that holds; more of them say no more together.
+const TEMPERED_ANGLES: f32 = 13.0;
 /// A single angle's distance counts at most this many standard deviations.
 const LIMIT_SIGMAS: f32 = 4.0;
 
@@ -201,11 +203,12 @@ fn likelihood_table<const N: usize>(
     let spread = model.deviation_std_rad::<N>();
     let count = model.angle_count().min(N);
     let mut scores = [0.0_f32; TABLE];
+    let tempering = max(TEMPERING * measurement.present(count) as f32 / TEMPERED_ANGLES, TEMPERING);
     let precision: [f32; N] = core::array::from_fn(|i| {
         let std = measurement.std_rad()[i];
-        0.5 / (TEMPERING * (repeated * spread[i] * spread[i] + std * std))
+        0.5 / (tempering * (repeated * spread[i] * spread[i] + std * std))
     });
-    let limit = 0.5 * LIMIT_SIGMAS * LIMIT_SIGMAS / TEMPERING;
+    let limit = 0.5 * LIMIT_SIGMAS * LIMIT_SIGMAS / tempering;
     for (index, score) in scores.iter_mut().enumerate() {
         let pose = model.mean_pose_rad::<N>(model.point(index as f32 / TABLE as f32));
         for i in 0..count {

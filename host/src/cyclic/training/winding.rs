@@ -36,6 +36,6 @@ impl fmt::Display for UnevenTurns {
             let comma = if index > 0 { "," } else { "" };
             write!(f, "{comma} {turns} turns in {cycles} of the cycles")?;
         }
-        write!(f, "; the model holds the mean on the circle, so cut apart what moves differently")
+        write!(f, "; the model holds what most do, so cut apart what moves differently")
     }
 }
