@@ -96,7 +96,9 @@ impl<const MOTIONS: usize, const N: usize> MotionBank<MOTIONS, N> {
         };
         let walked = self.walk.step(measurement, max(step_s, 0.0));
         for ((score, distance), evidence) in self.scores.iter_mut().zip(&mut self.distances).zip(evidence) {
-            *score = faded(*score, max(evidence.log_likelihood, walked - SURPRISE_LIMIT));
+            let told = evidence.log_likelihood;
+            let bounded = if told.is_finite() { max(told, walked - SURPRISE_LIMIT) } else { told };
+            *score = faded(*score, bounded);
             *distance = keep * *distance + min(evidence.pose_distance, SCORE_LIMIT);
         }
         self.walk_score = faded(self.walk_score, walked);
