@@ -1,12 +1,13 @@
 //! The accuracy of the cyclic filters that the book states, on real walkers. Runs in release where `../shared/data` is at hand,
 //! and says so where not.
 
+mod shared_data;
+
 use sinew::cyclic::CutList;
 use sinew::cyclic::tracking::FilterName;
 use sinew::cyclic::training::{TrainingOptions, train};
 use sinew::evaluate::cyclic::experiments::SIGMAS_DEG;
 use sinew::evaluate::cyclic::{Cell, Protocol, Setting, test_cycles};
-use std::path::{Path, PathBuf};
 
 /// Degrees over 13 angles at each sigma, by an independent implementation of the paper's filter with the same training.
 const REFERENCE_DEG: [(Protocol, FilterName, [f64; 6]); 4] = [
@@ -28,15 +29,6 @@ const TWO_UPDATES_SHARE: f64 = 0.85;
 const BAND: [f64; 2] = [0.85, 0.965];
 const BAND_EACH: [f64; 2] = [0.75, 0.99];
 
-fn data() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/cyclic-walking");
-    if cfg!(debug_assertions) || !folder.is_dir() {
-        eprintln!("skipped: only in release and with ../shared/data beside the project");
-        return None;
-    }
-    Some(folder)
-}
-
 fn errors_deg(cells: &[Cell], protocol: Protocol, filter: FilterName) -> Vec<f64> {
     let wanted = |cell: &&Cell| cell.protocol == protocol && cell.filter == filter;
     cells.iter().filter(wanted).map(|cell| cell.error_deg).collect()
@@ -44,7 +36,7 @@ fn errors_deg(cells: &[Cell], protocol: Protocol, filter: FilterName) -> Vec<f64
 
 #[test]
 fn the_filters_are_as_accurate_as_the_book_says() {
-    let Some(folder) = data() else { return };
+    let Some(folder) = shared_data::in_release("cyclic-walking") else { return };
     let list = CutList::read(&folder.join("train_cuts.csv")).unwrap();
     let model = train(&list, TrainingOptions { length: 100, rate_hz: 60.0 }).unwrap();
     let cycles = test_cycles(&CutList::read(&folder.join("test_cuts.csv")).unwrap()).unwrap();

@@ -1,6 +1,8 @@
 //! `sinew cut` on real walkers and runners: cuts stay at one phase of the motion, told by cues that cutting does not use.
 //! Runs in release where `../shared/data` is at hand, and says so where not.
 
+mod shared_data;
+
 use sinew::cyclic::AngleTable;
 use sinew::cyclic::cuts::Cut;
 use sinew::cyclic::cutting::{CuttingOptions, cycles};
@@ -13,15 +15,6 @@ const SPREAD: f64 = 0.02;
 const RANGE: f64 = 0.06;
 /// Greatest distance of its mean in the first and the second half.
 const DRIFT: f64 = 0.03;
-
-fn data() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data");
-    if cfg!(debug_assertions) || !folder.is_dir() {
-        eprintln!("skipped: only in release and with ../shared/data beside the project");
-        return None;
-    }
-    Some(folder)
-}
 
 /// All recordings of walking and running at 60 frames a second, with their names.
 fn recordings(data: &Path) -> Vec<(String, AngleTable)> {
@@ -86,7 +79,7 @@ fn middle(mut values: Vec<f64>) -> f64 {
 
 #[test]
 fn cuts_stay_at_one_phase_of_the_motion() {
-    let Some(data) = data() else { return };
+    let Some(data) = shared_data::in_release("") else { return };
     let (mut recordings_seen, mut worst) = (0, [0.0_f64; 3]);
     for (name, table) in recordings(&data) {
         let cuts = cycles(&table, &name, CuttingOptions::default()).unwrap();

@@ -1,13 +1,15 @@
 //! Position in the cycle, cadence and number of cycles over whole recordings of people that no model was trained on, by the
 //! phase-coupled filter. Runs in release where `../shared/data` is at hand, and says so where not.
 
+mod shared_data;
+
 use sinew::cyclic::cuts::{self, Cut};
 use sinew::cyclic::cutting::{CuttingOptions, cycles};
 use sinew::cyclic::recording::{RecordingOptions, angles};
 use sinew::cyclic::tracking::FilterName;
 use sinew::cyclic::{CutList, CyclicModel};
 use sinew::evaluate::cyclic::long_runs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Greatest relative error of the mean cadence from the third cycle on.
 const CADENCE: f64 = 0.02;
@@ -19,15 +21,6 @@ const PHASE: [f64; 2] = [0.05, 0.15];
 const SHORT_PHASE: [f64; 2] = [0.08, 0.15];
 /// Seeds of the noise (6 degrees).
 const SEEDS: [u64; 3] = [1, 2, 3];
-
-fn data() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/mocap");
-    if cfg!(debug_assertions) || !folder.is_dir() {
-        eprintln!("skipped: only in release and with ../shared/data beside the project");
-        return None;
-    }
-    Some(folder)
-}
 
 /// A cut list of the recordings in `data` whose cycles `sinew cut` finds, at least three in each.
 fn list(data: &Path, folder: &Path, files: &[&str]) -> CutList {
@@ -44,7 +37,7 @@ fn list(data: &Path, folder: &Path, files: &[&str]) -> CutList {
 }
 
 fn holds(model: &str, files: &[&str]) {
-    let Some(data) = data() else { return };
+    let Some(data) = shared_data::in_release("mocap") else { return };
     let folder = tempfile::tempdir().unwrap();
     let list = list(&data, folder.path(), files);
     let model = CyclicModel::from_option(model).unwrap();

@@ -1,6 +1,8 @@
 //! Arms that go round: real arm circles of one person in two recordings, forwards and backwards. Runs in release where
 //! `../shared/data` is at hand, and says so where not.
 
+mod shared_data;
+
 use sinew::cyclic::recording::{RecordingOptions, angles};
 use sinew::cyclic::tracking::{FilterName, TrackingOptions, track};
 use sinew::cyclic::training::{TrainingOptions, train};
@@ -9,21 +11,12 @@ use sinew::evaluate::cyclic::Protocol;
 use sinew::evaluate::cyclic::protocol::measurements;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Cycles, found by `sinew cut` in the frames of each direction, of the trials 13_29 and 13_31 at 60 frames a second.
 const FORWARDS: [&str; 2] =
     ["13_29.csv,639,694\n13_29.csv,694,752\n13_29.csv,752,821\n", "13_31.csv,1031,1074\n13_31.csv,1074,1124\n"];
 const BACKWARDS: &str = "13_29.csv,844,914\n13_31.csv,1186,1252\n";
-
-fn data() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/mocap");
-    if cfg!(debug_assertions) || !folder.is_dir() {
-        eprintln!("skipped: only in release and with ../shared/data beside the project");
-        return None;
-    }
-    Some(folder)
-}
 
 /// Both trials as angle tables in `folder`.
 fn write_tables(data: &Path, folder: &Path) {
@@ -67,7 +60,7 @@ fn wrong_turns(model: &CyclicModel, truth: &AngleTable, protocol: Protocol, sigm
 
 #[test]
 fn turns_of_circling_arms_are_counted_both_ways() {
-    let Some(data) = data() else { return };
+    let Some(data) = shared_data::in_release("mocap") else { return };
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     write_tables(&data, folder);

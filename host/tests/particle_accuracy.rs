@@ -1,11 +1,12 @@
 //! What the book says about the particle filter's accuracy on real walkers. Runs in release where `../shared/data` is at hand,
 //! and says so where not.
 
+mod shared_data;
+
 use sinew::cyclic::CutList;
 use sinew::cyclic::tracking::StartName;
 use sinew::cyclic::training::{TrainingOptions, train};
 use sinew::evaluate::cyclic::{Cell, Setting, test_cycles};
-use std::path::{Path, PathBuf};
 
 /// Particles that are compared with a known start, and with an unknown one; seeds.
 const PARTICLES: [usize; 3] = [1000, 20_000, 100_000];
@@ -21,18 +22,9 @@ const GREATEST_SHARE: f64 = 0.3;
 /// sometimes below, since it looks at more positions.
 const UNIFORM_SHARE: [f64; 2] = [0.85, 1.1];
 
-fn data() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/cyclic-walking");
-    if cfg!(debug_assertions) || !folder.is_dir() {
-        eprintln!("skipped: only in release and with ../shared/data beside the project");
-        return None;
-    }
-    Some(folder)
-}
-
 #[test]
 fn more_particles_and_an_unknown_phase_do_what_the_book_says() {
-    let Some(folder) = data() else { return };
+    let Some(folder) = shared_data::in_release("cyclic-walking") else { return };
     let list = CutList::read(&folder.join("train_cuts.csv")).unwrap();
     let model = train(&list, TrainingOptions { length: 100, rate_hz: 60.0 }).unwrap();
     let cycles = test_cycles(&CutList::read(&folder.join("test_cuts.csv")).unwrap()).unwrap();

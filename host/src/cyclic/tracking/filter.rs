@@ -4,7 +4,6 @@ use super::options::{FilterName, StartName, TrackingOptions};
 use super::particles::ParticleFilter;
 use crate::cyclic::smoothing::{CoupledState, KalmanState, Smoothed, backward};
 use anyhow::Result;
-use sinew_core::angle::split_turns;
 use sinew_core::cyclic::particle::{ParticleOptions, Spread};
 use sinew_core::cyclic::{
     AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel,
@@ -40,7 +39,7 @@ impl<'m, const N: usize> Filter<'m, N> {
         let position = options.initial_cycle_position.map(|position| position as f32);
         let velocity = options.initial_cycle_velocity.map(|velocity| (velocity / step_frames) as f32);
         let start = CycleStart::standard(&model, first, position, velocity)?;
-        let mut first_told = first_estimate(&start);
+        let mut first_told = start.estimate();
         let kind = match options.filter {
             FilterName::Paper => {
                 let kalman = KalmanOptions::default();
@@ -144,20 +143,5 @@ impl<'m, const N: usize> Pass<'m, N> {
             States::Kalman(states) => backward(&self.model, states, &self.measurements),
             States::Coupled(states) => backward(&self.model, states, &self.measurements),
         }
-    }
-}
-
-fn first_estimate<const N: usize>(start: &CycleStart<N>) -> CyclicEstimate<N> {
-    let split = start.angles_rad.map(split_turns);
-    CyclicEstimate {
-        angles_rad: split.map(|(angle, _)| angle),
-        turns: split.map(|(_, turns)| turns),
-        angle_variance_rad2: start.extra_variance_rad2,
-        cycle_position: start.cycle_position,
-        cycle_position_variance: 0.0,
-        cycle_velocity_per_frame: start.cycle_velocity,
-        cycle_velocity_variance: 0.0,
-        log_likelihood: 0.0,
-        outlier: false,
     }
 }
