@@ -2,7 +2,10 @@
 #![doc = include_str!("../README.md")]
 
 pub mod angle;
+#[cfg(feature = "c-api")]
+pub mod c_api;
 pub mod camera;
+pub mod checksum;
 pub mod correction;
 pub mod cyclic;
 pub mod error;
@@ -12,6 +15,7 @@ pub mod observation;
 pub mod particle;
 pub mod pik;
 pub mod random;
+pub mod saved_state;
 pub mod skeleton;
 pub mod tracker;
 pub mod vision;

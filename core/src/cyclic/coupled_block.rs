@@ -6,6 +6,7 @@
 
 use super::semi_definite::{packed_index, packed_len};
 use crate::math::{exp, max, sin_cos};
+use crate::saved_state::{FINITE, SavedState, StateVisitor};
 use core::f32::consts::TAU;
 
 /// Numbers of a block.
@@ -78,6 +79,19 @@ pub struct AngleBlock {
 
 /// Numbers of a packed covariance.
 const PACKED: usize = packed_len(PARTS);
+
+impl SavedState for AngleBlock {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.reals(&mut self.mean, &FINITE);
+        visitor.reals(self.regression.as_flattened_mut(), &FINITE);
+        visitor.reals(&mut self.covariance, &FINITE);
+        for i in 0..PARTS {
+            if !(self.covariance(i, i) >= 0.0) {
+                visitor.refuse();
+            }
+        }
+    }
+}
 
 impl AngleBlock {
     /// Nothing known but the spread between people.
@@ -202,8 +216,9 @@ impl AngleBlock {
             self.regression[i][0] -= gain * g[0];
             self.regression[i][1] -= gain * g[1];
             let rounding = ROUNDING * self.covariance(i, i);
-            for j in 0..=i {
-                self.covariance[packed_index(i, j)] -= outlook.column[i] * outlook.column[j] * inverse;
+            let row = self.covariance.iter_mut().skip(packed_index(i, 0));
+            for (entry, column) in row.zip(outlook.column.iter().take(i + 1)) {
+                *entry -= outlook.column[i] * column * inverse;
             }
             let variance = &mut self.covariance[packed_index(i, i)];
             *variance = max(*variance + rounding, 1.0e-10);

@@ -9,6 +9,7 @@ use super::phase::position_difference;
 use super::phase_grid::{POSITIONS, PhaseMode};
 use super::{AngleMeasurement, CyclicEstimate, MotionModel};
 use crate::math::{abs, clamp, max, wrap_angle};
+use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 use core::f32::consts::TAU;
 
 /// Beyond this standard deviation of c, in cycles, the linearisation is void and the position is searched for.
@@ -39,6 +40,15 @@ pub(super) struct Watch {
     strange_frames: f32,
     /// Whether the position is unknown, so that the pose is that of all places together.
     pub(super) searching: bool,
+}
+
+impl SavedState for Watch {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.real(&mut self.unwatched_frames, &NOT_NEGATIVE);
+        visitor.real(&mut self.usual_way, &(-USUAL_LIMIT..=USUAL_LIMIT));
+        visitor.real(&mut self.strange_frames, &NOT_NEGATIVE);
+        visitor.flag(&mut self.searching);
+    }
 }
 
 impl Watch {

@@ -1,6 +1,7 @@
 //! How well cycle position and velocity (c, v) are known: their covariance through prediction and correction.
 
 use crate::math::{clamp, ln, max, min, sqrt};
+use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 
 /// Temporal acceleration, cycles per frame^2.
 const TEMPORAL_STD: f32 = 1.0e-4;
@@ -14,6 +15,16 @@ pub struct CyclePair {
     pub cv: f32,
     /// Variance of v.
     pub vv: f32,
+}
+
+impl SavedState for CyclePair {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.real(&mut self.cc, &NOT_NEGATIVE);
+        visitor.real(&mut self.vv, &NOT_NEGATIVE);
+        // |cov| <= std std, up to rounding.
+        let most = 1.001 * sqrt(self.cc) * sqrt(self.vv);
+        visitor.real(&mut self.cv, &(-most..=most));
+    }
 }
 
 /// What measurements say about (c, v): the normal equations of their residuals.

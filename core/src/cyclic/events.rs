@@ -1,7 +1,8 @@
 //! Cycles counted and phases passed, from the cycle positions that a filter estimates.
 
-use super::phase::{position_difference, wrap_position};
+use super::phase::{POSITIONS_IN_CYCLE, position_difference, wrap_position};
 use crate::math::floor;
+use crate::saved_state::{SavedState, StateVisitor};
 
 /// Counts cycles from one estimate to the next.
 ///
@@ -22,6 +23,14 @@ pub struct CycleStep {
     pub advance: f32,
     /// Time between both, frames.
     pub step_frames: f32,
+}
+
+impl SavedState for CycleCounter {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.real(&mut self.start, &POSITIONS_IN_CYCLE);
+        visitor.real(&mut self.position, &POSITIONS_IN_CYCLE);
+        visitor.integer(&mut self.laps);
+    }
 }
 
 impl CycleCounter {

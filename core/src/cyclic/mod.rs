@@ -6,6 +6,7 @@ pub mod coupled;
 pub mod coupled_block;
 pub mod coupled_moments;
 mod coupled_search;
+mod coupled_state;
 #[cfg(test)]
 mod coupled_tests;
 pub mod covariance;
@@ -27,7 +28,9 @@ mod kalman_tests;
 pub mod log_product;
 pub mod measurement;
 pub mod model;
+pub mod model_bytes;
 pub mod model_table;
+pub mod models;
 pub mod motion_bank;
 pub mod particle;
 pub mod particle_moments;

@@ -2,6 +2,9 @@
 
 use crate::math::floor;
 
+/// What [`wrap_position`] gives.
+pub(crate) const POSITIONS_IN_CYCLE: core::ops::RangeInclusive<f32> = 0.0..=1.0_f32.next_down();
+
 /// `position` moved by whole cycles into [0, 1); 0 for NaN and infinity.
 #[inline]
 #[must_use]

@@ -6,6 +6,7 @@
 use super::phase::{position_difference, wrap_position};
 use super::{AngleMeasurement, MotionModel};
 use crate::math::{exp, least_angle, max, min, round};
+use crate::saved_state::{SavedState, StateVisitor};
 
 /// Positions of the grid.
 pub const POSITIONS: usize = 32;
@@ -51,6 +52,17 @@ pub struct PhaseMode {
 /// Half the width of a place, cycles.
 pub const MODE_REACH: f32 = 0.15;
 
+impl SavedState for PhaseGrid {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.reals(self.weights.as_flattened_mut(), &(0.0..=1.001));
+        visitor.reals(&mut self.travelled, &super::phase::POSITIONS_IN_CYCLE);
+        let sum: f32 = self.weights.iter().flatten().sum();
+        if !(0.99..=1.01).contains(&sum) {
+            visitor.refuse();
+        }
+    }
+}
+
 impl PhaseGrid {
     /// Nothing known.
     #[must_use]
@@ -70,16 +82,16 @@ impl PhaseGrid {
         grid
     }
 
-    /// Position of a cell, [0, 1).
-    fn position(&self, speed: usize, cell: usize) -> f32 {
-        wrap_position(cell as f32 / POSITIONS as f32 + self.travelled[speed])
+    /// Position of a cell of a speed whose way is `travelled`, [0, 1).
+    fn position(travelled: f32, cell: usize) -> f32 {
+        wrap_position(cell as f32 / POSITIONS as f32 + travelled)
     }
 
     fn reweigh(&mut self, factor: impl Fn(usize, f32) -> f32) {
         let mut sum = 0.0;
         for speed in 0..SPEEDS {
             for cell in 0..POSITIONS {
-                let at = self.position(speed, cell);
+                let at = Self::position(self.travelled[speed], cell);
                 self.weights[speed][cell] *= factor(speed, at);
                 sum += self.weights[speed][cell];
             }
@@ -105,10 +117,11 @@ impl PhaseGrid {
             let stay = 1.0 - change * others.iter().flatten().count() as f32;
             let mut row = old[speed].map(|weight| stay * weight);
             for other in others.into_iter().flatten() {
-                let shift = round((self.travelled[speed] - self.travelled[other]) * POSITIONS as f32) as i32;
+                let (Some(from), Some(travelled)) = (old.get(other), self.travelled.get(other)) else { continue };
+                let shift = round((self.travelled[speed] - travelled) * POSITIONS as f32) as i32;
                 let shift = shift.rem_euclid(POSITIONS as i32) as usize;
                 for (cell, weight) in row.iter_mut().enumerate() {
-                    *weight += change * old[other][(cell + shift) % POSITIONS];
+                    *weight += change * from[(cell + shift) % POSITIONS];
                 }
             }
             for (cell, weight) in self.weights[speed].iter_mut().enumerate() {
@@ -140,7 +153,7 @@ impl PhaseGrid {
         let mut sum = 0.0;
         for speed in 0..SPEEDS {
             for cell in 0..POSITIONS {
-                let way = position_difference(self.position(speed, cell), position);
+                let way = position_difference(Self::position(self.travelled[speed], cell), position);
                 if way.abs() <= MODE_REACH {
                     sum += self.weights[speed][cell] * value(speed, way);
                 }
@@ -155,7 +168,7 @@ impl PhaseGrid {
         let mut sums = [0.0; POSITIONS];
         for speed in 0..SPEEDS {
             for cell in 0..POSITIONS {
-                let along = self.position(speed, cell) * POSITIONS as f32;
+                let along = Self::position(self.travelled[speed], cell) * POSITIONS as f32;
                 let before = (along as usize).min(POSITIONS - 1);
                 let part = along - before as f32;
                 sums[before] += (1.0 - part) * self.weights[speed][cell];

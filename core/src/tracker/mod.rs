@@ -1,4 +1,5 @@
 //! The trackers: each frame's step reads like the algorithm box in its paper.
 
 pub mod arm;
+pub mod coupled;
 pub mod cyclic;

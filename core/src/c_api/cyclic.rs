@@ -1,0 +1,239 @@
+//! The cyclic tracker: angles of a walking person in, pose, position in the cycle and cadence out.
+
+use super::cyclic_frame::{SINEW_MAX_ANGLES, SinewCyclicFrame, SinewCyclicResult};
+use super::model::{fingerprint, read_model};
+use super::object::{Seal, Sealed, bytes_mut, given, list, object, place, room};
+use super::status::{SinewStatus, status};
+use crate::cyclic::measurement::MAX_STEP_FRAMES;
+use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::math::min;
+use crate::saved_state::{SavedState, StateError, StateKind, StateVisitor, restore, save, saved_bytes};
+use crate::tracker::coupled::CoupledTracker;
+use crate::tracker::cyclic::{CyclicFrame, FirstPhase};
+
+/// Bytes that always suffice for a cyclic tracker, on every target.
+pub const SINEW_CYCLIC_MAX_BYTES: usize = 3072;
+/// Bytes that always suffice for the saved state of a cyclic tracker.
+pub const SINEW_CYCLIC_STATE_MAX_BYTES: usize = 3072;
+/// Alignment that suffices for every object of this library.
+pub const SINEW_ALIGN: usize = 8;
+
+const _: () = assert!(size_of::<SinewCyclic>() <= SINEW_CYCLIC_MAX_BYTES && align_of::<SinewCyclic>() <= SINEW_ALIGN);
+
+type Tracker = CoupledTracker<SINEW_MAX_ANGLES>;
+
+/// A cyclic tracker; see `sinew_cyclic_init`.
+#[derive(Debug)]
+#[repr(C)]
+pub struct SinewCyclic {
+    seal: Seal,
+    fingerprint: u32,
+    model: MotionModel<'static>,
+    memory: Memory,
+}
+
+/// What changes from frame to frame.
+#[derive(Debug)]
+struct Memory {
+    timestamp_us: u64,
+    /// `None` until a frame showed something.
+    tracker: Option<Tracker>,
+}
+
+// SAFETY: `repr(C)`, the seal first.
+unsafe impl Sealed for SinewCyclic {
+    const SEAL: Seal = Seal::of(*b"SNcy");
+}
+
+/// Bytes that a cyclic tracker takes on this target; `SINEW_CYCLIC_MAX_BYTES` at most.
+#[unsafe(no_mangle)]
+pub extern "C" fn sinew_cyclic_size() -> usize {
+    size_of::<SinewCyclic>()
+}
+
+/// Alignment that the memory of a cyclic tracker needs; `SINEW_ALIGN` at most.
+#[unsafe(no_mangle)]
+pub extern "C" fn sinew_cyclic_align() -> usize {
+    align_of::<SinewCyclic>()
+}
+
+/// Makes a cyclic tracker in `memory`, which it needs as long as it is used; there is nothing to free.
+///
+/// `model` is a motion model in bytes (`sinew model-bytes` makes one), aligned to four, which has to stay where it is as long as the tracker is
+/// used. Null and zero bytes stand for the walking model that the library was built with. All numbers of the model are checked
+/// once, here.
+///
+/// Returns SINEW_STATUS_BAD_MODEL for bytes that are no model of at most `SINEW_MAX_ANGLES` angles, SINEW_STATUS_NO_MODEL if the
+/// library was built without the walking model. `tracker` is written only if the status is SINEW_STATUS_OK.
+///
+/// # Safety
+/// `memory` and `model` have the sizes that are said.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_cyclic_init(
+    memory: *mut u8,
+    memory_bytes: usize,
+    model: *const u8,
+    model_bytes: usize,
+    tracker: *mut *mut SinewCyclic,
+) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let handle = room(tracker)?;
+            let place = place::<SinewCyclic>(memory, memory_bytes)?;
+            let model = read_model(model, model_bytes)?;
+            let fingerprint = fingerprint(&model);
+            let memory = Memory { timestamp_us: 0, tracker: None };
+            handle.write(place.write(SinewCyclic { seal: SinewCyclic::SEAL, fingerprint, model, memory }));
+            Ok(())
+        })()
+    })
+}
+
+/// Takes in one frame, and writes what is known then.
+///
+/// A frame more than 600 frames of the model after the last counts as that much later. Returns SINEW_STATUS_WAITING, and writes no
+/// result, until a first frame shows an angle. Every other status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or
+/// out of range, more angles than the model has, a timestamp not after the last one.
+///
+/// # Safety
+/// `tracker` comes from `sinew_cyclic_init`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_cyclic_step(
+    tracker: *mut SinewCyclic,
+    frame: *const SinewCyclicFrame,
+    result: *mut SinewCyclicResult,
+) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let (tracker, frame, result) = (object(tracker)?, given(frame)?, room(result)?);
+            let answer = tracker.step(frame)?;
+            result.write(SinewCyclicResult::of(frame.timestamp_us, &answer, tracker.memory.is_searching()));
+            Ok(())
+        })()
+    })
+}
+
+/// Forgets all frames; the next one begins anew, at any timestamp.
+///
+/// # Safety
+/// `tracker` comes from `sinew_cyclic_init`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_cyclic_reset(tracker: *mut SinewCyclic) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe { object(tracker) }.map(|tracker| tracker.memory = Memory { timestamp_us: 0, tracker: None }))
+}
+
+/// Writes the state into `buffer`, so that a tracker made with the same model, on this processor or another, can go on from it.
+///
+/// Writes into `written` how many bytes the state takes, also where the buffer is too small. The tracker is not changed.
+///
+/// # Safety
+/// `tracker` comes from `sinew_cyclic_init`, `buffer` has the size that is said.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_cyclic_save(
+    tracker: *mut SinewCyclic,
+    buffer: *mut u8,
+    buffer_bytes: usize,
+    written: *mut usize,
+) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let (tracker, buffer, written) = (object(tracker)?, bytes_mut(buffer, buffer_bytes)?, room(written)?);
+            let SinewCyclic { memory, model, fingerprint, .. } = tracker;
+            let mut state = CyclicState { memory, model };
+            written.write(saved_bytes(&mut state));
+            save(StateKind::Cyclic, *fingerprint, &mut state, buffer)?;
+            Ok(())
+        })()
+    })
+}
+
+/// Goes on from a state that was saved, all of `state_bytes`.
+///
+/// A state that is not whole, of another version or of another model is refused, and the tracker is as before. A state that is
+/// whole and yet holds a number that cannot be (SINEW_STATUS_BAD_STATE too) leaves a tracker that begins anew, as after `sinew_cyclic_reset`.
+///
+/// # Safety
+/// `tracker` comes from `sinew_cyclic_init`, `state` has the size that is said.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_cyclic_restore(
+    tracker: *mut SinewCyclic,
+    state: *const u8,
+    state_bytes: usize,
+) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let (tracker, state) = (object(tracker)?, list(state, state_bytes)?);
+            let SinewCyclic { memory, model, fingerprint, .. } = tracker;
+            let answer = restore(StateKind::Cyclic, *fingerprint, &mut CyclicState { memory, model }, state);
+            if answer == Err(StateError::Illegal) {
+                tracker.memory = Memory { timestamp_us: 0, tracker: None };
+            }
+            Ok(answer?)
+        })()
+    })
+}
+
+impl SinewCyclic {
+    fn step(&mut self, frame: &SinewCyclicFrame) -> Result<CyclicFrame<SINEW_MAX_ANGLES>, SinewStatus> {
+        let measurement = frame.measurement(self.model.angle_count())?;
+        let Some(tracker) = &mut self.memory.tracker else {
+            return self.memory.begin(&self.model, frame, &measurement);
+        };
+        let elapsed_us = frame.timestamp_us.checked_sub(self.memory.timestamp_us).filter(|&elapsed| elapsed > 0);
+        let elapsed_us = elapsed_us.ok_or(SinewStatus::OutOfOrder)?;
+        let step_frames = min(elapsed_us as f32 * 1.0e-6 * self.model.rate_hz(), MAX_STEP_FRAMES);
+        let measurement = measurement.after(step_frames)?;
+        self.memory.timestamp_us = frame.timestamp_us;
+        Ok(tracker.step(&self.model, &measurement))
+    }
+}
+
+impl Memory {
+    fn begin(
+        &mut self,
+        model: &MotionModel<'_>,
+        frame: &SinewCyclicFrame,
+        first: &AngleMeasurement<SINEW_MAX_ANGLES>,
+    ) -> Result<CyclicFrame<SINEW_MAX_ANGLES>, SinewStatus> {
+        if first.is_empty(model.angle_count()) {
+            return Err(SinewStatus::Waiting);
+        }
+        let tracker = self.tracker.insert(Tracker::new(model, first, FirstPhase::default())?);
+        self.timestamp_us = frame.timestamp_us;
+        Ok(tracker.first_frame(model, first))
+    }
+
+    fn is_searching(&self) -> bool {
+        self.tracker.as_ref().is_some_and(|tracker| tracker.filter().is_searching())
+    }
+}
+
+/// The memory as it is saved: a tracker that begins with the state needs a model to be made.
+struct CyclicState<'a> {
+    memory: &'a mut Memory,
+    model: &'a MotionModel<'static>,
+}
+
+impl SavedState for CyclicState<'_> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        let Memory { timestamp_us, tracker } = &mut *self.memory;
+        visitor.long(timestamp_us);
+        let mut has_begun = tracker.is_some();
+        visitor.flag(&mut has_begun);
+        if !has_begun {
+            *tracker = None;
+        } else if tracker.is_none() {
+            *tracker = Tracker::anywhere(self.model).ok();
+        }
+        match tracker {
+            Some(tracker) => tracker.visit(visitor),
+            None if has_begun => visitor.refuse(),
+            None => {}
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! State that outlives a loss of power: saved as bytes with a version and a checksum, checked whole before it is used again.
+//!
+//! A type says once, in [`SavedState::visit`], which numbers it consists of and what range each has. Writing, counting and reading are
+//! three visitors of that one list, so they cannot disagree. All is little-endian words of four bytes; a state saved on one processor is
+//! read by any other.
+
+mod envelope;
+mod visitors;
+
+pub use envelope::{HEADER_WORDS, StateError, StateKind, VERSION, restore, save, saved_bytes};
+pub use visitors::{Counter, Reader, Writer};
+
+use core::ops::RangeInclusive;
+use heapless::Vec;
+
+/// Any finite number.
+pub const FINITE: RangeInclusive<f32> = f32::MIN..=f32::MAX;
+/// Zero or more, finite.
+pub const NOT_NEGATIVE: RangeInclusive<f32> = 0.0..=f32::MAX;
+
+/// What has a state to save.
+pub trait SavedState {
+    /// Shows all numbers of the state, always in the same order.
+    ///
+    /// A reader replaces them as it goes, so a state that is refused half way is left mixed.
+    fn visit(&mut self, visitor: &mut impl StateVisitor);
+}
+
+/// Goes through the numbers of a state.
+pub trait StateVisitor {
+    /// One word; a reader replaces it.
+    fn word(&mut self, word: &mut u32);
+
+    /// Says that a number cannot be: the state is refused.
+    fn refuse(&mut self);
+
+    /// A number within `range`.
+    fn real(&mut self, value: &mut f32, range: &RangeInclusive<f32>) {
+        let mut bits = value.to_bits();
+        self.word(&mut bits);
+        *value = f32::from_bits(bits);
+        if !range.contains(value) {
+            self.refuse();
+        }
+    }
+
+    /// Numbers within `range`.
+    fn reals(&mut self, values: &mut [f32], range: &RangeInclusive<f32>) {
+        for value in values {
+            self.real(value, range);
+        }
+    }
+
+    /// A whole number.
+    fn integer(&mut self, value: &mut i32) {
+        let mut word = value.cast_unsigned();
+        self.word(&mut word);
+        *value = word.cast_signed();
+    }
+
+    /// A whole number in two words.
+    fn long(&mut self, value: &mut u64) {
+        let (mut low, mut high) = (*value as u32, (*value >> 32) as u32);
+        self.word(&mut low);
+        self.word(&mut high);
+        *value = u64::from(high) << 32 | u64::from(low);
+    }
+
+    /// Yes or no.
+    fn flag(&mut self, value: &mut bool) {
+        let mut word = u32::from(*value);
+        self.word(&mut word);
+        *value = word == 1;
+        if word > 1 {
+            self.refuse();
+        }
+    }
+
+    /// A number from 0 to `most`.
+    fn index(&mut self, value: &mut usize, most: usize) {
+        let mut word = *value as u32;
+        self.word(&mut word);
+        *value = word as usize;
+        if *value > most {
+            *value = 0;
+            self.refuse();
+        }
+    }
+
+    /// The length of `list`, which a reader fills up with `fill` or cuts; its elements are to be shown after.
+    fn length<T: Clone, const CAPACITY: usize>(&mut self, list: &mut Vec<T, CAPACITY>, fill: T) {
+        let mut len = list.len();
+        self.index(&mut len, CAPACITY);
+        // It is not more than fits.
+        let _ = list.resize(len, fill);
+    }
+}

@@ -1,0 +1,104 @@
+//! The cyclic tracker of firmware: the phase-coupled filter and the count of cycles, without the choice of another filter, so that no
+//! other filter takes flash. The same numbers as [`super::cyclic::CyclicTracker`] has with that filter.
+
+use super::cyclic::{CyclicFrame, FirstPhase};
+use crate::cyclic::events::{CycleCounter, CycleStep};
+use crate::cyclic::{AngleMeasurement, CoupledFilter, CyclicEstimate, MotionModel};
+use crate::error::ParameterError;
+use crate::saved_state::{SavedState, StateVisitor};
+
+/// State of a tracker for models of up to `N` angles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoupledTracker<const N: usize> {
+    filter: CoupledFilter<N>,
+    counter: CycleCounter,
+}
+
+const _: () = assert!(size_of::<CoupledTracker<13>>() <= 2560, "the tracker has to fit 2.5 KiB");
+
+impl<const N: usize> CoupledTracker<N> {
+    /// A tracker that begins with the frame `first`.
+    ///
+    /// # Errors
+    /// Those of [`CoupledFilter::new`].
+    pub fn new(
+        model: &MotionModel<'_>,
+        first: &AngleMeasurement<N>,
+        phase: FirstPhase,
+    ) -> Result<Self, ParameterError> {
+        let filter = CoupledFilter::new(model, first, phase.position, phase.velocity_per_frame)?;
+        let counter = CycleCounter::new(filter.cycle().position);
+        Ok(Self { filter, counter })
+    }
+
+    /// A tracker of which nothing is known yet.
+    ///
+    /// # Errors
+    /// Those of [`CoupledFilter::anywhere`].
+    pub fn anywhere(model: &MotionModel<'_>) -> Result<Self, ParameterError> {
+        let filter = CoupledFilter::anywhere(model, &AngleMeasurement::nothing())?;
+        let counter = CycleCounter::new(filter.cycle().position);
+        Ok(Self { filter, counter })
+    }
+
+    /// What is known after the first frame.
+    pub fn first_frame(&mut self, model: &MotionModel<'_>, first: &AngleMeasurement<N>) -> CyclicFrame<N> {
+        let estimate = self.filter.present(model, first);
+        let from = estimate.cycle_position;
+        self.answer(model, estimate, CycleStep { from, advance: 0.0, step_frames: 0.0 })
+    }
+
+    /// One frame: predict and correct, count.
+    pub fn step(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicFrame<N> {
+        let estimate = self.filter.step(model, measurement);
+        let (position, velocity) = (estimate.cycle_position, estimate.cycle_velocity_per_frame);
+        let cycle_step = self.counter.advance(position, velocity, measurement.step_frames());
+        self.answer(model, estimate, cycle_step)
+    }
+
+    fn answer(&self, model: &MotionModel<'_>, estimate: CyclicEstimate<N>, cycle_step: CycleStep) -> CyclicFrame<N> {
+        let (cadence_per_min, cadence_std_per_min) = estimate.cadence_per_min(model.rate_hz());
+        let cycles_completed = self.counter.completed();
+        CyclicFrame { estimate, cycles_completed, cadence_per_min, cadence_std_per_min, cycle_step }
+    }
+
+    /// The filter.
+    #[must_use]
+    pub const fn filter(&self) -> &CoupledFilter<N> {
+        &self.filter
+    }
+}
+
+impl<const N: usize> SavedState for CoupledTracker<N> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        self.filter.visit(visitor);
+        self.counter.visit(visitor);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cyclic::CyclicTracker;
+    use super::*;
+    use crate::cyclic::synthetic;
+
+    #[test]
+    fn it_answers_as_the_tracker_with_a_choice_of_filters() {
+        let table = synthetic::table(4.0e-3, 9);
+        let model = table.model().unwrap();
+        let seen = |frame: u16| {
+            let angles: [_; 13] = core::array::from_fn(|i| {
+                let angle = synthetic::mean_angle(i, f32::from(frame) / 65.0);
+                (!(usize::from(frame) + i).is_multiple_of(7)).then_some(angle)
+            });
+            AngleMeasurement::new(&angles, 0.1).unwrap()
+        };
+        let mut both = CyclicTracker::new(&model, Default::default(), &seen(1).into(), FirstPhase::default()).unwrap();
+        let mut coupled = CoupledTracker::new(&model, &seen(1), FirstPhase::default()).unwrap();
+        let first = coupled.first_frame(&model, &seen(1));
+        assert_eq!((first.cycles_completed, first.estimate.cycle_position), (0, both.filter().cycle_position()));
+        for frame in 2..200 {
+            assert_eq!(both.step(&model, &seen(frame).into()), coupled.step(&model, &seen(frame)));
+        }
+    }
+}
