@@ -38,10 +38,10 @@ impl BoundingBox {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Component {
     area_px: u32,
-    sum_u: u64,
+    twice_sum_u: u64,
     sum_v: u64,
-    sum_uu: u64,
-    sum_uv: u64,
+    twelve_sum_uu: u64,
+    twice_sum_uv: u64,
     sum_vv: u64,
     bounding_box: BoundingBox,
     run_count: u32,
@@ -55,10 +55,10 @@ impl Component {
     /// A component without pixels.
     const EMPTY: Self = Self {
         area_px: 0,
-        sum_u: 0,
+        twice_sum_u: 0,
         sum_v: 0,
-        sum_uu: 0,
-        sum_uv: 0,
+        twelve_sum_uu: 0,
+        twice_sum_uv: 0,
         sum_vv: 0,
         bounding_box: BoundingBox { min_u: u16::MAX, min_v: u16::MAX, max_u: 0, max_v: 0 },
         run_count: 0,
@@ -70,27 +70,29 @@ impl Component {
     /// The component of one run `start..end` (not empty) of line `row`.
     pub(super) fn from_run(start: u16, end: u16, row: u16) -> Self {
         let mut component = Self::EMPTY;
+        component.bounding_box.min_v = row;
         component.add_run(start, end, row, [0; 3]);
         component
     }
 
-    /// Adds the run `start..end` (not empty) of line `row`, and its `pairs` with runs of the line above it, see [`overlaps`].
+    /// Adds the run `start..end` (not empty) of line `row`, no earlier one than before, and its `pairs` with runs of the line above
+    /// it, see [`overlaps`].
     pub(super) fn add_run(&mut self, start: u16, end: u16, row: u16, pairs: [u32; 3]) {
-        // No product of two factors exceeds 32 bits: sides are at most 8192 pixels.
+        // No product of two factors exceeds 32 bits: sides are at most 8192 pixels. About its middle m = s / 2 a run of n has the sums
+        // n m and n m^2 + n (n^2 - 1) / 12, which twice and twelve times are whole.
         let (first, next, v) = (u32::from(start), u32::from(end), u32::from(row));
-        let area = next - first;
-        let (sum_u, sum_v) = (area * (first + next - 1) / 2, area * v);
+        let (area, s) = (next - first, first + next - 1);
+        let (twice_sum_u, sum_v) = (area * s, area * v);
         self.area_px += area;
-        self.sum_u += u64::from(sum_u);
+        self.twice_sum_u += u64::from(twice_sum_u);
         self.sum_v += u64::from(sum_v);
-        self.sum_uu += squares(first, next);
-        self.sum_uv += u64::from(sum_u) * u64::from(v);
+        self.twelve_sum_uu += u64::from(area) * u64::from(3 * s * s + area * area - 1);
+        self.twice_sum_uv += u64::from(twice_sum_u) * u64::from(v);
         self.sum_vv += u64::from(sum_v) * u64::from(v);
         let bounds = &mut self.bounding_box;
         bounds.min_u = bounds.min_u.min(start);
-        bounds.min_v = bounds.min_v.min(row);
         bounds.max_u = bounds.max_u.max(end - 1);
-        bounds.max_v = bounds.max_v.max(row);
+        bounds.max_v = row;
         self.run_count += 1;
         self.pairs.iter_mut().zip(pairs).for_each(|(mine, more)| *mine += more);
         self.unrecorded_px += area;
@@ -99,10 +101,10 @@ impl Component {
     /// Takes over all of `other`'s pixels and runs.
     pub(super) fn merge(&mut self, other: &Self, pool: &mut RunPool<'_>) {
         self.area_px += other.area_px;
-        self.sum_u += other.sum_u;
+        self.twice_sum_u += other.twice_sum_u;
         self.sum_v += other.sum_v;
-        self.sum_uu += other.sum_uu;
-        self.sum_uv += other.sum_uv;
+        self.twelve_sum_uu += other.twelve_sum_uu;
+        self.twice_sum_uv += other.twice_sum_uv;
         self.sum_vv += other.sum_vv;
         let (a, b) = (&mut self.bounding_box, &other.bounding_box);
         a.min_u = a.min_u.min(b.min_u);
@@ -141,20 +143,21 @@ impl Component {
     pub fn centroid(&self) -> Pixel {
         let area = u64::from(self.area_px.max(1));
         let mean = |sum: u64| (sum / area) as f32 + (sum % area) as f32 / area as f32;
-        Pixel::new(mean(self.sum_u), mean(self.sum_v))
+        Pixel::new(mean(self.twice_sum_u / 2), mean(self.sum_v))
     }
 
     /// Second central moments of the pixels' centres: uu, uv, vv, square pixels.
     #[must_use]
     pub fn moments_px2(&self) -> [f32; 3] {
         let area = i64::from(self.area_px.max(1));
-        let (su, sv) = (self.sum_u as i64, self.sum_v as i64);
+        let (su, sv) = ((self.twice_sum_u / 2) as i64, self.sum_v as i64);
+        let (suu, suv) = ((self.twelve_sum_uu / 12) as i64, (self.twice_sum_uv / 2) as i64);
         let (cu, cv) = (su / area, sv / area);
         // Exact about a whole pixel near the centroid, then moved by the fraction of a pixel that is left.
         let (du, dv) = ((su % area) as f32 / area as f32, (sv % area) as f32 / area as f32);
-        let uu = self.sum_uu as i64 - 2 * cu * su + area * cu * cu;
+        let uu = suu - 2 * cu * su + area * cu * cu;
         let vv = self.sum_vv as i64 - 2 * cv * sv + area * cv * cv;
-        let uv = self.sum_uv as i64 - cu * sv - cv * su + area * cu * cv;
+        let uv = suv - cu * sv - cv * su + area * cu * cv;
         let n = area as f32;
         [uu as f32 / n - du * du, uv as f32 / n - du * dv, vv as f32 / n - dv * dv]
     }
@@ -181,16 +184,11 @@ impl Component {
 #[inline]
 pub(super) fn overlaps(above: (u16, u16), below: (u16, u16)) -> [u32; 3] {
     let (a0, a1, b0, b1) = (i32::from(above.0), i32::from(above.1), i32::from(below.0), i32::from(below.1));
-    [-1, 0, 1].map(|shift| ((a1 + shift).min(b1) - (a0 + shift).max(b0)).max(0) as u32)
-}
-
-/// first^2 + ... + (next - 1)^2, both at most [`super::mask::MAX_SIDE_PX`].
-#[inline]
-fn squares(first: u32, next: u32) -> u64 {
-    /// 3 x `THIRD` = 1 modulo 2^64: a product by it divides what is divisible by 3, without a division in 64 bits.
-    const THIRD: u64 = 0xAAAA_AAAA_AAAA_AAAB;
-    let three_times_below = |n: u32| u64::from((n * n - n) / 2) * u64::from((2 * n).saturating_sub(1));
-    (three_times_below(next) - three_times_below(first)).wrapping_mul(THIRD)
+    // A shift by one moves the common part's ends only where they are the upper run's.
+    let common = a1.min(b1) - a0.max(b0);
+    let left = common - i32::from(a1 <= b1) + i32::from(a0 > b0);
+    let right = common + i32::from(a1 < b1) - i32::from(a0 >= b0);
+    [left, common, right].map(|pairs| pairs.max(0) as u32)
 }
 
 /// Perimeter of a set of pixels from how often lines in four directions cross its outline (Cauchy-Crofton).
@@ -224,12 +222,30 @@ mod tests {
     }
 
     #[test]
-    fn sums_of_squares_are_exact() {
-        let mut sum = 0;
-        for n in 0..=MAX_SIDE_PX as u32 {
-            assert_eq!(squares(0, n), sum);
-            assert_eq!(squares(n / 3, n), sum - squares(0, n / 3));
-            sum += u64::from(n) * u64::from(n);
+    fn sums_of_runs_are_exact() {
+        let mut sums = [0_u64; 2];
+        for end in 1..=MAX_SIDE_PX as u16 {
+            let u = u64::from(end - 1);
+            sums = [sums[0] + u, sums[1] + u * u];
+            let whole = Component::from_run(0, end, 3);
+            assert_eq!([whole.twice_sum_u, whole.twelve_sum_uu], [2 * sums[0], 12 * sums[1]]);
+            assert_eq!(whole.twice_sum_uv, 6 * sums[0]);
+            let (mut parts, middle) = (Component::from_run(0, end / 3 + 1, 3), end / 3 + 1);
+            if middle < end {
+                parts.add_run(middle, end, 3, [0; 3]);
+                assert_eq!(Component { run_count: 1, ..parts }, whole);
+            }
+        }
+    }
+
+    #[test]
+    fn pairs_of_runs_are_counted_pixel_by_pixel() {
+        let set = |run: (u16, u16), u: i32| (i32::from(run.0)..i32::from(run.1)).contains(&u);
+        for code in 0..8_u16.pow(4) {
+            let [a0, a1, b0, b1] = [code % 8, code / 8 % 8, code / 64 % 8, code / 512];
+            let (above, below) = ((a0, a0 + 1 + a1), (b0, b0 + 1 + b1));
+            let counted = [-1, 0, 1].map(|d| (-1..17).filter(|&u| set(above, u) && set(below, u + d)).count() as u32);
+            assert_eq!(overlaps(above, below), counted, "{above:?} {below:?}");
         }
     }
 

@@ -8,6 +8,8 @@ use crate::vision::edges::{EdgeList, EdgePixel, EdgeThinning};
 pub const EDGE_CELL_PX: usize = 2;
 /// Cells in 32 columns.
 const CELLS_PER_BLOCK: usize = 16;
+/// Columns of a block of cells.
+const BLOCK_PX: usize = EDGE_CELL_PX * CELLS_PER_BLOCK;
 /// Words of the luminances of a block's cells, a byte each.
 const BLOCK_WORDS: usize = 4;
 /// The highest bit of each byte.
@@ -146,17 +148,24 @@ impl<const WORDS: usize, const ROWS: usize> EdgeLines<WORDS, ROWS> {
     fn judge<const EDGES: usize>(&mut self, row: usize, columns: usize, edges: &mut EdgeList<EDGES>) {
         let [above, here, below] = [row + 2, row, row + 1].map(|r| &self.cells[r % 3]);
         let Some(map) = self.map.rows.get_mut(row) else { return };
-        let mut before = 0;
-        for i in 0..WORDS.min(columns.div_ceil(CELLS_PER_BLOCK)) {
+        let (steps, mut before, mut inner) = (self.steps, 0, INNER_OF_FIRST);
+        let blocks = columns.div_ceil(CELLS_PER_BLOCK);
+        let rows = above.iter().zip(here).zip(below);
+        for (i, (((above, here_block), below), map)) in rows.zip(map).enumerate().take(blocks) {
             let next = here.get(i + 1).map_or(0, |block| block[0]);
-            let (new, known) = steep(self.steps, [&above[i], &here[i], &below[i]], before, next);
-            before = here[i][BLOCK_WORDS - 1];
-            let inner = inner_cells(i * CELLS_PER_BLOCK, columns);
-            let moving = new & inner & !u32::from(map[i]);
-            map[i] = (known & inner) as u16;
-            if self.known && moving != 0 {
+            if i + 1 >= blocks {
+                inner &= inner_of_last(columns);
+            }
+            // Where the frame before is not known nothing is new.
+            let old = if self.known { u32::from(*map) } else { u32::MAX };
+            let (new, known) = steep(steps, [above, here_block, below], [before, next], old);
+            before = here_block[BLOCK_WORDS - 1];
+            *map = (known & inner) as u16;
+            let moving = new & inner & !old;
+            if moving != 0 {
                 self.thinning.offer_bits(moving, i * CELLS_PER_BLOCK, row, edges);
             }
+            inner = u32::MAX;
         }
     }
 }
@@ -176,22 +185,36 @@ impl EdgeThinning {
 /// Luminances of a line's whole cells, four a word, the first in the lowest byte.
 fn read_cells<F: PixelFormat, const WORDS: usize>(line: &[u16], width: usize, cells: &mut Cells<WORDS>) {
     let line = &line[..line.len().min(width)];
-    let (whole, rest) = line.as_chunks::<{ 2 * BLOCK_WORDS }>();
-    let mut words = cells.as_flattened_mut().iter_mut();
-    for (block, word) in whole.iter().zip(words.by_ref()) {
-        *word = F::luminances(block);
+    let (whole, rest) = line.as_chunks::<BLOCK_PX>();
+    let mut blocks = cells.iter_mut();
+    for (pixels, block) in whole.iter().zip(blocks.by_ref()) {
+        *block = block_luminances::<F>(pixels);
     }
-    if let Some(word) = words.next() {
-        let mut last = [0; 2 * BLOCK_WORDS];
+    if let Some(block) = blocks.next() {
+        let mut last = [0; BLOCK_PX];
         last.iter_mut().zip(rest).for_each(|(to, from)| *to = *from);
-        *word = F::luminances(&last);
+        *block = block_luminances::<F>(&last);
     }
-    words.for_each(|word| *word = 0);
+    blocks.for_each(|block| *block = [0; BLOCK_WORDS]);
 }
 
-/// Bits of the cells of a block whose steps reach the two limits.
 #[inline]
-fn steep(steps: EdgeSteps, [above, here, below]: [&[u32; BLOCK_WORDS]; 3], before: u32, next: u32) -> (u32, u32) {
+fn block_luminances<F: PixelFormat>(pixels: &[u16; BLOCK_PX]) -> [u32; BLOCK_WORDS] {
+    let mut block = [0; BLOCK_WORDS];
+    for (word, eight) in block.iter_mut().zip(pixels.as_chunks::<{ BLOCK_PX / BLOCK_WORDS }>().0) {
+        *word = F::luminances(eight);
+    }
+    block
+}
+
+/// Bits of the cells of a block whose steps reach the two limits; the first ones are right only for cells that are not in `old`.
+#[inline]
+fn steep(
+    steps: EdgeSteps,
+    [above, here, below]: [&[u32; BLOCK_WORDS]; 3],
+    [before, next]: [u32; 2],
+    old: u32,
+) -> (u32, u32) {
     let (mut new, mut known) = (0, 0);
     let mut last = before;
     for i in 0..BLOCK_WORDS {
@@ -199,11 +222,11 @@ fn steep(steps: EdgeSteps, [above, here, below]: [&[u32; BLOCK_WORDS]; 3], befor
         let (left, right) = (here[i] << 8 | last >> 24, here[i] >> 8 | after << 24);
         last = here[i];
         let (across, down) = (half_difference(right, left), half_difference(below[i], above[i]));
-        let at_least = |limit: Limit| (limit.reached(across) | limit.reached(down)) & TOPS;
-        let some = at_least(steps.known);
-        if some != 0 {
-            known |= nibble(some) << (4 * i);
-            new |= nibble(at_least(steps.new)) << (4 * i);
+        let at_least = |limit: Limit| nibble((limit.reached(across) | limit.reached(down)) & TOPS);
+        let here_known = at_least(steps.known);
+        known |= here_known << (4 * i);
+        if here_known & !(old >> (4 * i)) != 0 {
+            new |= at_least(steps.new) << (4 * i);
         }
     }
     (new, known)
@@ -219,15 +242,16 @@ fn half_difference(a: u32, b: u32) -> u32 {
 /// The highest bits of four bytes, all other bits zero, as four bits.
 #[inline]
 fn nibble(tops: u32) -> u32 {
-    (tops >> 7).wrapping_mul(1 << 28 | 1 << 21 | 1 << 14 | 1 << 7) >> 28
+    // Bits 7, 15, 23 and 31 move to 28 to 31; no two of the sixteen products meet.
+    tops.wrapping_mul(1 << 21 | 1 << 14 | 1 << 7 | 1) >> 28
 }
 
-/// The bits of a block's cells that are neither the line's first nor its last.
-#[inline]
-fn inner_cells(first: usize, columns: usize) -> u32 {
-    let end = columns.saturating_sub(1).saturating_sub(first).min(CELLS_PER_BLOCK);
-    let below = (1_u32 << end) - 1;
-    if first == 0 { below & !1 } else { below }
+/// The bits of a line's first block but its first cell's.
+const INNER_OF_FIRST: u32 = !1;
+
+/// The bits of a line's last block that lie before its last cell; lines of `columns` cells.
+fn inner_of_last(columns: usize) -> u32 {
+    (1 << (columns.saturating_sub(1) % CELLS_PER_BLOCK)) - 1
 }
 
 #[cfg(test)]

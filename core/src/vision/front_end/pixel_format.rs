@@ -40,13 +40,12 @@ impl PixelFormat for Rgb565 {
     /// (2 R + 2 G + B) / 2 of R and B in 5 and G in 6 bits, which weighs them by 0.28, 0.58 and 0.14.
     #[inline]
     fn luminances(pixels: &[u16; 8]) -> u32 {
-        let twice = |first: usize| {
-            // Two pixels at once, one in each half; the sums are below 256.
+        let two = |first: usize| {
+            // Two pixels at once, one in each half; the sums are below 128.
             let both = u32::from(pixels[first]) | u32::from(pixels[first + 4]) << 16;
-            let (red, green, blue) = (both >> 11 & 0x001f_001f, both >> 5 & 0x003f_003f, both & 0x001f_001f);
-            (red + green) * 2 + blue
+            (both >> 11 & 0x001f_001f) + (both >> 5 & 0x003f_003f) + (both >> 1 & 0x000f_000f)
         };
-        (twice(0) | twice(2) << 8) >> 1 & HALVES
+        two(0) | two(2) << 8
     }
 
     fn rgb(key: u16) -> [u8; 3] {

@@ -74,7 +74,7 @@ impl<F: PixelFormat> SkinTable<F> {
         let count = whole.len().min(bits.len());
         let (first, last) = bits.split_at_mut(count);
         for (word, block) in first.iter_mut().zip(whole) {
-            *word = self.classify_pairs(block.as_chunks::<2>().0);
+            *word = self.classify_block(block);
         }
         last.fill(0);
         if let Some(word) = last.first_mut() {
@@ -87,6 +87,34 @@ impl<F: PixelFormat> SkinTable<F> {
                 *word |= u32::from(self.is_skin(F::keys(pair)[0])) << judged;
             }
         }
+    }
+
+    /// Bits of a word's pixels.
+    #[inline]
+    fn classify_block(&self, block: &[u16; PIXELS_PER_WORD]) -> u32 {
+        let [a, b, c, d, e, f, g, h] = block.as_chunks::<4>().0 else { return 0 };
+        // Written out: with its place known, four pixels without skin cost nothing but the look at them.
+        let bits = self.with_four(0, a, 0);
+        let bits = self.with_four(bits, b, 4);
+        let bits = self.with_four(bits, c, 8);
+        let bits = self.with_four(bits, d, 12);
+        let bits = self.with_four(bits, e, 16);
+        let bits = self.with_four(bits, f, 20);
+        let bits = self.with_four(bits, g, 24);
+        self.with_four(bits, h, 28)
+    }
+
+    /// `bits` with those of four pixels from `place` on. Most words of a table are zero, so most often their union decides all four.
+    #[inline]
+    fn with_four(&self, bits: u32, four: &[u16; 4], place: u32) -> u32 {
+        let &[left, right] = four.as_chunks::<2>().0 else { return bits };
+        let ([a, b], [c, d]) = (F::keys(left), F::keys(right));
+        let [in_a, in_b, in_c, in_d] = [a, b, c, d].map(|key| self.words[usize::from(key >> 5)]);
+        if in_a | in_b | in_c | in_d == 0 {
+            return bits;
+        }
+        let bit = |word: u32, key: u16| word.rotate_right(u32::from(key)) & 1;
+        bits | (bit(in_a, a) | bit(in_b, b) << 1 | bit(in_c, c) << 2 | bit(in_d, d) << 3) << place
     }
 
     /// Bits of up to 16 pairs, the last one in the highest bit.
