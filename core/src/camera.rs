@@ -12,6 +12,7 @@ const UNDISTORT_STEPS: usize = 12;
 /// A point of the image, pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(C)]
 pub struct Pixel {
     /// Column, to the right.
     pub u_px: f32,

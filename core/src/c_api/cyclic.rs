@@ -10,6 +10,8 @@ use crate::math::min;
 use crate::saved_state::{SavedState, StateError, StateKind, StateVisitor, restore, save, saved_bytes};
 use crate::tracker::coupled::CoupledTracker;
 use crate::tracker::cyclic::{CyclicFrame, FirstPhase};
+use core::ffi::c_void;
+use core::mem::offset_of;
 
 /// Bytes that always suffice for a cyclic tracker, on every target.
 pub const SINEW_CYCLIC_MAX_BYTES: usize = 3072;
@@ -24,7 +26,6 @@ type Tracker = CoupledTracker<SINEW_MAX_ANGLES>;
 
 /// A cyclic tracker; see `sinew_cyclic_init`.
 #[derive(Debug)]
-#[repr(C)]
 pub struct SinewCyclic {
     seal: Seal,
     fingerprint: u32,
@@ -40,9 +41,10 @@ struct Memory {
     tracker: Option<Tracker>,
 }
 
-// SAFETY: `repr(C)`, the seal first.
+// SAFETY: the seal is that field.
 unsafe impl Sealed for SinewCyclic {
     const SEAL: Seal = Seal::of(*b"SNcy");
+    const SEAL_AT: usize = offset_of!(SinewCyclic, seal);
 }
 
 /// Bytes that a cyclic tracker takes on this target; `SINEW_CYCLIC_MAX_BYTES` at most.
@@ -70,9 +72,9 @@ pub extern "C" fn sinew_cyclic_align() -> usize {
 /// `memory` and `model` have the sizes that are said.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_cyclic_init(
-    memory: *mut u8,
+    memory: *mut c_void,
     memory_bytes: usize,
-    model: *const u8,
+    model: *const c_void,
     model_bytes: usize,
     tracker: *mut *mut SinewCyclic,
 ) -> SinewStatus {

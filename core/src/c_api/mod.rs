@@ -12,6 +12,9 @@
 //! no other thread uses the same object meanwhile.
 #![allow(unsafe_code)]
 
+pub mod arm;
+pub mod arm_frame;
+pub mod arm_pair;
 pub mod cyclic;
 pub mod cyclic_frame;
 mod model;
@@ -19,3 +22,5 @@ mod object;
 #[cfg(feature = "panic-handler")]
 mod panic;
 pub mod status;
+pub mod vision;
+pub mod vision_frame;

@@ -6,6 +6,7 @@ use super::status::SinewStatus;
 use crate::checksum::Crc32;
 use crate::cyclic::MotionModel;
 use crate::cyclic::model_bytes::{HEADER_BYTES, ModelHeader};
+use core::ffi::c_void;
 
 #[cfg(target_endian = "big")]
 compile_error!("motion models are read in place, as little-endian numbers");
@@ -17,7 +18,7 @@ compile_error!("motion models are read in place, as little-endian numbers");
 ///
 /// # Safety
 /// `model` points at `bytes` bytes that never change.
-pub(super) unsafe fn read_model(model: *const u8, bytes: usize) -> Result<MotionModel<'static>, SinewStatus> {
+pub(super) unsafe fn read_model(model: *const c_void, bytes: usize) -> Result<MotionModel<'static>, SinewStatus> {
     if model.is_null() && bytes == 0 {
         return walking();
     }
@@ -25,7 +26,7 @@ pub(super) unsafe fn read_model(model: *const u8, bytes: usize) -> Result<Motion
         return Err(SinewStatus::Misaligned);
     }
     // SAFETY: the caller's duty.
-    let bytes = unsafe { list(model, bytes)? };
+    let bytes = unsafe { list(model.cast::<u8>(), bytes)? };
     let header = ModelHeader::read(bytes).map_err(|_| SinewStatus::BadModel)?;
     if header.angle_count > SINEW_MAX_ANGLES {
         return Err(SinewStatus::BadModel);

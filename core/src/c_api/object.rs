@@ -1,9 +1,10 @@
 //! From pointers to references, after checking what can be checked.
 
 use super::status::{Answer, SinewStatus};
+use core::ffi::c_void;
 use core::mem::MaybeUninit;
 
-/// First bytes of every object that was initialised: the kind, and its complement, which no forgotten memory has by chance.
+/// What marks an object that was initialised: the kind, and its complement, which no forgotten memory has by chance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub(super) struct Seal {
@@ -19,13 +20,15 @@ impl Seal {
     }
 }
 
-/// An object that begins with a [`Seal`].
+/// An object with a [`Seal`].
 ///
 /// # Safety
-/// The type is `repr(C)` and its first field is a `Seal`.
+/// A field of the type [`Seal`] lies at [`Self::SEAL_AT`].
 pub(super) unsafe trait Sealed {
     /// The seal of this type.
     const SEAL: Seal;
+    /// Bytes before it.
+    const SEAL_AT: usize;
 }
 
 /// A structure that is read from the caller's memory.
@@ -101,8 +104,8 @@ pub(super) unsafe fn bytes_mut<'a>(pointer: *mut u8, len: usize) -> Result<&'a m
 /// Otherwise `pointer` points at a `T` that nobody else uses for `'a`.
 pub(super) unsafe fn object<'a, T: Sealed>(pointer: *mut T) -> Result<&'a mut T, SinewStatus> {
     check(pointer)?;
-    // SAFETY: aligned, and by the caller's duty memory of at least a T, which begins with a Seal; any bits make a Seal.
-    let seal = unsafe { pointer.cast::<Seal>().read_volatile() };
+    // SAFETY: aligned, and by the caller's duty memory of at least a T, which has a Seal there; any bits make a Seal.
+    let seal = unsafe { pointer.byte_add(T::SEAL_AT).cast::<Seal>().read_volatile() };
     if seal != T::SEAL {
         return Err(SinewStatus::NotInitialised);
     }
@@ -117,7 +120,7 @@ pub(super) unsafe fn object<'a, T: Sealed>(pointer: *mut T) -> Result<&'a mut T,
 ///
 /// # Safety
 /// Otherwise `memory` points at `bytes` bytes that nobody else uses for `'a`.
-pub(super) unsafe fn place<'a, T>(memory: *mut u8, bytes: usize) -> Result<&'a mut MaybeUninit<T>, SinewStatus> {
+pub(super) unsafe fn place<'a, T>(memory: *mut c_void, bytes: usize) -> Result<&'a mut MaybeUninit<T>, SinewStatus> {
     let pointer: *mut T = memory.cast();
     check(pointer)?;
     if bytes < size_of::<T>() {

@@ -7,6 +7,7 @@ use core::f32::consts::PI;
 /// The part of a blob that an arm tracker uses: a few numbers, so that a frame's list is small state.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(C)]
 pub struct HandCandidate {
     /// Where the hand's centre is taken to be.
     pub centre: Pixel,

@@ -90,7 +90,8 @@ struct StopRule {
 impl StopRule {
     /// Adds a variance and says whether inequality (12) holds for the last j.
     fn is_stable(&mut self, variance: f32, gamma: f32) -> bool {
-        if let Some(slot) = self.values.get_mut(self.seen % self.window) {
+        let oldest = self.seen.checked_rem(self.window);
+        if let Some(slot) = oldest.and_then(|oldest| self.values.get_mut(oldest)) {
             *slot = variance;
         }
         self.seen += 1;

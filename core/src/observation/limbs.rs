@@ -59,7 +59,7 @@ pub fn split(pixels: &[EdgePixel], arm: &ArmImagePoints, band_px: f32) -> LimbPi
     let mut seen = [0_usize; 2];
     for pixel in pixels {
         let Some(limb) = limb_of(pixel, arm, band_px) else { continue };
-        if seen[limb] % strides[limb] == 0 {
+        if seen[limb].is_multiple_of(strides[limb]) {
             let kept = if limb == 0 { &mut result.upper } else { &mut result.fore };
             // Cannot overflow: the stride leaves at most the capacity.
             let _ = kept.push(*pixel);

@@ -2,6 +2,7 @@
 
 use crate::error::{ParameterError, Rule};
 use crate::math::{clamp, floor, ln, sin_cos, sqrt, wrap_orientation};
+use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::PI;
 
 /// Most bins of a histogram.
@@ -12,6 +13,17 @@ pub const MAX_BINS: usize = 72;
 pub struct OrientationDensity {
     bins: [f32; MAX_BINS],
     len: usize,
+}
+
+impl SavedState for OrientationDensity {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.reals(&mut self.bins, &(0.0..=MAX_BINS as f32));
+        visitor.index(&mut self.len, MAX_BINS);
+        if self.len < 2 {
+            self.len = MAX_BINS;
+            visitor.refuse();
+        }
+    }
 }
 
 impl OrientationDensity {

@@ -26,7 +26,11 @@ pub fn systematic(weights: &[f32], offset: f32, ancestors: &mut [u16]) {
 pub fn permute<T>(items: &mut [T], stream: &mut Stream) {
     for i in (1..items.len()).rev() {
         let other = stream.below(i as u32 + 1) as usize;
-        items.swap(i, other);
+        let Some((last, before)) = items.get_mut(..=i).and_then(<[T]>::split_last_mut) else { continue };
+        // The last itself is not before it: it stays.
+        if let Some(other) = before.get_mut(other) {
+            core::mem::swap(last, other);
+        }
     }
 }
 

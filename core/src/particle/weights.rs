@@ -2,6 +2,7 @@
 
 use crate::error::{ParameterError, Rule};
 use crate::math::{exp, ln};
+use crate::saved_state::{SavedState, StateVisitor};
 use heapless::Vec;
 
 /// All weights were zero (or not a number). The set was made uniform; nothing was learned from this frame.
@@ -15,6 +16,19 @@ pub struct Degenerate;
 pub struct Weights<const CAPACITY: usize> {
     log: Vec<f32, CAPACITY>,
     normalised: Vec<f32, CAPACITY>,
+}
+
+impl<const CAPACITY: usize> SavedState for Weights<CAPACITY> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.length(&mut self.normalised, 0.0);
+        visitor.reals(&mut self.normalised, &(0.0..=1.001));
+        let sum: f32 = self.normalised.iter().sum();
+        if !(0.99..=1.01).contains(&sum) {
+            visitor.refuse();
+        }
+        // The logarithms are set anew before they are read.
+        let _ = self.log.resize(self.normalised.len(), 0.0);
+    }
 }
 
 impl<const CAPACITY: usize> Weights<CAPACITY> {

@@ -100,13 +100,15 @@ impl<const BONES: usize, const ANGLES: usize> Skeleton<BONES, ANGLES> {
         for (index, bone) in bones.iter().enumerate() {
             let inherited = match bone.parent {
                 None => 0,
-                Some(parent) if usize::from(parent) < index => moved_by[usize::from(parent)],
-                Some(_) => {
+                Some(parent) => {
+                    let before = moved_by.get(..index).and_then(|before| before.get(usize::from(parent)));
                     let rule = Rule::Within { low: 0.0, high: index as f32 - 1.0 };
-                    return Err(ParameterError::new("bone.parent", rule));
+                    *before.ok_or(ParameterError::new("bone.parent", rule))?
                 }
             };
-            moved_by[index] = inherited | (1 << index);
+            if let Some(mask) = moved_by.get_mut(index) {
+                *mask = inherited | (1 << index);
+            }
             for axis in bone.joint.axes() {
                 if !(abs(length(axis) - 1.0) < 1.0e-4) {
                     return Err(ParameterError::new("bone.joint axis length", Rule::Within { low: 1.0, high: 1.0 }));

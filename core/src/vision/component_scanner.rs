@@ -112,7 +112,7 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
         self.dropped_px = self.dropped_px.saturating_add(lost_px);
         self.counts[here] = count;
         self.connect(pool);
-        for i in 0..count {
+        for i in 0..count.min(RUNS) {
             self.lines[here][i].slot = self.root(self.lines[here][i].slot);
         }
         self.close_ended(above, pool, sink);
@@ -133,17 +133,19 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
     /// Gives each run of the new line a slot, and merges what it connects.
     fn connect(&mut self, pool: &mut RunPool<'_>) {
         let (above, here) = (self.last & 1, (self.last + 1) & 1);
+        // Counts never exceed the capacity; said here, it lets no index be checked.
+        let (count_above, count) = (self.counts[above].min(RUNS), self.counts[here].min(RUNS));
         let mut first = 0;
-        for i in 0..self.counts[here] {
+        for i in 0..count {
             let LineRun { start, end, .. } = self.lines[here][i];
-            while first < self.counts[above] && self.lines[above][first].end < start {
+            while first < count_above && self.lines[above][first].end < start {
                 first += 1;
             }
             let mut pairs = [0; 3];
             let mut slot = NO_SLOT;
             let mut touches_dropped = false;
             let mut next = first;
-            while next < self.counts[above] && self.lines[above][next].start <= end {
+            while next < count_above && self.lines[above][next].start <= end {
                 let over = self.lines[above][next];
                 next += 1;
                 let root = self.root(over.slot);
@@ -202,7 +204,9 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
         let Some(&Slot::Root { component: moved, .. }) = self.slots.get(usize::from(from)) else { return };
         if let Some(Slot::Root { component, .. }) = self.slots.get_mut(usize::from(into)) {
             component.merge(&moved, pool);
-            self.slots[usize::from(from)] = Slot::Merged { into };
+            if let Some(slot) = self.slots.get_mut(usize::from(from)) {
+                *slot = Slot::Merged { into };
+            }
         }
     }
 
@@ -237,7 +241,7 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
             return;
         }
         for line in 0..2 {
-            for i in 0..self.counts[line] {
+            for i in 0..self.counts[line].min(RUNS) {
                 let slot = self.lines[line][i].slot;
                 if slot != NO_SLOT && self.root(slot) == victim {
                     self.lines[line][i].slot = NO_SLOT;
@@ -267,7 +271,8 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
 
     /// Ends the components of line `above` that the current row did not continue, and frees merged slots.
     fn close_ended(&mut self, above: usize, pool: &mut RunPool<'_>, sink: &mut impl FnMut(&Component, &RunPool<'_>)) {
-        for i in 0..self.counts[above] {
+        let above = above & 1;
+        for i in 0..self.counts[above].min(RUNS) {
             let slot = self.lines[above][i].slot;
             match self.slots.get(usize::from(slot)) {
                 Some(&Slot::Root { component, row }) if row != self.row => {

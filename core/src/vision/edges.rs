@@ -12,6 +12,7 @@ const WINDOW: usize = BLOCK + 2;
 /// A pixel that is an edge and moving.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(C)]
 pub struct EdgePixel {
     /// Column.
     pub u: u16,

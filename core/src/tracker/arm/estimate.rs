@@ -95,10 +95,10 @@ impl FrameContext<'_> {
             masses[slot(at(particle))] += weight;
         }
         masses[MAX_CANDIDATES] *= self.concentration(particles, weights);
-        let mut heaviest = MAX_CANDIDATES;
-        for (index, mass) in masses.iter().enumerate() {
-            if *mass > masses[heaviest] {
-                heaviest = index;
+        let (mut heaviest, mut most) = (MAX_CANDIDATES, masses[MAX_CANDIDATES]);
+        for (index, &mass) in masses.iter().enumerate() {
+            if mass > most {
+                (heaviest, most) = (index, mass);
             }
         }
         let all = self.model.options().estimate == EstimateRule::MeanOfAll;

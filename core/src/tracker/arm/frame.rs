@@ -56,10 +56,12 @@ pub fn most_likely(candidates: &[HandCandidate]) -> (Vec<HandCandidate, MAX_CAND
         }
         // There is room now, so this cannot fail.
         let _ = kept.push(*candidate);
-        let mut i = kept.len() - 1;
-        while i > 0 && kept.get(i - 1).map_or(0.0, |c| c.likelihood) < candidate.likelihood {
-            kept.swap(i, i - 1);
-            i -= 1;
+        let mut len = kept.len();
+        while let Some([.., before, this]) = kept.get_mut(..len)
+            && before.likelihood < candidate.likelihood
+        {
+            core::mem::swap(before, this);
+            len -= 1;
         }
     }
     let dropped = candidates.len() - kept.len();

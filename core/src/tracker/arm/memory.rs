@@ -13,21 +13,21 @@ use crate::observation::candidate::HandCandidate;
 use heapless::Vec;
 
 /// A blob of the last frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Remembered {
-    centre: Pixel,
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Remembered {
+    pub(super) centre: Pixel,
     /// How far it may still be the hand, in [floor, 1].
-    belief: f32,
+    pub(super) belief: f32,
     /// Where it was when it last moved.
-    anchor: Pixel,
+    pub(super) anchor: Pixel,
     /// Time since it last moved, seconds.
-    still_s: f32,
+    pub(super) still_s: f32,
 }
 
 /// The blobs of the last frame.
 #[derive(Debug, Clone, Default)]
 pub(super) struct BlobMemory {
-    blobs: Vec<Remembered, MAX_CANDIDATES>,
+    pub(super) blobs: Vec<Remembered, MAX_CANDIDATES>,
 }
 
 impl BlobMemory {

@@ -14,6 +14,7 @@ pub mod options;
 mod pair;
 mod payment;
 mod propose;
+mod saved;
 mod step;
 
 pub use estimate::{ArmEstimate, ArmJoints, Status};

@@ -37,7 +37,7 @@ pub struct PairFrame<'a> {
 /// State of both arms' trackers, left and right.
 #[derive(Debug, Clone)]
 pub struct ArmPair<const CAPACITY: usize> {
-    trackers: [ArmTracker<CAPACITY>; 2],
+    pub(super) trackers: [ArmTracker<CAPACITY>; 2],
 }
 
 /// Blobs of one side: its own first.
@@ -76,31 +76,38 @@ impl<const CAPACITY: usize> ArmPair<CAPACITY> {
     pub fn step(&mut self, models: [&ArmModel; 2], frame: &PairFrame<'_>) -> [ArmEstimate; 2] {
         let image = frame.image.unwrap_or_default();
         let (candidates, dropped) = most_likely(image.candidates);
-        let expected = [0, 1].map(|side| self.expected(models[side], side, frame.timestamp_us));
+        let [left, right] = &mut self.trackers;
+        let [left_model, right_model] = models;
+        let expected = [(&*left, left_model), (&*right, right_model)]
+            .map(|(tracker, model)| expected(tracker, model, frame.timestamp_us));
         let lists = share_out(&candidates, &expected);
-        let mut answer = |side: usize| {
-            let list: &SideCandidates = &lists[side];
+        let answer = |tracker: &mut ArmTracker<CAPACITY>, model: &ArmModel, list: &SideCandidates, shoulder_m: Vec3| {
             let arm_frame = ArmFrame {
                 timestamp_us: frame.timestamp_us,
                 image: frame.image.map(|image| ArmImage { candidates: list, edges: image.edges }),
-                shoulder_m: frame.shoulders_m[side],
+                shoulder_m,
             };
-            let mut estimate = self.trackers[side].step(models[side], &arm_frame);
+            let mut estimate = tracker.step(model, &arm_frame);
             let carrier = estimate.candidate.and_then(|index| list.get(index));
             estimate.candidate = carrier.and_then(|carrier| nearest_index(image.candidates, carrier.centre));
             estimate.dropped_candidates = dropped;
             estimate
         };
-        [answer(0), answer(1)]
+        let ([of_left, of_right], [left_m, right_m]) = (&lists, frame.shoulders_m);
+        [answer(left, left_model, of_left, left_m), answer(right, right_model, of_right, right_m)]
     }
+}
 
-    /// Where `side` expects its hand.
-    fn expected(&self, model: &ArmModel, side: usize, timestamp_us: u64) -> Option<Expected> {
-        let (hand_m, std_m) = self.trackers[side].predicted_hand(model, timestamp_us);
-        let hand = model.camera().project(&hand_m)?;
-        let std_px = max(std_m, LEAST_STD_M) * model.camera().focal_px() / max(hand_m.z, 0.1);
-        Some(Expected { hand, std_px })
-    }
+/// Where a side expects its hand.
+fn expected<const CAPACITY: usize>(
+    tracker: &ArmTracker<CAPACITY>,
+    model: &ArmModel,
+    timestamp_us: u64,
+) -> Option<Expected> {
+    let (hand_m, std_m) = tracker.predicted_hand(model, timestamp_us);
+    let hand = model.camera().project(&hand_m)?;
+    let std_px = max(std_m, LEAST_STD_M) * model.camera().focal_px() / max(hand_m.z, 0.1);
+    Some(Expected { hand, std_px })
 }
 
 /// Index of the candidate whose centre is nearest to `centre`.
@@ -129,25 +136,29 @@ fn log_fit(candidate: &HandCandidate, expected: Option<&Expected>) -> f32 {
 
 /// Gives each side its blob of the likeliest pair, and to both the blobs that are nobody's.
 fn share_out(candidates: &[HandCandidate], expected: &[Option<Expected>; 2]) -> [SideCandidates; 2] {
-    let fit = |side: usize, choice: Option<usize>| {
+    let fit = |expected: &Option<Expected>, choice: Option<usize>| {
         let candidate = choice.and_then(|index| candidates.get(index));
-        candidate.map_or(ln(NO_BLOB), |candidate| log_fit(candidate, expected[side].as_ref()))
+        candidate.map_or(ln(NO_BLOB), |candidate| log_fit(candidate, expected.as_ref()))
     };
+    let [expected_left, expected_right] = expected;
     let choices = || core::iter::once(None).chain((0..candidates.len()).map(Some));
     let mut best = ([None, None], f32::NEG_INFINITY);
     for left in choices() {
         for right in choices() {
-            let both = fit(0, left) + fit(1, right);
+            let both = fit(expected_left, left) + fit(expected_right, right);
             if (left.is_none() || left != right) && both > best.1 {
                 best = ([left, right], both);
             }
         }
     }
-    let mut lists = [0_usize, 1].map(|side| own_and_free(candidates, best.0[side], best.0[1 - side]));
+    let [left, right] = best.0;
+    let mut lists = [own_and_free(candidates, left, right), own_and_free(candidates, right, left)];
     if let Some((index, halves)) = touching(candidates, expected, &best.0) {
         lists = halves.map(|half| {
             let mut list = own_and_free(candidates, Some(index), None);
-            list.swap_remove(0);
+            if !list.is_empty() {
+                list.swap_remove(0);
+            }
             if list.is_full() {
                 list.pop();
             }
@@ -164,7 +175,12 @@ fn own_and_free(candidates: &[HandCandidate], own: Option<usize>, others: Option
     let share = if own.is_some() { STRAY_SHARE } else { 1.0 };
     let stray = free.filter_map(|index| candidates.get(index));
     let stray = stray.map(|blob| HandCandidate { likelihood: share * blob.likelihood, ..*blob });
-    own.and_then(|index| candidates.get(index).copied()).into_iter().chain(stray).collect()
+    let mut list = SideCandidates::new();
+    for blob in own.and_then(|index| candidates.get(index).copied()).into_iter().chain(stray) {
+        // No more than the candidates, which fit.
+        let _ = list.push(blob);
+    }
+    list
 }
 
 /// The blob in which both hands lie, and its halves for left and right: one side has it, the other has none, and

@@ -38,7 +38,7 @@ const FRAME_STREAM: u32 = u32::MAX;
 const LIMB_STREAMS: u32 = u32::MAX - 64;
 
 /// One weighted arm.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Particle {
     /// Pose, inside the limits.
     pub angles_rad: ArmAngles,
@@ -61,19 +61,19 @@ impl Particle {
 /// State of one arm's tracker with room for `CAPACITY` particles.
 #[derive(Debug, Clone)]
 pub struct ArmTracker<const CAPACITY: usize> {
-    seed: u64,
-    frame: u64,
-    timestamp_us: Option<u64>,
-    unseen_s: f32,
-    ever_seen: bool,
-    generations: [Vec<Particle, CAPACITY>; 2],
-    current: usize,
-    weights: Weights<CAPACITY>,
-    limbs: LimbDensities,
-    memory: BlobMemory,
-    estimate: ArmJoints,
-    hand_velocity_m_per_s: Vec3,
-    elbow_velocity_m_per_s: Vec3,
+    pub(super) seed: u64,
+    pub(super) frame: u64,
+    pub(super) timestamp_us: Option<u64>,
+    pub(super) unseen_s: f32,
+    pub(super) ever_seen: bool,
+    pub(super) generations: [Vec<Particle, CAPACITY>; 2],
+    pub(super) current: usize,
+    pub(super) weights: Weights<CAPACITY>,
+    pub(super) limbs: LimbDensities,
+    pub(super) memory: BlobMemory,
+    pub(super) estimate: ArmJoints,
+    pub(super) hand_velocity_m_per_s: Vec3,
+    pub(super) elbow_velocity_m_per_s: Vec3,
 }
 
 impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
@@ -211,8 +211,11 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         candidates: Vec<HandCandidate, MAX_CANDIDATES>,
         dt_s: f32,
     ) -> FrameContext<'a> {
-        let rays: Vec<Ray, MAX_CANDIDATES> =
-            candidates.iter().map(|candidate| model.camera().back_project(candidate.centre)).collect();
+        let mut rays: Vec<Ray, MAX_CANDIDATES> = Vec::new();
+        for candidate in &candidates {
+            // One ray a candidate, so it always fits.
+            let _ = rays.push(model.camera().back_project(candidate.centre));
+        }
         let mut counts = [0; MAX_CANDIDATES];
         let mut free = self.weights.len();
         let mut beliefs = [0.0; MAX_CANDIDATES];

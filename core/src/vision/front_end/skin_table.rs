@@ -42,6 +42,12 @@ impl<F: PixelFormat> SkinTable<F> {
         &self.words
     }
 
+    /// The bits, to be changed.
+    #[must_use]
+    pub const fn words_mut(&mut self) -> &mut [u32; TABLE_WORDS] {
+        &mut self.words
+    }
+
     /// Takes over the decisions of `skin` on the colours in the middle of all cells.
     pub fn learn(&mut self, skin: &impl SkinClassifier) {
         self.learn_words(skin, 0..TABLE_WORDS);

@@ -1,0 +1,93 @@
+//! What the tests of the interface for C share: where things lie, and which tools there are.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Root folder of the workspace.
+///
+/// # Panics
+/// Never: the package lies in the workspace.
+#[must_use]
+pub fn workspace_root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace")
+}
+
+/// Whether `tool` runs; where it does not, says what is left out, and fails in CI, which has to have all tools.
+///
+/// # Panics
+/// With `CI=true`, if the tool is missing.
+#[must_use]
+pub fn has_tool(tool: &str) -> bool {
+    let runs = Command::new(tool).arg("--version").output().is_ok_and(|output| output.status.success());
+    if !runs {
+        missing(tool);
+    }
+    runs
+}
+
+/// Whether the Rust `target` is installed; as [`has_tool`].
+///
+/// # Panics
+/// With `CI=true`, if the target is missing.
+#[must_use]
+pub fn has_target(target: &str) -> bool {
+    let sysroot = Command::new(rustc()).args(["--print", "sysroot"]).output().ok();
+    let sysroot = sysroot.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()).unwrap_or_default();
+    let exists = Path::new(&sysroot).join("lib/rustlib").join(target).is_dir();
+    if !exists {
+        missing(&format!("the target {target} (`rustup target add {target}`)"));
+    }
+    exists
+}
+
+fn missing(what: &str) {
+    assert!(std::env::var("CI").as_deref() != Ok("true"), "CI has no {what}");
+    eprintln!("left out: there is no {what}");
+}
+
+fn rustc() -> std::ffi::OsString {
+    std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into())
+}
+
+/// Builds the static library as a user does, and gives its path. `target` is a triple, or `None` for this machine; `opt_level` is `3` or `s`.
+///
+/// # Panics
+/// If it cannot be built.
+#[must_use]
+pub fn static_library(target: Option<&str>, opt_level: &str, features: &str) -> PathBuf {
+    // A folder of its own: the build that runs this test holds the lock of the other one.
+    let folder = target_folder().join(format!("c_interface-{opt_level}-{}", features.replace(',', "-")));
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.current_dir(workspace_root()).args(["rustc", "--quiet", "--locked", "-p", "sinew-core"]);
+    command.args(["--profile", "firmware", "--crate-type", "staticlib", "--features", features]);
+    command.env("CARGO_PROFILE_FIRMWARE_OPT_LEVEL", opt_level).env("CARGO_PROFILE_FIRMWARE_DEBUG", "0");
+    command.arg("--target-dir").arg(&folder);
+    if let Some(target) = target {
+        command.args(["--target", target]);
+    }
+    expect_success(&mut command);
+    folder.join(target.unwrap_or("")).join("firmware/libsinew_core.a")
+}
+
+fn target_folder() -> PathBuf {
+    // TARGET/PROFILE/deps/TEST
+    let test = std::env::current_exe().expect("the running test has a path");
+    test.ancestors().nth(3).expect("a test lies in TARGET/PROFILE/deps").to_owned()
+}
+
+/// Runs `command`, which has to succeed, and gives its output.
+///
+/// # Panics
+/// If it does not succeed.
+pub fn expect_success(command: &mut Command) -> Output {
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    assert!(
+        output.status.success(),
+        "{command:?}: {}\n{}\n{}",
+        output.status,
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+    output
+}

@@ -1,0 +1,114 @@
+//! `sinew.h` is what the interface's source says, and every C and C++ compiler takes it.
+
+use sinew_c_interface::{expect_success, has_tool, workspace_root};
+use std::fs;
+use std::process::Command;
+
+/// Sources of the interface, and of the structures that it shares with the trackers.
+const SOURCES: [&str; 12] = [
+    "c_api/status.rs",
+    "c_api/cyclic_frame.rs",
+    "c_api/cyclic.rs",
+    "c_api/arm_frame.rs",
+    "c_api/arm.rs",
+    "c_api/arm_pair.rs",
+    "c_api/vision_frame.rs",
+    "c_api/vision.rs",
+    "c_api/model.rs",
+    "camera.rs",
+    "observation/candidate.rs",
+    "vision/edges.rs",
+];
+
+const PREAMBLE: &str = "\
+/* Sinew: how a human body moves, from a camera, in a few kilobytes.
+ *
+ * Made from the interface's source by `SINEW_REGENERATE=1 cargo test -p sinew-c-interface --test header`; do not edit.
+ *
+ * Nothing is allocated, nothing is global. Objects live in memory that the caller gives: SINEW_*_MAX_BYTES bytes, aligned to SINEW_ALIGN,
+ * always suffice, and sinew_*_size and sinew_*_align tell the exact numbers of this target. Different objects may be used by different
+ * threads at the same time. All functions but sinew_*_size, sinew_*_align, sinew_version and sinew_error_text answer with a status, zero
+ * for done. */";
+
+fn header() -> String {
+    let mut config = cbindgen::Config {
+        language: cbindgen::Language::C,
+        cpp_compat: true,
+        include_guard: Some("SINEW_H".into()),
+        header: Some(PREAMBLE.into()),
+        no_includes: true,
+        sys_includes: vec!["stddef.h".into(), "stdint.h".into()],
+        usize_is_size_t: true,
+        documentation_style: cbindgen::DocumentationStyle::Doxy,
+        style: cbindgen::Style::Both,
+        line_length: 130,
+        ..cbindgen::Config::default()
+    };
+    config.enumeration.rename_variants = cbindgen::RenameRule::QualifiedScreamingSnakeCase;
+    for name in ["HandCandidate", "EdgePixel", "Pixel"] {
+        config.export.rename.insert(name.into(), format!("Sinew{name}"));
+    }
+    // Constants of the sources that the structures come from.
+    config.export.exclude.extend(["DEFAULT_MIN_GRADIENT", "DEFAULT_MIN_MOTION"].map(String::from));
+    let mut builder = cbindgen::Builder::new().with_config(config);
+    for source in SOURCES {
+        builder = builder.with_src(workspace_root().join("core/src").join(source));
+    }
+    let mut text = Vec::new();
+    builder.generate().expect("the interface can be said in C").write(&mut text);
+    String::from_utf8(text).expect("the header is text").replace("# Safety\n", "Caller's duty:\n")
+}
+
+#[test]
+fn the_header_is_current() {
+    let path = workspace_root().join("core/include/sinew.h");
+    let header = header();
+    if std::env::var_os("SINEW_REGENERATE").is_some() {
+        fs::write(&path, &header).unwrap();
+    }
+    assert!(
+        fs::read_to_string(&path).unwrap_or_default() == header,
+        "the interface changed; SINEW_REGENERATE=1 cargo test -p sinew-c-interface --test header"
+    );
+}
+
+#[test]
+fn every_function_of_the_interface_is_in_the_header() {
+    let header = header();
+    let sources = fs::read_dir(workspace_root().join("core/src/c_api")).unwrap();
+    let mut count = 0;
+    for source in sources {
+        let source = fs::read_to_string(source.unwrap().path()).unwrap();
+        for function in source.split("extern \"C\" fn sinew_").skip(1) {
+            let name = function.split('(').next().unwrap();
+            let declared = header.contains(&format!("sinew_{name}("));
+            assert!(declared || name == "panic_is_reachable", "sinew_{name}");
+            count += usize::from(declared);
+        }
+    }
+    assert!(count > 30, "{count} functions");
+}
+
+#[test]
+fn the_header_compiles_as_c99_c11_and_cpp17() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("sinew.h"), header()).unwrap();
+    for (compiler, standard, file) in
+        [("gcc", "c99", "a.c"), ("gcc", "c11", "a.c"), ("g++", "c++17", "a.cpp"), ("arm-none-eabi-gcc", "c99", "a.c")]
+    {
+        if !has_tool(compiler) {
+            continue;
+        }
+        let source = folder.path().join(file);
+        fs::write(
+            &source,
+            "#include <sinew.h>\n#include <sinew.h>\nextern SinewStatus done;\nSinewStatus done = SINEW_STATUS_OK;\n",
+        )
+        .unwrap();
+        let mut command = Command::new(compiler);
+        command.arg(format!("-std={standard}")).args(["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]);
+        expect_success(
+            command.arg("-I").arg(folder.path()).arg("-c").arg(&source).arg("-o").arg(folder.path().join("a.o")),
+        );
+    }
+}

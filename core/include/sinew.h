@@ -1,0 +1,933 @@
+/* Sinew: how a human body moves, from a camera, in a few kilobytes.
+ *
+ * Made from the interface's source by `SINEW_REGENERATE=1 cargo test -p sinew-c-interface --test header`; do not edit.
+ *
+ * Nothing is allocated, nothing is global. Objects live in memory that the caller gives: SINEW_*_MAX_BYTES bytes, aligned to SINEW_ALIGN,
+ * always suffice, and sinew_*_size and sinew_*_align tell the exact numbers of this target. Different objects may be used by different
+ * threads at the same time. All functions but sinew_*_size, sinew_*_align, sinew_version and sinew_error_text answer with a status, zero
+ * for done. */
+
+#ifndef SINEW_H
+#define SINEW_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/**
+ * Most angles of a motion model.
+ */
+#define SINEW_MAX_ANGLES 13
+
+/**
+ * Bytes that always suffice for a cyclic tracker, on every target.
+ */
+#define SINEW_CYCLIC_MAX_BYTES 3072
+
+/**
+ * Bytes that always suffice for the saved state of a cyclic tracker.
+ */
+#define SINEW_CYCLIC_STATE_MAX_BYTES 3072
+
+/**
+ * Alignment that suffices for every object of this library.
+ */
+#define SINEW_ALIGN 8
+
+/**
+ * Particles of an arm tracker.
+ */
+#define SINEW_ARM_PARTICLES 50
+
+/**
+ * Most hand candidates of a frame; the eight most likely of them are considered.
+ */
+#define SINEW_MAX_CANDIDATES 32
+
+/**
+ * Most edge pixels of a frame.
+ */
+#define SINEW_MAX_EDGES 4096
+
+/**
+ * The person's own left arm.
+ */
+#define SINEW_SIDE_LEFT 0
+
+/**
+ * The person's own right arm.
+ */
+#define SINEW_SIDE_RIGHT 1
+
+/**
+ * No blob carried the estimate for so long that the prediction means nothing.
+ */
+#define SINEW_ARM_LOST 0
+
+/**
+ * No blob of this frame carries the estimate; it is a prediction.
+ */
+#define SINEW_ARM_PREDICTED 1
+
+/**
+ * A blob of this frame carries the estimate.
+ */
+#define SINEW_ARM_TRACKING 2
+
+/**
+ * Bytes that always suffice for an arm tracker, on every target.
+ */
+#define SINEW_ARM_MAX_BYTES 8192
+
+/**
+ * Bytes that always suffice for the saved state of an arm tracker.
+ */
+#define SINEW_ARM_STATE_MAX_BYTES 4096
+
+/**
+ * Bytes that always suffice for a tracker of both arms, on every target.
+ */
+#define SINEW_ARM_PAIR_MAX_BYTES 16384
+
+/**
+ * Bytes that always suffice for the saved state of a tracker of both arms.
+ */
+#define SINEW_ARM_PAIR_STATE_MAX_BYTES 8192
+
+/**
+ * 5 bits of red (the highest), 6 of green, 5 of blue.
+ */
+#define SINEW_PIXEL_RGB565 0
+
+/**
+ * The same with both bytes swapped, as cameras with an 8-bit port and a little-endian processor have it.
+ */
+#define SINEW_PIXEL_RGB565_SWAPPED 1
+
+/**
+ * Y in the low byte; in the high byte U of a pair of pixels in the left one, V in the right one.
+ */
+#define SINEW_PIXEL_YUYV 2
+
+/**
+ * Bytes that always suffice for a front end, on every target.
+ */
+#define SINEW_VISION_MAX_BYTES 20480
+
+/**
+ * Bytes that always suffice for the saved state of a front end.
+ */
+#define SINEW_VISION_STATE_MAX_BYTES 8320
+
+/**
+ * What a function answers: zero if it did what it says.
+ */
+enum SinewStatus
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  /**
+   * Done.
+   */
+  SINEW_STATUS_OK = 0,
+  /**
+   * Nothing to do yet: no frame so far showed enough to begin with. No result was written.
+   */
+  SINEW_STATUS_WAITING = 1,
+  /**
+   * A pointer is null.
+   */
+  SINEW_STATUS_NULL_POINTER = -1,
+  /**
+   * A pointer is not aligned as its type asks for.
+   */
+  SINEW_STATUS_MISALIGNED = -2,
+  /**
+   * The memory or buffer given is too small.
+   */
+  SINEW_STATUS_TOO_SMALL = -3,
+  /**
+   * The object was not initialised, or its first bytes were overwritten.
+   */
+  SINEW_STATUS_NOT_INITIALISED = -4,
+  /**
+   * A number is NaN or infinite.
+   */
+  SINEW_STATUS_NOT_FINITE = -5,
+  /**
+   * A number is out of its range.
+   */
+  SINEW_STATUS_OUT_OF_RANGE = -6,
+  /**
+   * A list is longer than its capacity.
+   */
+  SINEW_STATUS_OVER_CAPACITY = -7,
+  /**
+   * A timestamp does not lie after that of the frame before.
+   */
+  SINEW_STATUS_OUT_OF_ORDER = -8,
+  /**
+   * The bytes are no motion model that this library reads.
+   */
+  SINEW_STATUS_BAD_MODEL = -9,
+  /**
+   * The library was built without the model asked for.
+   */
+  SINEW_STATUS_NO_MODEL = -10,
+  /**
+   * The saved state is cut, was changed, or belongs to another kind of object.
+   */
+  SINEW_STATUS_BAD_STATE = -11,
+  /**
+   * The state was saved by another version of the library.
+   */
+  SINEW_STATUS_STATE_VERSION = -12,
+  /**
+   * The state was saved with another model or other options.
+   */
+  SINEW_STATUS_FOREIGN_STATE = -13,
+  /**
+   * Lines were given before a frame was begun, or a frame ended that was not begun.
+   */
+  SINEW_STATUS_NO_FRAME = -14,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum SinewStatus SinewStatus;
+#else
+typedef int32_t SinewStatus;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
+ * An arm tracker; see `sinew_arm_init`.
+ */
+typedef struct SinewArm SinewArm;
+
+/**
+ * A tracker of both arms; see `sinew_arm_pair_init`.
+ */
+typedef struct SinewArmPair SinewArmPair;
+
+/**
+ * A cyclic tracker; see `sinew_cyclic_init`.
+ */
+typedef struct SinewCyclic SinewCyclic;
+
+/**
+ * A front end; see `sinew_vision_init`.
+ */
+typedef struct SinewVision SinewVision;
+
+/**
+ * The angles of one frame.
+ */
+typedef struct SinewCyclicFrame {
+  /**
+   * When the frame was taken, microseconds since any start. Dropped frames are simply not given.
+   */
+  uint64_t timestamp_us;
+  /**
+   * Bit i is set if angle i was seen; the others' values are not looked at.
+   */
+  uint32_t seen;
+  /**
+   * Number of angles given, at most `SINEW_MAX_ANGLES` and at most those of the model.
+   */
+  uint32_t angle_count;
+  /**
+   * Angles, radians, any turn.
+   */
+  float angles_rad[SINEW_MAX_ANGLES];
+  /**
+   * Standard deviation of each angle, radians, greater than zero.
+   */
+  float std_rad[SINEW_MAX_ANGLES];
+} SinewCyclicFrame;
+
+/**
+ * Pose, phase and cadence after a frame. Entries beyond the model's angles are zero.
+ */
+typedef struct SinewCyclicResult {
+  /**
+   * That of the frame.
+   */
+  uint64_t timestamp_us;
+  /**
+   * Angles in (-pi, pi].
+   */
+  float angles_rad[SINEW_MAX_ANGLES];
+  /**
+   * Standard deviation of each angle, radians.
+   */
+  float angle_std_rad[SINEW_MAX_ANGLES];
+  /**
+   * Whole turns of each angle since the start: the unwrapped angle is `angles_rad` + 2 pi `turns`.
+   */
+  int32_t turns[SINEW_MAX_ANGLES];
+  /**
+   * Whole cycles since the first frame; a cycle of walking is two steps.
+   */
+  int32_t cycles_completed;
+  /**
+   * Position in the cycle, from 0 to 1.
+   */
+  float cycle_position;
+  /**
+   * Standard deviation of the position, cycles.
+   */
+  float cycle_position_std;
+  /**
+   * Cycles per minute.
+   */
+  float cadence_per_min;
+  /**
+   * Standard deviation of the cadence, cycles per minute.
+   */
+  float cadence_std_per_min;
+  /**
+   * Natural logarithm of the density of the frame's angles given those before.
+   */
+  float log_likelihood;
+  /**
+   * 1 if the angles are too far from what was expected to belong to the motion.
+   */
+  uint32_t is_outlier;
+  /**
+   * 1 while the position in the cycle is not known and the pose is the mean of all positions.
+   */
+  uint32_t is_searching;
+} SinewCyclicResult;
+
+/**
+ * Camera, body and seed of an arm tracker; see `sinew_arm_default_config`.
+ */
+typedef struct SinewArmConfig {
+  /**
+   * All random numbers follow from it: the same seed and frames give the same bits.
+   */
+  uint64_t seed;
+  /**
+   * Width of the image, pixels.
+   */
+  uint32_t image_width_px;
+  /**
+   * Height of the image, pixels.
+   */
+  uint32_t image_height_px;
+  /**
+   * Focal lengths along columns and rows, pixels.
+   */
+  float focal_px[2];
+  /**
+   * Column and row of the principal point, pixels.
+   */
+  float principal_point_px[2];
+  /**
+   * From shoulder to elbow, metres.
+   */
+  float upper_arm_m;
+  /**
+   * From elbow to the middle of the hand, metres.
+   */
+  float forearm_m;
+  /**
+   * Left and right shoulder, metres in camera axes: x to the right of the image, y down, z along the line of sight. A tracker of one
+   * arm looks at its own side only.
+   */
+  float shoulders_m[2][3];
+} SinewArmConfig;
+
+/**
+ * A point of the image, pixels.
+ */
+typedef struct SinewPixel {
+  /**
+   * Column, to the right.
+   */
+  float u_px;
+  /**
+   * Row, downwards.
+   */
+  float v_px;
+} SinewPixel;
+
+/**
+ * The part of a blob that an arm tracker uses: a few numbers, so that a frame's list is small state.
+ */
+typedef struct SinewHandCandidate {
+  /**
+   * Where the hand's centre is taken to be.
+   */
+  struct SinewPixel centre;
+  /**
+   * Second central moments of the blob's pixels: uu, uv, vv, in square pixels.
+   */
+  float moments_px2[3];
+  /**
+   * Number of pixels of the blob.
+   */
+  float area_px;
+  /**
+   * p(hand | blob) in [0, 1], eq. (6) of the arm paper or the default form.
+   */
+  float likelihood;
+} SinewHandCandidate;
+
+/**
+ * A pixel that is an edge and moving.
+ */
+typedef struct SinewEdgePixel {
+  /**
+   * Column.
+   */
+  uint16_t u;
+  /**
+   * Row.
+   */
+  uint16_t v;
+} SinewEdgePixel;
+
+/**
+ * What a frame showed.
+ */
+typedef struct SinewArmFrame {
+  /**
+   * When the frame was taken, microseconds since any start. Dropped frames are simply not given.
+   */
+  uint64_t timestamp_us;
+  /**
+   * Blobs that may be a hand, as `sinew_vision_end_frame` gives them; not looked at if `candidate_count` is zero.
+   */
+  const struct SinewHandCandidate *candidates;
+  /**
+   * Temporal edge pixels; not looked at if `edge_count` is zero.
+   */
+  const struct SinewEdgePixel *edges;
+  /**
+   * Number of candidates, at most `SINEW_MAX_CANDIDATES`.
+   */
+  uint32_t candidate_count;
+  /**
+   * Number of edge pixels, at most `SINEW_MAX_EDGES`.
+   */
+  uint32_t edge_count;
+  /**
+   * 0 where the image is missing, so that the lists say nothing; else 1.
+   */
+  uint32_t has_image;
+  /**
+   * Left and right shoulder, metres in camera axes; a tracker of one arm looks at its own side only.
+   */
+  float shoulders_m[2][3];
+} SinewArmFrame;
+
+/**
+ * An arm after a frame.
+ */
+typedef struct SinewArmResult {
+  /**
+   * That of the frame.
+   */
+  uint64_t timestamp_us;
+  /**
+   * `SINEW_SIDE_LEFT` or `SINEW_SIDE_RIGHT`.
+   */
+  uint32_t side;
+  /**
+   * `SINEW_ARM_TRACKING`, `SINEW_ARM_PREDICTED` or `SINEW_ARM_LOST`.
+   */
+  uint32_t state;
+  /**
+   * Shoulder, metres in camera axes.
+   */
+  float shoulder_m[3];
+  /**
+   * Elbow, metres in camera axes.
+   */
+  float elbow_m[3];
+  /**
+   * Middle of the hand, metres in camera axes.
+   */
+  float hand_m[3];
+  /**
+   * Image of the hand: column and row, pixels; -1 where it lies behind the camera.
+   */
+  float hand_px[2];
+  /**
+   * Elevation, deviation and axial rotation of the shoulder, flexion of the elbow, radians.
+   */
+  float angles_rad[4];
+  /**
+   * Standard deviation of the hand, metres along an axis.
+   */
+  float hand_std_m;
+  /**
+   * Effective number of particles.
+   */
+  float effective_sample_size;
+  /**
+   * Natural logarithm of the mean weight; zero where nothing was seen.
+   */
+  float log_evidence;
+  /**
+   * Likelihood of the blob that carries the estimate; zero without one.
+   */
+  float hand_likelihood;
+  /**
+   * Index of that blob in the frame's list, -1 without one.
+   */
+  int32_t candidate;
+  /**
+   * Candidates that were not considered.
+   */
+  uint32_t dropped_candidates;
+  /**
+   * 1 if all weights were zero and the frame taught nothing.
+   */
+  uint32_t is_degenerate;
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
+} SinewArmResult;
+
+/**
+ * Skin as a normal distribution of chromaticity r = R / (R + G + B), g = G / (R + G + B).
+ */
+typedef struct SinewSkin {
+  /**
+   * Means of r and g.
+   */
+  float mean[2];
+  /**
+   * Covariance: rr, rg, gg.
+   */
+  float covariance[3];
+  /**
+   * Mahalanobis distance within which a colour counts as skin.
+   */
+  float threshold;
+  /**
+   * Least R + G + B, 0 to 765: darker pixels have no usable colour.
+   */
+  uint32_t min_sum;
+} SinewSkin;
+
+/**
+ * Frames and skin; see `sinew_vision_default_config`.
+ */
+typedef struct SinewVisionConfig {
+  /**
+   * Width of a frame, 1 to 320 pixels.
+   */
+  uint32_t width_px;
+  /**
+   * Height of a frame, 1 to 240 pixels.
+   */
+  uint32_t height_px;
+  /**
+   * `SINEW_PIXEL_RGB565`, `SINEW_PIXEL_RGB565_SWAPPED` or `SINEW_PIXEL_YUYV`.
+   */
+  uint32_t pixel_format;
+  /**
+   * Which colours count as skin.
+   */
+  struct SinewSkin skin;
+} SinewVisionConfig;
+
+/**
+ * What a frame showed; all losses zero means that it is exact.
+ */
+typedef struct SinewVisionResult {
+  /**
+   * Blobs that may be a hand, the most likely first; null where there are none.
+   */
+  const struct SinewHandCandidate *candidates;
+  /**
+   * Temporal edge pixels in the order of rows; null where there are none.
+   */
+  const struct SinewEdgePixel *edges;
+  /**
+   * Number of candidates.
+   */
+  uint32_t candidate_count;
+  /**
+   * Number of edge pixels.
+   */
+  uint32_t edge_count;
+  /**
+   * Components that found no room among those that grew at the same time.
+   */
+  uint32_t dropped_components;
+  /**
+   * Pixels of those, and of runs that found no room in their line.
+   */
+  uint32_t dropped_px;
+  /**
+   * Blobs less likely than all in the list.
+   */
+  uint32_t dropped_blobs;
+  /**
+   * Temporal edge pixels that were thinned out.
+   */
+  uint32_t dropped_edges;
+  /**
+   * Lines that did not come, or were too short.
+   */
+  uint32_t missing_lines;
+  /**
+   * Lines that came twice or too late.
+   */
+  uint32_t ignored_lines;
+} SinewVisionResult;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/**
+ * A short English text for a status, for people; `status` may be any number.
+ *
+ * The text is constant and ends with a zero byte.
+ */
+const char *sinew_error_text(int32_t status);
+
+/**
+ * Version of the library: major * 65536 + minor * 256 + patch.
+ */
+uint32_t sinew_version(void);
+
+/**
+ * Bytes that a cyclic tracker takes on this target; `SINEW_CYCLIC_MAX_BYTES` at most.
+ */
+size_t sinew_cyclic_size(void);
+
+/**
+ * Alignment that the memory of a cyclic tracker needs; `SINEW_ALIGN` at most.
+ */
+size_t sinew_cyclic_align(void);
+
+/**
+ * Makes a cyclic tracker in `memory`, which it needs as long as it is used; there is nothing to free.
+ *
+ * `model` is a motion model in bytes (`sinew model-bytes` makes one), aligned to four, which has to stay where it is as long as the tracker is
+ * used. Null and zero bytes stand for the walking model that the library was built with. All numbers of the model are checked
+ * once, here.
+ *
+ * Returns SINEW_STATUS_BAD_MODEL for bytes that are no model of at most `SINEW_MAX_ANGLES` angles, SINEW_STATUS_NO_MODEL if the
+ * library was built without the walking model. `tracker` is written only if the status is SINEW_STATUS_OK.
+ *
+ * Caller's duty:
+ * `memory` and `model` have the sizes that are said.
+ */
+SinewStatus sinew_cyclic_init(void *memory,
+                              size_t memory_bytes,
+                              const void *model,
+                              size_t model_bytes,
+                              struct SinewCyclic **tracker);
+
+/**
+ * Takes in one frame, and writes what is known then.
+ *
+ * A frame more than 600 frames of the model after the last counts as that much later. Returns SINEW_STATUS_WAITING, and writes no
+ * result, until a first frame shows an angle. Every other status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or
+ * out of range, more angles than the model has, a timestamp not after the last one.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_cyclic_init`.
+ */
+SinewStatus sinew_cyclic_step(struct SinewCyclic *tracker,
+                              const struct SinewCyclicFrame *frame,
+                              struct SinewCyclicResult *result);
+
+/**
+ * Forgets all frames; the next one begins anew, at any timestamp.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_cyclic_init`.
+ */
+SinewStatus sinew_cyclic_reset(struct SinewCyclic *tracker);
+
+/**
+ * Writes the state into `buffer`, so that a tracker made with the same model, on this processor or another, can go on from it.
+ *
+ * Writes into `written` how many bytes the state takes, also where the buffer is too small. The tracker is not changed.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_cyclic_init`, `buffer` has the size that is said.
+ */
+SinewStatus sinew_cyclic_save(struct SinewCyclic *tracker, uint8_t *buffer, size_t buffer_bytes, size_t *written);
+
+/**
+ * Goes on from a state that was saved, all of `state_bytes`.
+ *
+ * A state that is not whole, of another version or of another model is refused, and the tracker is as before. A state that is
+ * whole and yet holds a number that cannot be (SINEW_STATUS_BAD_STATE too) leaves a tracker that begins anew, as after `sinew_cyclic_reset`.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_cyclic_init`, `state` has the size that is said.
+ */
+SinewStatus sinew_cyclic_restore(struct SinewCyclic *tracker,
+                                 const uint8_t *state,
+                                 size_t state_bytes);
+
+/**
+ * Writes a configuration: a camera with square pixels, an adult who faces it at 1.25 metres, seed 1.
+ *
+ * Returns SINEW_STATUS_OUT_OF_RANGE for a field of view that does not lie between 0 and pi.
+ *
+ * Caller's duty:
+ * `config` points at room for one.
+ */
+SinewStatus sinew_arm_default_config(uint32_t image_width_px,
+                                     uint32_t image_height_px,
+                                     float horizontal_field_of_view_rad,
+                                     struct SinewArmConfig *config);
+
+/**
+ * Bytes that an arm tracker takes on this target; `SINEW_ARM_MAX_BYTES` at most.
+ */
+size_t sinew_arm_size(void);
+
+/**
+ * Alignment that the memory of an arm tracker needs; `SINEW_ALIGN` at most.
+ */
+size_t sinew_arm_align(void);
+
+/**
+ * Makes an arm tracker in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
+ *
+ * `side` is SINEW_SIDE_LEFT or SINEW_SIDE_RIGHT, the person's own.
+ * `tracker` is written only if the status is SINEW_STATUS_OK.
+ *
+ * Caller's duty:
+ * `memory` has the size that is said.
+ */
+SinewStatus sinew_arm_init(void *memory,
+                           size_t memory_bytes,
+                           const struct SinewArmConfig *config,
+                           uint32_t side,
+                           struct SinewArm **tracker);
+
+/**
+ * Takes in one frame, and writes where the arm is then.
+ *
+ * Every status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or out of range, lists over
+ * capacity, a timestamp not after the last one.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_arm_init`; the frame's lists have as many elements as it says.
+ */
+SinewStatus sinew_arm_step(struct SinewArm *tracker, const struct SinewArmFrame *frame, struct SinewArmResult *result);
+
+/**
+ * Forgets all frames, as after `sinew_arm_init` with the same configuration.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_arm_init`.
+ */
+SinewStatus sinew_arm_reset(struct SinewArm *tracker);
+
+/**
+ * Writes the state into `buffer`, so that a tracker made with the same configuration (seed and shoulders may differ), on this
+ * processor or another, can go on from it.
+ *
+ * Writes into `written` how many bytes the state takes, also where the buffer is too small. The tracker is not changed.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_arm_init`, `buffer` has the size that is said.
+ */
+SinewStatus sinew_arm_save(struct SinewArm *tracker, uint8_t *buffer, size_t buffer_bytes, size_t *written);
+
+/**
+ * Goes on from a state that was saved, all of `state_bytes`.
+ *
+ * A state that is not whole, of another version or configuration is refused, and the tracker is as before. A state that is whole
+ * and yet holds a number that cannot be (SINEW_STATUS_BAD_STATE too) leaves a tracker that begins anew, as after `sinew_arm_reset`.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_arm_init`, `state` has the size that is said.
+ */
+SinewStatus sinew_arm_restore(struct SinewArm *tracker,
+                              const uint8_t *state,
+                              size_t state_bytes);
+
+/**
+ * Bytes that a tracker of both arms takes on this target; `SINEW_ARM_PAIR_MAX_BYTES` at most.
+ */
+size_t sinew_arm_pair_size(void);
+
+/**
+ * Alignment that the memory of a tracker of both arms needs; `SINEW_ALIGN` at most.
+ */
+size_t sinew_arm_pair_align(void);
+
+/**
+ * Makes a tracker of both arms in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
+ *
+ * `tracker` is written only if the status is SINEW_STATUS_OK.
+ *
+ * Caller's duty:
+ * `memory` has the size that is said.
+ */
+SinewStatus sinew_arm_pair_init(void *memory,
+                                size_t memory_bytes,
+                                const struct SinewArmConfig *config,
+                                struct SinewArmPair **tracker);
+
+/**
+ * Takes in one frame, and writes where both arms are then, left and right.
+ *
+ * Every status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or out of range, lists over
+ * capacity, a timestamp not after the last one.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_arm_pair_init`; the frame's lists have as many elements as it says. `results` has room for two.
+ */
+SinewStatus sinew_arm_pair_step(struct SinewArmPair *tracker, const struct SinewArmFrame *frame, struct SinewArmResult *results);
+
+/**
+ * Forgets all frames, as after `sinew_arm_pair_init` with the same configuration.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_arm_pair_init`.
+ */
+SinewStatus sinew_arm_pair_reset(struct SinewArmPair *tracker);
+
+/**
+ * Writes the state into `buffer`, so that a tracker made with the same configuration (seed and shoulders may differ), on this
+ * processor or another, can go on from it.
+ *
+ * Writes into `written` how many bytes the state takes, also where the buffer is too small. The tracker is not changed.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_arm_pair_init`, `buffer` has the size that is said.
+ */
+SinewStatus sinew_arm_pair_save(struct SinewArmPair *tracker, uint8_t *buffer, size_t buffer_bytes, size_t *written);
+
+/**
+ * Goes on from a state that was saved, all of `state_bytes`.
+ *
+ * A state that is not whole, of another version or configuration is refused, and the tracker is as before. A state that is whole
+ * and yet holds a number that cannot be (SINEW_STATUS_BAD_STATE too) leaves a tracker that begins anew, as after `sinew_arm_pair_reset`.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_arm_pair_init`, `state` has the size that is said.
+ */
+SinewStatus sinew_arm_pair_restore(struct SinewArmPair *tracker,
+                                   const uint8_t *state,
+                                   size_t state_bytes);
+
+/**
+ * Writes a configuration: 320 x 240 pixels of RGB565, skin of many people under many lights.
+ *
+ * Caller's duty:
+ * `config` points at room for one.
+ */
+SinewStatus sinew_vision_default_config(struct SinewVisionConfig *config);
+
+/**
+ * Bytes that a front end takes on this target; `SINEW_VISION_MAX_BYTES` at most.
+ */
+size_t sinew_vision_size(void);
+
+/**
+ * Alignment that the memory of a front end needs; `SINEW_ALIGN` at most.
+ */
+size_t sinew_vision_align(void);
+
+/**
+ * Makes a front end in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
+ *
+ * Fills the skin table, one decision for each of 65536 colours, which takes some time. `vision` is written only if the status is
+ * SINEW_STATUS_OK. Returns SINEW_STATUS_OVER_CAPACITY for frames larger than 320 x 240.
+ *
+ * Caller's duty:
+ * `memory` has the size that is said.
+ */
+SinewStatus sinew_vision_init(void *memory,
+                              size_t memory_bytes,
+                              const struct SinewVisionConfig *config,
+                              struct SinewVision **vision);
+
+/**
+ * Takes over another skin model, from the next line on.
+ *
+ * Caller's duty:
+ * `vision` comes from `sinew_vision_init`.
+ */
+SinewStatus sinew_vision_learn_skin(struct SinewVision *vision, const struct SinewSkin *skin);
+
+/**
+ * Begins a frame; what was read of one that did not end is dropped.
+ *
+ * Caller's duty:
+ * `vision` comes from `sinew_vision_init`.
+ */
+SinewStatus sinew_vision_begin_frame(struct SinewVision *vision);
+
+/**
+ * Reads a line of the frame: `row` from 0 at the top, `pixel_count` pixels of 16 bits from the left.
+ *
+ * Lines come in order. A line that is left out or too short counts as without skin where pixels are missing, one that comes twice or too
+ * late is ignored; the frame's result says how many. Returns SINEW_STATUS_NO_FRAME before `sinew_vision_begin_frame`, and SINEW_STATUS_OUT_OF_RANGE
+ * for a row or pixels beyond the frame, which change nothing.
+ *
+ * Caller's duty:
+ * `vision` comes from `sinew_vision_init`, `pixels` points at as many as is said.
+ */
+SinewStatus sinew_vision_line(struct SinewVision *vision,
+                              uint32_t row,
+                              const uint16_t *pixels,
+                              size_t pixel_count);
+
+/**
+ * Ends the frame, and writes what it showed. The lists of the result lie in the front end's memory and are good until the next frame
+ * begins.
+ *
+ * Returns SINEW_STATUS_NO_FRAME before `sinew_vision_begin_frame`.
+ *
+ * Caller's duty:
+ * `vision` comes from `sinew_vision_init`.
+ */
+SinewStatus sinew_vision_end_frame(struct SinewVision *vision,
+                                   struct SinewVisionResult *result);
+
+/**
+ * Forgets all frames, as after a missing image or a cut; the skin table stays.
+ *
+ * Caller's duty:
+ * `vision` comes from `sinew_vision_init`.
+ */
+SinewStatus sinew_vision_reset(struct SinewVision *vision);
+
+/**
+ * Writes the skin table into `buffer`, so that a front end of the same pixel format, on this processor or another, can go on with
+ * it. Frames are not saved.
+ *
+ * Writes into `written` how many bytes the state takes, also where the buffer is too small. The front end is not changed.
+ *
+ * Caller's duty:
+ * `vision` comes from `sinew_vision_init`, `buffer` has the size that is said.
+ */
+SinewStatus sinew_vision_save(struct SinewVision *vision, uint8_t *buffer, size_t buffer_bytes, size_t *written);
+
+/**
+ * Goes on with a skin table that was saved, all of `state_bytes`, and forgets all frames.
+ *
+ * A state that is not whole, of another version or pixel format is refused, and the front end is as before. A state that is whole and yet
+ * of a wrong length (SINEW_STATUS_BAD_STATE too) leaves the skin table of the configuration.
+ *
+ * Caller's duty:
+ * `vision` comes from `sinew_vision_init`, `state` has the size that is said.
+ */
+SinewStatus sinew_vision_restore(struct SinewVision *vision,
+                                 const uint8_t *state,
+                                 size_t state_bytes);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* SINEW_H */

@@ -1,0 +1,264 @@
+//! What goes into the arm trackers, and what comes out.
+
+use super::object::list;
+use super::status::{Answer, SinewStatus};
+use crate::camera::{Camera, Pixel};
+use crate::checksum::Crc32;
+use crate::error::{finite, positive, within};
+use crate::math::Vec3;
+use crate::observation::candidate::HandCandidate;
+use crate::skeleton::{ArmGeometry, Side};
+use crate::tracker::arm::{ArmEstimate, ArmImage, ArmModel, ArmOptions, Status};
+use crate::vision::edges::EdgePixel;
+
+/// Particles of an arm tracker.
+pub const SINEW_ARM_PARTICLES: usize = 50;
+/// Most hand candidates of a frame; the eight most likely of them are considered.
+pub const SINEW_MAX_CANDIDATES: usize = 32;
+/// Most edge pixels of a frame.
+pub const SINEW_MAX_EDGES: usize = 4096;
+/// The person's own left arm.
+pub const SINEW_SIDE_LEFT: u32 = 0;
+/// The person's own right arm.
+pub const SINEW_SIDE_RIGHT: u32 = 1;
+/// No blob carried the estimate for so long that the prediction means nothing.
+pub const SINEW_ARM_LOST: u32 = 0;
+/// No blob of this frame carries the estimate; it is a prediction.
+pub const SINEW_ARM_PREDICTED: u32 = 1;
+/// A blob of this frame carries the estimate.
+pub const SINEW_ARM_TRACKING: u32 = 2;
+
+/// Camera, body and seed of an arm tracker; see `sinew_arm_default_config`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct SinewArmConfig {
+    /// All random numbers follow from it: the same seed and frames give the same bits.
+    pub seed: u64,
+    /// Width of the image, pixels.
+    pub image_width_px: u32,
+    /// Height of the image, pixels.
+    pub image_height_px: u32,
+    /// Focal lengths along columns and rows, pixels.
+    pub focal_px: [f32; 2],
+    /// Column and row of the principal point, pixels.
+    pub principal_point_px: [f32; 2],
+    /// From shoulder to elbow, metres.
+    pub upper_arm_m: f32,
+    /// From elbow to the middle of the hand, metres.
+    pub forearm_m: f32,
+    /// Left and right shoulder, metres in camera axes: x to the right of the image, y down, z along the line of sight. A tracker of one
+    /// arm looks at its own side only.
+    pub shoulders_m: [[f32; 3]; 2],
+}
+
+/// What a frame showed.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct SinewArmFrame {
+    /// When the frame was taken, microseconds since any start. Dropped frames are simply not given.
+    pub timestamp_us: u64,
+    /// Blobs that may be a hand, as `sinew_vision_end_frame` gives them; not looked at if `candidate_count` is zero.
+    pub candidates: *const HandCandidate,
+    /// Temporal edge pixels; not looked at if `edge_count` is zero.
+    pub edges: *const EdgePixel,
+    /// Number of candidates, at most `SINEW_MAX_CANDIDATES`.
+    pub candidate_count: u32,
+    /// Number of edge pixels, at most `SINEW_MAX_EDGES`.
+    pub edge_count: u32,
+    /// 0 where the image is missing, so that the lists say nothing; else 1.
+    pub has_image: u32,
+    /// Left and right shoulder, metres in camera axes; a tracker of one arm looks at its own side only.
+    pub shoulders_m: [[f32; 3]; 2],
+}
+
+/// An arm after a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct SinewArmResult {
+    /// That of the frame.
+    pub timestamp_us: u64,
+    /// `SINEW_SIDE_LEFT` or `SINEW_SIDE_RIGHT`.
+    pub side: u32,
+    /// `SINEW_ARM_TRACKING`, `SINEW_ARM_PREDICTED` or `SINEW_ARM_LOST`.
+    pub state: u32,
+    /// Shoulder, metres in camera axes.
+    pub shoulder_m: [f32; 3],
+    /// Elbow, metres in camera axes.
+    pub elbow_m: [f32; 3],
+    /// Middle of the hand, metres in camera axes.
+    pub hand_m: [f32; 3],
+    /// Image of the hand: column and row, pixels; -1 where it lies behind the camera.
+    pub hand_px: [f32; 2],
+    /// Elevation, deviation and axial rotation of the shoulder, flexion of the elbow, radians.
+    pub angles_rad: [f32; 4],
+    /// Standard deviation of the hand, metres along an axis.
+    pub hand_std_m: f32,
+    /// Effective number of particles.
+    pub effective_sample_size: f32,
+    /// Natural logarithm of the mean weight; zero where nothing was seen.
+    pub log_evidence: f32,
+    /// Likelihood of the blob that carries the estimate; zero without one.
+    pub hand_likelihood: f32,
+    /// Index of that blob in the frame's list, -1 without one.
+    pub candidate: i32,
+    /// Candidates that were not considered.
+    pub dropped_candidates: u32,
+    /// 1 if all weights were zero and the frame taught nothing.
+    pub is_degenerate: u32,
+    /// Zero.
+    pub reserved: u32,
+}
+
+/// Greatest coordinate of a shoulder, metres.
+const MOST_M: f32 = 100.0;
+/// Greatest coordinate in an image, pixels, and side of it.
+const MOST_PX: f32 = 65_536.0;
+
+fn shoulder(shoulders_m: &[[f32; 3]; 2], side: Side) -> Result<Vec3, SinewStatus> {
+    let [left, right] = *shoulders_m;
+    let place = match side {
+        Side::Left => left,
+        Side::Right => right,
+    };
+    for coordinate in place {
+        within("shoulders_m", coordinate, -MOST_M, MOST_M)?;
+    }
+    Ok(Vec3::from(place))
+}
+
+impl SinewArmConfig {
+    /// Camera, arm of one side and options.
+    pub(super) fn model(&self, side: Side) -> Result<ArmModel, SinewStatus> {
+        let [focal_u, focal_v] = self.focal_px;
+        let [u_px, v_px] = self.principal_point_px;
+        for length_px in [focal_u, focal_v] {
+            within("focal_px", length_px, 1.0, 16.0 * MOST_PX)?;
+        }
+        for coordinate in [u_px, v_px] {
+            within("principal_point_px", coordinate, -MOST_PX, MOST_PX)?;
+        }
+        for length_m in [self.upper_arm_m, self.forearm_m] {
+            within("length of a limb", length_m, 0.01, 2.0)?;
+        }
+        let camera = Camera::new(focal_u, focal_v, Pixel::new(u_px, v_px))?;
+        for side_px in [self.image_width_px, self.image_height_px] {
+            within("image size", side_px as f32, 1.0, MOST_PX)?;
+        }
+        let geometry = ArmGeometry::new(side, self.upper_arm_m, self.forearm_m)?;
+        let options = ArmOptions { particles: SINEW_ARM_PARTICLES, ..ArmOptions::default() };
+        Ok(ArmModel::new(camera, (self.image_width_px, self.image_height_px), geometry, options)?)
+    }
+
+    /// Where the shoulder of `side` is to begin with.
+    pub(super) fn shoulder(&self, side: Side) -> Result<Vec3, SinewStatus> {
+        shoulder(&self.shoulders_m, side)
+    }
+
+    /// A checksum of what a saved state belongs to.
+    pub(super) fn fingerprint(&self, kind: u32) -> u32 {
+        let reals = [self.focal_px, self.principal_point_px, [self.upper_arm_m, self.forearm_m]];
+        let words = [kind, SINEW_ARM_PARTICLES as u32, self.image_width_px, self.image_height_px];
+        let words = words.into_iter().chain(reals.into_iter().flatten().map(f32::to_bits));
+        words.fold(Crc32::new(), Crc32::and_word).value()
+    }
+}
+
+impl SinewArmFrame {
+    /// The lists, checked; `None` without an image.
+    ///
+    /// # Safety
+    /// The pointers have as many elements as is said.
+    pub(super) unsafe fn image(&self) -> Result<Option<ArmImage<'_>>, SinewStatus> {
+        let (candidate_count, edge_count) = (self.candidate_count as usize, self.edge_count as usize);
+        if candidate_count > SINEW_MAX_CANDIDATES || edge_count > SINEW_MAX_EDGES {
+            return Err(SinewStatus::OverCapacity);
+        }
+        if self.has_image == 0 {
+            return Ok(None);
+        }
+        // SAFETY: the caller's duty.
+        let (candidates, edges) = unsafe { (list(self.candidates, candidate_count)?, list(self.edges, edge_count)?) };
+        for candidate in candidates {
+            check_candidate(candidate)?;
+        }
+        Ok(Some(ArmImage { candidates, edges }))
+    }
+
+    /// The shoulder of `side`.
+    pub(super) fn shoulder(&self, side: Side) -> Result<Vec3, SinewStatus> {
+        shoulder(&self.shoulders_m, side)
+    }
+}
+
+fn check_candidate(candidate: &HandCandidate) -> Answer {
+    for coordinate in [candidate.centre.u_px, candidate.centre.v_px] {
+        within("centre", coordinate, -MOST_PX, MOST_PX)?;
+    }
+    for moment in candidate.moments_px2 {
+        within("moments_px2", finite("moments_px2", moment)?, -MOST_PX * MOST_PX, MOST_PX * MOST_PX)?;
+    }
+    within("area_px", positive("area_px", candidate.area_px)?, 0.0, MOST_PX * MOST_PX)?;
+    within("likelihood", candidate.likelihood, 0.0, 1.0)?;
+    Ok(())
+}
+
+impl SinewArmResult {
+    pub(super) fn of(timestamp_us: u64, model: &ArmModel, estimate: &ArmEstimate) -> Self {
+        let hand_px = model.camera().project(&estimate.joints.hand_m).map_or([-1.0; 2], |hand| [hand.u_px, hand.v_px]);
+        Self {
+            timestamp_us,
+            side: if estimate.side == Side::Left { SINEW_SIDE_LEFT } else { SINEW_SIDE_RIGHT },
+            state: match estimate.status {
+                Status::Lost => SINEW_ARM_LOST,
+                Status::Predicted => SINEW_ARM_PREDICTED,
+                Status::Tracking => SINEW_ARM_TRACKING,
+            },
+            shoulder_m: estimate.joints.shoulder_m.into(),
+            elbow_m: estimate.joints.elbow_m.into(),
+            hand_m: estimate.joints.hand_m.into(),
+            hand_px,
+            angles_rad: estimate.angles_rad,
+            hand_std_m: estimate.hand_std_m,
+            effective_sample_size: estimate.effective_sample_size,
+            log_evidence: estimate.log_evidence,
+            hand_likelihood: estimate.hand_likelihood,
+            candidate: estimate.candidate.map_or(-1, |index| index as i32),
+            dropped_candidates: estimate.dropped_candidates as u32,
+            is_degenerate: u32::from(estimate.degenerate),
+            reserved: 0,
+        }
+    }
+}
+
+/// Writes a configuration: a camera with square pixels, an adult who faces it at 1.25 metres, seed 1.
+///
+/// Returns SINEW_STATUS_OUT_OF_RANGE for a field of view that does not lie between 0 and pi.
+///
+/// # Safety
+/// `config` points at room for one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_arm_default_config(
+    image_width_px: u32,
+    image_height_px: u32,
+    horizontal_field_of_view_rad: f32,
+    config: *mut SinewArmConfig,
+) -> SinewStatus {
+    let camera = Camera::from_field_of_view(image_width_px, image_height_px, horizontal_field_of_view_rad);
+    // SAFETY: the caller's duty.
+    let room = unsafe { super::object::room(config) };
+    super::status::status((|| {
+        let (camera, room) = (camera?, room?);
+        let middle = |side_px: u32| 0.5 * (side_px as f32 - 1.0);
+        room.write(SinewArmConfig {
+            seed: 1,
+            image_width_px,
+            image_height_px,
+            focal_px: [camera.focal_px(); 2],
+            principal_point_px: [middle(image_width_px), middle(image_height_px)],
+            upper_arm_m: 0.30,
+            forearm_m: 0.33,
+            shoulders_m: [[0.19, -0.05, 1.25], [-0.19, -0.05, 1.25]],
+        });
+        Ok(())
+    })())
+}

@@ -1,0 +1,283 @@
+//! The front end: a camera's lines in, blobs that may be hands and moving edges out, without a frame buffer.
+
+use super::cyclic::SINEW_ALIGN;
+use super::object::{Seal, Sealed, bytes_mut, given, list, object, place, room};
+use super::status::{Answer, SinewStatus, status};
+use super::vision_frame::{
+    SINEW_PIXEL_RGB565, SINEW_PIXEL_RGB565_SWAPPED, SINEW_PIXEL_YUYV, SinewSkin, SinewVisionConfig, SinewVisionResult,
+};
+use crate::saved_state::{SavedState, StateError, StateKind, StateVisitor, restore, save, saved_bytes};
+use crate::vision::front_end::QvgaFrontEnd;
+use crate::vision::front_end::edge_lines::EdgeSteps;
+use crate::vision::front_end::pixel_format::{Rgb565, SwappedRgb565, Yuyv};
+use crate::vision::front_end::skin_table::SkinTable;
+use crate::vision::hand_likelihood::HandLikelihood;
+use crate::vision::skin::GaussianSkin;
+use core::ffi::c_void;
+use core::mem::offset_of;
+
+/// Bytes that always suffice for a front end, on every target.
+pub const SINEW_VISION_MAX_BYTES: usize = 20480;
+/// Bytes that always suffice for the saved state of a front end.
+pub const SINEW_VISION_STATE_MAX_BYTES: usize = 8320;
+
+const _: () = assert!(size_of::<SinewVision>() <= SINEW_VISION_MAX_BYTES && align_of::<SinewVision>() <= SINEW_ALIGN);
+
+/// A front end; see `sinew_vision_init`.
+#[derive(Debug)]
+pub struct SinewVision {
+    seal: Seal,
+    config: SinewVisionConfig,
+    is_in_frame: bool,
+    skin: Skin,
+    front_end: QvgaFrontEnd,
+}
+
+/// The skin table of one of the formats.
+#[derive(Debug)]
+enum Skin {
+    Rgb565(SkinTable<Rgb565>),
+    Swapped(SkinTable<SwappedRgb565>),
+    Yuyv(SkinTable<Yuyv>),
+}
+
+impl Skin {
+    fn learn(&mut self, skin: &GaussianSkin) {
+        match self {
+            Self::Rgb565(table) => table.learn(skin),
+            Self::Swapped(table) => table.learn(skin),
+            Self::Yuyv(table) => table.learn(skin),
+        }
+    }
+}
+
+// SAFETY: the seal is that field.
+unsafe impl Sealed for SinewVision {
+    const SEAL: Seal = Seal::of(*b"SNvi");
+    const SEAL_AT: usize = offset_of!(SinewVision, seal);
+}
+
+/// Bytes that a front end takes on this target; `SINEW_VISION_MAX_BYTES` at most.
+#[unsafe(no_mangle)]
+pub extern "C" fn sinew_vision_size() -> usize {
+    size_of::<SinewVision>()
+}
+
+/// Alignment that the memory of a front end needs; `SINEW_ALIGN` at most.
+#[unsafe(no_mangle)]
+pub extern "C" fn sinew_vision_align() -> usize {
+    align_of::<SinewVision>()
+}
+
+/// Makes a front end in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
+///
+/// Fills the skin table, one decision for each of 65536 colours, which takes some time. `vision` is written only if the status is
+/// SINEW_STATUS_OK. Returns SINEW_STATUS_OVER_CAPACITY for frames larger than 320 x 240.
+///
+/// # Safety
+/// `memory` has the size that is said.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_vision_init(
+    memory: *mut c_void,
+    memory_bytes: usize,
+    config: *const SinewVisionConfig,
+    vision: *mut *mut SinewVision,
+) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let (handle, config) = (room(vision)?, *given(config)?);
+            let place = place::<SinewVision>(memory, memory_bytes)?;
+            let model = config.skin.model()?;
+            let skin = match config.pixel_format {
+                SINEW_PIXEL_RGB565 => Skin::Rgb565(SkinTable::new()),
+                SINEW_PIXEL_RGB565_SWAPPED => Skin::Swapped(SkinTable::new()),
+                SINEW_PIXEL_YUYV => Skin::Yuyv(SkinTable::new()),
+                _ => return Err(SinewStatus::OutOfRange),
+            };
+            let size = (config.width_px as usize, config.height_px as usize);
+            let front_end = QvgaFrontEnd::new(size, HandLikelihood::default(), EdgeSteps::default())?;
+            let seal = SinewVision::SEAL;
+            let vision = place.write(SinewVision { seal, config, is_in_frame: false, skin, front_end });
+            vision.skin.learn(&model);
+            handle.write(vision);
+            Ok(())
+        })()
+    })
+}
+
+/// Takes over another skin model, from the next line on.
+///
+/// # Safety
+/// `vision` comes from `sinew_vision_init`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_vision_learn_skin(vision: *mut SinewVision, skin: *const SinewSkin) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let (vision, skin) = (object(vision)?, given(skin)?);
+            vision.skin.learn(&skin.model()?);
+            Ok(())
+        })()
+    })
+}
+
+/// Begins a frame; what was read of one that did not end is dropped.
+///
+/// # Safety
+/// `vision` comes from `sinew_vision_init`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_vision_begin_frame(vision: *mut SinewVision) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe { object(vision) }.map(|vision| {
+        vision.front_end.begin_frame();
+        vision.is_in_frame = true;
+    }))
+}
+
+/// Reads a line of the frame: `row` from 0 at the top, `pixel_count` pixels of 16 bits from the left.
+///
+/// Lines come in order. A line that is left out or too short counts as without skin where pixels are missing, one that comes twice or too
+/// late is ignored; the frame's result says how many. Returns SINEW_STATUS_NO_FRAME before `sinew_vision_begin_frame`, and SINEW_STATUS_OUT_OF_RANGE
+/// for a row or pixels beyond the frame, which change nothing.
+///
+/// # Safety
+/// `vision` comes from `sinew_vision_init`, `pixels` points at as many as is said.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_vision_line(
+    vision: *mut SinewVision,
+    row: u32,
+    pixels: *const u16,
+    pixel_count: usize,
+) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let (vision, line) = (object(vision)?, list(pixels, pixel_count)?);
+            vision.line(row, line)
+        })()
+    })
+}
+
+/// Ends the frame, and writes what it showed. The lists of the result lie in the front end's memory and are good until the next frame
+/// begins.
+///
+/// Returns SINEW_STATUS_NO_FRAME before `sinew_vision_begin_frame`.
+///
+/// # Safety
+/// `vision` comes from `sinew_vision_init`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_vision_end_frame(
+    vision: *mut SinewVision,
+    result: *mut SinewVisionResult,
+) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let (vision, result) = (object(vision)?, room(result)?);
+            if !vision.is_in_frame {
+                return Err(SinewStatus::NoFrame);
+            }
+            vision.is_in_frame = false;
+            result.write(SinewVisionResult::of(&vision.front_end.end_frame()));
+            Ok(())
+        })()
+    })
+}
+
+/// Forgets all frames, as after a missing image or a cut; the skin table stays.
+///
+/// # Safety
+/// `vision` comes from `sinew_vision_init`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_vision_reset(vision: *mut SinewVision) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe { object(vision) }.map(SinewVision::forget_frames))
+}
+
+/// Writes the skin table into `buffer`, so that a front end of the same pixel format, on this processor or another, can go on with
+/// it. Frames are not saved.
+///
+/// Writes into `written` how many bytes the state takes, also where the buffer is too small. The front end is not changed.
+///
+/// # Safety
+/// `vision` comes from `sinew_vision_init`, `buffer` has the size that is said.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_vision_save(
+    vision: *mut SinewVision,
+    buffer: *mut u8,
+    buffer_bytes: usize,
+    written: *mut usize,
+) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let (vision, buffer, written) = (object(vision)?, bytes_mut(buffer, buffer_bytes)?, room(written)?);
+            written.write(saved_bytes(&mut vision.skin));
+            save(StateKind::Vision, vision.config.pixel_format, &mut vision.skin, buffer)?;
+            Ok(())
+        })()
+    })
+}
+
+/// Goes on with a skin table that was saved, all of `state_bytes`, and forgets all frames.
+///
+/// A state that is not whole, of another version or pixel format is refused, and the front end is as before. A state that is whole and yet
+/// of a wrong length (SINEW_STATUS_BAD_STATE too) leaves the skin table of the configuration.
+///
+/// # Safety
+/// `vision` comes from `sinew_vision_init`, `state` has the size that is said.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_vision_restore(
+    vision: *mut SinewVision,
+    state: *const u8,
+    state_bytes: usize,
+) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let (vision, state) = (object(vision)?, list(state, state_bytes)?);
+            let answer = restore(StateKind::Vision, vision.config.pixel_format, &mut vision.skin, state);
+            if answer == Err(StateError::Illegal) {
+                vision.skin.learn(&vision.config.skin.model()?);
+            }
+            answer?;
+            vision.forget_frames();
+            Ok(())
+        })()
+    })
+}
+
+impl SinewVision {
+    fn line(&mut self, row: u32, line: &[u16]) -> Answer {
+        if !self.is_in_frame {
+            return Err(SinewStatus::NoFrame);
+        }
+        if row >= self.config.height_px || line.len() > self.config.width_px as usize {
+            return Err(SinewStatus::OutOfRange);
+        }
+        match &self.skin {
+            Skin::Rgb565(table) => self.front_end.line(row as usize, line, table),
+            Skin::Swapped(table) => self.front_end.line(row as usize, line, table),
+            Skin::Yuyv(table) => self.front_end.line(row as usize, line, table),
+        }
+        Ok(())
+    }
+
+    fn forget_frames(&mut self) {
+        self.front_end.begin_frame();
+        self.front_end.forget_last_frame();
+        self.is_in_frame = false;
+    }
+}
+
+impl SavedState for Skin {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        let words = match self {
+            Self::Rgb565(table) => table.words_mut(),
+            Self::Swapped(table) => table.words_mut(),
+            Self::Yuyv(table) => table.words_mut(),
+        };
+        words.iter_mut().for_each(|word| visitor.word(word));
+    }
+}

@@ -1,0 +1,118 @@
+//! What the front end is told, and what a frame showed.
+
+use super::status::SinewStatus;
+use crate::observation::candidate::HandCandidate;
+use crate::vision::edges::EdgePixel;
+use crate::vision::front_end::FrameLines;
+use crate::vision::skin::GaussianSkin;
+
+/// 5 bits of red (the highest), 6 of green, 5 of blue.
+pub const SINEW_PIXEL_RGB565: u32 = 0;
+/// The same with both bytes swapped, as cameras with an 8-bit port and a little-endian processor have it.
+pub const SINEW_PIXEL_RGB565_SWAPPED: u32 = 1;
+/// Y in the low byte; in the high byte U of a pair of pixels in the left one, V in the right one.
+pub const SINEW_PIXEL_YUYV: u32 = 2;
+
+/// Skin as a normal distribution of chromaticity r = R / (R + G + B), g = G / (R + G + B).
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct SinewSkin {
+    /// Means of r and g.
+    pub mean: [f32; 2],
+    /// Covariance: rr, rg, gg.
+    pub covariance: [f32; 3],
+    /// Mahalanobis distance within which a colour counts as skin.
+    pub threshold: f32,
+    /// Least R + G + B, 0 to 765: darker pixels have no usable colour.
+    pub min_sum: u32,
+}
+
+/// Frames and skin; see `sinew_vision_default_config`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct SinewVisionConfig {
+    /// Width of a frame, 1 to 320 pixels.
+    pub width_px: u32,
+    /// Height of a frame, 1 to 240 pixels.
+    pub height_px: u32,
+    /// `SINEW_PIXEL_RGB565`, `SINEW_PIXEL_RGB565_SWAPPED` or `SINEW_PIXEL_YUYV`.
+    pub pixel_format: u32,
+    /// Which colours count as skin.
+    pub skin: SinewSkin,
+}
+
+/// What a frame showed; all losses zero means that it is exact.
+#[derive(Debug, Clone, Copy)]
+#[repr(C)]
+pub struct SinewVisionResult {
+    /// Blobs that may be a hand, the most likely first; null where there are none.
+    pub candidates: *const HandCandidate,
+    /// Temporal edge pixels in the order of rows; null where there are none.
+    pub edges: *const EdgePixel,
+    /// Number of candidates.
+    pub candidate_count: u32,
+    /// Number of edge pixels.
+    pub edge_count: u32,
+    /// Components that found no room among those that grew at the same time.
+    pub dropped_components: u32,
+    /// Pixels of those, and of runs that found no room in their line.
+    pub dropped_px: u32,
+    /// Blobs less likely than all in the list.
+    pub dropped_blobs: u32,
+    /// Temporal edge pixels that were thinned out.
+    pub dropped_edges: u32,
+    /// Lines that did not come, or were too short.
+    pub missing_lines: u32,
+    /// Lines that came twice or too late.
+    pub ignored_lines: u32,
+}
+
+impl SinewSkin {
+    pub(super) fn model(&self) -> Result<GaussianSkin, SinewStatus> {
+        let [mean_r, mean_g] = self.mean;
+        let min_sum = u16::try_from(self.min_sum).map_err(|_| SinewStatus::OutOfRange)?;
+        Ok(GaussianSkin::new(mean_r, mean_g, self.covariance, self.threshold, min_sum)?)
+    }
+}
+
+fn start<T>(list: &[T]) -> *const T {
+    if list.is_empty() { core::ptr::null() } else { list.as_ptr() }
+}
+
+impl SinewVisionResult {
+    pub(super) fn of(seen: &FrameLines<'_>) -> Self {
+        let losses = seen.losses;
+        Self {
+            candidates: start(seen.candidates),
+            edges: start(seen.edges),
+            candidate_count: seen.candidates.len() as u32,
+            edge_count: seen.edges.len() as u32,
+            dropped_components: losses.dropped_components,
+            dropped_px: losses.dropped_px,
+            dropped_blobs: losses.dropped_blobs,
+            dropped_edges: losses.dropped_edges,
+            missing_lines: losses.missing_lines,
+            ignored_lines: losses.ignored_lines,
+        }
+    }
+}
+
+/// Writes a configuration: 320 x 240 pixels of RGB565, skin of many people under many lights.
+///
+/// # Safety
+/// `config` points at room for one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_vision_default_config(config: *mut SinewVisionConfig) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    let room = unsafe { super::object::room(config) };
+    super::status::status(room.map(|room| {
+        // The host's shipped Gaussian model, rounded.
+        let skin = SinewSkin {
+            mean: [0.4518, 0.3157],
+            covariance: [0.001_659, 0.000_035_8, 0.000_184_1],
+            threshold: 2.25,
+            min_sum: 215,
+        };
+        room.write(SinewVisionConfig { width_px: 320, height_px: 240, pixel_format: SINEW_PIXEL_RGB565, skin });
+    }))
+}
