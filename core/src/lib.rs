@@ -15,6 +15,7 @@ pub mod observation;
 pub mod particle;
 pub mod pik;
 pub mod random;
+pub mod record;
 pub mod saved_state;
 pub mod skeleton;
 pub mod tracker;

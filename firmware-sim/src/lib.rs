@@ -1,12 +1,35 @@
-//! What camera firmware does with `sinew-core`, run on the host.
+//! Images for an emulated Cortex-M that track with `sinew-core`.
 //!
-//! A [`camera::SyntheticCamera`] delivers lines of RGB, [`front_end::FrontEnd`] turns them into blobs and temporal edges without ever
-//! holding a colour frame, and [`device::Device`] tracks an arm with 50 particles. The library is `no_std` without an allocator, as
-//! the firmware would be; only the program that prints (`main.rs`) uses the standard library.
+//! An image reads recorded input record by record, tracks, and answers with records ([`port`]). What it does stands in a module of its
+//! own name ([`cyclic`]) and runs on any machine, so that tests on the host run the same code; `machine` is what only the
+//! emulated board has. A new image is a file `src/bin/NAME.rs` and what it has to answer, `expected/NAME.rec` (records) or `expected/NAME.txt`
+//! (its standard output).
 
 #![no_std]
 
-pub mod camera;
-pub mod device;
-pub mod front_end;
-pub mod report;
+pub mod cyclic;
+pub mod faults;
+mod log;
+#[cfg(target_os = "none")]
+pub mod machine;
+pub mod port;
+
+/// The `main` of an image that runs `$run`, a function of a [`port::Port`].
+#[macro_export]
+macro_rules! image {
+    ($run:path) => {
+        #[cfg(target_os = "none")]
+        #[::cortex_m_rt::entry]
+        fn main() -> ! {
+            $crate::machine::run($run)
+        }
+
+        #[cfg(not(target_os = "none"))]
+        fn main() {
+            eprintln!(
+                "this is an image for a Cortex-M: `cargo run --release --bin NAME` in the folder firmware-sim runs it"
+            );
+            std::process::exit(2);
+        }
+    };
+}

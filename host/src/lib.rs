@@ -11,6 +11,7 @@ pub mod keypoints;
 pub mod model_text;
 pub mod motion;
 pub mod output;
+pub mod record;
 pub mod scene;
 pub mod skin;
 pub mod track;

@@ -14,6 +14,7 @@ pub mod evaluate_cyclic;
 pub mod evaluate_hands;
 pub mod evaluate_skin;
 pub mod image_run;
+pub mod record;
 pub mod segment;
 pub mod simulate;
 pub mod skin_args;
@@ -50,6 +51,8 @@ pub enum Command {
     Cut(cut::CutArgs),
     /// Render scenes with known truth.
     Simulate(simulate::SimulateArgs),
+    /// Write what the tracker of a run was given as a stream that firmware plays.
+    Record(record::RecordArgs),
     /// Write the skin mask of each image.
     Segment(segment::SegmentArgs),
     /// Write the features and hand likelihood of each blob of each image.
@@ -73,6 +76,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
         Command::Angles(args) => angles::run(args),
         Command::Cut(args) => cut::run(args),
         Command::Simulate(args) => simulate::run(args),
+        Command::Record(args) => record::run(args),
         Command::Segment(args) => segment::run(args),
         Command::Blobs(args) => blobs::run(args),
         Command::Train(train) => train::run(train),

@@ -2,6 +2,7 @@
 
 pub mod bank;
 pub mod filter;
+pub mod measurements;
 pub mod options;
 pub mod particles;
 pub mod run;
@@ -9,6 +10,7 @@ pub mod summary;
 pub mod table;
 
 pub use bank::{BankTracked, NamedMotion, track_bank};
+pub use measurements::Measurements;
 pub use options::{FilterName, StartName, TrackingOptions, Updates};
 pub use run::{SideEstimate, Tracked, TrackedFrame, track};
 pub use summary::Summary;

@@ -1,6 +1,7 @@
 //! One pass of a filter over an angle table.
 
 use super::filter::{Filter, Pass};
+use super::measurements::Measurements;
 use super::options::TrackingOptions;
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
 use crate::cyclic::smoothing::replace_estimates;
@@ -8,7 +9,7 @@ use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
 use anyhow::{Result, bail, ensure};
 use sinew_core::cyclic::events::CycleCounter;
 use sinew_core::cyclic::measurement::MAX_STEP_FRAMES;
-use sinew_core::cyclic::{AngleMeasurement, CyclicEstimate, MotionModel};
+use sinew_core::cyclic::{CyclicEstimate, MotionModel};
 use std::f64::consts::TAU;
 
 /// What the filter answered to one row.
@@ -51,24 +52,17 @@ pub struct Tracked {
 /// # Errors
 /// An option out of range, a rate so low that a step is too long, a table without any angle.
 pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions) -> Result<Tracked> {
-    options.check()?;
     let view = model.view();
-    let model_hz = f64::from(view.rate_hz());
-    let rate_hz = options.rate_hz.unwrap_or(model_hz);
-    let step_frames = model_hz / rate_hz;
-    ensure!(
-        step_frames <= f64::from(MAX_STEP_FRAMES),
-        "`--rate {rate_hz}`: one frame is {step_frames:.0} of the model's; at most {MAX_STEP_FRAMES} can be bridged"
-    );
-    let first = first_seen(table)?;
-    let frames = if view.angle_count() > ANGLES {
+    let (frames, rate_hz, step_frames) = if view.angle_count() > ANGLES {
+        let measurements = Measurements::<SPACE_ANGLES>::new(table, &view, options)?;
         ensure!(
             table.angle_count() == SPACE_ANGLES,
             "the model has two angles a joint, the table one; make the table with `sinew angles --view space`, or train a model on such tables"
         );
-        frames_of::<SPACE_ANGLES>(table, view, options, first, step_frames)?
+        (frames_of(table, view, options, &measurements)?, measurements.rate_hz(), measurements.step_frames())
     } else {
-        frames_of::<ANGLES>(table, view, options, first, step_frames)?
+        let measurements = Measurements::<ANGLES>::new(table, &view, options)?;
+        (frames_of(table, view, options, &measurements)?, measurements.rate_hz(), measurements.step_frames())
     };
     Ok(Tracked { frames, rate_hz, step_frames })
 }
@@ -87,32 +81,28 @@ pub(super) fn step_of(before: &AngleRow, row: &AngleRow, step_frames: f64) -> f6
     (step_frames * (row.frame - before.frame) as f64).min(f64::from(MAX_STEP_FRAMES))
 }
 
-/// Every row's answer by a filter for `N` angles that begins at the row `first`.
+/// Every row's answer by a filter for `N` angles that begins at the first row with an angle.
 fn frames_of<const N: usize>(
     table: &AngleTable,
     view: MotionModel<'_>,
     options: &TrackingOptions,
-    first: usize,
-    step_frames: f64,
+    measurements: &Measurements<'_, N>,
 ) -> Result<Vec<TrackedFrame>> {
-    let mut filter = Filter::<N>::new(view, options, &measured(table, first), step_frames)?;
+    let first = measurements.first();
+    let mut filter = Filter::<N>::new(view, options, &measurements.first_angles_rad(), measurements.step_frames())?;
     let mut pass = if options.smooth { Pass::begin(&filter) } else { None };
     let mut frames: Vec<TrackedFrame> = Vec::with_capacity(table.rows().len());
     // Rows before the first one with an angle are answered with the first state as well.
     let start = filter.first_estimate();
     let mut counter = CycleCounter::new(start.cycle_position);
     frames.extend(table.rows()[..=first].iter().map(|row| tracked(row.frame, &start, 0.0)));
-    for (index, pair) in table.rows().windows(2).enumerate().skip(first) {
-        let [before, row] = pair else { continue };
-        let step = step_of(before, row, step_frames);
-        let used = options.updates.uses(table.first_frame(), row.frame);
-        let angles = if used { measured(table, index + 1) } else { [None; N] };
-        let measurement = AngleMeasurement::new(&angles, options.sigma_rad as f32)?.after(step as f32)?;
+    for (index, row) in table.rows().iter().enumerate().skip(first + 1) {
+        let measurement = measurements.at(index)?;
         let estimate = filter.step(&measurement);
         if let Some(pass) = &mut pass {
             pass.add(&filter, measurement);
         }
-        counter.advance(estimate.cycle_position, estimate.cycle_velocity_per_frame, step as f32);
+        counter.advance(estimate.cycle_position, estimate.cycle_velocity_per_frame, measurement.step_frames());
         frames.push(tracked(row.frame, &estimate, cycles(&counter)));
     }
     if let Some(pass) = pass {

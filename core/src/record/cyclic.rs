@@ -1,0 +1,96 @@
+//! What the cyclic tracker is given.
+
+use super::{FieldReader, FieldWriter, Kind, Payload, RecordError};
+use crate::checksum::Crc32;
+use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::skeleton::stick_figure::HUMAN_ANGLES;
+use crate::tracker::cyclic::FirstPhase;
+
+/// Begins the recording of a motion: which model, and what is known of the first state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CyclicSetup {
+    /// [`model_checksum`] of the model.
+    pub model_checksum: u32,
+    /// First position and velocity.
+    pub first: FirstPhase,
+}
+
+/// Checksum of a model's numbers: firmware tells by it whether it holds the model of a recording.
+#[must_use]
+pub fn model_checksum(model: &MotionModel<'_>) -> u32 {
+    let parts = model.parts();
+    let deviation = &parts.deviation;
+    let tables = [
+        parts.mean_acceleration,
+        parts.acceleration_covariance,
+        parts.mean_pose_rad,
+        parts.mean_velocity,
+        deviation.offset_std_rad,
+        deviation.swing_std_rad,
+        deviation.rest_std_rad,
+        deviation.rest_rate_per_cycle,
+        &[parts.mean_duration_frames, parts.rate_hz],
+    ];
+    let sum = tables.into_iter().flatten().fold(Crc32::new(), |sum, value| sum.and_word(value.to_bits()));
+    parts.turns_per_cycle.iter().fold(sum, |sum, turns| sum.and(turns.cast_unsigned())).value()
+}
+
+impl Payload for CyclicSetup {
+    const KIND: Kind = Kind::CyclicSetup;
+    const MAX_BYTES: usize = 4 + 2 * 5;
+
+    fn write(&self, fields: &mut FieldWriter<'_>) {
+        fields.u32(self.model_checksum);
+        fields.optional_f32(self.first.position);
+        fields.optional_f32(self.first.velocity_per_frame);
+    }
+
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError> {
+        let model_checksum = fields.u32()?;
+        let position = fields.optional_f32("position")?;
+        let velocity_per_frame = fields.optional_f32("velocity_per_frame")?;
+        Ok(Self { model_checksum, first: FirstPhase { position, velocity_per_frame } })
+    }
+}
+
+/// One frame's angles, just as the filter gets them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CyclicInput {
+    /// Number of the frame in the recording; rises from record to record.
+    pub frame: u32,
+    /// The measurement.
+    pub angles: AngleMeasurement<HUMAN_ANGLES>,
+}
+
+impl Payload for CyclicInput {
+    const KIND: Kind = Kind::CyclicInput;
+    const MAX_BYTES: usize = 3 * 4 + 8 * HUMAN_ANGLES;
+
+    fn write(&self, fields: &mut FieldWriter<'_>) {
+        fields.u32(self.frame);
+        fields.f32(self.angles.step_frames());
+        let seen = self.angles.angles_rad();
+        fields.u32(seen.iter().rev().fold(0, |bits, angle| bits << 1 | u32::from(angle.is_some())));
+        seen.iter().for_each(|angle| fields.f32(angle.unwrap_or(0.0)));
+        fields.f32s(self.angles.std_rad());
+    }
+
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError> {
+        let frame = fields.u32()?;
+        let step_frames = fields.f32()?;
+        let seen = fields.u32()?;
+        if seen >> HUMAN_ANGLES != 0 {
+            return Err(RecordError::Value { field: "seen" });
+        }
+        let angles = fields.f32s::<HUMAN_ANGLES>()?;
+        let std_rad = fields.f32s::<HUMAN_ANGLES>()?;
+        let mut angles_rad = angles.map(Some);
+        for (index, angle) in angles_rad.iter_mut().enumerate() {
+            *angle = angle.filter(|_| seen >> index & 1 == 1);
+        }
+        let angles = AngleMeasurement::with_std(&angles_rad, &std_rad)
+            .and_then(|angles| angles.after(step_frames))
+            .map_err(|error| RecordError::Value { field: error.parameter })?;
+        Ok(Self { frame, angles })
+    }
+}

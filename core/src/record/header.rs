@@ -1,0 +1,135 @@
+//! One record: header, payload, checksum.
+
+use super::{FieldReader, Payload, RecordError};
+use crate::checksum::Crc32;
+
+/// Version of the format that this library writes and reads.
+pub const VERSION: u16 = 1;
+/// Bytes of a header.
+pub const HEADER_BYTES: usize = 16;
+/// First bytes of every record.
+pub(super) const MARK: [u8; 4] = *b"SNWR";
+/// Bytes of the header that the checksum covers.
+const COVERED_BYTES: usize = 12;
+
+/// What a record holds. The numbers never change their meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u16)]
+#[non_exhaustive]
+pub enum Kind {
+    /// [`super::End`].
+    End = 1,
+    /// [`super::CyclicSetup`].
+    CyclicSetup = 16,
+    /// [`super::CyclicInput`].
+    CyclicInput = 17,
+    /// [`super::CyclicResult`].
+    CyclicResult = 128,
+    /// [`super::Failure`].
+    Failure = 144,
+    /// [`super::Cost`].
+    Cost = 160,
+}
+
+impl Kind {
+    /// All kinds.
+    pub const ALL: [Self; 6] =
+        [Self::End, Self::CyclicSetup, Self::CyclicInput, Self::CyclicResult, Self::Failure, Self::Cost];
+
+    /// The kind with this number.
+    #[must_use]
+    pub fn of(number: u16) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| *kind as u16 == number)
+    }
+}
+
+/// A record whose checksum is right.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Record<'a> {
+    /// What it holds.
+    pub kind: Kind,
+    /// Its payload.
+    pub payload: &'a [u8],
+}
+
+impl Record<'_> {
+    /// The payload's fields.
+    ///
+    /// # Errors
+    /// [`RecordError::OutOfOrder`] for another kind, else those of [`Payload::read`]; all bytes have to be read.
+    pub fn read<P: Payload>(&self) -> Result<P, RecordError> {
+        if self.kind != P::KIND {
+            return Err(RecordError::OutOfOrder);
+        }
+        let mut fields = FieldReader::new(self.payload);
+        let payload = P::read(&mut fields)?;
+        fields.finish()?;
+        Ok(payload)
+    }
+}
+
+/// Writes a record with header and checksum to the start of `bytes`; gives its length.
+///
+/// # Errors
+/// [`RecordError::Capacity`] where `bytes` is shorter; [`HEADER_BYTES`] and [`Payload::MAX_BYTES`] always suffice.
+pub fn encode<P: Payload>(payload: &P, bytes: &mut [u8]) -> Result<usize, RecordError> {
+    const NO_ROOM: RecordError = RecordError::Capacity { list: "bytes" };
+    let (header, rest) = bytes.split_first_chunk_mut::<HEADER_BYTES>().ok_or(NO_ROOM)?;
+    let mut fields = super::FieldWriter::new(rest);
+    payload.write(&mut fields);
+    let length = fields.finish().ok_or(NO_ROOM)?;
+    let mut fields = super::FieldWriter::new(header);
+    MARK.iter().for_each(|&byte| fields.u8(byte));
+    fields.u16(VERSION);
+    fields.u16(P::KIND as u16);
+    fields.u32(length as u32);
+    let payload = rest.get(..length).unwrap_or_default();
+    let checksum = checksum(header, payload);
+    if let Some(place) = header.last_chunk_mut::<4>() {
+        *place = checksum.to_le_bytes();
+    }
+    Ok(HEADER_BYTES + length)
+}
+
+fn checksum(header: &[u8; HEADER_BYTES], payload: &[u8]) -> u32 {
+    let covered = header.get(..COVERED_BYTES).unwrap_or_default();
+    covered.iter().chain(payload).fold(Crc32::new(), |sum, &byte| sum.and(byte)).value()
+}
+
+/// Length of the record that `bytes` begin with, header included, as the header tells it.
+///
+/// # Errors
+/// [`RecordError::Truncated`] where the header is not there as a whole, else [`RecordError::NoRecord`] or
+/// [`RecordError::WrongVersion`].
+pub(super) fn announced_len(bytes: &[u8]) -> Result<usize, RecordError> {
+    let header = bytes.first_chunk::<HEADER_BYTES>().ok_or(RecordError::Truncated)?;
+    if !header.starts_with(&MARK) {
+        return Err(RecordError::NoRecord);
+    }
+    let mut fields = FieldReader::new(header.get(MARK.len()..).unwrap_or_default());
+    let found = fields.u16()?;
+    if found != VERSION {
+        return Err(RecordError::WrongVersion { found });
+    }
+    fields.u16()?;
+    Ok(HEADER_BYTES.saturating_add(fields.u32()? as usize))
+}
+
+/// Reads the record that `bytes` begin with; gives its length, too, header included.
+///
+/// # Errors
+/// What is wrong with it, checked in this order: whole header, mark, version, whole payload, checksum, kind.
+pub fn decode(bytes: &[u8]) -> Result<(Record<'_>, usize), RecordError> {
+    let length = announced_len(bytes)?;
+    let record = bytes.get(..length).ok_or(RecordError::Truncated)?;
+    let (header, payload) = record.split_first_chunk::<HEADER_BYTES>().ok_or(RecordError::Truncated)?;
+    let told = header.last_chunk::<4>().map_or(0, |bytes| u32::from_le_bytes(*bytes));
+    if told != checksum(header, payload) {
+        return Err(RecordError::Checksum);
+    }
+    let mut fields = FieldReader::new(header.get(6..).unwrap_or_default());
+    let found = fields.u16()?;
+    let kind = Kind::of(found).ok_or(RecordError::UnknownKind { found })?;
+    Ok((Record { kind, payload }, length))
+}

@@ -1,0 +1,67 @@
+//! Fixed records: what is recorded on the host is played to firmware bit for bit, and what firmware answers is compared.
+//!
+//! A record is a header of 16 bytes and a payload. All numbers are little-endian.
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 0 to 3 | `SNWR` |
+//! | 4, 5 | [`VERSION`] of the format |
+//! | 6, 7 | [`Kind`] |
+//! | 8 to 11 | length of the payload, bytes |
+//! | 12 to 15 | CRC-32 (ISO-HDLC) of the first twelve bytes and the payload |
+//!
+//! A stream is records one after the other; the last one is [`End`], which counts them. [`RecordStream`] reads from any [`Source`] with
+//! a buffer of fixed size, and goes on at the next sound record after a broken one.
+
+mod cyclic;
+mod error;
+mod fields;
+mod header;
+mod results;
+mod stream;
+#[cfg(test)]
+mod tests;
+
+pub use cyclic::{CyclicInput, CyclicSetup, model_checksum};
+pub use error::RecordError;
+pub use fields::{FieldReader, FieldWriter};
+pub use header::{HEADER_BYTES, Kind, Record, VERSION, decode, encode};
+pub use results::{Cost, CyclicResult, Failure};
+pub use stream::{RecordStream, Source};
+
+/// Something that a record holds.
+pub trait Payload: Sized {
+    /// Kind of its records.
+    const KIND: Kind;
+    /// Most bytes that it takes, without the header.
+    const MAX_BYTES: usize;
+
+    /// Writes all fields.
+    fn write(&self, fields: &mut FieldWriter<'_>);
+
+    /// Reads all fields.
+    ///
+    /// # Errors
+    /// [`RecordError::WrongLength`] where they do not fit, [`RecordError::Value`] where one has a value that is none.
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError>;
+}
+
+/// Ends a stream.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct End {
+    /// Number of records before this one.
+    pub records: u32,
+}
+
+impl Payload for End {
+    const KIND: Kind = Kind::End;
+    const MAX_BYTES: usize = 4;
+
+    fn write(&self, fields: &mut FieldWriter<'_>) {
+        fields.u32(self.records);
+    }
+
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError> {
+        Ok(Self { records: fields.u32()? })
+    }
+}

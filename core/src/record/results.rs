@@ -1,0 +1,144 @@
+//! What firmware answers.
+
+use super::{FieldReader, FieldWriter, Kind, Payload, RecordError};
+use crate::cyclic::CyclicEstimate;
+use crate::skeleton::stick_figure::HUMAN_ANGLES;
+use crate::tracker::cyclic::CyclicFrame;
+
+/// The cyclic tracker's answer to one frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CyclicResult {
+    /// Number of the frame.
+    pub frame: u32,
+    /// Pose, phase and how sure they are.
+    pub estimate: CyclicEstimate<HUMAN_ANGLES>,
+    /// Whole cycles since the first frame.
+    pub cycles_completed: i32,
+    /// Cycles per minute, and its standard deviation.
+    pub cadence_per_min: [f32; 2],
+}
+
+impl CyclicResult {
+    /// The answer `answered` to `frame`.
+    #[must_use]
+    pub const fn new(frame: u32, answered: &CyclicFrame<HUMAN_ANGLES>) -> Self {
+        Self {
+            frame,
+            estimate: answered.estimate,
+            cycles_completed: answered.cycles_completed,
+            cadence_per_min: [answered.cadence_per_min, answered.cadence_std_per_min],
+        }
+    }
+}
+
+impl Payload for CyclicResult {
+    const KIND: Kind = Kind::CyclicResult;
+    const MAX_BYTES: usize = 4 + 12 * HUMAN_ANGLES + 5 * 4 + 1 + 4 + 8;
+
+    fn write(&self, fields: &mut FieldWriter<'_>) {
+        let estimate = &self.estimate;
+        fields.u32(self.frame);
+        fields.f32s(&estimate.angles_rad);
+        estimate.turns.iter().for_each(|&turns| fields.u32(turns as u32));
+        fields.f32s(&estimate.angle_variance_rad2);
+        fields.f32s(&[
+            estimate.cycle_position,
+            estimate.cycle_position_variance,
+            estimate.cycle_velocity_per_frame,
+            estimate.cycle_velocity_variance,
+            estimate.log_likelihood,
+        ]);
+        fields.u8(u8::from(estimate.outlier));
+        fields.u32(self.cycles_completed as u32);
+        fields.f32s(&self.cadence_per_min);
+    }
+
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError> {
+        let frame = fields.u32()?;
+        let angles_rad = fields.f32s()?;
+        let mut turns = [0; HUMAN_ANGLES];
+        for turn in &mut turns {
+            *turn = fields.u32()? as i32;
+        }
+        let estimate = CyclicEstimate {
+            angles_rad,
+            turns,
+            angle_variance_rad2: fields.f32s()?,
+            cycle_position: fields.f32()?,
+            cycle_position_variance: fields.f32()?,
+            cycle_velocity_per_frame: fields.f32()?,
+            cycle_velocity_variance: fields.f32()?,
+            log_likelihood: fields.f32()?,
+            outlier: fields.flag("outlier")?,
+        };
+        Ok(Self { frame, estimate, cycles_completed: fields.u32()? as i32, cadence_per_min: fields.f32s()? })
+    }
+}
+
+/// A record that could not be used; the tracker goes on with the next one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Failure {
+    /// Number of the last frame that was answered, 0 before the first.
+    pub frame: u32,
+    /// [`RecordError::code`], or 64 for a parameter that the tracker refuses, or 65 for another model.
+    pub code: u16,
+}
+
+impl Failure {
+    /// [`Self::code`] of a parameter that the tracker refuses.
+    pub const REFUSED: u16 = 64;
+    /// [`Self::code`] of a recording for another model than the one at hand.
+    pub const OTHER_MODEL: u16 = 65;
+}
+
+impl Payload for Failure {
+    const KIND: Kind = Kind::Failure;
+    const MAX_BYTES: usize = 6;
+
+    fn write(&self, fields: &mut FieldWriter<'_>) {
+        fields.u32(self.frame);
+        fields.u16(self.code);
+    }
+
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError> {
+        Ok(Self { frame: fields.u32()?, code: fields.u16()? })
+    }
+}
+
+/// What a part of the work cost over all frames.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Cost {
+    /// Which part; firmware and its reader agree on the numbers.
+    pub part: u16,
+    /// Number of frames.
+    pub frames: u32,
+    /// Sum over all frames; instructions, or bytes for memory.
+    pub total: u64,
+    /// Greatest of all frames.
+    pub worst: u32,
+}
+
+impl Cost {
+    /// Counts one more frame.
+    pub fn add(&mut self, amount: u32) {
+        self.frames = self.frames.saturating_add(1);
+        self.total = self.total.saturating_add(u64::from(amount));
+        self.worst = self.worst.max(amount);
+    }
+}
+
+impl Payload for Cost {
+    const KIND: Kind = Kind::Cost;
+    const MAX_BYTES: usize = 2 + 4 + 8 + 4;
+
+    fn write(&self, fields: &mut FieldWriter<'_>) {
+        fields.u16(self.part);
+        fields.u32(self.frames);
+        fields.u64(self.total);
+        fields.u32(self.worst);
+    }
+
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError> {
+        Ok(Self { part: fields.u16()?, frames: fields.u32()?, total: fields.u64()?, worst: fields.u32()? })
+    }
+}

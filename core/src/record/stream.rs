@@ -1,0 +1,187 @@
+//! Records one after the other, from any source of bytes.
+
+use super::header::{MARK, announced_len};
+use super::{End, Kind, Record, RecordError, decode};
+
+/// Where bytes come from.
+pub trait Source {
+    /// Fills the start of `bytes` and tells how many bytes it filled; none at the end.
+    fn read(&mut self, bytes: &mut [u8]) -> usize;
+}
+
+impl Source for &[u8] {
+    fn read(&mut self, bytes: &mut [u8]) -> usize {
+        let count = self.len().min(bytes.len());
+        let (now, later) = self.split_at_checked(count).unwrap_or_default();
+        for (place, byte) in bytes.iter_mut().zip(now) {
+            *place = *byte;
+        }
+        *self = later;
+        count
+    }
+}
+
+impl<S: Source + ?Sized> Source for &mut S {
+    fn read(&mut self, bytes: &mut [u8]) -> usize {
+        (**self).read(bytes)
+    }
+}
+
+/// Reads records from a source with a buffer of `BYTES`, the longest record that it can read.
+///
+/// Every broken record gives one error or more, then reading goes on at the next sound one.
+#[derive(Debug)]
+pub struct RecordStream<S, const BYTES: usize> {
+    source: S,
+    buffer: [u8; BYTES],
+    start: usize,
+    end: usize,
+    /// The source has no more bytes.
+    dry: bool,
+    /// Looking for the next mark after a broken record.
+    lost: bool,
+    /// Sound records so far.
+    records: u32,
+    /// Whether the last sound record was [`End`].
+    ended: bool,
+    /// A missing [`End`] was told.
+    told: bool,
+}
+
+/// What lies at the start of the buffer.
+enum Ahead {
+    Record(usize),
+    Broken(RecordError),
+    Nothing,
+}
+
+impl<S: Source, const BYTES: usize> RecordStream<S, BYTES> {
+    /// Reads from the start of `source` on.
+    pub const fn new(source: S) -> Self {
+        Self {
+            source,
+            buffer: [0; BYTES],
+            start: 0,
+            end: 0,
+            dry: false,
+            lost: false,
+            records: 0,
+            ended: false,
+            told: false,
+        }
+    }
+
+    /// The next record, or what is wrong with it; `None` after the last one.
+    ///
+    /// [`End`] is checked here and not handed out: [`RecordError::Lost`] where it counts other records than came,
+    /// [`RecordError::Truncated`] where it is missing.
+    pub fn next_record(&mut self) -> Option<Result<Record<'_>, RecordError>> {
+        let length = match self.ahead() {
+            Ahead::Record(length) => length,
+            Ahead::Broken(error) => {
+                self.lost = true;
+                // The mark is passed, so that the search goes on behind it.
+                self.start = (self.start + 1).min(self.end);
+                return Some(Err(error));
+            }
+            Ahead::Nothing => {
+                let untold = !(self.ended || self.told);
+                self.told = true;
+                return untold.then_some(Err(RecordError::Truncated));
+            }
+        };
+        let start = self.start;
+        self.start = (start + length).min(self.end);
+        let before = self.records;
+        self.records = before.saturating_add(1);
+        let record = decode(self.buffer.get(start..).unwrap_or_default()).map(|(record, _)| record);
+        self.ended = matches!(record, Ok(Record { kind: Kind::End, .. }));
+        if self.ended {
+            let told = record.and_then(|record| record.read::<End>());
+            return match told {
+                Ok(End { records }) if records == before => None,
+                Ok(_) => Some(Err(RecordError::Lost)),
+                Err(error) => Some(Err(error)),
+            };
+        }
+        Some(record)
+    }
+
+    /// Finds the next whole record.
+    fn ahead(&mut self) -> Ahead {
+        loop {
+            if self.lost {
+                self.skip_to_mark();
+            }
+            if self.start == self.end && !self.refill() {
+                return Ahead::Nothing;
+            }
+            let bytes = self.buffer.get(self.start..self.end).unwrap_or_default();
+            match announced_len(bytes) {
+                Err(RecordError::Truncated) if !self.dry => {}
+                Err(RecordError::Truncated) if self.lost => {
+                    // What is left after a broken record is too short for another one.
+                    self.start = self.end;
+                    return Ahead::Nothing;
+                }
+                Err(RecordError::NoRecord) if self.lost => {
+                    self.start += 1;
+                    continue;
+                }
+                Err(error) => return Ahead::Broken(error),
+                Ok(length) if length > BYTES => return Ahead::Broken(RecordError::TooLong),
+                Ok(length) if length > bytes.len() => {
+                    if self.dry {
+                        return Ahead::Broken(RecordError::Truncated);
+                    }
+                }
+                Ok(length) => {
+                    return match decode(bytes) {
+                        Err(error @ RecordError::UnknownKind { .. }) => {
+                            // Sound, but of a later program: it counts, and only it is left out.
+                            self.records = self.records.saturating_add(1);
+                            self.start += length - 1;
+                            self.lost = false;
+                            Ahead::Broken(error)
+                        }
+                        Err(error) => Ahead::Broken(error),
+                        Ok(_) => {
+                            self.lost = false;
+                            Ahead::Record(length)
+                        }
+                    };
+                }
+            }
+            self.refill();
+        }
+    }
+
+    /// Drops bytes before the next one that may begin a record.
+    fn skip_to_mark(&mut self) {
+        while let Some(byte) = self.buffer.get(self.start..self.end).and_then(<[u8]>::first) {
+            if *byte == MARK[0] {
+                return;
+            }
+            self.start += 1;
+        }
+    }
+
+    /// Moves what is left to the front and fills the rest; whether there is anything then.
+    fn refill(&mut self) -> bool {
+        let left = self.end.saturating_sub(self.start);
+        for index in 0..left {
+            let byte = self.buffer.get(self.start + index).copied().unwrap_or_default();
+            if let Some(place) = self.buffer.get_mut(index) {
+                *place = byte;
+            }
+        }
+        self.start = 0;
+        self.end = left;
+        if let Some(free) = self.buffer.get_mut(left..) {
+            let count = self.source.read(free).min(free.len());
+            self.dry |= count == 0;
+            self.end += count;
+        }
+        self.end > 0
+    }
+}

@@ -1,0 +1,58 @@
+//! Recorded input of each image, made anew from synthetic motions: the same bytes on every machine.
+
+use anyhow::Result;
+use sinew::cyclic::tracking::TrackingOptions;
+use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
+use sinew::record::cyclic_stream;
+use sinew_core::random::Stream;
+
+/// Input of the image `name`; `None` for an image that reads none.
+///
+/// # Errors
+/// None in practice.
+pub fn of_image(name: &str) -> Result<Option<Vec<u8>>> {
+    match name {
+        "cyclic" => cyclic().map(Some),
+        _ => Ok(None),
+    }
+}
+
+/// Frames of the synthetic walk.
+const WALK_FRAMES: u64 = 400;
+/// Noise of its angles, radians.
+const WALK_NOISE_RAD: f32 = 0.1;
+
+/// The shipped model's own cycle with noise: angles missing now and then, a second without any, a change of speed, a jump to
+/// another place of the cycle, and rows left out.
+///
+/// # Errors
+/// None in practice.
+pub fn synthetic_walk(model: &CyclicModel) -> Result<AngleTable> {
+    let numbers = model.numbers();
+    let (n, l) = (numbers.angle_count, numbers.mean_pose_rad.len() / numbers.angle_count);
+    let mut position = 0.3_f32;
+    let mut rows = Vec::new();
+    for frame in 0..WALK_FRAMES {
+        let mut noise = Stream::new(7, frame, 0);
+        let slow = if frame > 200 { 0.8 } else { 1.0 };
+        position = (position + slow / numbers.mean_duration_frames + if frame == 300 { 0.4 } else { 0.0 }).fract();
+        if (150..153).contains(&frame) {
+            continue;
+        }
+        let hidden = (120..140).contains(&frame);
+        let pose = &numbers.mean_pose_rad[n * ((position * l as f32) as usize).min(l - 1)..][..n];
+        let angles_rad = std::array::from_fn(|i| {
+            let angle = f64::from(pose[i] + WALK_NOISE_RAD * noise.normal());
+            let missing = noise.uniform() < 0.1;
+            (!hidden && !missing).then_some(angle)
+        });
+        rows.push(AngleRow { frame, angles_rad, extra: Vec::new() });
+    }
+    Ok(AngleTable::new(rows, Vec::new())?)
+}
+
+fn cyclic() -> Result<Vec<u8>> {
+    let model = CyclicModel::from_option("walking")?;
+    let table = synthetic_walk(&model)?;
+    cyclic_stream(&table, &model, &TrackingOptions::default())
+}

@@ -1,0 +1,30 @@
+//! `sinew record`: the input of a run as a stream for firmware.
+
+use super::stdout::write_all;
+use crate::output::{check_writable_file, write_atomically};
+use crate::record;
+use anyhow::Result;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Options of `sinew record`.
+#[derive(Debug, Args)]
+pub struct RecordArgs {
+    /// Folder of a run: the report of `sinew track cyclic`.
+    #[arg(value_name = "RUN_DIR")]
+    pub run: PathBuf,
+    /// Stream of records to write: what the tracker was given, bit for bit.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// Writes the stream.
+///
+/// # Errors
+/// A folder that holds no run that firmware can play, an output that cannot be written.
+pub fn run(args: &RecordArgs) -> Result<()> {
+    check_writable_file(&args.out)?;
+    let recorded = record::record(&args.run)?;
+    write_atomically(&args.out, |writer| Ok(writer.write_all(&recorded.bytes)?))?;
+    write_all(format!("{}: {} bytes in `{}`\n", recorded.what, recorded.bytes.len(), args.out.display()).as_bytes())
+}

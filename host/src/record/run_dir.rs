@@ -1,0 +1,69 @@
+//! Which run a directory holds, and its input as a stream.
+
+use super::cyclic_stream;
+use crate::cyclic::report::document::FORMAT as CYCLIC_FORMAT;
+use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates};
+use crate::cyclic::{AngleTable, CyclicModel};
+use anyhow::{Context, Result, bail, ensure};
+use clap::ValueEnum;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The input of a run.
+#[derive(Debug, Clone)]
+pub struct Recorded {
+    /// The stream.
+    pub bytes: Vec<u8>,
+    /// What it holds, for a terminal.
+    pub what: String,
+}
+
+/// Makes the stream of the run in `folder`: a report of `sinew track cyclic --report`.
+///
+/// # Errors
+/// A folder that holds no run, a run that firmware cannot play, an input of the run that is not there any more.
+pub fn record(folder: &Path) -> Result<Recorded> {
+    ensure!(folder.is_dir(), "`{}` is no folder; give one of `sinew track cyclic --report`", folder.display());
+    let summary = folder.join("summary.json");
+    if summary.is_file() {
+        return cyclic_run(&summary).with_context(|| format!("`{}` cannot be recorded", folder.display()));
+    }
+    bail!("`{}` holds no run; give the folder of `sinew track cyclic --report`", folder.display())
+}
+
+fn cyclic_run(summary: &Path) -> Result<Recorded> {
+    let json: Value = serde_json::from_str(&fs::read_to_string(summary)?).context("summary.json is not JSON")?;
+    let text = |name: &str| json[name].as_str().with_context(|| format!("summary.json has no `{name}`"));
+    ensure!(text("format")? == CYCLIC_FORMAT, "summary.json is not that of a tracked motion");
+    let table = AngleTable::read(&PathBuf::from(text("table")?))?;
+    let name = text("model")?;
+    ensure!(!name.contains(", "), "it was tracked with several models; firmware plays one");
+    let model = CyclicModel::from_option(name)?;
+    let bytes = cyclic_stream(&table, &model, &tracking_options(&json["options"])?)?;
+    Ok(Recorded { bytes, what: format!("{} rows of angles for the model {name}", table.rows().len()) })
+}
+
+/// The options as a report's summary has them.
+fn tracking_options(json: &Value) -> Result<TrackingOptions> {
+    fn named<T: ValueEnum>(json: &Value, name: &str) -> Result<T> {
+        let value = json[name].as_str().unwrap_or_default();
+        T::from_str(value, true).map_err(|_| anyhow::anyhow!("summary.json has no option `{name}` that is known"))
+    }
+    let updates = match (json["update_every"].as_u64(), json["update_at"].as_array()) {
+        (Some(every), _) => Updates::Every(every),
+        (None, Some(frames)) => Updates::At(frames.iter().filter_map(Value::as_u64).collect()),
+        (None, None) => Updates::All,
+    };
+    Ok(TrackingOptions {
+        filter: named::<FilterName>(json, "filter")?,
+        sigma_rad: json["sigma_deg"].as_f64().context("summary.json has no option `sigma_deg`")?.to_radians(),
+        start: named::<StartName>(json, "init")?,
+        initial_cycle_position: json["initial_cycle_position"].as_f64(),
+        initial_cycle_velocity: json["initial_cycle_velocity"].as_f64(),
+        updates,
+        rate_hz: json["rate_hz"].as_f64(),
+        smooth: json["smooth"].as_bool().unwrap_or(false),
+        ..TrackingOptions::default()
+    })
+}
