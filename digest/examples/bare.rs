@@ -1,5 +1,6 @@
-//! Prints the digests. For a bare-metal target it prints nothing and is only linked: that succeeds only where neither the core nor a
-//! crate that it builds on asks for an allocator, since nothing here gives one.
+//! Prints the digests: on the host as any program, on an emulated Cortex-M by semihosting.
+//!
+//! For bare metal it is linked without an allocator, which succeeds only where neither the core nor a crate that it builds on asks for one.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -12,8 +13,42 @@ fn main() -> Result<(), sinew_core::error::ParameterError> {
     Ok(())
 }
 
-#[cfg(target_os = "none")]
-mod bare {
+#[cfg(all(target_os = "none", target_arch = "arm"))]
+mod emulated {
+    use core::fmt::Write;
+    use cortex_m_rt::entry;
+    use cortex_m_semihosting::debug::{EXIT_FAILURE, EXIT_SUCCESS, exit};
+    use cortex_m_semihosting::hio::hstdout;
+    use sinew_digest::{FRAMES, Line, Subject};
+
+    #[entry]
+    fn main() -> ! {
+        let code = if tell().is_ok() { EXIT_SUCCESS } else { EXIT_FAILURE };
+        loop {
+            exit(code);
+        }
+    }
+
+    fn tell() -> Result<(), core::fmt::Error> {
+        let mut out = hstdout().map_err(|()| core::fmt::Error)?;
+        for subject in Subject::ALL {
+            let digest = subject.digest(FRAMES).map_err(|_| core::fmt::Error)?;
+            writeln!(out, "{}", Line { subject, digest })?;
+        }
+        Ok(())
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+        loop {
+            exit(EXIT_FAILURE);
+        }
+    }
+}
+
+/// Other processors: linked, not run.
+#[cfg(all(target_os = "none", not(target_arch = "arm")))]
+mod linked {
     use sinew_digest::Subject;
 
     /// Where a linker without a script of its own lets a program begin.

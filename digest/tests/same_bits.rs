@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const WASM: &str = "wasm32-unknown-unknown";
+const CORTEX_M4F: &str = "thumbv7em-none-eabihf";
 
 fn package() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -48,12 +49,13 @@ fn has_target(target: &str) -> bool {
     output.status.success() && Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir()
 }
 
-/// The module that `SINEW_DIGEST_MODULE` names, or one that is built now in release; `None` without a compiler for it.
-fn module() -> Option<PathBuf> {
-    if let Some(module) = env::var_os("SINEW_DIGEST_MODULE") {
-        return Some(module.into());
+/// An example's file for `target`: the one that the environment `variable` names, or `file` built now in release; `None` without a
+/// compiler for it.
+fn example(example: &str, target: &str, variable: &str, file: &str) -> Option<PathBuf> {
+    if let Some(path) = env::var_os(variable) {
+        return Some(path.into());
     }
-    if !has_target(WASM) {
+    if !has_target(target) {
         return None;
     }
     // TARGET/PROFILE/deps/TEST
@@ -62,12 +64,20 @@ fn module() -> Option<PathBuf> {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
         .current_dir(package())
-        .args(["build", "--quiet", "--release", "--example", "digest_module", "--target", WASM, "--target-dir"])
+        .args(["build", "--quiet", "--release", "--example", example, "--target", target, "--target-dir"])
         .arg(target_folder)
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    Some(target_folder.join(WASM).join("release/examples/digest_module.wasm"))
+    Some(target_folder.join(target).join("release/examples").join(file))
+}
+
+/// What a program that has to succeed printed.
+fn printed(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{:?}: {out}{err}", output.status);
+    out.into_owned()
 }
 
 #[test]
@@ -83,19 +93,29 @@ fn web_assembly_gives_the_expected_digests() {
     if !found("node") {
         return leave_out("node is missing; install it to run WebAssembly");
     }
-    let Some(module) = module() else {
+    let Some(module) = example("digest_module", WASM, "SINEW_DIGEST_MODULE", "digest_module.wasm") else {
         return leave_out("the compiler lacks wasm32-unknown-unknown: `rustup target add wasm32-unknown-unknown`");
     };
-    let output = Command::new("node")
-        .arg(package().join("tests/run_module.mjs"))
-        .arg(module)
-        .args([FRAMES, Subject::ALL.len() as u32].map(|number| number.to_string()))
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let numbers = String::from_utf8(output.stdout).unwrap();
+    let counts = [FRAMES, Subject::ALL.len() as u32].map(|number| number.to_string());
+    let script = package().join("tests/run_module.mjs");
+    let numbers = printed(Command::new("node").arg(script).arg(module).args(counts));
     let mut numbers = numbers.lines().map(|line| u64::from_str_radix(line, 16).unwrap());
     assert_eq!(text(|_| numbers.next().unwrap()), expected());
+}
+
+#[test]
+fn an_emulated_cortex_m4f_gives_the_expected_digests() {
+    if !found("qemu-system-arm") {
+        return leave_out("qemu-system-arm is missing; install it to run firmware");
+    }
+    let Some(image) = example("bare", CORTEX_M4F, "SINEW_DIGEST_IMAGE", "bare") else {
+        return leave_out("the compiler lacks thumbv7em-none-eabihf: `rustup target add thumbv7em-none-eabihf`");
+    };
+    // A fault locks the processor up, which ends the emulator with a failure.
+    let mut emulator = Command::new("qemu-system-arm");
+    emulator.args(["-machine", "mps2-an386", "-nographic", "-monitor", "none", "-serial", "null"]);
+    emulator.args(["-semihosting-config", "enable=on,target=native", "-kernel"]).arg(image);
+    assert_eq!(printed(&mut emulator), expected());
 }
 
 #[test]
