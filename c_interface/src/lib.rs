@@ -25,12 +25,15 @@ pub fn has_tool(tool: &str) -> bool {
     runs
 }
 
-/// Whether the Rust `target` is installed; as [`has_tool`].
+/// Whether libraries for the Rust `target` can be built; as [`has_tool`].
 ///
 /// # Panics
 /// With `CI=true`, if the target is missing.
 #[must_use]
 pub fn has_target(target: &str) -> bool {
+    if builds_with_debian() {
+        return true;
+    }
     let sysroot = Command::new(rustc()).args(["--print", "sysroot"]).output().ok();
     let sysroot = sysroot.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_owned()).unwrap_or_default();
     let exists = Path::new(&sysroot).join("lib/rustlib").join(target).is_dir();
@@ -45,6 +48,34 @@ fn missing(what: &str) {
     eprintln!("left out: there is no {what}");
 }
 
+/// Whether the targets come from Debian's compiler, which builds their core library from source (`.ci/run` says so).
+fn builds_with_debian() -> bool {
+    std::env::var("SINEW_BARE_METAL").as_deref() == Ok("debian")
+}
+
+/// Cargo that builds for `target`, or for this machine: `cargo SUBCOMMAND`.
+#[must_use]
+pub fn cargo(subcommand: &str, target: Option<&str>) -> Command {
+    let own = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let Some(target) = target else {
+        let mut command = Command::new(own);
+        command.arg(subcommand);
+        return command;
+    };
+    let mut command = if builds_with_debian() {
+        let mut command = Command::new("/usr/bin/cargo");
+        command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1");
+        command.args([subcommand, "-Zbuild-std=core"]);
+        command
+    } else {
+        let mut command = Command::new(own);
+        command.arg(subcommand);
+        command
+    };
+    command.args(["--target", target]);
+    command
+}
+
 fn rustc() -> std::ffi::OsString {
     std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into())
 }
@@ -57,15 +88,11 @@ fn rustc() -> std::ffi::OsString {
 pub fn static_library(target: Option<&str>, opt_level: &str, features: &str) -> PathBuf {
     // A folder of its own: the build that runs this test holds the lock of the other one.
     let folder = target_folder().join(format!("c_interface-{opt_level}-{}", features.replace(',', "-")));
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
-    command.current_dir(workspace_root()).args(["rustc", "--quiet", "--locked", "-p", "sinew-core"]);
+    let mut command = cargo("rustc", target);
+    command.current_dir(workspace_root()).args(["--quiet", "--locked", "-p", "sinew-core"]);
     command.args(["--profile", "firmware", "--crate-type", "staticlib", "--features", features]);
     command.env("CARGO_PROFILE_FIRMWARE_OPT_LEVEL", opt_level).env("CARGO_PROFILE_FIRMWARE_DEBUG", "0");
     command.arg("--target-dir").arg(&folder);
-    if let Some(target) = target {
-        command.args(["--target", target]);
-    }
     expect_success(&mut command);
     folder.join(target.unwrap_or("")).join("firmware/libsinew_core.a")
 }

@@ -642,6 +642,19 @@ SinewStatus sinew_cyclic_step(struct SinewCyclic *tracker,
                               struct SinewCyclicResult *result);
 
 /**
+ * Writes the model's mean pose at a position of the cycle (any number; 1 is one cycle on) into the first `angle_count` of `angles_rad`, radians.
+ *
+ * Returns SINEW_STATUS_OVER_CAPACITY for more angles than the model has.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_cyclic_init`, `angles_rad` has room for as many numbers as is said.
+ */
+SinewStatus sinew_cyclic_mean_pose(struct SinewCyclic *tracker,
+                                   float cycle_position,
+                                   float *angles_rad,
+                                   size_t angle_count);
+
+/**
  * Forgets all frames; the next one begins anew, at any timestamp.
  *
  * Caller's duty:

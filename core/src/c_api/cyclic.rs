@@ -5,6 +5,7 @@ use super::model::{fingerprint, read_model};
 use super::object::{Seal, Sealed, bytes_mut, given, list, object, place, room};
 use super::status::{SinewStatus, status};
 use crate::cyclic::measurement::MAX_STEP_FRAMES;
+use crate::cyclic::phase::wrap_position;
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::math::min;
 use crate::saved_state::{SavedState, StateError, StateKind, StateVisitor, restore, save, saved_bytes};
@@ -112,6 +113,36 @@ pub unsafe extern "C" fn sinew_cyclic_step(
             let (tracker, frame, result) = (object(tracker)?, given(frame)?, room(result)?);
             let answer = tracker.step(frame)?;
             result.write(SinewCyclicResult::of(frame.timestamp_us, &answer, tracker.memory.is_searching()));
+            Ok(())
+        })()
+    })
+}
+
+/// Writes the model's mean pose at a position of the cycle (any number; 1 is one cycle on) into the first `angle_count` of `angles_rad`, radians.
+///
+/// Returns SINEW_STATUS_OVER_CAPACITY for more angles than the model has.
+///
+/// # Safety
+/// `tracker` comes from `sinew_cyclic_init`, `angles_rad` has room for as many numbers as is said.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_cyclic_mean_pose(
+    tracker: *mut SinewCyclic,
+    cycle_position: f32,
+    angles_rad: *mut f32,
+    angle_count: usize,
+) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let tracker = object(tracker)?;
+            let position = wrap_position(crate::error::finite("cycle_position", cycle_position)?);
+            let pose = tracker.model.mean_pose_rad::<SINEW_MAX_ANGLES>(tracker.model.point(position));
+            if angle_count > tracker.model.angle_count() {
+                return Err(SinewStatus::OverCapacity);
+            }
+            for (index, angle) in pose.iter().enumerate().take(angle_count) {
+                room(angles_rad.wrapping_add(index))?.write(*angle);
+            }
             Ok(())
         })()
     })

@@ -1,0 +1,109 @@
+//! No function of the interface can panic: the linker finds no way to a panic in the library that firmware ships.
+//!
+//! The library is built with `prove-no-panic`, in which a panic calls a function that is defined nowhere. Each public function is linked
+//! alone and everything that it does not reach is dropped; what is left must not miss that function.
+
+use sinew_c_interface::{cargo, expect_success, has_target, has_tool, static_library, workspace_root};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const TARGET: &str = "thumbv7em-none-eabihf";
+const LINKER: &str = "arm-none-eabi-ld";
+const FEATURES: &str = "c-api,walking-model,prove-no-panic";
+/// What a panic would call.
+const UNDEFINED: &str = "sinew_panic_is_reachable";
+
+/// Names of the functions that the sources of the interface define.
+fn public_functions() -> Vec<String> {
+    let mut names = Vec::new();
+    for source in fs::read_dir(workspace_root().join("core/src/c_api")).unwrap() {
+        let source = fs::read_to_string(source.unwrap().path()).unwrap();
+        for function in source.split("pub extern \"C\" fn ").chain(source.split("pub unsafe extern \"C\" fn ")) {
+            names.extend(function.split('(').next().filter(|name| name.starts_with("sinew_")).map(str::to_owned));
+        }
+    }
+    names.sort();
+    names.dedup();
+    assert!(names.len() > 30, "{names:?}");
+    names
+}
+
+/// Links `function` of `library` alone; the error text if a panic can be reached.
+fn reaches_a_panic(library: &Path, function: &str, folder: &Path) -> Option<String> {
+    let mut command = Command::new(LINKER);
+    command.args(["--gc-sections", "-e", function, "-u", function]).arg(library).arg("-o").arg(folder.join("linked"));
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.success() || text.contains(UNDEFINED),
+        "{function} cannot be linked for another reason:\n{text}"
+    );
+    assert!(!text.contains("cannot find entry symbol"), "{function} is not in the library:\n{text}");
+    (!output.status.success()).then_some(text)
+}
+
+fn prove(opt_level: &str) {
+    if !(has_tool(LINKER) && has_target(TARGET)) {
+        return;
+    }
+    let library = static_library(Some(TARGET), opt_level, FEATURES);
+    let folder = tempfile::tempdir().unwrap();
+    for function in public_functions() {
+        if let Some(text) = reaches_a_panic(&library, &function, folder.path()) {
+            panic!("{function} can panic at opt-level {opt_level}:\n{text}");
+        }
+    }
+}
+
+#[test]
+fn no_public_function_reaches_a_panic_at_level_3() {
+    prove("3");
+}
+
+#[test]
+fn no_public_function_reaches_a_panic_at_level_s() {
+    prove("s");
+}
+
+const CONTROL_MANIFEST: &str = r#"
+[package]
+name = "control"
+edition = "2024"
+[lib]
+crate-type = ["staticlib"]
+[profile.release]
+lto = "fat"
+codegen-units = 1
+panic = "abort"
+[workspace]
+"#;
+
+const CONTROL_SOURCE: &str = r#"
+#![no_std]
+unsafe extern "C" { fn sinew_panic_is_reachable() -> !; }
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! { unsafe { sinew_panic_is_reachable() } }
+#[unsafe(no_mangle)]
+pub extern "C" fn checked(list: &[u8; 4], index: usize) -> u8 { list.get(index).copied().unwrap_or(0) }
+#[unsafe(no_mangle)]
+pub extern "C" fn unchecked(list: &[u8; 4], index: usize) -> u8 { list[index] }
+"#;
+
+/// A library in which one function indexes by a number that nobody checked has to be told from the others.
+#[test]
+fn the_check_finds_a_function_that_can_panic() {
+    if !(has_tool(LINKER) && has_target(TARGET)) {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("Cargo.toml"), CONTROL_MANIFEST).unwrap();
+    fs::create_dir(folder.path().join("src")).unwrap();
+    fs::write(folder.path().join("src/lib.rs"), CONTROL_SOURCE).unwrap();
+    let mut command = cargo("build", Some(TARGET));
+    command.current_dir(folder.path()).args(["--quiet", "--release", "--target-dir"]).arg(folder.path().join("out"));
+    expect_success(&mut command);
+    let library = folder.path().join("out").join(TARGET).join("release/libcontrol.a");
+    assert_eq!(reaches_a_panic(&library, "checked", folder.path()), None);
+    assert!(reaches_a_panic(&library, "unchecked", folder.path()).is_some_and(|text| text.contains(UNDEFINED)));
+}
