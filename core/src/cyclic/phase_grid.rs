@@ -5,7 +5,7 @@
 
 use super::phase::{position_difference, wrap_position};
 use super::{AngleMeasurement, MotionModel};
-use crate::math::{exp, least_angle, max, min, round};
+use crate::math::{exp, floor, least_angle, max, min, round};
 use crate::saved_state::{SavedState, StateVisitor};
 
 /// Positions of the grid.
@@ -84,7 +84,9 @@ impl PhaseGrid {
 
     /// Position of a cell of a speed whose way is `travelled`, [0, 1).
     fn position(travelled: f32, cell: usize) -> f32 {
-        wrap_position(cell as f32 / POSITIONS as f32 + travelled)
+        // Below two, so that this wraps it.
+        let at = cell as f32 / POSITIONS as f32 + travelled;
+        if at >= 1.0 { at - 1.0 } else { at }
     }
 
     fn reweigh(&mut self, factor: impl Fn(usize, f32) -> f32) {
@@ -145,21 +147,26 @@ impl PhaseGrid {
     /// Part of the weight within [`MODE_REACH`] of `position`.
     #[must_use]
     pub fn weight_near(&self, position: f32) -> f32 {
-        self.sum_near(position, |_, _| 1.0)
+        let mut sum = 0.0;
+        self.each_near(position, |_, weight, _| sum += weight);
+        sum
     }
 
-    /// Sum of weight times `value(speed, way from the position)` near a position.
-    fn sum_near(&self, position: f32, value: impl Fn(usize, f32) -> f32) -> f32 {
-        let mut sum = 0.0;
-        for speed in 0..SPEEDS {
-            for cell in 0..POSITIONS {
-                let way = position_difference(Self::position(self.travelled[speed], cell), position);
+    /// Shows speed, weight and way from `position` of each cell within [`MODE_REACH`] to `take`.
+    fn each_near(&self, position: f32, mut take: impl FnMut(usize, f32, f32)) {
+        for (speed, (weights, &travelled)) in self.weights.iter().zip(&self.travelled).enumerate() {
+            // Only cells from five before to six behind the position can be near enough.
+            let before = floor((position - travelled) * POSITIONS as f32) as i32;
+            for (cell, &weight) in weights.iter().enumerate() {
+                if (cell as i32).wrapping_sub(before).wrapping_add(5).rem_euclid(POSITIONS as i32) > 12 {
+                    continue;
+                }
+                let way = position_difference(Self::position(travelled, cell), position);
                 if way.abs() <= MODE_REACH {
-                    sum += self.weights[speed][cell] * value(speed, way);
+                    take(speed, weight, way);
                 }
             }
         }
-        sum
     }
 
     /// Weight by position alone, on positions i / [`POSITIONS`].
@@ -192,14 +199,23 @@ impl PhaseGrid {
             }
         }
         let centre = best.0 as f32 / POSITIONS as f32;
-        let weight = max(self.weight_near(centre), 1.0e-6);
-        let velocity_of = |speed: usize| SPEED_RATIOS[speed] * model.mean_cycle_velocity();
-        let mean = |value: &dyn Fn(usize, f32) -> f32| self.sum_near(centre, value) / weight;
-        let way = mean(&|_, way| way);
-        let velocity = mean(&|speed, _| velocity_of(speed));
-        let cc = mean(&|_, at| (at - way) * (at - way));
-        let cv = mean(&|speed, at| (at - way) * (velocity_of(speed) - velocity));
-        let vv = mean(&|speed, _| (velocity_of(speed) - velocity) * (velocity_of(speed) - velocity));
+        let velocities = SPEED_RATIOS.map(|ratio| ratio * model.mean_cycle_velocity());
+        let (mut weight, mut way, mut velocity) = (0.0, 0.0, 0.0);
+        self.each_near(centre, |speed, part, at| {
+            weight += part;
+            way += part * at;
+            velocity += part * velocities[speed];
+        });
+        let weight = max(weight, 1.0e-6);
+        let (way, velocity) = (way / weight, velocity / weight);
+        let (mut cc, mut cv, mut vv) = (0.0, 0.0, 0.0);
+        self.each_near(centre, |speed, part, at| {
+            let (off, faster) = (at - way, velocities[speed] - velocity);
+            cc += part * (off * off);
+            cv += part * (off * faster);
+            vv += part * (faster * faster);
+        });
+        let (cc, cv, vv) = (cc / weight, cv / weight, vv / weight);
         let (cell, step) = (1.0 / POSITIONS as f32, 0.15 * model.mean_cycle_velocity());
         let covariance = [cc + cell * cell / 12.0, cv, vv + step * step];
         PhaseMode { weight, position: wrap_position(centre + way), velocity, covariance }
