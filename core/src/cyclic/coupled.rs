@@ -160,11 +160,9 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Corrects by the angles seen, after the grid has told whether the position is still the right one.
     pub fn correct(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
-        if !measurement.is_empty(model.angle_count()) {
-            self.watch(model, measurement);
-        }
+        let mode = if measurement.is_empty(model.angle_count()) { None } else { self.watch(model, measurement) };
         if self.watch.searching {
-            return self.estimate_of_all_places(model, measurement);
+            return self.estimate_of_all_places(model, measurement, mode);
         }
         let (log_likelihood, outlier) = self.correct_phase(model, measurement);
         self.estimate(model, log_likelihood, outlier)
@@ -173,7 +171,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// The estimate after `measurement` was taken in, without its likelihood.
     pub fn present(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
         if self.watch.searching {
-            return self.estimate_of_all_places(model, measurement);
+            return self.estimate_of_all_places(model, measurement, None);
         }
         self.estimate(model, 0.0, false)
     }

@@ -68,14 +68,15 @@ impl<const N: usize> CoupledFilter<N> {
         self.watch.searching
     }
 
-    /// Shows the grid a measurement, and takes its place where the filter has none or the wrong one.
-    pub(super) fn watch(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
+    /// Shows the grid a measurement, and takes its place where the filter has none or the wrong one. Gives the grid's place if it was
+    /// looked for.
+    pub(super) fn watch(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> Option<PhaseMode> {
         let frames = self.watch.unwatched_frames;
         if self.pair.cc > LOST_STD * LOST_STD {
             self.watch.searching = true;
         }
         if !self.watch.searching && frames < WATCH_FRAMES {
-            return;
+            return None;
         }
         self.watch.unwatched_frames = 0.0;
         self.grid.advance(model, frames);
@@ -86,11 +87,11 @@ impl<const N: usize> CoupledFilter<N> {
             if mode.weight > SURE {
                 self.settle(&mode);
             }
-            return;
+            return Some(mode);
         }
         if self.velocity < 0.0 {
             // The grid knows forward motion only.
-            return;
+            return Some(mode);
         }
         self.watch.compare(&mode, self.position, frames);
         if self.watch.strange_frames > STRANGE_FRAMES {
@@ -99,6 +100,7 @@ impl<const N: usize> CoupledFilter<N> {
             let position = mode.position - self.watch.usual_way;
             self.settle(&PhaseMode { position, ..mode });
         }
+        Some(mode)
     }
 
     /// Goes on from the place `mode`, on which nothing learned so far depends.
@@ -115,13 +117,14 @@ impl<const N: usize> CoupledFilter<N> {
         self.watch.strange_frames = 0.0;
     }
 
-    /// The pose over all places of the grid, each with its weight, corrected angle by angle.
+    /// The pose over all places of the grid, each with its weight, corrected angle by angle. `mode` is the grid's place if it is known.
     pub(super) fn estimate_of_all_places(
         &mut self,
         model: &MotionModel<'_>,
         measurement: &AngleMeasurement<N>,
+        mode: Option<PhaseMode>,
     ) -> CyclicEstimate<N> {
-        let mode = self.grid.mode(model);
+        let mode = mode.unwrap_or_else(|| self.grid.mode(model));
         self.move_by(position_difference(mode.position, self.position));
         self.velocity = mode.velocity;
         let (mean, mut variance) = self.pose_of_all_places(model);

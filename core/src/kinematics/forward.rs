@@ -15,6 +15,7 @@ pub struct Posture<const BONES: usize, const ANGLES: usize> {
 }
 
 /// The posture of `skeleton` at `root_m` with `angles_rad`.
+#[inline]
 #[must_use]
 pub fn posture<const BONES: usize, const ANGLES: usize>(
     skeleton: &Skeleton<BONES, ANGLES>,
@@ -22,24 +23,34 @@ pub fn posture<const BONES: usize, const ANGLES: usize>(
     angles_rad: &[f32; ANGLES],
 ) -> Posture<BONES, ANGLES> {
     let mut result = Posture { joints: [*root_m; BONES], ends: [*root_m; BONES], axes: [Vec3::zeros(); ANGLES] };
-    let mut rotations = [Mat3::identity(); BONES];
-    let mut angle = 0;
-    for (index, bone) in skeleton.bones().iter().enumerate() {
-        let parent = bone.parent.map(usize::from).filter(|&parent| parent < BONES);
-        let mut rotation = parent.map_or_else(Mat3::identity, |parent| rotations[parent]);
-        let joint = parent.map_or(*root_m, |parent| result.ends[parent]);
-        for axis in bone.joint.axes() {
-            if let (Some(slot), Some(&value)) = (result.axes.get_mut(angle), angles_rad.get(angle)) {
-                *slot = rotation * axis;
-                rotation *= axis_rotation(axis, value);
-            }
-            angle += 1;
-        }
-        rotations[index] = rotation;
-        result.joints[index] = joint;
-        result.ends[index] = joint + rotation * bone.offset_m;
-    }
+    result.turn(skeleton, root_m, angles_rad);
     result
+}
+
+impl<const BONES: usize, const ANGLES: usize> Posture<BONES, ANGLES> {
+    // Writes where the caller keeps the posture.
+    #[inline(never)]
+    fn turn(&mut self, skeleton: &Skeleton<BONES, ANGLES>, root_m: &Vec3, angles_rad: &[f32; ANGLES]) {
+        // Of each bone; nothing for one that has not turned.
+        let mut rotations: [Option<Mat3>; BONES] = [None; BONES];
+        let mut angle = 0;
+        for (index, bone) in skeleton.bones().iter().enumerate() {
+            let parent = bone.parent.map(usize::from).filter(|&parent| parent < BONES);
+            let mut rotation = parent.and_then(|parent| rotations[parent]);
+            let joint = parent.map_or(*root_m, |parent| self.ends[parent]);
+            for axis in bone.joint.axes() {
+                if let (Some(slot), Some(&value)) = (self.axes.get_mut(angle), angles_rad.get(angle)) {
+                    *slot = rotation.map_or(*axis, |rotation| rotation * axis);
+                    let turned = axis_rotation(axis, value);
+                    rotation = Some(rotation.map_or(turned, |rotation| rotation * turned));
+                }
+                angle += 1;
+            }
+            rotations[index] = rotation;
+            self.joints[index] = joint;
+            self.ends[index] = joint + rotation.map_or(bone.offset_m, |rotation| rotation * bone.offset_m);
+        }
+    }
 }
 
 #[cfg(test)]

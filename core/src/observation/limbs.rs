@@ -4,7 +4,7 @@
 //! that limb; a pixel far from both is dropped.
 
 use crate::camera::Pixel;
-use crate::math::{clamp, sqrt};
+use crate::math::sqrt;
 use crate::vision::edges::EdgePixel;
 use heapless::Vec;
 
@@ -31,15 +31,43 @@ pub struct ArmImagePoints {
     pub hand: Pixel,
 }
 
+/// A segment of the image, made ready for many distances.
+#[derive(Debug, Clone, Copy)]
+struct Segment {
+    from: Pixel,
+    du: f32,
+    dv: f32,
+    length_squared: f32,
+}
+
+impl Segment {
+    fn new(from: Pixel, to: Pixel) -> Self {
+        let (du, dv) = (to.u_px - from.u_px, to.v_px - from.v_px);
+        Self { from, du, dv, length_squared: du * du + dv * dv }
+    }
+
+    /// Square of the distance of `point`.
+    #[inline]
+    fn distance_squared(&self, point: Pixel) -> f32 {
+        let (u, v) = (point.u_px - self.from.u_px, point.v_px - self.from.v_px);
+        let along = u * self.du + v * self.dv;
+        // The share of the way at which the point is nearest, cut to the segment.
+        let share = if !(along < self.length_squared) {
+            1.0
+        } else if along > 0.0 {
+            along / self.length_squared
+        } else {
+            0.0
+        };
+        let (mu, mv) = (u - share * self.du, v - share * self.dv);
+        mu * mu + mv * mv
+    }
+}
+
 /// Distance of `point` from the segment `a`-`b`, pixels.
 #[must_use]
 pub fn distance_to_segment_px(point: Pixel, a: Pixel, b: Pixel) -> f32 {
-    let (du, dv) = (b.u_px - a.u_px, b.v_px - a.v_px);
-    let squared = du * du + dv * dv;
-    let along = (point.u_px - a.u_px) * du + (point.v_px - a.v_px) * dv;
-    let share = if squared > 0.0 { clamp(along / squared, 0.0, 1.0) } else { 0.0 };
-    let (mu, mv) = (point.u_px - a.u_px - share * du, point.v_px - a.v_px - share * dv);
-    sqrt(mu * mu + mv * mv)
+    sqrt(Segment::new(a, b).distance_squared(point))
 }
 
 /// Sorts `pixels` to the limbs of `arm` within `band_px`.
@@ -48,33 +76,57 @@ pub fn distance_to_segment_px(point: Pixel, a: Pixel, b: Pixel) -> f32 {
 /// every k-th.
 #[must_use]
 pub fn split(pixels: &[EdgePixel], arm: &ArmImagePoints, band_px: f32) -> LimbPixels {
+    let limbs = Limbs::new(arm, band_px);
     let mut result = LimbPixels::default();
     let mut counts = [0_usize; 2];
     for pixel in pixels {
-        if let Some(limb) = limb_of(pixel, arm, band_px) {
+        if let Some(limb) = limbs.limb_of(pixel) {
+            // What finds no room comes in the second pass.
+            let _ = if limb == 0 { result.upper.push(*pixel) } else { result.fore.push(*pixel) };
             counts[limb] += 1;
         }
     }
-    let strides = counts.map(|count| count.div_ceil(MAX_LIMB_PIXELS).max(1));
-    let mut seen = [0_usize; 2];
-    for pixel in pixels {
-        let Some(limb) = limb_of(pixel, arm, band_px) else { continue };
-        if seen[limb].is_multiple_of(strides[limb]) {
+    for (limb, count) in counts.into_iter().enumerate() {
+        if count > MAX_LIMB_PIXELS {
             let kept = if limb == 0 { &mut result.upper } else { &mut result.fore };
-            // Cannot overflow: the stride leaves at most the capacity.
-            let _ = kept.push(*pixel);
+            kept.clear();
+            let of_limb = pixels.iter().filter(|pixel| limbs.limb_of(pixel) == Some(limb));
+            for pixel in of_limb.step_by(count.div_ceil(MAX_LIMB_PIXELS)) {
+                // Cannot overflow: the stride leaves at most the capacity.
+                let _ = kept.push(*pixel);
+            }
         }
-        seen[limb] += 1;
     }
     result
 }
 
-/// 0 for the upper arm, 1 for the forearm, `None` beyond the band.
-fn limb_of(pixel: &EdgePixel, arm: &ArmImagePoints, band_px: f32) -> Option<usize> {
-    let point = Pixel::new(f32::from(pixel.u), f32::from(pixel.v));
-    let upper = distance_to_segment_px(point, arm.shoulder, arm.elbow);
-    let fore = distance_to_segment_px(point, arm.elbow, arm.hand);
-    if upper <= fore { (upper <= band_px).then_some(0) } else { (fore <= band_px).then_some(1) }
+/// Part by which the squares of two distances have to differ at least for their roots, rounded, to differ in the same sense.
+const CLEARLY: f32 = 1.0e-6;
+
+/// Both limbs and the band around them.
+#[derive(Debug, Clone, Copy)]
+struct Limbs {
+    upper: Segment,
+    fore: Segment,
+    band_px: f32,
+}
+
+impl Limbs {
+    fn new(arm: &ArmImagePoints, band_px: f32) -> Self {
+        Self { upper: Segment::new(arm.shoulder, arm.elbow), fore: Segment::new(arm.elbow, arm.hand), band_px }
+    }
+
+    /// 0 for the upper arm, 1 for the forearm, `None` beyond the band. Roots are taken only where the squares do not decide.
+    fn limb_of(&self, pixel: &EdgePixel) -> Option<usize> {
+        let point = Pixel::new(f32::from(pixel.u), f32::from(pixel.v));
+        let (upper, fore) = (self.upper.distance_squared(point), self.fore.distance_squared(point));
+        let is_upper = upper <= fore || (upper <= fore * (1.0 + CLEARLY) && sqrt(upper) <= sqrt(fore));
+        let (limb, nearer) = if is_upper { (0, upper) } else { (1, fore) };
+        let band_squared = self.band_px * self.band_px;
+        let inside = nearer <= band_squared * (1.0 - CLEARLY)
+            || (nearer <= band_squared * (1.0 + CLEARLY) && sqrt(nearer) <= self.band_px);
+        inside.then_some(limb)
+    }
 }
 
 #[cfg(test)]

@@ -11,6 +11,9 @@ use crate::math::{Mat3, Vec3, max, sqrt};
 use crate::skeleton::Side;
 use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 
+/// A square that exceeds another one this many times has the greater root, however both are rounded.
+const CLEARLY_MORE: f32 = 1.0 + 1.0e-6;
+
 /// How the estimate came about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -76,10 +79,16 @@ pub(super) struct Cluster {
 impl FrameContext<'_> {
     /// The candidate whose centre lies nearest to `hand`, if within the cluster radius.
     pub fn candidate_at(&self, hand: Option<Pixel>) -> Option<usize> {
+        let hand = hand?;
         let mut best = (None, f32::INFINITY);
-        for (index, candidate) in self.candidates.iter().enumerate() {
-            let distance = candidate.centre.distance_px(hand?);
-            if distance < best.1 && distance < self.model.cluster_radius_px(candidate) {
+        for (index, (candidate, &radius_px)) in self.candidates.iter().zip(&self.radii_px).enumerate() {
+            let (du, dv) = (candidate.centre.u_px - hand.u_px, candidate.centre.v_px - hand.v_px);
+            // Most blobs are so far off that no root has to be taken to see it.
+            if du * du + dv * dv > CLEARLY_MORE * (radius_px * radius_px) {
+                continue;
+            }
+            let distance = candidate.centre.distance_px(hand);
+            if distance < best.1 && distance < radius_px {
                 best = (Some(index), distance);
             }
         }

@@ -139,6 +139,7 @@ mod tests {
             elbow_velocity_m_per_s: Vec3::zeros(),
             candidates: heapless::Vec::new(),
             rays: heapless::Vec::new(),
+            radii_px: [0.0; 8],
             beliefs: [0.0; 8],
             counts: [0; 8],
             free: 1,

@@ -33,6 +33,8 @@ pub(super) struct FrameContext<'a> {
     pub elbow_velocity_m_per_s: Vec3,
     pub candidates: Vec<HandCandidate, MAX_CANDIDATES>,
     pub rays: Vec<Ray, MAX_CANDIDATES>,
+    /// Within which a hand is at each candidate.
+    pub radii_px: [f32; MAX_CANDIDATES],
     /// Each candidate's likelihood, less where it was not the hand before.
     pub beliefs: [f32; MAX_CANDIDATES],
     /// Particles that each candidate got.

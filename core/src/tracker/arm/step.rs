@@ -216,6 +216,10 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             // One ray a candidate, so it always fits.
             let _ = rays.push(model.camera().back_project(candidate.centre));
         }
+        let mut radii_px = [0.0; MAX_CANDIDATES];
+        for (radius_px, candidate) in radii_px.iter_mut().zip(&candidates) {
+            *radius_px = model.cluster_radius_px(candidate);
+        }
         let mut counts = [0; MAX_CANDIDATES];
         let mut free = self.weights.len();
         let mut beliefs = [0.0; MAX_CANDIDATES];
@@ -238,6 +242,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             hand_velocity_m_per_s: self.hand_velocity_m_per_s,
             elbow_velocity_m_per_s: self.elbow_velocity_m_per_s,
             rays,
+            radii_px,
             beliefs,
             candidates,
             counts,
