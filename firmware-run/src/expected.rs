@@ -1,7 +1,7 @@
 //! What images have to answer: files of the folder `firmware-sim/expected`, one an image.
 
 use anyhow::{Context, Result, bail, ensure};
-use sinew_core::record::{CyclicResult, Failure, Kind, Record, RecordStream};
+use sinew_core::record::{ArmResult, CyclicResult, Failure, Kind, Record, RecordStream, VisionResult};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -102,6 +102,8 @@ fn difference(found: &[u8], wanted: &[u8]) -> String {
 fn told(record: &Record<'_>) -> String {
     match record.kind {
         Kind::CyclicResult => format!("{:?}", record.read::<CyclicResult>()),
+        Kind::ArmResult => format!("{:?}", record.read::<ArmResult>()),
+        Kind::VisionResult => format!("{:?}", record.read::<VisionResult>()),
         Kind::Failure => format!("{:?}", record.read::<Failure>()),
         kind => format!("{kind:?} {:02x?}", record.payload),
     }

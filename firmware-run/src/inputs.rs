@@ -1,10 +1,18 @@
 //! Recorded input of each image, made anew from synthetic motions: the same bytes on every machine.
 
 use anyhow::Result;
+use sinew::config::Config;
 use sinew::cyclic::tracking::TrackingOptions;
 use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
-use sinew::record::cyclic_stream;
+use sinew::motion::{ArmSide, reach};
+use sinew::output::OutputDir;
+use sinew::record::{Form, cyclic_stream, interleaved, record};
+use sinew::scene::{Scene, SceneOptions, Sides};
+use sinew::skin::model::DEFAULT_SKIN;
+use sinew::track::{RunOutcome, SideChoice, TrackOptions, TrackRun};
 use sinew_core::random::Stream;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// Input of the image `name`; `None` for an image that reads none.
 ///
@@ -13,6 +21,8 @@ use sinew_core::random::Stream;
 pub fn of_image(name: &str) -> Result<Option<Vec<u8>>> {
     match name {
         "cyclic" => cyclic().map(Some),
+        "arm" => arm_run(Form::Tracker).map(Some),
+        "camera" => interleaved(&arm_run(Form::Camera)?, &cyclic()?).map(Some),
         _ => Ok(None),
     }
 }
@@ -55,4 +65,47 @@ fn cyclic() -> Result<Vec<u8>> {
     let model = CyclicModel::from_option("walking")?;
     let table = synthetic_walk(&model)?;
     cyclic_stream(&table, &model, &TrackingOptions::default())
+}
+
+/// Frames of the rendered scene: four seconds.
+const SCENE_FRAMES: usize = 60;
+/// Its frames per second.
+const SCENE_HZ: f32 = 15.0;
+
+/// Renders a person who reaches about into `folder`, one of the images broken, and tracks the arm as `sinew track arm` does.
+///
+/// # Errors
+/// A folder that cannot be written.
+pub fn tracked_scene(folder: &Path) -> Result<RunOutcome> {
+    let motion = reach::random_reaches(1, SCENE_HZ, SCENE_FRAMES)?;
+    let options = SceneOptions {
+        width_px: 320,
+        height_px: 240,
+        frames: SCENE_FRAMES,
+        frames_per_second: SCENE_HZ,
+        sides: Sides::One(ArmSide::Right),
+        ..SceneOptions::default()
+    };
+    let scene = OutputDir::create(&folder.join("scene"))?;
+    Scene::new(&motion, &options)?.write_folder(&scene)?;
+    std::fs::write(scene.join("frames/frame_0033.png"), "no image")?;
+    let options = TrackOptions {
+        folder: scene.join("frames"),
+        side: SideChoice::Right,
+        rate_hz: f64::from(SCENE_HZ),
+        seed: 1,
+        skin: DEFAULT_SKIN.to_owned(),
+        calibrate: None,
+        overlay: false,
+        particles_csv: false,
+        strict: false,
+        config: Config::load(&scene.join("camera.toml"))?,
+    };
+    TrackRun::prepare(options, folder)?.run(&AtomicBool::new(false), &mut |_| ())
+}
+
+fn arm_run(form: Form) -> Result<Vec<u8>> {
+    let folder = tempfile::tempdir()?;
+    tracked_scene(folder.path())?;
+    Ok(record(folder.path(), form)?.bytes)
 }

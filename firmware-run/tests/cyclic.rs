@@ -11,7 +11,8 @@ use sinew_core::record::{
 use sinew_core::tracker::cyclic::FirstPhase;
 use sinew_firmware_run::host_port::HostPort;
 use sinew_firmware_run::{expected, inputs};
-use sinew_firmware_sim::cyclic::{CyclicApp, play};
+use sinew_firmware_sim::cyclic::CyclicApp;
+use sinew_firmware_sim::player::play;
 
 /// What the image's code answers on this machine.
 fn answers(input: &[u8]) -> Vec<u8> {

@@ -66,10 +66,10 @@ impl Part {
         }
     }
 
-    /// Nothing spent yet.
+    /// What was counted as the cost of this part.
     #[must_use]
-    pub const fn cost(self) -> Cost {
-        Cost { part: self as u16, frames: 0, total: 0, worst: 0 }
+    pub const fn cost(self, counted: &Cost) -> Cost {
+        Cost { part: self as u16, ..*counted }
     }
 }
 

@@ -60,3 +60,41 @@ fn a_folder_without_a_run_is_refused() {
     assert!(refusal.contains("holds no run"), "{refusal}");
     assert!(!out.exists());
 }
+
+#[test]
+fn a_tracked_arm_is_recorded_as_blobs_or_as_lines() {
+    use sinew_core::record::{ArmInput, CameraLine, CameraSetup, Kind, RecordStream};
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    sinew(&["simulate", "arm", "--motion", "builtin", "--frames", "3", "--out", &path("scene")]).unwrap();
+    let config = path("scene/camera.toml");
+    let track = |more: &[&str]| {
+        let (frames, run) = (path("scene/frames"), path("run"));
+        sinew(&[&["track", "arm", &frames, "--out", &run, "--config", &config], more].concat()).unwrap();
+    };
+    let kinds = |form: &str| {
+        sinew(&["record", &path("run"), "--form", form, "--out", &path("x.rec")]).unwrap();
+        let bytes = fs::read(path("x.rec")).unwrap();
+        let mut stream = RecordStream::<_, 1024>::new(bytes.as_slice());
+        let (mut kinds, mut width) = (Vec::new(), 0);
+        while let Some(record) = stream.next_record() {
+            let record = record.unwrap();
+            kinds.push(record.kind);
+            match record.kind {
+                Kind::CameraSetup => assert_eq!(record.read::<CameraSetup>().unwrap().size_px, [320, 240]),
+                Kind::CameraLine => width = record.read::<CameraLine>().unwrap().pixels.len(),
+                Kind::ArmInput => assert!(record.read::<ArmInput>().unwrap().has_image),
+                _ => {}
+            }
+        }
+        (kinds, width)
+    };
+    track(&[]);
+    let (tracker, _) = kinds("tracker");
+    assert_eq!((tracker[0], tracker.iter().filter(|kind| **kind == Kind::ArmInput).count()), (Kind::ArmSetup, 3));
+    let (camera, width) = kinds("camera");
+    assert_eq!((camera.iter().filter(|kind| **kind == Kind::CameraLine).count(), width), (3 * 240, 320));
+    track(&["--variant", "bootstrap"]);
+    let refusal = sinew(&["record", &path("run"), "--out", &path("x.rec")]).unwrap_err();
+    assert!(format!("{refusal:#}").contains("defaults of [tracker]"), "{refusal:#}");
+}

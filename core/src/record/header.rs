@@ -24,8 +24,24 @@ pub enum Kind {
     CyclicSetup = 16,
     /// [`super::CyclicInput`].
     CyclicInput = 17,
+    /// [`super::ArmSetup`].
+    ArmSetup = 32,
+    /// [`super::CandidateChunk`].
+    CandidateChunk = 33,
+    /// [`super::EdgeChunk`].
+    EdgeChunk = 34,
+    /// [`super::ArmInput`].
+    ArmInput = 35,
+    /// [`super::CameraSetup`].
+    CameraSetup = 48,
+    /// [`super::CameraLine`].
+    CameraLine = 49,
     /// [`super::CyclicResult`].
     CyclicResult = 128,
+    /// [`super::ArmResult`].
+    ArmResult = 129,
+    /// [`super::VisionResult`].
+    VisionResult = 130,
     /// [`super::Failure`].
     Failure = 144,
     /// [`super::Cost`].
@@ -34,8 +50,22 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 6] =
-        [Self::End, Self::CyclicSetup, Self::CyclicInput, Self::CyclicResult, Self::Failure, Self::Cost];
+    pub const ALL: [Self; 14] = [
+        Self::End,
+        Self::CyclicSetup,
+        Self::CyclicInput,
+        Self::ArmSetup,
+        Self::CandidateChunk,
+        Self::EdgeChunk,
+        Self::ArmInput,
+        Self::CameraSetup,
+        Self::CameraLine,
+        Self::CyclicResult,
+        Self::ArmResult,
+        Self::VisionResult,
+        Self::Failure,
+        Self::Cost,
+    ];
 
     /// The kind with this number.
     #[must_use]

@@ -13,6 +13,8 @@
 //! A stream is records one after the other; the last one is [`End`], which counts them. [`RecordStream`] reads from any [`Source`] with
 //! a buffer of fixed size, and goes on at the next sound record after a broken one.
 
+mod arm;
+mod camera;
 mod cyclic;
 mod error;
 mod fields;
@@ -22,11 +24,13 @@ mod stream;
 #[cfg(test)]
 mod tests;
 
+pub use arm::{ArmInput, ArmSetup, CANDIDATES_A_RECORD, CandidateChunk, EDGES_A_RECORD, EdgeChunk};
+pub use camera::{CameraLine, CameraSetup, LINE_PIXELS, VisionResult};
 pub use cyclic::{CyclicInput, CyclicSetup, model_checksum};
 pub use error::RecordError;
 pub use fields::{FieldReader, FieldWriter};
 pub use header::{HEADER_BYTES, Kind, Record, VERSION, decode, encode};
-pub use results::{Cost, CyclicResult, Failure};
+pub use results::{ArmResult, Cost, CyclicResult, Failure};
 pub use stream::{RecordStream, Source};
 
 /// Something that a record holds.

@@ -2,7 +2,10 @@
 
 use super::{FieldReader, FieldWriter, Kind, Payload, RecordError};
 use crate::cyclic::CyclicEstimate;
+use crate::math::Vec3;
+use crate::skeleton::Side;
 use crate::skeleton::stick_figure::HUMAN_ANGLES;
+use crate::tracker::arm::{ArmEstimate, ArmJoints, Status};
 use crate::tracker::cyclic::CyclicFrame;
 
 /// The cyclic tracker's answer to one frame.
@@ -75,6 +78,77 @@ impl Payload for CyclicResult {
     }
 }
 
+/// The arm tracker's answer to one frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArmResult {
+    /// Number of the frame.
+    pub frame: u32,
+    /// The estimate.
+    pub estimate: ArmEstimate,
+}
+
+impl Payload for ArmResult {
+    const KIND: Kind = Kind::ArmResult;
+    const MAX_BYTES: usize = 4 + 3 + 2 * 2 + 4 * (9 + 4 + 4);
+
+    fn write(&self, fields: &mut FieldWriter<'_>) {
+        let estimate = &self.estimate;
+        fields.u32(self.frame);
+        fields.u8(u8::from(estimate.side == Side::Right));
+        fields.u8(match estimate.status {
+            Status::Tracking => 2,
+            Status::Predicted => 1,
+            Status::Lost => 0,
+        });
+        fields.u8(u8::from(estimate.degenerate));
+        fields.u16(estimate.candidate.map_or(u16::MAX, |index| index as u16));
+        fields.u16(estimate.dropped_candidates as u16);
+        let joints = &estimate.joints;
+        for place in [joints.shoulder_m, joints.elbow_m, joints.hand_m] {
+            fields.f32s(place.as_slice());
+        }
+        fields.f32s(&estimate.angles_rad);
+        fields.f32s(&[
+            estimate.hand_std_m,
+            estimate.effective_sample_size,
+            estimate.log_evidence,
+            estimate.hand_likelihood,
+        ]);
+    }
+
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError> {
+        let frame = fields.u32()?;
+        let side = if fields.flag("side")? { Side::Right } else { Side::Left };
+        let status = match fields.u8()? {
+            0 => Status::Lost,
+            1 => Status::Predicted,
+            2 => Status::Tracking,
+            _ => return Err(RecordError::Value { field: "status" }),
+        };
+        let degenerate = fields.flag("degenerate")?;
+        let candidate = Some(fields.u16()?).filter(|&index| index != u16::MAX).map(usize::from);
+        let dropped_candidates = usize::from(fields.u16()?);
+        let [shoulder_m, elbow_m, hand_m] =
+            [fields.f32s::<3>()?, fields.f32s::<3>()?, fields.f32s::<3>()?].map(Vec3::from);
+        let angles_rad = fields.f32s()?;
+        let [hand_std_m, effective_sample_size, log_evidence, hand_likelihood] = fields.f32s()?;
+        let estimate = ArmEstimate {
+            side,
+            status,
+            joints: ArmJoints { shoulder_m, elbow_m, hand_m },
+            angles_rad,
+            hand_std_m,
+            effective_sample_size,
+            log_evidence,
+            degenerate,
+            hand_likelihood,
+            candidate,
+            dropped_candidates,
+        };
+        Ok(Self { frame, estimate })
+    }
+}
+
 /// A record that could not be used; the tracker goes on with the next one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Failure {
@@ -119,6 +193,12 @@ pub struct Cost {
 }
 
 impl Cost {
+    /// Nothing spent yet, on no part: all zero, so that a static with it needs no flash.
+    #[must_use]
+    pub const fn zero() -> Self {
+        Self { part: 0, frames: 0, total: 0, worst: 0 }
+    }
+
     /// Counts one more frame.
     pub fn add(&mut self, amount: u32) {
         self.frames = self.frames.saturating_add(1);

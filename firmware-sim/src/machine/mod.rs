@@ -58,7 +58,7 @@ fn play(image: fn(&mut Board) -> Result<(), RecordError>) -> Result<(), &'static
     let mut board = Board { input, results, costs };
     image(&mut board).map_err(|_| "the image could not go on")?;
     let worst = stack::most_used_bytes();
-    let stack = Cost { frames: 1, total: u64::from(worst), worst, ..Part::Stack.cost() };
+    let stack = Cost { frames: 1, total: u64::from(worst), worst, ..Part::Stack.cost(&Cost::zero()) };
     put(&mut board.costs, &stack).map_err(|_| "the costs have no room")?;
     board.input.0.close();
     board.results.close();

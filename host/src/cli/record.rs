@@ -2,7 +2,7 @@
 
 use super::stdout::write_all;
 use crate::output::{check_writable_file, write_atomically};
-use crate::record;
+use crate::record::{self, Form};
 use anyhow::Result;
 use clap::Args;
 use std::path::PathBuf;
@@ -10,9 +10,12 @@ use std::path::PathBuf;
 /// Options of `sinew record`.
 #[derive(Debug, Args)]
 pub struct RecordArgs {
-    /// Folder of a run: the report of `sinew track cyclic`.
+    /// Folder of a run: of `sinew track arm` or `sinew demo`, or the report of `sinew track cyclic`.
     #[arg(value_name = "RUN_DIR")]
     pub run: PathBuf,
+    /// What is recorded.
+    #[arg(long, value_enum, default_value_t)]
+    pub form: Form,
     /// Stream of records to write: what the tracker was given, bit for bit.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
@@ -24,7 +27,7 @@ pub struct RecordArgs {
 /// A folder that holds no run that firmware can play, an output that cannot be written.
 pub fn run(args: &RecordArgs) -> Result<()> {
     check_writable_file(&args.out)?;
-    let recorded = record::record(&args.run)?;
+    let recorded = record::record(&args.run, args.form)?;
     write_atomically(&args.out, |writer| Ok(writer.write_all(&recorded.bytes)?))?;
     write_all(format!("{}: {} bytes in `{}`\n", recorded.what, recorded.bytes.len(), args.out.display()).as_bytes())
 }

@@ -1,5 +1,8 @@
 //! Which run a directory holds, and its input as a stream.
 
+use super::arm::tracker_stream;
+use super::arm_run::ArmRun;
+use super::camera::camera_stream;
 use super::cyclic_stream;
 use crate::cyclic::report::document::FORMAT as CYCLIC_FORMAT;
 use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates};
@@ -10,6 +13,16 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// What of a run is recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum Form {
+    /// What the tracker was given: blobs and edges, or angles.
+    #[default]
+    Tracker,
+    /// The lines of its images, for firmware that does the vision as well.
+    Camera,
+}
+
 /// The input of a run.
 #[derive(Debug, Clone)]
 pub struct Recorded {
@@ -19,17 +32,30 @@ pub struct Recorded {
     pub what: String,
 }
 
-/// Makes the stream of the run in `folder`: a report of `sinew track cyclic --report`.
+/// Makes the stream of the run in `folder`: one of `sinew track arm` or `sinew demo`, or a report of `sinew track cyclic --report`.
 ///
 /// # Errors
 /// A folder that holds no run, a run that firmware cannot play, an input of the run that is not there any more.
-pub fn record(folder: &Path) -> Result<Recorded> {
-    ensure!(folder.is_dir(), "`{}` is no folder; give one of `sinew track cyclic --report`", folder.display());
-    let summary = folder.join("summary.json");
-    if summary.is_file() {
-        return cyclic_run(&summary).with_context(|| format!("`{}` cannot be recorded", folder.display()));
-    }
-    bail!("`{}` holds no run; give the folder of `sinew track cyclic --report`", folder.display())
+pub fn record(folder: &Path, form: Form) -> Result<Recorded> {
+    const REMEDY: &str = "give one that `sinew track arm`, `sinew demo` or `sinew track cyclic --report` wrote";
+    ensure!(folder.is_dir(), "`{}` is no folder; {REMEDY}", folder.display());
+    let (arm, cyclic) = (folder.join("run.json"), folder.join("summary.json"));
+    let recorded = match (arm.is_file(), cyclic.is_file(), form) {
+        (true, _, _) => arm_run(&arm, form),
+        (_, true, Form::Tracker) => cyclic_run(&cyclic),
+        (_, true, Form::Camera) => bail!("a table of angles has no images: leave out `--form camera`"),
+        _ => bail!("`{}` holds no run; {REMEDY}", folder.display()),
+    };
+    recorded.with_context(|| format!("`{}` cannot be recorded", folder.display()))
+}
+
+fn arm_run(report: &Path, form: Form) -> Result<Recorded> {
+    let run = ArmRun::open(report)?;
+    let (bytes, what) = match form {
+        Form::Tracker => (tracker_stream(&run)?, "blobs and edges"),
+        Form::Camera => (camera_stream(&run)?, "lines"),
+    };
+    Ok(Recorded { bytes, what: format!("{what} of {} frames", run.frames.files().len()) })
 }
 
 fn cyclic_run(summary: &Path) -> Result<Recorded> {

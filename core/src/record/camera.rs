@@ -1,0 +1,124 @@
+//! What a camera delivers: lines, and the end of each frame.
+
+use super::{FieldReader, FieldWriter, Kind, Payload, RecordError};
+use crate::error::ParameterError;
+use crate::vision::skin::GaussianSkin;
+use heapless::Vec;
+
+/// Most pixels of a line.
+pub const LINE_PIXELS: usize = 320;
+
+/// Begins the recording of a camera: size of its frames, and which colours are skin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CameraSetup {
+    /// Width and height, pixels.
+    pub size_px: [u16; 2],
+    /// Mean chromaticity of skin, red and green.
+    pub skin_mean: [f32; 2],
+    /// Its covariance: rr, rg, gg.
+    pub skin_covariance: [f32; 3],
+    /// Mahalanobis distance up to which a colour is skin.
+    pub skin_threshold: f32,
+    /// Sum of the channels below which no colour is skin.
+    pub skin_min_sum: u16,
+}
+
+impl CameraSetup {
+    /// The skin model.
+    ///
+    /// # Errors
+    /// Those of [`GaussianSkin::new`].
+    pub fn skin(&self) -> Result<GaussianSkin, ParameterError> {
+        let [red, green] = self.skin_mean;
+        GaussianSkin::new(red, green, self.skin_covariance, self.skin_threshold, self.skin_min_sum)
+    }
+}
+
+impl Payload for CameraSetup {
+    const KIND: Kind = Kind::CameraSetup;
+    const MAX_BYTES: usize = 2 * 2 + 6 * 4 + 2;
+
+    fn write(&self, fields: &mut FieldWriter<'_>) {
+        self.size_px.iter().for_each(|&side| fields.u16(side));
+        fields.f32s(&self.skin_mean);
+        fields.f32s(&self.skin_covariance);
+        fields.f32(self.skin_threshold);
+        fields.u16(self.skin_min_sum);
+    }
+
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError> {
+        Ok(Self {
+            size_px: [fields.u16()?, fields.u16()?],
+            skin_mean: fields.f32s()?,
+            skin_covariance: fields.f32s()?,
+            skin_threshold: fields.f32()?,
+            skin_min_sum: fields.u16()?,
+        })
+    }
+}
+
+/// One line of a frame in RGB565.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CameraLine {
+    /// Row from the top.
+    pub row: u16,
+    /// Pixels from the left.
+    pub pixels: Vec<u16, LINE_PIXELS>,
+}
+
+impl Payload for CameraLine {
+    const KIND: Kind = Kind::CameraLine;
+    const MAX_BYTES: usize = 2 + 2 + 2 * LINE_PIXELS;
+
+    fn write(&self, fields: &mut FieldWriter<'_>) {
+        fields.u16(self.row);
+        fields.u16(self.pixels.len() as u16);
+        self.pixels.iter().for_each(|&pixel| fields.u16(pixel));
+    }
+
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError> {
+        let row = fields.u16()?;
+        let mut pixels = Vec::new();
+        for _ in 0..fields.u16()? {
+            pixels.push(fields.u16()?).map_err(|_| RecordError::Capacity { list: "pixels" })?;
+        }
+        Ok(Self { row, pixels })
+    }
+}
+
+/// What the front end answers to a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct VisionResult {
+    /// Number of the frame.
+    pub frame: u32,
+    /// Number of blobs.
+    pub blobs: u16,
+    /// Number of temporal edge pixels.
+    pub edges: u16,
+    /// CRC-32 of the candidates' bits and the edge pixels.
+    pub checksum: u32,
+    /// Components, blobs, edges and lines that were lost, as in [`crate::vision::front_end::FrameLosses`].
+    pub losses: [u32; 6],
+}
+
+impl Payload for VisionResult {
+    const KIND: Kind = Kind::VisionResult;
+    const MAX_BYTES: usize = 4 + 2 + 2 + 4 + 6 * 4;
+
+    fn write(&self, fields: &mut FieldWriter<'_>) {
+        fields.u32(self.frame);
+        fields.u16(self.blobs);
+        fields.u16(self.edges);
+        fields.u32(self.checksum);
+        self.losses.iter().for_each(|&lost| fields.u32(lost));
+    }
+
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError> {
+        let (frame, blobs, edges, checksum) = (fields.u32()?, fields.u16()?, fields.u16()?, fields.u32()?);
+        let mut losses = [0; 6];
+        for lost in &mut losses {
+            *lost = fields.u32()?;
+        }
+        Ok(Self { frame, blobs, edges, checksum, losses })
+    }
+}

@@ -1,0 +1,163 @@
+//! The image `arm`: blobs and temporal edges in, the arm out, by 50 particles.
+
+use crate::log::debug;
+use crate::player::{Answers, Application, Refusal, play};
+use crate::port::{Part, Port, counted};
+use crate::slot::Slot;
+use heapless::Vec;
+use sinew_core::observation::candidate::HandCandidate;
+use sinew_core::record::{ArmInput, ArmResult, ArmSetup, CandidateChunk, Cost, EdgeChunk, Kind, Record, RecordError};
+use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmTracker};
+use sinew_core::vision::edges::EdgePixel;
+use static_cell::ConstStaticCell;
+
+/// Particles that there is room for.
+pub const PARTICLES: usize = 50;
+/// Candidates of a frame that there is room for.
+pub const CANDIDATES: usize = 16;
+/// Edge pixels of a frame that there is room for.
+pub const EDGES: usize = 1024;
+
+/// One arm's tracker, its model, and what a step costs.
+#[derive(Debug)]
+pub struct Arm {
+    model: Slot<ArmModel>,
+    tracker: Slot<ArmTracker<PARTICLES>>,
+    last_frame: Option<u32>,
+    step: Cost,
+}
+
+impl Arm {
+    /// Before the first record.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { model: Slot::Empty, tracker: Slot::Empty, last_frame: None, step: Cost::zero() }
+    }
+
+    /// Begins a recording.
+    ///
+    /// # Errors
+    /// A parameter out of its range, more particles than there is room for.
+    pub fn begin(&mut self, setup: &ArmSetup) -> Result<(), Refusal> {
+        let model = setup.model()?;
+        self.tracker = Slot::Full(ArmTracker::new(&model, setup.shoulder_m, setup.seed)?);
+        (self.model, self.last_frame) = (Slot::Full(model), None);
+        Ok(())
+    }
+
+    /// Answers one frame.
+    ///
+    /// # Errors
+    /// A frame before the setup or not after the last one.
+    pub fn frame<P: Port>(&mut self, input: &ArmInput, image: Option<ArmImage<'_>>) -> Result<ArmResult, Refusal> {
+        let (Slot::Full(model), Slot::Full(tracker)) = (&self.model, &mut self.tracker) else {
+            return Err(RecordError::OutOfOrder.into());
+        };
+        if self.last_frame.is_some_and(|last| last >= input.frame) {
+            return Err(RecordError::OutOfOrder.into());
+        }
+        let frame = ArmFrame { timestamp_us: input.timestamp_us, image, shoulder_m: input.shoulder_m };
+        let estimate = counted::<P, _>(&mut self.step, || tracker.step(model, &frame));
+        self.last_frame = Some(input.frame);
+        debug!("frame {}: hand at {} m", input.frame, estimate.joints.hand_m.z);
+        Ok(ArmResult { frame: input.frame, estimate })
+    }
+
+    /// Number of the last frame, 0 before the first.
+    #[must_use]
+    pub fn last_frame(&self) -> u32 {
+        self.last_frame.unwrap_or(0)
+    }
+
+    /// What the steps cost.
+    #[must_use]
+    pub const fn step_cost(&self) -> &Cost {
+        &self.step
+    }
+}
+
+impl Default for Arm {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The arm with the lists of the frame that is coming in.
+#[derive(Debug)]
+pub struct ArmApp {
+    arm: Arm,
+    candidates: Vec<HandCandidate, CANDIDATES>,
+    edges: Vec<EdgePixel, EDGES>,
+}
+
+impl ArmApp {
+    /// Before the first record.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { arm: Arm::new(), candidates: Vec::new(), edges: Vec::new() }
+    }
+
+    /// Steps, if everything came that belongs to the frame; the lists are empty then in any case.
+    fn frame<P: Port>(&mut self, input: &ArmInput) -> Result<ArmResult, Refusal> {
+        let whole =
+            self.candidates.len() == usize::from(input.candidates) && self.edges.len() == usize::from(input.edges);
+        let image = ArmImage { candidates: &self.candidates, edges: &self.edges };
+        let answer = if whole {
+            self.arm.frame::<P>(input, Some(image).filter(|_| input.has_image))
+        } else {
+            Err(RecordError::Lost.into())
+        };
+        self.candidates.clear();
+        self.edges.clear();
+        answer
+    }
+}
+
+impl Default for ArmApp {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Application for ArmApp {
+    fn take<P: Port>(&mut self, record: &Record<'_>, answers: &mut Answers<'_, P::Output>) -> Result<(), Refusal> {
+        match record.kind {
+            Kind::ArmSetup => self.arm.begin(&record.read()?)?,
+            Kind::CandidateChunk => {
+                let chunk: CandidateChunk = record.read()?;
+                self.candidates
+                    .extend_from_slice(&chunk.0)
+                    .map_err(|_| RecordError::Capacity { list: "candidates" })?;
+            }
+            Kind::EdgeChunk => {
+                let chunk: EdgeChunk = record.read()?;
+                self.edges.extend_from_slice(&chunk.0).map_err(|_| RecordError::Capacity { list: "edges" })?;
+            }
+            Kind::ArmInput => {
+                let result = self.frame::<P>(&record.read()?)?;
+                answers.put(&result)?;
+            }
+            _ => return Err(RecordError::OutOfOrder.into()),
+        }
+        Ok(())
+    }
+
+    fn last_frame(&self) -> u32 {
+        self.arm.last_frame()
+    }
+
+    fn costs(&self, tell: &mut dyn FnMut(&Cost)) {
+        tell(&Part::ArmStep.cost(self.arm.step_cost()));
+    }
+}
+
+/// All memory that tracking takes lies here, not on the stack.
+static APP: ConstStaticCell<ArmApp> = ConstStaticCell::new(ArmApp::new());
+
+/// Tracks the recording once.
+///
+/// # Errors
+/// Those of [`play`].
+pub fn run<P: Port>(port: &mut P) -> Result<(), RecordError> {
+    play(port, APP.take())
+}

@@ -1,0 +1,5 @@
+//! See `sinew_firmware_sim::arm`.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+sinew_firmware_sim::image!(sinew_firmware_sim::arm::run);

@@ -1,0 +1,50 @@
+//! What an arm tracker was given: candidates and edges of every frame.
+
+use super::StreamWriter;
+use super::arm_run::ArmRun;
+use crate::frames::{FrameReader, FrameView};
+use anyhow::Result;
+use sinew_core::math::Vec3;
+use sinew_core::record::{ArmInput, CANDIDATES_A_RECORD, CandidateChunk, EDGES_A_RECORD, EdgeChunk};
+
+/// The stream of a run: the host's vision, firmware's tracker.
+pub(super) fn tracker_stream(run: &ArmRun) -> Result<Vec<u8>> {
+    let mut reader = FrameReader::new(run.config.likelihood.build()?, run.config.edges.build()?)?;
+    let mut stream = StreamWriter::default();
+    stream.push(&run.setup)?;
+    for frame in 0..run.frames.files().len() {
+        let view = match run.frames.load(frame) {
+            Ok(image) => Some(reader.read(&image, &run.skin)?),
+            Err(_) => {
+                reader.forget_last_frame();
+                None
+            }
+        };
+        push_frame(&mut stream, frame, run.timestamp_us(frame), run.setup.shoulder_m, view.as_ref())?;
+    }
+    stream.finish()
+}
+
+fn push_frame(
+    stream: &mut StreamWriter,
+    frame: usize,
+    timestamp_us: u64,
+    shoulder_m: Vec3,
+    view: Option<&FrameView>,
+) -> Result<()> {
+    let (candidates, edges) = view.map_or((&[][..], &[][..]), |view| (&view.candidates, &view.edges));
+    for chunk in candidates.chunks(CANDIDATES_A_RECORD) {
+        stream.push(&CandidateChunk(chunk.iter().copied().collect()))?;
+    }
+    for chunk in edges.chunks(EDGES_A_RECORD) {
+        stream.push(&EdgeChunk(chunk.iter().copied().collect()))?;
+    }
+    stream.push(&ArmInput {
+        frame: u32::try_from(frame)?,
+        timestamp_us,
+        has_image: view.is_some(),
+        shoulder_m,
+        candidates: u16::try_from(candidates.len())?,
+        edges: u16::try_from(edges.len())?,
+    })
+}

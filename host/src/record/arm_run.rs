@@ -1,0 +1,87 @@
+//! The run of one arm, as its `run.json` tells it.
+
+use crate::config::Config;
+use crate::skin::{Rectangle, SkinModel};
+use crate::track::{ArmSet, FrameFolder, SideChoice};
+use anyhow::{Context, Result, ensure};
+use clap::ValueEnum;
+use serde_json::Value;
+use sinew_core::record::ArmSetup;
+use sinew_core::skeleton::Side;
+use sinew_core::tracker::arm::options::LimbCombination;
+use std::fs;
+use std::path::Path;
+
+/// What is needed to see the frames of a run again.
+#[derive(Debug)]
+pub(super) struct ArmRun {
+    pub frames: FrameFolder,
+    pub skin: SkinModel,
+    pub config: Config,
+    pub setup: ArmSetup,
+    rate_hz: f64,
+}
+
+impl ArmRun {
+    /// Reads `run.json` and opens the images that it names.
+    pub fn open(report: &Path) -> Result<Self> {
+        let json: Value = serde_json::from_str(&fs::read_to_string(report)?).context("run.json is not JSON")?;
+        let options = &json["options"];
+        let text = |name: &str| options[name].as_str().with_context(|| format!("run.json has no option `{name}`"));
+        let side = SideChoice::from_str(text("side")?, true).unwrap_or_default();
+        ensure!(
+            side != SideChoice::Both,
+            "both arms were tracked; firmware plays one: `--side left` or `--side right`"
+        );
+        let config: Config =
+            serde_json::from_value(options["config"].clone()).context("run.json has no configuration")?;
+        let frames = FrameFolder::open(Path::new(text("folder")?), false)?;
+        let seed = options["seed"].as_u64().context("run.json has no option `seed`")?;
+        let rate_hz = options["rate_hz"].as_f64().context("run.json has no option `rate_hz`")?;
+        let mut skin = SkinModel::from_option(text("skin")?)?;
+        if let Some(rectangle) = rectangle(&options["calibrate"]) {
+            skin = skin.calibrated(frames.first().1, rectangle)?;
+        }
+        let setup = setup(&config, frames.size_px(), side, seed)?;
+        Ok(Self { frames, skin, config, setup, rate_hz })
+    }
+
+    pub fn timestamp_us(&self, frame: usize) -> u64 {
+        (frame as f64 * 1.0e6 / self.rate_hz).round() as u64
+    }
+}
+
+fn rectangle(json: &Value) -> Option<Rectangle> {
+    let number = |name: &str| json[name].as_u64().and_then(|value| u32::try_from(value).ok());
+    let [x_px, y_px, width_px, height_px] = ["x_px", "y_px", "width_px", "height_px"].map(number);
+    Some(Rectangle { x_px: x_px?, y_px: y_px?, width_px: width_px?, height_px: height_px? })
+}
+
+/// The arm as a record, if it says everything of it.
+fn setup(config: &Config, size_px: (u32, u32), side: SideChoice, seed: u64) -> Result<ArmSetup> {
+    let arms = ArmSet::new(config, size_px, side, seed)?;
+    let model = arms.models().first().context("no arm was tracked")?;
+    let [left_m, right_m] = config.body.shoulders_m();
+    let (camera, geometry, options) = (model.camera(), model.geometry(), model.options());
+    let setup = ArmSetup {
+        focal_px: [camera.focal_px(); 2],
+        centre: camera.centre(),
+        image_size_px: [size_px.0, size_px.1],
+        side: geometry.side,
+        lengths_m: [geometry.upper_arm_m, geometry.forearm_m],
+        shoulder_m: if geometry.side == Side::Left { left_m } else { right_m },
+        particles: u16::try_from(options.particles)?,
+        product_floor: match options.combination {
+            LimbCombination::Mean => None,
+            LimbCombination::Product { floor } => Some(floor),
+        },
+        area_cue: options.area_cue,
+        seed,
+    };
+    ensure!(
+        setup.model()? == *model,
+        "it was tracked with options that firmware's records do not hold: a record has the arm's lengths, shoulders, seed and \
+         particles, a camera with square pixels and without distortion, and the defaults of [tracker]"
+    );
+    Ok(setup)
+}
