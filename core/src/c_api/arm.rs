@@ -81,11 +81,13 @@ pub unsafe extern "C" fn sinew_arm_init(
                 _ => return Err(SinewStatus::OutOfRange),
             };
             let model = config.model(side)?;
-            let tracker = ArmTracker::new(&model, config.shoulder(side)?, config.seed)?;
             let fingerprint = config.fingerprint(side as u32);
-            let memory = Memory { timestamp_us: None, tracker };
-            let seal = SinewArm::SEAL;
-            handle.write(place.write(SinewArm { seal, fingerprint, config, model, memory }));
+            let memory = Memory { timestamp_us: None, tracker: ArmTracker::empty() };
+            // The seal comes last: a tracker that did not begin is none.
+            let object = place.write(SinewArm { seal: Seal::BROKEN, fingerprint, config, model, memory });
+            object.reset()?;
+            object.seal = SinewArm::SEAL;
+            handle.write(object);
             Ok(())
         })()
     })
@@ -190,9 +192,8 @@ pub unsafe extern "C" fn sinew_arm_restore(
 impl SinewArm {
     fn reset(&mut self) -> Answer {
         let shoulder_m = self.config.shoulder(self.model.side())?;
-        self.memory.tracker = ArmTracker::new(&self.model, shoulder_m, self.config.seed)?;
         self.memory.timestamp_us = None;
-        Ok(())
+        Ok(self.memory.tracker.begin(&self.model, shoulder_m, self.config.seed)?)
     }
 }
 

@@ -74,12 +74,13 @@ pub unsafe extern "C" fn sinew_arm_pair_init(
             let (handle, config) = (room(tracker)?, *given(config)?);
             let place = place::<SinewArmPair>(memory, memory_bytes)?;
             let (left, right) = (config.model(Side::Left)?, config.model(Side::Right)?);
-            let shoulders_m = [config.shoulder(Side::Left)?, config.shoulder(Side::Right)?];
-            let tracker = ArmPair::new([&left, &right], shoulders_m, config.seed)?;
             let fingerprint = config.fingerprint(2);
-            let memory = Memory { timestamp_us: None, tracker };
-            let seal = SinewArmPair::SEAL;
-            handle.write(place.write(SinewArmPair { seal, fingerprint, config, left, right, memory }));
+            let memory = Memory { timestamp_us: None, tracker: ArmPair::empty() };
+            // The seal comes last: a tracker that did not begin is none.
+            let object = place.write(SinewArmPair { seal: Seal::BROKEN, fingerprint, config, left, right, memory });
+            object.reset()?;
+            object.seal = SinewArmPair::SEAL;
+            handle.write(object);
             Ok(())
         })()
     })
@@ -187,9 +188,8 @@ pub unsafe extern "C" fn sinew_arm_pair_restore(
 impl SinewArmPair {
     fn reset(&mut self) -> Answer {
         let shoulders_m = [self.config.shoulder(Side::Left)?, self.config.shoulder(Side::Right)?];
-        self.memory.tracker = ArmPair::new([&self.left, &self.right], shoulders_m, self.config.seed)?;
         self.memory.timestamp_us = None;
-        Ok(())
+        Ok(self.memory.tracker.begin([&self.left, &self.right], shoulders_m, self.config.seed)?)
     }
 }
 

@@ -3,7 +3,7 @@
 use super::cyclic_frame::{SINEW_MAX_ANGLES, SinewCyclicFrame, SinewCyclicResult};
 use super::model::{fingerprint, read_model};
 use super::object::{Seal, Sealed, bytes_mut, given, list, object, place, room};
-use super::status::{SinewStatus, status};
+use super::status::{Answer, SinewStatus, status};
 use crate::cyclic::measurement::MAX_STEP_FRAMES;
 use crate::cyclic::phase::wrap_position;
 use crate::cyclic::{AngleMeasurement, MotionModel};
@@ -38,8 +38,9 @@ pub struct SinewCyclic {
 #[derive(Debug)]
 struct Memory {
     timestamp_us: u64,
-    /// `None` until a frame showed something.
-    tracker: Option<Tracker>,
+    /// Whether a frame showed something; the tracker means nothing until then.
+    has_begun: bool,
+    tracker: Tracker,
 }
 
 // SAFETY: the seal is that field.
@@ -86,7 +87,7 @@ pub unsafe extern "C" fn sinew_cyclic_init(
             let place = place::<SinewCyclic>(memory, memory_bytes)?;
             let model = read_model(model, model_bytes)?;
             let fingerprint = fingerprint(&model);
-            let memory = Memory { timestamp_us: 0, tracker: None };
+            let memory = Memory { timestamp_us: 0, has_begun: false, tracker: Tracker::empty() };
             handle.write(place.write(SinewCyclic { seal: SinewCyclic::SEAL, fingerprint, model, memory }));
             Ok(())
         })()
@@ -155,7 +156,7 @@ pub unsafe extern "C" fn sinew_cyclic_mean_pose(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_cyclic_reset(tracker: *mut SinewCyclic) -> SinewStatus {
     // SAFETY: the caller's duty.
-    status(unsafe { object(tracker) }.map(|tracker| tracker.memory = Memory { timestamp_us: 0, tracker: None }))
+    status(unsafe { object(tracker) }.map(|tracker| tracker.memory.forget()))
 }
 
 /// Writes the state into `buffer`, so that a tracker made with the same model, on this processor or another, can go on from it.
@@ -175,10 +176,8 @@ pub unsafe extern "C" fn sinew_cyclic_save(
     status(unsafe {
         (|| {
             let (tracker, buffer, written) = (object(tracker)?, bytes_mut(buffer, buffer_bytes)?, room(written)?);
-            let SinewCyclic { memory, model, fingerprint, .. } = tracker;
-            let mut state = CyclicState { memory, model };
-            written.write(saved_bytes(&mut state));
-            save(StateKind::Cyclic, *fingerprint, &mut state, buffer)?;
+            written.write(saved_bytes(&mut tracker.memory));
+            save(StateKind::Cyclic, tracker.fingerprint, &mut tracker.memory, buffer)?;
             Ok(())
         })()
     })
@@ -201,10 +200,9 @@ pub unsafe extern "C" fn sinew_cyclic_restore(
     status(unsafe {
         (|| {
             let (tracker, state) = (object(tracker)?, list(state, state_bytes)?);
-            let SinewCyclic { memory, model, fingerprint, .. } = tracker;
-            let answer = restore(StateKind::Cyclic, *fingerprint, &mut CyclicState { memory, model }, state);
+            let answer = restore(StateKind::Cyclic, tracker.fingerprint, &mut tracker.memory, state);
             if answer == Err(StateError::Illegal) {
-                tracker.memory = Memory { timestamp_us: 0, tracker: None };
+                tracker.memory.forget();
             }
             Ok(answer?)
         })()
@@ -214,59 +212,48 @@ pub unsafe extern "C" fn sinew_cyclic_restore(
 impl SinewCyclic {
     fn step(&mut self, frame: &SinewCyclicFrame) -> Result<CyclicFrame<SINEW_MAX_ANGLES>, SinewStatus> {
         let measurement = frame.measurement(self.model.angle_count())?;
-        let Some(tracker) = &mut self.memory.tracker else {
-            return self.memory.begin(&self.model, frame, &measurement);
-        };
+        if !self.memory.has_begun {
+            self.memory.begin(&self.model, &measurement)?;
+            self.memory.timestamp_us = frame.timestamp_us;
+            return Ok(self.memory.tracker.first_frame(&self.model, &measurement));
+        }
         let elapsed_us = frame.timestamp_us.checked_sub(self.memory.timestamp_us).filter(|&elapsed| elapsed > 0);
         let elapsed_us = elapsed_us.ok_or(SinewStatus::OutOfOrder)?;
         let step_frames = min(elapsed_us as f32 * 1.0e-6 * self.model.rate_hz(), MAX_STEP_FRAMES);
         let measurement = measurement.after(step_frames)?;
         self.memory.timestamp_us = frame.timestamp_us;
-        Ok(tracker.step(&self.model, &measurement))
+        Ok(self.memory.tracker.step(&self.model, &measurement))
     }
 }
 
 impl Memory {
-    fn begin(
-        &mut self,
-        model: &MotionModel<'_>,
-        frame: &SinewCyclicFrame,
-        first: &AngleMeasurement<SINEW_MAX_ANGLES>,
-    ) -> Result<CyclicFrame<SINEW_MAX_ANGLES>, SinewStatus> {
+    /// Out of the way of the steps that follow, whose stack it would share.
+    #[inline(never)]
+    fn begin(&mut self, model: &MotionModel<'_>, first: &AngleMeasurement<SINEW_MAX_ANGLES>) -> Answer {
         if first.is_empty(model.angle_count()) {
             return Err(SinewStatus::Waiting);
         }
-        let tracker = self.tracker.insert(Tracker::new(model, first, FirstPhase::default())?);
-        self.timestamp_us = frame.timestamp_us;
-        Ok(tracker.first_frame(model, first))
+        self.tracker.begin(model, first, FirstPhase::default())?;
+        self.has_begun = true;
+        Ok(())
+    }
+
+    fn forget(&mut self) {
+        self.has_begun = false;
+        self.timestamp_us = 0;
     }
 
     fn is_searching(&self) -> bool {
-        self.tracker.as_ref().is_some_and(|tracker| tracker.filter().is_searching())
+        self.has_begun && self.tracker.filter().is_searching()
     }
 }
 
-/// The memory as it is saved: a tracker that begins with the state needs a model to be made.
-struct CyclicState<'a> {
-    memory: &'a mut Memory,
-    model: &'a MotionModel<'static>,
-}
-
-impl SavedState for CyclicState<'_> {
+impl SavedState for Memory {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        let Memory { timestamp_us, tracker } = &mut *self.memory;
-        visitor.long(timestamp_us);
-        let mut has_begun = tracker.is_some();
-        visitor.flag(&mut has_begun);
-        if !has_begun {
-            *tracker = None;
-        } else if tracker.is_none() {
-            *tracker = Tracker::anywhere(self.model).ok();
-        }
-        match tracker {
-            Some(tracker) => tracker.visit(visitor),
-            None if has_begun => visitor.refuse(),
-            None => {}
+        visitor.long(&mut self.timestamp_us);
+        visitor.flag(&mut self.has_begun);
+        if self.has_begun {
+            self.tracker.visit(visitor);
         }
     }
 }

@@ -13,6 +13,9 @@ pub(super) struct Seal {
 }
 
 impl Seal {
+    /// The seal of nothing.
+    pub const BROKEN: Self = Self { kind: 0, complement: 0 };
+
     /// The seal of objects whose kind has four letters.
     pub const fn of(kind: [u8; 4]) -> Self {
         let kind = u32::from_le_bytes(kind);

@@ -62,17 +62,52 @@ impl<const N: usize> CoupledFilter<N> {
         position: Option<f32>,
         velocity: Option<f32>,
     ) -> Result<Self, ParameterError> {
+        let mut filter = Self::empty();
+        filter.begin(model, first, position, velocity)?;
+        Ok(filter)
+    }
+
+    /// A filter that has not begun, so that one in static memory can begin there; it takes no stack. Its answers mean nothing.
+    #[must_use]
+    pub const fn empty() -> Self {
+        Self {
+            blocks: [AngleBlock::zero(); N],
+            angles_rad: [0.0; N],
+            turns: [0; N],
+            position: 0.0,
+            velocity: 0.0,
+            pair: CyclePair { cc: 0.0, cv: 0.0, vv: 0.0 },
+            cycles: 0,
+            grid: PhaseGrid::uniform(),
+            watch: Watch::new(),
+            relocks: 0,
+        }
+    }
+
+    /// Becomes what [`Self::new`] gives, in place.
+    ///
+    /// # Errors
+    /// Those of [`Self::new`]; the filter is as before then.
+    pub fn begin(
+        &mut self,
+        model: &MotionModel<'_>,
+        first: &AngleMeasurement<N>,
+        position: Option<f32>,
+        velocity: Option<f32>,
+    ) -> Result<(), ParameterError> {
         let velocity = within("initial cycle velocity", velocity.unwrap_or(model.mean_cycle_velocity()), -0.5, 0.5)?;
         let position = match position {
             Some(position) => wrap_position(finite("initial cycle position", position)?),
             None => super::start::best_position(model, first.angles_rad()),
         };
-        let mut filter = Self::unknown(model)?;
-        filter.position = position;
-        filter.velocity = velocity;
-        filter.grid = PhaseGrid::near(position);
-        filter.correct_phase(model, &as_exact_as_it_looks(model, first, position)?);
-        Ok(filter.started(model, first))
+        let looks = as_exact_as_it_looks(model, first, position)?;
+        self.forget(model)?;
+        self.position = position;
+        self.velocity = velocity;
+        self.grid.begin_near(position);
+        self.correct_phase(model, &looks);
+        self.start_counting(model, first);
+        Ok(())
     }
 
     /// A start anywhere in the cycle at any speed, with the first row as a measurement among others.
@@ -80,14 +115,16 @@ impl<const N: usize> CoupledFilter<N> {
     /// # Errors
     /// At most `N` angles, a model with a deviation.
     pub fn anywhere(model: &MotionModel<'_>, first: &AngleMeasurement<N>) -> Result<Self, ParameterError> {
-        let mut filter = Self::unknown(model)?;
+        let mut filter = Self::empty();
+        filter.forget(model)?;
         filter.watch.searching = true;
         filter.correct(model, first);
-        Ok(filter.started(model, first))
+        filter.start_counting(model, first);
+        Ok(filter)
     }
 
     /// Position 0, the model's mean speed, nothing known of the person.
-    fn unknown(model: &MotionModel<'_>) -> Result<Self, ParameterError> {
+    fn forget(&mut self, model: &MotionModel<'_>) -> Result<(), ParameterError> {
         if model.angle_count() > N {
             return Err(ParameterError::new("angles of the model", Rule::Capacity { capacity: N }));
         }
@@ -95,23 +132,25 @@ impl<const N: usize> CoupledFilter<N> {
             return Err(ParameterError::new("deviation of the model", Rule::NotEmpty));
         }
         let velocity = model.mean_cycle_velocity();
-        Ok(Self {
-            blocks: core::array::from_fn(|i| AngleBlock::unknown(&spread(model, i))),
-            angles_rad: [0.0; N],
-            turns: [0; N],
-            position: 0.0,
-            velocity,
-            pair: CyclePair { cc: 1.0e-5, cv: 0.0, vv: max(1.0e-6, SPEED_SPREAD * SPEED_SPREAD * velocity * velocity) },
-            cycles: 0,
-            grid: PhaseGrid::uniform(),
-            watch: Watch::default(),
-            relocks: 0,
-        })
+        for (i, block) in self.blocks.iter_mut().enumerate() {
+            *block = AngleBlock::unknown(&spread(model, i));
+        }
+        self.angles_rad = [0.0; N];
+        self.turns = [0; N];
+        self.position = 0.0;
+        self.velocity = velocity;
+        self.pair =
+            CyclePair { cc: 1.0e-5, cv: 0.0, vv: max(1.0e-6, SPEED_SPREAD * SPEED_SPREAD * velocity * velocity) };
+        self.cycles = 0;
+        self.grid.begin_uniform();
+        self.watch = Watch::default();
+        self.relocks = 0;
+        Ok(())
     }
 
     /// Counts from here on. Whole turns of the first row (of the mean pose where an angle is missing) are kept, so that nothing
     /// jumps after it.
-    fn started(mut self, model: &MotionModel<'_>, first: &AngleMeasurement<N>) -> Self {
+    fn start_counting(&mut self, model: &MotionModel<'_>, first: &AngleMeasurement<N>) {
         let pose = model.mean_pose_rad::<N>(model.point(self.position));
         self.turns = core::array::from_fn(|i| {
             let first = first.angle_rad(i).unwrap_or(pose[i]);
@@ -119,7 +158,6 @@ impl<const N: usize> CoupledFilter<N> {
         });
         self.cycles = 0;
         self.relocks = 0;
-        self
     }
 
     /// One frame: predict over the measurement's step, then correct by the angles seen.

@@ -52,6 +52,11 @@ impl SavedState for Watch {
 }
 
 impl Watch {
+    /// As if the position had been known for ever.
+    pub(super) const fn new() -> Self {
+        Self { unwatched_frames: 0.0, usual_way: 0.0, strange_frames: 0.0, searching: false }
+    }
+
     /// Compares the place `mode` with the filter's `position`, `frames` after the last time.
     fn compare(&mut self, mode: &PhaseMode, position: f32, frames: f32) {
         let strange = position_difference(position_difference(mode.position, position), self.usual_way);

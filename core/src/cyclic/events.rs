@@ -34,6 +34,12 @@ impl SavedState for CycleCounter {
 }
 
 impl CycleCounter {
+    /// Counts from position 0 on.
+    #[must_use]
+    pub const fn zero() -> Self {
+        Self { start: 0.0, position: 0.0, laps: 0 }
+    }
+
     /// Counts from `position` on.
     #[must_use]
     pub fn new(position: f32) -> Self {

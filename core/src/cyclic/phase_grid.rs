@@ -66,7 +66,7 @@ impl SavedState for PhaseGrid {
 impl PhaseGrid {
     /// Nothing known.
     #[must_use]
-    pub fn uniform() -> Self {
+    pub const fn uniform() -> Self {
         let weight = 1.0 / (POSITIONS * SPEEDS) as f32;
         Self { weights: [[weight; POSITIONS]; SPEEDS], travelled: [0.0; SPEEDS] }
     }
@@ -75,11 +75,23 @@ impl PhaseGrid {
     #[must_use]
     pub fn near(position: f32) -> Self {
         let mut grid = Self::uniform();
-        grid.reweigh(|_, at| {
+        grid.begin_near(position);
+        grid
+    }
+
+    /// Makes it [`Self::uniform`].
+    pub fn begin_uniform(&mut self) {
+        self.weights.as_flattened_mut().fill(1.0 / (POSITIONS * SPEEDS) as f32);
+        self.travelled = [0.0; SPEEDS];
+    }
+
+    /// Makes it [`Self::near`] the position.
+    pub fn begin_near(&mut self, position: f32) {
+        self.begin_uniform();
+        self.reweigh(|_, at| {
             let scaled = 20.0 * position_difference(at, position);
             exp(-0.5 * scaled * scaled)
         });
-        grid
     }
 
     /// Position of a cell of a speed whose way is `travelled`, [0, 1).

@@ -37,7 +37,10 @@ pub fn is_positive_semi_definite(packed: &[f32], rows: usize) -> bool {
     if rows > MAX_ROWS || packed.len() != packed_len(rows) {
         return false;
     }
-    let Some(mut matrix) = correlation(packed, rows) else { return false };
+    let mut matrix = [[0.0; MAX_ROWS]; MAX_ROWS];
+    if !correlation(packed, rows, &mut matrix) {
+        return false;
+    }
     let mut done = [false; MAX_ROWS];
     for _ in 0..rows {
         let Some(pivot) = greatest_pivot(&matrix, &done, rows) else { break };
@@ -61,29 +64,28 @@ pub fn is_positive_semi_definite(packed: &[f32], rows: usize) -> bool {
     true
 }
 
-/// The full matrix scaled to a diagonal of ones; a row of zeros keeps its zeros. `None` where an entry is out of the
+/// Writes the full matrix scaled to a diagonal of ones; a row of zeros keeps its zeros. False where an entry is out of the
 /// question by itself: not finite, a negative variance, a covariance beside a variance of zero.
-fn correlation(packed: &[f32], rows: usize) -> Option<[[f32; MAX_ROWS]; MAX_ROWS]> {
+fn correlation(packed: &[f32], rows: usize, matrix: &mut [[f32; MAX_ROWS]; MAX_ROWS]) -> bool {
     let entry = |i: usize, j: usize| packed.get(packed_index(i, j)).copied().unwrap_or(f32::NAN);
     let mut scale = [0.0_f32; MAX_ROWS];
     for i in 0..rows {
         let variance = entry(i, i);
         if !(variance >= 0.0 && variance.is_finite()) {
-            return None;
+            return false;
         }
         scale[i] = if variance > 0.0 { 1.0 / sqrt(variance) } else { 0.0 };
     }
-    let mut matrix = [[0.0; MAX_ROWS]; MAX_ROWS];
     for i in 0..rows {
         for j in 0..rows {
             let value = entry(i, j);
             if !value.is_finite() || (scale[i] * scale[j] == 0.0 && value != 0.0) {
-                return None;
+                return false;
             }
             matrix[i][j] = (value * scale[i]) * scale[j];
         }
     }
-    Some(matrix)
+    true
 }
 
 fn greatest_pivot(matrix: &[[f32; MAX_ROWS]; MAX_ROWS], done: &[bool; MAX_ROWS], rows: usize) -> Option<usize> {

@@ -27,6 +27,12 @@ impl SavedState for OrientationDensity {
 }
 
 impl OrientationDensity {
+    /// The uniform density over [`MAX_BINS`] bins.
+    #[must_use]
+    pub const fn flat() -> Self {
+        Self { bins: [1.0; MAX_BINS], len: MAX_BINS }
+    }
+
     /// The uniform density over `bins` bins.
     ///
     /// # Errors

@@ -37,14 +37,33 @@ impl<const CAPACITY: usize> Weights<CAPACITY> {
     /// # Errors
     /// `len` has to be from 1 to `CAPACITY`.
     pub fn uniform(len: usize) -> Result<Self, ParameterError> {
+        let mut weights = Self::none();
+        weights.begin(len)?;
+        Ok(weights)
+    }
+
+    /// No weights; to be made with [`Self::begin`].
+    #[must_use]
+    pub const fn none() -> Self {
+        Self { log: Vec::new(), normalised: Vec::new() }
+    }
+
+    /// Becomes `len` equal weights.
+    ///
+    /// # Errors
+    /// `len` has to be from 1 to `CAPACITY`; the weights are as before then.
+    pub fn begin(&mut self, len: usize) -> Result<(), ParameterError> {
         if len == 0 {
             return Err(ParameterError::new("particles", Rule::NotEmpty));
         }
-        let full = |_| ParameterError::new("particles", Rule::Capacity { capacity: CAPACITY });
-        let mut weights = Self { log: Vec::new(), normalised: Vec::new() };
-        weights.log.resize(len, 0.0).map_err(full)?;
-        weights.normalised.resize(len, 1.0 / len as f32).map_err(full)?;
-        Ok(weights)
+        if len > CAPACITY {
+            return Err(ParameterError::new("particles", Rule::Capacity { capacity: CAPACITY }));
+        }
+        // Both fit.
+        let _ = self.log.resize(len, 0.0);
+        let _ = self.normalised.resize(len, 1.0);
+        self.reset();
+        Ok(())
     }
 
     /// Number of particles.

@@ -26,19 +26,30 @@ impl<const N: usize> CoupledTracker<N> {
         first: &AngleMeasurement<N>,
         phase: FirstPhase,
     ) -> Result<Self, ParameterError> {
-        let filter = CoupledFilter::new(model, first, phase.position, phase.velocity_per_frame)?;
-        let counter = CycleCounter::new(filter.cycle().position);
-        Ok(Self { filter, counter })
+        let mut tracker = Self::empty();
+        tracker.begin(model, first, phase)?;
+        Ok(tracker)
     }
 
-    /// A tracker of which nothing is known yet.
+    /// A tracker that has not begun, so that one in static memory can begin there; it takes no stack. Its answers mean nothing.
+    #[must_use]
+    pub const fn empty() -> Self {
+        Self { filter: CoupledFilter::empty(), counter: CycleCounter::zero() }
+    }
+
+    /// Begins, or begins anew, with the frame `first`, in place.
     ///
     /// # Errors
-    /// Those of [`CoupledFilter::anywhere`].
-    pub fn anywhere(model: &MotionModel<'_>) -> Result<Self, ParameterError> {
-        let filter = CoupledFilter::anywhere(model, &AngleMeasurement::nothing())?;
-        let counter = CycleCounter::new(filter.cycle().position);
-        Ok(Self { filter, counter })
+    /// Those of [`CoupledFilter::new`]; the tracker is as before then.
+    pub fn begin(
+        &mut self,
+        model: &MotionModel<'_>,
+        first: &AngleMeasurement<N>,
+        phase: FirstPhase,
+    ) -> Result<(), ParameterError> {
+        self.filter.begin(model, first, phase.position, phase.velocity_per_frame)?;
+        self.counter = CycleCounter::new(self.filter.cycle().position);
+        Ok(())
     }
 
     /// What is known after the first frame.

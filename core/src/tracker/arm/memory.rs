@@ -31,6 +31,11 @@ pub(super) struct BlobMemory {
 }
 
 impl BlobMemory {
+    /// Of no blob.
+    pub const fn empty() -> Self {
+        Self { blobs: Vec::new() }
+    }
+
     /// The remembered blob nearest to `centre` within `radius_px`.
     fn recall(&self, centre: Pixel, radius_px: f32) -> Option<&Remembered> {
         let mut best = (None, radius_px);

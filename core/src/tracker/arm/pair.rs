@@ -56,14 +56,28 @@ impl<const CAPACITY: usize> ArmPair<CAPACITY> {
     /// # Errors
     /// As [`ArmTracker::new`].
     pub fn new(models: [&ArmModel; 2], shoulders_m: [Vec3; 2], seed: u64) -> Result<Self, ParameterError> {
+        let mut pair = Self::empty();
+        pair.begin(models, shoulders_m, seed)?;
+        Ok(pair)
+    }
+
+    /// Trackers without particles, so that those in static memory can begin there; see [`ArmTracker::empty`].
+    #[must_use]
+    pub const fn empty() -> Self {
+        Self { trackers: [ArmTracker::empty(), ArmTracker::empty()] }
+    }
+
+    /// Begins, or begins anew, in place: what [`Self::new`] gives.
+    ///
+    /// # Errors
+    /// Those of [`Self::new`]; the trackers mean nothing then.
+    pub fn begin(&mut self, models: [&ArmModel; 2], shoulders_m: [Vec3; 2], seed: u64) -> Result<(), ParameterError> {
         // Two sides with one seed would draw the same numbers.
         let other = seed ^ 0x5DEE_CE66_D153_2701;
-        Ok(Self {
-            trackers: [
-                ArmTracker::new(models[0], shoulders_m[0], seed)?,
-                ArmTracker::new(models[1], shoulders_m[1], other)?,
-            ],
-        })
+        let ([left, right], [left_model, right_model]) = (&mut self.trackers, models);
+        let [left_shoulder_m, right_shoulder_m] = shoulders_m;
+        left.begin(left_model, left_shoulder_m, seed)?;
+        right.begin(right_model, right_shoulder_m, other)
     }
 
     /// The trackers, left and right.

@@ -8,7 +8,7 @@ use super::model::ArmModel;
 use super::propose::FrameContext;
 use crate::camera::Ray;
 use crate::correction::allocation::allot;
-use crate::error::{ParameterError, Rule};
+use crate::error::ParameterError;
 use crate::math::{Vec3, clamp, exp, length, max, unit};
 use crate::observation::candidate::HandCandidate;
 use crate::observation::orientation::OrientationDensity;
@@ -32,6 +32,8 @@ const MAX_SPEED_M_PER_S: f32 = 6.0;
 const WAITING_STD_M: f32 = 0.25;
 /// What a blob at any distance keeps of its chance.
 const FAR_SHARE: f32 = 0.1;
+/// The camera's centre, and no speed.
+const ORIGIN_M: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 /// Index of the stream that the frame as a whole draws from.
 const FRAME_STREAM: u32 = u32::MAX;
 /// First of the streams that the Hough transforms draw from.
@@ -82,34 +84,64 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     /// # Errors
     /// The model's particle count has to be from 1 to `CAPACITY`.
     pub fn new(model: &ArmModel, shoulder_m: Vec3, seed: u64) -> Result<Self, ParameterError> {
-        let weights = Weights::uniform(model.options().particles)?;
-        let uniform = OrientationDensity::uniform(model.options().hough.bins)?;
-        let waiting = model.waiting_pose();
-        let (elbow_m, hand_m) = model.elbow_and_hand(&shoulder_m, &waiting);
-        let mut first = Vec::new();
-        for index in 0..weights.len() as u32 {
-            let mut stream = Stream::new(seed, 0, index);
-            let angles_rad = model.skeleton().clamp(waiting.map(|angle| angle + INITIAL_STD_RAD * stream.normal()));
-            let (elbow_m, hand_m) = model.elbow_and_hand(&shoulder_m, &angles_rad);
-            first
-                .push(Particle { angles_rad, elbow_m, hand_m, driver: None })
-                .map_err(|_| ParameterError::new("particles", Rule::Capacity { capacity: CAPACITY }))?;
-        }
-        Ok(Self {
-            seed,
+        let mut tracker = Self::empty();
+        tracker.begin(model, shoulder_m, seed)?;
+        Ok(tracker)
+    }
+
+    /// A tracker without particles, so that one in static memory can begin there; it takes no stack. Its answers mean nothing.
+    #[must_use]
+    pub const fn empty() -> Self {
+        let limbs = LimbDensities { upper: OrientationDensity::flat(), fore: OrientationDensity::flat() };
+        let nowhere = ArmJoints { shoulder_m: ORIGIN_M, elbow_m: ORIGIN_M, hand_m: ORIGIN_M };
+        Self {
+            seed: 0,
             frame: 0,
             timestamp_us: None,
             unseen_s: UNSEEN_AT_START_S,
             ever_seen: false,
-            generations: [first, Vec::new()],
+            generations: [Vec::new(), Vec::new()],
             current: 0,
-            weights,
-            limbs: LimbDensities { upper: uniform, fore: uniform },
-            memory: BlobMemory::default(),
-            estimate: ArmJoints { shoulder_m, elbow_m, hand_m },
-            hand_velocity_m_per_s: Vec3::zeros(),
-            elbow_velocity_m_per_s: Vec3::zeros(),
-        })
+            weights: Weights::none(),
+            limbs,
+            memory: BlobMemory::empty(),
+            estimate: nowhere,
+            hand_velocity_m_per_s: ORIGIN_M,
+            elbow_velocity_m_per_s: ORIGIN_M,
+        }
+    }
+
+    /// Begins, or begins anew, in place: what [`Self::new`] gives.
+    ///
+    /// # Errors
+    /// Those of [`Self::new`]; the tracker is as before then.
+    pub fn begin(&mut self, model: &ArmModel, shoulder_m: Vec3, seed: u64) -> Result<(), ParameterError> {
+        let uniform = OrientationDensity::uniform(model.options().hough.bins)?;
+        self.weights.begin(model.options().particles)?;
+        let waiting = model.waiting_pose();
+        let (elbow_m, hand_m) = model.elbow_and_hand(&shoulder_m, &waiting);
+        let [first, second] = &mut self.generations;
+        first.clear();
+        second.clear();
+        for index in 0..self.weights.len() as u32 {
+            let mut stream = Stream::new(seed, 0, index);
+            let angles_rad = model.skeleton().clamp(waiting.map(|angle| angle + INITIAL_STD_RAD * stream.normal()));
+            let (elbow_m, hand_m) = model.elbow_and_hand(&shoulder_m, &angles_rad);
+            // As many as weights, which have the same capacity.
+            let _ = first.push(Particle { angles_rad, elbow_m, hand_m, driver: None });
+        }
+        self.seed = seed;
+        self.frame = 0;
+        self.timestamp_us = None;
+        self.unseen_s = UNSEEN_AT_START_S;
+        self.ever_seen = false;
+        self.current = 0;
+        self.limbs = LimbDensities { upper: uniform, fore: uniform };
+        self.memory = BlobMemory::empty();
+        self.estimate = ArmJoints { shoulder_m, elbow_m, hand_m };
+        self.hand_velocity_m_per_s = ORIGIN_M;
+        self.elbow_velocity_m_per_s = ORIGIN_M;
+        Ok(())
     }
 
     /// The particles of the last frame.
