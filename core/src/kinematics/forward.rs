@@ -22,15 +22,20 @@ pub fn posture<const BONES: usize, const ANGLES: usize>(
     root_m: &Vec3,
     angles_rad: &[f32; ANGLES],
 ) -> Posture<BONES, ANGLES> {
-    let mut result = Posture { joints: [*root_m; BONES], ends: [*root_m; BONES], axes: [Vec3::zeros(); ANGLES] };
+    let mut result = Posture::folded();
     result.turn(skeleton, root_m, angles_rad);
     result
 }
 
 impl<const BONES: usize, const ANGLES: usize> Posture<BONES, ANGLES> {
-    // Writes where the caller keeps the posture.
+    /// Room for a posture, all of it at the origin.
+    pub(super) fn folded() -> Self {
+        Self { joints: [Vec3::zeros(); BONES], ends: [Vec3::zeros(); BONES], axes: [Vec3::zeros(); ANGLES] }
+    }
+
+    /// Becomes the posture of `skeleton` at `root_m` with `angles_rad`, in place.
     #[inline(never)]
-    fn turn(&mut self, skeleton: &Skeleton<BONES, ANGLES>, root_m: &Vec3, angles_rad: &[f32; ANGLES]) {
+    pub(super) fn turn(&mut self, skeleton: &Skeleton<BONES, ANGLES>, root_m: &Vec3, angles_rad: &[f32; ANGLES]) {
         // Of each bone; nothing for one that has not turned.
         let mut rotations: [Option<Mat3>; BONES] = [None; BONES];
         let mut angle = 0;

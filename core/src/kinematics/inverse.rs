@@ -129,14 +129,17 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
     #[must_use]
     pub fn mode_from(&self, starts: &[[f32; ANGLES]], max_steps: usize) -> Mode<ANGLES> {
         let mut angles_rad = self.skeleton.clamp(self.previous_rad);
-        let mut here = self.posture(&angles_rad);
+        // Two places in turns: a posture is too large to be handed on.
+        let (mut here, mut there) = (Posture::folded(), Posture::folded());
+        here.turn(self.skeleton, &self.root_m, &angles_rad);
         let mut log_density = self.log_density(&angles_rad, &here);
         for start in starts {
             let other = self.skeleton.clamp(*start);
-            let there = self.posture(&other);
+            there.turn(self.skeleton, &self.root_m, &other);
             let log_other = self.log_density(&other, &there);
             if log_other > log_density {
-                (angles_rad, here, log_density) = (other, there, log_other);
+                (angles_rad, log_density) = (other, log_other);
+                core::mem::swap(&mut here, &mut there);
             }
         }
         let mut converged = false;
@@ -147,7 +150,7 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
                 converged = true;
                 break;
             }
-            let Some((next, there, log_next)) = self.climb(&angles_rad, &direction, log_density) else {
+            let Some((next, log_next)) = self.climb(&angles_rad, &direction, log_density, &mut there) else {
                 converged = true;
                 break;
             };
@@ -155,7 +158,8 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
             for i in 0..ANGLES {
                 longest = max(longest, abs(next[i] - angles_rad[i]));
             }
-            (angles_rad, here, log_density) = (next, there, log_next);
+            (angles_rad, log_density) = (next, log_next);
+            core::mem::swap(&mut here, &mut there);
             (gradient, hessian) = self.derivatives(&angles_rad, &here);
             if longest < STEP_TOLERANCE_RAD {
                 converged = true;
@@ -205,14 +209,15 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
         Some((direction, gain))
     }
 
-    /// The longest of the step and its halvings, cut to the limits, that raises the density.
-    #[allow(clippy::type_complexity)]
+    /// The longest of the step and its halvings, cut to the limits, that raises the density, and the density; its posture is left in
+    /// `there`.
     fn climb(
         &self,
         angles_rad: &[f32; ANGLES],
         direction: &[f32; ANGLES],
         log_density: f32,
-    ) -> Option<([f32; ANGLES], Posture<BONES, ANGLES>, f32)> {
+        there: &mut Posture<BONES, ANGLES>,
+    ) -> Option<([f32; ANGLES], f32)> {
         let mut scale = 1.0;
         for _ in 0..=MAX_HALVINGS {
             let mut next = *angles_rad;
@@ -220,10 +225,10 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
                 next[i] += scale * direction[i];
             }
             let next = self.skeleton.clamp(next);
-            let there = self.posture(&next);
-            let log_next = self.log_density(&next, &there);
+            there.turn(self.skeleton, &self.root_m, &next);
+            let log_next = self.log_density(&next, there);
             if log_next > log_density {
-                return Some((next, there, log_next));
+                return Some((next, log_next));
             }
             scale *= 0.5;
         }
