@@ -13,7 +13,7 @@ struct LineSweep<const ERODE: bool, const WORDS: usize> {
     lines: u32,
 }
 
-/// A line and whether it has pixels.
+/// A line and whether it has pixels; without any all bits are zero.
 #[derive(Debug, Clone)]
 struct Line<const WORDS: usize> {
     bits: [u32; WORDS],
@@ -42,7 +42,9 @@ impl<const ERODE: bool, const WORDS: usize> LineSweep<ERODE, WORDS> {
             line.occupied = self.join(earlier, &mut line.bits, width);
         } else {
             self.kept[earlier] = line.bits;
-            *line = Line { bits: [0; WORDS], occupied: false };
+            if line.occupied {
+                *line = Line { bits: [0; WORDS], occupied: false };
+            }
         }
         self.lines = self.lines.saturating_add(1);
         self.lines > 1

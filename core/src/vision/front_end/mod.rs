@@ -75,6 +75,8 @@ pub struct LineFrontEnd<
     const MAP_ROWS: usize,
 > {
     edge_lines: EdgeLines<WORDS, MAP_ROWS>,
+    /// Skin or not of the last line, a bit a pixel.
+    skin_bits: [u32; WORDS],
     morphology: LineMorphology<WORDS>,
     scanner: ComponentScanner<RUNS, OPEN>,
     likelihood: HandLikelihood,
@@ -122,6 +124,7 @@ impl<
         side("height", height, edge_lines::EDGE_CELL_PX * MAP_ROWS)?;
         Ok(Self {
             edge_lines: EdgeLines::new(steps),
+            skin_bits: [0; WORDS],
             morphology: LineMorphology::new(),
             scanner: ComponentScanner::new(),
             likelihood,
@@ -168,15 +171,15 @@ impl<
             return;
         }
         for missing in self.next_line..v {
-            self.take_bits(&[0; WORDS]);
+            self.skin_bits.fill(0);
+            self.take_skin_bits();
             self.losses.missing_lines += 1;
             self.edge_lines.line::<F, EDGES>(missing, line, self.width, &mut self.edges);
         }
         let line = &line[..line.len().min(self.width)];
         self.losses.missing_lines += u32::from(line.len() < self.width);
-        let mut bits = [0; WORDS];
-        skin.classify_line(line, &mut bits);
-        self.take_bits(&bits);
+        skin.classify_line(line, &mut self.skin_bits);
+        self.take_skin_bits();
         self.edge_lines.line::<F, EDGES>(v, line, self.width, &mut self.edges);
         self.next_line = v + 1;
     }
@@ -185,7 +188,8 @@ impl<
     pub fn end_frame(&mut self) -> FrameLines<'_> {
         let missing = self.height.saturating_sub(self.next_line);
         for _ in 0..missing {
-            self.take_bits(&[0; WORDS]);
+            self.skin_bits.fill(0);
+            self.take_skin_bits();
         }
         self.losses.missing_lines += missing as u32;
         let Self { morphology, scanner, blobs, likelihood, min_area_fraction, width, height, .. } = self;
@@ -218,14 +222,14 @@ impl<
         }
     }
 
-    /// Opens and closes the next line of skin bits and hands on what is finished.
-    fn take_bits(&mut self, bits: &[u32; WORDS]) {
-        let Self { morphology, scanner, blobs, likelihood, min_area_fraction, width, height, .. } = self;
+    /// Opens and closes the next line's skin bits and hands on what is finished.
+    fn take_skin_bits(&mut self) {
+        let Self { skin_bits, morphology, scanner, blobs, likelihood, min_area_fraction, width, height, .. } = self;
         let image_area_px = (*width * *height) as f32;
         let mut take = |component: &Component, _: &RunPool<'_>| {
             take_component(component, blobs, likelihood, *min_area_fraction, image_area_px);
         };
-        morphology.line(bits, *width, |row| scanner.line(row, &mut RunPool::new(&mut []), &mut take));
+        morphology.line(skin_bits, *width, |row| scanner.line(row, &mut RunPool::new(&mut []), &mut take));
     }
 }
 

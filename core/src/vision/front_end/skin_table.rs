@@ -82,8 +82,9 @@ impl<F: PixelFormat> SkinTable<F> {
         for (word, block) in first.iter_mut().zip(whole) {
             *word = self.classify_block(block);
         }
-        last.fill(0);
-        if let Some(word) = last.first_mut() {
+        if let Some((word, beyond)) = last.split_first_mut() {
+            *word = 0;
+            beyond.fill(0);
             let (pairs, _) = rest.as_chunks::<2>();
             let judged = 2 * pairs.len() as u32;
             if judged > 0 {
