@@ -20,7 +20,34 @@ pub const SIN_COS_MAX_ARGUMENT_RAD: f32 = 1.0e4;
 #[inline]
 #[must_use]
 pub fn sqrt(x: f32) -> f32 {
-    libm::sqrtf(x)
+    #[cfg(not(all(target_arch = "arm", target_abi = "eabihf")))]
+    return libm::sqrtf(x);
+    #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+    sqrt_by_instruction(x)
+}
+
+/// The floating-point unit's own square root. Both are rounded correctly, so the bits are those of `libm`, which computes them in 50
+/// instructions.
+#[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
+#[inline]
+#[expect(unsafe_code, reason = "stable Rust has no other way to the instruction without `std`")]
+fn sqrt_by_instruction(x: f32) -> f32 {
+    let mut bits = x.to_bits();
+    // SAFETY: every processor of this calling convention has the instruction. Its register is put back as it was, since Rust cannot
+    // name it where the unit has single precision only.
+    unsafe {
+        core::arch::asm!(
+            "vmov {kept}, s0",
+            "vmov s0, {bits}",
+            "vsqrt.f32 s0, s0",
+            "vmov {bits}, s0",
+            "vmov s0, {kept}",
+            bits = inout(reg) bits,
+            kept = out(reg) _,
+            options(pure, nomem, nostack, preserves_flags),
+        );
+    }
+    f32::from_bits(bits)
 }
 
 /// e to the power of `x`.

@@ -1,5 +1,6 @@
 //! Runs firmware images in an emulator, decodes what they log and compares what they answer.
 
+pub mod budget;
 pub mod build;
 pub mod emulator;
 pub mod expected;

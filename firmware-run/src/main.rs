@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use clap::{Parser, Subcommand};
+use sinew_firmware_run::budget::Budget;
 use sinew_firmware_run::emulator::Machine;
 use sinew_firmware_run::run::{Told, run};
 use sinew_firmware_run::{build, expected, inputs};
@@ -30,6 +31,15 @@ enum Command {
         /// File to write.
         #[arg(long)]
         out: PathBuf,
+    },
+    /// Measure every image and write the table in README, or compare with it.
+    Budget {
+        /// Compare; a cell that grew by more than 5 % is an error.
+        #[arg(long)]
+        check: bool,
+        /// Take the images that are there and build none.
+        #[arg(long)]
+        no_build: bool,
     },
     /// Run every image that has an expected output, on both machines.
     All {
@@ -61,6 +71,7 @@ fn answer(command: &Command) -> Result<()> {
             let input = inputs::of_image(name)?.with_context(|| format!("`{name}` reads no input"))?;
             fs::write(out, input).with_context(|| format!("`{}` cannot be written", out.display()))
         }
+        Command::Budget { check, no_build } => budget(*check, *no_build),
         Command::All { no_build } => all(*no_build),
     }
 }
@@ -79,6 +90,19 @@ fn all(no_build: bool) -> Result<()> {
         }
     }
     Ok(())
+}
+
+fn budget(check: bool, no_build: bool) -> Result<()> {
+    if !no_build {
+        build::images(&[])?;
+    }
+    let budget = Budget::measure()?;
+    print!("{}", budget.to_markdown());
+    if check {
+        println!("{}", budget.check()?);
+        return Ok(());
+    }
+    budget.write()
 }
 
 fn show(told: &Told) {

@@ -38,9 +38,11 @@ impl Arm {
     ///
     /// # Errors
     /// A parameter out of its range, more particles than there is room for.
+    // Not inlined: what begins a tracker and what steps it need their stack one after the other, not at once.
+    #[inline(never)]
     pub fn begin(&mut self, setup: &ArmSetup) -> Result<(), Refusal> {
         let model = setup.model()?;
-        self.tracker = Slot::Full(ArmTracker::new(&model, setup.shoulder_m, setup.seed)?);
+        self.tracker.get_or_insert(ArmTracker::empty).begin(&model, setup.shoulder_m, setup.seed)?;
         (self.model, self.last_frame) = (Slot::Full(model), None);
         Ok(())
     }
@@ -49,6 +51,7 @@ impl Arm {
     ///
     /// # Errors
     /// A frame before the setup or not after the last one.
+    #[inline(never)]
     pub fn frame<P: Port>(&mut self, input: &ArmInput, image: Option<ArmImage<'_>>) -> Result<ArmResult, Refusal> {
         let (Slot::Full(model), Slot::Full(tracker)) = (&self.model, &mut self.tracker) else {
             return Err(RecordError::OutOfOrder.into());

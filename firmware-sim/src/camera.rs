@@ -46,6 +46,8 @@ impl CameraApp {
         }
     }
 
+    // Not inlined: what begins a tracker and what steps it need their stack one after the other, not at once.
+    #[inline(never)]
     fn begin(&mut self, setup: &CameraSetup) -> Result<(), Refusal> {
         let [width, height] = setup.size_px.map(usize::from);
         let skin = setup.skin()?;
@@ -55,6 +57,7 @@ impl CameraApp {
         Ok(())
     }
 
+    #[inline(never)]
     fn line<P: Port>(&mut self, line: &CameraLine) -> Result<(), Refusal> {
         let front_end = self.front_end.get_mut().ok_or(RecordError::OutOfOrder)?;
         let (skin, begun) = (&self.skin, self.begun);
@@ -69,6 +72,7 @@ impl CameraApp {
     }
 
     /// Ends the frame and steps the arm; a frame without any line is one without an image.
+    #[inline(never)]
     fn end<P: Port>(&mut self, input: &ArmInput, answers: &mut Answers<'_, P::Output>) -> Result<(), Refusal> {
         let front_end = self.front_end.get_mut().ok_or(RecordError::OutOfOrder)?;
         let seen = if self.begun {

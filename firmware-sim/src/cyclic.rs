@@ -19,6 +19,8 @@ pub struct CyclicApp {
     /// A setup that came, until its first frame begins the tracker.
     first: Slot<FirstPhase>,
     tracker: Slot<CoupledTracker<HUMAN_ANGLES>>,
+    /// Whether the tracker has begun.
+    begun: bool,
     last_frame: Option<u32>,
     step: Cost,
     last_step: u32,
@@ -32,6 +34,7 @@ impl CyclicApp {
             model: Slot::Empty,
             first: Slot::Empty,
             tracker: Slot::Empty,
+            begun: false,
             last_frame: None,
             step: Cost::zero(),
             last_step: 0,
@@ -39,6 +42,8 @@ impl CyclicApp {
     }
 
     /// Begins a recording: its first frame begins the tracker.
+    // Not inlined: what begins a tracker and what steps it need their stack one after the other, not at once.
+    #[inline(never)]
     fn begin(&mut self, setup: &CyclicSetup) -> Result<(), Refusal> {
         let model = WALKING.model()?;
         if setup.model_checksum != model_checksum(&model) {
@@ -48,17 +53,19 @@ impl CyclicApp {
         Ok(())
     }
 
+    #[inline(never)]
     fn frame<P: Port>(&mut self, input: &CyclicInput) -> Result<Option<CyclicResult>, Refusal> {
         let model = self.model.get().ok_or(RecordError::OutOfOrder)?;
         if self.last_frame.is_some_and(|last| last >= input.frame) {
             return Err(RecordError::OutOfOrder.into());
         }
         if let Slot::Full(first) = self.first {
-            self.tracker = Slot::Full(CoupledTracker::new(model, &input.angles, first)?);
+            self.tracker.get_or_insert(CoupledTracker::empty).begin(model, &input.angles, first)?;
+            self.begun = true;
             (self.first, self.last_frame) = (Slot::Empty, Some(input.frame));
             return Ok(None);
         }
-        let tracker = self.tracker.get_mut().ok_or(RecordError::OutOfOrder)?;
+        let tracker = self.tracker.get_mut().filter(|_| self.begun).ok_or(RecordError::OutOfOrder)?;
         let before = self.step.total;
         let answered = counted::<P, _>(&mut self.step, || tracker.step(model, &input.angles));
         self.last_step = u32::try_from(self.step.total - before).unwrap_or(u32::MAX);

@@ -21,6 +21,17 @@ impl<T> Slot<T> {
         }
     }
 
+    /// The content, which is `made` where there was none.
+    pub fn get_or_insert(&mut self, made: fn() -> T) -> &mut T {
+        if matches!(self, Self::Empty) {
+            *self = Self::Full(made());
+        }
+        match self {
+            Self::Full(content) => content,
+            Self::Empty => unreachable!("it was filled above"),
+        }
+    }
+
     /// The content to change, if there is any.
     pub const fn get_mut(&mut self) -> Option<&mut T> {
         match self {
