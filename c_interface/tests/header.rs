@@ -82,7 +82,8 @@ fn every_function_of_the_interface_is_in_the_header() {
         for function in source.split("extern \"C\" fn sinew_").skip(1) {
             let name = function.split('(').next().unwrap();
             let declared = header.contains(&format!("sinew_{name}("));
-            assert!(declared || name == "panic_is_reachable", "sinew_{name}");
+            // Those of the proof are linked only, and called by nobody.
+            assert!(declared || name == "panic_is_reachable" || name.starts_with("proof_"), "sinew_{name}");
             count += usize::from(declared);
         }
     }

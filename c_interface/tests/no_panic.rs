@@ -1,4 +1,5 @@
-//! No function of the interface can panic: the linker finds no way to a panic in the library that firmware ships.
+//! No function of the interface can panic, nor what firmware in Rust calls each frame (`rust_entry_points.rs`): the linker finds no way
+//! to a panic in the library that firmware ships.
 //!
 //! The library is built with `prove-no-panic`, in which a panic calls a function that is defined nowhere. Each public function is linked
 //! alone and everything that it does not reach is dropped; what is left must not miss that function.
@@ -20,7 +21,8 @@ fn public_functions() -> Vec<String> {
     for source in fs::read_dir(workspace_root().join("core/src/c_api")).unwrap() {
         let source = fs::read_to_string(source.unwrap().path()).unwrap();
         for function in source.split("pub extern \"C\" fn ").chain(source.split("pub unsafe extern \"C\" fn ")) {
-            names.extend(function.split('(').next().filter(|name| name.starts_with("sinew_")).map(str::to_owned));
+            names
+                .extend(function.split(['(', '<']).next().filter(|name| name.starts_with("sinew_")).map(str::to_owned));
         }
     }
     names.sort();

@@ -21,6 +21,8 @@ mod model;
 mod object;
 #[cfg(feature = "panic-handler")]
 mod panic;
+#[cfg(feature = "prove-no-panic")]
+pub mod rust_entry_points;
 pub mod status;
 pub mod vision;
 pub mod vision_frame;

@@ -63,10 +63,12 @@ impl<const N: usize> KinematicCovariance<N> {
     pub fn entry(&self, row: usize, column: usize) -> f32 {
         match (row < N, column < N) {
             _ if row >= 2 * N || column >= 2 * N => 0.0,
-            (true, true) => self.angle[row.max(column)][row.min(column)],
+            (true, true) if row < column => self.angle[column][row],
+            (true, true) => self.angle[row][column],
             (true, false) => self.cross[row][column - N],
             (false, true) => self.cross[column][row - N],
-            (false, false) => self.velocity[row.max(column) - N][row.min(column) - N],
+            (false, false) if row < column => self.velocity[column - N][row - N],
+            (false, false) => self.velocity[row - N][column - N],
         }
     }
 

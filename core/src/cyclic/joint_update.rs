@@ -39,15 +39,19 @@ impl<const N: usize> SeenAngles<N> {
         for i in (0..N).rev() {
             if i >= angle_count || measurement.angle_rad(i).is_none() {
                 unseen -= 1;
-                seen.order[unseen] = i;
+                if let Some(place) = seen.order.get_mut(unseen) {
+                    *place = i;
+                }
             }
         }
+        let mut places = seen.order.iter_mut().zip(&mut seen.innovation_rad).zip(&mut seen.noise_variance);
         for i in 0..N.min(angle_count) {
             if let Some(measured_rad) = measurement.angle_rad(i) {
                 let std_rad = measurement.std_rad()[i];
-                seen.order[seen.count] = i;
-                seen.innovation_rad[seen.count] = angle_difference(measured_rad, predicted_rad[i]);
-                seen.noise_variance[seen.count] = std_rad * std_rad;
+                let Some(((order, innovation_rad), noise_variance)) = places.next() else { break };
+                *order = i;
+                *innovation_rad = angle_difference(measured_rad, predicted_rad[i]);
+                *noise_variance = std_rad * std_rad;
                 seen.count += 1;
             }
         }
@@ -138,6 +142,8 @@ impl<const N: usize> KinematicCovariance<N> {
     /// Rows of the angles after all measurements: up to the diagonal at least, the rest from the rows below.
     #[inline]
     fn reduce_angles(&mut self, columns: &Columns<N>, seen: &SeenAngles<N>, count: usize) {
+        // It is no more; said here, it lets no index be checked.
+        let count = count.min(N);
         for place in 0..N {
             let (mut angle, mut cross) = columns.start(place, count);
             let first = if place < count { place + 1 } else { 0 };
@@ -155,7 +161,9 @@ impl<const N: usize> KinematicCovariance<N> {
                 }
             }
             self.angle[place] = angle;
-            self.cross[seen.order[place]] = cross;
+            if let Some(row) = self.cross.get_mut(seen.order[place]) {
+                *row = cross;
+            }
         }
         for i in 0..half::<N>() {
             for j in half::<N>()..N {
@@ -175,7 +183,10 @@ impl<const N: usize> KinematicCovariance<N> {
     /// Raises the diagonal by what rounding may have taken where a measurement took nearly all of an angle's variance away.
     #[inline]
     fn loosen(&mut self, columns: &Columns<N>, seen: &SeenAngles<N>, count: usize) {
-        for place in (0..count).filter(|&place| columns.is_severe[place]) {
+        for place in 0..count.min(N) {
+            if !columns.is_severe[place] {
+                continue;
+            }
             let (settled, ahead) = (&columns.settled[place], &columns.ahead[place]);
             let angle = in_place(seen, &core::array::from_fn(|j| if j < place { settled[j] } else { ahead[j] }));
             for i in 0..N {

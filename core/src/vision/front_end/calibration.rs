@@ -145,9 +145,9 @@ impl Moments {
 fn trimmed(points: &mut [[f32; 2]]) -> Option<Moments> {
     let middle = points.len() / 2;
     let mut median = [0.0; 2];
-    for i in 0..2 {
-        points.sort_unstable_by(|a, b| a[i].total_cmp(&b[i]));
-        median[i] = points.get(middle)?[i];
+    for (i, median) in median.iter_mut().enumerate() {
+        points.sort_unstable_by(|a, b| a[i & 1].total_cmp(&b[i & 1]));
+        *median = points.get(middle)?[i & 1];
     }
     let square = |point: &[f32; 2]| {
         let (r, g) = (point[0] - median[0], point[1] - median[1]);
