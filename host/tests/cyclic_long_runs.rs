@@ -8,7 +8,8 @@ use sinew::cyclic::cutting::{CuttingOptions, cycles};
 use sinew::cyclic::recording::{RecordingOptions, angles};
 use sinew::cyclic::tracking::FilterName;
 use sinew::cyclic::{CutList, CyclicModel};
-use sinew::evaluate::cyclic::long_runs;
+use sinew::evaluate::cyclic::experiments::SIGMAS_DEG;
+use sinew::evaluate::cyclic::{Cell, Protocol, Setting, long_runs, test_cycles};
 use std::path::Path;
 
 /// Greatest relative error of the mean cadence from the third cycle on.
@@ -63,21 +64,52 @@ fn holds(model: &str, files: &[&str]) {
     }
 }
 
+/// Walks of two sources that no model was trained on.
+const WALKS: [&str; 8] = [
+    "bandai/dataset-1_walk_feminine_001.bvh",
+    "bandai/dataset-1_walk_happy_001.bvh",
+    "bandai/dataset-1_walk_tired_001.bvh",
+    "bandai/dataset-2_walk_elderly_001.bvh",
+    "bandai/dataset-2_walk_elderly_002.bvh",
+    "bandai/dataset-2_walk_normal_001.bvh",
+    "bandai/dataset-2_walk_normal_002.bvh",
+    "pymo/AV_8Walk_Meredith_HVHA_Rep1.bvh",
+];
+
+/// Share of the truth inside `coupled`'s 90 % band, over all angles and sigmas, and for each angle.
+const BAND: [f64; 2] = [0.85, 0.95];
+const BAND_EACH: [f64; 2] = [0.75, 0.99];
+/// Greatest error of `coupled` as a share of the better of `paper` and `paper-cut`, with noise, at each sigma.
+const SHARES: [f64; 6] = [1.0, 1.0, 1.0, 0.9, 0.9, 0.75];
+
+#[test]
+fn walkers_of_another_source_are_followed_with_bands_that_hold() {
+    let Some(data) = shared_data::in_release("mocap") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let cycles = test_cycles(&list(&data, folder.path(), &WALKS)).unwrap();
+    let model = CyclicModel::from_option("walking").unwrap();
+    let cells = Setting { cycles: &cycles, model: &model, rate_hz: 60.0, seeds: 5 }.noise_table().unwrap();
+    let of = |filter| -> Vec<&Cell> {
+        cells.iter().filter(|cell| cell.filter == filter && cell.protocol == Protocol::Noisy).collect()
+    };
+    let [paper, cut, coupled] = [FilterName::Paper, FilterName::PaperCut, FilterName::Coupled].map(of);
+    for i in 0..SIGMAS_DEG.len() {
+        let share = coupled[i].error_deg / paper[i].error_deg.min(cut[i].error_deg);
+        println!("sigma {}: {:.2} degrees, share {share:.2}", SIGMAS_DEG[i], coupled[i].error_deg);
+        assert!(share > 0.2 && share < SHARES[i], "sigma {}: share {share}", SIGMAS_DEG[i]);
+    }
+    let mean =
+        |value: &dyn Fn(&Cell) -> f64| coupled.iter().map(|cell| value(cell)).sum::<f64>() / coupled.len() as f64;
+    let pooled = mean(&|cell| cell.inside_90);
+    let each: Vec<f64> = (0..13).map(|angle| mean(&|cell| cell.each_inside_90[angle])).collect();
+    println!("inside the 90 % band: {pooled:.3}, each {each:.3?}");
+    assert!((BAND[0]..BAND[1]).contains(&pooled), "{pooled}");
+    assert!(each.iter().all(|share| (BAND_EACH[0]..BAND_EACH[1]).contains(share)), "{each:?}");
+}
+
 #[test]
 fn walkers_keep_phase_cadence_and_count() {
-    holds(
-        "walking",
-        &[
-            "bandai/dataset-1_walk_feminine_001.bvh",
-            "bandai/dataset-1_walk_happy_001.bvh",
-            "bandai/dataset-1_walk_tired_001.bvh",
-            "bandai/dataset-2_walk_elderly_001.bvh",
-            "bandai/dataset-2_walk_elderly_002.bvh",
-            "bandai/dataset-2_walk_normal_001.bvh",
-            "bandai/dataset-2_walk_normal_002.bvh",
-            "pymo/AV_8Walk_Meredith_HVHA_Rep1.bvh",
-        ],
-    );
+    holds("walking", &WALKS);
 }
 
 #[test]

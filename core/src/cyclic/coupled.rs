@@ -20,6 +20,8 @@ use core::f32::consts::TAU;
 const LEAST_FIRST_STD_RAD: f32 = 0.01;
 /// By how much training widens the spread between people (`inflation` of the model files).
 const SPREAD_INFLATION: f32 = 4.0;
+/// Median of the square of a standard normal.
+const MEDIAN_CHI_SQUARE: f32 = 0.454_9;
 /// Noise too small to be seen beside the spread between people, rad.
 const SMALL_FIRST_STD_RAD: f32 = 0.025;
 /// Spread of a person's speed about the model's mean, as a part of it.
@@ -28,6 +30,9 @@ const SPEED_SPREAD: f32 = 0.1;
 const FORGETTING: f32 = 0.02;
 /// Angles deviate together, so that thirteen of them say less about the phase than thirteen independent ones would.
 const PHASE_TEMPERING: f32 = 2.5;
+/// Share of the computed variance of an angle that is reported. The spread between people is taken wider and the evidence on the
+/// phase weaker than measured, for the gains' sake; without this share the bands hold more than they say.
+const BAND_CALIBRATION: f32 = 0.85;
 /// An angle this many standard deviations off says nothing about the phase, and its own constant is learned anew.
 pub(super) const GATE_SIGMAS: f32 = 4.0;
 
@@ -274,7 +279,7 @@ impl<const N: usize> CoupledFilter<N> {
         let mut angle_variance_rad2 = [0.0; N];
         for i in 0..model.angle_count().min(N) {
             let outlook = self.blocks[i].outlook(&basis, slope[i]);
-            angle_variance_rad2[i] = outlook.variance + self.pair.along(&outlook.gradient);
+            angle_variance_rad2[i] = BAND_CALIBRATION * (outlook.variance + self.pair.along(&outlook.gradient));
         }
         CyclicEstimate {
             angles_rad: self.angles_rad,
@@ -334,7 +339,8 @@ impl Evidence {
 }
 
 /// The first row with the noise that its distance from the mean pose shows beyond the spread between people. At most its own,
-/// that of the rows to come; at least half of that where it is small.
+/// that of the rows to come; at least half of that where it is small. The middle one of the angles tells: noise moves them all,
+/// but a person, or whoever placed the joints, may hold some otherwise.
 fn as_exact_as_it_looks<const N: usize>(
     model: &MotionModel<'_>,
     first: &AngleMeasurement<N>,
@@ -342,17 +348,22 @@ fn as_exact_as_it_looks<const N: usize>(
 ) -> Result<AngleMeasurement<N>, ParameterError> {
     let pose = model.mean_pose_rad::<N>(model.point(position));
     let spread = model.deviation_std_rad::<N>();
-    let (mut excess, mut count) = (0.0, 0.0);
+    let mut excess: heapless::Vec<f32, N> = heapless::Vec::new();
     for i in 0..model.angle_count().min(N) {
         if let Some(angle) = first.angle_rad(i) {
             let off = wrap_angle(angle - pose[i]);
-            excess += off * off - spread[i] * spread[i] / SPREAD_INFLATION;
-            count += 1.0;
+            let _ = excess.push(off * off / MEDIAN_CHI_SQUARE - spread[i] * spread[i] / SPREAD_INFLATION);
         }
     }
-    let looks = sqrt(max(excess, 0.0) / max(count, 1.0));
+    let looks = sqrt(median(&excess));
     let noise = |std: f32| max(min(std, looks), max(min(0.5 * std, SMALL_FIRST_STD_RAD), LEAST_FIRST_STD_RAD));
     AngleMeasurement::with_std(first.angles_rad(), &first.std_rad().map(noise))
+}
+
+/// The value with as many below it as above, the greater of two; at least 0.
+fn median(values: &[f32]) -> f32 {
+    let below = |&value: &f32| values.iter().filter(|&&other| other < value).count() <= values.len() / 2;
+    values.iter().copied().filter(below).fold(0.0, max)
 }
 
 /// Stationary spread of an angle's parts.

@@ -14,10 +14,13 @@ use std::f64::consts::TAU;
 /// What variances of constant and swing are multiplied by: they come from about three people, so the spread of a new
 /// person is that of a t distribution with few degrees of freedom, and the mean cycle is itself that uncertain.
 const INFLATION: f64 = 4.0;
-/// Part of each variance that is replaced by the mean over the angles.
+/// Part of the variance of constant and swing that is replaced by the mean over the angles.
 const SHRINKAGE: f64 = 0.2;
 /// The same for the rest, which differs from cycle to cycle as well and is known from more than a few people.
 const REST_INFLATION: f64 = 2.0;
+/// The same part of the rest's variance. It is more: how much of an angle's fine movement is a person's own depends on how the
+/// joints were placed, which for short links differs most between sources.
+const REST_SHRINKAGE: f64 = 0.6;
 /// Least standard deviation, radians (a third of a degree): labels are no better.
 const LEAST_STD_RAD: f64 = 0.006;
 /// Bounds of the rest's rate per cycle: slower is a swing, faster is noise.
@@ -53,9 +56,9 @@ pub fn of_cycles(cycles: &[TrainingCycle], length: usize) -> DeviationNumbers {
     DeviationNumbers {
         inflation: INFLATION as f32,
         shrinkage: SHRINKAGE as f32,
-        offset_std_rad: stds(&offset, INFLATION),
-        swing_std_rad: stds(&swing, INFLATION),
-        rest_std_rad: stds(&rest, REST_INFLATION),
+        offset_std_rad: stds(&offset, INFLATION, SHRINKAGE),
+        swing_std_rad: stds(&swing, INFLATION, SHRINKAGE),
+        rest_std_rad: stds(&rest, REST_INFLATION, REST_SHRINKAGE),
         rest_rate_per_cycle: (0..count).map(|angle| rate(angle) as f32).collect(),
     }
 }
@@ -111,10 +114,10 @@ fn slope_variance(a: &Parts, b: &Parts) -> f64 {
     difference.windows(3).map(slope).sum::<f64>() / (length - 2) as f64
 }
 
-/// Standard deviations of variances, shrunk to their mean and multiplied by `factor`.
-fn stds(variances: &[f64], factor: f64) -> Vec<f32> {
+/// Standard deviations of variances, moved by the part `shrinkage` to their mean and multiplied by `factor`.
+fn stds(variances: &[f64], factor: f64, shrinkage: f64) -> Vec<f32> {
     let mean = variances.iter().sum::<f64>() / variances.len() as f64;
-    let std = |variance: &f64| (factor * ((1.0 - SHRINKAGE) * variance + SHRINKAGE * mean)).sqrt().max(LEAST_STD_RAD);
+    let std = |variance: &f64| (factor * ((1.0 - shrinkage) * variance + shrinkage * mean)).sqrt().max(LEAST_STD_RAD);
     variances.iter().map(|variance| std(variance) as f32).collect()
 }
 
@@ -142,14 +145,16 @@ mod tests {
     #[test]
     fn each_part_goes_where_it_belongs() {
         let numbers = of_cycles(&[cycle(0.0, 0.0, 0.0), cycle(0.4, 0.3, 0.2)], 100);
-        let pooled = |own: f64, of: f64, factor: f64| (factor * (0.8 * own + 0.2 * of / ANGLES as f64)).sqrt() as f32;
+        let part = |own: f64, of: f64, share: f64| (1.0 - share) * own + share * of / ANGLES as f64;
+        let pooled = |own: f64, of: f64| (INFLATION * part(own, of, SHRINKAGE)).sqrt() as f32;
         let offset = half_square(0.4);
-        assert!((numbers.offset_std_rad[0] - pooled(offset, offset, INFLATION)).abs() < 1.0e-3);
-        assert!((numbers.offset_std_rad[1] - pooled(0.0, offset, INFLATION)).abs() < 1.0e-3);
+        assert!((numbers.offset_std_rad[0] - pooled(offset, offset)).abs() < 1.0e-3);
+        assert!((numbers.offset_std_rad[1] - pooled(0.0, offset)).abs() < 1.0e-3);
         let swing = 0.5 * half_square(0.3);
-        assert!((numbers.swing_std_rad[1] - pooled(swing, swing, INFLATION)).abs() < 1.0e-3);
+        assert!((numbers.swing_std_rad[1] - pooled(swing, swing)).abs() < 1.0e-3);
         let rest = 0.5 * half_square(0.2);
-        assert!((numbers.rest_std_rad[2] - pooled(rest, rest, REST_INFLATION)).abs() < 1.0e-3);
+        let wanted = (REST_INFLATION * part(rest, rest, REST_SHRINKAGE)).sqrt() as f32;
+        assert!((numbers.rest_std_rad[2] - wanted).abs() < 1.0e-3);
         assert!((f64::from(numbers.rest_rate_per_cycle[2]) - 3.0 * TAU).abs() < 0.5, "a sine has its own rate");
     }
 
