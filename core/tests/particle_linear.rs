@@ -1,9 +1,9 @@
 //! The particle filter against the exact posterior where that is known: a linear model with normal noise.
 
-use sinew_core::cyclic::particle::{
-    CHUNK, CyclicParticle, ParticleOptions, advance_and_weigh, ancestors, copy_ancestors, exponentiate, factors_len,
-    fill_factors, first_particle, greatest,
-};
+use sinew_core::cyclic::particle::{CyclicParticle, ParticleOptions, factors_len, fill_factors, first_particle};
+use sinew_core::cyclic::particle_moments::ParticleMoments;
+use sinew_core::cyclic::particle_resampling::{Comb, WeightShare};
+use sinew_core::cyclic::particle_sweep::{CHUNK, ParticleTarget, sweep};
 use sinew_core::cyclic::particle_tracker::resampling_offset;
 use sinew_core::cyclic::semi_definite::{packed_index, packed_len};
 use sinew_core::cyclic::{
@@ -82,17 +82,27 @@ fn particle_means(model: &MotionModel<'_>, start: &CycleStart<N>, count: usize) 
     let draw = |index| first_particle(model, &[], start, &options, (1, index));
     let mut particles: Vec<CyclicParticle<N>> = (0..count as u32).map(draw).collect();
     let mut next = particles.clone();
-    let (mut weights, mut from) = (vec![0.0; count], vec![0; count]);
+    let (mut weights, mut shares) = (vec![0.0; count], Vec::<WeightShare>::new());
+    let mut last = start.estimate();
     for (frame, measurement) in (1..).zip(measurements()) {
+        let target = ParticleTarget::new(&measurement, N, &last);
+        let mut all = ParticleMoments::nothing();
+        shares.clear();
         for (chunk, (particles, weights)) in particles.chunks_mut(CHUNK).zip(weights.chunks_mut(CHUNK)).enumerate() {
             let key = (1, frame, (chunk * CHUNK) as u32);
-            advance_and_weigh(model, &factors, &options, &measurement, key, particles, weights);
+            let moments = sweep(model, &factors, &options, (&target, 1.0), key, particles, weights);
+            shares.push(moments.share());
+            all.merge(&moments);
         }
-        let best = greatest(&weights);
-        let total: f32 = weights.chunks_mut(CHUNK).map(|weights| exponentiate(best, weights)).sum();
+        last = all.estimate(&target);
+        let comb = Comb::new(all.share(), resampling_offset(1, frame), count);
+        let chunks = particles.chunks(CHUNK).zip(weights.chunks_mut(CHUNK)).zip(&shares);
+        for (((particles, weights), share), teeth) in chunks.zip(comb.teeth(&shares)) {
+            comb.choose(particles, weights, &teeth, &mut next[teeth.first..teeth.first + teeth.count]);
+            let scale = share.scale(all.share().greatest_log_weight);
+            weights.iter_mut().for_each(|weight| *weight *= scale);
+        }
         if frame < u64::from(FRAMES) {
-            ancestors(&weights, total, resampling_offset(1, frame), &mut from);
-            copy_ancestors(&particles, &from, &mut next);
             std::mem::swap(&mut particles, &mut next);
         }
     }

@@ -1,9 +1,9 @@
-//! Angles in blocks of four: loops over a block's four numbers become vector instructions on any target that has them.
+//! Angles in blocks of eight: loops over a block's numbers become vector instructions on any target that has them.
 
 use super::model::MAX_ANGLES;
 
 /// Angles of a block.
-pub(super) const BLOCK: usize = 4;
+pub(super) const BLOCK: usize = 8;
 /// Most blocks.
 pub(super) const MAX_BLOCKS: usize = MAX_ANGLES / BLOCK;
 

@@ -8,11 +8,13 @@
 //! columns are taken off that. So a precise measurement after a long gap leaves no difference of large numbers.
 
 use super::AngleMeasurement;
-use super::angle_blocks::BLOCK;
 use super::covariance::{KinematicCovariance, MARGIN, SEVERE, mirror};
 use super::log_product::LogProduct;
 use crate::angle::angle_difference;
 use crate::math::sqrt;
+
+/// Rows and columns of the squares that the velocities' covariance is worked on in: sixteen sums stay in registers.
+const SQUARE: usize = 4;
 
 /// The angles that a frame shows, in front, and what it says about them.
 ///
@@ -200,23 +202,23 @@ impl<const N: usize> KinematicCovariance<N> {
     /// The velocities' covariance less the sum of w w', in squares of four rows and columns.
     #[inline]
     fn reduce_velocities(&mut self, columns: &[[f32; N]]) {
-        let (row_blocks, last_rows) = self.velocity.as_chunks_mut::<BLOCK>();
-        let first_of_last = BLOCK * row_blocks.len();
+        let (row_blocks, last_rows) = self.velocity.as_chunks_mut::<SQUARE>();
+        let first_of_last = SQUARE * row_blocks.len();
         for (block, rows) in row_blocks.iter_mut().enumerate() {
             for part in 0..=block {
-                let mut square = [[0.0; BLOCK]; BLOCK];
+                let mut square = [[0.0; SQUARE]; SQUARE];
                 for column in columns {
-                    let blocks = column.as_chunks::<BLOCK>().0;
+                    let blocks = column.as_chunks::<SQUARE>().0;
                     let (Some(w), Some(v)) = (blocks.get(block), blocks.get(part)) else { break };
-                    for i in 0..BLOCK {
-                        for j in 0..BLOCK {
+                    for i in 0..SQUARE {
+                        for j in 0..SQUARE {
                             square[i][j] += w[i] * v[j];
                         }
                     }
                 }
                 for (row, sums) in rows.iter_mut().zip(&square) {
-                    if let Some(row) = row.as_chunks_mut::<BLOCK>().0.get_mut(part) {
-                        for j in 0..BLOCK {
+                    if let Some(row) = row.as_chunks_mut::<SQUARE>().0.get_mut(part) {
+                        for j in 0..SQUARE {
                             row[j] -= sums[j];
                         }
                     }
@@ -302,7 +304,7 @@ impl<const N: usize> Columns<N> {
 
 /// Numbers of a row that come first, whole blocks: the rows of a triangle that begin or end there need the other half alone.
 const fn half<const N: usize>() -> usize {
-    let half = (N / 2).div_ceil(BLOCK) * BLOCK;
+    let half = (N / 2).div_ceil(SQUARE) * SQUARE;
     if half < N { half } else { N }
 }
 

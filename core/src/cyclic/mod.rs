@@ -34,6 +34,8 @@ pub mod models;
 pub mod motion_bank;
 pub mod particle;
 pub mod particle_moments;
+pub mod particle_resampling;
+pub mod particle_sweep;
 pub mod particle_table;
 pub mod particle_tracker;
 pub mod phase;

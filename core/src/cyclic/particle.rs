@@ -1,24 +1,20 @@
 //! The particle filter of the cyclic paper, section 3.3: stages that work on slices, so that a caller may split them.
 //!
-//! Each particle draws from its own stream, and sums are taken over chunks of [`CHUNK`] particles whose results are added
-//! in order: the result has the same bits however the chunks are spread over threads.
+//! Each particle draws from its own stream. [`super::particle_sweep`] moves, weighs and sums them, [`super::particle_resampling`]
+//! chooses the next generation.
 
+use super::MotionModel;
 use super::angle_blocks::{AngleBlocks, BLOCK, blocks_of, used_blocks, write_back};
 use super::particle_table::ParticleTable;
 use super::phase::wrap_position;
 use super::start::{CycleStart, LEAST_SPREAD_RAD};
-use super::substeps::Substeps;
-use super::{AngleMeasurement, MotionModel};
 use crate::angle::angle_difference;
-use crate::math::{clamp, exp_small, least_angle, max, sqrt, wrap_angle, wrap_angle_small};
+use crate::math::{clamp, max, sqrt, wrap_angle, wrap_angle_small};
 use crate::random::lanes::LANES;
 use crate::random::{Stream, StreamLanes};
 use core::f32::consts::PI;
 
 pub use super::particle_table::{factors_len, fill_factors};
-
-/// Particles whose sums are taken together.
-pub const CHUNK: usize = 1024;
 
 /// Greatest number of angles that a particle holds.
 const MAX_ANGLES: usize = super::model::MAX_ANGLES;
@@ -138,7 +134,7 @@ pub fn fill_positions<const N: usize>(model: &MotionModel<'_>, start: &CycleStar
         }
         *value = -0.5 * squared;
     }
-    let best = greatest(positions);
+    let best = super::particle_resampling::greatest(positions);
     let mut sum = 0.0;
     for value in positions {
         sum += crate::math::exp(*value - best);
@@ -162,8 +158,8 @@ fn drawn_position(sums: &[f32], uniform: f32) -> f32 {
 ///
 /// Between two stored positions the noise is that of one of them, drawn with the probabilities of linear
 /// interpolation: the covariance is then exactly the interpolated one.
-#[inline]
-fn advance<const N: usize>(
+#[inline(always)]
+pub(super) fn advance<const N: usize>(
     model: &MotionModel<'_>,
     table: &ParticleTable<'_>,
     temporal_std: f32,
@@ -198,7 +194,7 @@ fn advance<const N: usize>(
 
 impl<const N: usize> CyclicParticle<N> {
     /// Moves angles and cycle over `step` with constant accelerations. An angle beyond the model's keeps its velocity.
-    #[inline]
+    #[inline(always)]
     fn move_by(&mut self, accelerations: &AngleBlocks, temporal: f32, step: f32) {
         let half_square = 0.5 * step * step;
         let (mut angles, mut velocities) = (blocks_of(&self.angles_rad), blocks_of(&self.velocities));
@@ -217,199 +213,38 @@ impl<const N: usize> CyclicParticle<N> {
     }
 }
 
-/// Measured angles with a precision of zero where nothing was seen, so that weighing needs no question.
-struct Target<const N: usize> {
-    angles_rad: AngleBlocks,
-    root_precision: AngleBlocks,
-}
-
-impl<const N: usize> Target<N> {
-    fn new(measurement: &AngleMeasurement<N>, angle_count: usize) -> Self {
-        let (mut angles_rad, mut root_precision) = ([0.0; N], [0.0; N]);
-        for i in 0..N.min(angle_count) {
-            if let Some(measured) = measurement.angle_rad(i) {
-                angles_rad[i] = wrap_angle(measured);
-                root_precision[i] = 1.0 / measurement.std_rad()[i];
-            }
-        }
-        Self { angles_rad: blocks_of(&angles_rad), root_precision: blocks_of(&root_precision) }
-    }
-
-    /// -1/2 of the sum of squared differences in standard deviations, summed in four parts.
-    #[inline]
-    fn log_weight(&self, angles_rad: &[f32; N]) -> f32 {
-        let angles = blocks_of(angles_rad);
-        let mut sums = [0.0; BLOCK];
-        for block in 0..const { used_blocks::<N>() } {
-            for i in 0..BLOCK {
-                let difference = least_angle(self.angles_rad[block][i] - angles[block][i]);
-                let scaled = difference * self.root_precision[block][i];
-                sums[i] += scaled * scaled;
-            }
-        }
-        -0.5 * ((sums[0] + sums[1]) + (sums[2] + sums[3]))
-    }
-}
-
-/// Moves `particles`, of which the first has number `first_index`, over the measurement's step and writes their log-weights.
-///
-/// `factors` is what [`super::particle_table::fill_factors`] wrote; `key` is (seed, frame, `first_index`).
-pub fn advance_and_weigh<const N: usize>(
-    model: &MotionModel<'_>,
-    factors: &[f32],
-    options: &ParticleOptions,
-    measurement: &AngleMeasurement<N>,
-    key: (u64, u64, u32),
-    particles: &mut [CyclicParticle<N>],
-    log_weights: &mut [f32],
-) {
-    let (seed, frame, first_index) = key;
-    let table = ParticleTable::new(model, factors);
-    let target = Target::new(measurement, model.angle_count());
-    let mut draws = [AngleBlocks::default(); LANES];
-    let blocks = particles.chunks_mut(LANES).zip(log_weights.chunks_mut(LANES));
-    for (block, (particles, log_weights)) in blocks.enumerate() {
-        let mut streams = StreamLanes::new(seed, frame, first_index.wrapping_add((block * LANES) as u32));
-        for step in Substeps::of(measurement.step_frames()) {
-            let random = (&mut streams, &mut draws);
-            advance(model, &table, options.temporal_acceleration_std, step, random, particles);
-        }
-        for (particle, log_weight) in particles.iter().zip(log_weights) {
-            *log_weight = target.log_weight(&particle.angles_rad);
-        }
-    }
-}
-
-/// Turns log-weights into weights relative to `greatest` and returns their sum, taken in eight parts; NaN weighs nothing.
-pub fn exponentiate(greatest: f32, weights: &mut [f32]) -> f32 {
-    let weight = |log_weight: f32| {
-        let below = log_weight - greatest;
-        let value = exp_small(below);
-        if below > -40.0 { value } else { 0.0 }
-    };
-    let mut sums = [0.0; 8];
-    let (eights, rest) = weights.as_chunks_mut::<8>();
-    for eight in eights {
-        for i in 0..8 {
-            eight[i] = weight(eight[i]);
-            sums[i] += eight[i];
-        }
-    }
-    let mut sum = 0.0;
-    for value in rest {
-        *value = weight(*value);
-        sum += *value;
-    }
-    sums.iter().fold(sum, |all, part| all + part)
-}
-
-/// Greatest of the log-weights; negative infinity where there is none.
-#[must_use]
-pub fn greatest(log_weights: &[f32]) -> f32 {
-    log_weights.iter().fold(f32::NEG_INFINITY, |best, &value| max(value, best))
-}
-
-/// Systematic resampling over many particles: writes the number of each new particle's ancestor, in ascending order.
-///
-/// `weights` need not sum to one: their sum is `total`. Kahan's summation keeps 100,000 of them in `f32` exact enough.
-pub fn ancestors(weights: &[f32], total: f32, offset: f32, ancestors: &mut [u32]) {
-    let spacing = total / ancestors.len() as f32;
-    let last = weights.len().saturating_sub(1);
-    let (mut index, mut lost) = (0, 0.0);
-    let mut cumulative = weights.first().copied().unwrap_or(0.0);
-    for (i, ancestor) in ancestors.iter_mut().enumerate() {
-        let position = (i as f32 + offset) * spacing;
-        while position >= cumulative && index < last {
-            index += 1;
-            let term = weights.get(index).copied().unwrap_or(0.0) - lost;
-            let sum = cumulative + term;
-            lost = (sum - cumulative) - term;
-            cumulative = sum;
-        }
-        *ancestor = index as u32;
-    }
-}
-
-/// Copies the ancestors' states into `next`.
-pub fn copy_ancestors<const N: usize>(
-    particles: &[CyclicParticle<N>],
-    ancestors: &[u32],
-    next: &mut [CyclicParticle<N>],
-) {
-    for (slot, &ancestor) in next.iter_mut().zip(ancestors) {
-        if let Some(particle) = particles.get(ancestor as usize) {
-            *slot = *particle;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::particle_moments::ParticleMoments;
     use super::super::synthetic;
     use super::*;
 
-    const N: usize = 13;
-
-    /// Runs `count` particles for some frames in chunks of `split` and returns the last mean of each angle.
-    fn run(count: usize, split: usize, options: &ParticleOptions) -> [f32; N] {
+    /// The transition's mean and spread are those of eq. (11): a cloud that starts at one point.
+    #[test]
+    fn a_cloud_moves_with_the_mean_acceleration_and_spreads_with_the_models_covariance() {
+        const COUNT: usize = 4096;
         let table = synthetic::table(4.0e-3, 9);
         let model = table.model().unwrap();
         let mut factors = vec![0.0; factors_len(&model)];
         fill_factors(&model, &mut factors);
-        let first = core::array::from_fn(|i| Some(synthetic::mean_angle(i, 0.0)));
-        let start = CycleStart::standard(&model, &first, Some(0.0), None).unwrap();
-        let mut positions = vec![0.0; model.position_count()];
-        fill_positions(&model, &start, &mut positions);
-        let first = |i| first_particle(&model, &positions, &start, options, (3, i as u32));
-        let mut particles: Vec<_> = (0..count).map(first).collect();
-        let mut next = particles.clone();
-        let (mut weights, mut from) = (vec![0.0; count], vec![0; count]);
-        let mut mean = [0.0; N];
-        for frame in 1..=30_u8 {
-            let seen = core::array::from_fn(|i| Some(synthetic::mean_angle(i, f32::from(frame) / 65.0)));
-            let seen = AngleMeasurement::new(&seen, 0.3).unwrap();
-            let chunks = particles.chunks_mut(split).zip(weights.chunks_mut(split)).enumerate();
-            for (chunk, (particles, weights)) in chunks {
-                let key = (3, u64::from(frame), (chunk * split) as u32);
-                advance_and_weigh(&model, &factors, options, &seen, key, particles, weights);
-            }
-            let best = greatest(&weights);
-            let total = exponentiate(best, &mut weights);
-            let reference = particles[weights.iter().position(|&w| w == 1.0).unwrap()];
-            mean = ParticleMoments::of(&particles, &weights, &reference).estimate(&reference).angles_rad;
-            ancestors(&weights, total, 0.5, &mut from);
-            copy_ancestors(&particles, &from, &mut next);
-            core::mem::swap(&mut particles, &mut next);
+        let particle_table = ParticleTable::new(&model, &factors);
+        let first =
+            CyclicParticle { angles_rad: [0.2; 13], velocities: [0.0; 13], cycle_position: 0.3, cycle_velocity: 0.01 };
+        let mut particles = vec![first; COUNT];
+        let mut draws = [AngleBlocks::default(); LANES];
+        for (block, particles) in particles.chunks_mut(LANES).enumerate() {
+            let mut streams = StreamLanes::new(4, 1, (block * LANES) as u32);
+            advance(&model, &particle_table, 0.0, 1.0, (&mut streams, &mut draws), particles);
         }
-        mean
-    }
-
-    #[test]
-    fn the_bits_do_not_depend_on_how_the_particles_are_split() {
-        let options = ParticleOptions::default();
-        assert_eq!(run(500, 500, &options), run(500, 7, &options));
-    }
-
-    #[test]
-    fn a_few_hundred_particles_follow_the_motion_from_both_starts() {
-        for spread in [Spread::Standard, Spread::UniformPosition] {
-            let mean = run(800, CHUNK, &ParticleOptions { spread, ..ParticleOptions::default() });
-            let error: f32 = (0..N)
-                .map(|i| angle_difference(mean[i], wrap_angle(synthetic::mean_angle(i, 30.0 / 65.0))).abs() / N as f32)
-                .sum();
-            assert!(error < 0.25, "{spread:?}: {error} rad");
-        }
-    }
-
-    #[test]
-    fn ancestors_are_taken_in_proportion_to_their_weights() {
-        let weights = [0.1_f32, 0.0, 0.5, 0.4];
-        let mut from = [0; 1000];
-        ancestors(&weights, 1.0, 0.3, &mut from);
-        for (i, weight) in weights.iter().enumerate() {
-            let taken = from.iter().filter(|&&a| a as usize == i).count() as f32;
-            assert!((taken - 1000.0 * weight).abs() <= 1.0, "ancestor {i} taken {taken} times");
+        let mean = model.mean_acceleration::<13>(model.point(0.3));
+        let position = (0.3 * model.position_count() as f32) as usize;
+        for i in 0..13 {
+            let moved: Vec<f32> = particles.iter().map(|particle| particle.velocities[i]).collect();
+            let average = moved.iter().sum::<f32>() / COUNT as f32;
+            let variance = moved.iter().map(|v| (v - average) * (v - average)).sum::<f32>() / COUNT as f32;
+            let packed = super::super::semi_definite::packed_index(i, i);
+            let wanted = model.parts().acceleration_covariance[91 * position + packed];
+            assert!((average - mean[i]).abs() < 5.0 * (wanted / COUNT as f32).sqrt() + 1.0e-6, "angle {i}: {average}");
+            assert!((variance / wanted - 1.0).abs() < 0.12, "angle {i}: {variance} for {wanted}");
         }
     }
 }

@@ -1,10 +1,9 @@
 //! The particle filter with a capacity known at compile time: for firmware, a few hundred particles, nothing allocated.
 
-use super::particle::{
-    CHUNK, CyclicParticle, ParticleOptions, advance_and_weigh, ancestors, copy_ancestors, exponentiate, first_particle,
-    greatest,
-};
+use super::particle::{CyclicParticle, ParticleOptions, first_particle};
 use super::particle_moments::ParticleMoments;
+use super::particle_resampling::{Comb, WeightShare};
+use super::particle_sweep::{CHUNK, ParticleTarget, sweep};
 use super::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
 use crate::angle::split_turns;
 use crate::math::ln;
@@ -13,6 +12,9 @@ use crate::random::normal::LOG_SQRT_TAU;
 
 /// Stream that the resampling of a frame draws from; particles have the numbers below.
 const RESAMPLING_STREAM: u32 = u32::MAX;
+
+/// Most chunks of particles; more than 8192 particles are for the host.
+const MOST_CHUNKS: usize = 8;
 
 /// What the model holds ready for the particles, in the caller's memory.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +34,6 @@ pub struct ParticleTracker<const N: usize, const P: usize> {
     particles: [CyclicParticle<N>; P],
     next: [CyclicParticle<N>; P],
     weights: [f32; P],
-    ancestors: [u32; P],
     last: CyclicEstimate<N>,
 }
 
@@ -46,19 +47,10 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
         start: &CycleStart<N>,
         seed: u64,
     ) -> Self {
-        const { assert!(P > 0, "at least one particle") };
+        const { assert!(P > 0 && P <= MOST_CHUNKS * CHUNK, "at least one particle, at most 8192") };
         let draw = |index| first_particle(model, tables.positions, start, &options, (seed, index as u32));
         let particles = core::array::from_fn(draw);
-        Self {
-            options,
-            seed,
-            frame: 0,
-            next: particles,
-            particles,
-            weights: [0.0; P],
-            ancestors: [0; P],
-            last: start.estimate(),
-        }
+        Self { options, seed, frame: 0, next: particles, particles, weights: [0.0; P], last: start.estimate() }
     }
 
     /// One frame: predict, weigh, estimate, resample.
@@ -69,14 +61,13 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
         measurement: &AngleMeasurement<N>,
     ) -> CyclicEstimate<N> {
         self.frame += 1;
-        let best = self.predict(model, tables.factors, measurement);
-        let (total, mut estimate) = self.estimate(best);
+        let target = ParticleTarget::new(measurement, model.angle_count(), &self.last);
+        let (moments, shares) = self.sweep(model, tables.factors, &target, measurement.step_frames());
+        let mut estimate = moments.estimate(&target);
         count_turns(&mut estimate, &self.last);
         if measurement.present(model.angle_count()) > 0 {
-            estimate.log_likelihood = log_likelihood(measurement, model.angle_count(), (best, total), P);
-            ancestors(&self.weights, total, resampling_offset(self.seed, self.frame), &mut self.ancestors);
-            copy_ancestors(&self.particles, &self.ancestors, &mut self.next);
-            core::mem::swap(&mut self.particles, &mut self.next);
+            estimate.log_likelihood = log_likelihood(measurement, model.angle_count(), moments.share(), P);
+            self.resample(moments.share(), &shares);
         }
         self.last = estimate;
         estimate
@@ -88,37 +79,47 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
         &self.particles
     }
 
-    /// Moves and weighs all particles; returns the greatest log-weight.
-    fn predict(&mut self, model: &MotionModel<'_>, factors: &[f32], measurement: &AngleMeasurement<N>) -> f32 {
-        let mut best = f32::NEG_INFINITY;
+    /// Moves and weighs all particles; returns their sums, and how much each chunk weighs.
+    fn sweep(
+        &mut self,
+        model: &MotionModel<'_>,
+        factors: &[f32],
+        target: &ParticleTarget<N>,
+        step_frames: f32,
+    ) -> (ParticleMoments<N>, [WeightShare; MOST_CHUNKS]) {
+        let mut all = ParticleMoments::nothing();
+        let mut shares = [WeightShare::NOTHING; MOST_CHUNKS];
         let chunks = self.particles.chunks_mut(CHUNK).zip(self.weights.chunks_mut(CHUNK));
-        for (chunk, (particles, weights)) in chunks.enumerate() {
+        for ((chunk, (particles, weights)), share) in chunks.enumerate().zip(&mut shares) {
             let key = (self.seed, self.frame, (chunk * CHUNK) as u32);
-            advance_and_weigh(model, factors, &self.options, measurement, key, particles, weights);
-            best = greatest(&[best, greatest(weights)]);
+            let moments = sweep(model, factors, &self.options, (target, step_frames), key, particles, weights);
+            all.merge(&moments);
+            *share = moments.share();
         }
-        best
+        (all, shares)
     }
 
-    /// Sum of the weights relative to `best`, and the weighted circular means.
-    fn estimate(&mut self, best: f32) -> (f32, CyclicEstimate<N>) {
-        let reference = self.particles[0];
-        let (mut total, mut all) = (0.0, ParticleMoments::nothing());
-        for (particles, weights) in self.particles.chunks(CHUNK).zip(self.weights.chunks_mut(CHUNK)) {
-            total += exponentiate(best, weights);
-            all.merge(&ParticleMoments::of(particles, weights, &reference));
+    /// The next generation, chunk by chunk.
+    fn resample(&mut self, all: WeightShare, shares: &[WeightShare; MOST_CHUNKS]) {
+        let comb = Comb::new(all, resampling_offset(self.seed, self.frame), P);
+        let shares = shares.get(..P.div_ceil(CHUNK)).unwrap_or_default();
+        let mut rest: &mut [CyclicParticle<N>] = &mut self.next;
+        let chunks = self.particles.chunks(CHUNK).zip(self.weights.chunks(CHUNK));
+        for ((particles, weights), teeth) in chunks.zip(comb.teeth(shares)) {
+            let (next, others) = rest.split_at_mut_checked(teeth.count).unwrap_or_default();
+            comb.choose(particles, weights, &teeth, next);
+            rest = others;
         }
-        (total, all.estimate(&reference))
+        core::mem::swap(&mut self.particles, &mut self.next);
     }
 }
 
-/// ln of the density of a measurement given those before, from the greatest log-weight and the `count` particles' sum of
-/// weights relative to it.
+/// ln of the density of a measurement given those before, from how much all `count` particles weigh.
 #[must_use]
 pub fn log_likelihood<const N: usize>(
     measurement: &AngleMeasurement<N>,
     angle_count: usize,
-    (best, total): (f32, f32),
+    all: WeightShare,
     count: usize,
 ) -> f32 {
     let mut scale = 0.0;
@@ -127,7 +128,7 @@ pub fn log_likelihood<const N: usize>(
             scale += ln(measurement.std_rad()[i]) + LOG_SQRT_TAU;
         }
     }
-    best + ln(total / count as f32) - scale
+    all.greatest_log_weight + ln(all.weight / count as f32) - scale
 }
 
 /// Whole turns since the start, by the shorter way from the last estimate.

@@ -15,7 +15,7 @@ pub struct StreamLanes([[u32; LANES]; 4]);
 
 impl StreamLanes {
     /// The streams of the particles `first_index`, `first_index + 1`, ... in `frame` under `seed`.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn new(seed: u64, frame: u64, first_index: u32) -> Self {
         let key = frame_key(seed, frame);
@@ -31,7 +31,7 @@ impl StreamLanes {
     }
 
     /// 32 random bits of each stream.
-    #[inline]
+    #[inline(always)]
     pub fn bits(&mut self) -> [u32; LANES] {
         let mut drawn = [0; LANES];
         let [a, b, c, d] = &mut self.0;
@@ -49,7 +49,7 @@ impl StreamLanes {
     }
 
     /// Uniform in the half-open interval [0, 1), 24 bits.
-    #[inline]
+    #[inline(always)]
     pub fn uniform(&mut self) -> [f32; LANES] {
         let bits = self.bits();
         let mut drawn = [0.0; LANES];
@@ -60,7 +60,7 @@ impl StreamLanes {
     }
 
     /// A draw from the standard normal distribution for each stream, by the table of [`super::normal_table`].
-    #[inline]
+    #[inline(always)]
     pub fn normal(&mut self) -> [f32; LANES] {
         from_bits(&self.bits())
     }

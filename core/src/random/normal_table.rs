@@ -27,7 +27,7 @@ const LAST: f32 = 2_147_483_520.0;
 static CUBICS: [[f32; 4]; PARTS * OCTAVES] = cubics();
 
 /// Draws from uniform bits: bit 0 is the sign, the others the tail probability.
-#[inline]
+#[inline(always)]
 pub(super) fn from_bits(bits: &[u32; LANES]) -> [f32; LANES] {
     let mut index = [0; LANES];
     let mut argument = [0.0; LANES];

@@ -1,7 +1,7 @@
 //! The cyclic filters' steps: `paper` and `coupled` against dense filters of other crates; the particle filter by stage, on one
 //! thread and two, and beside numpy and the Python package `particles` where they are installed.
 //!
-//! Medians taken in turns in this process, on one thread unless said otherwise, and ratios of them. The Python filters run
+//! Medians and least times taken in turns in this process, on one thread unless said otherwise, and ratios of them. The Python filters run
 //! between two halves of the particle filter's rounds; `PYTHON` names the interpreter (default: python3).
 
 mod dense_peers;
@@ -27,9 +27,25 @@ const STEPS: usize = 50;
 const PARTICLE_ROUNDS: usize = 31;
 const PARTICLES: usize = 100_000;
 
-fn median(mut values: Vec<f64>) -> f64 {
+/// Median and least of some times. The least is what other programs on the machine disturb least.
+fn median_and_least(mut values: Vec<f64>) -> [f64; 2] {
     values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
+    [values[values.len() / 2], values[0]]
+}
+
+/// A line of the tables: both times, and how many times those of `unit` they are.
+fn print_line(name: &str, [median, least]: [f64; 2], unit: [f64; 2]) {
+    println!("{name:<24}{median:>10.2}{:>10.2}{least:>12.2}{:>10.2}", median / unit[0], least / unit[1]);
+}
+
+fn print_heading(name: &str, unit: &str) {
+    println!(
+        "\n{name:<24}{:>10}{:>10}{:>12}{:>10}",
+        format!("{unit} median"),
+        "ratio",
+        format!("{unit} least"),
+        "ratio"
+    );
 }
 
 /// Microseconds of one step, the mean over [`STEPS`] of them from frame `first` on.
@@ -63,11 +79,10 @@ fn kalman_rounds(model: &MotionModel<'_>, walk: &Walk) -> Vec<[f64; 4]> {
 
 fn print_kalman(model: &MotionModel<'_>, walk: &Walk) {
     let rounds = kalman_rounds(model, walk);
-    let paper = median(rounds.iter().map(|round| round[0]).collect());
-    println!("{:<22}{:>10}{:>18}", "filter, one step", "us", "times `paper`");
+    let times = |i: usize| median_and_least(rounds.iter().map(|round| round[i]).collect());
+    print_heading("filter, one step", "us");
     for (i, name) in ["paper", "coupled", "kfilter", "minikalman"].into_iter().enumerate() {
-        let time = median(rounds.iter().map(|round| round[i]).collect());
-        println!("{name:<22}{time:>10.2}{:>18.2}", time / paper);
+        print_line(name, times(i), times(0));
     }
 }
 
@@ -76,17 +91,19 @@ fn print_particles(model: &MotionModel<'_>, walk: &Walk) {
     let mut rounds: Vec<_> = (0..PARTICLE_ROUNDS).map(|_| filter.run()).collect();
     let peers = python_peers::run(PARTICLES, PARTICLE_ROUNDS);
     rounds.extend((0..PARTICLE_ROUNDS).map(|_| filter.run()));
-    println!("\n{:<24}{:>10}{:>18}", "100,000 particles", "ms", "times `particle`");
+    print_heading("100,000 particles", "ms");
+    let step = median_and_least(rounds.iter().map(|round| 1.0e3 * round.iter().sum::<f64>()).collect());
     for (i, name) in STAGES.iter().enumerate() {
-        println!("{name:<24}{:>10.2}", 1.0e3 * median(rounds.iter().map(|round| round[i]).collect()));
+        print_line(name, median_and_least(rounds.iter().map(|round| 1.0e3 * round[i]).collect()), step);
     }
-    let step = 1.0e3 * median(rounds.iter().map(|round| round.iter().sum()).collect());
-    println!("{:<24}{step:>10.2}{:>18.2}", "particle", 1.0);
+    print_line("particle", step, step);
     for (name, milliseconds) in peers {
-        println!("{name:<24}{milliseconds:>10.2}{:>18.2}", milliseconds / step);
+        print_line(&name, milliseconds, step);
     }
-    let [one, two] = particle_threads::milliseconds(model, walk, PARTICLES, PARTICLE_ROUNDS).map(median);
-    println!("\none thread {one:.2} ms, two threads {two:.2} ms: {:.2} times as fast", one / two);
+    print_heading("the host's filter", "ms");
+    let [one, two] = particle_threads::milliseconds(model, walk, PARTICLES, PARTICLE_ROUNDS).map(median_and_least);
+    print_line("one thread", one, two);
+    print_line("two threads", two, two);
 }
 
 fn main() {

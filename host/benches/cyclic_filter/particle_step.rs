@@ -1,18 +1,18 @@
 //! One step of the particle filter on one thread, stage by stage, with the shipped model of walking.
 
-use sinew_core::cyclic::particle::{
-    CHUNK, CyclicParticle, ParticleOptions, advance_and_weigh, ancestors, copy_ancestors, exponentiate, factors_len,
-    fill_factors, first_particle, greatest,
-};
+use sinew::cyclic::tracking::particles::sweep_in_wide_vectors;
+use sinew_core::cyclic::particle::{CyclicParticle, ParticleOptions, factors_len, fill_factors, first_particle};
 use sinew_core::cyclic::particle_moments::ParticleMoments;
-use sinew_core::cyclic::{AngleMeasurement, CycleStart, MotionModel};
+use sinew_core::cyclic::particle_resampling::{Comb, WeightShare};
+use sinew_core::cyclic::particle_sweep::{CHUNK, ParticleTarget};
+use sinew_core::cyclic::{CycleStart, CyclicEstimate, MotionModel};
 use std::hint::black_box;
 use std::time::Instant;
 
 use super::walk::{ANGLES, Walk};
 
 /// Names of what [`ParticleStep::run`] times.
-pub const STAGES: [&str; 4] = ["predict and weigh", "weights and moments", "ancestors", "copies"];
+pub const STAGES: [&str; 3] = ["move, weigh and sum", "estimate", "resample"];
 
 /// A particle filter and where it stands.
 pub struct ParticleStep<'a> {
@@ -22,7 +22,8 @@ pub struct ParticleStep<'a> {
     particles: Vec<CyclicParticle<ANGLES>>,
     next: Vec<CyclicParticle<ANGLES>>,
     weights: Vec<f32>,
-    ancestors: Vec<u32>,
+    shares: Vec<WeightShare>,
+    last: CyclicEstimate<ANGLES>,
     frame: usize,
 }
 
@@ -41,7 +42,8 @@ impl<'a> ParticleStep<'a> {
             next: particles.clone(),
             particles,
             weights: vec![0.0; count],
-            ancestors: vec![0; count],
+            shares: Vec::new(),
+            last: start.estimate(),
             frame: 0,
         }
     }
@@ -51,38 +53,36 @@ impl<'a> ParticleStep<'a> {
         self.frame += 1;
         let measurement = self.walk.measurement(self.frame);
         let start = Instant::now();
-        let best = self.predict(&measurement);
-        let predicted = start.elapsed();
-        let total = self.estimate(best);
+        let target = ParticleTarget::new(&measurement, ANGLES, &self.last);
+        let all = self.sweep(&target);
+        let swept = start.elapsed();
+        self.last = black_box(all.estimate(&target));
         let estimated = start.elapsed();
-        ancestors(&self.weights, total, 0.5, &mut self.ancestors);
-        let chosen = start.elapsed();
-        copy_ancestors(&self.particles, &self.ancestors, &mut self.next);
-        std::mem::swap(&mut self.particles, &mut self.next);
-        let copied = start.elapsed();
-        [predicted, estimated - predicted, chosen - estimated, copied - chosen].map(|part| part.as_secs_f64())
+        self.resample(all.share());
+        [swept, estimated - swept, start.elapsed() - estimated].map(|part| part.as_secs_f64())
     }
 
-    fn predict(&mut self, measurement: &AngleMeasurement<ANGLES>) -> f32 {
+    fn sweep(&mut self, target: &ParticleTarget<ANGLES>) -> ParticleMoments<ANGLES> {
         let options = ParticleOptions::default();
-        let mut best = f32::NEG_INFINITY;
+        let mut all = ParticleMoments::nothing();
+        self.shares.clear();
         let chunks = self.particles.chunks_mut(CHUNK).zip(self.weights.chunks_mut(CHUNK));
         for (chunk, (particles, weights)) in chunks.enumerate() {
             let key = (1, self.frame as u64, (chunk * CHUNK) as u32);
-            advance_and_weigh(&self.model, &self.factors, &options, measurement, key, particles, weights);
-            best = best.max(greatest(weights));
+            let moments =
+                sweep_in_wide_vectors(&self.model, &self.factors, &options, (target, 1.0), key, particles, weights);
+            self.shares.push(moments.share());
+            all.merge(&moments);
         }
-        best
+        all
     }
 
-    fn estimate(&mut self, best: f32) -> f32 {
-        let reference = self.particles[0];
-        let (mut total, mut all) = (0.0, ParticleMoments::nothing());
-        for (particles, weights) in self.particles.chunks(CHUNK).zip(self.weights.chunks_mut(CHUNK)) {
-            total += exponentiate(best, weights);
-            all.merge(&ParticleMoments::of(particles, weights, &reference));
+    fn resample(&mut self, all: WeightShare) {
+        let comb = Comb::new(all, 0.5, self.particles.len());
+        let chunks = self.particles.chunks(CHUNK).zip(self.weights.chunks(CHUNK));
+        for ((particles, weights), teeth) in chunks.zip(comb.teeth(&self.shares)) {
+            comb.choose(particles, weights, &teeth, &mut self.next[teeth.first..teeth.first + teeth.count]);
         }
-        black_box(all.estimate(&reference));
-        total
+        std::mem::swap(&mut self.particles, &mut self.next);
     }
 }

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::Command;
 
-/// Names and median milliseconds a step; nothing where Python or numpy is missing.
-pub fn run(count: usize, frames: usize) -> Vec<(String, f64)> {
+/// Names, median and least milliseconds a step; nothing where Python or numpy is missing.
+pub fn run(count: usize, frames: usize) -> Vec<(String, [f64; 2])> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/peers/particle_filter.py");
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
     let mut command = Command::new(&python);
@@ -28,7 +28,7 @@ pub fn run(count: usize, frames: usize) -> Vec<(String, f64)> {
     let text = String::from_utf8_lossy(&output.stdout);
     let line = |line: &str| {
         let mut parts = line.split_whitespace();
-        Some((parts.next()?.to_owned(), parts.next()?.parse().ok()?))
+        Some((parts.next()?.to_owned(), [parts.next()?.parse().ok()?, parts.next()?.parse().ok()?]))
     };
     text.lines().filter_map(line).collect()
 }

@@ -5,12 +5,28 @@
 
 use rayon::prelude::*;
 use sinew_core::cyclic::particle::{
-    CHUNK, CyclicParticle, ParticleOptions, advance_and_weigh, ancestors, copy_ancestors, exponentiate, factors_len,
-    fill_factors, fill_positions, first_particle, greatest,
+    CyclicParticle, ParticleOptions, factors_len, fill_factors, fill_positions, first_particle,
 };
 use sinew_core::cyclic::particle_moments::ParticleMoments;
+use sinew_core::cyclic::particle_resampling::{Comb, WeightShare};
+use sinew_core::cyclic::particle_sweep::{CHUNK, ParticleTarget, sweep};
 use sinew_core::cyclic::particle_tracker::{count_turns, log_likelihood, resampling_offset};
 use sinew_core::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
+
+/// [`sweep`] with the widest vectors of those named that the processor has. No operation is contracted or taken in another order,
+/// so the bits are those of any other processor.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+pub fn sweep_in_wide_vectors<const N: usize>(
+    model: &MotionModel<'_>,
+    factors: &[f32],
+    options: &ParticleOptions,
+    frame: (&ParticleTarget<N>, f32),
+    key: (u64, u64, u32),
+    particles: &mut [CyclicParticle<N>],
+    weights: &mut [f32],
+) -> ParticleMoments<N> {
+    sweep(model, factors, options, frame, key, particles, weights)
+}
 
 /// State of a particle filter.
 #[derive(Debug, Clone)]
@@ -22,7 +38,6 @@ pub struct ParticleFilter<const N: usize> {
     particles: Vec<CyclicParticle<N>>,
     next: Vec<CyclicParticle<N>>,
     weights: Vec<f32>,
-    ancestors: Vec<u32>,
     last: CyclicEstimate<N>,
 }
 
@@ -51,7 +66,6 @@ impl<const N: usize> ParticleFilter<N> {
             next: particles.clone(),
             particles,
             weights: vec![0.0; count],
-            ancestors: vec![0; count],
             last: first,
         }
     }
@@ -59,58 +73,56 @@ impl<const N: usize> ParticleFilter<N> {
     /// One frame: predict, weigh, estimate, resample.
     pub fn step(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
         self.frame += 1;
-        let best = self.predict(model, measurement);
-        let (total, mut estimate) = self.estimate(best);
+        let target = ParticleTarget::new(measurement, model.angle_count(), &self.last);
+        let sums = self.sweep(model, &target, measurement.step_frames());
+        let mut all = ParticleMoments::nothing();
+        for moments in &sums {
+            all.merge(moments);
+        }
+        let mut estimate = all.estimate(&target);
         count_turns(&mut estimate, &self.last);
         if measurement.present(model.angle_count()) > 0 {
             let count = self.particles.len();
-            estimate.log_likelihood = log_likelihood(measurement, model.angle_count(), (best, total), count);
-            self.resample(total);
+            estimate.log_likelihood = log_likelihood(measurement, model.angle_count(), all.share(), count);
+            let shares: Vec<WeightShare> = sums.iter().map(ParticleMoments::share).collect();
+            self.resample(all.share(), &shares);
         }
         self.last = estimate;
         estimate
     }
 
-    /// Moves and weighs all particles; returns the greatest log-weight.
-    fn predict(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> f32 {
+    /// Moves and weighs all particles; returns each chunk's sums.
+    fn sweep(
+        &mut self,
+        model: &MotionModel<'_>,
+        target: &ParticleTarget<N>,
+        step_frames: f32,
+    ) -> Vec<ParticleMoments<N>> {
         let (factors, options, seed, frame) = (&self.factors, &self.options, self.seed, self.frame);
         let chunks = self.particles.par_chunks_mut(CHUNK).zip(self.weights.par_chunks_mut(CHUNK));
-        let best: Vec<f32> = chunks
+        chunks
             .enumerate()
             .map(|(chunk, (particles, weights))| {
                 let key = (seed, frame, (chunk * CHUNK) as u32);
-                advance_and_weigh(model, factors, options, measurement, key, particles, weights);
-                greatest(weights)
+                sweep_in_wide_vectors(model, factors, options, (target, step_frames), key, particles, weights)
             })
-            .collect();
-        greatest(&best)
+            .collect()
     }
 
-    /// Sum of the weights relative to `best`, and the weighted circular means.
-    fn estimate(&mut self, best: f32) -> (f32, CyclicEstimate<N>) {
-        let reference = self.particles[0];
-        let chunks = self.particles.par_chunks(CHUNK).zip(self.weights.par_chunks_mut(CHUNK));
-        let sums: Vec<(f32, ParticleMoments<N>)> = chunks
-            .map(|(particles, weights)| {
-                let total = exponentiate(best, weights);
-                (total, ParticleMoments::of(particles, weights, &reference))
-            })
-            .collect();
-        let mut all = ParticleMoments::nothing();
-        let mut total = 0.0;
-        for (sum, moments) in &sums {
-            total += sum;
-            all.merge(moments);
+    /// The next generation; every chunk writes its own part of it.
+    fn resample(&mut self, all: WeightShare, shares: &[WeightShare]) {
+        let comb = Comb::new(all, resampling_offset(self.seed, self.frame), self.particles.len());
+        let mut rest: &mut [CyclicParticle<N>] = &mut self.next;
+        let mut parts = Vec::with_capacity(shares.len());
+        for teeth in comb.teeth(shares) {
+            let (next, others) = rest.split_at_mut(teeth.count);
+            parts.push((teeth, next));
+            rest = others;
         }
-        (total, all.estimate(&reference))
-    }
-
-    fn resample(&mut self, total: f32) {
-        let offset = resampling_offset(self.seed, self.frame);
-        ancestors(&self.weights, total, offset, &mut self.ancestors);
-        let particles = &self.particles;
-        let jobs = self.next.par_chunks_mut(CHUNK).zip(self.ancestors.par_chunks(CHUNK));
-        jobs.for_each(|(next, from)| copy_ancestors(particles, from, next));
+        let chunks = self.particles.par_chunks(CHUNK).zip(self.weights.par_chunks(CHUNK));
+        chunks.zip(parts).for_each(|((particles, weights), (teeth, next))| {
+            comb.choose(particles, weights, &teeth, next);
+        });
         std::mem::swap(&mut self.particles, &mut self.next);
     }
 }
