@@ -16,7 +16,7 @@ use sinew_core::tracker::cyclic::{CyclicFrame, CyclicFrameInput, CyclicTracker, 
 const ANGLES: usize = HUMAN_ANGLES;
 const PARTICLES: usize = 64;
 /// Numbers of the factors of a model of [`POSITIONS`] positions and [`ANGLES`] angles.
-const FACTORS: usize = 176 * POSITIONS;
+const FACTORS: usize = 208 * POSITIONS;
 /// Standard deviation of each keypoint, pixels.
 const KEYPOINT_STD_PX: f32 = 2.0;
 const NOISE_RAD: f32 = 0.05;

@@ -32,7 +32,7 @@ const FORGETTING: f32 = 0.02;
 const PHASE_TEMPERING: f32 = 2.5;
 /// Share of the computed variance of an angle that is reported. The spread between people is taken wider and the evidence on the
 /// phase weaker than measured, for the gains' sake; without this share the bands hold more than they say.
-const BAND_CALIBRATION: f32 = 0.85;
+pub const BAND_CALIBRATION: f32 = 0.9;
 /// An angle this many standard deviations off says nothing about the phase, and its own constant is learned anew.
 pub(super) const GATE_SIGMAS: f32 = 4.0;
 

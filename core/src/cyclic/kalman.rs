@@ -87,7 +87,7 @@ impl<const N: usize> KalmanFilter<N> {
         measurement: &AngleMeasurement<N>,
     ) -> CyclicEstimate<N> {
         self.predict(model, options, measurement.step_frames());
-        let predicted = options.protect_from_outliers.then(|| *self);
+        let predicted = options.protect_from_outliers.then_some(*self);
         let innovation = self.correct(model, options.gain, measurement);
         let outlier = is_outlier(innovation.squared, innovation.present, options.gate_sigmas);
         if let (true, Some(predicted)) = (outlier, predicted) {

@@ -3,6 +3,7 @@
 use super::pass::{Link, Smoothable, Smoothed};
 use super::recursion::Moments;
 use nalgebra::{DMatrix, DVector};
+use sinew_core::cyclic::coupled::BAND_CALIBRATION;
 use sinew_core::cyclic::coupled_block::{Basis, PARTS};
 use sinew_core::cyclic::{AngleMeasurement, CoupledFilter, MotionModel};
 use std::f64::consts::TAU;
@@ -130,7 +131,7 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
                     variance += gradient[i] * gradient[j] * moments.covariance[(index(i), index(j))];
                 }
             }
-            angle_variance_rad2[angle] = variance.max(0.0);
+            angle_variance_rad2[angle] = f64::from(BAND_CALIBRATION) * variance.max(0.0);
         }
         Smoothed {
             angles_rad,

@@ -20,7 +20,7 @@ const SHRINKAGE: f64 = 0.2;
 const REST_INFLATION: f64 = 2.0;
 /// The same part of the rest's variance. It is more: how much of an angle's fine movement is a person's own depends on how the
 /// joints were placed, which for short links differs most between sources.
-const REST_SHRINKAGE: f64 = 0.6;
+const REST_SHRINKAGE: f64 = 0.35;
 /// Least standard deviation, radians (a third of a degree): labels are no better.
 const LEAST_STD_RAD: f64 = 0.006;
 /// Bounds of the rest's rate per cycle: slower is a swing, faster is noise.
