@@ -52,7 +52,7 @@ mod tests {
     proptest! {
         #[test]
         fn an_ellipse_has_its_own_area_at_one_half_in_any_direction(
-            long in 4.0_f32..200.0, ratio in 0.1_f32..1.0, angle in -3.0_f32..3.0,
+            long in 6.0_f32..200.0, ratio in 0.1_f32..1.0, angle in -3.0_f32..3.0,
         ) {
             let area = PI * long * long * ratio;
             let measured = ellipse(long, long * ratio, angle).length_weighted_area_px(0.5);

@@ -11,6 +11,11 @@ use heapless::Vec;
 /// Most pixels kept for one limb.
 pub const MAX_LIMB_PIXELS: usize = 256;
 
+/// Pixels whose limb a first pass remembers for the second one.
+const REMEMBERED_PIXELS: usize = 1024;
+/// Of these in a word.
+const PIXELS_PER_WORD: usize = 16;
+
 /// Pixels of both limbs.
 #[derive(Debug, Clone, Default)]
 pub struct LimbPixels {
@@ -79,19 +84,26 @@ pub fn split(pixels: &[EdgePixel], arm: &ArmImagePoints, band_px: f32) -> LimbPi
     let limbs = Limbs::new(arm, band_px);
     let mut result = LimbPixels::default();
     let mut counts = [0_usize; 2];
-    for pixel in pixels {
-        if let Some(limb) = limbs.limb_of(pixel) {
-            // What finds no room comes in the second pass.
-            let _ = if limb == 0 { result.upper.push(*pixel) } else { result.fore.push(*pixel) };
-            counts[limb] += 1;
+    // Two bits a pixel for the second pass: 1 + limb, or 0.
+    let mut codes = [0_u32; REMEMBERED_PIXELS / PIXELS_PER_WORD];
+    for (index, pixel) in pixels.iter().enumerate() {
+        let Some(limb) = limbs.limb_of(pixel) else { continue };
+        // What finds no room comes in the second pass.
+        let _ = if limb == 0 { result.upper.push(*pixel) } else { result.fore.push(*pixel) };
+        counts[limb] += 1;
+        if let Some(word) = codes.get_mut(index / PIXELS_PER_WORD) {
+            *word |= (1 + limb as u32) << (2 * (index % PIXELS_PER_WORD));
         }
     }
     for (limb, count) in counts.into_iter().enumerate() {
         if count > MAX_LIMB_PIXELS {
             let kept = if limb == 0 { &mut result.upper } else { &mut result.fore };
             kept.clear();
-            let of_limb = pixels.iter().filter(|pixel| limbs.limb_of(pixel) == Some(limb));
-            for pixel in of_limb.step_by(count.div_ceil(MAX_LIMB_PIXELS)) {
+            let of_limb = pixels.iter().enumerate().filter(|(index, pixel)| match codes.get(index / PIXELS_PER_WORD) {
+                Some(word) => word >> (2 * (index % PIXELS_PER_WORD)) & 3 == 1 + limb as u32,
+                None => limbs.limb_of(pixel) == Some(limb),
+            });
+            for (_, pixel) in of_limb.step_by(count.div_ceil(MAX_LIMB_PIXELS)) {
                 // Cannot overflow: the stride leaves at most the capacity.
                 let _ = kept.push(*pixel);
             }
@@ -150,6 +162,35 @@ mod tests {
         let limbs = split(&pixels, &ARM, 30.0);
         assert_eq!(limbs.upper.as_slice(), &[pixels[0], pixels[3]]);
         assert_eq!(limbs.fore.as_slice(), &[pixels[1]]);
+    }
+
+    #[test]
+    fn every_pixel_goes_where_its_distances_say() {
+        let limbs = Limbs::new(&ARM, 30.0);
+        for u in 0..320_u16 {
+            for v in 0..240_u16 {
+                let point = Pixel::new(f32::from(u), f32::from(v));
+                let upper = distance_to_segment_px(point, ARM.shoulder, ARM.elbow);
+                let fore = distance_to_segment_px(point, ARM.elbow, ARM.hand);
+                let (limb, nearer) = if upper <= fore { (0, upper) } else { (1, fore) };
+                assert_eq!(limbs.limb_of(&EdgePixel { u, v }), (nearer <= 30.0).then_some(limb), "{u}, {v}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_crowd_of_both_limbs_is_every_k_th_pixel_of_each() {
+        // In turns on the upper arm, on the forearm and far from both; more than are remembered.
+        let places = [EdgePixel { u: 100, v: 150 }, EdgePixel { u: 150, v: 200 }, EdgePixel { u: 310, v: 20 }];
+        let pixels: Vec<EdgePixel, 2000> = (0..2000_u16)
+            .map(|i| EdgePixel { u: places[usize::from(i % 3)].u + i / 200, ..places[usize::from(i % 3)] })
+            .collect();
+        let limbs = split(&pixels, &ARM, 30.0);
+        for (limb, kept) in [&limbs.upper, &limbs.fore].into_iter().enumerate() {
+            // 667 pixels of each, every third.
+            let wanted: Vec<EdgePixel, 2000> = pixels.iter().skip(limb).step_by(3).step_by(3).copied().collect();
+            assert_eq!(kept.as_slice(), wanted.as_slice());
+        }
     }
 
     #[test]
