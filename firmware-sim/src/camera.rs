@@ -58,7 +58,8 @@ impl CameraApp {
     }
 
     #[inline(never)]
-    fn line<P: Port>(&mut self, line: &CameraLine) -> Result<(), Refusal> {
+    fn line<P: Port>(&mut self, record: &Record<'_>) -> Result<(), Refusal> {
+        let line: CameraLine = record.read()?;
         let front_end = self.front_end.get_mut().ok_or(RecordError::OutOfOrder)?;
         let (skin, begun) = (&self.skin, self.begun);
         counted::<P, _>(&mut self.lines, || {
@@ -138,7 +139,7 @@ impl Application for CameraApp {
         match record.kind {
             Kind::CameraSetup => self.begin(&record.read()?),
             Kind::ArmSetup => self.arm.begin(&record.read()?),
-            Kind::CameraLine => self.line::<P>(&record.read()?),
+            Kind::CameraLine => self.line::<P>(record),
             Kind::ArmInput => self.end::<P>(&record.read()?, answers),
             _ => self.cyclic.take::<P>(record, answers),
         }

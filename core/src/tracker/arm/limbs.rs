@@ -40,22 +40,26 @@ impl LimbHypotheses {
     }
 }
 
-/// Measures all hypotheses. `faded` is what is still known from before of the last estimate's arm.
+/// Measures all hypotheses into `result`, whose estimate is what is still known from before of the last estimate's arm.
+///
+/// In place and not inlined, so that a step's stack holds the densities once.
+#[inline(never)]
 pub(super) fn observe(
     context: &FrameContext<'_>,
     last: &ArmJoints,
-    faded: &LimbDensities,
     image: &ArmImage<'_>,
     stream_of: impl Fn(u32) -> Stream,
-) -> LimbHypotheses {
-    let estimate = measure(context, last, image.edges, faded, &mut stream_of(0));
-    let mut result = LimbHypotheses { estimate, blobs: Vec::new() };
-    let uniform = OrientationDensity::uniform(faded.upper.bin_count()).unwrap_or(faded.upper);
+    result: &mut LimbHypotheses,
+) {
+    result.estimate = measure(context, last, image.edges, &result.estimate, &mut stream_of(0));
+    result.blobs.clear();
+    let known = result.estimate.upper;
+    let uniform = OrientationDensity::uniform(known.bin_count()).unwrap_or(known);
     let unknown = LimbDensities { upper: uniform, fore: uniform };
     let hand = context.model.camera().project(&last.hand_m);
     for index in 0..context.candidates.len().min(MAX_HYPOTHESES) {
         let densities = if context.counts.get(index) == Some(&0) || context.candidate_at(hand) == Some(index) {
-            estimate
+            result.estimate
         } else {
             arm_to_blob(context, last, index)
                 .map_or(unknown, |arm| measure(context, &arm, image.edges, &unknown, &mut stream_of(1 + index as u32)))
@@ -63,7 +67,6 @@ pub(super) fn observe(
         // One entry a candidate, and no more candidates than entries.
         let _ = result.blobs.push(densities);
     }
-    result
 }
 
 /// The last estimate with its hand corrected to candidate `index` and its elbow made to fit.

@@ -1,7 +1,7 @@
 //! One frame of one arm.
 
 use super::estimate::{ArmEstimate, ArmJoints, Cluster, Status};
-use super::frame::{ArmFrame, ArmImage, MAX_CANDIDATES, most_likely};
+use super::frame::{ArmFrame, MAX_CANDIDATES, most_likely};
 use super::limbs::{self, LimbDensities, LimbHypotheses};
 use super::memory::BlobMemory;
 use super::model::ArmModel;
@@ -193,7 +193,9 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         let image = frame.image.unwrap_or_default();
         let (candidates, dropped) = most_likely(image.candidates);
         let context = self.context(model, frame, candidates, dt_s);
-        let limbs = self.observe_limbs(&context, &image);
+        let mut limbs = self.faded_limbs(&context);
+        let stream_of = |index| Stream::new(self.seed, self.frame, LIMB_STREAMS + index);
+        limbs::observe(&context, &self.estimate, &image, stream_of, &mut limbs);
         let ancestors = self.select_ancestors();
         self.predict_and_weigh(&context, &ancestors, frame.image.map(|_| &limbs));
         let (log_evidence, degenerate) = match self.weights.normalise() {
@@ -226,13 +228,12 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         clamp(elapsed, DT_RANGE_S.0, DT_RANGE_S.1)
     }
 
-    /// Orientation densities for the last estimate, faded where nothing moves, and for every blob.
-    fn observe_limbs(&mut self, context: &FrameContext<'_>, image: &ArmImage<'_>) -> LimbHypotheses {
+    /// Orientation densities for the last estimate, faded as where nothing moves.
+    fn faded_limbs(&mut self, context: &FrameContext<'_>) -> LimbHypotheses {
         let keep = exp(-context.dt_s / context.model.options().orientation_memory_s);
         self.limbs.upper.fade(keep);
         self.limbs.fore.fade(keep);
-        let stream_of = |index| Stream::new(self.seed, self.frame, LIMB_STREAMS + index);
-        limbs::observe(context, &self.estimate, &self.limbs, image, stream_of)
+        LimbHypotheses { estimate: self.limbs, blobs: Vec::new() }
     }
 
     /// Gathers what all particles share: rays of the blobs and how many particles each blob gets.
