@@ -15,7 +15,7 @@ use core::f32::consts::TAU;
 /// Beyond this standard deviation of c, in cycles, the linearisation is void and the position is searched for.
 pub(super) const LOST_STD: f32 = 0.15;
 /// Frames between two looks at the grid while the position is known.
-const WATCH_FRAMES: f32 = 2.0;
+const WATCH_FRAMES: f32 = 3.0;
 /// Weight of a place of which the grid is sure.
 const SURE: f32 = 0.9;
 /// Way beyond the usual one between the filter's position and the grid's that is strange, cycles.

@@ -5,7 +5,7 @@
 
 use super::phase::{position_difference, wrap_position};
 use super::{AngleMeasurement, MotionModel};
-use crate::math::{exp, floor, least_angle, max, min, round};
+use crate::math::{abs, exp, exp_small, least_angle, max, min, round};
 use crate::saved_state::{SavedState, StateVisitor};
 
 /// Positions of the grid.
@@ -51,6 +51,9 @@ pub struct PhaseMode {
 
 /// Half the width of a place, cycles.
 pub const MODE_REACH: f32 = 0.15;
+/// Cells of one speed that may lie within it.
+const NEAR_CELLS: usize = 12;
+const _: () = assert!(MODE_REACH * (POSITIONS as f32) < 5.0 && TABLE.is_multiple_of(POSITIONS));
 
 impl SavedState for PhaseGrid {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
@@ -88,28 +91,18 @@ impl PhaseGrid {
     /// Makes it [`Self::near`] the position.
     pub fn begin_near(&mut self, position: f32) {
         self.begin_uniform();
-        self.reweigh(|_, at| {
-            let scaled = 20.0 * position_difference(at, position);
-            exp(-0.5 * scaled * scaled)
-        });
-    }
-
-    /// Position of a cell of a speed whose way is `travelled`, [0, 1).
-    fn position(travelled: f32, cell: usize) -> f32 {
-        // Below two, so that this wraps it.
-        let at = cell as f32 / POSITIONS as f32 + travelled;
-        if at >= 1.0 { at - 1.0 } else { at }
-    }
-
-    fn reweigh(&mut self, factor: impl Fn(usize, f32) -> f32) {
-        let mut sum = 0.0;
-        for speed in 0..SPEEDS {
-            for cell in 0..POSITIONS {
-                let at = Self::position(self.travelled[speed], cell);
-                self.weights[speed][cell] *= factor(speed, at);
-                sum += self.weights[speed][cell];
+        for row in &mut self.weights {
+            for (cell, weight) in row.iter_mut().enumerate() {
+                let scaled = 20.0 * position_difference(cell as f32 / POSITIONS as f32, position);
+                *weight *= exp(-0.5 * scaled * scaled);
             }
         }
+        self.normalise();
+    }
+
+    /// Scales all weights to a sum of one; nothing is known where they have none.
+    fn normalise(&mut self) {
+        let sum: f32 = self.weights.iter().map(|row| row.iter().sum::<f32>()).sum();
         if !(sum > 1.0e-30 && sum.is_finite()) {
             *self = Self::uniform();
             return;
@@ -148,12 +141,15 @@ impl PhaseGrid {
     /// Takes in a measurement of a person about whom nothing but the spread between people is known.
     pub fn weigh<const N: usize>(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) {
         let likelihood = likelihood_table(model, measurement, frames);
-        self.reweigh(|_, at| {
-            let along = at * TABLE as f32;
-            let before = (along as usize).min(TABLE - 1);
-            let (a, b) = (likelihood[before], likelihood[(before + 1) % TABLE]);
-            a + (along - before as f32) * (b - a)
-        });
+        for (row, &travelled) in self.weights.iter_mut().zip(&self.travelled) {
+            let (shift, part) = cells_and_rest(travelled, TABLE);
+            for (cell, weight) in row.iter_mut().enumerate() {
+                let before = (TABLE / POSITIONS * cell + shift) % TABLE;
+                let (a, b) = (likelihood[before], likelihood[(before + 1) % TABLE]);
+                *weight *= a + part * (b - a);
+            }
+        }
+        self.normalise();
     }
 
     /// Part of the weight within [`MODE_REACH`] of `position`.
@@ -167,15 +163,12 @@ impl PhaseGrid {
     /// Shows speed, weight and way from `position` of each cell within [`MODE_REACH`] to `take`.
     fn each_near(&self, position: f32, mut take: impl FnMut(usize, f32, f32)) {
         for (speed, (weights, &travelled)) in self.weights.iter().zip(&self.travelled).enumerate() {
-            // Only cells from five before to six behind the position can be near enough.
-            let before = floor((position - travelled) * POSITIONS as f32) as i32;
-            for (cell, &weight) in weights.iter().enumerate() {
-                if (cell as i32).wrapping_sub(before).wrapping_add(5).rem_euclid(POSITIONS as i32) > 12 {
-                    continue;
-                }
-                let way = position_difference(Self::position(travelled, cell), position);
-                if way.abs() <= MODE_REACH {
-                    take(speed, weight, way);
+            let (below, rest) = cells_and_rest(wrap_position(position - travelled), POSITIONS);
+            for ahead in 0..NEAR_CELLS {
+                // From five cells before the position to six behind it: no other can be near enough.
+                let way = (ahead as f32 - 5.0 - rest) / POSITIONS as f32;
+                if abs(way) <= MODE_REACH {
+                    take(speed, weights[(below + POSITIONS + ahead - 5) % POSITIONS], way);
                 }
             }
         }
@@ -185,13 +178,12 @@ impl PhaseGrid {
     #[must_use]
     pub fn by_position(&self) -> [f32; POSITIONS] {
         let mut sums = [0.0; POSITIONS];
-        for speed in 0..SPEEDS {
-            for cell in 0..POSITIONS {
-                let along = Self::position(self.travelled[speed], cell) * POSITIONS as f32;
-                let before = (along as usize).min(POSITIONS - 1);
-                let part = along - before as f32;
-                sums[before] += (1.0 - part) * self.weights[speed][cell];
-                sums[(before + 1) % POSITIONS] += part * self.weights[speed][cell];
+        for (weights, &travelled) in self.weights.iter().zip(&self.travelled) {
+            let (shift, part) = cells_and_rest(travelled, POSITIONS);
+            for (cell, weight) in weights.iter().enumerate() {
+                let before = (cell + shift) % POSITIONS;
+                sums[before] += (1.0 - part) * weight;
+                sums[(before + 1) % POSITIONS] += part * weight;
             }
         }
         sums
@@ -245,19 +237,31 @@ fn likelihood_table<const N: usize>(
     let count = model.angle_count().min(N);
     let mut scores = [0.0_f32; TABLE];
     let tempering = max(TEMPERING * measurement.present(count) as f32 / TEMPERED_ANGLES, TEMPERING);
+    let seen = |i: usize| if i < count { measurement.angle_rad(i) } else { None };
+    let measured: [f32; N] = core::array::from_fn(|i| seen(i).unwrap_or(0.0));
+    // What was not seen says nothing.
     let precision: [f32; N] = core::array::from_fn(|i| {
         let std = measurement.std_rad()[i];
-        0.5 / (tempering * (repeated * spread[i] * spread[i] + std * std))
+        if seen(i).is_some() { 0.5 / (tempering * (repeated * spread[i] * spread[i] + std * std)) } else { 0.0 }
     });
     let limit = 0.5 * LIMIT_SIGMAS * LIMIT_SIGMAS / tempering;
     for (index, score) in scores.iter_mut().enumerate() {
         let pose = model.mean_pose_rad::<N>(model.point(index as f32 / TABLE as f32));
-        for i in 0..count {
-            let Some(measured) = measurement.angle_rad(i) else { continue };
-            let off = least_angle(measured - pose[i]);
-            *score -= min(precision[i] * off * off, limit);
-        }
+        let term = |i: usize| {
+            let off = least_angle(measured[i] - pose[i]);
+            min(precision[i] * off * off, limit)
+        };
+        let terms: [f32; N] = core::array::from_fn(term);
+        *score = -terms.iter().sum::<f32>();
     }
     let greatest = scores.iter().fold(f32::NEG_INFINITY, |best, &score| max(best, score));
-    scores.map(|score| exp(score - greatest))
+    // All angles at their limits are exp(-42) for 13 of them.
+    scores.map(|score| exp_small(max(score - greatest, -80.0)))
+}
+
+/// A way in [0, 1) as whole cells of `cells` to a cycle, and the rest as a part of a cell.
+fn cells_and_rest(way: f32, cells: usize) -> (usize, f32) {
+    let along = way * cells as f32;
+    let whole = (along as usize).min(cells - 1);
+    (whole, along - whole as f32)
 }
