@@ -5,7 +5,7 @@ use std::path::Path;
 
 #[test]
 fn the_trackers_built_for_the_host_give_the_expected_digests() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../digest/expected.txt");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/digest/expected.txt");
     let expected = std::fs::read_to_string(path).unwrap();
     let lines = Subject::ALL.map(|subject| {
         let digest = subject.digest(FRAMES).unwrap();

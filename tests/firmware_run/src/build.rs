@@ -19,7 +19,7 @@ pub fn images(arguments: &[&str]) -> Result<()> {
         .args(["build", "--release", "--bins"])
         .args(words)
         .args(arguments)
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware-sim"))
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../firmware-sim"))
         .status()
         .with_context(|| format!("`{program}` cannot be run"))?;
     ensure!(status.success(), "the images cannot be built; `rustup target add {TARGET}` installs their target");
@@ -30,6 +30,6 @@ pub fn images(arguments: &[&str]) -> Result<()> {
 #[must_use]
 pub fn image_path(name: &str) -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../target"), PathBuf::from);
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target"), PathBuf::from);
     target.join(TARGET).join("release").join(name)
 }

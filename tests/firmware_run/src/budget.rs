@@ -135,7 +135,7 @@ impl Budget {
 }
 
 fn readme() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md")
 }
 
 /// What stands before the marks, between them, and behind them.

@@ -20,7 +20,7 @@ const WARNINGS: [&str; 8] = [
 ];
 
 fn folder() -> PathBuf {
-    workspace_root().join("c_interface/examples")
+    workspace_root().join("tests/c_interface/examples")
 }
 
 /// Compares what an example printed with the file beside it, or writes that file.

@@ -19,7 +19,7 @@ pub enum Expected {
 /// The folder of the workspace.
 #[must_use]
 pub fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware-sim/expected")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../firmware-sim/expected")
 }
 
 /// Whether what is answered now is to be the expected from now on.

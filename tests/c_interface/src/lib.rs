@@ -9,7 +9,7 @@ use std::process::{Command, Output};
 /// Never: the package lies in the workspace.
 #[must_use]
 pub fn workspace_root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace")
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the package lies in the workspace")
 }
 
 /// Whether `tool` runs; where it does not, says what is left out, and fails in CI, which has to have all tools.
