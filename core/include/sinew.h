@@ -76,7 +76,7 @@
 /**
  * Bytes that always suffice for an arm tracker, on every target.
  */
-#define SINEW_ARM_MAX_BYTES 8192
+#define SINEW_ARM_MAX_BYTES 12288
 
 /**
  * Bytes that always suffice for the saved state of an arm tracker.
@@ -86,7 +86,7 @@
 /**
  * Bytes that always suffice for a tracker of both arms, on every target.
  */
-#define SINEW_ARM_PAIR_MAX_BYTES 16384
+#define SINEW_ARM_PAIR_MAX_BYTES 24576
 
 /**
  * Bytes that always suffice for the saved state of a tracker of both arms.

@@ -13,7 +13,7 @@ use core::ffi::c_void;
 use core::mem::offset_of;
 
 /// Bytes that always suffice for an arm tracker, on every target.
-pub const SINEW_ARM_MAX_BYTES: usize = 8192;
+pub const SINEW_ARM_MAX_BYTES: usize = 12288;
 /// Bytes that always suffice for the saved state of an arm tracker.
 pub const SINEW_ARM_STATE_MAX_BYTES: usize = 4096;
 

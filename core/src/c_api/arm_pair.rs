@@ -11,7 +11,7 @@ use core::ffi::c_void;
 use core::mem::offset_of;
 
 /// Bytes that always suffice for a tracker of both arms, on every target.
-pub const SINEW_ARM_PAIR_MAX_BYTES: usize = 16384;
+pub const SINEW_ARM_PAIR_MAX_BYTES: usize = 24576;
 /// Bytes that always suffice for the saved state of a tracker of both arms.
 pub const SINEW_ARM_PAIR_STATE_MAX_BYTES: usize = 8192;
 

@@ -25,6 +25,14 @@ pub struct LimbPixels {
     pub fore: Vec<EdgePixel, MAX_LIMB_PIXELS>,
 }
 
+impl LimbPixels {
+    /// No pixel.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self { upper: Vec::new(), fore: Vec::new() }
+    }
+}
+
 /// Image of an arm: its three joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmImagePoints {
@@ -75,14 +83,14 @@ pub fn distance_to_segment_px(point: Pixel, a: Pixel, b: Pixel) -> f32 {
     sqrt(Segment::new(a, b).distance_squared(point))
 }
 
-/// Sorts `pixels` to the limbs of `arm` within `band_px`.
+/// Sorts `pixels` to the limbs of `arm` within `band_px`, into `result`.
 ///
 /// Where a limb would get more than [`MAX_LIMB_PIXELS`], an even share of all is kept: a first pass counts, a second keeps
 /// every k-th.
-#[must_use]
-pub fn split(pixels: &[EdgePixel], arm: &ArmImagePoints, band_px: f32) -> LimbPixels {
+pub fn split(pixels: &[EdgePixel], arm: &ArmImagePoints, band_px: f32, result: &mut LimbPixels) {
     let limbs = Limbs::new(arm, band_px);
-    let mut result = LimbPixels::default();
+    result.upper.clear();
+    result.fore.clear();
     let mut counts = [0_usize; 2];
     // Two bits a pixel for the second pass: 1 + limb, or 0.
     let mut codes = [0_u32; REMEMBERED_PIXELS / PIXELS_PER_WORD];
@@ -109,7 +117,6 @@ pub fn split(pixels: &[EdgePixel], arm: &ArmImagePoints, band_px: f32) -> LimbPi
             }
         }
     }
-    result
 }
 
 /// Part by which the squares of two distances have to differ at least for their roots, rounded, to differ in the same sense.
@@ -159,7 +166,8 @@ mod tests {
             EdgePixel { u: 300, v: 300 },
             EdgePixel { u: 100, v: 75 },
         ];
-        let limbs = split(&pixels, &ARM, 30.0);
+        let mut limbs = LimbPixels::none();
+        split(&pixels, &ARM, 30.0, &mut limbs);
         assert_eq!(limbs.upper.as_slice(), &[pixels[0], pixels[3]]);
         assert_eq!(limbs.fore.as_slice(), &[pixels[1]]);
     }
@@ -185,7 +193,8 @@ mod tests {
         let pixels: Vec<EdgePixel, 2000> = (0..2000_u16)
             .map(|i| EdgePixel { u: places[usize::from(i % 3)].u + i / 200, ..places[usize::from(i % 3)] })
             .collect();
-        let limbs = split(&pixels, &ARM, 30.0);
+        let mut limbs = LimbPixels::none();
+        split(&pixels, &ARM, 30.0, &mut limbs);
         for (limb, kept) in [&limbs.upper, &limbs.fore].into_iter().enumerate() {
             // 667 pixels of each, every third.
             let wanted: Vec<EdgePixel, 2000> = pixels.iter().skip(limb).step_by(3).step_by(3).copied().collect();
@@ -196,7 +205,8 @@ mod tests {
     #[test]
     fn a_crowd_is_thinned_evenly_to_the_capacity() {
         let pixels: Vec<EdgePixel, 2000> = (0..2000_u16).map(|i| EdgePixel { u: 100, v: 100 + i / 20 }).collect();
-        let limbs = split(&pixels, &ARM, 30.0);
+        let mut limbs = LimbPixels::none();
+        split(&pixels, &ARM, 30.0, &mut limbs);
         assert!(limbs.upper.len() <= MAX_LIMB_PIXELS && limbs.upper.len() > MAX_LIMB_PIXELS / 2);
         assert!(limbs.upper.last().unwrap().v > 180, "the end of the limb is missing");
     }

@@ -33,6 +33,11 @@ impl OrientationDensity {
         Self { bins: [1.0; MAX_BINS], len: MAX_BINS }
     }
 
+    /// Makes it uniform over its bins.
+    pub fn forget(&mut self) {
+        self.bins = [1.0; MAX_BINS];
+    }
+
     /// The uniform density over `bins` bins.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ use super::propose::FrameContext;
 use crate::correction::elbow::nearest_elbow;
 use crate::math::{Vec3, max, unit};
 use crate::observation::hough::dynamic_hough;
-use crate::observation::limbs::split;
+use crate::observation::limbs::{LimbPixels, split};
 use crate::observation::orientation::OrientationDensity;
 use crate::random::Stream;
 use crate::vision::edges::EdgePixel;
@@ -40,32 +40,54 @@ impl LimbHypotheses {
     }
 }
 
-/// Measures all hypotheses into `result`, whose estimate is what is still known from before of the last estimate's arm.
-///
-/// In place and not inlined, so that a step's stack holds the densities once.
+impl LimbDensities {
+    /// Nothing known.
+    pub const fn flat() -> Self {
+        Self { upper: OrientationDensity::flat(), fore: OrientationDensity::flat() }
+    }
+}
+
+/// Where a frame's hypotheses are measured: part of the tracker, so that a step takes less stack. Holds nothing between frames.
+#[derive(Debug, Clone)]
+pub(super) struct LimbRoom {
+    pub hypotheses: LimbHypotheses,
+    pixels: LimbPixels,
+}
+
+impl LimbRoom {
+    pub const fn empty() -> Self {
+        Self {
+            hypotheses: LimbHypotheses { estimate: LimbDensities::flat(), blobs: Vec::new() },
+            pixels: LimbPixels::none(),
+        }
+    }
+}
+
+/// Measures all hypotheses in `room`, whose estimate is what is still known from before of the last estimate's arm.
 #[inline(never)]
 pub(super) fn observe(
     context: &FrameContext<'_>,
     last: &ArmJoints,
     image: &ArmImage<'_>,
     stream_of: impl Fn(u32) -> Stream,
-    result: &mut LimbHypotheses,
+    room: &mut LimbRoom,
 ) {
-    result.estimate = measure(context, last, image.edges, &result.estimate, &mut stream_of(0));
-    result.blobs.clear();
-    let known = result.estimate.upper;
-    let uniform = OrientationDensity::uniform(known.bin_count()).unwrap_or(known);
-    let unknown = LimbDensities { upper: uniform, fore: uniform };
+    let LimbRoom { hypotheses: LimbHypotheses { estimate, blobs }, pixels } = room;
+    measure(context, last, image.edges, &mut stream_of(0), (pixels, estimate));
+    blobs.clear();
     let hand = context.model.camera().project(&last.hand_m);
     for index in 0..context.candidates.len().min(MAX_HYPOTHESES) {
-        let densities = if context.counts.get(index) == Some(&0) || context.candidate_at(hand) == Some(index) {
-            result.estimate
-        } else {
-            arm_to_blob(context, last, index)
-                .map_or(unknown, |arm| measure(context, &arm, image.edges, &unknown, &mut stream_of(1 + index as u32)))
-        };
         // One entry a candidate, and no more candidates than entries.
-        let _ = result.blobs.push(densities);
+        let _ = blobs.push(*estimate);
+        let Some(densities) = blobs.last_mut() else { break };
+        if context.counts.get(index) == Some(&0) || context.candidate_at(hand) == Some(index) {
+            continue;
+        }
+        densities.upper.forget();
+        densities.fore.forget();
+        if let Some(arm) = arm_to_blob(context, last, index) {
+            measure(context, &arm, image.edges, &mut stream_of(1 + index as u32), (pixels, densities));
+        }
     }
 }
 
@@ -79,21 +101,23 @@ fn arm_to_blob(context: &FrameContext<'_>, last: &ArmJoints, index: usize) -> Op
     Some(ArmJoints { shoulder_m: context.shoulder_m, elbow_m, hand_m })
 }
 
-/// Densities of the moving edges near `arm`; a limb without them keeps `before`.
+/// Densities of the moving edges near `arm`; a limb without them keeps what it had.
+#[inline(never)]
 fn measure(
     context: &FrameContext<'_>,
     arm: &ArmJoints,
     edges: &[EdgePixel],
-    before: &LimbDensities,
     stream: &mut Stream,
-) -> LimbDensities {
+    (pixels, densities): (&mut LimbPixels, &mut LimbDensities),
+) {
     let options = context.model.options();
     let points = context.model.image_points(&arm.shoulder_m, &arm.elbow_m, &arm.hand_m);
-    let Some(points) = points else { return *before };
+    let Some(points) = points else { return };
     let band_px = options.limb_band_m * context.model.camera().focal_px() / max(arm.elbow_m.z, 0.1);
-    let pixels = split(edges, &points, band_px);
-    let mut density = |pixels: &[EdgePixel], before: OrientationDensity| {
-        dynamic_hough(pixels, &options.hough, stream).map_or(before, |found| found.density)
-    };
-    LimbDensities { upper: density(&pixels.upper, before.upper), fore: density(&pixels.fore, before.fore) }
+    split(edges, &points, band_px, pixels);
+    for (pixels, density) in [(&pixels.upper, &mut densities.upper), (&pixels.fore, &mut densities.fore)] {
+        if let Some(found) = dynamic_hough(pixels, &options.hough, stream) {
+            *density = found.density;
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::estimate::{ArmEstimate, ArmJoints, Cluster, Status};
 use super::frame::{ArmFrame, MAX_CANDIDATES, most_likely};
-use super::limbs::{self, LimbDensities, LimbHypotheses};
+use super::limbs::{self, LimbDensities, LimbRoom};
 use super::memory::BlobMemory;
 use super::model::ArmModel;
 use super::propose::FrameContext;
@@ -72,6 +72,7 @@ pub struct ArmTracker<const CAPACITY: usize> {
     pub(super) current: usize,
     pub(super) weights: Weights<CAPACITY>,
     pub(super) limbs: LimbDensities,
+    limb_room: LimbRoom,
     pub(super) memory: BlobMemory,
     pub(super) estimate: ArmJoints,
     pub(super) hand_velocity_m_per_s: Vec3,
@@ -92,7 +93,6 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     /// A tracker without particles, so that one in static memory can begin there; it takes no stack. Its answers mean nothing.
     #[must_use]
     pub const fn empty() -> Self {
-        let limbs = LimbDensities { upper: OrientationDensity::flat(), fore: OrientationDensity::flat() };
         let nowhere = ArmJoints { shoulder_m: ORIGIN_M, elbow_m: ORIGIN_M, hand_m: ORIGIN_M };
         Self {
             seed: 0,
@@ -103,7 +103,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             generations: [Vec::new(), Vec::new()],
             current: 0,
             weights: Weights::none(),
-            limbs,
+            limbs: LimbDensities::flat(),
+            limb_room: LimbRoom::empty(),
             memory: BlobMemory::empty(),
             estimate: nowhere,
             hand_velocity_m_per_s: ORIGIN_M,
@@ -193,17 +194,18 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         let image = frame.image.unwrap_or_default();
         let (candidates, dropped) = most_likely(image.candidates);
         let context = self.context(model, frame, candidates, dt_s);
-        let mut limbs = self.faded_limbs(&context);
-        let stream_of = |index| Stream::new(self.seed, self.frame, LIMB_STREAMS + index);
-        limbs::observe(&context, &self.estimate, &image, stream_of, &mut limbs);
+        self.fade_limbs(&context);
+        let (seed, number) = (self.seed, self.frame);
+        let stream_of = |index| Stream::new(seed, number, LIMB_STREAMS + index);
+        limbs::observe(&context, &self.estimate, &image, stream_of, &mut self.limb_room);
         let ancestors = self.select_ancestors();
-        self.predict_and_weigh(&context, &ancestors, frame.image.map(|_| &limbs));
+        self.predict_and_weigh(&context, &ancestors, frame.image.is_some());
         let (log_evidence, degenerate) = match self.weights.normalise() {
             Ok(log_evidence) => (log_evidence, false),
             Err(_) => (0.0, true),
         };
         let cluster = context.heaviest_cluster(self.particles(), self.weights.normalised());
-        let status = self.remember(&context, &cluster, &limbs, dt_s);
+        let status = self.remember(&context, &cluster, dt_s);
         self.frame += 1;
         self.timestamp_us = Some(frame.timestamp_us);
         let carrier = cluster.candidate.and_then(|index| context.candidates.get(index));
@@ -229,11 +231,11 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     }
 
     /// Orientation densities for the last estimate, faded as where nothing moves.
-    fn faded_limbs(&mut self, context: &FrameContext<'_>) -> LimbHypotheses {
+    fn fade_limbs(&mut self, context: &FrameContext<'_>) {
         let keep = exp(-context.dt_s / context.model.options().orientation_memory_s);
         self.limbs.upper.fade(keep);
         self.limbs.fore.fade(keep);
-        LimbHypotheses { estimate: self.limbs, blobs: Vec::new() }
+        self.limb_room.hypotheses.estimate = self.limbs;
     }
 
     /// Gathers what all particles share: rays of the blobs and how many particles each blob gets.
@@ -311,7 +313,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     }
 
     /// Moves every ancestor on and weighs the result. Without an image all weights are equal.
-    fn predict_and_weigh(&mut self, context: &FrameContext<'_>, ancestors: &[u16], limbs: Option<&LimbHypotheses>) {
+    fn predict_and_weigh(&mut self, context: &FrameContext<'_>, ancestors: &[u16], is_seen: bool) {
+        let limbs = is_seen.then_some(&self.limb_room.hypotheses);
         let [even, odd] = &mut self.generations;
         let (before, after) = if self.current == 0 { (even, odd) } else { (odd, even) };
         after.clear();
@@ -331,8 +334,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     }
 
     /// Keeps what the next frame needs of the estimate: its place, its velocity, when a blob last carried it.
-    fn remember(&mut self, context: &FrameContext<'_>, cluster: &Cluster, limbs: &LimbHypotheses, dt_s: f32) -> Status {
-        self.limbs = *limbs.at(cluster.candidate);
+    fn remember(&mut self, context: &FrameContext<'_>, cluster: &Cluster, dt_s: f32) -> Status {
+        self.limbs = *self.limb_room.hypotheses.at(cluster.candidate);
         if let Some(memory) = &context.model.options().blob_memory {
             let radius_of = |blob: &HandCandidate| context.model.cluster_radius_px(blob);
             self.memory.learn(&context.candidates, &cluster.masses, radius_of, dt_s, memory);
