@@ -125,7 +125,7 @@ pub fn dynamic_hough(pixels: &[EdgePixel], settings: &HoughSettings, stream: &mu
         let (du, dv) = (f32::from(a.u) - f32::from(b.u), f32::from(a.v) - f32::from(b.v));
         if du * du + dv * dv >= least {
             let orientation_rad = atan2(dv, du);
-            variance.add(orientation_rad);
+            variance.add(du, dv);
             if let Some(vote) = votes.get_mut(uniform.bin_of(orientation_rad)) {
                 *vote = vote.saturating_add(1);
             }
