@@ -199,11 +199,7 @@ impl SinewArm {
 
 impl SavedState for Memory {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        let mut has_begun = self.timestamp_us.is_some();
-        let mut timestamp_us = self.timestamp_us.unwrap_or_default();
-        visitor.flag(&mut has_begun);
-        visitor.long(&mut timestamp_us);
-        self.timestamp_us = has_begun.then_some(timestamp_us);
+        visitor.optional_long(&mut self.timestamp_us);
         self.tracker.visit(visitor);
     }
 }

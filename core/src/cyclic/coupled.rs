@@ -148,7 +148,7 @@ impl<const N: usize> CoupledFilter<N> {
             CyclePair { cc: 1.0e-5, cv: 0.0, vv: max(1.0e-6, SPEED_SPREAD * SPEED_SPREAD * velocity * velocity) };
         self.cycles = 0;
         self.grid.begin_uniform();
-        self.watch = Watch::default();
+        self.watch = Watch::new();
         self.relocks = 0;
         Ok(())
     }

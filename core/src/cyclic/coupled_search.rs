@@ -30,7 +30,7 @@ const USUAL_LIMIT: f32 = 0.1;
 const MOST_FRAMES: f32 = 4.0;
 
 /// How the filter stands to the grid.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Watch {
     /// Frames since the grid last moved.
     pub(super) unwatched_frames: f32,

@@ -68,6 +68,24 @@ pub struct ModelParts<'a> {
     pub deviation: Deviation<'a>,
 }
 
+impl<'a> ModelParts<'a> {
+    /// All tables of real numbers, those of the cycle first; the order is that of [`super::model_bytes`].
+    #[must_use]
+    pub const fn tables(&self) -> [&'a [f32]; 8] {
+        let Deviation { offset_std_rad, swing_std_rad, rest_std_rad, rest_rate_per_cycle } = self.deviation;
+        [
+            self.mean_acceleration,
+            self.acceleration_covariance,
+            self.mean_pose_rad,
+            self.mean_velocity,
+            offset_std_rad,
+            swing_std_rad,
+            rest_std_rad,
+            rest_rate_per_cycle,
+        ]
+    }
+}
+
 /// A checked motion model.
 ///
 /// Invariants: all numbers are finite, the lengths agree, each covariance is positive semi-definite.

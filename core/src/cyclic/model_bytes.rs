@@ -185,17 +185,6 @@ pub fn write(model: &MotionModel<'_>, bytes: &mut [u8]) -> Option<usize> {
     };
     let bytes = bytes.get_mut(..header.byte_count()).filter(|_| !parts.deviation.is_absent())?;
     bytes.fill(0);
-    let deviation = &parts.deviation;
-    let numbers = [
-        parts.mean_acceleration,
-        parts.acceleration_covariance,
-        parts.mean_pose_rad,
-        parts.mean_velocity,
-        deviation.offset_std_rad,
-        deviation.swing_std_rad,
-        deviation.rest_std_rad,
-        deviation.rest_rate_per_cycle,
-    ];
     let first = [
         MAGIC,
         VERSION,
@@ -205,7 +194,7 @@ pub fn write(model: &MotionModel<'_>, bytes: &mut [u8]) -> Option<usize> {
         header.rate_hz.to_bits(),
         0,
     ];
-    let words = first.into_iter().chain(numbers.into_iter().flatten().map(|number| number.to_bits()));
+    let words = first.into_iter().chain(parts.tables().into_iter().flatten().map(|number| number.to_bits()));
     for (slot, word) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(words) {
         *slot = word.to_le_bytes();
     }

@@ -19,19 +19,9 @@ pub struct CyclicSetup {
 #[must_use]
 pub fn model_checksum(model: &MotionModel<'_>) -> u32 {
     let parts = model.parts();
-    let deviation = &parts.deviation;
-    let tables = [
-        parts.mean_acceleration,
-        parts.acceleration_covariance,
-        parts.mean_pose_rad,
-        parts.mean_velocity,
-        deviation.offset_std_rad,
-        deviation.swing_std_rad,
-        deviation.rest_std_rad,
-        deviation.rest_rate_per_cycle,
-        &[parts.mean_duration_frames, parts.rate_hz],
-    ];
-    let sum = tables.into_iter().flatten().fold(Crc32::new(), |sum, value| sum.and_word(value.to_bits()));
+    let scale = [parts.mean_duration_frames, parts.rate_hz];
+    let numbers = parts.tables().into_iter().flatten().chain(&scale);
+    let sum = numbers.fold(Crc32::new(), |sum, value| sum.and_word(value.to_bits()));
     parts.turns_per_cycle.iter().fold(sum, |sum, turns| sum.and(turns.cast_unsigned())).value()
 }
 

@@ -66,6 +66,14 @@ pub trait StateVisitor {
         *value = u64::from(high) << 32 | u64::from(low);
     }
 
+    /// A whole number that may be missing, in three words.
+    fn optional_long(&mut self, value: &mut Option<u64>) {
+        let (mut is_there, mut number) = (value.is_some(), value.unwrap_or_default());
+        self.flag(&mut is_there);
+        self.long(&mut number);
+        *value = is_there.then_some(number);
+    }
+
     /// Yes or no.
     fn flag(&mut self, value: &mut bool) {
         let mut word = u32::from(*value);

@@ -60,11 +60,7 @@ impl<const CAPACITY: usize> SavedState for ArmTracker<CAPACITY> {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         visitor.long(&mut self.seed);
         visitor.long(&mut self.frame);
-        let mut has_time = self.timestamp_us.is_some();
-        let mut timestamp_us = self.timestamp_us.unwrap_or_default();
-        visitor.flag(&mut has_time);
-        visitor.long(&mut timestamp_us);
-        self.timestamp_us = has_time.then_some(timestamp_us);
+        visitor.optional_long(&mut self.timestamp_us);
         visitor.real(&mut self.unseen_s, &(0.0..=60.0));
         visitor.flag(&mut self.ever_seen);
         // The other generation is written before it is read.
