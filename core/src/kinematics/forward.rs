@@ -42,9 +42,15 @@ impl<const BONES: usize, const ANGLES: usize> Posture<BONES, ANGLES> {
         for (index, bone) in skeleton.bones().iter().enumerate() {
             let parent = bone.parent.map(usize::from).filter(|&parent| parent < BONES);
             let mut rotation = parent.and_then(|parent| rotations[parent]);
-            let joint = parent.map_or(*root_m, |parent| self.ends[parent]);
+            let mut joint = parent.map_or(*root_m, |parent| self.ends[parent]);
             for axis in bone.joint.axes() {
                 if let (Some(slot), Some(&value)) = (self.axes.get_mut(angle), angles_rad.get(angle)) {
+                    if skeleton.is_shift(angle) {
+                        *slot = *axis;
+                        joint += axis * value;
+                        angle += 1;
+                        continue;
+                    }
                     *slot = rotation.map_or(*axis, |rotation| rotation * axis);
                     let turned = axis_rotation(axis, value);
                     rotation = Some(rotation.map_or(turned, |rotation| rotation * turned));

@@ -16,6 +16,9 @@ pub fn column<const BONES: usize, const ANGLES: usize>(
     if !skeleton.angle_moves(angle, bone) {
         return Vec3::zeros();
     }
+    if skeleton.is_shift(angle) {
+        return posture.axes.get(angle).copied().unwrap_or_default();
+    }
     match (posture.axes.get(angle), posture.ends.get(bone), posture.joints.get(skeleton.bone_of_angle(angle))) {
         (Some(axis), Some(end), Some(joint)) => axis.cross(&(end - joint)),
         _ => Vec3::zeros(),

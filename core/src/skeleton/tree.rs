@@ -13,26 +13,45 @@ pub enum Joint {
     /// Three angles about unit axes, applied as R(axis 0) R(axis 1) R(axis 2); singular where the middle angle
     /// reaches +-pi/2, which the limits should exclude.
     Ball([Vec3; 3]),
+    /// Goes anywhere, at the root only: three shifts along the first three axes, metres, that stand before the angles,
+    /// and three angles about the last three, as those of a ball.
+    Free([Vec3; 6]),
 }
 
+/// Shifts of a free root: its first coordinates.
+pub const SHIFTS: usize = 3;
+/// Coordinates of a free root: shifts and angles.
+pub const FREE_ROOT_COORDINATES: usize = 6;
+
 impl Joint {
-    /// Number of angles.
+    /// Number of coordinates: angles, and the shifts of a free root.
     #[must_use]
     pub const fn angle_count(&self) -> usize {
         match self {
             Self::Fixed => 0,
             Self::Hinge(_) => 1,
             Self::Ball(_) => 3,
+            Self::Free(_) => FREE_ROOT_COORDINATES,
         }
     }
 
-    /// Axes of the angles, in their order.
+    /// Axes of the coordinates, in their order.
     #[must_use]
     pub fn axes(&self) -> &[Vec3] {
         match self {
             Self::Fixed => &[],
             Self::Hinge(axis) => core::slice::from_ref(axis),
             Self::Ball(axes) => axes,
+            Self::Free(axes) => axes,
+        }
+    }
+
+    /// How many of the coordinates are shifts, which come first.
+    #[must_use]
+    pub const fn shift_count(&self) -> usize {
+        match self {
+            Self::Free(_) => SHIFTS,
+            _ => 0,
         }
     }
 }
@@ -83,13 +102,16 @@ pub struct Skeleton<const BONES: usize, const ANGLES: usize> {
     bone_of_angle: [u8; ANGLES],
     /// Bit b of entry e: bone b moves the end of bone e.
     moved_by: [u32; BONES],
+    /// First coordinates that are shifts of a free root.
+    shifts: usize,
 }
 
 impl<const BONES: usize, const ANGLES: usize> Skeleton<BONES, ANGLES> {
     /// Checks and stores a tree.
     ///
     /// # Errors
-    /// At most 32 bones; parents before children; axes of length one; limits finite and ordered; `ANGLES` angles in all.
+    /// At most 32 bones; parents before children; only the first bone free; axes of length one; limits finite and ordered;
+    /// `ANGLES` angles in all.
     pub fn new(bones: [Bone; BONES], limits: [Limit; ANGLES]) -> Result<Self, ParameterError> {
         if BONES > 32 {
             return Err(ParameterError::new("bones", Rule::Capacity { capacity: 32 }));
@@ -108,6 +130,12 @@ impl<const BONES: usize, const ANGLES: usize> Skeleton<BONES, ANGLES> {
             };
             if let Some(mask) = moved_by.get_mut(index) {
                 *mask = inherited | (1 << index);
+            }
+            if index > 0 && bone.joint.shift_count() > 0 {
+                return Err(ParameterError::new(
+                    "bone.joint: a free one is first; its index",
+                    Rule::Within { low: 0.0, high: 0.0 },
+                ));
             }
             for axis in bone.joint.axes() {
                 if !(abs(length(axis) - 1.0) < 1.0e-4) {
@@ -132,7 +160,21 @@ impl<const BONES: usize, const ANGLES: usize> Skeleton<BONES, ANGLES> {
                 return Err(ParameterError::new("limits", Rule::OrderedInterval));
             }
         }
-        Ok(Self { bones, limits, bone_of_angle, moved_by })
+        let shifts = bones.first().map_or(0, |root| root.joint.shift_count());
+        Ok(Self { bones, limits, bone_of_angle, moved_by, shifts })
+    }
+
+    /// Whether coordinate `angle` is a shift of a free root, metres.
+    #[inline]
+    #[must_use]
+    pub fn is_shift(&self, angle: usize) -> bool {
+        angle < self.shifts
+    }
+
+    /// How many coordinates belong to a root that moves: they come first.
+    #[must_use]
+    pub fn root_coordinates(&self) -> usize {
+        if self.shifts > 0 { FREE_ROOT_COORDINATES } else { 0 }
     }
 
     /// The bones, parents first.
