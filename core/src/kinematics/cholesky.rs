@@ -15,20 +15,37 @@ impl<const N: usize> Cholesky<N> {
     /// Factors `matrix` (only its lower half is read); `None` where it is not positive definite.
     #[must_use]
     pub fn new(matrix: &[[f32; N]; N]) -> Option<Self> {
+        Self::from(matrix, 0)
+    }
+
+    /// As [`Self::new`], of the part of `matrix` from row and column `first` on; the rest of the factor is zero.
+    ///
+    /// A column of L is taken out of all later rows at once, so that the innermost loop runs along a row; where limbs do not
+    /// know of each other rows are left out.
+    #[must_use]
+    pub fn from(matrix: &[[f32; N]; N], first: usize) -> Option<Self> {
         let mut lower = [[0.0; N]; N];
-        for i in 0..N {
-            for j in 0..=i {
-                let mut sum = matrix[i][j];
-                for k in 0..j {
-                    sum -= lower[i][k] * lower[j][k];
+        for i in first..N {
+            lower[i][first..=i].copy_from_slice(&matrix[i][first..=i]);
+        }
+        for k in first..N {
+            if !(lower[k][k] > 0.0 && lower[k][k].is_finite()) {
+                return None;
+            }
+            let pivot = sqrt(lower[k][k]);
+            lower[k][k] = pivot;
+            let mut column = [0.0; N];
+            for i in k + 1..N {
+                lower[i][k] /= pivot;
+                column[i] = lower[i][k];
+            }
+            for i in k + 1..N {
+                let factor = column[i];
+                if factor == 0.0 {
+                    continue;
                 }
-                if i == j {
-                    if !(sum > 0.0 && sum.is_finite()) {
-                        return None;
-                    }
-                    lower[i][i] = sqrt(sum);
-                } else {
-                    lower[i][j] = sum / lower[j][j];
+                for j in k + 1..=i {
+                    lower[i][j] -= factor * column[j];
                 }
             }
         }
@@ -38,14 +55,23 @@ impl<const N: usize> Cholesky<N> {
     /// x with H x = `right`.
     #[must_use]
     pub fn solve(&self, right: &[f32; N]) -> [f32; N] {
+        self.solve_from(right, 0)
+    }
+
+    /// As [`Self::solve`], for a factor [`Self::from`] row `first` on; the entries before it are zero.
+    #[must_use]
+    pub fn solve_from(&self, right: &[f32; N], first: usize) -> [f32; N] {
         let mut x = *right;
-        for i in 0..N {
-            for k in 0..i {
+        for entry in x.iter_mut().take(first) {
+            *entry = 0.0;
+        }
+        for i in first..N {
+            for k in first..i {
                 x[i] -= self.lower[i][k] * x[k];
             }
             x[i] /= self.lower[i][i];
         }
-        for i in (0..N).rev() {
+        for i in (first..N).rev() {
             for k in i + 1..N {
                 x[i] -= self.lower[k][i] * x[k];
             }
@@ -57,7 +83,13 @@ impl<const N: usize> Cholesky<N> {
     /// ln |H|.
     #[must_use]
     pub fn log_determinant(&self) -> f32 {
-        (0..N).map(|i| 2.0 * crate::math::ln(self.lower[i][i])).sum()
+        self.log_determinant_from(0)
+    }
+
+    /// ln |H| of a factor [`Self::from`] row `first` on.
+    #[must_use]
+    pub fn log_determinant_from(&self, first: usize) -> f32 {
+        (first..N).map(|i| 2.0 * crate::math::ln(self.lower[i][i])).sum()
     }
 }
 

@@ -5,10 +5,9 @@
 //! search are bounded.
 
 use super::cholesky::Cholesky;
-use super::forward::{Posture, posture};
-use super::jacobian::column;
-use crate::math::{Mat3, Vec3, abs, length, max};
-use crate::skeleton::Skeleton;
+use super::forward::Posture;
+pub use super::pose_density::{Goal, PoseDensity, PoseObjective};
+use crate::math::{abs, max};
 
 /// Halvings of a step that does not climb.
 const MAX_HALVINGS: usize = 6;
@@ -17,32 +16,6 @@ const STEP_TOLERANCE_RAD: f32 = 1.0e-3;
 
 /// A step that promises less log density than this ends the iteration: a draw around the mode costs a hundred times more.
 const LEAST_LOG_GAIN: f32 = 0.01;
-
-/// Where an end-effector wants to be.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Goal {
-    /// The bone whose end is to go there.
-    pub bone: usize,
-    /// The place, metres.
-    pub position_m: Vec3,
-    /// W of eq. (12): inverse covariance of the goal, 1 / m^2.
-    pub precision: Mat3,
-}
-
-/// log p(theta | g, theta before) of eq. (12), up to its constant.
-#[derive(Debug, Clone, Copy)]
-pub struct PoseDensity<'a, const BONES: usize, const ANGLES: usize> {
-    /// The body.
-    pub skeleton: &'a Skeleton<BONES, ANGLES>,
-    /// Where its root is, metres.
-    pub root_m: Vec3,
-    /// Goals of the end-effectors.
-    pub goals: &'a [Goal],
-    /// Angles of the frame before.
-    pub previous_rad: [f32; ANGLES],
-    /// lambda of eq. (12), one an angle: inverse variance of its change, 1 / rad^2.
-    pub stiffness: [f32; ANGLES],
-}
 
 /// The mode and what is known of the density around it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,101 +30,72 @@ pub struct Mode<const ANGLES: usize> {
     pub log_density: f32,
     /// Distance of the worst end-effector from its goal, metres.
     pub residual_m: f32,
-    /// Whether the last step was short enough; otherwise this is the best pose so far.
-    pub converged: bool,
+    /// Why the search ended; whatever the reason, this is the best pose that it found.
+    pub stop: Stop,
+    /// How many of the first coordinates were given and stayed.
+    pub held: usize,
 }
 
-impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
-    /// The posture of `angles_rad`.
-    #[must_use]
-    pub fn posture(&self, angles_rad: &[f32; ANGLES]) -> Posture<BONES, ANGLES> {
-        posture(self.skeleton, &self.root_m, angles_rad)
-    }
+/// Why a search for a mode ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stop {
+    /// The last step was shorter than a thousandth of a radian in every angle.
+    ShortStep,
+    /// The next step promises next to nothing.
+    LittleGain,
+    /// No step along the direction climbs.
+    NoClimb,
+    /// All steps are used up.
+    StepsUsed,
+    /// The second derivative cannot be factored: the density says nothing about some angle.
+    NoCurvature,
+}
 
-    /// log density of a pose inside the limits, up to the constant of eq. (12).
+impl<const ANGLES: usize> Mode<ANGLES> {
+    /// Whether the search ended of itself at a place that no step betters.
     #[must_use]
-    pub fn log_density(&self, angles_rad: &[f32; ANGLES], posture: &Posture<BONES, ANGLES>) -> f32 {
-        let mut sum = 0.0;
-        for goal in self.goals {
-            let Some(end) = posture.ends.get(goal.bone) else { continue };
-            let miss = goal.position_m - end;
-            sum -= 0.5 * miss.dot(&(goal.precision * miss));
-        }
-        for i in 0..ANGLES {
-            let change = angles_rad[i] - self.previous_rad[i];
-            sum -= 0.5 * self.stiffness[i] * change * change;
-        }
-        sum
+    pub fn converged(&self) -> bool {
+        matches!(self.stop, Stop::ShortStep | Stop::LittleGain | Stop::NoClimb)
     }
+}
 
-    /// Gradient of the log density (eq. 23) and J'WJ + lambda (eq. 21).
-    #[must_use]
-    pub fn derivatives(
-        &self,
-        angles_rad: &[f32; ANGLES],
-        posture: &Posture<BONES, ANGLES>,
-    ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]) {
-        let mut gradient = [0.0; ANGLES];
-        let mut hessian = [[0.0; ANGLES]; ANGLES];
-        for i in 0..ANGLES {
-            gradient[i] = -self.stiffness[i] * (angles_rad[i] - self.previous_rad[i]);
-            hessian[i][i] = self.stiffness[i];
-        }
-        for goal in self.goals {
-            let Some(end) = posture.ends.get(goal.bone) else { continue };
-            let miss = goal.position_m - end;
-            let mut columns = [Vec3::zeros(); ANGLES];
-            for i in 0..ANGLES {
-                columns[i] = column(self.skeleton, posture, goal.bone, i);
-                let weighted = goal.precision * columns[i];
-                gradient[i] += weighted.dot(&miss);
-                for j in 0..=i {
-                    hessian[i][j] += weighted.dot(&columns[j]);
-                }
-            }
-        }
-        for i in 0..ANGLES {
-            for j in i + 1..ANGLES {
-                hessian[i][j] = hessian[j][i];
-            }
-        }
-        (gradient, hessian)
-    }
-
+/// The solver of any [`PoseObjective`].
+pub trait Solve<const BONES: usize, const ANGLES: usize>: PoseObjective<BONES, ANGLES> {
     /// Climbs from the pose of the frame before to the mode in at most `max_steps` steps.
-    #[must_use]
-    pub fn mode(&self, max_steps: usize) -> Mode<ANGLES> {
+    fn mode(&self, max_steps: usize) -> Mode<ANGLES> {
         self.mode_from(&[], max_steps)
     }
 
     /// As [`Self::mode`], but climbs from the likeliest of the pose of the frame before and other `starts`: after a jump
     /// the way from the old pose may end at a limit.
-    #[must_use]
-    pub fn mode_from(&self, starts: &[[f32; ANGLES]], max_steps: usize) -> Mode<ANGLES> {
-        let mut angles_rad = self.skeleton.clamp(self.previous_rad);
+    fn mode_from(&self, starts: &[[f32; ANGLES]], max_steps: usize) -> Mode<ANGLES> {
+        let mut angles_rad = self.skeleton().clamp(self.start_rad());
         // Two places in turns: a posture is too large to be handed on.
         let (mut here, mut there) = (Posture::folded(), Posture::folded());
-        here.turn(self.skeleton, &self.root_m, &angles_rad);
+        here.turn(self.skeleton(), &self.root_m(), &angles_rad);
         let mut log_density = self.log_density(&angles_rad, &here);
         for start in starts {
-            let other = self.skeleton.clamp(*start);
-            there.turn(self.skeleton, &self.root_m, &other);
+            let other = self.skeleton().clamp(*start);
+            there.turn(self.skeleton(), &self.root_m(), &other);
             let log_other = self.log_density(&other, &there);
             if log_other > log_density {
                 (angles_rad, log_density) = (other, log_other);
                 core::mem::swap(&mut here, &mut there);
             }
         }
-        let mut converged = false;
         let (mut gradient, mut hessian) = self.derivatives(&angles_rad, &here);
+        let mut stop = Stop::StepsUsed;
         for _ in 0..max_steps {
-            let Some((direction, gain)) = self.free_direction(&angles_rad, &gradient, &hessian) else { break };
+            let Some((direction, gain)) = free_direction(self, &angles_rad, &gradient, &hessian) else {
+                stop = Stop::NoCurvature;
+                break;
+            };
             if gain < LEAST_LOG_GAIN {
-                converged = true;
+                stop = Stop::LittleGain;
                 break;
             }
-            let Some((next, log_next)) = self.climb(&angles_rad, &direction, log_density, &mut there) else {
-                converged = true;
+            let Some((next, log_next)) = climb(self, &angles_rad, &direction, log_density, &mut there) else {
+                stop = Stop::NoClimb;
                 break;
             };
             let mut longest = 0.0;
@@ -162,83 +106,78 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
             core::mem::swap(&mut here, &mut there);
             (gradient, hessian) = self.derivatives(&angles_rad, &here);
             if longest < STEP_TOLERANCE_RAD {
-                converged = true;
+                stop = Stop::ShortStep;
                 break;
             }
         }
-        Mode { angles_rad, gradient, hessian, log_density, residual_m: self.residual_m(&here), converged }
+        let (residual_m, held) = (self.residual_m(&here), self.held());
+        Mode { angles_rad, gradient, hessian, log_density, residual_m, stop, held }
     }
+}
 
-    /// Distance of the worst end-effector from its goal, metres.
-    fn residual_m(&self, posture: &Posture<BONES, ANGLES>) -> f32 {
-        let mut worst = 0.0;
-        for goal in self.goals {
-            if let Some(end) = posture.ends.get(goal.bone) {
-                worst = max(worst, length(&(goal.position_m - end)));
+impl<const BONES: usize, const ANGLES: usize, T: PoseObjective<BONES, ANGLES> + ?Sized> Solve<BONES, ANGLES> for T {}
+
+/// Gauss-Newton direction of the angles that no limit holds and the gain of log density that it promises; `None` where
+/// the Hessian cannot be factored.
+fn free_direction<const BONES: usize, const ANGLES: usize>(
+    objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
+    angles_rad: &[f32; ANGLES],
+    gradient: &[f32; ANGLES],
+    hessian: &[[f32; ANGLES]; ANGLES],
+) -> Option<([f32; ANGLES], f32)> {
+    let (mut reduced, mut right) = (*hessian, *gradient);
+    for (i, limit) in objective.skeleton().limits().iter().enumerate() {
+        let held = i < objective.held()
+            || (angles_rad[i] <= limit.low_rad && gradient[i] < 0.0)
+            || (angles_rad[i] >= limit.high_rad && gradient[i] > 0.0);
+        if held {
+            right[i] = 0.0;
+            for k in 0..ANGLES {
+                reduced[i][k] = 0.0;
+                reduced[k][i] = 0.0;
             }
+            reduced[i][i] = 1.0;
         }
-        worst
     }
+    let direction = Cholesky::new(&reduced)?.solve(&right);
+    let mut gain = 0.0;
+    for i in 0..ANGLES {
+        gain += 0.5 * right[i] * direction[i];
+    }
+    Some((direction, gain))
+}
 
-    /// Gauss-Newton direction of the angles that no limit holds and the gain of log density that it promises; `None` where
-    /// the Hessian cannot be factored.
-    fn free_direction(
-        &self,
-        angles_rad: &[f32; ANGLES],
-        gradient: &[f32; ANGLES],
-        hessian: &[[f32; ANGLES]; ANGLES],
-    ) -> Option<([f32; ANGLES], f32)> {
-        let (mut reduced, mut right) = (*hessian, *gradient);
-        for (i, limit) in self.skeleton.limits().iter().enumerate() {
-            let held = (angles_rad[i] <= limit.low_rad && gradient[i] < 0.0)
-                || (angles_rad[i] >= limit.high_rad && gradient[i] > 0.0);
-            if held {
-                right[i] = 0.0;
-                for k in 0..ANGLES {
-                    reduced[i][k] = 0.0;
-                    reduced[k][i] = 0.0;
-                }
-                reduced[i][i] = 1.0;
-            }
-        }
-        let direction = Cholesky::new(&reduced)?.solve(&right);
-        let mut gain = 0.0;
+/// The longest of the step and its halvings, cut to the limits, that raises the density, and the density; its posture is left in
+/// `there`.
+fn climb<const BONES: usize, const ANGLES: usize>(
+    objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
+    angles_rad: &[f32; ANGLES],
+    direction: &[f32; ANGLES],
+    log_density: f32,
+    there: &mut Posture<BONES, ANGLES>,
+) -> Option<([f32; ANGLES], f32)> {
+    let mut scale = 1.0;
+    for _ in 0..=MAX_HALVINGS {
+        let mut next = *angles_rad;
         for i in 0..ANGLES {
-            gain += 0.5 * right[i] * direction[i];
+            next[i] += scale * direction[i];
         }
-        Some((direction, gain))
-    }
-
-    /// The longest of the step and its halvings, cut to the limits, that raises the density, and the density; its posture is left in
-    /// `there`.
-    fn climb(
-        &self,
-        angles_rad: &[f32; ANGLES],
-        direction: &[f32; ANGLES],
-        log_density: f32,
-        there: &mut Posture<BONES, ANGLES>,
-    ) -> Option<([f32; ANGLES], f32)> {
-        let mut scale = 1.0;
-        for _ in 0..=MAX_HALVINGS {
-            let mut next = *angles_rad;
-            for i in 0..ANGLES {
-                next[i] += scale * direction[i];
-            }
-            let next = self.skeleton.clamp(next);
-            there.turn(self.skeleton, &self.root_m, &next);
-            let log_next = self.log_density(&next, there);
-            if log_next > log_density {
-                return Some((next, log_next));
-            }
-            scale *= 0.5;
+        let next = objective.skeleton().clamp(next);
+        there.turn(objective.skeleton(), &objective.root_m(), &next);
+        let log_next = objective.log_density(&next, there);
+        if log_next > log_density {
+            return Some((next, log_next));
         }
-        None
+        scale *= 0.5;
     }
+    None
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kinematics::forward::posture;
+    use crate::math::{Mat3, Vec3};
     use crate::skeleton::arm::{ARM_LIMITS, FOREARM};
     use crate::skeleton::{ArmGeometry, Side};
     use proptest::prelude::*;
@@ -257,7 +196,7 @@ mod tests {
             let target = posture(&skeleton, &root_m, &[e, d, t, f]).ends[FOREARM];
             let goals = [goal(target)];
             let near = [e + 0.3, d - 0.2, t + 0.2, f - 0.25];
-            let density = PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad: near, stiffness: [0.1; 4] };
+            let density = PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad: near, stiffness: [0.1; 4], held: 0 };
             let mode = density.mode(12);
             prop_assert!(mode.residual_m < 0.01, "missed by {}", mode.residual_m);
             for (angle, limit) in mode.angles_rad.iter().zip(&ARM_LIMITS) {
@@ -272,7 +211,7 @@ mod tests {
             let goals = [goal(Vec3::new(x, y, z))];
             let previous_rad = skeleton.clamp(start);
             let density = PoseDensity {
-                skeleton: &skeleton, root_m: Vec3::zeros(), goals: &goals, previous_rad, stiffness: [2.0; 4],
+                skeleton: &skeleton, root_m: Vec3::zeros(), goals: &goals, previous_rad, stiffness: [2.0; 4], held: 0,
             };
             let mode = density.mode(3);
             let before = density.log_density(&previous_rad, &density.posture(&previous_rad));
@@ -292,6 +231,7 @@ mod tests {
             goals: &goals,
             previous_rad: [1.2, -0.5, 0.0, 0.5],
             stiffness: [0.01; 4],
+            held: 0,
         };
         let mode = density.mode(30);
         assert!((mode.residual_m - 0.3).abs() < 0.02, "residual {}", mode.residual_m);

@@ -1,18 +1,48 @@
 //! Goal processes: where an end-effector wants to be next.
 
+use crate::kinematics::inverse::Goal;
 use crate::math::{Vec3, sqrt};
 use crate::random::Stream;
+use heapless::Vec;
 
-/// A stochastic process of one end-effector's goal. Users may write their own.
-pub trait GoalProcess {
-    /// Draws the next goal, metres, from the place that was `reached_m`, `dt_s` seconds later.
-    fn draw(&self, reached_m: &Vec3, velocity_m_per_s: &Vec3, dt_s: f32, stream: &mut Stream) -> Vec3;
+/// Most end-effectors that have goals.
+pub const MAX_GOALS: usize = 8;
+/// Numbers that a process may keep in each particle from frame to frame.
+pub const MEMORY: usize = 32;
+/// What a process keeps in a particle; zeros at first.
+pub type GoalMemory = [f32; MEMORY];
+/// Goals of one frame.
+pub type Goals = Vec<Goal, MAX_GOALS>;
 
-    /// Mean of the draw.
-    fn mean(&self, reached_m: &Vec3, velocity_m_per_s: &Vec3, dt_s: f32) -> Vec3;
+/// What goals may follow from.
+#[derive(Debug, Clone, Copy)]
+pub struct GoalPast<'a, const BONES: usize> {
+    /// Ends of all bones that the particle reached in the frame before, metres.
+    pub reached_m: &'a [Vec3; BONES],
+    /// Their velocities by the filter's estimates, not the particle's own: DESIGN.md section 3; metres a second.
+    pub velocity_m_per_s: &'a [Vec3; BONES],
+    /// Ends of all bones in the pose that the tracking began with, metres.
+    pub first_m: &'a [Vec3; BONES],
+    /// Time since the frame before, seconds.
+    pub dt_s: f32,
+    /// Whether this is the first step, with nothing yet in the memory.
+    pub is_first: bool,
+}
 
-    /// Standard deviation of the draw along each axis, metres.
-    fn std_m(&self, dt_s: f32) -> f32;
+/// A stochastic process of the end-effectors' goals, p(g_t | g_1..t-1) (PIK paper, section 4.2). Users may write their own:
+/// docs/own_motion_model.md.
+pub trait GoalProcess<const BONES: usize> {
+    /// The bones whose ends have goals.
+    fn end_effectors(&self) -> &[usize];
+
+    /// Draws the next goals and adds them to `goals`, which is empty and takes [`MAX_GOALS`].
+    fn draw(&self, past: &GoalPast<'_, BONES>, memory: &mut GoalMemory, stream: &mut Stream, goals: &mut Goals);
+
+    /// The goals' means, with the spread of the process added to what W forgives: what a guided proposal sets out from. Unless
+    /// written, a draw.
+    fn expect(&self, past: &GoalPast<'_, BONES>, memory: &mut GoalMemory, stream: &mut Stream, goals: &mut Goals) {
+        self.draw(past, memory, stream, goals);
+    }
 }
 
 /// Linear extrapolation (PIK paper, eq. 33) of the reached place, with a velocity that fades and white noise.
@@ -26,16 +56,21 @@ pub struct LinearExtrapolation {
     pub std_m_per_sqrt_s: f32,
 }
 
-impl GoalProcess for LinearExtrapolation {
-    fn draw(&self, reached_m: &Vec3, velocity_m_per_s: &Vec3, dt_s: f32, stream: &mut Stream) -> Vec3 {
+impl LinearExtrapolation {
+    /// Draws the next place, metres, from the place that was `reached_m`, `dt_s` seconds later.
+    pub fn draw(&self, reached_m: &Vec3, velocity_m_per_s: &Vec3, dt_s: f32, stream: &mut Stream) -> Vec3 {
         self.mean(reached_m, velocity_m_per_s, dt_s) + stream.normal3() * self.std_m(dt_s)
     }
 
-    fn mean(&self, reached_m: &Vec3, velocity_m_per_s: &Vec3, dt_s: f32) -> Vec3 {
+    /// Mean of the draw.
+    #[must_use]
+    pub fn mean(&self, reached_m: &Vec3, velocity_m_per_s: &Vec3, dt_s: f32) -> Vec3 {
         reached_m + velocity_m_per_s * (self.persistence * dt_s)
     }
 
-    fn std_m(&self, dt_s: f32) -> f32 {
+    /// Standard deviation of the draw along each axis, metres.
+    #[must_use]
+    pub fn std_m(&self, dt_s: f32) -> f32 {
         self.std_m_per_sqrt_s * sqrt(dt_s)
     }
 }

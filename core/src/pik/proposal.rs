@@ -8,7 +8,7 @@
 use crate::kinematics::cholesky::Cholesky;
 use crate::kinematics::inverse::Mode;
 use crate::random::Stream;
-use crate::random::normal::log_interval_mass;
+use crate::random::normal::{LOG_SQRT_TAU, log_interval_mass};
 use crate::skeleton::Limit;
 
 /// A normal approximation of a pose's density.
@@ -19,6 +19,7 @@ pub struct LaplaceProposal<const ANGLES: usize> {
     mode_log_density: f32,
     /// Half of gradient' H^-1 gradient: what the expansion's top lies above the mode.
     rise: f32,
+    held: usize,
 }
 
 /// A pose drawn from a [`LaplaceProposal`].
@@ -49,15 +50,24 @@ impl<const ANGLES: usize> LaplaceProposal<ANGLES> {
     /// The second-order expansion around `mode`; `None` where its Hessian is not positive definite.
     #[must_use]
     pub fn new(mode: &Mode<ANGLES>) -> Option<Self> {
-        let factor = Cholesky::new(&mode.hessian)?;
-        let shift = factor.solve(&mode.gradient);
+        let factor = Cholesky::from(&mode.hessian, mode.held)?;
+        let shift = factor.solve_from(&mode.gradient, mode.held);
         let mut centre_rad = mode.angles_rad;
         let mut rise = 0.0;
-        for i in 0..ANGLES {
+        for i in mode.held..ANGLES {
             centre_rad[i] += shift[i];
             rise += 0.5 * shift[i] * mode.gradient[i];
         }
-        Some(Self { centre_rad, factor, mode_log_density: mode.log_density, rise })
+        Some(Self { centre_rad, factor, mode_log_density: mode.log_density, rise, held: mode.held })
+    }
+
+    /// ln of the density of a draw, N(theta; m, H^-1) / prod M_i.
+    #[must_use]
+    pub fn log_density(&self, draw: &PoseDraw<ANGLES>) -> f32 {
+        let drawn = (ANGLES - self.held) as f32;
+        0.5 * (self.factor.log_determinant_from(self.held) - draw.squared_distance)
+            - drawn * LOG_SQRT_TAU
+            - draw.log_mass
     }
 
     /// Centre m of the normal, radians; it may lie outside the limits.
@@ -72,7 +82,7 @@ impl<const ANGLES: usize> LaplaceProposal<ANGLES> {
         let lower = &self.factor.lower;
         let mut offset = [0.0; ANGLES];
         let mut result = PoseDraw { angles_rad: self.centre_rad, squared_distance: 0.0, log_mass: 0.0 };
-        for i in (0..ANGLES).rev() {
+        for i in (self.held..ANGLES).rev() {
             let mut pull = 0.0;
             for j in i + 1..ANGLES {
                 pull += lower[j][i] * offset[j];
@@ -104,7 +114,7 @@ impl<const ANGLES: usize> LaplaceProposal<ANGLES> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kinematics::inverse::{Goal, PoseDensity};
+    use crate::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
     use crate::math::{Mat3, Vec3, exp};
     use crate::skeleton::{Bone, Joint, Skeleton};
 
@@ -145,6 +155,7 @@ mod tests {
             goals: &goals,
             previous_rad: [0.2, 0.15],
             stiffness: [4.0, 4.0],
+            held: 0,
         };
         let mode = density.mode(20);
         assert!(mode.gradient.iter().any(|g| g.abs() > 0.1), "no limit is active: {:?}", mode.gradient);
@@ -188,6 +199,7 @@ mod tests {
             goals: &[],
             previous_rad: [0.3, -0.2],
             stiffness: [9.0, 25.0],
+            held: 0,
         };
         let proposal = LaplaceProposal::new(&density.mode(5)).unwrap();
         let mut stream = Stream::new(9, 0, 0);
@@ -211,6 +223,7 @@ mod tests {
             goals: &goals,
             previous_rad: [0.0, 0.5],
             stiffness: [1.0; 2],
+            held: 0,
         };
         let proposal = LaplaceProposal::new(&density.mode(4)).unwrap();
         let mut stream = Stream::new(10, 0, 0);

@@ -1,5 +1,6 @@
 //! The trackers: each frame's step reads like the algorithm box in its paper.
 
 pub mod arm;
+pub mod body;
 pub mod coupled;
 pub mod cyclic;

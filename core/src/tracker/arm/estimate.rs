@@ -6,7 +6,7 @@ use super::propose::FrameContext;
 use super::step::Particle;
 use crate::angle::CircularSum;
 use crate::camera::Pixel;
-use crate::kinematics::inverse::{Goal, PoseDensity};
+use crate::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
 use crate::math::{Mat3, Vec3, max, sqrt};
 use crate::skeleton::Side;
 use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
@@ -170,6 +170,7 @@ impl FrameContext<'_> {
             goals: &[goal],
             previous_rad: self.model.skeleton().clamp(mean_rad),
             stiffness: [1.0; ARM_ANGLES],
+            held: 0,
         };
         let angles_rad = density.mode(4).angles_rad;
         let there = density.posture(&angles_rad);

@@ -3,7 +3,6 @@
 use super::propose::FrameContext;
 use crate::correction::hand::log_density_on_ray;
 use crate::math::{Vec3, exp, length, ln, max};
-use crate::pik::goal::GoalProcess;
 use crate::random::Stream;
 use crate::random::normal::LOG_SQRT_TAU;
 

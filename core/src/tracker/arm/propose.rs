@@ -8,10 +8,10 @@ use super::step::Particle;
 use crate::camera::Ray;
 use crate::correction::elbow::nearest_elbow;
 use crate::correction::hand::{HandSpread, ReachableShell, draw_on_ray};
-use crate::kinematics::inverse::{Goal, PoseDensity};
+use crate::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
 use crate::math::{Mat3, Vec3, clamp, length, max, sqrt, unit};
 use crate::observation::candidate::HandCandidate;
-use crate::pik::goal::{GoalProcess, LinearExtrapolation};
+use crate::pik::goal::LinearExtrapolation;
 use crate::pik::proposal::{LaplaceProposal, LimitMass};
 use crate::random::Stream;
 use crate::skeleton::arm::{ARM_ANGLES, FOREARM, UPPER_ARM};
@@ -230,6 +230,7 @@ impl FrameContext<'_> {
             previous_rad: ancestor.angles_rad,
             // A jump needs its angles; what it costs is the gate's business, not the stiffness's.
             stiffness: variances.map(|variance| 1.0 / (variance + jump_rad * jump_rad)),
+            held: 0,
         };
         let mut mode = density.mode_from(&self.starts(ancestor, &goal.position_m), options.solver_steps);
         if options.variant != Variant::PikPaid {

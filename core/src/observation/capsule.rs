@@ -1,0 +1,194 @@
+//! The surface of one bone: a capsule, and the part of it that a camera sees (PIK paper, section 6.2).
+
+use crate::math::{Vec3, clamp, length, max, sqrt, unit};
+
+/// All points within a radius of a line segment. A segment without length is a sphere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Capsule {
+    /// One end of the segment, metres.
+    pub start_m: Vec3,
+    /// The other end, metres.
+    pub end_m: Vec3,
+    /// Distance of the skin from the segment, metres.
+    pub radius_m: f32,
+}
+
+impl Capsule {
+    /// The point p of the segment that is nearest to `point_m`, and where it lies: 0 at the start, 1 at the end.
+    #[must_use]
+    pub fn nearest_on_axis(&self, point_m: &Vec3) -> (Vec3, f32) {
+        let along = self.end_m - self.start_m;
+        let squared = along.dot(&along);
+        if !(squared > 0.0) {
+            return (self.start_m, 0.0);
+        }
+        let share = clamp((point_m - self.start_m).dot(&along) / squared, 0.0, 1.0);
+        (self.start_m + along * share, share)
+    }
+
+    /// Distance D of `point_m` from the whole skin, on either side of it, metres (eq. 34).
+    #[must_use]
+    pub fn skin_distance_m(&self, point_m: &Vec3) -> f32 {
+        let (near_m, _) = self.nearest_on_axis(point_m);
+        crate::math::abs(length(&(point_m - near_m)) - self.radius_m)
+    }
+
+    /// The point h of the skin that the camera at `camera_m` sees and that is nearest to `point_m` (eqs. 27 and 28).
+    ///
+    /// Where eq. (28) is silent, DESIGN.md section 3 holds: the sign is that of (x - p)'v, and on the round ends, as
+    /// where v vanishes, the part of x - p across the line of sight is taken. A point whose direction is undefined (on the
+    /// axis, or straight behind it) takes any direction: its distance is right nevertheless.
+    #[must_use]
+    pub fn nearest_visible(&self, camera_m: &Vec3, point_m: &Vec3) -> Vec3 {
+        let (near_m, share) = self.nearest_on_axis(point_m);
+        let out = point_m - near_m;
+        let sight = camera_m - near_m;
+        let along = self.end_m - self.start_m;
+        let direction = if out.dot(&sight) >= 0.0 {
+            unit(out).or_else(|| unit(sight))
+        } else {
+            let across = unit(sight.cross(&along)).filter(|_| share > 0.0 && share < 1.0);
+            match across {
+                Some(v) => Some(if out.dot(&v) >= 0.0 { v } else { -v }),
+                None => unit(out - sight * (out.dot(&sight) / max(sight.dot(&sight), f32::MIN_POSITIVE))),
+            }
+        };
+        let any = unit(along.cross(&sight)).unwrap_or_else(Vec3::x);
+        near_m + direction.unwrap_or(any) * self.radius_m
+    }
+
+    /// Where a ray from the camera's centre along the unit vector `direction` meets the skin first: the distance from the
+    /// centre, metres; `None` where it passes by, or where the centre lies inside.
+    #[must_use]
+    pub fn first_hit_m(&self, direction: &Vec3) -> Option<f32> {
+        let along = unit(self.end_m - self.start_m);
+        let mut first = f32::INFINITY;
+        if let Some(u) = along {
+            // The infinite cylinder: the parts across the axis of both the ray and the start.
+            let (d, m) = (direction - u * direction.dot(&u), self.start_m - u * self.start_m.dot(&u));
+            let (dd, dm, mm) = (d.dot(&d), d.dot(&m), m.dot(&m) - self.radius_m * self.radius_m);
+            let under = dm * dm - dd * mm;
+            if dd > 1.0e-9 && under >= 0.0 {
+                let distance = (dm - sqrt(under)) / dd;
+                let place = (direction * distance - self.start_m).dot(&u);
+                if distance > 0.0 && place >= 0.0 && place <= length(&(self.end_m - self.start_m)) {
+                    first = distance;
+                }
+            }
+        }
+        for centre in [self.start_m, self.end_m] {
+            let dm = direction.dot(&centre);
+            let under = dm * dm - centre.dot(&centre) + self.radius_m * self.radius_m;
+            if under >= 0.0 {
+                let distance = dm - sqrt(under);
+                if distance > 0.0 && distance < first {
+                    first = distance;
+                }
+            }
+        }
+        first.is_finite().then_some(first)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Nearest of many points of the visible skin: cylinder and both caps.
+    fn brute_force(capsule: &Capsule, camera: &Vec3, point: &Vec3) -> f32 {
+        let along = capsule.end_m - capsule.start_m;
+        let u = unit(along).unwrap_or_else(Vec3::x);
+        let side = unit(u.cross(&Vec3::new(0.3, 0.5, 0.8))).unwrap();
+        let other = u.cross(&side);
+        let mut best = f32::INFINITY;
+        let mut look = |near: Vec3, direction: Vec3| {
+            if direction.dot(&(camera - near)) >= -1.0e-4 {
+                best = best.min((point - near - direction * capsule.radius_m).norm());
+            }
+        };
+        let turns = 240;
+        for turn in 0..turns {
+            let angle = core::f32::consts::TAU * turn as f32 / turns as f32;
+            let round = side * angle.cos() + other * angle.sin();
+            for step in 0..=200 {
+                look(capsule.start_m + along * (step as f32 / 200.0), round);
+            }
+            for step in 0..=60 {
+                let lift = core::f32::consts::FRAC_PI_2 * step as f32 / 60.0;
+                look(capsule.end_m, round * lift.cos() + u * lift.sin());
+                look(capsule.start_m, round * lift.cos() - u * lift.sin());
+            }
+        }
+        best
+    }
+
+    fn place(range: f32) -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-range..range).prop_map(Vec3::from)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn no_visible_point_of_the_skin_is_nearer(start in place(0.3), end in place(0.3), point in place(0.6), radius in 0.03_f32..0.12) {
+            prop_assume!((end - start).norm() > 0.05);
+            let camera = Vec3::new(0.1, 0.2, -3.0);
+            let capsule = Capsule { start_m: start, end_m: end, radius_m: radius };
+            let found = (point - capsule.nearest_visible(&camera, &point)).norm();
+            let dense = brute_force(&capsule, &camera, &point);
+            // Eq. (28) asks per p: on the cylinder's rim another p may see a nearer point, by less than the radius' part.
+            let (_, share) = capsule.nearest_on_axis(&point);
+            let slack = if share > 0.0 && share < 1.0 { 0.35 * radius } else { radius };
+            prop_assert!(found <= dense + slack, "{} found, {} is there", found, dense);
+            // On the round ends the border of the seen half may lie inside the capsule.
+            let inside = if share > 0.0 && share < 1.0 { 0.01 } else { radius };
+            prop_assert!(found >= dense - inside, "{} found, {} is there", found, dense);
+        }
+
+        #[test]
+        fn seen_points_are_nearest_as_on_the_whole_skin(start in place(0.3), end in place(0.3), point in place(0.6)) {
+            let camera = Vec3::new(0.0, 0.0, -4.0);
+            let capsule = Capsule { start_m: start, end_m: end, radius_m: 0.08 };
+            let (near, _) = capsule.nearest_on_axis(&point);
+            prop_assume!((point - near).dot(&(camera - near)) > 0.0);
+            let found = (point - capsule.nearest_visible(&camera, &point)).norm();
+            prop_assert!((found - capsule.skin_distance_m(&point)).abs() < 1.0e-5);
+        }
+
+        #[test]
+        fn a_ray_first_meets_the_skin_where_the_distance_is_nothing(start in place(0.5), end in place(0.5), aim in place(0.7)) {
+            let away = Vec3::new(0.0, 0.0, 3.0);
+            let capsule = Capsule { start_m: start + away, end_m: end + away, radius_m: 0.1 };
+            let direction = unit(aim + away).unwrap();
+            let passes = (0..4000).map(|i| direction * (1.5 + i as f32 * 0.00075)).find(|x| {
+                (x - capsule.nearest_on_axis(x).0).norm() <= 0.1
+            });
+            match capsule.first_hit_m(&direction) {
+                Some(distance) => {
+                    prop_assert!(capsule.skin_distance_m(&(direction * distance)) < 1.0e-3);
+                    // A grazing ray may be missed by the march.
+                    if let Some(seen) = passes { prop_assert!((seen.norm() - distance).abs() < 2.0e-3 || distance < seen.norm()); }
+                }
+                None => prop_assert!(passes.is_none()),
+            }
+        }
+    }
+
+    #[test]
+    fn what_has_no_direction_still_has_its_distance() {
+        let camera = Vec3::zeros();
+        let along_sight = Capsule { start_m: Vec3::new(0.0, 0.0, 2.0), end_m: Vec3::new(0.0, 0.0, 2.5), radius_m: 0.1 };
+        // On the axis; straight behind the far end; a sphere's middle.
+        for point in [Vec3::new(0.0, 0.0, 2.2), Vec3::new(0.0, 0.0, 2.5)] {
+            let found = (point - along_sight.nearest_visible(&camera, &point)).norm();
+            assert!((found - 0.1).abs() < 1.0e-6, "{found}");
+        }
+        let behind = Vec3::new(0.0, 0.0, 2.9);
+        let found = (behind - along_sight.nearest_visible(&camera, &behind)).norm();
+        assert!((found - (0.16_f32 + 0.01).sqrt()).abs() < 1.0e-5, "{found}");
+        let sphere = Capsule { start_m: Vec3::z(), end_m: Vec3::z(), radius_m: 0.2 };
+        assert!((sphere.skin_distance_m(&Vec3::zeros()) - 0.8).abs() < 1.0e-6);
+        assert_eq!(sphere.first_hit_m(&Vec3::z()), Some(0.8));
+        assert_eq!(sphere.first_hit_m(&-Vec3::z()), None);
+    }
+}

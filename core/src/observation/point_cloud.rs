@@ -1,0 +1,173 @@
+//! A frame's 3D points in blocks of neighbours, so that a whole block is compared with few bones.
+
+use crate::math::{Vec3, floor, length, max, sqrt};
+use heapless::Vec;
+
+/// Points of a block; a block is a few vectors of the processor.
+pub const BLOCK_POINTS: usize = 8;
+/// Bits of each coordinate in a Morton key.
+const KEY_BITS: u32 = 10;
+/// Edge of a cell of the Morton order, metres: 1024 of them span 20 m.
+const CELL_M: f32 = 0.02;
+/// A point nearer to the camera than this is an error of the sensor, metres.
+pub const NEAREST_M: f32 = 0.01;
+
+/// Neighbouring points, coordinate by coordinate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointBlock {
+    /// First coordinates, metres.
+    pub x: [f32; BLOCK_POINTS],
+    /// Second coordinates, metres.
+    pub y: [f32; BLOCK_POINTS],
+    /// Third coordinates, metres.
+    pub z: [f32; BLOCK_POINTS],
+    /// How many are points; the rest repeat the last one and count nothing.
+    pub count: u8,
+    /// Centre of a sphere round all of them, metres.
+    pub centre_m: Vec3,
+    /// Radius of that sphere, metres.
+    pub radius_m: f32,
+}
+
+impl PointBlock {
+    /// Point `index`, metres.
+    #[inline]
+    #[must_use]
+    pub fn point_m(&self, index: usize) -> Vec3 {
+        match (self.x.get(index), self.y.get(index), self.z.get(index)) {
+            (Some(&x), Some(&y), Some(&z)) => Vec3::new(x, y, z),
+            _ => self.centre_m,
+        }
+    }
+
+    fn of(points_m: &[Vec3]) -> Self {
+        let mut block = Self {
+            x: [0.0; BLOCK_POINTS],
+            y: [0.0; BLOCK_POINTS],
+            z: [0.0; BLOCK_POINTS],
+            count: points_m.len() as u8,
+            centre_m: Vec3::zeros(),
+            radius_m: 0.0,
+        };
+        let mut last = Vec3::zeros();
+        for i in 0..BLOCK_POINTS {
+            last = points_m.get(i).copied().unwrap_or(last);
+            (block.x[i], block.y[i], block.z[i]) = (last.x, last.y, last.z);
+            block.centre_m += last * (1.0 / BLOCK_POINTS as f32);
+        }
+        for i in 0..BLOCK_POINTS {
+            block.radius_m = max(block.radius_m, length(&(block.point_m(i) - block.centre_m)));
+        }
+        block
+    }
+}
+
+/// What was left out of a cloud.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LeftOut {
+    /// Points with a coordinate that is no number.
+    pub not_finite: u32,
+    /// Points within [`NEAREST_M`] of the camera.
+    pub at_camera: u32,
+    /// Points beyond the capacity.
+    pub over_capacity: u32,
+}
+
+/// The points of one frame: at most `BLOCKS` times [`BLOCK_POINTS`].
+#[derive(Debug, Clone)]
+pub struct PointCloud<const BLOCKS: usize> {
+    blocks: Vec<PointBlock, BLOCKS>,
+    points: usize,
+}
+
+impl<const BLOCKS: usize> Default for PointCloud<BLOCKS> {
+    fn default() -> Self {
+        Self { blocks: Vec::new(), points: 0 }
+    }
+}
+
+impl<const BLOCKS: usize> PointCloud<BLOCKS> {
+    /// No points.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Becomes the cloud of `points_m`, which are brought into Morton order in place (those left out come last).
+    ///
+    /// Points that are not finite or at the camera are left out, and those beyond the capacity, the last given first; all
+    /// are counted. No point at all is a frame without evidence.
+    pub fn set(&mut self, points_m: &mut [Vec3], camera_m: &Vec3) -> LeftOut {
+        let mut left_out = LeftOut::default();
+        let mut kept = 0;
+        for i in 0..points_m.len() {
+            let Some(&point) = points_m.get(i) else { break };
+            let distance = length(&(point - camera_m));
+            if !distance.is_finite() {
+                left_out.not_finite += 1;
+            } else if distance < NEAREST_M {
+                left_out.at_camera += 1;
+            } else if kept == BLOCKS * BLOCK_POINTS {
+                left_out.over_capacity += 1;
+            } else {
+                points_m.swap(i, kept);
+                kept += 1;
+            }
+        }
+        let points_m = points_m.get_mut(..kept).unwrap_or_default();
+        points_m.sort_unstable_by_key(morton_key);
+        self.blocks.clear();
+        self.points = kept;
+        for chunk in points_m.chunks(BLOCK_POINTS) {
+            // The capacity was kept above.
+            let _ = self.blocks.push(PointBlock::of(chunk));
+        }
+        left_out
+    }
+
+    /// The blocks, in Morton order.
+    #[must_use]
+    pub fn blocks(&self) -> &[PointBlock] {
+        &self.blocks
+    }
+
+    /// How many points there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.points
+    }
+
+    /// Whether there is no point.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.points == 0
+    }
+
+    /// Standard deviation of the points about their middle, metres; zero without points.
+    #[must_use]
+    pub fn spread_m(&self) -> f32 {
+        let (mut sum, mut square, mut n) = (Vec3::zeros(), 0.0, 0.0);
+        for block in &self.blocks {
+            for i in 0..usize::from(block.count) {
+                sum += block.point_m(i);
+                square += block.point_m(i).dot(&block.point_m(i));
+                n += 1.0;
+            }
+        }
+        if n > 0.0 { sqrt(max(square / n - sum.dot(&sum) / (n * n), 0.0)) } else { 0.0 }
+    }
+}
+
+/// Bits of the coordinates in turns, then the coordinates themselves, so that the order never depends on the order given.
+fn morton_key(point_m: &Vec3) -> (u32, [u32; 3]) {
+    let cell = |x: f32| {
+        let half = (1 << (KEY_BITS - 1)) as f32;
+        crate::math::clamp(floor(x / CELL_M) + half, 0.0, 2.0 * half - 1.0) as u32
+    };
+    let (x, y, z) = (cell(point_m.x), cell(point_m.y), cell(point_m.z - 0.5 * CELL_M * (1 << KEY_BITS) as f32));
+    let mut key = 0;
+    for bit in 0..KEY_BITS {
+        key |= ((x >> bit & 1) | (y >> bit & 1) << 1 | (z >> bit & 1) << 2) << (3 * bit);
+    }
+    (key, [point_m.x.to_bits(), point_m.y.to_bits(), point_m.z.to_bits()])
+}

@@ -1,0 +1,133 @@
+//! How well a pose explains a cloud of points (PIK paper, eqs. 24 to 29).
+
+use super::body_surface::{BodySurface, SeenCapsule};
+use super::point_cloud::{BLOCK_POINTS, PointBlock};
+use crate::math::{length, max, min, sqrt, sqrt_branch_free};
+
+/// The robust metric and its scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointLikelihood {
+    /// sigma of eq. (25), metres.
+    pub std_m: f32,
+    /// Root of tau of eq. (29): beyond this distance a point is an outlier, metres.
+    pub outlier_m: f32,
+}
+
+impl PointLikelihood {
+    /// log p(X | theta), up to its constant: minus the sum of min(d^2, tau) / 2 sigma^2.
+    #[must_use]
+    pub fn log_likelihood<const BONES: usize>(&self, surface: &BodySurface<BONES>, blocks: &[PointBlock]) -> f32 {
+        self.log_likelihood_of(surface, blocks.iter())
+    }
+
+    /// As [`Self::log_likelihood`], of some of the blocks.
+    #[must_use]
+    pub fn log_likelihood_of<'b, const BONES: usize>(
+        &self,
+        surface: &BodySurface<BONES>,
+        blocks: impl Iterator<Item = &'b PointBlock>,
+    ) -> f32 {
+        let tau = self.outlier_m * self.outlier_m;
+        let mut sum = 0.0;
+        let mut near = NearCapsules::new();
+        for block in blocks {
+            near.find(surface, block, self.outlier_m);
+            let mut least = [tau; BLOCK_POINTS];
+            for &index in near.indices() {
+                if let Some(seen) = surface.capsules.get(usize::from(index)) {
+                    lower_to(&mut least, seen, surface, block);
+                }
+            }
+            for (i, squared) in least.into_iter().enumerate() {
+                sum += if i < usize::from(block.count) { squared } else { 0.0 };
+            }
+        }
+        -sum / (2.0 * self.std_m * self.std_m)
+    }
+}
+
+/// Lowers each entry of `least` to the squared distance of the block's points from one capsule's visible skin, squared metres.
+///
+/// A point that is seen from p: (|x-p| - r)^2. A hidden one: |x-p|^2 - 2 r rho + r^2, with rho the part of x - p along v, or
+/// across the line of sight on the round ends; both are one formula in rho. Branch-free, so that it runs on vectors.
+#[inline(always)]
+pub fn lower_to<const BONES: usize>(
+    least: &mut [f32; BLOCK_POINTS],
+    seen: &SeenCapsule,
+    surface: &BodySurface<BONES>,
+    block: &PointBlock,
+) {
+    let (a, u, c, v) = (&seen.capsule.start_m, &seen.along_m, &surface.camera_m, &seen.across);
+    let r = seen.capsule.radius_m;
+    let line_has_side = v.x != 0.0 || v.y != 0.0 || v.z != 0.0;
+    for i in 0..BLOCK_POINTS {
+        let (x, y, z) = (block.x[i], block.y[i], block.z[i]);
+        let share = ((x - a.x) * u.x + (y - a.y) * u.y + (z - a.z) * u.z) * seen.per_squared_length;
+        let t = min(max(share, 0.0), 1.0);
+        let (px, py, pz) = (a.x + t * u.x, a.y + t * u.y, a.z + t * u.z);
+        let (wx, wy, wz) = (x - px, y - py, z - pz);
+        let (sx, sy, sz) = (c.x - px, c.y - py, c.z - pz);
+        let squared = wx * wx + wy * wy + wz * wz;
+        let towards = wx * sx + wy * sy + wz * sz;
+        let side = wx * v.x + wy * v.y + wz * v.z;
+        let per_sight = if t > 0.5 { seen.per_squared_sight[1] } else { seen.per_squared_sight[0] };
+        let beside = max(squared - towards * towards * per_sight, 0.0);
+        let inner = (share > 0.0) & (share < 1.0) & line_has_side;
+        let hidden = if inner { side * side } else { beside };
+        let rho = sqrt_branch_free(if towards >= 0.0 { squared } else { hidden });
+        let distance = max(squared - 2.0 * r * rho + r * r, 0.0);
+        least[i] = min(least[i], distance);
+    }
+}
+
+/// Capsules that can be the nearest to some point of a block; 32 at most, as a skeleton's bones.
+#[derive(Debug)]
+pub struct NearCapsules {
+    indices: [u8; 32],
+    count: usize,
+}
+
+impl NearCapsules {
+    /// Room for all capsules.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { indices: [0; 32], count: 0 }
+    }
+
+    /// Those found last.
+    #[must_use]
+    pub fn indices(&self) -> &[u8] {
+        self.indices.get(..self.count).unwrap_or(&[])
+    }
+
+    /// Finds the capsules that can lie nearest to a point of `block` and nearer than `outlier_m`.
+    ///
+    /// With D the distance of the block's centre from a bone and R the block's radius, no point is nearer to the visible
+    /// skin than D - R - r or r - D - R, and none is farther than the root of (D + R)^2 + r^2, the hidden case.
+    pub fn find<const BONES: usize>(&mut self, surface: &BodySurface<BONES>, block: &PointBlock, outlier_m: f32) {
+        let mut at_least = [0.0; 32];
+        let mut bound = outlier_m;
+        for (seen, slot) in surface.capsules.iter().zip(&mut at_least) {
+            let (near_m, _) = seen.axis_point(&block.centre_m);
+            let distance = length(&(block.centre_m - near_m));
+            let r = seen.capsule.radius_m;
+            let (inner, outer) = (distance - block.radius_m, distance + block.radius_m);
+            *slot = max(inner - r, r - outer);
+            bound = min(bound, sqrt(outer * outer + r * r));
+        }
+        self.count = 0;
+        for index in 0..surface.capsules.len() {
+            // A hair wider, for rounding.
+            if at_least[index] <= bound * 1.0001 + 1.0e-6 {
+                self.indices[self.count] = index as u8;
+                self.count += 1;
+            }
+        }
+    }
+}
+
+impl Default for NearCapsules {
+    fn default() -> Self {
+        Self::new()
+    }
+}

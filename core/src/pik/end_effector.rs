@@ -1,0 +1,73 @@
+//! Probabilistic inverse kinematics: goals in space, then a pose that reaches them (PIK paper, sections 4 and 5).
+
+use super::goal::{GoalMemory, GoalProcess, Goals};
+use super::motion::{BodyMotion, BodyParticle, FramePast, Proposed};
+use super::proposal::{LaplaceProposal, LimitMass};
+use super::root::RootProcess;
+use crate::kinematics::inverse::{PoseDensity, PoseObjective, Solve};
+use crate::math::{Vec3, clamp};
+use crate::random::Stream;
+
+/// Greatest size of a log importance ratio: where the expansion is bad the ratio would decide alone.
+const MAX_LOG_RATIO: f32 = 10.0;
+
+/// Goals from a process, poses by the Laplace proposal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
+    /// Where the end-effectors want to be.
+    pub process: &'a P,
+    /// The root's own process.
+    pub root: RootProcess,
+    /// Standard deviation of each angle's change after one second, radians: lambda = 1 / (std^2 dt) of eq. (12), a diagonal.
+    pub angle_std_rad_per_sqrt_s: [f32; ANGLES],
+    /// Most steps of the solver.
+    pub solver_steps: usize,
+    /// Whether the weight takes the importance ratio (18).
+    pub pays: bool,
+}
+
+/// lambda of eq. (12), one an angle.
+pub(super) fn stiffness<const ANGLES: usize>(std_rad_per_sqrt_s: &[f32; ANGLES], dt_s: f32) -> [f32; ANGLES] {
+    std_rad_per_sqrt_s.map(|std| 1.0 / (std * std * dt_s))
+}
+
+impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<BONES, ANGLES>
+    for EndEffectorMotion<'_, P, ANGLES>
+{
+    fn propose(
+        &self,
+        past: &FramePast<'_, BONES, ANGLES>,
+        ancestor: &BodyParticle<BONES, ANGLES>,
+        memory: &mut GoalMemory,
+        stream: &mut Stream,
+    ) -> Proposed<BONES, ANGLES> {
+        let skeleton = &past.scene.skeleton;
+        let mut previous_rad = ancestor.angles_rad;
+        self.root.draw(skeleton, &mut previous_rad, &past.angle_velocity_per_s, past.dt_s, stream);
+        let mut goals = Goals::new();
+        self.process.draw(&past.goals_of(ancestor), memory, stream, &mut goals);
+        let density = PoseDensity {
+            skeleton,
+            root_m: Vec3::zeros(),
+            goals: &goals,
+            previous_rad,
+            stiffness: stiffness(&self.angle_std_rad_per_sqrt_s, past.dt_s),
+            held: skeleton.root_coordinates(),
+        };
+        let mode = density.mode(self.solver_steps);
+        let Some(proposal) = LaplaceProposal::new(&mode) else {
+            let posture = density.posture(&mode.angles_rad);
+            return Proposed { angles_rad: mode.angles_rad, posture, log_ratio: 0.0 };
+        };
+        let draw = proposal.draw(skeleton.limits(), stream);
+        let posture = density.posture(&draw.angles_rad);
+        let log_ratio = if self.pays {
+            let log_density = density.log_density(&draw.angles_rad, &posture);
+            let ratio = proposal.log_importance_ratio(&draw, log_density, LimitMass::Neglected);
+            clamp(ratio, -MAX_LOG_RATIO, MAX_LOG_RATIO)
+        } else {
+            0.0
+        };
+        Proposed { angles_rad: draw.angles_rad, posture, log_ratio }
+    }
+}

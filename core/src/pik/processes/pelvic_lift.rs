@@ -1,0 +1,32 @@
+//! The pelvic lift: hands, feet and head stay where they were at first (PIK paper, section 7.3, eq. 38). The root's part, eq.
+//! (39), is [`crate::pik::root::RootProcess::pelvic_lift`].
+
+use crate::kinematics::inverse::Goal;
+use crate::math::Mat3;
+use crate::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals};
+use crate::random::Stream;
+
+/// g_t+1 = g_1 for every end-effector.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FixedGoals<'a> {
+    /// Bones whose ends stay.
+    pub end_effectors: &'a [usize],
+    /// How closely they stay, metres.
+    pub reach_std_m: f32,
+}
+
+impl<const BONES: usize> GoalProcess<BONES> for FixedGoals<'_> {
+    fn end_effectors(&self) -> &[usize] {
+        self.end_effectors
+    }
+
+    fn draw(&self, past: &GoalPast<'_, BONES>, _memory: &mut GoalMemory, _stream: &mut Stream, goals: &mut Goals) {
+        let precision = Mat3::identity() / (self.reach_std_m * self.reach_std_m);
+        for &bone in self.end_effectors {
+            if let Some(&position_m) = past.first_m.get(bone) {
+                // Goals beyond the capacity are no goals; MAX_GOALS says so.
+                let _ = goals.push(Goal { bone, position_m, precision });
+            }
+        }
+    }
+}

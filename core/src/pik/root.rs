@@ -1,0 +1,83 @@
+//! How a free root moves: the same in every motion model, drawn before the pose (DESIGN.md, section 3).
+
+use crate::math::{max, sqrt};
+use crate::random::Stream;
+use crate::skeleton::Skeleton;
+use crate::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
+
+/// Linear extrapolation of shifts and angles with normal noise, inside the limits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RootProcess {
+    /// Share of the filter's velocity that goes on, in [0, 1].
+    pub persistence: f32,
+    /// Standard deviations after one second: metres for the shifts, radians for the angles; they grow with the root of time.
+    /// Zero holds a coordinate.
+    pub std_per_sqrt_s: [f32; FREE_ROOT_COORDINATES],
+    /// Lowest and highest first, second and third shift, metres: the ground plane; infinite where nothing is known.
+    pub shift_limits_m: [[f32; 2]; SHIFTS],
+}
+
+/// No plane anywhere.
+pub const NO_PLANES: [[f32; 2]; SHIFTS] = [[f32::NEG_INFINITY, f32::INFINITY]; SHIFTS];
+
+impl RootProcess {
+    /// A root that stays where it is.
+    pub const FIXED: Self =
+        Self { persistence: 0.0, std_per_sqrt_s: [0.0; FREE_ROOT_COORDINATES], shift_limits_m: NO_PLANES };
+
+    /// The pelvic lift's root (PIK paper, eq. 39) over a floor at `floor_y_m`, camera axes with y down: standard deviations `std`
+    /// across and four times as much up and down, metres by root second.
+    #[must_use]
+    pub fn pelvic_lift(std_m_per_sqrt_s: f32, turn_std_rad_per_sqrt_s: f32, floor_y_m: f32) -> Self {
+        let (s, t) = (std_m_per_sqrt_s, turn_std_rad_per_sqrt_s);
+        let mut shift_limits_m = NO_PLANES;
+        shift_limits_m[1][1] = floor_y_m;
+        Self { persistence: 0.0, std_per_sqrt_s: [s, 4.0 * s, s, t, t, t], shift_limits_m }
+    }
+
+    /// Where coordinate `index` goes on the mean.
+    #[must_use]
+    pub fn mean(&self, index: usize, before: f32, velocity_per_s: f32, dt_s: f32) -> f32 {
+        let moved = if self.std(index, dt_s) > 0.0 { self.persistence * velocity_per_s * dt_s } else { 0.0 };
+        before + moved
+    }
+
+    /// Standard deviation of coordinate `index` after `dt_s`.
+    #[must_use]
+    pub fn std(&self, index: usize, dt_s: f32) -> f32 {
+        self.std_per_sqrt_s.get(index).map_or(0.0, |std| std * sqrt(max(dt_s, 0.0)))
+    }
+
+    /// Draws the root's coordinates, the first of `angles_rad`, in place.
+    pub fn draw<const BONES: usize, const ANGLES: usize>(
+        &self,
+        skeleton: &Skeleton<BONES, ANGLES>,
+        angles_rad: &mut [f32; ANGLES],
+        velocity_per_s: &[f32; ANGLES],
+        dt_s: f32,
+        stream: &mut Stream,
+    ) {
+        for index in 0..skeleton.root_coordinates() {
+            let std = self.std(index, dt_s);
+            let mean = self.mean(index, angles_rad[index], velocity_per_s[index], dt_s);
+            let (low, high) = self.limits(skeleton, index);
+            let drawn = if std > 0.0 {
+                mean + std * stream.truncated_normal((low - mean) / std, (high - mean) / std)
+            } else {
+                mean
+            };
+            angles_rad[index] = crate::math::clamp(drawn, low, high);
+        }
+    }
+
+    /// The skeleton's limits of a coordinate, and the planes.
+    fn limits<const BONES: usize, const ANGLES: usize>(
+        &self,
+        skeleton: &Skeleton<BONES, ANGLES>,
+        index: usize,
+    ) -> (f32, f32) {
+        let limit = &skeleton.limits()[index];
+        let [low, high] = self.shift_limits_m.get(index).copied().unwrap_or([f32::NEG_INFINITY, f32::INFINITY]);
+        (max(limit.low_rad, low), crate::math::min(limit.high_rad, high))
+    }
+}

@@ -1,0 +1,121 @@
+//! One pose out of many particles (PIK paper, eq. 30).
+
+use super::mean_rotation::{angles_of_rotation, mean_rotation};
+use crate::math::{Mat3, Vec3, axis_rotation, sqrt};
+use crate::pik::motion::{BodyParticle, BodyScene};
+use crate::skeleton::Joint;
+use crate::skeleton::tree::SHIFTS;
+
+/// What is known after a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyEstimate<const BONES: usize, const ANGLES: usize> {
+    /// Coordinates of the mean pose, inside the limits.
+    pub angles_rad: [f32; ANGLES],
+    /// Ends of all bones in that pose, metres.
+    pub ends_m: [Vec3; BONES],
+    /// Standard deviation of each bone's end over the particles, metres (root of the summed variances).
+    pub spread_m: [f32; BONES],
+    /// Whether the points show each bone; `false` as well where the frame had no points.
+    pub observed: [bool; BONES],
+    /// Effective number of particles.
+    pub effective_sample_size: f32,
+    /// ln of the mean weight, a frame's part of the log evidence; zero without points.
+    pub log_evidence: f32,
+    /// Exponent that the weights were flattened with; 1 where they were not.
+    pub tempering: f32,
+    /// Whether no particle had a weight: the frame was then as if it had no points.
+    pub is_degenerate: bool,
+}
+
+/// The weighted mean pose: shifts and hinges by their mean, balls by their mean rotation, then inside the limits.
+///
+/// An angle that winds (a free root's turn) is given the turn nearest to the heaviest particle's.
+#[must_use]
+pub fn mean_pose<const BONES: usize, const ANGLES: usize>(
+    scene: &BodyScene<BONES, ANGLES>,
+    particles: &[BodyParticle<BONES, ANGLES>],
+    weights: &[f32],
+) -> [f32; ANGLES] {
+    let heaviest = particles.iter().zip(weights).fold(None, |best: Option<(&BodyParticle<_, _>, f32)>, (p, &w)| {
+        if best.is_none_or(|(_, most)| w > most) { Some((p, w)) } else { best }
+    });
+    let mut result = heaviest.map_or([0.0; ANGLES], |(particle, _)| particle.angles_rad);
+    let mut first = 0;
+    for bone in scene.skeleton.bones() {
+        let count = bone.joint.angle_count();
+        match bone.joint {
+            Joint::Fixed => {}
+            Joint::Hinge(_) => mean_coordinates(&mut result, first..first + count, particles, weights),
+            Joint::Ball(axes) => mean_ball(&mut result, first, &axes, particles, weights),
+            Joint::Free([_, _, _, a, b, c]) => {
+                mean_coordinates(&mut result, first..first + SHIFTS, particles, weights);
+                mean_ball(&mut result, first + SHIFTS, &[a, b, c], particles, weights);
+            }
+        }
+        first += count;
+    }
+    scene.skeleton.clamp(result)
+}
+
+/// Plain means: limits keep a hinge within less than a turn.
+fn mean_coordinates<const BONES: usize, const ANGLES: usize>(
+    result: &mut [f32; ANGLES],
+    range: core::ops::Range<usize>,
+    particles: &[BodyParticle<BONES, ANGLES>],
+    weights: &[f32],
+) {
+    for index in range {
+        if let Some(slot) = result.get_mut(index) {
+            // About the heaviest particle's, so that large shifts lose no digits.
+            let about = *slot;
+            let mut off = 0.0;
+            for (particle, weight) in particles.iter().zip(weights) {
+                off += weight * (particle.angles_rad[index] - about);
+            }
+            *slot = about + off;
+        }
+    }
+}
+
+/// The mean rotation of a ball joint whose angles begin at `first`.
+fn mean_ball<const BONES: usize, const ANGLES: usize>(
+    result: &mut [f32; ANGLES],
+    first: usize,
+    axes: &[Vec3; 3],
+    particles: &[BodyParticle<BONES, ANGLES>],
+    weights: &[f32],
+) {
+    let mut sum = Mat3::zeros();
+    for (particle, &weight) in particles.iter().zip(weights) {
+        let Some(&[a, b, c]) = particle.angles_rad.get(first..first + 3).and_then(|three| three.first_chunk()) else {
+            return;
+        };
+        sum += axis_rotation(&axes[0], a) * axis_rotation(&axes[1], b) * axis_rotation(&axes[2], c) * weight;
+    }
+    let Some(mean) = mean_rotation(&sum) else { return };
+    for (slot, angle) in result.iter_mut().skip(first).zip(angles_of_rotation(&mean, axes)) {
+        *slot += crate::math::wrap_angle(angle - *slot);
+    }
+}
+
+/// Standard deviation of each bone's end, metres.
+#[must_use]
+pub fn spread_m<const BONES: usize, const ANGLES: usize>(
+    particles: &[BodyParticle<BONES, ANGLES>],
+    weights: &[f32],
+) -> [f32; BONES] {
+    let mut result = [0.0; BONES];
+    for bone in 0..BONES {
+        let mut mean = Vec3::zeros();
+        for (particle, &weight) in particles.iter().zip(weights) {
+            mean += particle.ends_m[bone] * weight;
+        }
+        let mut variance = 0.0;
+        for (particle, weight) in particles.iter().zip(weights) {
+            let off = particle.ends_m[bone] - mean;
+            variance += weight * off.dot(&off);
+        }
+        result[bone] = sqrt(variance);
+    }
+    result
+}
