@@ -1,5 +1,6 @@
 //! Host side of Sinew: image folders, skin models, scenes, plots and reports around [`sinew_core`].
 
+pub mod body;
 pub mod cli;
 pub mod config;
 pub mod cyclic;
@@ -14,5 +15,6 @@ pub mod output;
 pub mod record;
 pub mod scene;
 pub mod skin;
+pub mod stereo;
 pub mod track;
 pub mod wording;

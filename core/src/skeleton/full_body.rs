@@ -140,7 +140,7 @@ const LIMITS: [Limit; BODY_ANGLES] = {
     let degrees = Limit::from_degrees;
     let shoulder = super::arm::ARM_LIMITS;
     let hip = [degrees(-45.0, 140.0), degrees(-45.0, 75.0), degrees(-70.0, 70.0)];
-    let (knee, ankle) = (degrees(0.0, 160.0), degrees(-70.0, 50.0));
+    let (knee, ankle) = (degrees(0.0, 160.0), degrees(-70.0, 60.0));
     [
         shift,
         shift,

@@ -110,7 +110,10 @@ impl Plane {
 }
 
 /// Up: as said, or the axis that the necks lie along from the ankles (or hips).
-fn upwards(frames: &[SpatialJoints], said: Option<UpAxis>) -> Result<Vec3> {
+///
+/// # Errors
+/// Neck and hips are in no frame together.
+pub fn upwards(frames: &[SpatialJoints], said: Option<UpAxis>) -> Result<Vec3> {
     Ok(match said {
         Some(UpAxis::X) => Vec3::x(),
         Some(UpAxis::Y) => Vec3::y(),

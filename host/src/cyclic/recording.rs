@@ -7,7 +7,7 @@ use super::resample::resample;
 use crate::keypoints::{self, Facing};
 use crate::motion::joint_names::JointSources;
 use crate::motion::markers::MarkerMotion;
-use crate::motion::{self, DEFAULT_FRAMES_PER_SECOND, ReadOptions, c3d, exponential_map, trc};
+use crate::motion::{self, ReadOptions};
 use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 
@@ -70,27 +70,17 @@ fn has_extension(path: &Path, extensions: &[&str]) -> bool {
 /// # Errors
 /// Names the file, the line and the rule that it broke.
 pub fn read_space(path: &Path, options: &RecordingOptions) -> Result<MarkerMotion> {
-    let rate = options.input_rate_hz.map(|rate| rate as f32);
-    let mut motion = if has_extension(path, &["trc"]) {
-        trc::read(path)?
-    } else if has_extension(path, &["c3d"]) {
-        c3d::read(path)?
-    } else if has_extension(path, &["txt"]) {
-        MarkerMotion::from(&exponential_map::read_whole_body(path, rate.unwrap_or(DEFAULT_FRAMES_PER_SECOND))?)
-    } else if has_extension(path, &["bvh", "amc"]) {
-        let read =
-            ReadOptions { skeleton: options.skeleton.as_deref(), frames_per_second: rate, metres_per_unit: None };
-        MarkerMotion::from(&motion::read(path, &read)?)
-    } else {
-        bail!(
-            "`{}` is of no known kind; give a .bvh, .amc, .txt (exponential maps), .trc, .c3d, a .json or .csv of keypoints, or a folder of OpenPose files",
-            path.display()
-        );
+    ensure!(
+        has_extension(path, &["bvh", "amc", "txt", "trc", "c3d"]),
+        "`{}` is of no known kind; give a .bvh, .amc, .txt (exponential maps), .trc, .c3d, a .json or .csv of keypoints, or a folder of OpenPose files",
+        path.display()
+    );
+    let read = ReadOptions {
+        skeleton: options.skeleton.as_deref(),
+        frames_per_second: options.input_rate_hz.map(|rate| rate as f32),
+        metres_per_unit: None,
     };
-    if let Some(rate) = rate {
-        motion.frames_per_second = rate;
-    }
-    Ok(motion)
+    Ok(motion::read_space(path, &read)?)
 }
 
 fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {

@@ -63,9 +63,9 @@ const fn cmu(name: &'static str, number: usize, parent: usize, offset: [f32; 3])
     Joint { name, number, parent, offset }
 }
 
-/// Trunk, arms and legs with the bones of an adult of the CMU collection (subject 35, sides averaged): there the legs of the
+/// Trunk, head, arms and legs with the bones of an adult of the CMU collection (subject 35, sides averaged): there the legs of the
 /// rest pose stand 20 degrees apart, the collar bones rise, and the hips lie below the root.
-const WHOLE_BODY: [Joint; 20] = [
+const WHOLE_BODY: [Joint; 25] = [
     cmu("Hips", 0, ROOT, [0.0; 3]),
     cmu("LHipJoint", 1, 0, [0.0; 3]),
     cmu("LeftUpLeg", 2, 1, [1.68, -1.89, 0.48]),
@@ -86,6 +86,11 @@ const WHOLE_BODY: [Joint; 20] = [
     cmu("RightArm", 30, 16, [-3.43, 0.90, -0.54]),
     cmu("RightForeArm", 31, 17, [-5.21, 0.0, 0.0]),
     cmu("RightHand", 32, 18, [-3.59, 0.0, 0.0]),
+    cmu("LeftToeBase", 5, 4, [0.22, -0.60, 2.22]),
+    cmu("RightToeBase", 11, 8, [-0.22, -0.60, 2.22]),
+    cmu("Neck", 16, 11, [0.0, 2.05, 0.11]),
+    cmu("Neck1", 17, 22, [0.0, 1.71, 0.21]),
+    cmu("Head", 18, 23, [0.0, 1.72, -0.22]),
 ];
 
 /// Reads a motion, recorded at `frames_per_second`.

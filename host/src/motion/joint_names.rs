@@ -114,6 +114,20 @@ fn sided(pattern: &str, left: bool) -> String {
     pattern.replace("{L}", long).replace("{l}", short)
 }
 
+/// Points whose middle the first of `patterns` asks for that is among the `known` plain names.
+fn points_called(known: &[String], patterns: &[&str], left: bool) -> Option<Vec<usize>> {
+    let point = |name: &str| known.iter().position(|other| other == name);
+    patterns.iter().find_map(|pattern| sided(pattern, left).split('+').map(point).collect())
+}
+
+/// Which points make up one joint more, by `patterns` as those of the limbs: a choice an entry, `+` for the middle of points,
+/// `{L}` and `{l}` for the side. `None` where no choice is among `names`.
+#[must_use]
+pub fn named_points(names: &[String], patterns: &[&str], left: bool) -> Option<Vec<usize>> {
+    let known: Vec<String> = names.iter().map(|name| plain(name)).collect();
+    points_called(&known, patterns, left)
+}
+
 impl JointSources {
     /// Finds the joints among `names`. Without `partial` every limb joint has to be there; `path` is for the message.
     ///
@@ -122,11 +136,7 @@ impl JointSources {
     pub fn find(names: &[String], partial: bool, path: &Path) -> Result<Self, MotionError> {
         let known: Vec<String> = names.iter().map(|name| plain(name)).collect();
         let point = |name: &str| known.iter().position(|other| other == name);
-        let choose = |patterns: &[&str], left: bool| -> Option<Source> {
-            patterns.iter().find_map(|pattern| {
-                sided(pattern, left).split('+').map(point).collect::<Option<Vec<usize>>>().map(Source::Points)
-            })
-        };
+        let choose = |patterns: &[&str], left: bool| points_called(&known, patterns, left).map(Source::Points);
         let mut sources: [Option<Source>; JOINTS] = std::array::from_fn(|_| None);
         let pelvis = || {
             let corner =
@@ -203,7 +213,8 @@ impl JointSources {
     }
 }
 
-fn middle(points: impl ExactSizeIterator<Item = Option<Vec3>>) -> Option<Vec3> {
+/// Middle of some points; `None` where one of them is missing.
+pub fn middle(points: impl ExactSizeIterator<Item = Option<Vec3>>) -> Option<Vec3> {
     let count = points.len() as f32;
     let mut sum = Vec3::zeros();
     for point in points {

@@ -16,10 +16,13 @@ pub mod joint_names;
 pub mod landmarks;
 pub mod markers;
 pub mod reach;
+pub mod space;
 pub mod trc;
 
 pub use arm_motion::{ArmDirections, ArmMotion, ArmSide};
 pub use error::MotionError;
+pub use markers::MarkerMotion;
+pub use space::read_space;
 
 use sinew_core::math::Vec3;
 use std::path::Path;

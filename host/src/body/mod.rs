@@ -1,0 +1,13 @@
+//! Whole bodies from recordings: their joints over time, their measures, and the poses that come nearest to them.
+
+pub mod fitting;
+pub mod joints;
+pub mod measuring;
+pub mod placing;
+pub mod recording;
+
+pub use fitting::{FittedPose, fit_pose, fit_recording};
+pub use joints::{BodyJoints, BodySources};
+pub use measuring::measure;
+pub use placing::Placement;
+pub use recording::{BodyRecording, BodyRecordingOptions};
