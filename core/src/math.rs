@@ -179,7 +179,7 @@ pub const EXP_SMALL_MAX_ERROR: f32 = 3.0e-7;
 #[inline]
 #[must_use]
 pub fn abs(x: f32) -> f32 {
-    if x < 0.0 { -x } else { x }
+    x.abs()
 }
 
 /// Smaller of two numbers; `b` where they compare equal or either is NaN.

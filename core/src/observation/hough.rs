@@ -6,7 +6,6 @@
 
 use super::orientation::{MAX_BINS, OrientationDensity, OrientationVariance};
 use crate::error::{ParameterError, Rule, positive};
-use crate::math::atan2;
 use crate::random::Stream;
 use crate::vision::edges::EdgePixel;
 
@@ -124,9 +123,8 @@ pub fn dynamic_hough(pixels: &[EdgePixel], settings: &HoughSettings, stream: &mu
         let (Some(a), Some(b)) = (drawn(stream), drawn(stream)) else { break };
         let (du, dv) = (f32::from(a.u) - f32::from(b.u), f32::from(a.v) - f32::from(b.v));
         if du * du + dv * dv >= least {
-            let orientation_rad = atan2(dv, du);
             variance.add(du, dv);
-            if let Some(vote) = votes.get_mut(uniform.bin_of(orientation_rad)) {
+            if let Some(vote) = votes.get_mut(uniform.bin_of_line(du, dv)) {
                 *vote = vote.saturating_add(1);
             }
             voters += 1;

@@ -47,16 +47,6 @@ impl<const N: usize> EdgeList<N> {
         self.dropped = 0;
     }
 
-    fn keep_every_second(&mut self) {
-        let kept = self.pixels.len().div_ceil(2);
-        for i in 0..kept {
-            if let Some(&pixel) = self.pixels.get(2 * i) {
-                self.pixels[i] = pixel;
-            }
-        }
-        self.pixels.truncate(kept);
-    }
-
     /// Takes the set pixels of a mask; of more than fit every n-th, n a fraction, in the order of rows.
     pub fn take_mask(&mut self, bits: &[u32], width: usize) {
         self.clear();
@@ -104,20 +94,49 @@ impl EdgeThinning {
     }
 
     /// Offers the next pixel.
+    #[inline]
     pub fn offer<const N: usize>(&mut self, pixel: EdgePixel, list: &mut EdgeList<N>) {
-        if self.offered & (self.stride - 1) == 0 {
-            if list.pixels.is_full() && self.stride < 1 << 31 {
-                list.keep_every_second();
-                self.stride *= 2;
-            }
-            if self.offered & (self.stride - 1) == 0 {
-                // A list without any room stays empty.
-                let _ = list.pixels.push(pixel);
-            }
-        }
-        self.offered = self.offered.saturating_add(1);
-        list.dropped = self.offered - list.pixels.len() as u32;
+        list.dropped += self.offer_to(pixel, &mut list.pixels);
     }
+
+    /// Offers the next pixel to a plain list; gives how many pixels were left out for it.
+    #[inline]
+    pub(crate) fn offer_to<const N: usize>(&mut self, pixel: EdgePixel, list: &mut Vec<EdgePixel, N>) -> u32 {
+        let dropped = if self.offered & (self.stride - 1) != 0 {
+            1
+        } else if list.push(pixel).is_err() {
+            self.offer_to_full(pixel, list)
+        } else {
+            0
+        };
+        self.offered = self.offered.wrapping_add(1);
+        dropped
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn offer_to_full<const N: usize>(&mut self, pixel: EdgePixel, list: &mut Vec<EdgePixel, N>) -> u32 {
+        let before = list.len();
+        if self.stride < 1 << 31 {
+            keep_every_second(list);
+            self.stride *= 2;
+        }
+        if self.offered & (self.stride - 1) == 0 {
+            // A list without any room stays empty.
+            let _ = list.push(pixel);
+        }
+        (before + 1 - list.len()) as u32
+    }
+}
+
+fn keep_every_second<const N: usize>(list: &mut Vec<EdgePixel, N>) {
+    let kept = list.len().div_ceil(2);
+    for i in 0..kept {
+        if let (Some(pixel), Some(slot)) = (list.get(2 * i).copied(), list.get_mut(i)) {
+            *slot = pixel;
+        }
+    }
+    list.truncate(kept);
 }
 
 /// Luminance 0 to 255 of a line of interleaved RGB, (77 R + 150 G + 29 B) / 256 (Rec. 601).

@@ -116,7 +116,7 @@ fn measure(
     let band_px = options.limb_band_m * context.model.camera().focal_px() / max(arm.elbow_m.z, 0.1);
     split(edges, &points, band_px, pixels);
     for (pixels, density) in [(&pixels.upper, &mut densities.upper), (&pixels.fore, &mut densities.fore)] {
-        if let Some(found) = dynamic_hough(pixels, &options.hough, stream) {
+        if let Some(found) = dynamic_hough(pixels.as_slice(), &options.hough, stream) {
             *density = found.density;
         }
     }
