@@ -190,6 +190,10 @@ enum SinewStatus
    * Lines were given before a frame was begun, or a frame ended that was not begun.
    */
   SINEW_STATUS_NO_FRAME = -14,
+  /**
+   * A calibration ended that was not begun, or nothing of its box was seen.
+   */
+  SINEW_STATUS_NO_SAMPLE = -15,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -537,6 +541,28 @@ typedef struct SinewVisionConfig {
 } SinewVisionConfig;
 
 /**
+ * A box of pixels.
+ */
+typedef struct SinewBox {
+  /**
+   * Its first column.
+   */
+  uint32_t left_px;
+  /**
+   * Its first row.
+   */
+  uint32_t top_px;
+  /**
+   * Columns, at least 1.
+   */
+  uint32_t width_px;
+  /**
+   * Rows, at least 1.
+   */
+  uint32_t height_px;
+} SinewBox;
+
+/**
  * What a frame showed; all losses zero means that it is exact.
  */
 typedef struct SinewVisionResult {
@@ -871,6 +897,31 @@ SinewStatus sinew_vision_init(void *memory,
  * `vision` comes from `sinew_vision_init`.
  */
 SinewStatus sinew_vision_learn_skin(struct SinewVision *vision, const struct SinewSkin *skin);
+
+/**
+ * Begins to calibrate: from the next line on, until `sinew_vision_end_calibration`, the pixels inside of `box_px` are looked at, 256 of them, evenly. It has to show
+ * nothing but skin, a hand held into it; the lines of one frame suffice.
+ *
+ * A calibration that was begun before is given up. Returns SINEW_STATUS_OUT_OF_RANGE for a box that is empty or reaches beyond the frame.
+ *
+ * Caller's duty:
+ * `vision` comes from `sinew_vision_init`.
+ */
+SinewStatus sinew_vision_begin_calibration(struct SinewVision *vision,
+                                           const struct SinewBox *box_px);
+
+/**
+ * Ends a calibration: adapts the skin of the configuration, or the last one of `sinew_vision_learn_skin`, to what the box showed, takes it
+ * over from the next line on, and writes it into `skin`, which may be null.
+ *
+ * Returns SINEW_STATUS_NO_SAMPLE where no calibration was begun or no line of the box came since, SINEW_STATUS_OUT_OF_RANGE where all of its
+ * pixels were black; the skin is as before then.
+ *
+ * Caller's duty:
+ * `vision` comes from `sinew_vision_init`.
+ */
+SinewStatus sinew_vision_end_calibration(struct SinewVision *vision,
+                                         struct SinewSkin *skin);
 
 /**
  * Begins a frame; what was read of one that did not end is dropped.

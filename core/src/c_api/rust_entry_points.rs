@@ -9,6 +9,7 @@ use crate::skeleton::stick_figure::{HUMAN, ImagePoint};
 use crate::tracker::cyclic::{CyclicFrame, CyclicFrameInput, CyclicTracker, CyclicTrackerOptions, FirstPhase};
 use crate::vision::front_end::calibration::SkinSample;
 use crate::vision::front_end::pixel_format::{Rgb565, Yuyv};
+use crate::vision::skin::GaussianSkin;
 
 type Tracker = CyclicTracker<13>;
 type Input = CyclicFrameInput<13>;
@@ -71,6 +72,15 @@ pub extern "C" fn sinew_proof_skin_sample(
 ) {
     samples.0.line(v, line);
     samples.1.line(v, line);
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn sinew_proof_skin_adapted(
+    samples: &(SkinSample<Rgb565, 256>, SkinSample<Yuyv, 256>),
+    trained: &GaussianSkin,
+    adapted: &mut [Result<GaussianSkin, ParameterError>; 2],
+) {
+    *adapted = [samples.0.adapted(trained), samples.1.adapted(trained)];
 }
 
 #[unsafe(no_mangle)]

@@ -41,6 +41,8 @@ pub enum SinewStatus {
     ForeignState = -13,
     /// Lines were given before a frame was begun, or a frame ended that was not begun.
     NoFrame = -14,
+    /// A calibration ended that was not begun, or nothing of its box was seen.
+    NoSample = -15,
 }
 
 /// A short English text for a status, for people; `status` may be any number.
@@ -48,7 +50,7 @@ pub enum SinewStatus {
 /// The text is constant and ends with a zero byte.
 #[unsafe(no_mangle)]
 pub extern "C" fn sinew_error_text(status: i32) -> *const c_char {
-    const TEXTS: [&core::ffi::CStr; 15] = [
+    const TEXTS: [&core::ffi::CStr; 16] = [
         c"done",
         c"a pointer is null",
         c"a pointer is not aligned as its type asks for",
@@ -64,6 +66,7 @@ pub extern "C" fn sinew_error_text(status: i32) -> *const c_char {
         c"the state was saved by another version of the library",
         c"the state was saved with another model or other options",
         c"no frame was begun",
+        c"nothing was seen to calibrate with",
     ];
     let text = match status {
         1 => Some(&c"no frame so far showed enough to begin with"),
@@ -140,7 +143,7 @@ mod tests {
 
     #[test]
     fn each_status_has_its_own_text() {
-        let texts: Vec<_> = (-14..=1).map(text).collect();
+        let texts: Vec<_> = (-15..=1).map(text).collect();
         for (index, text) in texts.iter().enumerate() {
             assert_ne!(text, "an unknown status", "{index}");
             assert!(!texts[..index].contains(text), "{text}");
@@ -149,7 +152,7 @@ mod tests {
             text(SinewStatus::NoFrame as i32).contains("frame")
                 && text(SinewStatus::NullPointer as i32).contains("null")
         );
-        for unknown in [2, -15, i32::MIN, i32::MAX] {
+        for unknown in [2, -16, i32::MIN, i32::MAX] {
             assert_eq!(text(unknown), "an unknown status");
         }
     }

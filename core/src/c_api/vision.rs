@@ -4,12 +4,14 @@ use super::cyclic::SINEW_ALIGN;
 use super::object::{Seal, Sealed, bytes_mut, given, list, object, place, room};
 use super::status::{Answer, SinewStatus, status};
 use super::vision_frame::{
-    SINEW_PIXEL_RGB565, SINEW_PIXEL_RGB565_SWAPPED, SINEW_PIXEL_YUYV, SinewSkin, SinewVisionConfig, SinewVisionResult,
+    SINEW_PIXEL_RGB565, SINEW_PIXEL_RGB565_SWAPPED, SINEW_PIXEL_YUYV, SinewBox, SinewSkin, SinewVisionConfig,
+    SinewVisionResult,
 };
 use crate::saved_state::{SavedState, StateError, StateKind, StateVisitor, restore, save, saved_bytes};
 use crate::vision::front_end::QvgaFrontEnd;
+use crate::vision::front_end::calibration::SkinSample;
 use crate::vision::front_end::edge_lines::EdgeSteps;
-use crate::vision::front_end::pixel_format::{Rgb565, SwappedRgb565, Yuyv};
+use crate::vision::front_end::pixel_format::{PixelFormat, Rgb565, SwappedRgb565, Yuyv};
 use crate::vision::front_end::skin_table::SkinTable;
 use crate::vision::hand_likelihood::HandLikelihood;
 use crate::vision::skin::GaussianSkin;
@@ -28,26 +30,67 @@ const _: () = assert!(size_of::<SinewVision>() <= SINEW_VISION_MAX_BYTES && alig
 pub struct SinewVision {
     seal: Seal,
     config: SinewVisionConfig,
+    /// The last model that the caller gave.
+    trained: GaussianSkin,
     is_in_frame: bool,
     skin: Skin,
     front_end: QvgaFrontEnd,
 }
 
-/// The skin table of one of the formats.
+/// Skin of one of the formats.
 #[derive(Debug)]
 enum Skin {
-    Rgb565(SkinTable<Rgb565>),
-    Swapped(SkinTable<SwappedRgb565>),
-    Yuyv(SkinTable<Yuyv>),
+    Rgb565(SkinOf<Rgb565>),
+    Swapped(SkinOf<SwappedRgb565>),
+    Yuyv(SkinOf<Yuyv>),
+}
+
+/// Pixels of a box that are looked at to calibrate.
+const SAMPLE_PIXELS: usize = 256;
+
+/// The table, and what was seen of the box that is to adapt it.
+#[derive(Debug)]
+struct SkinOf<F> {
+    table: SkinTable<F>,
+    sample: Option<SkinSample<F, SAMPLE_PIXELS>>,
+}
+
+impl<F: PixelFormat> SkinOf<F> {
+    const fn new() -> Self {
+        Self { table: SkinTable::new(), sample: None }
+    }
+
+    fn line(&mut self, row: usize, line: &[u16], front_end: &mut QvgaFrontEnd) {
+        if let Some(sample) = &mut self.sample {
+            sample.line(row, line);
+        }
+        front_end.line(row, line, &self.table);
+    }
+
+    /// `trained` adapted to the sample, which the table learns then.
+    fn adapt(&mut self, trained: &GaussianSkin) -> Result<GaussianSkin, SinewStatus> {
+        let sample = self.sample.as_ref().filter(|sample| !sample.is_empty()).ok_or(SinewStatus::NoSample)?;
+        let adapted = sample.adapted(trained)?;
+        self.table.learn(&adapted);
+        self.sample = None;
+        Ok(adapted)
+    }
+}
+
+/// Does the same with the skin of each format.
+macro_rules! of_any_format {
+    ($skin:expr, $of:ident => $work:expr) => {
+        match $skin {
+            Skin::Rgb565($of) => $work,
+            Skin::Swapped($of) => $work,
+            Skin::Yuyv($of) => $work,
+        }
+    };
 }
 
 impl Skin {
     fn learn(&mut self, skin: &GaussianSkin) {
-        match self {
-            Self::Rgb565(table) => table.learn(skin),
-            Self::Swapped(table) => table.learn(skin),
-            Self::Yuyv(table) => table.learn(skin),
-        }
+        of_any_format!(self, of => of.table.learn(skin));
     }
 }
 
@@ -90,15 +133,15 @@ pub unsafe extern "C" fn sinew_vision_init(
             let place = place::<SinewVision>(memory, memory_bytes)?;
             let model = config.skin.model()?;
             let skin = match config.pixel_format {
-                SINEW_PIXEL_RGB565 => Skin::Rgb565(SkinTable::new()),
-                SINEW_PIXEL_RGB565_SWAPPED => Skin::Swapped(SkinTable::new()),
-                SINEW_PIXEL_YUYV => Skin::Yuyv(SkinTable::new()),
+                SINEW_PIXEL_RGB565 => Skin::Rgb565(SkinOf::new()),
+                SINEW_PIXEL_RGB565_SWAPPED => Skin::Swapped(SkinOf::new()),
+                SINEW_PIXEL_YUYV => Skin::Yuyv(SkinOf::new()),
                 _ => return Err(SinewStatus::OutOfRange),
             };
             let size = (config.width_px as usize, config.height_px as usize);
             let front_end = QvgaFrontEnd::new(size, HandLikelihood::default(), EdgeSteps::default())?;
             let seal = SinewVision::SEAL;
-            let vision = place.write(SinewVision { seal, config, is_in_frame: false, skin, front_end });
+            let vision = place.write(SinewVision { seal, config, trained: model, is_in_frame: false, skin, front_end });
             vision.skin.learn(&model);
             handle.write(vision);
             Ok(())
@@ -116,7 +159,56 @@ pub unsafe extern "C" fn sinew_vision_learn_skin(vision: *mut SinewVision, skin:
     status(unsafe {
         (|| {
             let (vision, skin) = (object(vision)?, given(skin)?);
-            vision.skin.learn(&skin.model()?);
+            vision.trained = skin.model()?;
+            vision.skin.learn(&vision.trained);
+            Ok(())
+        })()
+    })
+}
+
+/// Begins to calibrate: from the next line on, until `sinew_vision_end_calibration`, the pixels inside of `box_px` are looked at, 256 of them, evenly. It has to show
+/// nothing but skin, a hand held into it; the lines of one frame suffice.
+///
+/// A calibration that was begun before is given up. Returns SINEW_STATUS_OUT_OF_RANGE for a box that is empty or reaches beyond the frame.
+///
+/// # Safety
+/// `vision` comes from `sinew_vision_init`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_vision_begin_calibration(
+    vision: *mut SinewVision,
+    box_px: *const SinewBox,
+) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let (vision, box_px) = (object(vision)?, given(box_px)?);
+            let bounds = box_px.inside(vision.config.width_px, vision.config.height_px)?;
+            of_any_format!(&mut vision.skin, of => of.sample = Some(SkinSample::new(bounds)));
+            Ok(())
+        })()
+    })
+}
+
+/// Ends a calibration: adapts the skin of the configuration, or the last one of `sinew_vision_learn_skin`, to what the box showed, takes it
+/// over from the next line on, and writes it into `skin`, which may be null.
+///
+/// Returns SINEW_STATUS_NO_SAMPLE where no calibration was begun or no line of the box came since, SINEW_STATUS_OUT_OF_RANGE where all of its
+/// pixels were black; the skin is as before then.
+///
+/// # Safety
+/// `vision` comes from `sinew_vision_init`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sinew_vision_end_calibration(vision: *mut SinewVision, skin: *mut SinewSkin) -> SinewStatus {
+    // SAFETY: the caller's duty.
+    status(unsafe {
+        (|| {
+            let vision = object(vision)?;
+            let answer = if skin.is_null() { None } else { Some(room(skin)?) };
+            let trained = vision.trained;
+            let adapted = of_any_format!(&mut vision.skin, of => of.adapt(&trained))?;
+            if let Some(answer) = answer {
+                answer.write(SinewSkin::of(&adapted));
+            }
             Ok(())
         })()
     })
@@ -256,11 +348,7 @@ impl SinewVision {
         if row >= self.config.height_px || line.len() > self.config.width_px as usize {
             return Err(SinewStatus::OutOfRange);
         }
-        match &self.skin {
-            Skin::Rgb565(table) => self.front_end.line(row as usize, line, table),
-            Skin::Swapped(table) => self.front_end.line(row as usize, line, table),
-            Skin::Yuyv(table) => self.front_end.line(row as usize, line, table),
-        }
+        of_any_format!(&mut self.skin, of => of.line(row as usize, line, &mut self.front_end));
         Ok(())
     }
 
@@ -273,11 +361,7 @@ impl SinewVision {
 
 impl SavedState for Skin {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        let words = match self {
-            Self::Rgb565(table) => table.words_mut(),
-            Self::Swapped(table) => table.words_mut(),
-            Self::Yuyv(table) => table.words_mut(),
-        };
+        let words = of_any_format!(self, of => of.table.words_mut());
         words.iter_mut().for_each(|word| visitor.word(word));
     }
 }

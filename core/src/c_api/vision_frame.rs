@@ -2,6 +2,7 @@
 
 use super::status::SinewStatus;
 use crate::observation::candidate::HandCandidate;
+use crate::vision::components::BoundingBox;
 use crate::vision::edges::EdgePixel;
 use crate::vision::front_end::FrameLines;
 use crate::vision::skin::GaussianSkin;
@@ -25,6 +26,20 @@ pub struct SinewSkin {
     pub threshold: f32,
     /// Least R + G + B, 0 to 765: darker pixels have no usable colour.
     pub min_sum: u32,
+}
+
+/// A box of pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(C)]
+pub struct SinewBox {
+    /// Its first column.
+    pub left_px: u32,
+    /// Its first row.
+    pub top_px: u32,
+    /// Columns, at least 1.
+    pub width_px: u32,
+    /// Rows, at least 1.
+    pub height_px: u32,
 }
 
 /// Frames and skin; see `sinew_vision_default_config`.
@@ -68,10 +83,32 @@ pub struct SinewVisionResult {
 }
 
 impl SinewSkin {
+    pub(super) fn of(model: &GaussianSkin) -> Self {
+        Self {
+            mean: [model.mean_r(), model.mean_g()],
+            covariance: model.covariance(),
+            threshold: model.threshold(),
+            min_sum: u32::from(model.min_sum()),
+        }
+    }
+
     pub(super) fn model(&self) -> Result<GaussianSkin, SinewStatus> {
         let [mean_r, mean_g] = self.mean;
         let min_sum = u16::try_from(self.min_sum).map_err(|_| SinewStatus::OutOfRange)?;
         Ok(GaussianSkin::new(mean_r, mean_g, self.covariance, self.threshold, min_sum)?)
+    }
+}
+
+impl SinewBox {
+    /// The box, if it lies inside of a frame of `width_px` x `height_px` pixels.
+    pub(super) fn inside(&self, width_px: u32, height_px: u32) -> Result<BoundingBox, SinewStatus> {
+        let side = |first: u32, length: u32, room: u32| {
+            let last = first.checked_add(length.checked_sub(1)?).filter(|&last| last < room)?;
+            Some((u16::try_from(first).ok()?, u16::try_from(last).ok()?))
+        };
+        let (min_u, max_u) = side(self.left_px, self.width_px, width_px).ok_or(SinewStatus::OutOfRange)?;
+        let (min_v, max_v) = side(self.top_px, self.height_px, height_px).ok_or(SinewStatus::OutOfRange)?;
+        Ok(BoundingBox { min_u, min_v, max_u, max_v })
     }
 }
 

@@ -35,7 +35,7 @@ impl<F: PixelFormat, const N: usize> SkinSample<F, N> {
     /// An empty sample of the pixels inside of `bounds`; its corners belong to it.
     #[must_use]
     pub fn new(bounds: BoundingBox) -> Self {
-        let pixels = bounds.width_px() * bounds.height_px();
+        let pixels = bounds.width_px().saturating_mul(bounds.height_px());
         let stride = pixels.div_ceil((N as u32).max(1));
         Self { bounds, keys: heapless::Vec::new(), stride, seen: 0, format: PhantomData }
     }
@@ -79,20 +79,10 @@ impl<F: PixelFormat, const N: usize> SkinSample<F, N> {
     /// # Errors
     /// A sample without colours; and as [`GaussianSkin::new`].
     pub fn adapted(&self, trained: &GaussianSkin) -> Result<GaussianSkin, ParameterError> {
-        let mut points = heapless::Vec::<[f32; 2], N>::new();
-        let mut sums = heapless::Vec::<u16, N>::new();
-        for &key in &self.keys {
-            let [r, g, b] = F::rgb(key).map(u16::from);
-            let sum = r + g + b;
-            if sum > 0 {
-                // As long as `keys` at most.
-                let _ = points.push([f32::from(r) / f32::from(sum), f32::from(g) / f32::from(sum)]);
-                let _ = sums.push(sum);
-            }
-        }
-        let moments = trimmed(&mut points).ok_or(ParameterError::new("skin sample", Rule::NotEmpty))?;
-        sums.sort_unstable();
-        let shadow = sums.get(sums.len() / 10).map_or(trained.min_sum(), |sum| sum / 2);
+        let colours = self.keys.iter().filter_map(|&key| Colour::of(F::rgb(key)));
+        let moments = trimmed(colours.clone()).ok_or(ParameterError::new("skin sample", Rule::NotEmpty))?;
+        let sums = colours.clone().map(|colour| colour.sum);
+        let shadow = kth_smallest(sums, colours.count() / 10) / 2;
         let part = min(moments.count / (moments.count + TRAINED_PIXELS), MAX_SAMPLE_PART);
         let blend = |trained: f32, here: f32| (1.0 - part) * trained + part * here;
         let [rr, rg, gg] = trained.covariance();
@@ -101,9 +91,44 @@ impl<F: PixelFormat, const N: usize> SkinSample<F, N> {
             blend(trained.mean_g(), moments.mean[1]),
             [blend(rr, moments.covariance[0]), blend(rg, moments.covariance[1]), blend(gg, moments.covariance[2])],
             trained.threshold(),
-            trained.min_sum().min(shadow),
+            // Sums are 765 at most.
+            trained.min_sum().min(shadow as u16),
         )
     }
+}
+
+/// R + G + B of a pixel that is not black, and its chromaticities r and g.
+#[derive(Debug, Clone, Copy)]
+struct Colour {
+    sum: u32,
+    r: f32,
+    g: f32,
+}
+
+impl Colour {
+    fn of(rgb: [u8; 3]) -> Option<Self> {
+        let [red, green, blue] = rgb.map(f32::from);
+        let sum = red + green + blue;
+        (sum > 0.0).then(|| Self { sum: sum as u32, r: red / sum, g: green / sum })
+    }
+}
+
+/// The number that `k` others come before in order; `u32::MAX` of too few. Decides one bit after the other by counting, so that nothing is sorted or kept.
+fn kth_smallest(numbers: impl Iterator<Item = u32> + Clone, k: usize) -> u32 {
+    let mut found = 0;
+    for bit in (0..u32::BITS).rev() {
+        // Of all numbers with the bits found so far, those below this one have a zero here.
+        let middle = found | 1 << bit;
+        if numbers.clone().filter(|&number| number < middle).count() <= k {
+            found = middle;
+        }
+    }
+    found
+}
+
+/// [`kth_smallest`] of numbers from 0 on, whose order is that of their bits.
+fn kth_smallest_real(numbers: impl Iterator<Item = f32> + Clone, k: usize) -> f32 {
+    f32::from_bits(kth_smallest(numbers.map(f32::to_bits), k))
 }
 
 /// Count, mean and covariance of chromaticities.
@@ -115,49 +140,48 @@ struct Moments {
 }
 
 impl Moments {
-    /// `None` without points.
-    fn of<'p>(points: impl Iterator<Item = &'p [f32; 2]> + Clone) -> Option<Self> {
-        let count = points.clone().count() as f32;
+    /// `None` without colours.
+    fn of(colours: impl Iterator<Item = Colour> + Clone) -> Option<Self> {
+        let count = colours.clone().count() as f32;
         if !(count > 0.0) {
             return None;
         }
-        let mean = [0, 1].map(|i: usize| points.clone().map(|point| point[i & 1]).sum::<f32>() / count);
+        let mean_r = colours.clone().map(|colour| colour.r).sum::<f32>() / count;
+        let mean_g = colours.clone().map(|colour| colour.g).sum::<f32>() / count;
         let mut covariance = [0.0; 3];
-        for point in points {
-            let (r, g) = (point[0] - mean[0], point[1] - mean[1]);
+        for colour in colours {
+            let (r, g) = (colour.r - mean_r, colour.g - mean_g);
             for (sum, term) in covariance.iter_mut().zip([r * r, r * g, g * g]) {
                 *sum += term / count;
             }
         }
         covariance[0] += CELL_VARIANCE;
         covariance[2] += CELL_VARIANCE;
-        Some(Self { count, mean, covariance })
+        Some(Self { count, mean: [mean_r, mean_g], covariance })
     }
 
-    fn holds(&self, point: &[f32; 2]) -> bool {
+    fn holds(&self, colour: &Colour) -> bool {
         let [rr, rg, gg] = self.covariance;
-        let (r, g) = (point[0] - self.mean[0], point[1] - self.mean[1]);
+        let (r, g) = (colour.r - self.mean[0], colour.g - self.mean[1]);
         gg * r * r - 2.0 * rg * r * g + rr * g * g <= TRIM_SQUARED * (rr * gg - rg * rg)
     }
 }
 
-/// Moments of the half that is nearest to the median, then, a few times, of what lies close to the last ones.
-fn trimmed(points: &mut [[f32; 2]]) -> Option<Moments> {
-    let middle = points.len() / 2;
-    let mut median = [0.0; 2];
-    for (i, median) in median.iter_mut().enumerate() {
-        points.sort_unstable_by(|a, b| a[i & 1].total_cmp(&b[i & 1]));
-        *median = points.get(middle)?[i & 1];
-    }
-    let square = |point: &[f32; 2]| {
-        let (r, g) = (point[0] - median[0], point[1] - median[1]);
+/// Moments of the half that is nearest to the median, with what is as near as its farthest; then, a few times, of what lies close to the last ones.
+fn trimmed(colours: impl Iterator<Item = Colour> + Clone) -> Option<Moments> {
+    let count = colours.clone().count();
+    let median_r = kth_smallest_real(colours.clone().map(|colour| colour.r), count / 2);
+    let median_g = kth_smallest_real(colours.clone().map(|colour| colour.g), count / 2);
+    let square = |colour: &Colour| {
+        let (r, g) = (colour.r - median_r, colour.g - median_g);
         r * r + g * g
     };
-    points.sort_unstable_by(|a, b| square(a).total_cmp(&square(b)));
-    let mut moments = Moments::of(points.iter().take(points.len().div_ceil(2)))?;
+    let farthest =
+        kth_smallest_real(colours.clone().map(|colour| square(&colour)), count.div_ceil(2).saturating_sub(1));
+    let mut moments = Moments::of(colours.clone().filter(|colour| square(colour) <= farthest))?;
     for _ in 0..TRIMMING_ROUNDS {
         let last = moments;
-        moments = Moments::of(points.iter().filter(|point| last.holds(point)))?;
+        moments = Moments::of(colours.clone().filter(|colour| last.holds(colour)))?;
     }
     Some(moments)
 }
@@ -218,7 +242,30 @@ mod tests {
         assert!(none.adapted(&trained()).is_err());
     }
 
+    #[test]
+    fn black_pixels_are_no_colours_and_of_too_few_there_is_none() {
+        assert!(Colour::of([0; 3]).is_none());
+        assert!(trimmed(core::iter::empty()).is_none());
+        assert_eq!(kth_smallest([3, 1].into_iter(), 2), u32::MAX);
+    }
+
     proptest! {
+        #[test]
+        fn the_kth_smallest_is_that_of_a_sorted_list(
+            numbers in prop::collection::vec(prop_oneof![0_u32..9, any::<u32>()], 1..40),
+            reals in prop::collection::vec(prop_oneof![Just(0.0), 0.0_f32..1.0], 1..40), place in 0.0_f32..1.0,
+        ) {
+            let at = |len: usize| (place * len as f32) as usize;
+            let k = at(numbers.len()).min(numbers.len() - 1);
+            let mut sorted = numbers.clone();
+            sorted.sort_unstable();
+            prop_assert_eq!(kth_smallest(numbers.iter().copied(), k), sorted[k]);
+            let k = at(reals.len()).min(reals.len() - 1);
+            let mut sorted = reals.clone();
+            sorted.sort_unstable_by(f32::total_cmp);
+            prop_assert_eq!(kth_smallest_real(reals.iter().copied(), k), sorted[k]);
+        }
+
         #[test]
         fn any_lines_give_a_model_or_an_error(
             lines in prop::collection::vec(prop::collection::vec(any::<u16>(), 0..20), 0..12),

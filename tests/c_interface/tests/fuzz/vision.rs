@@ -16,6 +16,8 @@ enum Call {
     Frame { stripes: u16, colours: [u16; 2] },
     End,
     Learn { mean: [f32; 2], covariance: [f32; 3], threshold: f32, min_sum: u32 },
+    Calibrate(SinewBox),
+    EndCalibration,
     Restore(Damage),
     Reset,
 }
@@ -35,6 +37,10 @@ fn call() -> impl Strategy<Value = Call> {
         1 => (mean, covariance, mostly(1.0..4.0), 0_u32..1000).prop_map(|(mean, covariance, threshold, min_sum)| {
             Call::Learn { mean, covariance, threshold, min_sum }
         }),
+        1 => prop::array::uniform4(prop_oneof![8 => 0_u32..160, 1 => any::<u32>()]).prop_map(|[left_px, top_px, width_px, height_px]| {
+            Call::Calibrate(SinewBox { left_px, top_px, width_px, height_px })
+        }),
+        1 => Just(Call::EndCalibration),
         1 => damage().prop_map(Call::Restore),
         1 => Just(Call::Reset),
     ]
@@ -130,6 +136,8 @@ impl Camera {
                         SinewSkin { mean: *mean, covariance: *covariance, threshold: *threshold, min_sum: *min_sum };
                     sinew_vision_learn_skin(self.handle, &raw const skin)
                 }
+                Call::Calibrate(box_px) => sinew_vision_begin_calibration(self.handle, &raw const *box_px),
+                Call::EndCalibration => sinew_vision_end_calibration(self.handle, null_mut()),
                 Call::Restore(damage) => {
                     let before = self.saved();
                     let bytes = damage.applied(&before);
@@ -164,6 +172,89 @@ proptest! {
         prop_assert_eq!(camera.read(0, &[0]), SinewStatus::Ok);
         prop_assert_eq!(camera.end(), SinewStatus::Ok);
     }
+}
+
+/// A hand of bluish skin, which the configured skin does not hold, before a green wall.
+fn hand_line(row: u32) -> Vec<u16> {
+    (0..320_u32)
+        .map(|u| {
+            let is_hand = (100..150).contains(&u) && (60..120).contains(&row);
+            if is_hand { (15 + u as u16 % 2) << 11 | 26 << 5 | (17 + row as u16 % 2) } else { 5 << 11 | 40 << 5 | 6 }
+        })
+        .collect()
+}
+
+impl Camera {
+    /// Candidates of a frame with that hand, each pixel coded by `code`.
+    fn hands(&self, code: fn(u16) -> u16) -> u32 {
+        self.call(&Call::Begin);
+        for row in 0..240 {
+            let line: Vec<u16> = hand_line(row).into_iter().map(code).collect();
+            assert_eq!(self.read(row, &line), SinewStatus::Ok);
+        }
+        let mut result = MaybeUninit::<SinewVisionResult>::uninit();
+        // SAFETY: there is room for a result, which is written where a frame was begun.
+        unsafe {
+            assert_eq!(sinew_vision_end_frame(self.handle, result.as_mut_ptr()), SinewStatus::Ok);
+            result.assume_init().candidate_count
+        }
+    }
+
+    fn calibrate(&self, box_px: SinewBox) -> SinewStatus {
+        // SAFETY: the front end was initialised, the box is there.
+        unsafe { sinew_vision_begin_calibration(self.handle, &raw const box_px) }
+    }
+
+    fn end_calibration(&self) -> Result<SinewSkin, SinewStatus> {
+        let mut skin = MaybeUninit::uninit();
+        // SAFETY: the front end was initialised; the skin is looked at only if it was written.
+        unsafe {
+            let status = sinew_vision_end_calibration(self.handle, skin.as_mut_ptr());
+            if status == SinewStatus::Ok { Ok(skin.assume_init()) } else { Err(status) }
+        }
+    }
+}
+
+#[test]
+fn a_box_of_skin_teaches_the_front_end_a_person_s_colour() {
+    let inside = SinewBox { left_px: 105, top_px: 65, width_px: 40, height_px: 50 };
+    for (format, code) in
+        [(SINEW_PIXEL_RGB565, (|p| p) as fn(u16) -> u16), (SINEW_PIXEL_RGB565_SWAPPED, u16::swap_bytes)]
+    {
+        let (_, camera) = init(&config(320, 240, format));
+        assert_eq!(camera.hands(code), 0);
+        assert_eq!(camera.calibrate(inside), SinewStatus::Ok);
+        assert_eq!(camera.hands(code), 0, "nothing is learned yet");
+        let learned = camera.end_calibration().unwrap();
+        assert_eq!(camera.hands(code), 1);
+        let before = camera.saved();
+        // SAFETY: the front end was initialised, the skin is there.
+        assert_eq!(unsafe { sinew_vision_learn_skin(camera.handle, &raw const learned) }, SinewStatus::Ok);
+        assert!(camera.saved() == before, "the skin that is written is the one that was learned");
+    }
+}
+
+#[test]
+fn calibrations_that_cannot_be_are_refused() {
+    let (_, camera) = init(&config(320, 240, 0));
+    let before = camera.saved();
+    let whole = SinewBox { left_px: 0, top_px: 0, width_px: 320, height_px: 240 };
+    for wrong in [
+        SinewBox { width_px: 0, ..whole },
+        SinewBox { height_px: 0, ..whole },
+        SinewBox { left_px: 1, ..whole },
+        SinewBox { top_px: 1, ..whole },
+        SinewBox { left_px: u32::MAX, width_px: 2, ..whole },
+    ] {
+        assert_eq!(camera.calibrate(wrong), SinewStatus::OutOfRange, "{wrong:?}");
+    }
+    assert_eq!(camera.end_calibration(), Err(SinewStatus::NoSample), "none was begun");
+    assert_eq!(camera.calibrate(whole), SinewStatus::Ok);
+    assert_eq!(camera.end_calibration(), Err(SinewStatus::NoSample), "no line came");
+    camera.call(&Call::Begin);
+    assert_eq!(camera.read(0, &[0; 320]), SinewStatus::Ok);
+    assert_eq!(camera.end_calibration(), Err(SinewStatus::OutOfRange), "black has no colour");
+    assert!(camera.saved() == before);
 }
 
 #[test]
