@@ -80,9 +80,9 @@ impl<F: PixelFormat, const N: usize> SkinSample<F, N> {
     /// A sample without colours; and as [`GaussianSkin::new`].
     pub fn adapted(&self, trained: &GaussianSkin) -> Result<GaussianSkin, ParameterError> {
         let colours = self.keys.iter().filter_map(|&key| Colour::of(F::rgb(key)));
-        let moments = trimmed(colours.clone()).ok_or(ParameterError::new("skin sample", Rule::NotEmpty))?;
+        let moments = trimmed(&colours).ok_or(ParameterError::new("skin sample", Rule::NotEmpty))?;
         let sums = colours.clone().map(|colour| colour.sum);
-        let shadow = kth_smallest(sums, colours.count() / 10) / 2;
+        let shadow = kth_smallest(&sums, colours.count() / 10) / 2;
         let part = min(moments.count / (moments.count + TRAINED_PIXELS), MAX_SAMPLE_PART);
         let blend = |trained: f32, here: f32| (1.0 - part) * trained + part * here;
         let [rr, rg, gg] = trained.covariance();
@@ -114,7 +114,7 @@ impl Colour {
 }
 
 /// The number that `k` others come before in order; `u32::MAX` of too few. Decides one bit after the other by counting, so that nothing is sorted or kept.
-fn kth_smallest(numbers: impl Iterator<Item = u32> + Clone, k: usize) -> u32 {
+fn kth_smallest(numbers: &(impl Iterator<Item = u32> + Clone), k: usize) -> u32 {
     let mut found = 0;
     for bit in (0..u32::BITS).rev() {
         // Of all numbers with the bits found so far, those below this one have a zero here.
@@ -128,7 +128,7 @@ fn kth_smallest(numbers: impl Iterator<Item = u32> + Clone, k: usize) -> u32 {
 
 /// [`kth_smallest`] of numbers from 0 on, whose order is that of their bits.
 fn kth_smallest_real(numbers: impl Iterator<Item = f32> + Clone, k: usize) -> f32 {
-    f32::from_bits(kth_smallest(numbers.map(f32::to_bits), k))
+    f32::from_bits(kth_smallest(&numbers.map(f32::to_bits), k))
 }
 
 /// Count, mean and covariance of chromaticities.
@@ -168,7 +168,7 @@ impl Moments {
 }
 
 /// Moments of the half that is nearest to the median, with what is as near as its farthest; then, a few times, of what lies close to the last ones.
-fn trimmed(colours: impl Iterator<Item = Colour> + Clone) -> Option<Moments> {
+fn trimmed(colours: &(impl Iterator<Item = Colour> + Clone)) -> Option<Moments> {
     let count = colours.clone().count();
     let median_r = kth_smallest_real(colours.clone().map(|colour| colour.r), count / 2);
     let median_g = kth_smallest_real(colours.clone().map(|colour| colour.g), count / 2);
@@ -245,8 +245,8 @@ mod tests {
     #[test]
     fn black_pixels_are_no_colours_and_of_too_few_there_is_none() {
         assert!(Colour::of([0; 3]).is_none());
-        assert!(trimmed(core::iter::empty()).is_none());
-        assert_eq!(kth_smallest([3, 1].into_iter(), 2), u32::MAX);
+        assert!(trimmed(&core::iter::empty()).is_none());
+        assert_eq!(kth_smallest(&[3, 1].into_iter(), 2), u32::MAX);
     }
 
     proptest! {
@@ -259,7 +259,7 @@ mod tests {
             let k = at(numbers.len()).min(numbers.len() - 1);
             let mut sorted = numbers.clone();
             sorted.sort_unstable();
-            prop_assert_eq!(kth_smallest(numbers.iter().copied(), k), sorted[k]);
+            prop_assert_eq!(kth_smallest(&numbers.iter().copied(), k), sorted[k]);
             let k = at(reals.len()).min(reals.len() - 1);
             let mut sorted = reals.clone();
             sorted.sort_unstable_by(f32::total_cmp);
