@@ -1,15 +1,12 @@
 //! The walking model of the core, a file for flash, is the one that the command ships.
 
 use sinew::cyclic::model::CyclicModel;
-use sinew_core::cyclic::model_bytes;
 use std::path::Path;
 
 #[test]
 fn the_model_for_flash_is_the_shipped_one() {
     let shipped = CyclicModel::from_option("walking").unwrap();
-    let mut bytes = vec![0; 64 * 1024];
-    let count = model_bytes::write(&shipped.view(), &mut bytes).unwrap();
-    bytes.truncate(count);
+    let bytes = shipped.to_bytes().unwrap();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/src/cyclic/models/walking.sinewmodel");
     if std::env::var_os("SINEW_REGENERATE").is_some() {
         std::fs::write(&path, &bytes).unwrap();

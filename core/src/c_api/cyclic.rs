@@ -63,7 +63,7 @@ pub extern "C" fn sinew_cyclic_align() -> usize {
 
 /// Makes a cyclic tracker in `memory`, which it needs as long as it is used; there is nothing to free.
 ///
-/// `model` is a motion model in bytes (`sinew_core::cyclic::model_bytes::write` makes one), aligned to four, which has to stay where it is as long as the tracker is
+/// `model` is a motion model in bytes (the command `sinew export` makes one), aligned to four, which has to stay where it is as long as the tracker is
 /// used. Null and zero bytes stand for the walking model that the library was built with. All numbers of the model are checked
 /// once, here.
 ///

@@ -13,6 +13,7 @@ pub mod evaluate_arm;
 pub mod evaluate_cyclic;
 pub mod evaluate_hands;
 pub mod evaluate_skin;
+pub mod export;
 pub mod image_run;
 pub mod record;
 pub mod segment;
@@ -53,6 +54,8 @@ pub enum Command {
     Simulate(simulate::SimulateArgs),
     /// Write what the tracker of a run was given as a stream that firmware plays.
     Record(record::RecordArgs),
+    /// Write a motion model as firmware reads it.
+    Export(export::ExportArgs),
     /// Write the skin mask of each image.
     Segment(segment::SegmentArgs),
     /// Write the features and hand likelihood of each blob of each image.
@@ -77,6 +80,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
         Command::Cut(args) => cut::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Record(args) => record::run(args),
+        Command::Export(args) => export::run(args),
         Command::Segment(args) => segment::run(args),
         Command::Blobs(args) => blobs::run(args),
         Command::Train(train) => train::run(train),

@@ -1,0 +1,94 @@
+//! `sinew export`: a motion model as firmware reads it.
+
+use super::stdout::write_all;
+use crate::cyclic::CyclicModel;
+use crate::cyclic::model::MODEL_VALUE;
+use crate::output::{check_writable_file, write_atomically};
+use anyhow::{Context, Result, ensure};
+use clap::{Args, ValueEnum};
+use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Options of `sinew export`.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// The motion model.
+    #[arg(value_name = MODEL_VALUE)]
+    pub model: String,
+    /// How it is written.
+    #[arg(long, value_enum, default_value_t)]
+    pub form: ModelForm,
+    /// File to write.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// How a model is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum ModelForm {
+    /// Its bytes, for `include_bytes!` or a place in flash of their own.
+    #[default]
+    Bytes,
+    /// A C source with an array of words that is named as the file.
+    C,
+}
+
+/// Writes the model.
+///
+/// # Errors
+/// No such model, one that firmware cannot use, an output that cannot be written.
+pub fn run(args: &ExportArgs) -> Result<()> {
+    check_writable_file(&args.out)?;
+    let model = CyclicModel::from_option(&args.model)?;
+    let angles = model.view().angle_count();
+    ensure!(
+        angles <= HUMAN_ANGLES,
+        "`{}` has {angles} angles, two a joint; firmware takes {HUMAN_ANGLES} at most: train it on tables of one angle a joint",
+        args.model
+    );
+    let bytes = model
+        .to_bytes()
+        .with_context(|| format!("`{}` says nothing of how people differ; train it anew", args.model))?;
+    let text = match args.form {
+        ModelForm::Bytes => None,
+        ModelForm::C => Some(c_source(&array_name(&args.out)?, &bytes)),
+    };
+    let written = text.as_ref().map_or(bytes.as_slice(), |text| text.as_bytes());
+    write_atomically(&args.out, |writer| Ok(writer.write_all(written)?))?;
+    let report = format!(
+        "motion model of {} positions and {angles} angles: {} bytes of flash, in `{}`\n",
+        model.view().position_count(),
+        bytes.len(),
+        args.out.display()
+    );
+    write_all(report.as_bytes())
+}
+
+/// The file's name without its ending, which has to be a name in C.
+fn array_name(out: &Path) -> Result<String> {
+    let name = out.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let is_name =
+        name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric()) && !name.starts_with(|c: char| c.is_ascii_digit());
+    ensure!(
+        is_name && !name.is_empty(),
+        "`{name}` cannot name an array in C; give `--out` a file name of letters, digits and underscores, such as running_model.c"
+    );
+    Ok(name)
+}
+
+/// The bytes as an array of words, which lies at a multiple of four as `sinew_cyclic_init` asks for.
+fn c_source(name: &str, bytes: &[u8]) -> String {
+    let words = bytes.as_chunks::<4>().0;
+    let mut text = format!(
+        "/* A motion model for sinew_cyclic_init, for little-endian processors; made by `sinew export`. */\n\n\
+         #include <stdint.h>\n\nextern const uint32_t {name}[{count}];\n\nconst uint32_t {name}[{count}] = {{\n",
+        count = words.len()
+    );
+    for line in words.chunks(8) {
+        let line: Vec<String> = line.iter().map(|word| format!("0x{:08x}", u32::from_le_bytes(*word))).collect();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "    {},", line.join(", "));
+    }
+    text + "};\n"
+}
