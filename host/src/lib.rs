@@ -2,6 +2,7 @@
 
 pub mod body;
 pub mod cli;
+pub mod cloud;
 pub mod config;
 pub mod cyclic;
 pub mod draw;
