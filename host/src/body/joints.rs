@@ -113,21 +113,19 @@ fn complete_heads(frames: &mut [BodyJoints], height_m: f32, head_m: f32) {
     }
 }
 
-/// Puts the ball of a foot that is missing where a foot has it that stands square to its shank and points to where the hips face.
+/// Puts the ball of a foot that is missing where a foot of the standard proportions has it.
 fn complete_feet(joints: &mut BodyJoints, measures: &BodyMeasures) {
     for side in 0..2 {
-        if joints[FEET[side]].is_some() {
-            continue;
-        }
-        let [left_hip, right_hip] = HIPS.map(|hip| joints[hip]);
-        let ball = || {
-            let (knee, ankle) = (joints[THIGHS[side]]?, joints[SHANKS[side]]?);
-            let up = unit(knee - ankle)?;
-            let front = unit((left_hip? - right_hip?).cross(&up))?;
-            Some(ankle + up * measures.foot_m.y + front * measures.foot_m.z)
-        };
-        joints[FEET[side]] = ball();
+        joints[FEET[side]] = joints[FEET[side]].or_else(|| standard_ball(joints, side, measures));
     }
+}
+
+/// The ball of a foot that stands square to its shank and points to where the hips face.
+fn standard_ball(joints: &BodyJoints, side: usize, measures: &BodyMeasures) -> Option<Vec3> {
+    let (knee, ankle) = (joints[THIGHS[side]]?, joints[SHANKS[side]]?);
+    let up = unit(knee - ankle)?;
+    let front = unit((joints[HIPS[0]]? - joints[HIPS[1]]?).cross(&up))?;
+    Some(ankle + up * measures.foot_m.y + front * measures.foot_m.z)
 }
 
 /// The middle value; the mean of both middle ones where their number is even. Infinite and missing values have to be left out.

@@ -18,6 +18,7 @@ pub mod image_run;
 pub mod record;
 pub mod segment;
 pub mod simulate;
+pub mod simulate_stereo;
 pub mod skin_args;
 pub mod stdout;
 pub mod track;
@@ -50,7 +51,7 @@ pub enum Command {
     Angles(angles::AnglesArgs),
     /// Find the cycles in angle tables.
     Cut(cut::CutArgs),
-    /// Render scenes with known truth.
+    /// Make scenes with known truth: pictures of arms, points of whole bodies.
     Simulate(simulate::SimulateArgs),
     /// Write what the tracker of a run was given as a stream that firmware plays.
     Record(record::RecordArgs),

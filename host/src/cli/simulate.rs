@@ -1,5 +1,6 @@
-//! `sinew simulate`: rendered scenes with known truth.
+//! `sinew simulate`: scenes with known truth.
 
+use super::simulate_stereo::{self, SimulateStereoArgs};
 use crate::motion::{self, ArmMotion, ArmSide, ReadOptions, reach};
 use crate::output::OutputDir;
 use crate::scene::{Scene, SceneOptions, Sides};
@@ -25,6 +26,8 @@ pub struct SimulateArgs {
 pub enum SimulateSubject {
     /// A person before a webcam who performs an arm motion: frames, camera and truth.
     Arm(SimulateArmArgs),
+    /// A whole body before a stereo camera: points, truth and first pose.
+    Stereo(SimulateStereoArgs),
 }
 
 impl From<SideChoice> for Sides {
@@ -88,7 +91,7 @@ pub struct SimulateArmArgs {
 }
 
 /// Two values with a comma between them.
-fn pair<T: FromStr>(text: &str) -> Result<(T, T), String> {
+pub(super) fn pair<T: FromStr>(text: &str) -> Result<(T, T), String> {
     let parsed = text.split_once(',').and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
     parsed.ok_or_else(|| "two numbers with a comma between them were expected".to_string())
 }
@@ -100,6 +103,7 @@ fn pair<T: FromStr>(text: &str) -> Result<(T, T), String> {
 pub fn run(args: &SimulateArgs) -> Result<()> {
     match &args.subject {
         SimulateSubject::Arm(args) => run_arm(args),
+        SimulateSubject::Stereo(args) => simulate_stereo::run(args),
     }
 }
 
@@ -118,7 +122,7 @@ fn run_arm(args: &SimulateArmArgs) -> Result<()> {
     };
     let scene = Scene::new(&motion, &options).context("this scene cannot be made; change the option")?;
     let output = OutputDir::create(&args.out)?;
-    clear_frames(&output.join("frames"), args.force)?;
+    clear_frames(&output.join("frames"), "frame_", ".png", args.force)?;
     scene.write_folder(&output)?;
     println!("{} frames, camera.toml and truth.csv in `{}`", scene.len(), args.out.display());
     Ok(())
@@ -145,7 +149,7 @@ fn arm_motion(args: &SimulateArmArgs) -> Result<ArmMotion> {
 }
 
 /// Frames of an older scene would mix with the new ones: they are refused, or with `force` removed.
-fn clear_frames(frames: &Path, force: bool) -> Result<()> {
+pub(super) fn clear_frames(frames: &Path, start: &str, end: &str, force: bool) -> Result<()> {
     let Ok(entries) = std::fs::read_dir(frames) else { return Ok(()) };
     for entry in entries {
         let path = entry?.path();
@@ -153,7 +157,7 @@ fn clear_frames(frames: &Path, force: bool) -> Result<()> {
             bail!("`{}` already holds files; choose another --out, or replace them with --force", frames.display());
         }
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or("");
-        if name.starts_with("frame_") && name.ends_with(".png") {
+        if name.starts_with(start) && name.ends_with(end) {
             std::fs::remove_file(&path).with_context(|| format!("`{}` cannot be removed", path.display()))?;
         }
     }

@@ -1,0 +1,128 @@
+//! `sinew simulate stereo`: a whole body before a stereo camera.
+
+use super::simulate::{clear_frames, pair};
+use crate::body::recording::DEFAULT_RATE_HZ;
+use crate::body::{BodyRecording, BodyRecordingOptions, Placement};
+use crate::output::OutputDir;
+use crate::stereo::stick_wave::StickEnds;
+use crate::stereo::{Hidden, StereoOptions, StereoScene, pelvic_lift, stick_wave};
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Name of the built-in motion with a stick.
+const STICK_WAVE: &str = "stick-wave";
+/// Name of the built-in motion of a person who lies.
+const PELVIC_LIFT: &str = "pelvic-lift";
+
+/// Arguments of `sinew simulate stereo`.
+#[derive(Debug, Args)]
+pub struct SimulateStereoArgs {
+    /// Motion: a .bvh, .amc, .txt (exponential maps), .trc or .c3d file, or one that is built in.
+    #[arg(long, value_name = "FILE|stick-wave|pelvic-lift")]
+    pub motion: PathBuf,
+    /// Skeleton of a .amc motion [default: the only .asf beside it].
+    #[arg(long, value_name = "FILE.asf")]
+    pub skeleton: Option<PathBuf>,
+    /// Frames per second of a motion file that does not say (.amc, .txt) [default: 120].
+    #[arg(long, value_name = "HZ")]
+    pub motion_rate: Option<f32>,
+    /// Part of the motion that is used, in seconds from its beginning.
+    #[arg(long, value_name = "START,END", value_parser = pair::<f32>)]
+    pub between: Option<(f32, f32)>,
+    /// Mean distance of the pelvis from the camera, metres; larger if the person would come too near or leave the picture.
+    #[arg(long, value_name = "METRES", default_value_t = Placement::default().mean_distance_m)]
+    pub distance: f32,
+    /// Turn of the person to their left, degrees; 0 faces the camera on the mean.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub heading: f32,
+    /// Frames per second of the camera.
+    #[arg(long, value_name = "HZ", default_value_t = DEFAULT_RATE_HZ)]
+    pub rate: f32,
+    /// Points in a frame, outliers included.
+    #[arg(long, value_name = "N", default_value_t = 2000)]
+    pub points: usize,
+    /// Share of the points that are outliers.
+    #[arg(long, value_name = "SHARE", default_value_t = 0.1)]
+    pub outliers: f32,
+    /// Patches of the picture in which no point is found; they move slowly over the body.
+    #[arg(long, value_name = "N", default_value_t = 4)]
+    pub patches: u32,
+    /// Leave out the points on a limb (l_arm, r_arm, l_leg, r_leg) from one frame to another, both included; may be repeated.
+    #[arg(long, value_name = "LIMB:FIRST-LAST")]
+    pub hide: Vec<Hidden>,
+    /// Seed of all that is random.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Folder for points/, truth.csv, body.json, first_pose.json, stick.csv and run.json.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Replace the scene that DIR already holds.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Runs `sinew simulate stereo`.
+///
+/// # Errors
+/// A motion that cannot be read, an option out of range, a folder that cannot be written or holds points already.
+pub fn run(args: &SimulateStereoArgs) -> Result<()> {
+    ensure!(args.rate > 0.0 && args.rate.is_finite(), "--rate has to be greater than zero, not {}", args.rate);
+    ensure!(args.rate <= 1000.0, "--rate has to be at most 1000 Hz, not {}", args.rate);
+    ensure!(
+        args.distance >= 1.0 && args.distance <= 20.0,
+        "--distance has to be from 1 to 20 metres, not {}",
+        args.distance
+    );
+    let placement = Placement {
+        mean_distance_m: args.distance,
+        least_distance_m: Placement::default().least_distance_m.min(args.distance),
+        heading_rad: args.heading.to_radians(),
+        ..Placement::default()
+    };
+    ensure!(placement.heading_rad.is_finite(), "--heading has to be finite");
+    let (recording, stick_m) = motion(args, placement)?;
+    for hidden in &args.hide {
+        let (last, frames) = (hidden.frames.end(), recording.joints_m.len());
+        ensure!(*last < frames, "--hide names frame {last}; the last one is {}", frames.saturating_sub(1));
+    }
+    let options = StereoOptions {
+        points: args.points,
+        outliers: args.outliers,
+        patches: args.patches,
+        hidden: args.hide.clone(),
+        seed: args.seed,
+        ..StereoOptions::default()
+    };
+    let scene = StereoScene::new(recording, options).context("this scene cannot be made")?;
+    let output = OutputDir::create(&args.out)?;
+    clear_frames(&output.join("points"), "", ".ply", args.force)?;
+    let name = args.motion.display().to_string();
+    scene.write_folder(&name, placement.camera_height_m, stick_m.as_deref(), &output)?;
+    println!("{} frames of points with their truth in `{}`", scene.len(), args.out.display());
+    Ok(())
+}
+
+/// The person's joints, and the ends of a stick in each frame.
+fn motion(args: &SimulateStereoArgs, placement: Placement) -> Result<(BodyRecording, Option<Vec<StickEnds>>)> {
+    let built_in = args.motion.to_str().filter(|name| [STICK_WAVE, PELVIC_LIFT].contains(name));
+    if built_in.is_none() {
+        let options = BodyRecordingOptions {
+            skeleton: args.skeleton.as_deref(),
+            input_rate_hz: args.motion_rate,
+            rate_hz: args.rate,
+            between_s: args.between,
+            placement,
+        };
+        return Ok((BodyRecording::read(&args.motion, &options)?, None));
+    }
+    if args.skeleton.is_some() || args.motion_rate.is_some() || args.between.is_some() || args.heading != 0.0 {
+        bail!("--skeleton, --motion-rate, --between and --heading are for motion files; leave them out");
+    }
+    let (height_m, distance_m) = (placement.camera_height_m, args.distance);
+    if built_in == Some(STICK_WAVE) {
+        let wave = stick_wave(args.seed, args.rate, height_m, distance_m)?;
+        return Ok((wave.recording, Some(wave.stick_m)));
+    }
+    Ok((pelvic_lift(args.rate, height_m, distance_m)?, None))
+}
