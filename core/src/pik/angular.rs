@@ -24,6 +24,10 @@ pub struct AngularMotion<const ANGLES: usize> {
 }
 
 impl<const BONES: usize, const ANGLES: usize> BodyMotion<BONES, ANGLES> for AngularMotion<ANGLES> {
+    fn root(&self) -> &RootProcess {
+        &self.root
+    }
+
     fn propose(
         &self,
         past: &FramePast<'_, BONES, ANGLES>,
@@ -33,7 +37,7 @@ impl<const BONES: usize, const ANGLES: usize> BodyMotion<BONES, ANGLES> for Angu
     ) -> Proposed<BONES, ANGLES> {
         let skeleton = &past.scene.skeleton;
         let mut angles_rad = ancestor.angles_rad;
-        self.root.draw(skeleton, &mut angles_rad, &past.angle_velocity_per_s, past.dt_s, stream);
+        self.root.draw(skeleton, &mut angles_rad, &past.root_change, past.dt_s, stream);
         for i in skeleton.root_coordinates()..ANGLES {
             let before = ancestor.angles_rad[i];
             let mut change = past.angle_velocity_per_s[i] * past.dt_s;

@@ -34,6 +34,10 @@ pub(super) fn stiffness<const ANGLES: usize>(std_rad_per_sqrt_s: &[f32; ANGLES],
 impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<BONES, ANGLES>
     for EndEffectorMotion<'_, P, ANGLES>
 {
+    fn root(&self) -> &RootProcess {
+        &self.root
+    }
+
     fn propose(
         &self,
         past: &FramePast<'_, BONES, ANGLES>,
@@ -43,7 +47,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
     ) -> Proposed<BONES, ANGLES> {
         let skeleton = &past.scene.skeleton;
         let mut previous_rad = ancestor.angles_rad;
-        self.root.draw(skeleton, &mut previous_rad, &past.angle_velocity_per_s, past.dt_s, stream);
+        self.root.draw(skeleton, &mut previous_rad, &past.root_change, past.dt_s, stream);
         let mut goals = Goals::new();
         self.process.draw(&past.goals_of(ancestor), memory, stream, &mut goals);
         let density = PoseDensity {

@@ -35,12 +35,15 @@ pub struct GuidedMotion<'a, P, const ANGLES: usize> {
 
 /// Eq. (12) times the points' likelihood.
 #[derive(Debug, Clone, Copy)]
-struct GuidedDensity<'a, const BONES: usize, const ANGLES: usize> {
-    prior: PoseDensity<'a, BONES, ANGLES>,
-    scene: &'a BodyScene<BONES, ANGLES>,
-    blocks: &'a [PointBlock],
-    /// Every how many blocks pull.
-    stride: usize,
+pub struct GuidedDensity<'a, const BONES: usize, const ANGLES: usize> {
+    /// Eq. (12).
+    pub prior: PoseDensity<'a, BONES, ANGLES>,
+    /// The body and its camera.
+    pub scene: &'a BodyScene<BONES, ANGLES>,
+    /// The frame's points.
+    pub blocks: &'a [PointBlock],
+    /// Every how many blocks pull, at least one; each that does pulls as often.
+    pub stride: usize,
 }
 
 impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for GuidedDensity<'_, BONES, ANGLES> {
@@ -88,6 +91,10 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
 impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<BONES, ANGLES>
     for GuidedMotion<'_, P, ANGLES>
 {
+    fn root(&self) -> &RootProcess {
+        &self.root
+    }
+
     fn propose(
         &self,
         past: &FramePast<'_, BONES, ANGLES>,
@@ -101,7 +108,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         let mut previous_rad = ancestor.angles_rad;
         let mut stiffness = stiffness(&self.angle_std_rad_per_sqrt_s, past.dt_s);
         for i in 0..skeleton.root_coordinates() {
-            previous_rad[i] = self.root.mean(i, previous_rad[i], past.angle_velocity_per_s[i], past.dt_s);
+            previous_rad[i] += past.root_change.get(i).copied().unwrap_or(0.0);
             let std = self.root.std(i, past.dt_s);
             stiffness[i] = if std > 0.0 { 1.0 / (std * std) } else { HELD_STIFFNESS };
         }

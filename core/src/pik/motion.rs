@@ -1,6 +1,7 @@
 //! What a motion model does for one particle.
 
 use super::goal::{GoalMemory, GoalPast, MEMORY};
+use super::root::RootProcess;
 use crate::kinematics::forward::{Posture, posture};
 use crate::math::Vec3;
 use crate::observation::body_surface::BodySurface;
@@ -8,6 +9,7 @@ use crate::observation::point_cloud::PointBlock;
 use crate::observation::point_likelihood::PointLikelihood;
 use crate::random::Stream;
 use crate::skeleton::Skeleton;
+use crate::skeleton::tree::FREE_ROOT_COORDINATES;
 
 /// One hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +68,8 @@ pub struct FramePast<'a, const BONES: usize, const ANGLES: usize> {
     pub blocks: &'a [PointBlock],
     /// Velocities of the coordinates by the filter's estimates, a second.
     pub angle_velocity_per_s: [f32; ANGLES],
+    /// What the coordinates of a free root are expected to change by, for every particle alike.
+    pub root_change: [f32; FREE_ROOT_COORDINATES],
     /// Velocities of the bones' ends by the filter's estimates, metres a second.
     pub velocity_m_per_s: &'a [Vec3; BONES],
     /// Ends of all bones in the first pose, metres.
@@ -103,6 +107,9 @@ pub struct Proposed<const BONES: usize, const ANGLES: usize> {
 
 /// A motion model: how a particle moves on.
 pub trait BodyMotion<const BONES: usize, const ANGLES: usize> {
+    /// The root's own process.
+    fn root(&self) -> &RootProcess;
+
     /// Moves `ancestor` on by one frame; `memory` holds the ancestor's and keeps the new particle's.
     fn propose(
         &self,

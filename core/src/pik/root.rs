@@ -35,11 +35,20 @@ impl RootProcess {
         Self { persistence: 0.0, std_per_sqrt_s: [s, 4.0 * s, s, t, t, t], shift_limits_m }
     }
 
-    /// Where coordinate `index` goes on the mean.
+    /// How the root goes on where no points tell: a share of the filter's velocity.
     #[must_use]
-    pub fn mean(&self, index: usize, before: f32, velocity_per_s: f32, dt_s: f32) -> f32 {
-        let moved = if self.std(index, dt_s) > 0.0 { self.persistence * velocity_per_s * dt_s } else { 0.0 };
-        before + moved
+    pub fn expected_change<const ANGLES: usize>(
+        &self,
+        velocity_per_s: &[f32; ANGLES],
+        dt_s: f32,
+    ) -> [f32; FREE_ROOT_COORDINATES] {
+        let mut change = [0.0; FREE_ROOT_COORDINATES];
+        for (index, (slot, velocity)) in change.iter_mut().zip(velocity_per_s).enumerate() {
+            if self.std(index, dt_s) > 0.0 {
+                *slot = self.persistence * velocity * dt_s;
+            }
+        }
+        change
     }
 
     /// Standard deviation of coordinate `index` after `dt_s`.
@@ -48,18 +57,18 @@ impl RootProcess {
         self.std_per_sqrt_s.get(index).map_or(0.0, |std| std * sqrt(max(dt_s, 0.0)))
     }
 
-    /// Draws the root's coordinates, the first of `angles_rad`, in place.
+    /// Draws the root's coordinates, the first of `angles_rad`, in place; `change` is what they are expected to change by.
     pub fn draw<const BONES: usize, const ANGLES: usize>(
         &self,
         skeleton: &Skeleton<BONES, ANGLES>,
         angles_rad: &mut [f32; ANGLES],
-        velocity_per_s: &[f32; ANGLES],
+        change: &[f32; FREE_ROOT_COORDINATES],
         dt_s: f32,
         stream: &mut Stream,
     ) {
         for index in 0..skeleton.root_coordinates() {
             let std = self.std(index, dt_s);
-            let mean = self.mean(index, angles_rad[index], velocity_per_s[index], dt_s);
+            let mean = angles_rad[index] + change.get(index).copied().unwrap_or(0.0);
             let (low, high) = self.limits(skeleton, index);
             let drawn = if std > 0.0 {
                 mean + std * stream.truncated_normal((low - mean) / std, (high - mean) / std)

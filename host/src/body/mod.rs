@@ -7,6 +7,7 @@ pub mod measuring;
 pub mod placing;
 pub mod pose_file;
 pub mod recording;
+pub mod tracking;
 
 pub use body_file::BodyFile;
 pub use fitting::{FittedPose, fit_pose, fit_recording};

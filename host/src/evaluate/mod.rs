@@ -1,5 +1,6 @@
 //! Measuring the trackers where the truth is known.
 
+pub mod body;
 pub mod clips;
 pub mod cyclic;
 pub mod experiments;

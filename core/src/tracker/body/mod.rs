@@ -3,12 +3,14 @@
 //! [`BodyScene`](crate::pik::motion::BodyScene) is what does not change, a [`BodyMotion`](crate::pik::motion::BodyMotion) says how
 //! particles move, [`BodyTracker`] is the state. A frame goes in as a [`BodyFrame`], a [`BodyEstimate`] comes out, for every frame.
 
+mod alignment;
 mod estimate;
 mod mean_rotation;
 mod observed;
 mod step;
 mod tempering;
 
+pub use alignment::RootAlignment;
 pub use estimate::BodyEstimate;
 pub use mean_rotation::{angles_of_rotation, mean_rotation};
 pub use step::{Advance, BodyFrame, BodyOptions, BodyTracker, DEFAULT_BODY_OPTIONS};

@@ -1,5 +1,6 @@
 //! The body tracker's step: resample, move on, weigh, estimate (PIK paper, sections 5.1 and 6).
 
+use super::alignment::RootAlignment;
 use super::estimate::{BodyEstimate, mean_pose, spread_m};
 use super::observed::observed;
 use super::tempering::temper;
@@ -21,10 +22,12 @@ const LONGEST_STRIDE_S: f32 = 0.2;
 pub struct BodyOptions {
     /// Weights are flattened until at least this share of the particles is effective; zero never flattens.
     pub least_effective_share: f32,
+    /// How the root is laid onto the points before particles are drawn; `None` leaves it to its process.
+    pub alignment: Option<RootAlignment>,
 }
 
 /// What is used unless told otherwise.
-pub const DEFAULT_BODY_OPTIONS: BodyOptions = BodyOptions { least_effective_share: 0.0 };
+pub const DEFAULT_BODY_OPTIONS: BodyOptions = BodyOptions { least_effective_share: 0.0, alignment: None };
 
 /// One frame.
 #[derive(Debug, Clone, Copy)]
@@ -163,12 +166,18 @@ where
         // No time, or time that runs back, is the shortest time that still lets particles differ.
         let dt_s = clamp(frame.dt_s, 1.0e-4, 10.0);
         let fades = crate::math::min(1.0, LONGEST_STRIDE_S / dt_s);
+        let angle_velocity_per_s = self.angle_velocity_per_s.map(|velocity| velocity * fades);
+        let mut root_change = motion.root().expected_change(&angle_velocity_per_s, dt_s);
+        if let Some(alignment) = self.options.alignment {
+            root_change = alignment.root_change(scene, frame.blocks, &self.before.angles_rad, &root_change, dt_s);
+        }
         let advance = Advance {
             motion,
             past: FramePast {
                 scene,
                 blocks: frame.blocks,
-                angle_velocity_per_s: self.angle_velocity_per_s.map(|velocity| velocity * fades),
+                angle_velocity_per_s,
+                root_change,
                 velocity_m_per_s: &self.velocity_m_per_s.map(|velocity| velocity * fades),
                 first_m: &self.first_m,
                 dt_s,

@@ -1,0 +1,9 @@
+//! Tracking a body from point clouds: which motion model, its numbers, and the core's step over many threads.
+
+pub mod filter;
+pub mod model_kind;
+pub mod tuning;
+
+pub use filter::{BodyFilter, MAX_BODY_PARTICLES};
+pub use model_kind::BodyModelKind;
+pub use tuning::BodyTuning;

@@ -1,0 +1,223 @@
+//! Numbers of the motion models, tuned on motions that no result is reported on (docs/body_tracker.md).
+
+use serde::{Deserialize, Serialize};
+use sinew_core::pik::goal::LinearExtrapolation;
+use sinew_core::pik::root::{NO_PLANES, RootProcess};
+use sinew_core::skeleton::full_body::BODY_ANGLES;
+use sinew_core::tracker::body::RootAlignment;
+
+/// Standard deviations of angles after one second, by the joint they belong to; radians by root second.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointStd {
+    /// Trunk against the pelvis.
+    pub trunk: f32,
+    /// Head against the trunk.
+    pub head: f32,
+    /// Shoulders.
+    pub shoulder: f32,
+    /// Elbows.
+    pub elbow: f32,
+    /// Hips.
+    pub hip: f32,
+    /// Knees.
+    pub knee: f32,
+    /// Ankles.
+    pub ankle: f32,
+}
+
+impl JointStd {
+    /// One value an angle, in the order of the skeleton; the root's own are not read.
+    #[must_use]
+    pub fn per_angle(&self) -> [f32; BODY_ANGLES] {
+        let (s, e, h, k, a) = (self.shoulder, self.elbow, self.hip, self.knee, self.ankle);
+        let mut result = [1.0; BODY_ANGLES];
+        result[6..9].fill(self.trunk);
+        result[9..12].fill(self.head);
+        for first in [12, 16] {
+            result[first..first + 4].copy_from_slice(&[s, s, s, e]);
+        }
+        for first in [20, 25] {
+            result[first..first + 5].copy_from_slice(&[h, h, h, k, a]);
+        }
+        result
+    }
+
+    /// All values times `factor`.
+    #[must_use]
+    pub fn scaled(&self, factor: f32) -> Self {
+        let Self { trunk, head, shoulder, elbow, hip, knee, ankle } = *self;
+        let [trunk, head, shoulder, elbow, hip, knee, ankle] =
+            [trunk, head, shoulder, elbow, hip, knee, ankle].map(|std| std * factor);
+        Self { trunk, head, shoulder, elbow, hip, knee, ankle }
+    }
+}
+
+/// Steps of the alignment of the root.
+const ALIGNMENT_STEPS: usize = 3;
+
+/// The root's process, the same in all models but the pelvic lift.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RootTuning {
+    /// Share of the velocity that goes on.
+    pub persistence: f32,
+    /// Metres by root second.
+    pub shift_std_m: f32,
+    /// Radians by root second.
+    pub turn_std_rad: f32,
+    /// Whether the mean pose is laid onto the points first, so that all particles set out from there.
+    pub aligned: bool,
+    /// How far the aligned root may get, metres by root second.
+    pub aligned_shift_std_m: f32,
+    /// How far the aligned root may turn, radians by root second.
+    pub aligned_turn_std_rad: f32,
+    /// How far other angles may change while the root is aligned, radians by root second.
+    pub aligned_angle_std_rad: f32,
+}
+
+impl RootTuning {
+    /// How the root is laid onto the points.
+    #[must_use]
+    pub fn alignment(&self) -> Option<RootAlignment> {
+        self.aligned.then_some(RootAlignment {
+            steps: ALIGNMENT_STEPS,
+            shift_std_m_per_sqrt_s: self.aligned_shift_std_m,
+            turn_std_rad_per_sqrt_s: self.aligned_turn_std_rad,
+            angle_std_rad_per_sqrt_s: self.aligned_angle_std_rad,
+            pulling_blocks: usize::MAX,
+        })
+    }
+
+    /// The process.
+    #[must_use]
+    pub fn process(&self) -> RootProcess {
+        let (s, t) = (self.shift_std_m, self.turn_std_rad);
+        RootProcess { persistence: self.persistence, std_per_sqrt_s: [s, s, s, t, t, t], shift_limits_m: NO_PLANES }
+    }
+}
+
+/// Numbers of the models with goals.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GoalTuning {
+    /// Share of an end-effector's velocity that goes on.
+    pub persistence: f32,
+    /// Spread of a goal, metres by root second.
+    pub std_m: f32,
+    /// How closely a goal is reached, metres.
+    pub reach_std_m: f32,
+    /// Stiffness of the pose: standard deviations of the angles' changes.
+    pub joint_std: JointStd,
+    /// Most steps of the solver.
+    pub solver_steps: usize,
+    /// Whether the weights take the importance ratio.
+    pub pays: bool,
+}
+
+impl GoalTuning {
+    /// How one end-effector's goal moves.
+    #[must_use]
+    pub fn extrapolation(&self) -> LinearExtrapolation {
+        LinearExtrapolation { persistence: self.persistence, std_m_per_sqrt_s: self.std_m }
+    }
+}
+
+/// Numbers of the angular model.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AngularTuning {
+    /// Share of an angle's velocity that goes on.
+    pub persistence: f32,
+    /// Noise of the angles.
+    pub joint_std: JointStd,
+}
+
+/// The points' likelihood.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointTuning {
+    /// sigma of eq. (25), metres.
+    pub std_m: f32,
+    /// Root of tau of eq. (29), metres.
+    pub outlier_m: f32,
+    /// Least share of effective particles; zero never flattens the weights.
+    pub least_effective_share: f32,
+}
+
+/// Everything that a body tracker's results depend on, but the number of particles and the seed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyTuning {
+    /// The root of all models.
+    pub root: RootTuning,
+    /// End-effector, stick and pelvic lift.
+    pub end_effector: GoalTuning,
+    /// Guided.
+    pub guided: GoalTuning,
+    /// Blocks of points that pull in the guided model.
+    pub pulling_blocks: usize,
+    /// Angular.
+    pub angular: AngularTuning,
+    /// Points of the models that draw from the motion alone.
+    pub points: PointTuning,
+    /// Points of the guided model.
+    pub guided_points: PointTuning,
+    /// Walk of a hand along the stick, shares by root second.
+    pub stick_gamma_std: f32,
+    /// How closely a hand is on the stick, metres.
+    pub stick_reach_std_m: f32,
+    /// Pelvic lift: the root's sideways standard deviation, metres by root second; four times as much up and down.
+    pub lift_std_m: f32,
+    /// Pelvic lift: the pelvis' turning, radians by root second.
+    pub lift_turn_std_rad: f32,
+}
+
+const GOAL_JOINTS: JointStd =
+    JointStd { trunk: 0.35, head: 0.5, shoulder: 2.0, elbow: 2.0, hip: 1.2, knee: 1.5, ankle: 1.0 };
+
+impl Default for BodyTuning {
+    fn default() -> Self {
+        let goals = GoalTuning {
+            persistence: 0.5,
+            std_m: 0.3,
+            reach_std_m: 0.05,
+            joint_std: GOAL_JOINTS,
+            solver_steps: 2,
+            pays: false,
+        };
+        let points = PointTuning { std_m: 0.15, outlier_m: 0.25, least_effective_share: 0.05 };
+        Self {
+            root: RootTuning {
+                persistence: 0.5,
+                shift_std_m: 0.05,
+                turn_std_rad: 0.1,
+                aligned: true,
+                aligned_shift_std_m: 0.3,
+                aligned_turn_std_rad: 0.6,
+                aligned_angle_std_rad: 1.0,
+            },
+            end_effector: goals,
+            guided: GoalTuning { pays: true, ..goals },
+            pulling_blocks: 64,
+            angular: AngularTuning {
+                persistence: 0.5,
+                joint_std: JointStd {
+                    trunk: 0.25,
+                    head: 0.3,
+                    shoulder: 1.0,
+                    elbow: 1.0,
+                    hip: 0.6,
+                    knee: 0.8,
+                    ankle: 0.5,
+                },
+            },
+            points,
+            guided_points: PointTuning { least_effective_share: 0.3, ..points },
+            stick_gamma_std: 0.2,
+            stick_reach_std_m: 0.02,
+            lift_std_m: 0.08,
+            lift_turn_std_rad: 0.3,
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! One tracker on one motion: the PIK paper's measures (eqs. 34 and 35).
+
+use crate::body::tracking::filter::WholeBodyEstimate;
+use crate::body::tracking::{BodyFilter, BodyModelKind, BodyTuning};
+use crate::body::{BodyJoints, fit_pose};
+use crate::stereo::StereoScene;
+use anyhow::Result;
+use rayon::prelude::*;
+use sinew_core::math::Vec3;
+use sinew_core::observation::point_cloud::{PointBlock, PointCloud};
+use sinew_core::pik::processes::stick::StickSight;
+use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BODY_PARENTS, full_body};
+use std::time::Instant;
+
+/// Blocks of the largest cloud that is tracked: 20,000 points.
+pub const MAX_BLOCKS: usize = 2_500;
+
+/// A motion as one camera saw it, ready for any number of trials.
+#[derive(Debug, Clone)]
+pub struct SeenMotion {
+    /// Frames in a second.
+    pub rate_hz: f32,
+    /// True joints of each frame, metres.
+    pub joints_m: Vec<BodyJoints>,
+    /// Markers of each frame, metres.
+    pub markers_m: Vec<Vec<Option<Vec3>>>,
+    /// Points of each frame.
+    pub clouds: Vec<Vec<PointBlock>>,
+    /// The person's measures.
+    pub measures: sinew_core::skeleton::BodyMeasures,
+    /// The pose of the first frame.
+    pub first_rad: [f32; BODY_ANGLES],
+    /// What is known of a stick in each frame; empty where there is none.
+    pub stick: Vec<StickSight>,
+}
+
+impl SeenMotion {
+    /// Looks at a scene.
+    ///
+    /// # Errors
+    /// Measures that no body has.
+    pub fn of_scene(scene: &StereoScene) -> Result<Self> {
+        let frames: Vec<usize> = (0..scene.len()).collect();
+        let clouds = frames.par_iter().map(|&frame| blocks_of(&mut scene.points_m(frame))).collect();
+        let measures = *scene.measures();
+        let joints_m: Vec<BodyJoints> = frames.iter().map(|&frame| *scene.joints_m(frame)).collect();
+        let first = joints_m.first().copied().unwrap_or([None; BODY_BONES]);
+        Ok(Self {
+            rate_hz: scene.recording().rate_hz,
+            first_rad: fit_pose(&full_body(&measures)?, &first, None).angles,
+            markers_m: frames.iter().map(|&frame| scene.markers_m(frame)).collect(),
+            joints_m,
+            clouds,
+            measures,
+            stick: Vec::new(),
+        })
+    }
+
+    /// Mean length that a joint goes in a frame, eq. (35), metres.
+    #[must_use]
+    pub fn smoothness_m(&self) -> f64 {
+        smoothness_m(self.joints_m.iter().copied())
+    }
+}
+
+/// The points in the blocks that the core weighs.
+#[must_use]
+pub fn blocks_of(points_m: &mut [Vec3]) -> Vec<PointBlock> {
+    let mut cloud = Box::new(PointCloud::<MAX_BLOCKS>::new());
+    let _ = cloud.set(points_m, &Vec3::zeros());
+    cloud.blocks().to_vec()
+}
+
+/// What a trial measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrialResult {
+    /// Mean distance of the markers from the skin of the estimate, eq. (34), metres.
+    pub error_m: f64,
+    /// Mean distance of the joints from the true ones, metres.
+    pub joint_error_m: f64,
+    /// Mean length that the start of a bone goes in a frame, eq. (35), metres.
+    pub smoothness_m: f64,
+    /// Wall time of the tracker's step, seconds a frame.
+    pub seconds_per_frame: f64,
+    /// Mean share of effective particles.
+    pub effective_share: f64,
+}
+
+/// Tracks `motion` with `particles` particles; the first frame is given.
+///
+/// # Errors
+/// Names a parameter of the tracker that broke a rule.
+pub fn trial(
+    motion: &SeenMotion,
+    kind: BodyModelKind,
+    tuning: &BodyTuning,
+    particles: usize,
+    seed: u64,
+) -> Result<(TrialResult, Vec<WholeBodyEstimate>)> {
+    let mut filter = BodyFilter::new(kind, *tuning, &motion.measures, motion.first_rad, particles, seed)?;
+    let mut estimates = Vec::with_capacity(motion.clouds.len());
+    let mut seconds = 0.0;
+    for (frame, blocks) in motion.clouds.iter().enumerate().skip(1) {
+        let stick = motion.stick.get(frame).copied().unwrap_or(StickSight::Unseen);
+        let start = Instant::now();
+        estimates.push(filter.step(blocks, 1.0 / motion.rate_hz, stick));
+        seconds += start.elapsed().as_secs_f64();
+    }
+    let frames = estimates.len().max(1) as f64;
+    let (mut error, mut joint_error) = (Mean::default(), Mean::default());
+    for (estimate, (joints, markers)) in estimates.iter().zip(motion.joints_m.iter().zip(&motion.markers_m).skip(1)) {
+        let surface = filter.scene().surface(&filter.scene().posture(&estimate.angles_rad));
+        for marker_m in markers.iter().flatten() {
+            error.add(f64::from(surface.skin_distance_m(marker_m)));
+        }
+        for (found_m, true_m) in estimate.ends_m.iter().zip(joints) {
+            if let Some(true_m) = true_m {
+                joint_error.add(f64::from((found_m - true_m).norm()));
+            }
+        }
+    }
+    let result = TrialResult {
+        error_m: error.mean(),
+        joint_error_m: joint_error.mean(),
+        smoothness_m: smoothness_m(estimates.iter().map(|estimate| estimate.ends_m.map(Some))),
+        seconds_per_frame: seconds / frames,
+        effective_share: estimates.iter().map(|e| f64::from(e.effective_sample_size)).sum::<f64>()
+            / (frames * particles as f64),
+    };
+    Ok((result, estimates))
+}
+
+#[derive(Debug, Default)]
+struct Mean {
+    sum: f64,
+    count: f64,
+}
+
+impl Mean {
+    fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count += 1.0;
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.count.max(1.0)
+    }
+}
+
+/// Eq. (35) from the second frame on: the mean over bones of how far a_l, the bone's start, goes in a frame.
+fn smoothness_m(frames: impl Iterator<Item = BodyJoints>) -> f64 {
+    let mut sum = Mean::default();
+    let mut before: Option<BodyJoints> = None;
+    for joints in frames {
+        if let Some(before) = before {
+            for parent in BODY_PARENTS.iter().flatten() {
+                let start = usize::from(*parent);
+                if let (Some(a), Some(b)) = (joints[start], before[start]) {
+                    sum.add(f64::from((a - b).norm()));
+                }
+            }
+        }
+        before = Some(joints);
+    }
+    sum.mean()
+}
