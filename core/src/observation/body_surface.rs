@@ -2,7 +2,7 @@
 
 use super::capsule::Capsule;
 use crate::kinematics::forward::Posture;
-use crate::math::{Vec3, max, unit};
+use crate::math::{Vec3, max, sqrt_branch_free, unit};
 use heapless::Vec;
 
 /// A capsule with what is the same for all points of a cloud: v of eq. (28) is constant along a bone.
@@ -29,22 +29,77 @@ pub struct BodySurface<const BONES: usize> {
     pub camera_m: Vec3,
     /// Capsules of the bones with flesh, in the bones' order.
     pub capsules: Vec<SeenCapsule, BONES>,
+    /// The same, number by number.
+    lanes: CapsuleLanes<BONES>,
+}
+
+/// Capsules number by number, so that a loop over them is a loop over vectors.
+#[derive(Debug, Clone, PartialEq)]
+struct CapsuleLanes<const BONES: usize> {
+    start: [[f32; BONES]; 3],
+    along: [[f32; BONES]; 3],
+    per_squared_length: [f32; BONES],
+    radius: [f32; BONES],
+}
+
+/// Bounds of the distances from a ball to each capsule's visible skin, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DistanceBounds<const BONES: usize> {
+    /// No point of the ball is nearer.
+    pub least: [f32; BONES],
+    /// No point of the ball is farther.
+    pub most: [f32; BONES],
 }
 
 impl<const BONES: usize> BodySurface<BONES> {
     /// The surface of `posture`; `radii_m` has the radius of each bone's capsule, zero for a bone without flesh.
     #[must_use]
     pub fn new<const ANGLES: usize>(posture: &Posture<BONES, ANGLES>, radii_m: &[f32; BONES], camera_m: Vec3) -> Self {
-        let mut capsules = Vec::new();
+        let mut capsules: Vec<SeenCapsule, BONES> = Vec::new();
+        let nothing = [0.0; BONES];
+        let mut lanes =
+            CapsuleLanes { start: [nothing; 3], along: [nothing; 3], per_squared_length: nothing, radius: nothing };
         for bone in 0..BONES {
             if !(radii_m[bone] > 0.0) {
                 continue;
             }
             let capsule = Capsule { start_m: posture.joints[bone], end_m: posture.ends[bone], radius_m: radii_m[bone] };
+            let seen = SeenCapsule::new(capsule, bone, &camera_m);
+            let lane = capsules.len();
+            for axis in 0..3 {
+                lanes.start[axis][lane] = capsule.start_m[axis];
+                lanes.along[axis][lane] = seen.along_m[axis];
+            }
+            lanes.per_squared_length[lane] = seen.per_squared_length;
+            lanes.radius[lane] = capsule.radius_m;
             // At most one a bone, so it always fits.
-            let _ = capsules.push(SeenCapsule::new(capsule, bone, &camera_m));
+            let _ = capsules.push(seen);
         }
-        Self { camera_m, capsules }
+        Self { camera_m, capsules, lanes }
+    }
+
+    /// How near and how far the points of a ball can be from the visible skin of each capsule; entries beyond the last capsule say
+    /// nothing.
+    ///
+    /// With D the distance of the ball's centre from a bone, R the ball's radius and r the bone's, no point is nearer than D - R - r
+    /// or r - D - R, and none is farther than the root of (D + R)^2 + r^2, the hidden case.
+    #[must_use]
+    pub fn distance_bounds(&self, centre_m: &Vec3, radius_m: f32) -> DistanceBounds<BONES> {
+        let lanes = &self.lanes;
+        let mut bounds = DistanceBounds { least: [0.0; BONES], most: [0.0; BONES] };
+        for i in 0..BONES {
+            let (x, y, z) =
+                (centre_m.x - lanes.start[0][i], centre_m.y - lanes.start[1][i], centre_m.z - lanes.start[2][i]);
+            let (u, v, w) = (lanes.along[0][i], lanes.along[1][i], lanes.along[2][i]);
+            let t = crate::math::min(max((x * u + y * v + z * w) * lanes.per_squared_length[i], 0.0), 1.0);
+            let (x, y, z) = (x - t * u, y - t * v, z - t * w);
+            let distance = sqrt_branch_free(x * x + y * y + z * z);
+            let r = lanes.radius[i];
+            let (inner, outer) = (distance - radius_m, distance + radius_m);
+            bounds.least[i] = max(inner - r, r - outer);
+            bounds.most[i] = sqrt_branch_free(outer * outer + r * r);
+        }
+        bounds
     }
 
     /// Distance of `point_m` from the skin of the nearest bone, whole capsules, either side: D of eq. (34), metres.

@@ -4,7 +4,7 @@ use crate::math::{Vec3, floor, length, max, sqrt};
 use heapless::Vec;
 
 /// Points of a block; a block is a few vectors of the processor.
-pub const BLOCK_POINTS: usize = 8;
+pub const BLOCK_POINTS: usize = 16;
 /// Bits of each coordinate in a Morton key.
 const KEY_BITS: u32 = 10;
 /// Edge of a cell of the Morton order, metres: 1024 of them span 20 m.

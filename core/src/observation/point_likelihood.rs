@@ -2,7 +2,7 @@
 
 use super::body_surface::{BodySurface, SeenCapsule};
 use super::point_cloud::{BLOCK_POINTS, PointBlock};
-use crate::math::{length, max, min, sqrt, sqrt_branch_free};
+use crate::math::{max, min, sqrt_branch_free};
 
 /// The robust metric and its scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,26 +101,22 @@ impl NearCapsules {
     }
 
     /// Finds the capsules that can lie nearest to a point of `block` and nearer than `outlier_m`.
-    ///
-    /// With D the distance of the block's centre from a bone and R the block's radius, no point is nearer to the visible
-    /// skin than D - R - r or r - D - R, and none is farther than the root of (D + R)^2 + r^2, the hidden case.
     pub fn find<const BONES: usize>(&mut self, surface: &BodySurface<BONES>, block: &PointBlock, outlier_m: f32) {
-        let mut at_least = [0.0; 32];
+        let bounds = surface.distance_bounds(&block.centre_m, block.radius_m);
+        let count = surface.capsules.len();
         let mut bound = outlier_m;
-        for (seen, slot) in surface.capsules.iter().zip(&mut at_least) {
-            let (near_m, _) = seen.axis_point(&block.centre_m);
-            let distance = length(&(block.centre_m - near_m));
-            let r = seen.capsule.radius_m;
-            let (inner, outer) = (distance - block.radius_m, distance + block.radius_m);
-            *slot = max(inner - r, r - outer);
-            bound = min(bound, sqrt(outer * outer + r * r));
+        for &most in bounds.most.iter().take(count) {
+            bound = min(bound, most);
         }
+        // A hair wider, for rounding.
+        let bound = bound * 1.0001 + 1.0e-6;
         self.count = 0;
-        for index in 0..surface.capsules.len() {
-            // A hair wider, for rounding.
-            if at_least[index] <= bound * 1.0001 + 1.0e-6 {
-                self.indices[self.count] = index as u8;
-                self.count += 1;
+        for (index, &least) in bounds.least.iter().enumerate().take(count) {
+            if least <= bound {
+                if let Some(slot) = self.indices.get_mut(self.count) {
+                    *slot = index as u8;
+                    self.count += 1;
+                }
             }
         }
     }

@@ -1,6 +1,7 @@
 //! `sinew evaluate ...`
 
 use super::evaluate_arm::{self, EvaluateArmArgs};
+use super::evaluate_body::{self, EvaluateBodyArgs};
 use super::evaluate_cyclic::{self, EvaluateCyclicArgs};
 use super::evaluate_hands::{self, EvaluateHandsArgs};
 use super::evaluate_skin::{self, EvaluateSkinArgs};
@@ -11,6 +12,8 @@ use clap::Subcommand;
 pub enum Evaluate {
     /// Compare the trackers on rendered scenes with known truth.
     Arm(EvaluateArmArgs),
+    /// Make the PIK paper's comparison of motion models on real motion before a simulated stereo camera.
+    Body(EvaluateBodyArgs),
     /// Make the cyclic paper's tables and figures on cut cycles with known angles.
     Cyclic(EvaluateCyclicArgs),
     /// Track both hands on real frames and compare with reference boxes.
@@ -26,6 +29,7 @@ pub enum Evaluate {
 pub fn run(evaluate: &Evaluate) -> anyhow::Result<()> {
     match evaluate {
         Evaluate::Arm(args) => evaluate_arm::run(args),
+        Evaluate::Body(args) => evaluate_body::run(args),
         Evaluate::Cyclic(args) => evaluate_cyclic::run(args),
         Evaluate::Hands(args) => evaluate_hands::run(args),
         Evaluate::Skin(args) => evaluate_skin::run(args),

@@ -199,7 +199,7 @@ impl Default for BodyTuning {
             },
             end_effector: goals,
             guided: GoalTuning { pays: true, ..goals },
-            pulling_blocks: 64,
+            pulling_blocks: 32,
             angular: AngularTuning {
                 persistence: 0.5,
                 joint_std: JointStd {

@@ -1,3 +1,9 @@
 //! The PIK paper's experiments on simulated stereo views of real motion (section 7).
 
+pub mod figures;
+pub mod motions;
+pub mod report;
 pub mod trial;
+
+pub use motions::MotionChoice;
+pub use report::{BodyReport, BodyResult, Measured};

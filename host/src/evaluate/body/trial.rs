@@ -13,7 +13,7 @@ use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BODY_PARENTS, ful
 use std::time::Instant;
 
 /// Blocks of the largest cloud that is tracked: 20,000 points.
-pub const MAX_BLOCKS: usize = 2_500;
+pub const MAX_BLOCKS: usize = 1_250;
 
 /// A motion as one camera saw it, ready for any number of trials.
 #[derive(Debug, Clone)]
@@ -32,6 +32,8 @@ pub struct SeenMotion {
     pub first_rad: [f32; BODY_ANGLES],
     /// What is known of a stick in each frame; empty where there is none.
     pub stick: Vec<StickSight>,
+    /// Place of the floor along y, metres; infinite where it is not known.
+    pub floor_y_m: f32,
 }
 
 impl SeenMotion {
@@ -53,6 +55,7 @@ impl SeenMotion {
             clouds,
             measures,
             stick: Vec::new(),
+            floor_y_m: f32::INFINITY,
         })
     }
 
@@ -97,7 +100,8 @@ pub fn trial(
     particles: usize,
     seed: u64,
 ) -> Result<(TrialResult, Vec<WholeBodyEstimate>)> {
-    let mut filter = BodyFilter::new(kind, *tuning, &motion.measures, motion.first_rad, particles, seed)?;
+    let mut filter = BodyFilter::new(kind, *tuning, &motion.measures, motion.first_rad, particles, seed)?
+        .above_floor(motion.floor_y_m);
     let mut estimates = Vec::with_capacity(motion.clouds.len());
     let mut seconds = 0.0;
     for (frame, blocks) in motion.clouds.iter().enumerate().skip(1) {

@@ -1,0 +1,110 @@
+//! The motions that an evaluation is given: files, parts of files, and the built-in ones.
+
+use super::trial::SeenMotion;
+use crate::body::recording::DEFAULT_RATE_HZ;
+use crate::body::{BodyRecording, BodyRecordingOptions, Placement};
+use crate::motion::asf;
+use crate::stereo::{StereoOptions, StereoScene, pelvic_lift, stick_wave};
+use anyhow::{Context, Result, bail};
+use sinew_core::pik::processes::stick::StickSight;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// A motion by name.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MotionChoice {
+    /// A person who moves a stick with both hands.
+    StickWave,
+    /// Six pelvic lifts.
+    PelvicLift,
+    /// A file, or a part of it in seconds.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// First and last second.
+        between_s: Option<(f32, f32)>,
+    },
+}
+
+impl FromStr for MotionChoice {
+    type Err = String;
+
+    /// `FILE`, `FILE@START-END` with seconds, `stick-wave` or `pelvic-lift`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "stick-wave" => return Ok(Self::StickWave),
+            "pelvic-lift" => return Ok(Self::PelvicLift),
+            _ => {}
+        }
+        let whole = || Self::File { path: PathBuf::from(text), between_s: None };
+        let Some((path, part)) = text.rsplit_once('@') else { return Ok(whole()) };
+        let Some((start, end)) = part.split_once('-') else { return Ok(whole()) };
+        match (start.parse::<f32>(), end.parse::<f32>()) {
+            (Ok(start), Ok(end)) if start >= 0.0 && end > start => {
+                Ok(Self::File { path: PathBuf::from(path), between_s: Some((start, end)) })
+            }
+            _ => Err(format!("`@{part}` has to be @START-END in seconds, as @2-7.5")),
+        }
+    }
+}
+
+impl MotionChoice {
+    /// Its name in tables: the file's name, or the built-in's.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self {
+            Self::StickWave => "stick-wave".into(),
+            Self::PelvicLift => "pelvic-lift".into(),
+            Self::File { path, between_s } => {
+                let file = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+                between_s.map_or_else(|| file.to_string(), |(start, end)| format!("{file}@{start}-{end}"))
+            }
+        }
+    }
+
+    /// The motion as the simulated stereo camera sees it with `seed`; `skeleton` is for .amc files without one beside them.
+    ///
+    /// # Errors
+    /// A file that cannot be read, by name.
+    pub fn seen(&self, skeleton: Option<&Path>, seed: u64) -> Result<SeenMotion> {
+        let placement = Placement::default();
+        let (height_m, distance_m) = (placement.camera_height_m, placement.mean_distance_m);
+        let mut stick = Vec::new();
+        let recording = match self {
+            Self::StickWave => {
+                let wave = stick_wave(seed, DEFAULT_RATE_HZ, height_m, distance_m)?;
+                stick = wave.stick_m.iter().map(|ends| StickSight::Ends(*ends)).collect();
+                wave.recording
+            }
+            Self::PelvicLift => pelvic_lift(DEFAULT_RATE_HZ, height_m, distance_m)?,
+            Self::File { path, between_s } => {
+                let is_amc = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("amc"));
+                let skeleton = skeleton.filter(|_| is_amc && asf::beside(path).is_err());
+                let options =
+                    BodyRecordingOptions { skeleton, between_s: *between_s, ..BodyRecordingOptions::default() };
+                BodyRecording::read(path, &options)?
+            }
+        };
+        if recording.joints_m.len() < 2 {
+            bail!("`{}` has {} frames; tracking needs two", self.name(), recording.joints_m.len());
+        }
+        let scene = StereoScene::new(recording, StereoOptions { seed, ..StereoOptions::default() })
+            .with_context(|| format!("`{}` makes no scene", self.name()))?;
+        Ok(SeenMotion { stick, floor_y_m: height_m, ..SeenMotion::of_scene(&scene)? })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_of_files_are_named_by_seconds() {
+        let part: MotionChoice = "a/b@c.bvh@2-7.5".parse().unwrap();
+        assert_eq!(part, MotionChoice::File { path: "a/b@c.bvh".into(), between_s: Some((2.0, 7.5)) });
+        assert_eq!(part.name(), "b@c.bvh@2-7.5");
+        assert_eq!("pelvic-lift".parse(), Ok(MotionChoice::PelvicLift));
+        assert!("x.bvh@7-2".parse::<MotionChoice>().unwrap_err().contains("START-END"));
+        assert_eq!("x@y.bvh".parse::<MotionChoice>().unwrap().name(), "x@y.bvh");
+    }
+}
