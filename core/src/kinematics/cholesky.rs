@@ -4,6 +4,9 @@
 
 use crate::math::sqrt;
 
+/// Up to this size entry by entry is cheaper than column by column; the bits are the same.
+const SMALL: usize = 8;
+
 /// Lower triangular factor; entries above the diagonal are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cholesky<const N: usize> {
@@ -15,15 +18,42 @@ impl<const N: usize> Cholesky<N> {
     /// Factors `matrix` (only its lower half is read); `None` where it is not positive definite.
     #[must_use]
     pub fn new(matrix: &[[f32; N]; N]) -> Option<Self> {
-        Self::from(matrix, 0)
+        if N > SMALL {
+            return Self::by_columns(matrix, 0);
+        }
+        let mut lower = [[0.0; N]; N];
+        for i in 0..N {
+            for j in 0..=i {
+                let mut sum = matrix[i][j];
+                for k in 0..j {
+                    sum -= lower[i][k] * lower[j][k];
+                }
+                if i == j {
+                    if !(sum > 0.0 && sum.is_finite()) {
+                        return None;
+                    }
+                    lower[i][i] = sqrt(sum);
+                } else {
+                    lower[i][j] = sum / lower[j][j];
+                }
+            }
+        }
+        Some(Self { lower })
     }
 
     /// As [`Self::new`], of the part of `matrix` from row and column `first` on; the rest of the factor is zero.
     ///
-    /// A column of L is taken out of all later rows at once, so that the innermost loop runs along a row; where limbs do not
+    /// Beyond a few rows, a column of L is taken out of all later rows at once, so that the innermost loop runs along a row; where limbs do not
     /// know of each other rows are left out.
     #[must_use]
     pub fn from(matrix: &[[f32; N]; N], first: usize) -> Option<Self> {
+        if N <= SMALL && first == 0 {
+            return Self::new(matrix);
+        }
+        Self::by_columns(matrix, first)
+    }
+
+    fn by_columns(matrix: &[[f32; N]; N], first: usize) -> Option<Self> {
         let mut lower = [[0.0; N]; N];
         for i in first..N {
             lower[i][first..=i].copy_from_slice(&matrix[i][first..=i]);
@@ -55,16 +85,27 @@ impl<const N: usize> Cholesky<N> {
     /// x with H x = `right`.
     #[must_use]
     pub fn solve(&self, right: &[f32; N]) -> [f32; N] {
-        self.solve_from(right, 0)
+        let mut x = *right;
+        self.substitute(&mut x, 0);
+        x
     }
 
     /// As [`Self::solve`], for a factor [`Self::from`] row `first` on; the entries before it are zero.
     #[must_use]
     pub fn solve_from(&self, right: &[f32; N], first: usize) -> [f32; N] {
+        if first == 0 {
+            return self.solve(right);
+        }
         let mut x = *right;
         for entry in x.iter_mut().take(first) {
             *entry = 0.0;
         }
+        self.substitute(&mut x, first);
+        x
+    }
+
+    #[inline(always)]
+    fn substitute(&self, x: &mut [f32; N], first: usize) {
         for i in first..N {
             for k in first..i {
                 x[i] -= self.lower[i][k] * x[k];
@@ -77,7 +118,6 @@ impl<const N: usize> Cholesky<N> {
             }
             x[i] /= self.lower[i][i];
         }
-        x
     }
 
     /// ln |H|.

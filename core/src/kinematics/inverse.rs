@@ -139,7 +139,8 @@ fn free_direction<const BONES: usize, const ANGLES: usize>(
             reduced[i][i] = 1.0;
         }
     }
-    let direction = Cholesky::new(&reduced)?.solve(&right);
+    let held = objective.held();
+    let direction = Cholesky::from(&reduced, held)?.solve_from(&right, held);
     let mut gain = 0.0;
     for i in 0..ANGLES {
         gain += 0.5 * right[i] * direction[i];

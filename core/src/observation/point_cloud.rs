@@ -171,3 +171,49 @@ fn morton_key(point_m: &Vec3) -> (u32, [u32; 3]) {
     }
     (key, [point_m.x.to_bits(), point_m.y.to_bits(), point_m.z.to_bits()])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Stream;
+
+    fn cloud(count: u32) -> std::vec::Vec<Vec3> {
+        let mut stream = Stream::new(4, 0, 0);
+        (0..count).map(|_| Vec3::new(0.0, 0.0, 3.0) + stream.normal3() * 0.4).collect()
+    }
+
+    #[test]
+    fn what_cannot_be_a_point_is_left_out_and_counted() {
+        let mut points = cloud(5);
+        points[1].y = f32::NAN;
+        points[3] = Vec3::new(0.001, 0.0, 0.0);
+        points.push(Vec3::new(0.0, f32::INFINITY, 1.0));
+        let mut blocks = PointCloud::<4>::new();
+        assert_eq!(blocks.set(&mut points, &Vec3::zeros()), LeftOut { not_finite: 2, at_camera: 1, over_capacity: 0 });
+        assert_eq!((blocks.len(), blocks.blocks().len()), (3, 1));
+        assert_eq!(blocks.set(&mut [], &Vec3::zeros()), LeftOut::default());
+        assert!(blocks.is_empty() && blocks.blocks().is_empty() && blocks.spread_m() == 0.0);
+        let mut one = [Vec3::z()];
+        let _ = blocks.set(&mut one, &Vec3::zeros());
+        assert_eq!((blocks.len(), blocks.blocks()[0].radius_m), (1, 0.0));
+    }
+
+    #[test]
+    fn points_over_the_capacity_are_counted() {
+        let mut blocks = PointCloud::<2>::new();
+        let left_out = blocks.set(&mut cloud(40), &Vec3::zeros());
+        assert_eq!((left_out.over_capacity, blocks.len()), (8, 2 * BLOCK_POINTS));
+    }
+
+    #[test]
+    fn the_order_given_does_not_matter_and_neighbours_share_a_block() {
+        let (mut points, mut reversed) = (cloud(2000), cloud(2000));
+        reversed.reverse();
+        let (mut a, mut b) = (PointCloud::<128>::new(), PointCloud::<128>::new());
+        let _ = (a.set(&mut points, &Vec3::zeros()), b.set(&mut reversed, &Vec3::zeros()));
+        assert_eq!(a.blocks(), b.blocks());
+        let mean = a.blocks().iter().map(|block| block.radius_m).sum::<f32>() / a.blocks().len() as f32;
+        assert!(mean < 0.5 * a.spread_m(), "blocks of {mean} m in a cloud of {} m", a.spread_m());
+        assert!((a.spread_m() / (0.4 * 3.0_f32.sqrt()) - 1.0).abs() < 0.1);
+    }
+}

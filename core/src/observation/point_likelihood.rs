@@ -112,11 +112,12 @@ impl NearCapsules {
         let bound = bound * 1.0001 + 1.0e-6;
         self.count = 0;
         for (index, &least) in bounds.least.iter().enumerate().take(count) {
-            if least <= bound {
-                if let Some(slot) = self.indices.get_mut(self.count) {
-                    *slot = index as u8;
-                    self.count += 1;
-                }
+            if least > bound {
+                continue;
+            }
+            if let Some(slot) = self.indices.get_mut(self.count) {
+                *slot = index as u8;
+                self.count += 1;
             }
         }
     }
@@ -125,5 +126,80 @@ impl NearCapsules {
 impl Default for NearCapsules {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::forward::posture;
+    use crate::math::Vec3;
+    use crate::observation::point_cloud::PointCloud;
+    use crate::random::Stream;
+    use crate::skeleton::BodyMeasures;
+    use crate::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BodySkeleton, body_radii_m, full_body};
+    use proptest::prelude::*;
+
+    const LIKELIHOOD: PointLikelihood = PointLikelihood { std_m: 0.15, outlier_m: 0.25 };
+
+    fn body() -> (BodySkeleton, [f32; BODY_BONES]) {
+        let measures = BodyMeasures::of_height(1.75).unwrap();
+        (full_body(&measures).unwrap(), body_radii_m(&measures))
+    }
+
+    fn pose(skeleton: &BodySkeleton, stream: &mut Stream) -> [f32; BODY_ANGLES] {
+        let mut angles = [0.0; BODY_ANGLES];
+        angles.iter_mut().for_each(|angle| *angle = 0.5 * stream.normal());
+        angles[2] += 3.0;
+        skeleton.clamp(angles)
+    }
+
+    /// Points about a posture: some on its skin, some anywhere.
+    fn points(surface: &BodySurface<BODY_BONES>, count: usize, stream: &mut Stream) -> std::vec::Vec<Vec3> {
+        (0..count)
+            .map(|i| {
+                let capsule = surface.capsules[i % surface.capsules.len()].capsule;
+                let axis = capsule.start_m + (capsule.end_m - capsule.start_m) * stream.uniform();
+                axis + stream.normal3() * if i % 9 == 0 { 0.5 } else { 0.1 }
+            })
+            .collect()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+        #[test]
+        fn leaving_out_far_capsules_changes_nothing(seed in 0_u64..100_000) {
+            let (skeleton, radii) = body();
+            let mut stream = Stream::new(seed, 0, 0);
+            let there = posture(&skeleton, &Vec3::zeros(), &pose(&skeleton, &mut stream));
+            let surface = BodySurface::new(&there, &radii, Vec3::zeros());
+            let mut cloud = points(&surface, 333, &mut stream);
+            let exact: f64 = cloud.iter().map(|point| {
+                let nearest = surface.capsules.iter().map(|seen| {
+                    (point - seen.capsule.nearest_visible(&Vec3::zeros(), point)).norm_squared()
+                });
+                f64::from(nearest.fold(0.25 * 0.25, f32::min))
+            }).sum::<f64>() / -(2.0 * 0.15 * 0.15);
+            let mut blocks = PointCloud::<64>::new();
+            prop_assert_eq!(blocks.set(&mut cloud, &Vec3::zeros()).over_capacity, 0);
+            let found = f64::from(LIKELIHOOD.log_likelihood(&surface, blocks.blocks()));
+            prop_assert!((found / exact - 1.0).abs() < 1.0e-3, "{} instead of {}", found, exact);
+        }
+    }
+
+    #[test]
+    fn a_cloud_far_from_the_body_weighs_every_pose_alike() {
+        let (skeleton, radii) = body();
+        let mut stream = Stream::new(1, 0, 0);
+        let mut cloud: std::vec::Vec<Vec3> =
+            (0..50).map(|_| Vec3::new(9.0, 9.0, 9.0) + stream.normal3() * 0.1).collect();
+        let mut blocks = PointCloud::<8>::new();
+        let _ = blocks.set(&mut cloud, &Vec3::zeros());
+        for _ in 0..5 {
+            let there = posture(&skeleton, &Vec3::zeros(), &pose(&skeleton, &mut stream));
+            let surface = BodySurface::new(&there, &radii, Vec3::zeros());
+            let found = LIKELIHOOD.log_likelihood(&surface, blocks.blocks());
+            assert!((found + 50.0 * 0.25 * 0.25 / (2.0 * 0.15 * 0.15)).abs() < 1.0e-3, "{found}");
+        }
     }
 }

@@ -49,3 +49,57 @@ pub fn add_pull<'b, const BONES: usize>(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::forward::posture;
+    use crate::observation::point_cloud::PointCloud;
+    use crate::random::Stream;
+    use crate::skeleton::BodyMeasures;
+    use crate::skeleton::full_body::{BODY_ANGLES, body_radii_m, full_body};
+
+    #[test]
+    fn the_pull_is_the_slope_of_the_likelihood() {
+        let measures = BodyMeasures::of_height(1.75).unwrap();
+        let (skeleton, radii) = (full_body(&measures).unwrap(), body_radii_m(&measures));
+        let likelihood = PointLikelihood { std_m: 0.1, outlier_m: 0.3 };
+        let mut stream = Stream::new(6, 0, 0);
+        let mut angles = [0.0; BODY_ANGLES];
+        angles.iter_mut().for_each(|angle| *angle = 0.3 * stream.normal());
+        angles[2] = 3.0;
+        let angles = skeleton.clamp(angles);
+        let there = posture(&skeleton, &Vec3::zeros(), &angles);
+        let surface = BodySurface::new(&there, &radii, Vec3::zeros());
+        let mut points: std::vec::Vec<Vec3> = (0..400)
+            .map(|i| {
+                let seen = &surface.capsules[i % surface.capsules.len()];
+                let axis = seen.capsule.start_m + seen.along_m * (0.2 + 0.6 * stream.uniform());
+                // On the side of the camera, off the skin by a few centimetres.
+                axis - unit(axis).unwrap() * (seen.capsule.radius_m + 0.03 * stream.normal())
+            })
+            .collect();
+        let mut cloud = PointCloud::<64>::new();
+        let _ = cloud.set(&mut points, &Vec3::zeros());
+        let mut information = BodyInformation::none(&there);
+        add_pull(&likelihood, &surface, cloud.blocks().iter(), 1.0, &mut information);
+        let (mut gradient, mut hessian) = ([0.0; BODY_ANGLES], [[0.0; BODY_ANGLES]; BODY_ANGLES]);
+        information.add_to(&skeleton, &there, &mut gradient, &mut hessian);
+        let log_likelihood = |angles: &[f32; BODY_ANGLES]| {
+            let there = posture(&skeleton, &Vec3::zeros(), angles);
+            likelihood.log_likelihood(&BodySurface::new(&there, &radii, Vec3::zeros()), cloud.blocks())
+        };
+        for i in 0..BODY_ANGLES {
+            let (mut below, mut above) = (angles, angles);
+            below[i] -= 1.0e-3;
+            above[i] += 1.0e-3;
+            let slope = (log_likelihood(&above) - log_likelihood(&below)) / 2.0e-3;
+            let scale = 1.0 + hessian[i][i].sqrt();
+            assert!(
+                (slope - gradient[i]).abs() < 0.2 * scale,
+                "{i}: {} instead of {slope}, scale {scale}",
+                gradient[i]
+            );
+        }
+    }
+}

@@ -9,6 +9,8 @@ mod mean_rotation;
 mod observed;
 mod step;
 mod tempering;
+#[cfg(test)]
+mod tests;
 
 pub use alignment::RootAlignment;
 pub use estimate::BodyEstimate;

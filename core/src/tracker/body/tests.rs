@@ -1,0 +1,240 @@
+//! The tracker as a whole, on a body that waves before a camera.
+
+use super::*;
+use crate::kinematics::forward::posture;
+use crate::math::Vec3;
+use crate::observation::point_cloud::PointCloud;
+use crate::observation::point_likelihood::PointLikelihood;
+use crate::pik::angular::AngularMotion;
+use crate::pik::end_effector::EndEffectorMotion;
+use crate::pik::goal::LinearExtrapolation;
+use crate::pik::guided::GuidedMotion;
+use crate::pik::motion::{BodyMotion, BodyParticle, BodyScene};
+use crate::pik::processes::extrapolation::LinearGoals;
+use crate::pik::root::{NO_PLANES, RootProcess};
+use crate::random::Stream;
+use crate::skeleton::BodyMeasures;
+use crate::skeleton::full_body::{
+    BODY_ANGLES, BODY_BONES, FOREARMS, HEAD, SHANKS, UPPER_ARMS, body_radii_m, full_body,
+};
+
+type Scene = BodyScene<BODY_BONES, BODY_ANGLES>;
+type Particle = BodyParticle<BODY_BONES, BODY_ANGLES>;
+type Cloud = PointCloud<128>;
+type Tracker = BodyTracker<BODY_BONES, BODY_ANGLES, 256, std::vec::Vec<Particle>>;
+
+const DT_S: f32 = 1.0 / 15.0;
+const ROOT: RootProcess =
+    RootProcess { persistence: 0.5, std_per_sqrt_s: [0.1, 0.1, 0.1, 0.2, 0.2, 0.2], shift_limits_m: NO_PLANES };
+const ANGLE_STD: [f32; BODY_ANGLES] = [1.0; BODY_ANGLES];
+
+fn scene() -> Scene {
+    let measures = BodyMeasures::of_height(1.75).unwrap();
+    Scene {
+        skeleton: full_body(&measures).unwrap(),
+        radii_m: body_radii_m(&measures),
+        camera_m: Vec3::zeros(),
+        likelihood: PointLikelihood { std_m: 0.15, outlier_m: 0.25 },
+    }
+}
+
+/// A person 3 m away whose left arm waves.
+fn truth(frame: usize) -> [f32; BODY_ANGLES] {
+    let mut angles = [0.0; BODY_ANGLES];
+    angles[2] = 3.0;
+    let phase = 0.25 * frame as f32;
+    angles[12] = 1.2 + 0.5 * phase.sin();
+    angles[15] = 0.8 + 0.4 * phase.cos();
+    angles
+}
+
+/// Points on the visible skin; none on bones that `hides` names.
+fn cloud(scene: &Scene, frame: usize, hides: &[usize]) -> Cloud {
+    let surface = scene.surface(&scene.posture(&truth(frame)));
+    let mut stream = Stream::new(50, frame as u64, 0);
+    let mut points = std::vec::Vec::new();
+    for seen in &surface.capsules {
+        let count = (600.0 * seen.capsule.radius_m * (seen.along_m.norm() + seen.capsule.radius_m)) as usize * 5;
+        for _ in 0..count {
+            let axis = seen.capsule.start_m + seen.along_m * stream.uniform();
+            let direction = stream.normal3().normalize();
+            let direction = if direction.dot(&axis) > 0.0 { -direction } else { direction };
+            if !hides.contains(&seen.bone) {
+                points.push(axis + direction * seen.capsule.radius_m + stream.normal3() * 0.01);
+            }
+        }
+    }
+    let mut cloud = Cloud::new();
+    let _ = cloud.set(&mut points, &Vec3::zeros());
+    cloud
+}
+
+fn goals() -> LinearGoals {
+    let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.2 };
+    LinearGoals::new(&[HEAD, FOREARMS[0], FOREARMS[1], SHANKS[0], SHANKS[1]], BODY_BONES, process, 0.05).unwrap()
+}
+
+fn end_effector(process: &LinearGoals) -> EndEffectorMotion<'_, LinearGoals, BODY_ANGLES> {
+    EndEffectorMotion { process, root: ROOT, angle_std_rad_per_sqrt_s: ANGLE_STD, solver_steps: 2, pays: false }
+}
+
+fn guided(process: &LinearGoals) -> GuidedMotion<'_, LinearGoals, BODY_ANGLES> {
+    GuidedMotion { process, root: ROOT, angle_std_rad_per_sqrt_s: ANGLE_STD, solver_steps: 2, pulling_blocks: 32 }
+}
+
+const ANGULAR: AngularMotion<BODY_ANGLES> =
+    AngularMotion { root: ROOT, persistence: 0.5, angle_std_rad_per_sqrt_s: [0.6; BODY_ANGLES], own_velocity: false };
+
+const OPTIONS: BodyOptions = BodyOptions {
+    least_effective_share: 0.1,
+    alignment: Some(RootAlignment {
+        steps: 2,
+        shift_std_m_per_sqrt_s: 0.3,
+        turn_std_rad_per_sqrt_s: 0.6,
+        angle_std_rad_per_sqrt_s: 1.0,
+        pulling_blocks: 64,
+    }),
+};
+
+fn tracker(scene: &Scene, count: usize, seed: u64) -> Tracker {
+    let first = Particle::at(&scene.skeleton, truth(0));
+    Tracker::new(&first, (std::vec![first; count], std::vec![first; count]), OPTIONS, seed).unwrap()
+}
+
+/// Errors of the left hand, metres, from the first frame on.
+fn hand_errors(motion: &impl BodyMotion<BODY_BONES, BODY_ANGLES>, count: usize, frames: usize) -> std::vec::Vec<f32> {
+    let scene = scene();
+    let mut tracker = tracker(&scene, count, 3);
+    (1..frames)
+        .map(|frame| {
+            let cloud = cloud(&scene, frame, &[]);
+            let estimate = tracker.step(&scene, motion, &BodyFrame { dt_s: DT_S, blocks: cloud.blocks() });
+            assert_eq!(scene.skeleton.clamp(estimate.angles_rad), estimate.angles_rad, "limits");
+            for particle in tracker.particles() {
+                assert_eq!(scene.skeleton.clamp(particle.angles_rad), particle.angles_rad, "limits");
+            }
+            (estimate.ends_m[FOREARMS[0]] - scene.posture(&truth(frame)).ends[FOREARMS[0]]).norm()
+        })
+        .collect()
+}
+
+#[test]
+fn every_model_follows_a_wave_inside_the_limits() {
+    let goals = goals();
+    let mean = |errors: std::vec::Vec<f32>| errors.iter().sum::<f32>() / errors.len() as f32;
+    let drawn = [mean(hand_errors(&end_effector(&goals), 200, 40)), mean(hand_errors(&ANGULAR, 200, 40))];
+    let few = mean(hand_errors(&guided(&goals), 20, 40));
+    assert!(drawn.iter().all(|error| *error < 0.12), "{drawn:?}");
+    assert!(few < 0.08, "guided with 20: {few}");
+}
+
+#[test]
+fn the_order_of_the_particles_does_not_matter() {
+    let (scene, goals) = (scene(), goals());
+    let motion = end_effector(&goals);
+    let (mut one, mut other) = (tracker(&scene, 60, 9), tracker(&scene, 60, 9));
+    for frame in 1..6 {
+        let cloud = cloud(&scene, frame, &[]);
+        let frame = BodyFrame { dt_s: DT_S, blocks: cloud.blocks() };
+        let a = one.step(&scene, &motion, &frame);
+        let b = other.step_with(&scene, &motion, &frame, |advance, particles, store| {
+            for (index, slot) in particles.iter_mut().enumerate().rev() {
+                store(index, advance.particle(index, slot));
+            }
+        });
+        assert_eq!(a, b);
+    }
+    assert_ne!(
+        tracker(&scene, 60, 10).step(
+            &scene,
+            &motion,
+            &BodyFrame { dt_s: DT_S, blocks: cloud(&scene, 1, &[]).blocks() }
+        ),
+        tracker(&scene, 60, 9).step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: cloud(&scene, 1, &[]).blocks() })
+    );
+}
+
+#[test]
+fn a_hidden_arm_grows_uncertain_is_said_to_be_unseen_and_comes_back() {
+    let (scene, goals) = (scene(), goals());
+    let motion = guided(&goals);
+    let mut tracker = tracker(&scene, 60, 4);
+    let (hand, arm) = (FOREARMS[0], [UPPER_ARMS[0], FOREARMS[0]]);
+    let (mut seen_spread, mut hidden_spread, mut last_error) = (0.0, 0.0, 0.0);
+    for frame in 1..50 {
+        let hides: &[usize] = if (20..35).contains(&frame) { &arm } else { &[] };
+        let cloud = cloud(&scene, frame, hides);
+        let estimate = tracker.step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: cloud.blocks() });
+        assert_eq!(estimate.observed[hand], hides.is_empty(), "frame {frame}");
+        match frame {
+            19 => seen_spread = estimate.spread_m[hand],
+            34 => hidden_spread = estimate.spread_m[hand],
+            _ => {}
+        }
+        last_error = (estimate.ends_m[hand] - scene.posture(&truth(frame)).ends[hand]).norm();
+    }
+    assert!(hidden_spread > 2.0 * seen_spread, "{seen_spread} {hidden_spread}");
+    assert!(last_error < 0.06, "{last_error}");
+}
+
+#[test]
+fn frames_without_points_and_gaps_are_frames_like_others() {
+    let (scene, goals) = (scene(), goals());
+    let motion = end_effector(&goals);
+    let mut tracker = tracker(&scene, 50, 4);
+    let before = tracker.step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: cloud(&scene, 1, &[]).blocks() });
+    let mut last = before;
+    for dt_s in [DT_S, 1.0, 0.0, f32::NAN, -3.0] {
+        last = tracker.step(&scene, &motion, &BodyFrame { dt_s, blocks: &[] });
+        assert!(last.angles_rad.iter().all(|angle| angle.is_finite()));
+        assert!(last.observed.iter().all(|seen| !seen) && !last.is_degenerate);
+    }
+    assert!(last.spread_m[FOREARMS[0]] > 2.0 * before.spread_m[FOREARMS[0]]);
+    let one_point = {
+        let mut cloud = Cloud::new();
+        let _ = cloud.set(&mut [Vec3::new(0.0, 0.0, 2.9)], &Vec3::zeros());
+        cloud
+    };
+    let estimate = tracker.step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: one_point.blocks() });
+    assert!(estimate.log_evidence.is_finite());
+}
+
+#[test]
+fn sets_and_options_that_do_not_fit_are_refused() {
+    let scene = scene();
+    let first = Particle::at(&scene.skeleton, truth(0));
+    let sets = |a: usize, b: usize| (std::vec![first; a], std::vec![first; b]);
+    assert_eq!(Tracker::new(&first, sets(4, 5), OPTIONS, 1).unwrap_err().parameter, "next");
+    assert_eq!(Tracker::new(&first, sets(0, 0), OPTIONS, 1).unwrap_err().parameter, "particles");
+    assert_eq!(Tracker::new(&first, sets(257, 257), OPTIONS, 1).unwrap_err().parameter, "particles");
+    let options = BodyOptions { least_effective_share: f32::NAN, ..OPTIONS };
+    assert_eq!(Tracker::new(&first, sets(4, 4), options, 1).unwrap_err().parameter, "least_effective_share");
+}
+
+/// Standard deviation of the places of a bone's end over draws from one pose with `motion`, metres.
+fn spread(motion: &impl BodyMotion<BODY_BONES, BODY_ANGLES>, bone: usize) -> f32 {
+    let scene = scene();
+    let options = BodyOptions { alignment: None, ..OPTIONS };
+    let first = Particle::at(&scene.skeleton, truth(0));
+    let mut tracker = Tracker::new(&first, (std::vec![first; 200], std::vec![first; 200]), options, 5).unwrap();
+    tracker.step(&scene, motion, &BodyFrame { dt_s: DT_S, blocks: &[] }).spread_m[bone]
+}
+
+/// Fig. 2 of the PIK paper: kappa = 500 for every angle, and the same poses drawn by goals.
+#[test]
+fn spread_grows_down_the_chain_under_angular_noise_and_not_under_goals() {
+    // A goal that is known to two centimetres.
+    let process = LinearExtrapolation { persistence: 0.0, std_m_per_sqrt_s: 0.01 };
+    let goals = LinearGoals::new(&[FOREARMS[0], FOREARMS[1]], BODY_BONES, process, 0.02).unwrap();
+    let fixed = RootProcess::FIXED;
+    let kappa_500 = [0.0447 / DT_S.sqrt(); BODY_ANGLES];
+    let angular = AngularMotion { root: fixed, angle_std_rad_per_sqrt_s: kappa_500, ..ANGULAR };
+    let by_goals = EndEffectorMotion { root: fixed, angle_std_rad_per_sqrt_s: kappa_500, ..end_effector(&goals) };
+    let (elbow, hand) = (UPPER_ARMS[0], FOREARMS[0]);
+    let ratio = spread(&angular, hand) / spread(&angular, elbow);
+    let ratio_by_goals = spread(&by_goals, hand) / spread(&by_goals, elbow);
+    assert!(ratio > 1.25, "angular: {ratio}");
+    assert!(ratio_by_goals < 1.25 && ratio_by_goals < 0.85 * ratio, "by goals: {ratio_by_goals}, angular {ratio}");
+    let lying = posture(&scene().skeleton, &Vec3::zeros(), &truth(0));
+    assert!(lying.ends.iter().all(|end| end.norm().is_finite()));
+}
