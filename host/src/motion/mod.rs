@@ -12,6 +12,7 @@ pub mod c3d;
 pub mod clips;
 pub mod error;
 pub mod exponential_map;
+pub mod export;
 pub mod joint_names;
 pub mod landmarks;
 pub mod markers;

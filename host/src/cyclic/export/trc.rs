@@ -3,9 +3,9 @@
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::image_joints::Point;
 use crate::motion::anthropometry as fraction;
+use crate::motion::export::{self, TrcFrame, TrcHeading, TrcUnit};
 use crate::motion::joint_names::JOINTS;
 use sinew_core::skeleton::stick_figure::HUMAN;
-use std::fmt::Write as _;
 
 /// Marker names in the order of the joints; the names that Pose2Sim and OpenPose models of OpenSim have.
 pub const MARKERS: [&str; JOINTS] = [
@@ -64,33 +64,13 @@ pub fn joint_positions(
 /// `metres_per_unit` metres, x right and y down. Missing joints are empty cells.
 #[must_use]
 pub fn to_trc(frames: &[(u64, JointPositions)], rate_hz: f64, metres_per_unit: f64, name: &str) -> String {
-    let count = frames.len();
-    let first_frame = frames.first().map_or(0, |frame| frame.0);
-    let mut text = format!(
-        "PathFileType\t4\t(X/Y/Z)\t{}\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n\
-        {rate_hz}\t{rate_hz}\t{count}\t{JOINTS}\tm\t{rate_hz}\t{first_frame}\t{count}\nFrame#\tTime",
-        name.replace(['\n', '\r', '\t'], " ")
-    );
-    for marker in MARKERS {
-        text.push_str(&format!("\t{marker}\t\t"));
-    }
-    text.push_str("\n\t");
-    for marker in 1..=JOINTS {
-        text.push_str(&format!("\tX{marker}\tY{marker}\tZ{marker}"));
-    }
-    text.push_str("\n\n");
-    for (frame, joints) in frames {
-        // Writing to a string cannot fail.
-        let _ = write!(text, "{frame}\t{:.6}", *frame as f64 / rate_hz);
-        for joint in joints {
-            let _ = match joint {
-                None => write!(text, "\t\t\t"),
-                Some([x, y]) => write!(text, "\t{:.6}\t{:.6}\t0.000000", x * metres_per_unit, -y * metres_per_unit),
-            };
-        }
-        text.push('\n');
-    }
-    text
+    let place_m = |[x, y]: Point| [x * metres_per_unit, -y * metres_per_unit, 0.0];
+    let in_space = |(frame, joints): &(u64, JointPositions)| TrcFrame {
+        frame: *frame,
+        positions_m: joints.iter().map(|joint| joint.map(place_m)).collect(),
+    };
+    let frames: Vec<TrcFrame> = frames.iter().map(in_space).collect();
+    export::to_trc(&TrcHeading { name, markers: &MARKERS, rate_hz, unit: TrcUnit::Metre }, &frames)
 }
 
 #[cfg(test)]
