@@ -108,7 +108,7 @@ mod tests {
             if direction.dot(&(camera - near)) >= -1.0e-4 {
                 let distance = (point - near - direction * capsule.radius_m).norm();
                 best[1] = best[1].min(distance);
-                if near == own {
+                if (near - own).norm() < 1.0e-6 {
                     best[0] = best[0].min(distance);
                 }
             }

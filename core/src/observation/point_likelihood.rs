@@ -155,7 +155,7 @@ mod tests {
     }
 
     /// Points about a posture: some on its skin, some anywhere.
-    fn points(surface: &BodySurface<BODY_BONES>, count: usize, stream: &mut Stream) -> std::vec::Vec<Vec3> {
+    fn points(surface: &BodySurface<BODY_BONES>, count: usize, stream: &mut Stream) -> Vec<Vec3> {
         (0..count)
             .map(|i| {
                 let capsule = surface.capsules[i % surface.capsules.len()].capsule;
@@ -191,8 +191,7 @@ mod tests {
     fn a_cloud_far_from_the_body_weighs_every_pose_alike() {
         let (skeleton, radii) = body();
         let mut stream = Stream::new(1, 0, 0);
-        let mut cloud: std::vec::Vec<Vec3> =
-            (0..50).map(|_| Vec3::new(9.0, 9.0, 9.0) + stream.normal3() * 0.1).collect();
+        let mut cloud: Vec<Vec3> = (0..50).map(|_| Vec3::new(9.0, 9.0, 9.0) + stream.normal3() * 0.1).collect();
         let mut blocks = PointCloud::<8>::new();
         let _ = blocks.set(&mut cloud, &Vec3::zeros());
         for _ in 0..5 {

@@ -4,7 +4,7 @@ use super::goal::{GoalMemory, GoalProcess, Goals};
 use super::motion::{BodyMotion, BodyParticle, FramePast, Proposed};
 use super::proposal::{LaplaceProposal, LimitMass};
 use super::root::RootProcess;
-use crate::kinematics::inverse::{PoseDensity, PoseObjective, Solve};
+use crate::kinematics::inverse::{Mode, PoseDensity, PoseObjective, Solve};
 use crate::math::{Vec3, clamp};
 use crate::random::Stream;
 
@@ -24,6 +24,20 @@ pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
     pub solver_steps: usize,
     /// Whether the weight takes the importance ratio (18).
     pub pays: bool,
+    /// Standard deviation of the draw relative to that of the Laplace expansion, in (0, 1]; 1 is the paper's, and what is meant where
+    /// the weight pays. Below it goals spread the particles, and angles that no goal moves spread them less.
+    pub draw_share: f32,
+}
+
+/// Makes the expansion around a mode `share` times as wide, about the same centre.
+fn narrow<const ANGLES: usize>(mode: &mut Mode<ANGLES>, share: f32) {
+    let sharper = 1.0 / (share * share);
+    for i in 0..ANGLES {
+        mode.gradient[i] *= sharper;
+        for entry in &mut mode.hessian[i] {
+            *entry *= sharper;
+        }
+    }
 }
 
 /// lambda of eq. (12), one an angle.
@@ -58,7 +72,10 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
             stiffness: stiffness(&self.angle_std_rad_per_sqrt_s, past.dt_s),
             held: skeleton.root_coordinates(),
         };
-        let mode = density.mode(self.solver_steps);
+        let mut mode = density.mode(self.solver_steps);
+        if !self.pays {
+            narrow(&mut mode, self.draw_share);
+        }
         let Some(proposal) = LaplaceProposal::new(&mode) else {
             let posture = density.posture(&mode.angles_rad);
             return Proposed { angles_rad: mode.angles_rad, posture, log_ratio: 0.0 };

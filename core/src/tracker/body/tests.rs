@@ -21,7 +21,7 @@ use crate::skeleton::full_body::{
 type Scene = BodyScene<BODY_BONES, BODY_ANGLES>;
 type Particle = BodyParticle<BODY_BONES, BODY_ANGLES>;
 type Cloud = PointCloud<128>;
-type Tracker = BodyTracker<BODY_BONES, BODY_ANGLES, 256, std::vec::Vec<Particle>>;
+type Tracker = BodyTracker<BODY_BONES, BODY_ANGLES, 256, Vec<Particle>>;
 
 const DT_S: f32 = 1.0 / 15.0;
 const ROOT: RootProcess =
@@ -52,7 +52,7 @@ fn truth(frame: usize) -> [f32; BODY_ANGLES] {
 fn cloud(scene: &Scene, frame: usize, hides: &[usize]) -> Cloud {
     let surface = scene.surface(&scene.posture(&truth(frame)));
     let mut stream = Stream::new(50, frame as u64, 0);
-    let mut points = std::vec::Vec::new();
+    let mut points = Vec::new();
     for seen in &surface.capsules {
         let count = (600.0 * seen.capsule.radius_m * (seen.along_m.norm() + seen.capsule.radius_m)) as usize * 5;
         for _ in 0..count {
@@ -75,7 +75,14 @@ fn goals() -> LinearGoals {
 }
 
 fn end_effector(process: &LinearGoals) -> EndEffectorMotion<'_, LinearGoals, BODY_ANGLES> {
-    EndEffectorMotion { process, root: ROOT, angle_std_rad_per_sqrt_s: ANGLE_STD, solver_steps: 2, pays: false }
+    EndEffectorMotion {
+        process,
+        root: ROOT,
+        angle_std_rad_per_sqrt_s: ANGLE_STD,
+        solver_steps: 2,
+        pays: false,
+        draw_share: 1.0,
+    }
 }
 
 fn guided(process: &LinearGoals) -> GuidedMotion<'_, LinearGoals, BODY_ANGLES> {
@@ -98,11 +105,11 @@ const OPTIONS: BodyOptions = BodyOptions {
 
 fn tracker(scene: &Scene, count: usize, seed: u64) -> Tracker {
     let first = Particle::at(&scene.skeleton, truth(0));
-    Tracker::new(&first, (std::vec![first; count], std::vec![first; count]), OPTIONS, seed).unwrap()
+    Tracker::new(&first, (vec![first; count], vec![first; count]), OPTIONS, seed).unwrap()
 }
 
 /// Errors of the left hand, metres, from the first frame on.
-fn hand_errors(motion: &impl BodyMotion<BODY_BONES, BODY_ANGLES>, count: usize, frames: usize) -> std::vec::Vec<f32> {
+fn hand_errors(motion: &impl BodyMotion<BODY_BONES, BODY_ANGLES>, count: usize, frames: usize) -> Vec<f32> {
     let scene = scene();
     let mut tracker = tracker(&scene, count, 3);
     (1..frames)
@@ -121,7 +128,7 @@ fn hand_errors(motion: &impl BodyMotion<BODY_BONES, BODY_ANGLES>, count: usize, 
 #[test]
 fn every_model_follows_a_wave_inside_the_limits() {
     let goals = goals();
-    let mean = |errors: std::vec::Vec<f32>| errors.iter().sum::<f32>() / errors.len() as f32;
+    let mean = |errors: Vec<f32>| errors.iter().sum::<f32>() / errors.len() as f32;
     let drawn = [mean(hand_errors(&end_effector(&goals), 200, 40)), mean(hand_errors(&ANGULAR, 200, 40))];
     let few = mean(hand_errors(&guided(&goals), 20, 40));
     assert!(drawn.iter().all(|error| *error < 0.12), "{drawn:?}");
@@ -203,7 +210,7 @@ fn frames_without_points_and_gaps_are_frames_like_others() {
 fn sets_and_options_that_do_not_fit_are_refused() {
     let scene = scene();
     let first = Particle::at(&scene.skeleton, truth(0));
-    let sets = |a: usize, b: usize| (std::vec![first; a], std::vec![first; b]);
+    let sets = |a: usize, b: usize| (vec![first; a], vec![first; b]);
     assert_eq!(Tracker::new(&first, sets(4, 5), OPTIONS, 1).unwrap_err().parameter, "next");
     assert_eq!(Tracker::new(&first, sets(0, 0), OPTIONS, 1).unwrap_err().parameter, "particles");
     assert_eq!(Tracker::new(&first, sets(257, 257), OPTIONS, 1).unwrap_err().parameter, "particles");
@@ -216,7 +223,7 @@ fn spread(motion: &impl BodyMotion<BODY_BONES, BODY_ANGLES>, bone: usize) -> f32
     let scene = scene();
     let options = BodyOptions { alignment: None, ..OPTIONS };
     let first = Particle::at(&scene.skeleton, truth(0));
-    let mut tracker = Tracker::new(&first, (std::vec![first; 200], std::vec![first; 200]), options, 5).unwrap();
+    let mut tracker = Tracker::new(&first, (vec![first; 200], vec![first; 200]), options, 5).unwrap();
     tracker.step(&scene, motion, &BodyFrame { dt_s: DT_S, blocks: &[] }).spread_m[bone]
 }
 

@@ -110,33 +110,13 @@ impl BodyFilter {
 
     /// One frame, `dt_s` seconds after the one before; `stick` is what is known of the stick, which only the stick model asks.
     pub fn step(&mut self, blocks: &[PointBlock], dt_s: f32, stick: StickSight) -> WholeBodyEstimate {
-        let tuning = self.tuning;
+        let (tuning, goals) = (self.tuning, self.goals.clone());
         let root = tuning.root.process();
         let frame = BodyFrame { dt_s, blocks };
         match self.kind {
-            BodyModelKind::EndEffector => {
-                let motion = with_goals(&tuning, &self.goals, root);
-                step(&mut self.tracker, &self.scene, &motion, &frame)
-            }
-            BodyModelKind::Guided => {
-                let motion = GuidedMotion {
-                    process: &self.goals,
-                    root,
-                    angle_std_rad_per_sqrt_s: tuning.guided.joint_std.per_angle(),
-                    solver_steps: tuning.guided.solver_steps,
-                    pulling_blocks: tuning.pulling_blocks,
-                };
-                step(&mut self.tracker, &self.scene, &motion, &frame)
-            }
-            BodyModelKind::Angular => {
-                let motion = AngularMotion {
-                    root,
-                    persistence: tuning.angular.persistence,
-                    angle_std_rad_per_sqrt_s: tuning.angular.joint_std.per_angle(),
-                    own_velocity: false,
-                };
-                step(&mut self.tracker, &self.scene, &motion, &frame)
-            }
+            BodyModelKind::EndEffector => self.advance(&with_goals(&tuning, &goals, root), &frame),
+            BodyModelKind::Guided => self.advance(&guided(&tuning, &goals, root), &frame),
+            BodyModelKind::Angular => self.advance(&angular(&tuning, root), &frame),
             BodyModelKind::Stick => {
                 let process = StickGoals {
                     hands: FOREARMS,
@@ -144,35 +124,78 @@ impl BodyFilter {
                     camera_m: self.scene.camera_m,
                     gamma_std_per_sqrt_s: tuning.stick_gamma_std,
                     reach_std_m: tuning.stick_reach_std_m,
-                    others: &self.goals,
+                    others: &goals,
                 };
-                step(&mut self.tracker, &self.scene, &with_goals(&tuning, &process, root), &frame)
+                self.advance(&with_goals(&tuning, &process, root), &frame)
             }
             BodyModelKind::PelvicLift => {
                 let reach_std_m = tuning.end_effector.reach_std_m;
                 let process = FixedGoals { end_effectors: &END_EFFECTORS, reach_std_m };
                 let root = RootProcess::pelvic_lift(tuning.lift_std_m, tuning.lift_turn_std_rad, self.floor_y_m);
-                step(&mut self.tracker, &self.scene, &with_goals(&tuning, &process, root), &frame)
+                self.advance(&with_goals(&tuning, &process, root), &frame)
             }
             BodyModelKind::EndEffectorPaper => {
                 let reach_std_m = tuning.end_effector.reach_std_m;
                 let end_effectors = &PAPER_END_EFFECTORS;
                 let process = PaperGoals { end_effectors, std_m: PAPER_GOAL_STD_M, reach_std_m };
-                let mut motion = with_goals(&tuning, &process, root);
-                motion.angle_std_rad_per_sqrt_s = [PAPER_ANGLE_STD_RAD / dt_s.max(1.0e-4).sqrt(); BODY_ANGLES];
-                motion.pays = true;
-                step(&mut self.tracker, &self.scene, &motion, &frame)
+                let motion = EndEffectorMotion {
+                    angle_std_rad_per_sqrt_s: paper_angle_std(dt_s),
+                    pays: true,
+                    ..with_goals(&tuning, &process, root)
+                };
+                self.advance(&motion, &frame)
             }
             BodyModelKind::AngularPaper => {
-                let motion = AngularMotion {
-                    root,
-                    persistence: 1.0,
-                    angle_std_rad_per_sqrt_s: [PAPER_ANGLE_STD_RAD / dt_s.max(1.0e-4).sqrt(); BODY_ANGLES],
-                    own_velocity: true,
-                };
-                step(&mut self.tracker, &self.scene, &motion, &frame)
+                let angle_std_rad_per_sqrt_s = paper_angle_std(dt_s);
+                self.advance(
+                    &AngularMotion { root, persistence: 1.0, angle_std_rad_per_sqrt_s, own_velocity: true },
+                    &frame,
+                )
             }
         }
+    }
+
+    /// The core's step, its particles shared out over the threads of the current pool.
+    fn advance<M: BodyMotion<BODY_BONES, BODY_ANGLES> + Sync>(
+        &mut self,
+        motion: &M,
+        frame: &BodyFrame<'_>,
+    ) -> WholeBodyEstimate {
+        self.tracker.step_with(&self.scene, motion, frame, |advance, particles, store| {
+            let advance_one = |(index, slot): (usize, &mut WholeBodyParticle)| advance.particle(index, slot);
+            let log_weights: Vec<f32> = particles.par_iter_mut().enumerate().map(advance_one).collect();
+            for (index, log_weight) in log_weights.into_iter().enumerate() {
+                store(index, log_weight);
+            }
+        })
+    }
+}
+
+/// kappa = 500 in every frame, as noise by root second.
+fn paper_angle_std(dt_s: f32) -> [f32; BODY_ANGLES] {
+    [PAPER_ANGLE_STD_RAD / dt_s.max(1.0e-4).sqrt(); BODY_ANGLES]
+}
+
+fn angular(tuning: &BodyTuning, root: RootProcess) -> AngularMotion<BODY_ANGLES> {
+    AngularMotion {
+        root,
+        persistence: tuning.angular.persistence,
+        angle_std_rad_per_sqrt_s: tuning.angular.joint_std.per_angle(),
+        own_velocity: false,
+    }
+}
+
+fn guided<'a>(
+    tuning: &BodyTuning,
+    process: &'a LinearGoals,
+    root: RootProcess,
+) -> GuidedMotion<'a, LinearGoals, BODY_ANGLES> {
+    GuidedMotion {
+        process,
+        root,
+        angle_std_rad_per_sqrt_s: tuning.guided.joint_std.per_angle(),
+        solver_steps: tuning.guided.solver_steps,
+        pulling_blocks: tuning.pulling_blocks,
     }
 }
 
@@ -188,21 +211,6 @@ fn with_goals<'a, P: GoalProcess<BODY_BONES>>(
         angle_std_rad_per_sqrt_s: tuning.end_effector.joint_std.per_angle(),
         solver_steps: tuning.end_effector.solver_steps,
         pays: tuning.end_effector.pays,
+        draw_share: tuning.end_effector.draw_share,
     }
-}
-
-/// The core's step, its particles shared out over the threads of the current pool.
-fn step<M: BodyMotion<BODY_BONES, BODY_ANGLES> + Sync>(
-    tracker: &mut Tracker,
-    scene: &BodyScene<BODY_BONES, BODY_ANGLES>,
-    motion: &M,
-    frame: &BodyFrame<'_>,
-) -> WholeBodyEstimate {
-    tracker.step_with(scene, motion, frame, |advance, particles, store| {
-        let advance_one = |(index, slot): (usize, &mut WholeBodyParticle)| advance.particle(index, slot);
-        let log_weights: Vec<f32> = particles.par_iter_mut().enumerate().map(advance_one).collect();
-        for (index, log_weight) in log_weights.into_iter().enumerate() {
-            store(index, log_weight);
-        }
-    })
 }

@@ -113,6 +113,8 @@ pub struct GoalTuning {
     pub solver_steps: usize,
     /// Whether the weights take the importance ratio.
     pub pays: bool,
+    /// Width of the draw relative to the Laplace expansion's; 1 where the weights pay.
+    pub draw_share: f32,
 }
 
 impl GoalTuning {
@@ -185,6 +187,7 @@ impl Default for BodyTuning {
             joint_std: GOAL_JOINTS,
             solver_steps: 2,
             pays: false,
+            draw_share: 0.5,
         };
         let points = PointTuning { std_m: 0.15, outlier_m: 0.25, least_effective_share: 0.05 };
         Self {
@@ -198,7 +201,7 @@ impl Default for BodyTuning {
                 aligned_angle_std_rad: 1.0,
             },
             end_effector: goals,
-            guided: GoalTuning { pays: true, ..goals },
+            guided: GoalTuning { pays: true, draw_share: 1.0, ..goals },
             pulling_blocks: 32,
             angular: AngularTuning {
                 persistence: 0.5,

@@ -6,12 +6,15 @@ use crate::draw::plot::{Curve, curves_plot};
 use anyhow::Result;
 use image::RgbImage;
 
+/// Mean and standard deviation of what is plotted.
+type Value = fn(&BodyResult) -> (f64, f64);
+
 /// Figures with their file names.
 ///
 /// # Errors
 /// Nothing to plot.
 pub fn figures(report: &BodyReport) -> Result<Vec<(String, RgbImage)>> {
-    let plots: [(&str, &str, &str, fn(&BodyResult) -> (f64, f64)); 4] = [
+    let plots: [(&str, &str, &str, Value); 4] = [
         ("figure_13_error.png", "Figure 13: error (34)", "error, cm", |cell| cm(cell.error_m.mean, cell.error_m.std)),
         ("joint_error.png", "Error of the joints", "error, cm", |cell| {
             cm(cell.joint_error_m.mean, cell.joint_error_m.std)
@@ -41,7 +44,7 @@ fn cm(mean: f64, std: f64) -> (f64, f64) {
 }
 
 /// Mean over the motions, with a band of one mean standard deviation.
-fn curve(report: &BodyReport, model: BodyModelKind, value: fn(&BodyResult) -> (f64, f64)) -> Curve {
+fn curve(report: &BodyReport, model: BodyModelKind, value: Value) -> Curve {
     let (mut low, mut high) = (Vec::new(), Vec::new());
     let mut curve = Curve { name: model.name().into(), ..Curve::default() };
     for count in report.counts(model) {
