@@ -23,6 +23,8 @@ pub struct GoalPast<'a, const BONES: usize> {
     pub velocity_m_per_s: &'a [Vec3; BONES],
     /// Ends of all bones in the pose that the tracking began with, metres.
     pub first_m: &'a [Vec3; BONES],
+    /// How far the root goes in this frame, as far as its process or the points tell; metres.
+    pub root_shift_m: Vec3,
     /// Time since the frame before, seconds.
     pub dt_s: f32,
     /// Whether this is the first step, with nothing yet in the memory.

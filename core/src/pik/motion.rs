@@ -81,6 +81,18 @@ pub struct FramePast<'a, const BONES: usize, const ANGLES: usize> {
 }
 
 impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
+    /// How far a free root is expected to go, metres.
+    #[must_use]
+    pub fn root_shift_m(&self) -> Vec3 {
+        let mut shift_m = Vec3::zeros();
+        if let Some(root) = self.scene.skeleton.bones().first() {
+            for (axis, change) in root.joint.axes().iter().zip(&self.root_change).take(root.joint.shift_count()) {
+                shift_m += axis * *change;
+            }
+        }
+        shift_m
+    }
+
     /// What the goals of `ancestor` may follow from.
     #[must_use]
     pub fn goals_of(&self, ancestor: &'a BodyParticle<BONES, ANGLES>) -> GoalPast<'a, BONES> {
@@ -88,6 +100,7 @@ impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
             reached_m: &ancestor.ends_m,
             velocity_m_per_s: self.velocity_m_per_s,
             first_m: self.first_m,
+            root_shift_m: self.root_shift_m(),
             dt_s: self.dt_s,
             is_first: self.is_first,
         }

@@ -7,10 +7,13 @@ use crate::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals, LinearExtrapola
 use crate::random::Stream;
 use heapless::Vec;
 
-/// Each end-effector goes on from the place that it *reached*, with a share of the filter's velocity.
+/// Each end-effector goes on from the place that it *reached*, with a share of the filter's velocity: those that the root carries
+/// (head, hands) relative to it, the others (feet, which stand) in space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearGoals {
     end_effectors: Vec<usize, MAX_GOALS>,
+    /// How many of the first end-effectors the root carries.
+    pub carried: usize,
     /// How each goal moves.
     pub process: LinearExtrapolation,
     /// How closely a goal is reached along each axis: W = 1 / std^2, metres.
@@ -37,7 +40,31 @@ impl LinearGoals {
             let full = ParameterError::new("end_effectors", Rule::Capacity { capacity: MAX_GOALS });
             list.push(bone).map_err(|_| full)?;
         }
-        Ok(Self { end_effectors: list, process, reach_std_m: positive("reach_std_m", reach_std_m)? })
+        Ok(Self { end_effectors: list, carried: 0, process, reach_std_m: positive("reach_std_m", reach_std_m)? })
+    }
+
+    /// The first `count` end-effectors are carried by the root, whose place is the first bone's end.
+    #[must_use]
+    pub fn carrying(mut self, count: usize) -> Self {
+        self.carried = count;
+        self
+    }
+
+    /// Where each end-effector goes on the mean, metres, with its bone.
+    fn means<'p, const BONES: usize>(
+        &'p self,
+        past: &'p GoalPast<'_, BONES>,
+    ) -> impl Iterator<Item = (usize, Vec3)> + 'p {
+        let root_velocity = past.velocity_m_per_s.first().copied().unwrap_or_default();
+        self.end_effectors.iter().enumerate().filter_map(move |(index, &bone)| {
+            let (reached_m, velocity) = (past.reached_m.get(bone)?, past.velocity_m_per_s.get(bone)?);
+            let mean_m = if index < self.carried {
+                self.process.mean(&(reached_m + past.root_shift_m), &(velocity - root_velocity), past.dt_s)
+            } else {
+                self.process.mean(reached_m, velocity, past.dt_s)
+            };
+            Some((bone, mean_m))
+        })
     }
 
     fn goal(&self, bone: usize, position_m: Vec3, std_m: f32) -> Goal {
@@ -51,23 +78,16 @@ impl<const BONES: usize> GoalProcess<BONES> for LinearGoals {
     }
 
     fn draw(&self, past: &GoalPast<'_, BONES>, _memory: &mut GoalMemory, stream: &mut Stream, goals: &mut Goals) {
-        for &bone in &self.end_effectors {
-            let (Some(reached_m), Some(velocity)) = (past.reached_m.get(bone), past.velocity_m_per_s.get(bone)) else {
-                continue;
-            };
-            let position_m = self.process.draw(reached_m, velocity, past.dt_s, stream);
+        for (bone, mean_m) in self.means(past) {
+            let position_m = mean_m + stream.normal3() * self.process.std_m(past.dt_s);
             // As many goals as end-effectors fit.
             let _ = goals.push(self.goal(bone, position_m, 0.0));
         }
     }
 
     fn expect(&self, past: &GoalPast<'_, BONES>, _memory: &mut GoalMemory, _stream: &mut Stream, goals: &mut Goals) {
-        for &bone in &self.end_effectors {
-            let (Some(reached_m), Some(velocity)) = (past.reached_m.get(bone), past.velocity_m_per_s.get(bone)) else {
-                continue;
-            };
-            let position_m = self.process.mean(reached_m, velocity, past.dt_s);
-            let _ = goals.push(self.goal(bone, position_m, self.process.std_m(past.dt_s)));
+        for (bone, mean_m) in self.means(past) {
+            let _ = goals.push(self.goal(bone, mean_m, self.process.std_m(past.dt_s)));
         }
     }
 }
@@ -94,6 +114,7 @@ mod tests {
             reached_m: &reached,
             velocity_m_per_s: &velocity,
             first_m: &reached,
+            root_shift_m: Vec3::zeros(),
             dt_s: 0.25,
             is_first: true,
         };
@@ -111,5 +132,27 @@ mod tests {
         assert!(mean.norm() < 4.0 * 0.1 * (3.0 / n as f32).sqrt(), "{mean:?}");
         let variance = 1.0 / expected[0].precision[(0, 0)];
         assert!((variance / (square + 0.03 * 0.03) - 1.0).abs() < 0.06, "{variance} {square}");
+    }
+
+    #[test]
+    fn what_the_root_carries_goes_with_it_and_feet_stay() {
+        let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.0 };
+        let goals_of = LinearGoals::new(&[1, 2], 3, process, 0.03).unwrap().carrying(1);
+        let reached = [Vec3::zeros(), Vec3::z(), Vec3::y()];
+        let velocity = [Vec3::x(), Vec3::x() * 3.0, Vec3::zeros()];
+        let root_shift_m = Vec3::new(0.2, 0.1, 0.0);
+        let past = GoalPast {
+            reached_m: &reached,
+            velocity_m_per_s: &velocity,
+            first_m: &reached,
+            root_shift_m,
+            dt_s: 0.1,
+            is_first: false,
+        };
+        let mut goals = Goals::new();
+        goals_of.draw(&past, &mut [0.0; 32], &mut Stream::new(1, 0, 0), &mut goals);
+        // Half of the two metres a second that it is faster than the root.
+        assert!((goals[0].position_m - (Vec3::z() + root_shift_m + Vec3::x() * 0.1)).norm() < 1.0e-6);
+        assert_eq!(goals[1].position_m, Vec3::y());
     }
 }

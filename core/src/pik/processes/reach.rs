@@ -54,8 +54,14 @@ mod tests {
         let mut at = [Vec3::zeros()];
         let first = at;
         for step in 1..=60 {
-            let past =
-                GoalPast { reached_m: &at, velocity_m_per_s: &first, first_m: &first, dt_s: 0.1, is_first: step == 1 };
+            let past = GoalPast {
+                reached_m: &at,
+                velocity_m_per_s: &first,
+                first_m: &first,
+                root_shift_m: Vec3::zeros(),
+                dt_s: 0.1,
+                is_first: step == 1,
+            };
             let mut goals = Goals::new();
             reach.draw(&past, &mut [0.0; 32], &mut Stream::new(1, step, 0), &mut goals);
             at[0] = goals[0].position_m;

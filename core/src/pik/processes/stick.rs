@@ -138,6 +138,7 @@ mod tests {
             reached_m: &reached_m,
             velocity_m_per_s: &[Vec3::zeros(); 3],
             first_m: &reached_m,
+            root_shift_m: Vec3::zeros(),
             dt_s: 1.0 / 15.0,
             is_first,
         };

@@ -81,6 +81,7 @@ mod tests {
             reached_m: &reached_m,
             velocity_m_per_s: &velocity_m_per_s,
             first_m: &reached_m,
+            root_shift_m: Vec3::zeros(),
             dt_s: 0.1,
             is_first: false,
         };

@@ -28,6 +28,8 @@ pub const MAX_BODY_PARTICLES: usize = 16_384;
 
 /// End-effectors with goals: head, hands and feet.
 pub const END_EFFECTORS: [usize; 5] = [HEAD, FOREARMS[0], FOREARMS[1], SHANKS[0], SHANKS[1]];
+/// Of these head and hands go with the root; feet stand.
+const CARRIED: usize = 3;
 /// End-effectors of the PIK paper (section 7.1.2): head and hands.
 const PAPER_END_EFFECTORS: [usize; 3] = [HEAD, FOREARMS[0], FOREARMS[1]];
 /// Standard deviation of every angle a frame for kappa = 500, radians (PIK paper, fig. 2).
@@ -77,7 +79,8 @@ impl BodyFilter {
             camera_m: Vec3::zeros(),
             likelihood: PointLikelihood { std_m: points.std_m, outlier_m: points.outlier_m },
         };
-        let goals = LinearGoals::new(&END_EFFECTORS, BODY_BONES, goals.extrapolation(), goals.reach_std_m)?;
+        let goals =
+            LinearGoals::new(&END_EFFECTORS, BODY_BONES, goals.extrapolation(), goals.reach_std_m)?.carrying(CARRIED);
         let first = BodyParticle::at(&scene.skeleton, first_rad);
         let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::PelvicLift);
         let options = BodyOptions {
