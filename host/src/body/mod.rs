@@ -1,12 +1,14 @@
 //! Whole bodies from recordings: their joints over time, their measures, and the poses that come nearest to them.
 
 pub mod body_file;
+pub mod export;
 pub mod fitting;
 pub mod joints;
 pub mod measuring;
 pub mod placing;
 pub mod pose_file;
 pub mod recording;
+pub mod run;
 pub mod tracking;
 
 pub use body_file::BodyFile;

@@ -24,6 +24,7 @@ pub mod skin_args;
 pub mod stdout;
 pub mod track;
 pub mod track_arm;
+pub mod track_body;
 pub mod track_cyclic;
 pub mod train;
 pub mod train_cyclic;
@@ -45,7 +46,7 @@ pub struct Cli {
 pub enum Command {
     /// Render a scene with known truth, track it, and print the error.
     Demo(demo::DemoArgs),
-    /// Track a person in a folder of video frames.
+    /// Track a person: in video frames, point clouds, or angle tables.
     #[command(subcommand)]
     Track(track::Track),
     /// Turn a motion in space or 2D keypoints into an angle table.

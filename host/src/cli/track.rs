@@ -1,6 +1,7 @@
 //! `sinew track ...`
 
 use super::track_arm::{self, TrackArmArgs};
+use super::track_body::{self, TrackBodyArgs};
 use super::track_cyclic::{self, TrackCyclicArgs};
 use clap::Subcommand;
 
@@ -9,6 +10,8 @@ use clap::Subcommand;
 pub enum Track {
     /// Track the arms of the person in a folder of video frames.
     Arm(TrackArmArgs),
+    /// Track a whole body in a folder of point clouds.
+    Body(TrackBodyArgs),
     /// Track a cyclic motion, walking or another, in an angle table.
     Cyclic(TrackCyclicArgs),
 }
@@ -20,6 +23,7 @@ pub enum Track {
 pub fn run(track: &Track) -> anyhow::Result<()> {
     match track {
         Track::Arm(args) => track_arm::run(args),
+        Track::Body(args) => track_body::run(args),
         Track::Cyclic(args) => track_cyclic::run(args),
     }
 }

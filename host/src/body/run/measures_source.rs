@@ -1,0 +1,86 @@
+//! The person's measures from a file: `body.json`, or a motion or skeleton that is measured.
+
+use crate::body::recording::BodyRecording;
+use crate::body::{BodyFile, BodySources, measure};
+use crate::motion::{self, DEFAULT_FRAMES_PER_SECOND, MarkerMotion, ReadOptions, amc, asf};
+use anyhow::{Context, Result, bail};
+use sinew_core::skeleton::BodyMeasures;
+use sinew_core::skeleton::full_body::full_body;
+use std::path::Path;
+
+/// Files that are measured.
+const MOTIONS: [&str; 6] = ["bvh", "amc", "asf", "txt", "trc", "c3d"];
+
+/// Reads measures from a .json as `simulate stereo` writes it, or measures the person of a motion. Of a .asf without motion the rest pose
+/// is measured.
+///
+/// # Errors
+/// Names the file, and what is missing in it or breaks a rule.
+pub fn read_measures(path: &Path) -> Result<BodyMeasures> {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+    let measures = match extension.as_str() {
+        "json" => BodyFile::read(path)?,
+        known if MOTIONS.contains(&known) => {
+            measured(path, known).with_context(|| format!("the person of `{}` cannot be measured", path.display()))?
+        }
+        _ => bail!(
+            "`{}` is no skeleton that can be read; give a body.json, or a motion to measure (.{})",
+            path.display(),
+            MOTIONS.join(", .")
+        ),
+    };
+    full_body(&measures).with_context(|| format!("`{}` is no person's skeleton", path.display()))?;
+    Ok(measures)
+}
+
+fn measured(path: &Path, extension: &str) -> Result<BodyMeasures> {
+    let motion = if extension == "asf" {
+        let skeleton = asf::read(path)?;
+        MarkerMotion::from(&amc::parse(&rest_pose(&skeleton), path, &skeleton, DEFAULT_FRAMES_PER_SECOND)?)
+    } else {
+        motion::read_space(path, &ReadOptions::default())?
+    };
+    let joints_m = BodySources::find(&motion.names, path)?.of_motion(&motion);
+    measure(&BodyRecording { rate_hz: motion.frames_per_second, joints_m })
+}
+
+/// A motion of one frame in which all angles of `skeleton` are zero.
+fn rest_pose(skeleton: &asf::Skeleton) -> String {
+    let mut text = format!("1\nroot{}\n", " 0".repeat(skeleton.root_order.len()));
+    for bone in skeleton.bones.iter().filter(|bone| !bone.degrees_of_freedom.is_empty()) {
+        text += &format!("{}{}\n", bone.name, " 0".repeat(bone.degrees_of_freedom.len()));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_skeleton_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text, wanted) in [
+            ("body.json", "{\"trunk_m\": 0.5}", "no body.json"),
+            ("body.asf", "nonsense", "cannot be measured"),
+            ("body.obj", "", "no skeleton that can be read"),
+            ("nobody.json", "", "nobody.json"),
+        ] {
+            let path = folder.path().join(name);
+            if name != "nobody.json" {
+                std::fs::write(&path, text).unwrap();
+            }
+            let message = format!("{:#}", read_measures(&path).unwrap_err());
+            assert!(message.contains(wanted) && message.contains(name), "{message}");
+        }
+    }
+
+    #[test]
+    fn measures_of_a_body_file_come_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("somebody.json");
+        let measures = BodyMeasures::of_height(1.6).unwrap();
+        std::fs::write(&path, serde_json::to_string(&BodyFile::from(&measures)).unwrap()).unwrap();
+        assert_eq!(read_measures(&path).unwrap(), measures);
+    }
+}

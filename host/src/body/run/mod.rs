@@ -1,0 +1,18 @@
+//! `sinew track body`: a folder of point clouds becomes a table, an animation and a report.
+
+pub mod inputs;
+pub mod measures_source;
+pub mod options;
+pub mod particles;
+pub mod pictures;
+pub mod report;
+pub mod score;
+pub mod start;
+pub mod table;
+pub mod track;
+pub mod tuning_file;
+
+pub use inputs::BodyInputs;
+pub use options::BodyTrackOptions;
+pub use report::BodyRunReport;
+pub use track::{BodyEvent, BodyTrackRun};

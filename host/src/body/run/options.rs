@@ -1,0 +1,89 @@
+//! What decides the result of a run.
+
+use crate::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
+use anyhow::{Result, ensure};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Slowest and fastest rate of frames, Hz.
+pub const RATES_HZ: [f32; 2] = [0.1, 1000.0];
+/// Most threads.
+pub const MAX_THREADS: usize = 256;
+
+/// Everything that decides the result of a run; results do not depend on `threads`.
+#[derive(Debug, Clone, Serialize)]
+pub struct BodyTrackOptions {
+    /// Folder of clouds, or a folder that holds them in `points/`.
+    pub folder: PathBuf,
+    /// The motion model.
+    pub model: BodyModelKind,
+    /// Number of particles.
+    pub particles: usize,
+    /// File with the person's measures or with a motion to measure; `body.json` of the folder where there is none.
+    pub skeleton: Option<PathBuf>,
+    /// Height of the person instead of measures, metres.
+    pub height_m: Option<f32>,
+    /// The pose of the first frame; `first_pose.json` of the folder where there is none.
+    pub init: Option<PathBuf>,
+    /// The stick's ends; `stick.csv` of the folder where there is none.
+    pub stick: Option<PathBuf>,
+    /// Seed of all that is random.
+    pub seed: u64,
+    /// Number of threads; as many as the machine runs at a time where there is none.
+    pub threads: Option<usize>,
+    /// Frames in a second; that of the folder's `run.json`, or 15, where there is none.
+    pub rate_hz: Option<f32>,
+    /// Whether a cloud that cannot be read ends the run.
+    pub strict: bool,
+    /// Whether every particle is written.
+    pub particles_csv: bool,
+    /// Whether pictures are drawn.
+    pub pictures: bool,
+    /// Numbers of the motion models.
+    pub tuning: BodyTuning,
+}
+
+impl BodyTrackOptions {
+    /// Particles of `model` where nobody says another number.
+    #[must_use]
+    pub fn default_particles(model: BodyModelKind) -> usize {
+        if model == BodyModelKind::Guided { 100 } else { 500 }
+    }
+
+    /// Checks what can be checked without files.
+    ///
+    /// # Errors
+    /// Names the option and its range.
+    pub fn check(&self) -> Result<()> {
+        ensure!(
+            (1..=MAX_BODY_PARTICLES).contains(&self.particles),
+            "--particles has to be from 1 to {MAX_BODY_PARTICLES}, not {}",
+            self.particles
+        );
+        if let Some(threads) = self.threads {
+            ensure!(
+                (1..=MAX_THREADS).contains(&threads),
+                "--threads has to be from 1 to {MAX_THREADS}, not {threads}; leave it out for all"
+            );
+        }
+        if let Some(rate_hz) = self.rate_hz {
+            check_rate("--rate", rate_hz)?;
+        }
+        ensure!(
+            self.stick.is_none() || self.model == BodyModelKind::Stick,
+            "--stick is for --model stick, and the model is {}; choose one of both",
+            self.model.name()
+        );
+        Ok(())
+    }
+}
+
+/// Checks a rate that `name` says.
+///
+/// # Errors
+/// If it is outside [`RATES_HZ`].
+pub fn check_rate(name: &str, rate_hz: f32) -> Result<()> {
+    let [low, high] = RATES_HZ;
+    ensure!((low..=high).contains(&rate_hz), "{name} has to be from {low} to {high} Hz, not {rate_hz}");
+    Ok(())
+}

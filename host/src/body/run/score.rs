@@ -1,0 +1,54 @@
+//! How far a track is from the truth (PIK paper, eq. 34).
+
+use crate::body::tracking::BodyFilter;
+use crate::body::tracking::filter::WholeBodyEstimate;
+use crate::stereo::TrueFrame;
+
+/// A mean that grows.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RunningMean {
+    sum: f64,
+    count: f64,
+}
+
+impl RunningMean {
+    /// Takes one more value.
+    pub fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count += 1.0;
+    }
+
+    /// The mean; `None` of nothing.
+    #[must_use]
+    pub fn mean(&self) -> Option<f64> {
+        (self.count > 0.0).then(|| self.sum / self.count)
+    }
+}
+
+/// Errors of the frames so far.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BodyScore {
+    /// Distance of the markers from the skin of the estimate, eq. (34), metres.
+    pub marker_m: RunningMean,
+    /// Distance of the joints from the true ones, metres.
+    pub joint_m: RunningMean,
+}
+
+impl BodyScore {
+    /// Compares one frame; returns the mean distance of its joints, metres.
+    pub fn add(&mut self, filter: &BodyFilter, estimate: &WholeBodyEstimate, truth: &TrueFrame) -> Option<f64> {
+        let surface = filter.scene().surface(&filter.scene().posture(&estimate.angles_rad));
+        for marker_m in truth.markers_m.iter().flatten() {
+            self.marker_m.add(f64::from(surface.skin_distance_m(marker_m)));
+        }
+        let mut frame = RunningMean::default();
+        for (found_m, true_m) in estimate.ends_m.iter().zip(&truth.joints_m) {
+            if let Some(true_m) = true_m {
+                let distance_m = f64::from((found_m - true_m).norm());
+                self.joint_m.add(distance_m);
+                frame.add(distance_m);
+            }
+        }
+        frame.mean()
+    }
+}

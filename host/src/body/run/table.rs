@@ -1,0 +1,74 @@
+//! `track.csv`: a row for each cloud.
+
+use crate::body::tracking::filter::{END_EFFECTORS, WholeBodyEstimate};
+use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_JOINT_NAMES};
+use sinew_core::skeleton::tree::SHIFTS;
+
+/// Columns: frame, the root, every joint in metres (camera axes), every angle in radians, the filter's own state, of every end-effector
+/// spread and whether points show it, and how many points were weighed.
+#[must_use]
+pub fn header() -> Vec<String> {
+    let mut columns = vec!["frame".to_owned()];
+    columns.extend(coordinate_columns().take(SHIFTS));
+    columns.extend(BODY_JOINT_NAMES.iter().flat_map(|joint| ["x", "y", "z"].map(|axis| format!("{joint}_{axis}_m"))));
+    columns.extend(coordinate_columns().skip(SHIFTS));
+    columns.extend(["effective_sample_size".to_owned(), "log_evidence".to_owned()]);
+    for bone in END_EFFECTORS {
+        let joint = BODY_JOINT_NAMES[bone];
+        columns.extend([format!("{joint}_spread_m"), format!("{joint}_observed")]);
+    }
+    columns.push("points".to_owned());
+    columns
+}
+
+/// Columns of the skeleton's coordinates: the root's three shifts first, then all angles.
+pub fn coordinate_columns() -> impl Iterator<Item = String> {
+    BODY_ANGLE_NAMES
+        .iter()
+        .enumerate()
+        .map(|(index, name)| if index < SHIFTS { format!("{name}_m") } else { format!("{name}_rad") })
+}
+
+/// Cells of a row; numbers have as many digits as tell them from all others.
+#[must_use]
+pub fn cells(frame: u64, estimate: &WholeBodyEstimate, points: usize) -> Vec<String> {
+    let mut cells = vec![frame.to_string()];
+    let angles = estimate.angles_rad.iter().map(f32::to_string);
+    cells.extend(angles.clone().take(SHIFTS));
+    cells.extend(estimate.ends_m.iter().flat_map(|place| place.iter()).map(f32::to_string));
+    cells.extend(angles.skip(SHIFTS));
+    cells.extend([estimate.effective_sample_size.to_string(), estimate.log_evidence.to_string()]);
+    for bone in END_EFFECTORS {
+        cells.extend([estimate.spread_m[bone].to_string(), u8::from(estimate.observed[bone]).to_string()]);
+    }
+    cells.push(points.to_string());
+    cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_core::math::Vec3;
+
+    #[test]
+    fn every_cell_has_a_column_of_its_own() {
+        let estimate = WholeBodyEstimate {
+            angles_rad: std::array::from_fn(|index| index as f32 * 0.1),
+            ends_m: [Vec3::new(0.25, -1.0, 3.0); 17],
+            spread_m: [0.02; 17],
+            observed: [true; 17],
+            effective_sample_size: 40.0,
+            log_evidence: -3.5,
+            tempering: 1.0,
+            is_degenerate: false,
+        };
+        let (header, cells) = (header(), cells(7, &estimate, 1990));
+        assert_eq!(header.len(), cells.len());
+        assert_eq!(header.iter().collect::<std::collections::BTreeSet<_>>().len(), header.len());
+        let cell = |name: &str| cells[header.iter().position(|column| column == name).unwrap()].as_str();
+        assert_eq!((cell("frame"), cell("root_y_m"), cell("root_turn_rad")), ("7", "0.1", "0.3"));
+        assert_eq!((cell("l_wrist_y_m"), cell("r_ankle_flexion_rad")), ("-1", "2.9"));
+        assert_eq!((cell("head_observed"), cell("l_wrist_spread_m"), cell("points")), ("1", "0.02", "1990"));
+        assert_eq!(header[..5], ["frame", "root_x_m", "root_y_m", "root_z_m", "pelvis_x_m"]);
+    }
+}

@@ -1,0 +1,335 @@
+//! One run over a folder of clouds: read, step, record, frame by frame.
+
+use super::inputs::BodyInputs;
+use super::options::BodyTrackOptions;
+use super::pictures::BodyPictures;
+use super::report::{BodyRunReport, SkippedCloud};
+use super::score::{BodyScore, RunningMean};
+use super::start::pose_from_points;
+use super::{particles, table};
+use crate::body::export::{body_layout, bvh_frame, upwards};
+use crate::body::tracking::BodyFilter;
+use crate::body::tracking::filter::WholeBodyEstimate;
+use crate::cloud::{self, CloudFrame, MAX_POINTS};
+use crate::motion::export::{BvhFrame, TrcFrame, TrcHeading, TrcUnit, to_trc, write_bvh};
+use crate::output::{OutputDir, PendingFile};
+use crate::track::Interrupted;
+use anyhow::{Context, Result, anyhow, bail};
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use sinew_core::math::Vec3;
+use sinew_core::observation::point_cloud::{BLOCK_POINTS, PointBlock, PointCloud};
+use sinew_core::pik::processes::stick::StickSight;
+use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_JOINT_NAMES};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Blocks of the largest cloud.
+const MAX_BLOCKS: usize = MAX_POINTS / BLOCK_POINTS;
+/// Clouds that are read ahead.
+const CHUNK: usize = 16;
+/// Clouds that are looked at for points where no first pose is given.
+const START_CLOUDS: usize = 100;
+/// Frames without a file that an animation repeats the pose before for, all in all; longer gaps are cut out of it.
+const MAX_REPEATED_FRAMES: u64 = 100_000;
+
+/// What a run tells while it goes on.
+#[derive(Debug, Clone, Copy)]
+pub enum BodyEvent<'a> {
+    /// Something that a user should know.
+    Note(&'a str),
+    /// A cloud could not be read.
+    Skipped(&'a SkippedCloud),
+    /// The first cloud with more points than can be weighed: how many it has.
+    OverCap(usize),
+    /// So many frames are in the table.
+    Finished(usize),
+}
+
+/// Who is told.
+pub type Notify<'a> = &'a mut (dyn FnMut(BodyEvent<'_>) + Send);
+
+/// A cloud ready for the tracker.
+#[derive(Debug)]
+struct ReadCloud {
+    points_m: Vec<Vec3>,
+    blocks: Vec<PointBlock>,
+    skipped: usize,
+    before_cap: usize,
+}
+
+/// A run whose inputs were all checked.
+#[derive(Debug)]
+pub struct BodyTrackRun {
+    inputs: BodyInputs,
+    filter: BodyFilter,
+    threads: ThreadPool,
+    out: OutputDir,
+    table: csv::Writer<PendingFile>,
+    particles: Option<csv::Writer<PendingFile>>,
+    pictures: Option<BodyPictures>,
+    report: BodyRunReport,
+    score: BodyScore,
+    effective_share: RunningMean,
+    step_s: f64,
+    before: Option<u64>,
+    poses: Vec<(u64, BvhFrame, TrcFrame)>,
+}
+
+impl BodyTrackRun {
+    /// Checks everything that can be checked before the first frame, the output folder last.
+    ///
+    /// # Errors
+    /// Names the option or file, the rule it broke, and the remedy.
+    pub fn prepare(options: BodyTrackOptions, out: &Path) -> Result<Self> {
+        options.check()?;
+        let mut inputs = BodyInputs::read(&options)?;
+        let first_rad = match inputs.first_rad {
+            Some(pose) => pose,
+            None => found_start(&mut inputs, &options)?,
+        };
+        let (model, tuning) = (options.model, options.tuning);
+        let mut filter = BodyFilter::new(model, tuning, &inputs.measures, first_rad, options.particles, options.seed)?;
+        if let Some(floor_y_m) = inputs.floor_y_m {
+            filter = filter.above_floor(floor_y_m);
+        }
+        let threads = ThreadPoolBuilder::new()
+            .num_threads(options.threads.unwrap_or(0))
+            .build()
+            .context("the threads cannot be started; give --threads a smaller number")?;
+        refuse_output_in_input(&options.folder, out)?;
+        let out = OutputDir::create(out)?;
+        let begin = |name: &str, header: Vec<String>| -> Result<csv::Writer<PendingFile>> {
+            let mut writer = csv::Writer::from_writer(out.begin(name)?);
+            writer.write_record(header)?;
+            Ok(writer)
+        };
+        Ok(Self {
+            filter,
+            threads,
+            table: begin("track.csv", table::header())?,
+            particles: if options.particles_csv { Some(begin("particles.csv", particles::header())?) } else { None },
+            pictures: if options.pictures { Some(BodyPictures::new(inputs.clouds.frames.len())?) } else { None },
+            out,
+            report: BodyRunReport::new(options, &inputs),
+            inputs,
+            score: BodyScore::default(),
+            effective_share: RunningMean::default(),
+            step_s: 0.0,
+            before: None,
+            poses: Vec::new(),
+        })
+    }
+
+    /// Number of clouds.
+    #[must_use]
+    pub fn frame_count(&self) -> usize {
+        self.inputs.clouds.frames.len()
+    }
+
+    /// Tracks all clouds, or those before `stop` is set, and writes the run directory.
+    ///
+    /// # Errors
+    /// [`Interrupted`] if `stop` was set, a broken cloud if the run is strict, or an output that cannot be written; the results of
+    /// the finished frames are written all the same.
+    pub fn run(mut self, stop: &AtomicBool, notify: Notify<'_>) -> Result<BodyRunReport> {
+        let start = Instant::now();
+        let (frames, out) = (self.frame_count(), self.out.path().to_path_buf());
+        for note in &self.report.notes {
+            notify(BodyEvent::Note(note));
+        }
+        let tracked = self.track_all(stop, notify);
+        let finished = self.report.frames_finished;
+        self.report.frames_per_second = finished as f64 / start.elapsed().as_secs_f64().max(1.0e-9);
+        self.report.complete = tracked.is_ok() && finished == frames;
+        let interrupted = tracked.is_ok() && finished < frames;
+        let written = self.write_results();
+        if let Err(error) = tracked {
+            let kept = match &written {
+                Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
+                Err(other) => format!("and then {other:#}"),
+            };
+            return Err(anyhow!("{error:#}; {kept}"));
+        }
+        let report = written?;
+        if interrupted {
+            return Err(Interrupted { finished, frames, out }.into());
+        }
+        Ok(report)
+    }
+
+    fn track_all(&mut self, stop: &AtomicBool, notify: Notify<'_>) -> Result<()> {
+        let frames = self.inputs.clouds.frames.clone();
+        let seed = self.report.seed;
+        for (chunk_index, chunk) in frames.chunks(CHUNK).enumerate() {
+            let clouds: Vec<Result<ReadCloud, SkippedCloud>> =
+                self.threads.install(|| chunk.par_iter().map(|frame| read_cloud(frame, seed)).collect());
+            for (place, (frame, cloud)) in chunk.iter().zip(clouds).enumerate() {
+                if stop.load(Ordering::Relaxed) {
+                    return Ok(());
+                }
+                let cloud = self.counted(cloud, notify)?;
+                self.track_frame(chunk_index * CHUNK + place, frame.frame, cloud.as_ref())?;
+                notify(BodyEvent::Finished(self.report.frames_finished));
+            }
+        }
+        Ok(())
+    }
+
+    /// Counts a cloud's points; one that could not be read is nothing, or an error if the run is strict.
+    fn counted(&mut self, cloud: Result<ReadCloud, SkippedCloud>, notify: Notify<'_>) -> Result<Option<ReadCloud>> {
+        let cloud = match cloud {
+            Ok(cloud) => cloud,
+            Err(skipped) if self.report.options.strict => bail!("{}", skipped.reason),
+            Err(skipped) => {
+                notify(BodyEvent::Skipped(&skipped));
+                self.report.skipped.push(skipped);
+                return Ok(None);
+            }
+        };
+        let points = &mut self.report.points;
+        points.used += cloud.points_m.len() as u64;
+        points.skipped += cloud.skipped as u64;
+        points.frames_without_points += usize::from(cloud.points_m.is_empty());
+        if cloud.before_cap > cloud.points_m.len() {
+            if points.frames_over_cap == 0 {
+                notify(BodyEvent::OverCap(cloud.before_cap));
+            }
+            points.over_cap += (cloud.before_cap - cloud.points_m.len()) as u64;
+            points.frames_over_cap += 1;
+        }
+        Ok(Some(cloud))
+    }
+
+    /// One frame from points to its row.
+    fn track_frame(&mut self, index: usize, frame: u64, cloud: Option<&ReadCloud>) -> Result<()> {
+        let rate_hz = self.inputs.rate_hz;
+        let frames_gone = self.before.map_or(1, |before| frame - before);
+        let dt_s = (frames_gone as f64 / f64::from(rate_hz)) as f32;
+        let blocks = cloud.map_or(&[][..], |cloud| &cloud.blocks);
+        let stick = self.inputs.stick.get(&frame).copied().unwrap_or(StickSight::Unseen);
+        let start = Instant::now();
+        let (threads, filter) = (&self.threads, &mut self.filter);
+        let estimate = threads.install(|| filter.step(blocks, dt_s, stick));
+        self.step_s += start.elapsed().as_secs_f64();
+        let points_m = cloud.map_or(&[][..], |cloud| &cloud.points_m);
+        self.table
+            .write_record(table::cells(frame, &estimate, points_m.len()))
+            .context("`track.csv` cannot be written")?;
+        if let Some(particles) = &mut self.particles {
+            for row in particles::rows(frame, &self.filter) {
+                particles.write_record(row).context("`particles.csv` cannot be written")?;
+            }
+        }
+        let is_first = self.before.is_none();
+        let truth = self.inputs.truth.get(&frame).filter(|_| !is_first);
+        let joint_error_m = truth.and_then(|truth| self.score.add(&self.filter, &estimate, truth));
+        if let Some(pictures) = &mut self.pictures {
+            let time_s = frame as f64 / f64::from(rate_hz);
+            pictures.add((index, frame, time_s), points_m, (&self.filter, &estimate), joint_error_m);
+        }
+        self.note_pose(frame, &estimate);
+        self.before = Some(frame);
+        Ok(())
+    }
+
+    fn note_pose(&mut self, frame: u64, estimate: &WholeBodyEstimate) {
+        let place = |end: &Vec3| Some(<[f32; 3]>::from(upwards(end)).map(f64::from));
+        let markers = TrcFrame { frame, positions_m: estimate.ends_m.iter().map(place).collect() };
+        self.poses.push((frame, bvh_frame(&self.filter.scene().skeleton, &estimate.angles_rad), markers));
+        self.report.frames_finished += 1;
+        self.report.degenerate_frames += usize::from(estimate.is_degenerate);
+        self.effective_share.add(f64::from(estimate.effective_sample_size) / self.report.options.particles as f64);
+    }
+
+    /// Gives the tables their names and writes the other files. Each one is tried, also where another one failed.
+    fn write_results(mut self) -> Result<BodyRunReport> {
+        self.report.seconds_per_step = self.step_s / self.report.frames_finished.max(1) as f64;
+        self.report.effective_share = self.effective_share.mean().unwrap_or(0.0);
+        (self.report.error_m, self.report.joint_error_m) = (self.score.marker_m.mean(), self.score.joint_m.mean());
+        let mut results = vec![self.write_motion()];
+        results.push(finish(self.table));
+        results.extend(self.particles.map(finish));
+        results.extend(self.pictures.map(|pictures| pictures.write(&self.out)));
+        // Only what is there in full is called complete.
+        self.report.complete &= results.iter().all(Result::is_ok);
+        let json = serde_json::to_string_pretty(&self.report)? + "\n";
+        results.push(self.out.write("run.json", |writer| Ok(writer.write_all(json.as_bytes())?)));
+        results.into_iter().collect::<Result<()>>()?;
+        Ok(self.report)
+    }
+
+    /// `track.bvh` and `track.trc`; no frame at all is no file.
+    fn write_motion(&mut self) -> Result<()> {
+        if self.poses.is_empty() {
+            return Ok(());
+        }
+        let rate_hz = f64::from(self.inputs.rate_hz);
+        let poses = std::mem::take(&mut self.poses);
+        let is_short = self.inputs.clouds.missing() <= MAX_REPEATED_FRAMES;
+        let mut frames: Vec<BvhFrame> = Vec::with_capacity(poses.len());
+        let mut markers = Vec::with_capacity(poses.len());
+        let mut before = None;
+        for (frame, pose, places) in poses {
+            if let (Some((number, last)), true) = (before, is_short) {
+                // An animation has a frame for every number: what has no file keeps the pose before.
+                frames.extend((number + 1..frame).map(|_| BvhFrame::clone(&last)));
+            }
+            frames.push(pose.clone());
+            markers.push(places);
+            before = Some((frame, pose));
+        }
+        let layout = body_layout(&self.filter.scene().skeleton)?;
+        self.out.write("track.bvh", |writer| Ok(write_bvh(&layout, &frames, rate_hz, writer)?))?;
+        let heading = TrcHeading { name: "track.trc", markers: &BODY_JOINT_NAMES, rate_hz, unit: TrcUnit::Metre };
+        let text = to_trc(&heading, &markers);
+        self.out.write("track.trc", |writer| Ok(writer.write_all(text.as_bytes())?))
+    }
+}
+
+/// Reads one cloud, at most [`MAX_POINTS`] of it, in the order in which it is weighed.
+fn read_cloud(frame: &CloudFrame, seed: u64) -> Result<ReadCloud, SkippedCloud> {
+    let mut read = cloud::read(&frame.path).map_err(|error| SkippedCloud {
+        frame: frame.frame,
+        file: frame.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        reason: error.to_string(),
+    })?;
+    let before_cap = read.limit(MAX_POINTS, seed, frame.frame);
+    let mut weighed = Box::new(PointCloud::<MAX_BLOCKS>::new());
+    // Nothing is left out any more: the reader's rules are stricter.
+    let _ = weighed.set(&mut read.points_m, &Vec3::zeros());
+    Ok(ReadCloud { points_m: read.points_m, blocks: weighed.blocks().to_vec(), skipped: read.skipped, before_cap })
+}
+
+/// A start from the first cloud that has points, and a note of it.
+fn found_start(inputs: &mut BodyInputs, options: &BodyTrackOptions) -> Result<[f32; BODY_ANGLES]> {
+    let clouds = inputs.clouds.frames.iter().take(START_CLOUDS);
+    let mut readable = clouds.filter_map(|frame| Some((frame.frame, read_cloud(frame, options.seed).ok()?)));
+    let found = readable.find(|(_, cloud)| !cloud.points_m.is_empty());
+    let (points_m, blocks) = found.as_ref().map_or((&[][..], &[][..]), |(_, cloud)| (&cloud.points_m, &cloud.blocks));
+    let pose = pose_from_points(&inputs.measures, &options.tuning.guided_points, points_m, blocks)?;
+    inputs.notes.push(match &found {
+        Some((frame, _)) => format!(
+            "no first pose is given; someone upright who faces the camera is laid onto the points of frame {frame} (--init)"
+        ),
+        None => "no first pose is given and the first clouds have no points; someone upright 3 m before the camera (--init)".to_owned(),
+    });
+    Ok(pose)
+}
+
+fn finish(table: csv::Writer<PendingFile>) -> Result<()> {
+    let file = table.into_inner().map_err(|error| anyhow!("a table cannot be written: {}", error.error()))?;
+    file.finish()
+}
+
+/// The report would replace that of the scene, and tables among the clouds would be read as clouds.
+fn refuse_output_in_input(folder: &Path, out: &Path) -> Result<()> {
+    let Ok(output) = out.canonicalize() else { return Ok(()) };
+    for input in [folder.to_path_buf(), folder.join("points")] {
+        if input.canonicalize().is_ok_and(|input| input == output) {
+            bail!("`{}` holds what is read; choose another --out", out.display());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,163 @@
+//! `--config` of `sinew track body`: a TOML file with any of the numbers of [`BodyTuning`]; the others keep their defaults.
+
+use crate::body::tracking::BodyTuning;
+use anyhow::{Context, Result, anyhow, bail, ensure};
+use std::path::Path;
+use toml::{Table, Value};
+
+/// Most steps of a solver that a file may ask for.
+const MAX_SOLVER_STEPS: i64 = 100;
+/// Most blocks of points that a file may ask for.
+const MAX_PULLING_BLOCKS: i64 = 1_000_000;
+/// Numbers that may be zero; all others have to be greater.
+const MAY_BE_ZERO: [&str; 4] =
+    ["root.shift_std_m", "root.turn_std_rad", "points.least_effective_share", "guided_points.least_effective_share"];
+
+/// Reads a configuration.
+///
+/// # Errors
+/// Names the file, and the key that is not known (with the nearest one that is) or whose value is out of range.
+pub fn load(path: &Path) -> Result<BodyTuning> {
+    let text = std::fs::read_to_string(path).with_context(|| {
+        format!("configuration `{}` cannot be read; `sinew track body --print-config` writes one", path.display())
+    })?;
+    parse(&text).with_context(|| format!("configuration `{}`", path.display()))
+}
+
+/// Reads the text of a configuration.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse(text: &str) -> Result<BodyTuning> {
+    let given: Table = toml::from_str(text).context("it is not valid TOML")?;
+    let mut all = Table::try_from(BodyTuning::default())?;
+    let known = keys("", &all);
+    overlay("", &mut all, given, &known)?;
+    check("", &all)?;
+    Ok(Value::Table(all).try_into()?)
+}
+
+/// The defaults as a file.
+///
+/// # Errors
+/// None for the defaults that are built in.
+pub fn printed() -> Result<String> {
+    // Serialised at once and not as a table, which would hold doubles: 0.05 stays 0.05.
+    let numbers = toml::to_string(&BodyTuning::default())?;
+    Ok(format!(
+        "# Defaults of `sinew track body`. Every line may be left out. Metres, radians; standard deviations grow with the root of\n\
+         # time and hold after one second (docs/track_body.md).\n\n{numbers}"
+    ))
+}
+
+/// All keys below `prefix`, sections too, as `section.key`.
+fn keys(prefix: &str, table: &Table) -> Vec<String> {
+    let mut found = Vec::new();
+    for (key, value) in table {
+        let full = format!("{prefix}{key}");
+        if let Value::Table(inner) = value {
+            found.extend(keys(&format!("{full}."), inner));
+        }
+        found.push(full);
+    }
+    found
+}
+
+/// Puts the values of `given` in the place of those of `all`.
+fn overlay(prefix: &str, all: &mut Table, given: Table, known: &[String]) -> Result<()> {
+    for (key, value) in given {
+        let full = format!("{prefix}{key}");
+        let Some(slot) = all.get_mut(&key) else { bail!("{}", unknown(&full, known)) };
+        match (slot, value) {
+            (Value::Table(inner), Value::Table(given)) => overlay(&format!("{full}."), inner, given, known)?,
+            (Value::Table(_), _) => bail!("`{full}` is a section; write `[{full}]`"),
+            (slot @ Value::Float(_), Value::Integer(whole)) => *slot = Value::Float(whole as f64),
+            (slot, value) if slot.same_type(&value) => *slot = value,
+            (slot, value) => {
+                bail!("`{full}` has to be of the type {}, not the {} {value}", slot.type_str(), value.type_str())
+            }
+        }
+    }
+    Ok(())
+}
+
+fn unknown(key: &str, known: &[String]) -> String {
+    let nearest = known
+        .iter()
+        .max_by(|a, b| strsim::jaro_winkler(a, key).total_cmp(&strsim::jaro_winkler(b, key)))
+        .map_or_else(String::new, |nearest| format!("the nearest one is `{nearest}` "));
+    format!("there is no key `{key}`; {nearest}(`sinew track body --print-config` lists all)")
+}
+
+fn check(prefix: &str, table: &Table) -> Result<()> {
+    for (key, value) in table {
+        let full = format!("{prefix}{key}");
+        match value {
+            Value::Table(inner) => check(&format!("{full}."), inner)?,
+            Value::Integer(count) => {
+                let most = if key == "pulling_blocks" { MAX_PULLING_BLOCKS } else { MAX_SOLVER_STEPS };
+                ensure!((1..=most).contains(count), "`{full}` has to be from 1 to {most}, not {count}");
+            }
+            Value::Float(number) => check_number(key, &full, *number).map_err(|rule| anyhow!("`{full}` {rule}"))?,
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn check_number(key: &str, full: &str, number: f64) -> Result<(), String> {
+    let is_share = key == "persistence" || key == "least_effective_share";
+    if is_share {
+        return if (0.0..=1.0).contains(&number) {
+            Ok(())
+        } else {
+            Err(format!("has to be from 0 to 1, not {number}"))
+        };
+    }
+    // Inverse squares have to be ordinary numbers.
+    let low = if MAY_BE_ZERO.contains(&full) { 0.0 } else { 1.0e-6 };
+    if (low..=1.0e6).contains(&number) { Ok(()) } else { Err(format!("has to be from {low} to 1000000, not {number}")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_printed_holds_the_defaults() {
+        let text = printed().unwrap();
+        assert_eq!(parse(&text).unwrap(), BodyTuning::default());
+        assert!(text.contains("[guided.joint_std]") && text.contains("persistence = 0."), "{text}");
+        assert!(!text.contains("000000"), "singles are printed as they are written: {text}");
+    }
+
+    #[test]
+    fn some_numbers_replace_the_defaults_and_the_others_stay() {
+        let found = parse("pulling_blocks = 12\n[guided]\nstd_m = 1\n[guided.joint_std]\nelbow = 3.5\n").unwrap();
+        let mut wanted = BodyTuning::default();
+        (wanted.pulling_blocks, wanted.guided.std_m, wanted.guided.joint_std.elbow) = (12, 1.0, 3.5);
+        assert_eq!(found, wanted);
+        assert_eq!(parse("").unwrap(), BodyTuning::default());
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        for (text, wanted) in [
+            (
+                "[guided.joint_std]\nelbwo = 1.0\n",
+                "no key `guided.joint_std.elbwo`; the nearest one is `guided.joint_std.elbow`",
+            ),
+            ("[gided]\nstd_m = 1.0\n", "no key `gided`; the nearest one is `guided`"),
+            ("[guided]\nstd_m = -1.0\n", "`guided.std_m` has to be from"),
+            ("[guided]\nstd_m = nan\n", "`guided.std_m` has to be from"),
+            ("[root]\npersistence = 1.5\n", "`root.persistence` has to be from 0 to 1"),
+            ("[guided]\nsolver_steps = 0\n", "`guided.solver_steps` has to be from 1"),
+            ("[guided]\nsolver_steps = 2.5\n", "`guided.solver_steps` has to be of the type integer"),
+            ("guided = 1\n", "`guided` is a section"),
+            ("[guided\n", "not valid TOML"),
+        ] {
+            let found = format!("{:#}", parse(text).unwrap_err());
+            assert!(found.contains(wanted), "{found} does not contain {wanted}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! `sinew track body`: a whole body from point clouds.
+
+use super::ctrl_c::stop_flag;
+use super::stdout::write_all;
+use crate::body::run::{BodyEvent, BodyRunReport, BodyTrackOptions, BodyTrackRun, tuning_file};
+use crate::body::tracking::{BodyModelKind, BodyTuning};
+use crate::cloud::MAX_POINTS;
+use anyhow::{Context, Result};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::{Path, PathBuf};
+
+/// Options of `sinew track body`.
+#[derive(Debug, Args)]
+pub struct TrackBodyArgs {
+    /// Folder of point clouds (PLY, PCD or CSV), one file a frame; or a folder that holds them in points/, as `simulate stereo` writes it.
+    /// What it holds of body.json, first_pose.json, stick.csv, truth.csv and run.json (rate, camera, floor) is used.
+    #[arg(value_name = "DIR", required_unless_present = "print_config")]
+    pub folder: Option<PathBuf>,
+    /// Folder for track.csv, track.bvh, track.trc, run.json and what else is asked for; files of these names are replaced.
+    #[arg(long, value_name = "DIR", required_unless_present = "print_config")]
+    pub out: Option<PathBuf>,
+    /// How particles move.
+    #[arg(long, value_enum, default_value_t = BodyModelKind::Guided)]
+    pub model: BodyModelKind,
+    /// Number of particles [default: 100 of guided, 500 of the others].
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub particles: Option<usize>,
+    /// The person: a body.json, or a motion or skeleton to measure (.bvh, .amc, .asf, .trc, .c3d) [default: DIR/body.json].
+    #[arg(long, value_name = "FILE", conflicts_with = "height")]
+    pub skeleton: Option<PathBuf>,
+    /// Height of a person who is not measured, metres.
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
+    pub height: Option<f32>,
+    /// Pose of the first frame [default: DIR/first_pose.json; without one, someone upright who faces the camera].
+    #[arg(long, value_name = "FILE.json")]
+    pub init: Option<PathBuf>,
+    /// Ends of the stick, for --model stick [default: DIR/stick.csv].
+    #[arg(long, value_name = "FILE.csv")]
+    pub stick: Option<PathBuf>,
+    /// Numbers of the motion models.
+    #[arg(long, value_name = "FILE.toml")]
+    pub config: Option<PathBuf>,
+    /// Write the defaults as a configuration to standard output, and do nothing else.
+    #[arg(long)]
+    pub print_config: bool,
+    /// Seed of all that is random; the same seed gives the same result on any number of threads.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Number of threads [default: all].
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub threads: Option<usize>,
+    /// Frames per second of the camera [default: that of DIR/run.json, or 15].
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub rate: Option<f32>,
+    /// Write every particle of every frame into particles.csv.
+    #[arg(long)]
+    pub particles_csv: bool,
+    /// Draw some frames from the front and the side on contact_sheet.png, and curves over time.
+    #[arg(long)]
+    pub pictures: bool,
+    /// End the run at a cloud that cannot be read; without it such a frame counts as one without points.
+    #[arg(long)]
+    pub strict: bool,
+}
+
+/// Tracks the folder, or prints the default numbers.
+///
+/// # Errors
+/// Bad input, an output that cannot be written, or [`crate::track::Interrupted`].
+pub fn run(args: &TrackBodyArgs) -> Result<()> {
+    if args.print_config {
+        return write_all(tuning_file::printed()?.as_bytes());
+    }
+    let out = args.out.as_deref().context("no --out was given")?;
+    let options = BodyTrackOptions {
+        folder: args.folder.clone().context("no DIR was given")?,
+        model: args.model,
+        particles: args.particles.unwrap_or(BodyTrackOptions::default_particles(args.model)),
+        skeleton: args.skeleton.clone(),
+        height_m: args.height,
+        init: args.init.clone(),
+        stick: args.stick.clone(),
+        seed: args.seed,
+        threads: args.threads,
+        rate_hz: args.rate,
+        strict: args.strict,
+        particles_csv: args.particles_csv,
+        pictures: args.pictures,
+        tuning: args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?,
+    };
+    let report = run_with_progress(options, out)?;
+    write_all((report.summary() + &contents(&report, out)).as_bytes())
+}
+
+/// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the current frame.
+fn run_with_progress(options: BodyTrackOptions, out: &Path) -> Result<BodyRunReport> {
+    let run = BodyTrackRun::prepare(options, out)?;
+    // Hidden by itself where standard error is no terminal.
+    let bar = ProgressBar::new(run.frame_count() as u64);
+    bar.set_style(ProgressStyle::with_template("{wide_bar} frame {pos} of {len}, {per_sec}")?);
+    let outcome = run.run(stop_flag()?, &mut |event| match event {
+        BodyEvent::Note(note) => bar.suspend(|| eprintln!("note: {note}")),
+        BodyEvent::Skipped(cloud) => bar.suspend(|| eprintln!("skipped frame {}: {}", cloud.frame, cloud.reason)),
+        BodyEvent::OverCap(points) => bar.suspend(|| {
+            eprintln!("note: a cloud has {points} points; {MAX_POINTS} of them, drawn at random, are weighed, here and in all like it");
+        }),
+        BodyEvent::Finished(frames) => bar.set_position(frames as u64),
+    });
+    bar.finish_and_clear();
+    outcome
+}
+
+/// Where the results are.
+fn contents(report: &BodyRunReport, out: &Path) -> String {
+    let mut names = vec!["track.csv", "track.bvh", "track.trc", "run.json"];
+    names.extend(report.options.particles_csv.then_some("particles.csv"));
+    if report.options.pictures {
+        names.extend(["contact_sheet.png", "effective_samples.png"]);
+        names.extend(report.joint_error_m.map(|_| "joint_error.png"));
+    }
+    format!("results in `{}`: {}\n", out.display(), names.join(", "))
+}
