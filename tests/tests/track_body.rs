@@ -155,6 +155,10 @@ fn every_model_writes_all_its_files() {
             assert!(scene.path(model).join(name).is_file(), "{model}: {name}");
         }
     }
+    let pose = fs::read_to_string(scene.path("in/first_pose.json")).unwrap();
+    let pose: BTreeMap<String, f32> = serde_json::from_str(&pose).unwrap();
+    let first_rad = scene.table("stick").column("l_elbow_flexion_rad")[0];
+    assert_eq!(first_rad, pose["l_elbow_flexion"], "the first row is the first pose");
     let error_m = |out: &str| scene.report(out)["joint_error_m"].as_f64().unwrap();
     assert!(error_m("guided") < 0.12, "{}", error_m("guided"));
     assert_eq!(scene.table("guided").column("frame"), (0..FRAMES).map(|frame| frame as f32).collect::<Vec<_>>());

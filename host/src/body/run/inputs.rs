@@ -5,11 +5,11 @@ use super::options::{BodyTrackOptions, check_rate};
 use crate::body::pose_file::read_pose;
 use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::tracking::BodyModelKind;
-use crate::cloud::CloudFolder;
+use crate::cloud::{CloudFolder, MAX_DISTANCE_M};
 use crate::stereo::{SeenStick, StereoCamera, TrueFrame, read_stick, read_truth};
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
-use sinew_core::math::Vec3;
+use sinew_core::math::unit;
 use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::skeleton::BodyMeasures;
 use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, full_body};
@@ -165,18 +165,23 @@ fn first_pose(path: &Path, measures: &BodyMeasures, notes: &mut Vec<String>) -> 
 
 /// Ends where they are known in space, rays where only in the picture.
 fn sights(stick: &[SeenStick], camera: Option<&StereoCamera>, notes: &mut Vec<String>) -> BTreeMap<u64, StickSight> {
-    let ray = |camera: &StereoCamera, pixel| -> Vec3 { camera.direction(pixel).normalize() };
-    let mut blind = 0;
-    let sight = |seen: &SeenStick| match (seen.ends_m, seen.ends_px, camera) {
-        (Some(ends_m), _, _) => StickSight::Ends(ends_m),
-        (None, Some(ends_px), Some(camera)) => StickSight::Rays(ends_px.map(|pixel| ray(camera, pixel))),
-        (None, Some(_), None) => {
-            blind += 1;
-            StickSight::Unseen
+    let (mut blind, mut far) = (0, 0);
+    let mut sight = |seen: &SeenStick| {
+        if let Some(ends_m) = seen.ends_m {
+            if ends_m.iter().all(|end| end.norm() <= MAX_DISTANCE_M) {
+                return StickSight::Ends(ends_m);
+            }
+            far += 1;
         }
-        (None, None, _) => StickSight::Unseen,
+        let Some([a, b]) = seen.ends_px else { return StickSight::Unseen };
+        blind += usize::from(camera.is_none());
+        let ray = |pixel| unit(camera?.direction(pixel));
+        ray(a).zip(ray(b)).map_or(StickSight::Unseen, |(a, b)| StickSight::Rays([a, b]))
     };
-    let sights = stick.iter().map(|seen| seen.frame).zip(stick.iter().map(sight)).collect();
+    let sights = stick.iter().map(|seen| (seen.frame, sight(seen))).collect();
+    if far > 0 {
+        notes.push(format!("{far} frames have an end of the stick farther than {MAX_DISTANCE_M} m; it is not there"));
+    }
     if blind > 0 {
         notes.push(format!(
             "{blind} frames know the stick in pixels only, and no run.json has a camera; it is unseen there"
@@ -189,6 +194,7 @@ fn sights(stick: &[SeenStick], camera: Option<&StereoCamera>, notes: &mut Vec<St
 mod tests {
     use super::*;
     use sinew_core::camera::Pixel;
+    use sinew_core::math::Vec3;
 
     #[test]
     fn a_stick_is_ends_then_rays_then_unseen() {
@@ -199,6 +205,7 @@ mod tests {
             SeenStick { frame: 3, ends_m: Some(ends_m), ends_px: Some(ends_px) },
             SeenStick { frame: 4, ends_m: None, ends_px: Some(ends_px) },
             SeenStick { frame: 5, ends_m: None, ends_px: None },
+            SeenStick { frame: 6, ends_m: Some([Vec3::repeat(1.0e30); 2]), ends_px: None },
         ];
         let mut notes = Vec::new();
         let found = sights(&all, Some(&camera), &mut notes);
@@ -206,9 +213,9 @@ mod tests {
         let StickSight::Rays([a, b]) = found[&4] else { panic!("{found:?}") };
         assert!((a.norm() - 1.0).abs() < 1.0e-6 && (b.norm() - 1.0).abs() < 1.0e-6 && a.x < 0.0 && b.x > 0.0);
         assert!(camera.project(&(a * 3.0)).unwrap().distance_px(ends_px[0]) < 1.0e-2);
-        assert_eq!(found[&5], StickSight::Unseen);
-        assert!(notes.is_empty());
+        assert_eq!((found[&5], found[&6]), (StickSight::Unseen, StickSight::Unseen));
+        assert!(notes.len() == 1 && notes[0].contains("farther than 1000 m"), "{notes:?}");
         assert_eq!(sights(&all, None, &mut notes)[&4], StickSight::Unseen);
-        assert!(notes[0].contains("1 frames"));
+        assert!(notes[2].contains("1 frames know"), "{notes:?}");
     }
 }

@@ -3,10 +3,15 @@
 use crate::body::recording::BodyRecording;
 use crate::body::{BodyFile, BodySources, measure};
 use crate::motion::{self, DEFAULT_FRAMES_PER_SECOND, MarkerMotion, ReadOptions, amc, asf};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
+use sinew_core::kinematics::forward::posture;
+use sinew_core::math::Vec3;
 use sinew_core::skeleton::BodyMeasures;
-use sinew_core::skeleton::full_body::full_body;
+use sinew_core::skeleton::full_body::{BODY_ANGLES, full_body};
 use std::path::Path;
+
+/// Farthest joint from the pelvis of a standing person, metres.
+const MOST_REACH_M: f32 = 2.0;
 
 /// Files that are measured.
 const MOTIONS: [&str; 6] = ["bvh", "amc", "asf", "txt", "trc", "c3d"];
@@ -29,7 +34,14 @@ pub fn read_measures(path: &Path) -> Result<BodyMeasures> {
             MOTIONS.join(", .")
         ),
     };
-    full_body(&measures).with_context(|| format!("`{}` is no person's skeleton", path.display()))?;
+    let skeleton = full_body(&measures).with_context(|| format!("`{}` is no person's skeleton", path.display()))?;
+    let ends_m = posture(&skeleton, &Vec3::zeros(), &[0.0; BODY_ANGLES]).ends;
+    let farthest_m = ends_m.iter().map(Vec3::norm).fold(0.0, f32::max);
+    ensure!(
+        farthest_m <= MOST_REACH_M,
+        "the person of `{}` has a joint {farthest_m} m from the pelvis, and {MOST_REACH_M} m is the most; give lengths in metres",
+        path.display()
+    );
     Ok(measures)
 }
 
@@ -80,7 +92,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("somebody.json");
         let measures = BodyMeasures::of_height(1.6).unwrap();
-        std::fs::write(&path, serde_json::to_string(&BodyFile::from(&measures)).unwrap()).unwrap();
+        let write = |file: &BodyFile| std::fs::write(&path, serde_json::to_string(file).unwrap()).unwrap();
+        let file = BodyFile::from(&measures);
+        write(&file);
         assert_eq!(read_measures(&path).unwrap(), measures);
+        write(&BodyFile { shank_m: 40.0, ..file });
+        let message = format!("{:#}", read_measures(&path).unwrap_err());
+        assert!(message.contains("give lengths in metres"), "{message}");
     }
 }

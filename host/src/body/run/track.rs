@@ -210,8 +210,11 @@ impl BodyTrackRun {
         let blocks = cloud.map_or(&[][..], |cloud| &cloud.blocks);
         let stick = self.inputs.stick.get(&frame).copied().unwrap_or(StickSight::Unseen);
         let start = Instant::now();
-        let (threads, filter) = (&self.threads, &mut self.filter);
-        let estimate = threads.install(|| filter.step(blocks, dt_s, stick));
+        let (threads, filter, is_first) = (&self.threads, &mut self.filter, self.before.is_none());
+        let estimate = threads.install(|| match is_first {
+            true => first_look(filter, blocks, stick),
+            false => filter.step(blocks, dt_s, stick),
+        });
         self.step_s += start.elapsed().as_secs_f64();
         let points_m = cloud.map_or(&[][..], |cloud| &cloud.points_m);
         self.table
@@ -222,7 +225,6 @@ impl BodyTrackRun {
                 particles.write_record(row).context("`particles.csv` cannot be written")?;
             }
         }
-        let is_first = self.before.is_none();
         let truth = self.inputs.truth.get(&frame).filter(|_| !is_first);
         let joint_error_m = truth.and_then(|truth| self.score.add(&self.filter, &estimate, truth));
         if let Some(pictures) = &mut self.pictures {
@@ -286,6 +288,15 @@ impl BodyTrackRun {
         let text = to_trc(&heading, &markers);
         self.out.write("track.trc", |writer| Ok(writer.write_all(text.as_bytes())?))
     }
+}
+
+/// The first frame: the first pose is its pose, and a look from there tells what its points show.
+fn first_look(filter: &BodyFilter, blocks: &[PointBlock], stick: StickSight) -> WholeBodyEstimate {
+    let mut estimate = filter.clone().step(blocks, 0.0, stick);
+    if let Some(first) = filter.particles().0.first() {
+        (estimate.angles_rad, estimate.ends_m) = (first.angles_rad, first.ends_m);
+    }
+    estimate
 }
 
 /// Reads one cloud, at most [`MAX_POINTS`] of it, in the order in which it is weighed.
