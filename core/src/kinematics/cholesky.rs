@@ -45,6 +45,7 @@ impl<const N: usize> Cholesky<N> {
     ///
     /// Beyond a few rows, a column of L is taken out of all later rows at once, so that the innermost loop runs along a row; where limbs do not
     /// know of each other rows are left out.
+    #[inline(always)]
     #[must_use]
     pub fn from(matrix: &[[f32; N]; N], first: usize) -> Option<Self> {
         if N <= SMALL && first == 0 {
@@ -91,6 +92,7 @@ impl<const N: usize> Cholesky<N> {
     }
 
     /// As [`Self::solve`], for a factor [`Self::from`] row `first` on; the entries before it are zero.
+    #[inline(always)]
     #[must_use]
     pub fn solve_from(&self, right: &[f32; N], first: usize) -> [f32; N] {
         if first == 0 {

@@ -16,6 +16,18 @@ pub fn column<const BONES: usize, const ANGLES: usize>(
     if !skeleton.angle_moves(angle, bone) {
         return Vec3::zeros();
     }
+    moving_column(skeleton, posture, bone, angle)
+}
+
+/// As [`column`], for an angle that is known to move the bone.
+#[inline]
+#[must_use]
+pub(super) fn moving_column<const BONES: usize, const ANGLES: usize>(
+    skeleton: &Skeleton<BONES, ANGLES>,
+    posture: &Posture<BONES, ANGLES>,
+    bone: usize,
+    angle: usize,
+) -> Vec3 {
     if skeleton.is_shift(angle) {
         return posture.axes.get(angle).copied().unwrap_or_default();
     }

@@ -1,7 +1,7 @@
 //! The density of a pose given goals of its end-effectors (PIK paper, eq. 12), and what the solver asks of any density.
 
 use super::forward::{Posture, posture};
-use super::jacobian::column;
+use super::jacobian::moving_column;
 use crate::math::{Mat3, Vec3, length, max};
 use crate::skeleton::Skeleton;
 
@@ -114,15 +114,16 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
             let Some(end) = posture.ends.get(goal.bone) else { continue };
             let miss = goal.position_m - end;
             let mut columns = [Vec3::zeros(); ANGLES];
-            for i in self.held..ANGLES {
+            // Bounds that are constants, so that small skeletons are unrolled.
+            for i in 0..ANGLES {
                 // What does not move the end adds nothing.
-                if !self.skeleton.angle_moves(i, goal.bone) {
+                if i < self.held || !self.skeleton.angle_moves(i, goal.bone) {
                     continue;
                 }
-                columns[i] = column(self.skeleton, posture, goal.bone, i);
+                columns[i] = moving_column(self.skeleton, posture, goal.bone, i);
                 let weighted = goal.precision * columns[i];
                 gradient[i] += weighted.dot(&miss);
-                for j in self.held..=i {
+                for j in 0..=i {
                     hessian[i][j] += weighted.dot(&columns[j]);
                 }
             }

@@ -54,7 +54,7 @@ impl<const ANGLES: usize> LaplaceProposal<ANGLES> {
         let shift = factor.solve_from(&mode.gradient, mode.held);
         let mut centre_rad = mode.angles_rad;
         let mut rise = 0.0;
-        for i in mode.held..ANGLES {
+        for i in 0..ANGLES {
             centre_rad[i] += shift[i];
             rise += 0.5 * shift[i] * mode.gradient[i];
         }
@@ -82,7 +82,10 @@ impl<const ANGLES: usize> LaplaceProposal<ANGLES> {
         let lower = &self.factor.lower;
         let mut offset = [0.0; ANGLES];
         let mut result = PoseDraw { angles_rad: self.centre_rad, squared_distance: 0.0, log_mass: 0.0 };
-        for i in (self.held..ANGLES).rev() {
+        for i in (0..ANGLES).rev() {
+            if i < self.held {
+                break;
+            }
             let mut pull = 0.0;
             for j in i + 1..ANGLES {
                 pull += lower[j][i] * offset[j];
