@@ -31,6 +31,11 @@ pub struct GoalPast<'a, const BONES: usize> {
     pub is_first: bool,
 }
 
+/// The page for users is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/own_motion_model.md")]
+struct OwnMotionModel;
+
 /// A stochastic process of the end-effectors' goals, p(g_t | g_1..t-1) (PIK paper, section 4.2). Users may write their own:
 /// docs/own_motion_model.md.
 pub trait GoalProcess<const BONES: usize> {
