@@ -118,7 +118,7 @@ impl BodyFilter {
         let frame = BodyFrame { dt_s, blocks };
         match self.kind {
             BodyModelKind::EndEffector => self.advance(&with_goals(&tuning, &goals, root), &frame),
-            BodyModelKind::Guided => self.advance(&guided(&tuning, &goals, root), &frame),
+            BodyModelKind::Guided => self.advance(&guided(&tuning, &goals, tuning.root.guided_process()), &frame),
             BodyModelKind::Angular => self.advance(&angular(&tuning, root), &frame),
             BodyModelKind::Stick => {
                 let process = StickGoals {

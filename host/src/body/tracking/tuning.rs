@@ -89,6 +89,13 @@ impl RootTuning {
         })
     }
 
+    /// The process of a guided root: it is moved by the points like every angle, from as far as an aligned one.
+    #[must_use]
+    pub fn guided_process(&self) -> RootProcess {
+        let (s, t) = (self.aligned_shift_std_m, self.aligned_turn_std_rad);
+        RootProcess { std_per_sqrt_s: [s, s, s, t, t, t], ..self.process() }
+    }
+
     /// The process.
     #[must_use]
     pub fn process(&self) -> RootProcess {

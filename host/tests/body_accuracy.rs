@@ -1,0 +1,73 @@
+//! The body's models on real motion before the simulated camera, as the book compares them (docs/measurements.md). Runs in release where
+//! `../shared/data` is at hand, and says so where not.
+
+use sinew::body::tracking::{BodyModelKind, BodyTuning};
+use sinew::evaluate::body::MotionChoice;
+use sinew::evaluate::body::trial::{SeenMotion, TrialResult, trial};
+use std::path::Path;
+
+/// Largest mean error (34) of the end-effector model with 100 particles, metres.
+const LARGEST_END_EFFECTOR_M: f64 = 0.032;
+/// Largest mean error (34) of the guided model with 50 particles, metres.
+const LARGEST_GUIDED_M: f64 = 0.026;
+/// Largest error (34) of the pelvic lift model with 100 particles, metres.
+const LARGEST_LIFT_M: f64 = 0.03;
+
+/// Arms over fixed legs, a walk, jumping jacks: none of them was tuned on.
+const MOTIONS: [&str; 3] =
+    ["bandai/dataset-2_wave-both-hands_normal_001.bvh@0-4", "cmu-walk/02/02_01.amc", "cmu-exercise/13_29.amc@0-3.9"];
+
+fn tracked(seen: &SeenMotion, model: BodyModelKind, particles: usize) -> TrialResult {
+    trial(seen, model, &BodyTuning::default(), particles, 1).unwrap().0
+}
+
+#[test]
+fn goals_in_space_beat_angles_and_guided_proposals_beat_both() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/mocap");
+    if cfg!(debug_assertions) || !folder.is_dir() {
+        eprintln!("skipped: only in release and with ../shared/data beside the project");
+        return;
+    }
+    let skeleton = folder.join("cmu-walk/35/35.asf");
+    let mut means = [0.0; 3];
+    for motion in MOTIONS {
+        let motion: MotionChoice = format!("{}/{motion}", folder.display()).parse().unwrap();
+        let seen = motion.seen(Some(&skeleton), 1).unwrap();
+        let cells = [(BodyModelKind::EndEffector, 100), (BodyModelKind::Angular, 100), (BodyModelKind::Guided, 50)];
+        for (mean, (model, particles)) in means.iter_mut().zip(cells) {
+            *mean += tracked(&seen, model, particles).error_m / MOTIONS.len() as f64;
+        }
+    }
+    let [end_effector, angular, guided] = means;
+    println!("end-effector {end_effector:.4}, angular {angular:.4}, guided with 50 {guided:.4} m");
+    assert!(end_effector < angular, "{end_effector} m, angular {angular} m");
+    assert!((0.01..=LARGEST_END_EFFECTOR_M).contains(&end_effector), "end-effector {end_effector} m");
+    assert!((0.01..=LARGEST_GUIDED_M).contains(&guided), "guided {guided} m");
+}
+
+/// The paper's own experiment: 100 particles follow six repetitions without loss.
+#[test]
+fn six_pelvic_lifts_are_followed_without_loss() {
+    if cfg!(debug_assertions) {
+        eprintln!("skipped: only in release");
+        return;
+    }
+    let seen = MotionChoice::PelvicLift.seen(None, 1).unwrap();
+    let (result, estimates) = trial(&seen, BodyModelKind::PelvicLift, &BodyTuning::default(), 100, 1).unwrap();
+    let errors: Vec<f32> = estimates
+        .iter()
+        .zip(seen.joints_m.iter().skip(1))
+        .map(|(estimate, joints)| {
+            let off = estimate.ends_m.iter().zip(joints).filter_map(|(found, place)| Some((found - (*place)?).norm()));
+            off.clone().sum::<f32>() / off.count() as f32
+        })
+        .collect();
+    let lost = errors.windows(5).any(|five| five.iter().all(|error| *error > 0.3));
+    assert!(
+        !lost && errors.len() > 150,
+        "{} frames, worst {:?}",
+        errors.len(),
+        errors.iter().copied().fold(0.0, f32::max)
+    );
+    assert!((0.005..=LARGEST_LIFT_M).contains(&result.error_m), "{} m", result.error_m);
+}
