@@ -1,6 +1,6 @@
 //! The surface of one bone: a capsule, and the part of it that a camera sees (PIK paper, section 6.2).
 
-use crate::math::{Vec3, clamp, length, max, sqrt, unit};
+use crate::math::{Vec3, clamp, length, max, unit};
 
 /// All points within a radius of a line segment. A segment without length is a sphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,38 +55,6 @@ impl Capsule {
         };
         let any = unit(along.cross(&sight)).unwrap_or_else(Vec3::x);
         near_m + direction.unwrap_or(any) * self.radius_m
-    }
-
-    /// Where a ray from the camera's centre along the unit vector `direction` meets the skin first: the distance from the
-    /// centre, metres; `None` where it passes by, or where the centre lies inside.
-    #[must_use]
-    pub fn first_hit_m(&self, direction: &Vec3) -> Option<f32> {
-        let along = unit(self.end_m - self.start_m);
-        let mut first = f32::INFINITY;
-        if let Some(u) = along {
-            // The infinite cylinder: the parts across the axis of both the ray and the start.
-            let (d, m) = (direction - u * direction.dot(&u), self.start_m - u * self.start_m.dot(&u));
-            let (dd, dm, mm) = (d.dot(&d), d.dot(&m), m.dot(&m) - self.radius_m * self.radius_m);
-            let under = dm * dm - dd * mm;
-            if dd > 1.0e-9 && under >= 0.0 {
-                let distance = (dm - sqrt(under)) / dd;
-                let place = (direction * distance - self.start_m).dot(&u);
-                if distance > 0.0 && place >= 0.0 && place <= length(&(self.end_m - self.start_m)) {
-                    first = distance;
-                }
-            }
-        }
-        for centre in [self.start_m, self.end_m] {
-            let dm = direction.dot(&centre);
-            let under = dm * dm - centre.dot(&centre) + self.radius_m * self.radius_m;
-            if under >= 0.0 {
-                let distance = dm - sqrt(under);
-                if distance > 0.0 && distance < first {
-                    first = distance;
-                }
-            }
-        }
-        first.is_finite().then_some(first)
     }
 }
 
@@ -163,24 +131,6 @@ mod tests {
             let found = (point - capsule.nearest_visible(&camera, &point)).norm();
             prop_assert!((found - capsule.skin_distance_m(&point)).abs() < 1.0e-5);
         }
-
-        #[test]
-        fn a_ray_first_meets_the_skin_where_the_distance_is_nothing(start in place(0.5), end in place(0.5), aim in place(0.7)) {
-            let away = Vec3::new(0.0, 0.0, 3.0);
-            let capsule = Capsule { start_m: start + away, end_m: end + away, radius_m: 0.1 };
-            let direction = unit(aim + away).unwrap();
-            let passes = (0..4000).map(|i| direction * (1.5 + i as f32 * 0.00075)).find(|x| {
-                (x - capsule.nearest_on_axis(x).0).norm() <= 0.1
-            });
-            match capsule.first_hit_m(&direction) {
-                Some(distance) => {
-                    prop_assert!(capsule.skin_distance_m(&(direction * distance)) < 1.0e-3);
-                    // A grazing ray may be missed by the march.
-                    if let Some(seen) = passes { prop_assert!((seen.norm() - distance).abs() < 2.0e-3 || distance < seen.norm()); }
-                }
-                None => prop_assert!(passes.is_none()),
-            }
-        }
     }
 
     #[test]
@@ -197,7 +147,5 @@ mod tests {
         assert!((found - (0.16_f32 + 0.01).sqrt()).abs() < 1.0e-5, "{found}");
         let sphere = Capsule { start_m: Vec3::z(), end_m: Vec3::z(), radius_m: 0.2 };
         assert!((sphere.skin_distance_m(&Vec3::zeros()) - 0.8).abs() < 1.0e-6);
-        assert_eq!(sphere.first_hit_m(&Vec3::z()), Some(0.8));
-        assert_eq!(sphere.first_hit_m(&-Vec3::z()), None);
     }
 }

@@ -51,7 +51,7 @@ impl PointLikelihood {
 /// A point that is seen from p: (|x-p| - r)^2. A hidden one: |x-p|^2 - 2 r rho + r^2, with rho the part of x - p along v, or
 /// across the line of sight on the round ends; both are one formula in rho. Branch-free, so that it runs on vectors.
 #[inline(always)]
-pub fn lower_to<const BONES: usize>(
+fn lower_to<const BONES: usize>(
     least: &mut [f32; BLOCK_POINTS],
     seen: &SeenCapsule,
     surface: &BodySurface<BONES>,
@@ -80,28 +80,56 @@ pub fn lower_to<const BONES: usize>(
     }
 }
 
+/// A block's points with the capsules whose visible skin is nearest to each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearestSkin {
+    /// Squared distances from it, squared metres; the square of the outlier distance where no skin is nearer.
+    pub squared_m: [f32; BLOCK_POINTS],
+    /// Places of the capsules in the surface's list; beyond its end where no skin is near.
+    pub capsule: [u8; BLOCK_POINTS],
+}
+
+impl NearestSkin {
+    /// The nearest skin of `surface` within `outlier_m` of each point of `block`.
+    #[must_use]
+    pub fn find<const BONES: usize>(surface: &BodySurface<BONES>, block: &PointBlock, outlier_m: f32) -> Self {
+        let mut near = NearCapsules::new();
+        near.find(surface, block, outlier_m);
+        let mut nearest = Self { squared_m: [outlier_m * outlier_m; BLOCK_POINTS], capsule: [u8::MAX; BLOCK_POINTS] };
+        for &index in near.indices() {
+            let Some(seen) = surface.capsules.get(usize::from(index)) else { continue };
+            let before = nearest.squared_m;
+            lower_to(&mut nearest.squared_m, seen, surface, block);
+            for i in 0..BLOCK_POINTS {
+                if nearest.squared_m[i] < before[i] {
+                    nearest.capsule[i] = index;
+                }
+            }
+        }
+        nearest
+    }
+}
+
 /// Capsules that can be the nearest to some point of a block; 32 at most, as a skeleton's bones.
 #[derive(Debug)]
-pub struct NearCapsules {
+struct NearCapsules {
     indices: [u8; 32],
     count: usize,
 }
 
 impl NearCapsules {
     /// Room for all capsules.
-    #[must_use]
-    pub const fn new() -> Self {
+    const fn new() -> Self {
         Self { indices: [0; 32], count: 0 }
     }
 
     /// Those found last.
-    #[must_use]
-    pub fn indices(&self) -> &[u8] {
+    fn indices(&self) -> &[u8] {
         self.indices.get(..self.count).unwrap_or(&[])
     }
 
     /// Finds the capsules that can lie nearest to a point of `block` and nearer than `outlier_m`.
-    pub fn find<const BONES: usize>(&mut self, surface: &BodySurface<BONES>, block: &PointBlock, outlier_m: f32) {
+    fn find<const BONES: usize>(&mut self, surface: &BodySurface<BONES>, block: &PointBlock, outlier_m: f32) {
         let bounds = surface.distance_bounds(&block.centre_m, block.radius_m);
         let count = surface.capsules.len();
         let mut bound = outlier_m;
@@ -120,12 +148,6 @@ impl NearCapsules {
                 self.count += 1;
             }
         }
-    }
-}
-
-impl Default for NearCapsules {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::math::{length, max, sqrt};
 use crate::observation::body_surface::BodySurface;
-use crate::observation::point_cloud::{BLOCK_POINTS, PointBlock};
-use crate::observation::point_likelihood::{NearCapsules, lower_to};
+use crate::observation::point_cloud::PointBlock;
+use crate::observation::point_likelihood::NearestSkin;
 
 /// A point nearer to a bone's skin than this belongs to it, metres.
 const NEAR_M: f32 = 0.08;
@@ -17,22 +17,9 @@ const LEAST_SHARE: f32 = 0.25;
 #[must_use]
 pub fn observed<const BONES: usize>(surface: &BodySurface<BONES>, blocks: &[PointBlock]) -> [bool; BONES] {
     let mut counts = [0.0_f32; BONES];
-    let mut near = NearCapsules::new();
     for block in blocks {
-        near.find(surface, block, NEAR_M);
-        let mut least = [NEAR_M * NEAR_M; BLOCK_POINTS];
-        let mut owner = [u8::MAX; BLOCK_POINTS];
-        for &index in near.indices() {
-            let Some(seen) = surface.capsules.get(usize::from(index)) else { continue };
-            let before = least;
-            lower_to(&mut least, seen, surface, block);
-            for i in 0..BLOCK_POINTS {
-                if least[i] < before[i] {
-                    owner[i] = index;
-                }
-            }
-        }
-        for &index in owner.iter().take(usize::from(block.count)) {
+        let nearest = NearestSkin::find(surface, block, NEAR_M);
+        for &index in nearest.capsule.iter().take(usize::from(block.count)) {
             if let Some(count) = surface.capsules.get(usize::from(index)).and_then(|seen| counts.get_mut(seen.bone)) {
                 *count += 1.0;
             }
