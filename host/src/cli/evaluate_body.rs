@@ -1,10 +1,11 @@
 //! `sinew evaluate body`
 
+use crate::body::run::tuning_file;
 use crate::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
 use crate::evaluate::body::trial::{SeenMotion, TrialResult, trial};
 use crate::evaluate::body::{BodyReport, BodyResult, Measured, MotionChoice, figures::figures};
 use crate::output::OutputDir;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
@@ -49,7 +50,7 @@ pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
             "--particles must be whole numbers from 1 to {MAX_BODY_PARTICLES}, not {count}"
         );
     }
-    let tuning = tuning(args)?;
+    let tuning = args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?;
     let output = OutputDir::create(&args.out)?;
     let cells = args.motion.len() * args.models.len() * args.particles.len();
     let progress = ProgressBar::new(cells as u64 * args.trials);
@@ -87,12 +88,6 @@ pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
     }
     let text = format!("{}report, table and figures: {}\n", report.to_text(), args.out.display());
     super::stdout::write_all(text.as_bytes())
-}
-
-fn tuning(args: &EvaluateBodyArgs) -> Result<BodyTuning> {
-    let Some(path) = &args.config else { return Ok(BodyTuning::default()) };
-    let text = std::fs::read_to_string(path).with_context(|| format!("`{}` cannot be read", path.display()))?;
-    toml::from_str(&text).with_context(|| format!("`{}` is no configuration of a body tracker", path.display()))
 }
 
 /// All trials of one cell, one after the other: a step takes all threads.
