@@ -16,13 +16,14 @@ pub use folder::{CloudFolder, CloudFrame};
 pub use ply::write_ply;
 
 use sinew_core::math::Vec3;
+use sinew_core::observation::point_cloud::{self, BLOCK_POINTS, PointBlock};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// Most points of a frame that a tracker is given; [`PointCloud::limit`] draws them from a larger cloud.
 pub const MAX_POINTS: usize = 20_000;
 /// Radius around the camera's centre in which no point can be: matching that failed is often written as the origin.
-pub const CENTRE_RADIUS_M: f32 = 0.01;
+pub const CENTRE_RADIUS_M: f32 = point_cloud::NEAREST_M;
 /// Distance beyond which no point can be: far more than a stereo camera measures, and its square is an ordinary number.
 pub const MAX_DISTANCE_M: f32 = 1_000.0;
 /// Largest file that is read, and largest content of a compressed one.
@@ -60,6 +61,15 @@ impl PointCloud {
             self.skipped += 1;
         }
     }
+}
+
+/// The points, brought in place into the order and the blocks in which the core weighs them; those beyond [`MAX_POINTS`] are left out.
+#[must_use]
+pub fn blocks_of(points_m: &mut [Vec3]) -> Vec<PointBlock> {
+    let mut weighed = Box::new(point_cloud::PointCloud::<{ MAX_POINTS / BLOCK_POINTS }>::new());
+    // What it leaves out, the reader's rules have left out already.
+    let _ = weighed.set(points_m, &Vec3::zeros());
+    weighed.blocks().to_vec()
 }
 
 /// Reads a cloud by its file ending: `.ply`, `.pcd` (ascii, binary or compressed) or `.csv`. No point at all is a cloud too.

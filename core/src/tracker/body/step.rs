@@ -211,7 +211,9 @@ where
         }
         let evidence = self.weights.normalise();
         let (particles, weights) = (self.particles.as_ref(), self.weights.normalised());
-        let mean = BodyParticle::at(&scene.skeleton, mean_pose(scene, particles, weights));
+        let angles_rad = mean_pose(scene, particles, weights);
+        let posture = scene.posture(&angles_rad);
+        let mean = BodyParticle { angles_rad, ends_m: posture.ends, ..self.before };
         let spread_m = spread_m(particles, weights);
         for i in 0..ANGLES {
             self.angle_velocity_per_s[i] = (mean.angles_rad[i] - self.before.angles_rad[i]) / dt_s;
@@ -220,12 +222,11 @@ where
             self.velocity_m_per_s[bone] = (mean.ends_m[bone] - self.before.ends_m[bone]) / dt_s;
         }
         self.before = mean;
-        let surface = scene.surface(&scene.posture(&mean.angles_rad));
         BodyEstimate {
             angles_rad: mean.angles_rad,
             ends_m: mean.ends_m,
             spread_m,
-            observed: observed(&surface, frame.blocks),
+            observed: observed(&scene.surface(&posture), frame.blocks),
             effective_sample_size: self.weights.effective_sample_size(),
             log_evidence: evidence.unwrap_or(0.0),
             tempering,

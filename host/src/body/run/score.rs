@@ -1,8 +1,9 @@
 //! How far a track is from the truth (PIK paper, eq. 34).
 
+use crate::body::BodyJoints;
 use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
-use crate::stereo::TrueFrame;
+use sinew_core::math::Vec3;
 
 /// A mean that grows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -35,14 +36,20 @@ pub struct BodyScore {
 }
 
 impl BodyScore {
-    /// Compares one frame; returns the mean distance of its joints, metres.
-    pub fn add(&mut self, filter: &BodyFilter, estimate: &WholeBodyEstimate, truth: &TrueFrame) -> Option<f64> {
+    /// Compares one frame with its true joints and markers, metres; returns the mean distance of its joints, metres.
+    pub fn add(
+        &mut self,
+        filter: &BodyFilter,
+        estimate: &WholeBodyEstimate,
+        joints_m: &BodyJoints,
+        markers_m: &[Option<Vec3>],
+    ) -> Option<f64> {
         let surface = filter.scene().surface(&filter.scene().posture(&estimate.angles_rad));
-        for marker_m in truth.markers_m.iter().flatten() {
+        for marker_m in markers_m.iter().flatten() {
             self.marker_m.add(f64::from(surface.skin_distance_m(marker_m)));
         }
         let mut frame = RunningMean::default();
-        for (found_m, true_m) in estimate.ends_m.iter().zip(&truth.joints_m) {
+        for (found_m, true_m) in estimate.ends_m.iter().zip(joints_m) {
             if let Some(true_m) = true_m {
                 let distance_m = f64::from((found_m - true_m).norm());
                 self.joint_m.add(distance_m);

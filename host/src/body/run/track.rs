@@ -10,7 +10,7 @@ use super::{particles, table};
 use crate::body::export::{body_layout, bvh_frame, upwards};
 use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
-use crate::cloud::{self, CloudFrame, MAX_POINTS};
+use crate::cloud::{self, CloudFrame, MAX_POINTS, blocks_of};
 use crate::motion::export::{BvhFrame, TrcFrame, TrcHeading, TrcUnit, to_trc, write_bvh};
 use crate::output::{OutputDir, PendingFile};
 use crate::track::Interrupted;
@@ -18,15 +18,13 @@ use anyhow::{Context, Result, anyhow, bail};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sinew_core::math::Vec3;
-use sinew_core::observation::point_cloud::{BLOCK_POINTS, PointBlock, PointCloud};
+use sinew_core::observation::point_cloud::PointBlock;
 use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_JOINT_NAMES};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Blocks of the largest cloud.
-const MAX_BLOCKS: usize = MAX_POINTS / BLOCK_POINTS;
 /// Clouds that are read ahead.
 const CHUNK: usize = 16;
 /// Clouds that are looked at for points where no first pose is given.
@@ -226,7 +224,8 @@ impl BodyTrackRun {
             }
         }
         let truth = self.inputs.truth.get(&frame).filter(|_| !is_first);
-        let joint_error_m = truth.and_then(|truth| self.score.add(&self.filter, &estimate, truth));
+        let joint_error_m =
+            truth.and_then(|truth| self.score.add(&self.filter, &estimate, &truth.joints_m, &truth.markers_m));
         if let Some(pictures) = &mut self.pictures {
             let time_s = frame as f64 / f64::from(rate_hz);
             pictures.add((index, frame, time_s), points_m, (&self.filter, &estimate), joint_error_m);
@@ -307,10 +306,8 @@ fn read_cloud(frame: &CloudFrame, seed: u64) -> Result<ReadCloud, SkippedCloud> 
         reason: error.to_string(),
     })?;
     let before_cap = read.limit(MAX_POINTS, seed, frame.frame);
-    let mut weighed = Box::new(PointCloud::<MAX_BLOCKS>::new());
-    // Nothing is left out any more: the reader's rules are stricter.
-    let _ = weighed.set(&mut read.points_m, &Vec3::zeros());
-    Ok(ReadCloud { points_m: read.points_m, blocks: weighed.blocks().to_vec(), skipped: read.skipped, before_cap })
+    let blocks = blocks_of(&mut read.points_m);
+    Ok(ReadCloud { points_m: read.points_m, blocks, skipped: read.skipped, before_cap })
 }
 
 /// A start from the first cloud that has points, and a note of it.

@@ -1,19 +1,18 @@
 //! One tracker on one motion: the PIK paper's measures (eqs. 34 and 35).
 
+use crate::body::run::score::{BodyScore, RunningMean};
 use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::body::tracking::{BodyFilter, BodyModelKind, BodyTuning};
 use crate::body::{BodyJoints, fit_pose};
+use crate::cloud::blocks_of;
 use crate::stereo::StereoScene;
 use anyhow::Result;
 use rayon::prelude::*;
 use sinew_core::math::Vec3;
-use sinew_core::observation::point_cloud::{PointBlock, PointCloud};
+use sinew_core::observation::point_cloud::PointBlock;
 use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BODY_PARENTS, full_body};
 use std::time::Instant;
-
-/// Blocks of the largest cloud that is tracked: 20,000 points.
-pub const MAX_BLOCKS: usize = 1_250;
 
 /// A motion as one camera saw it, ready for any number of trials.
 #[derive(Debug, Clone)]
@@ -66,14 +65,6 @@ impl SeenMotion {
     }
 }
 
-/// The points in the blocks that the core weighs.
-#[must_use]
-pub fn blocks_of(points_m: &mut [Vec3]) -> Vec<PointBlock> {
-    let mut cloud = Box::new(PointCloud::<MAX_BLOCKS>::new());
-    let _ = cloud.set(points_m, &Vec3::zeros());
-    cloud.blocks().to_vec()
-}
-
 /// What a trial measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrialResult {
@@ -111,21 +102,13 @@ pub fn trial(
         seconds += start.elapsed().as_secs_f64();
     }
     let frames = estimates.len().max(1) as f64;
-    let (mut error, mut joint_error) = (Mean::default(), Mean::default());
+    let mut score = BodyScore::default();
     for (estimate, (joints, markers)) in estimates.iter().zip(motion.joints_m.iter().zip(&motion.markers_m).skip(1)) {
-        let surface = filter.scene().surface(&filter.scene().posture(&estimate.angles_rad));
-        for marker_m in markers.iter().flatten() {
-            error.add(f64::from(surface.skin_distance_m(marker_m)));
-        }
-        for (found_m, true_m) in estimate.ends_m.iter().zip(joints) {
-            if let Some(true_m) = true_m {
-                joint_error.add(f64::from((found_m - true_m).norm()));
-            }
-        }
+        let _ = score.add(&filter, estimate, joints, markers);
     }
     let result = TrialResult {
-        error_m: error.mean(),
-        joint_error_m: joint_error.mean(),
+        error_m: score.marker_m.mean().unwrap_or(0.0),
+        joint_error_m: score.joint_m.mean().unwrap_or(0.0),
         smoothness_m: smoothness_m(estimates.iter().map(|estimate| estimate.ends_m.map(Some))),
         seconds_per_frame: seconds / frames,
         effective_share: estimates.iter().map(|e| f64::from(e.effective_sample_size)).sum::<f64>()
@@ -134,26 +117,9 @@ pub fn trial(
     Ok((result, estimates))
 }
 
-#[derive(Debug, Default)]
-struct Mean {
-    sum: f64,
-    count: f64,
-}
-
-impl Mean {
-    fn add(&mut self, value: f64) {
-        self.sum += value;
-        self.count += 1.0;
-    }
-
-    fn mean(&self) -> f64 {
-        self.sum / self.count.max(1.0)
-    }
-}
-
 /// Eq. (35) from the second frame on: the mean over bones of how far a_l, the bone's start, goes in a frame.
 fn smoothness_m(frames: impl Iterator<Item = BodyJoints>) -> f64 {
-    let mut sum = Mean::default();
+    let mut sum = RunningMean::default();
     let mut before: Option<BodyJoints> = None;
     for joints in frames {
         if let Some(before) = before {
@@ -166,5 +132,5 @@ fn smoothness_m(frames: impl Iterator<Item = BodyJoints>) -> f64 {
         }
         before = Some(joints);
     }
-    sum.mean()
+    sum.mean().unwrap_or(0.0)
 }
