@@ -126,10 +126,9 @@ fn free_direction<const BONES: usize, const ANGLES: usize>(
     hessian: &[[f32; ANGLES]; ANGLES],
 ) -> Option<([f32; ANGLES], f32)> {
     let (mut reduced, mut right) = (*hessian, *gradient);
-    // What is given has no rows in the factor.
-    let given = objective.held();
-    for (i, limit) in objective.skeleton().limits().iter().enumerate().skip(given) {
-        let held = (angles_rad[i] <= limit.low_rad && gradient[i] < 0.0)
+    for (i, limit) in objective.skeleton().limits().iter().enumerate() {
+        let held = i < objective.held()
+            || (angles_rad[i] <= limit.low_rad && gradient[i] < 0.0)
             || (angles_rad[i] >= limit.high_rad && gradient[i] > 0.0);
         if held {
             right[i] = 0.0;
@@ -140,7 +139,8 @@ fn free_direction<const BONES: usize, const ANGLES: usize>(
             reduced[i][i] = 1.0;
         }
     }
-    let direction = Cholesky::from(&reduced, given)?.solve_from(&right, given);
+    let held = objective.held();
+    let direction = Cholesky::from(&reduced, held)?.solve_from(&right, held);
     let mut gain = 0.0;
     for i in 0..ANGLES {
         gain += 0.5 * right[i] * direction[i];
