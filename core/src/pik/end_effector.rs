@@ -11,6 +11,9 @@ use crate::random::Stream;
 /// Greatest size of a log importance ratio: where the expansion is bad the ratio would decide alone.
 const MAX_LOG_RATIO: f32 = 10.0;
 
+/// Draws that tell the mass inside the limits, where the weight pays.
+const LIMIT_MASS_DRAWS: usize = 8;
+
 /// Goals from a process, poses by the Laplace proposal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
@@ -84,7 +87,8 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         let posture = density.posture(&draw.angles_rad);
         let log_ratio = if self.pays {
             let log_density = density.log_density(&draw.angles_rad, &posture);
-            let ratio = proposal.log_importance_ratio(&draw, log_density, LimitMass::Neglected);
+            let log_box = proposal.log_box(skeleton.limits(), LIMIT_MASS_DRAWS, stream);
+            let ratio = proposal.log_importance_ratio(&draw, log_density, LimitMass::Counted { log_box });
             clamp(ratio, -MAX_LOG_RATIO, MAX_LOG_RATIO)
         } else {
             0.0
