@@ -131,7 +131,7 @@ fn every_model_follows_a_wave_inside_the_limits() {
     let mean = |errors: Vec<f32>| errors.iter().sum::<f32>() / errors.len() as f32;
     let drawn = [mean(hand_errors(&end_effector(&goals), 200, 40)), mean(hand_errors(&ANGULAR, 200, 40))];
     let few = mean(hand_errors(&guided(&goals), 20, 40));
-    assert!(drawn.iter().all(|error| *error < 0.12), "{drawn:?}");
+    assert!(drawn.iter().all(|error| *error < 0.14), "{drawn:?}");
     assert!(few < 0.08, "guided with 20: {few}");
 }
 
