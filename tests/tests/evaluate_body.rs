@@ -38,6 +38,29 @@ fn one_command_writes_report_table_and_figures() {
     for figure in ["figure_13_error.png", "figure_14_smoothness.png", "figure_15_time.png", "joint_error.png"] {
         assert!(out.join(figure).is_file(), "{figure}");
     }
+    predictions_have_spread_and_blocks(&report, &out);
+}
+
+/// Figures 2, 19 and 20 with their numbers.
+fn predictions_have_spread_and_blocks(report: &Value, out: &Path) {
+    for figure in ["figure_2_spread.png", "figure_19_samples.png", "figure_20_precision.png"] {
+        assert!(fs::metadata(out.join(figure)).unwrap().len() > 4000, "{figure}");
+    }
+    let chains = &report["predictions"]["chain_spread"];
+    assert_eq!((chains["poses"].as_u64(), chains["kappa"].as_f64()), (Some(100), Some(500.0)));
+    let spread = |joint: &str, model: &str| {
+        let joints = chains["joints"].as_array().unwrap();
+        joints.iter().find(|row| row["joint"] == joint).unwrap()[model].as_f64().unwrap()
+    };
+    for [middle, end] in [["l_elbow", "l_wrist"], ["r_elbow", "r_wrist"], ["l_knee", "l_ankle"]] {
+        assert!(spread(end, "angular_m") > 1.1 * spread(middle, "angular_m"), "{end}");
+        assert!(spread(end, "end_effector_m") < spread(middle, "end_effector_m"), "{end}");
+    }
+    let lift = &report["predictions"]["pelvic_lift"];
+    assert_eq!(lift["samples"], 10);
+    let precision = |part: &str| lift["precision"][part].as_f64().unwrap();
+    assert!(precision("inside") > 4.0 * precision("between"), "{lift}");
+    assert_eq!(precision("apart"), 0.0);
 }
 
 #[test]

@@ -33,7 +33,7 @@ pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
 }
 
 /// Makes the expansion around a mode `share` times as wide, about the same centre.
-fn narrow<const ANGLES: usize>(mode: &mut Mode<ANGLES>, share: f32) {
+pub fn narrow<const ANGLES: usize>(mode: &mut Mode<ANGLES>, share: f32) {
     let sharper = 1.0 / (share * share);
     for i in 0..ANGLES {
         mode.gradient[i] *= sharper;

@@ -3,7 +3,7 @@
 use crate::body::run::tuning_file;
 use crate::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
 use crate::evaluate::body::trial::{SeenMotion, TrialResult, trial};
-use crate::evaluate::body::{BodyReport, BodyResult, Measured, MotionChoice, figures::figures};
+use crate::evaluate::body::{BodyReport, BodyResult, Measured, MotionChoice, figures::figures, prediction};
 use crate::output::OutputDir;
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -55,12 +55,15 @@ pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
     let cells = args.motion.len() * args.models.len() * args.particles.len();
     let progress = ProgressBar::new(cells as u64 * args.trials);
     progress.set_style(ProgressStyle::with_template("{pos}/{len} trials {wide_bar} {eta}")?);
-    let mut results = Vec::new();
+    let (mut results, mut predicted) = (Vec::new(), None);
     for motion in &args.motion {
         let seen: Vec<SeenMotion> = (1..=args.trials)
             .into_par_iter()
             .map(|seed| motion.seen(args.skeleton.as_deref(), seed))
             .collect::<Result<_>>()?;
+        if predicted.is_none() {
+            predicted = seen.first().map(|seen| prediction::predict(seen, &tuning)).transpose()?;
+        }
         for &model in &args.models {
             for &particles in &args.particles {
                 results.push(cell(motion, &seen, model, &tuning, particles, &progress)?);
@@ -68,6 +71,7 @@ pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
         }
     }
     progress.finish_and_clear();
+    let (predictions, prediction_figures) = predicted.unzip();
     let mut report = BodyReport {
         format: "sinew-evaluate-body",
         version: 1,
@@ -77,13 +81,14 @@ pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
         tuning,
         results,
         angular_equals_end_effector_250: None,
+        predictions,
     };
     let wanted_m = report.mean_error_m(BodyModelKind::EndEffector, 250);
     report.angular_equals_end_effector_250 =
         wanted_m.and_then(|wanted_m| report.particles_for(BodyModelKind::Angular, wanted_m));
     output.write("report.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
     output.write("table.csv", |writer| Ok(writer.write_all(report.to_csv().as_bytes())?))?;
-    for (name, picture) in figures(&report)? {
+    for (name, picture) in figures(&report)?.into_iter().chain(prediction_figures.unwrap_or_default()) {
         output.write_png(&name, &picture)?;
     }
     let text = format!("{}report, table and figures: {}\n", report.to_text(), args.out.display());

@@ -5,16 +5,18 @@ use super::lettering::Lettering;
 use super::stroke::{Stroke, disc, line, tint};
 use image::{Rgb, RgbImage, imageops};
 use sinew_core::camera::Pixel;
+use sinew_core::kinematics::forward::Posture;
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::Side;
+use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BODY_JOINT_NAMES};
 
 /// Size of one view, pixels.
 const VIEW_PX: (u32, u32) = (300, 400);
 const PIXELS_PER_METRE: f32 = 160.0;
 /// Space around tiles, pixels.
 const GAP_PX: u32 = 4;
-const BACKGROUND: Rgb<u8> = Rgb([32, 32, 36]);
-const PAPER: Rgb<u8> = Rgb([20, 20, 24]);
+pub(super) const BACKGROUND: Rgb<u8> = Rgb([32, 32, 36]);
+pub(super) const PAPER: Rgb<u8> = Rgb([20, 20, 24]);
 /// Points: pale yellow.
 const POINTS: Rgb<u8> = Rgb([255, 236, 140]);
 /// Trunk and head, which belong to no side.
@@ -31,6 +33,23 @@ pub struct DrawnBone {
     pub radius_m: f32,
     /// The person's own side; `None` for trunk and head.
     pub side: Option<Side>,
+}
+
+/// All bones of a whole body, as thick as `radii_m` says.
+#[must_use]
+pub fn drawn_bones(posture: &Posture<BODY_BONES, BODY_ANGLES>, radii_m: &[f32; BODY_BONES]) -> Vec<DrawnBone> {
+    let side = |name: &str| match name.get(..2) {
+        Some("l_") => Some(Side::Left),
+        Some("r_") => Some(Side::Right),
+        _ => None,
+    };
+    let bone = |(index, name): (usize, &&str)| DrawnBone {
+        start_m: posture.joints[index],
+        end_m: posture.ends[index],
+        radius_m: radii_m[index],
+        side: side(name),
+    };
+    BODY_JOINT_NAMES.iter().enumerate().map(bone).collect()
 }
 
 /// Draws both views beside each other under `title`: as the camera looks (x, y), and from the picture's left with the camera on the
@@ -113,7 +132,7 @@ impl View {
     }
 }
 
-fn colour(bone: &DrawnBone) -> Rgb<u8> {
+pub(super) fn colour(bone: &DrawnBone) -> Rgb<u8> {
     bone.side.map_or(MIDDLE, of_side)
 }
 

@@ -9,6 +9,7 @@ pub mod contact_sheet;
 mod lettering;
 pub mod overlay;
 pub mod plot;
+pub mod pose_fan;
 pub mod stick_figure;
 mod stroke;
 mod top_view;

@@ -2,15 +2,13 @@
 
 use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
-use crate::draw::body_views::{DrawnBone, body_views, sheet};
+use crate::draw::body_views::{body_views, drawn_bones, sheet};
 use crate::draw::contact_sheet::ContactSheet;
 use crate::draw::plot::{Curve, curves_plot};
 use crate::output::OutputDir;
 use anyhow::Result;
 use image::RgbImage;
 use sinew_core::math::Vec3;
-use sinew_core::skeleton::Side;
-use sinew_core::skeleton::full_body::BODY_JOINT_NAMES;
 
 /// Frames on the sheet.
 const TILES: usize = 6;
@@ -46,7 +44,9 @@ impl BodyPictures {
         self.effective.push((time_s, f64::from(estimate.effective_sample_size)));
         self.error_cm.extend(joint_error_m.map(|error_m| (time_s, 100.0 * error_m)));
         if self.choice.wants(index) {
-            self.tiles.push(body_views(&format!("frame {frame}"), points_m, &drawn_bones(filter, estimate)));
+            let posture = filter.scene().posture(&estimate.angles_rad);
+            let bones = drawn_bones(&posture, &filter.scene().radii_m);
+            self.tiles.push(body_views(&format!("frame {frame}"), points_m, &bones));
         }
     }
 
@@ -67,20 +67,4 @@ impl BodyPictures {
         }
         Ok(())
     }
-}
-
-fn drawn_bones(filter: &BodyFilter, estimate: &WholeBodyEstimate) -> Vec<DrawnBone> {
-    let posture = filter.scene().posture(&estimate.angles_rad);
-    let side = |name: &str| match name.get(..2) {
-        Some("l_") => Some(Side::Left),
-        Some("r_") => Some(Side::Right),
-        _ => None,
-    };
-    let bone = |(index, name): (usize, &&str)| DrawnBone {
-        start_m: posture.joints[index],
-        end_m: posture.ends[index],
-        radius_m: filter.scene().radii_m[index],
-        side: side(name),
-    };
-    BODY_JOINT_NAMES.iter().enumerate().map(bone).collect()
 }

@@ -2,6 +2,7 @@
 
 pub mod figures;
 pub mod motions;
+pub mod prediction;
 pub mod report;
 pub mod trial;
 

@@ -1,5 +1,6 @@
 //! `report.json`, the table, and what the paper's figures ask of them.
 
+use super::prediction::PredictionReport;
 use crate::body::tracking::{BodyModelKind, BodyTuning};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -74,6 +75,8 @@ pub struct BodyReport {
     /// Particles with which the angular model equals the end-effector model with 250, by the mean over the motions; absent where
     /// the counts do not tell, infinite (null) where none does.
     pub angular_equals_end_effector_250: Option<f64>,
+    /// What the models predict before they see a point: figures 2, 19 and 20.
+    pub predictions: Option<PredictionReport>,
 }
 
 impl BodyReport {
@@ -200,6 +203,7 @@ mod tests {
             tuning: BodyTuning::default(),
             results: vec![cell(100, 0.08), cell(10_000, 0.04)],
             angular_equals_end_effector_250: None,
+            predictions: None,
         };
         let found = report.particles_for(BodyModelKind::Angular, 0.06).unwrap();
         assert!((found - 1000.0).abs() < 1.0e-6, "{found}");
