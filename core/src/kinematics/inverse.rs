@@ -14,9 +14,8 @@ const MAX_HALVINGS: usize = 6;
 /// A step shorter than this (radians) ends the iteration.
 const STEP_TOLERANCE_RAD: f32 = 1.0e-3;
 
-/// A step that promises less log density than this ends the iteration: a draw around the mode costs half an angle's worth of it for each
-/// angle, ten times more for one angle alone, and the expansion keeps the gradient that is left.
-const LEAST_LOG_GAIN: f32 = 0.05;
+/// A step that promises less log density than this ends the iteration: a draw around the mode costs a hundred times more.
+const LEAST_LOG_GAIN: f32 = 0.01;
 
 /// The mode and what is known of the density around it.
 #[derive(Debug, Clone, Copy, PartialEq)]

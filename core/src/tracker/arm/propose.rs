@@ -218,7 +218,7 @@ impl FrameContext<'_> {
         Goal { bone: FOREARM, position_m, precision }
     }
 
-    /// Mode and Laplace draw for one goal, with the log importance ratio of the draw.
+    /// Mode and Laplace draw for one goal, with the log importance ratio of the draw where the weight pays for it.
     fn pose_for(&self, ancestor: &Particle, goal: &Goal, stream: &mut Stream) -> (Particle, f32) {
         let options = self.model.options();
         let jump_rad = length(&(goal.position_m - ancestor.hand_m)) / self.model.geometry().reach_m();
@@ -233,7 +233,8 @@ impl FrameContext<'_> {
             held: 0,
         };
         let mut mode = density.mode_from(&self.starts(ancestor, &goal.position_m), options.solver_steps);
-        if options.variant != Variant::PikPaid {
+        let pays = options.variant == Variant::PikPaid;
+        if !pays {
             // The draw spreads as far as a frame's stiffness lets it: wider, the expansion would leave the goal.
             for (i, variance) in variances.iter().enumerate() {
                 mode.hessian[i][i] += 1.0 / variance - density.stiffness[i];
@@ -250,20 +251,31 @@ impl FrameContext<'_> {
             hand_m: there.ends[FOREARM],
             driver: None,
         };
+        if !pays {
+            return (particle, 0.0);
+        }
         let log_density = density.log_density(&draw.angles_rad, &there);
         (particle, proposal.log_importance_ratio(&draw, log_density, LimitMass::Neglected))
     }
 
-    /// Poses whose hand is at the goal: with the elbow as near to the ancestor's as can be, and with a hanging elbow.
-    fn starts(&self, ancestor: &Particle, goal_m: &Vec3) -> [[f32; ARM_ANGLES]; 2] {
+    /// Poses whose hand is at the goal: with the elbow as near to the ancestor's as can be, and where that breaks a limit with a
+    /// hanging elbow, too.
+    fn starts(&self, ancestor: &Particle, goal_m: &Vec3) -> Vec<[f32; ARM_ANGLES], 2> {
         let geometry = self.model.geometry();
         let hand_m = self.reachable.nearest(goal_m);
         let hanging_m = self.shoulder_m - geometry.up() * geometry.upper_arm_m;
-        [ancestor.elbow_m, hanging_m].map(|wanted_m| {
+        let mut starts = Vec::new();
+        for wanted_m in [ancestor.elbow_m, hanging_m] {
             let elbow_m = nearest_elbow(&self.shoulder_m, &hand_m, geometry.upper_arm_m, geometry.forearm_m, &wanted_m);
             let (elbow, hand) = (elbow_m - self.shoulder_m, hand_m - self.shoulder_m);
-            geometry.angles_from_joints(&elbow, &hand, &ancestor.angles_rad)
-        })
+            let start = geometry.angles_from_joints(&elbow, &hand, &ancestor.angles_rad);
+            // Two fit.
+            let _ = starts.push(start);
+            if self.model.skeleton().clamp(start) == start {
+                break;
+            }
+        }
+        starts
     }
 
     fn particle(&self, angles_rad: [f32; ARM_ANGLES]) -> Particle {
