@@ -14,6 +14,7 @@ pub mod model_text;
 pub mod motion;
 pub mod output;
 pub mod record;
+pub mod report;
 pub mod scene;
 pub mod skin;
 pub mod stereo;

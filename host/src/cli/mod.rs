@@ -17,6 +17,7 @@ pub mod evaluate_skin;
 pub mod export;
 pub mod image_run;
 pub mod record;
+pub mod report;
 pub mod segment;
 pub mod simulate;
 pub mod simulate_stereo;
@@ -49,6 +50,8 @@ pub enum Command {
     /// Track a person: in video frames, point clouds, or angle tables.
     #[command(subcommand)]
     Track(track::Track),
+    /// Make one page about a run or several: frames, plots, tables.
+    Report(report::ReportArgs),
     /// Turn a motion in space or 2D keypoints into an angle table.
     Angles(angles::AnglesArgs),
     /// Find the cycles in angle tables.
@@ -80,6 +83,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
         Command::Demo(args) => demo::run(args),
         Command::Track(track) => track::run(track),
         Command::Angles(args) => angles::run(args),
+        Command::Report(args) => report::run(args),
         Command::Cut(args) => cut::run(args),
         Command::Simulate(args) => simulate::run(args),
         Command::Record(args) => record::run(args),

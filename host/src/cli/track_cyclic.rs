@@ -4,7 +4,7 @@ use crate::cyclic::model::MODEL_VALUE;
 use crate::cyclic::pictures::{OverlayFrames, animation};
 use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::figures;
-use crate::cyclic::report::{Origin, Report};
+use crate::cyclic::report::{Origin, OverlayOrigin, Report};
 use crate::cyclic::tracking::table::{self, MotionCells, NO_MOTION};
 use crate::cyclic::tracking::{
     FilterName, NamedMotion, StartName, Tracked, TrackingOptions, Updates, track, track_bank,
@@ -118,7 +118,18 @@ pub fn run(args: &TrackCyclicArgs) -> Result<()> {
     if let Some(output) = output {
         let name = args.table.display().to_string();
         let model = args.model.join(", ");
-        let origin = Origin { table: &name, model: &model, options: &options, height_m: args.height };
+        let drawn = overlay.as_ref().map(|(frames, folder)| OverlayOrigin {
+            folder: folder.path().display().to_string(),
+            images: frames.names(),
+        });
+        let origin = Origin {
+            table: &name,
+            model: &model,
+            options: &options,
+            height_m: args.height,
+            motions: motions.as_ref(),
+            overlay: drawn.as_ref(),
+        };
         report.write(&origin, &angles, &tracked, &output)?;
         text.push_str(&format!("report: {}\n", output.path().display()));
     }

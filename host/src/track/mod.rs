@@ -10,6 +10,6 @@ mod table;
 
 pub use arms::{ArmSet, ArmView, SideChoice};
 pub use input::{FrameFolder, SkippedImage};
-pub use report::{Inputs, RunReport, StatusCounts};
+pub use report::{Inputs, REPORT_VERSION, RunReport, StatusCounts};
 pub use run::{Event, Interrupted, RATES_HZ, RunOutcome, TrackOptions, TrackRun};
 pub use table::{HEADER, TrackRow};

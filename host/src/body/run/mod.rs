@@ -14,5 +14,5 @@ pub mod tuning_file;
 
 pub use inputs::BodyInputs;
 pub use options::BodyTrackOptions;
-pub use report::BodyRunReport;
+pub use report::{BodyRunReport, REPORT_VERSION};
 pub use track::{BodyEvent, BodyTrackRun};

@@ -39,6 +39,13 @@ impl OverlayFrames {
         Ok(Self { files: list_images(folder)? })
     }
 
+    /// File names in the order of frames.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        let name = |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        self.files.iter().map(name).collect()
+    }
+
     /// Checks that `table` tells where in the picture the person is.
     ///
     /// # Errors

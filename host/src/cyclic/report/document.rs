@@ -1,6 +1,6 @@
 //! `summary.json`: what was run, and what it came to.
 
-use super::{Origin, Report};
+use super::{Origin, OverlayOrigin, Report};
 use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, Range, Repetition, Symmetry};
 use crate::cyclic::angle_table::COLUMNS;
 use crate::cyclic::tracking::{FilterName, StartName, Summary, Tracked, TrackingOptions, Updates};
@@ -98,6 +98,7 @@ pub struct Document<'a> {
     table: &'a str,
     model: &'a str,
     seed: u64,
+    overlay: Option<&'a OverlayOrigin>,
     options: OptionsRecord,
     #[serde(flatten)]
     summary: &'a Summary,
@@ -118,6 +119,7 @@ impl<'a> Document<'a> {
             table: origin.table,
             model: origin.model,
             seed: origin.options.seed,
+            overlay: origin.overlay,
             options: OptionsRecord::new(origin.options, tracked.rate_hz, origin.height_m),
             summary: &report.summary,
             measured_shares: COLUMNS[1..].iter().copied().zip(report.measured_shares).collect(),

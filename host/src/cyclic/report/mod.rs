@@ -3,6 +3,7 @@
 pub mod body;
 pub mod document;
 pub mod joints;
+pub mod measured;
 pub mod plots;
 pub mod series;
 
@@ -11,9 +12,25 @@ use super::anatomy::repetition::{self, Repetition, repetitions};
 use super::anatomy::symmetry::{self, Symmetry, symmetries};
 use super::anatomy::{AnatomicalSeries, CycleCurves};
 use super::export::{mot, series::to_csv, trc};
+use super::tracking::table::{self, MotionCells};
 use super::tracking::{Summary, Tracked, TrackingOptions};
 use crate::output::OutputDir;
 use anyhow::Result;
+use serde::Serialize;
+
+/// File of the estimates.
+pub const ESTIMATES: &str = "estimates.csv";
+/// File of the angles that the filter was given.
+pub const MEASURED: &str = "measured.csv";
+
+/// Pictures of the person's own frames with the figure on them.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct OverlayOrigin {
+    /// Their folder.
+    pub folder: String,
+    /// File names of the images that they were drawn on, in the order of frames.
+    pub images: Vec<String>,
+}
 
 /// Where a run comes from.
 #[derive(Debug, Clone, Copy)]
@@ -26,6 +43,10 @@ pub struct Origin<'a> {
     pub options: &'a TrackingOptions,
     /// Height of the person, metres, which gives positions their scale.
     pub height_m: f64,
+    /// Name and probability of each row's motion, where several were told apart.
+    pub motions: Option<&'a MotionCells>,
+    /// The overlays, where some are drawn.
+    pub overlay: Option<&'a OverlayOrigin>,
 }
 
 /// Everything that the folder holds, before it is written.
@@ -69,6 +90,8 @@ impl Report {
     /// Names the file that cannot be written.
     pub fn write(&self, origin: &Origin<'_>, table: &AngleTable, tracked: &Tracked, output: &OutputDir) -> Result<()> {
         let text = |name: &str, text: String| output.write(name, |writer| Ok(writer.write_all(text.as_bytes())?));
+        text(ESTIMATES, table::to_csv(tracked, origin.motions)?)?;
+        text(MEASURED, measured::to_csv(table, tracked, &origin.options.updates))?;
         text("anatomical.csv", to_csv(&self.series))?;
         text("repetitions.csv", repetition::to_csv(&self.repetitions))?;
         text("curves.csv", self.curves.to_csv())?;

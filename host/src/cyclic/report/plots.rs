@@ -1,6 +1,7 @@
 //! The plots of a run.
 
 use super::Report;
+use super::measured::measured_rad;
 use crate::cyclic::AngleTable;
 use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, COUNT, CyclePointStatistics, PAIRS};
 use crate::cyclic::angle_table::COLUMNS;
@@ -9,7 +10,6 @@ use crate::cyclic::tracking::{Tracked, Updates};
 use crate::draw::plot::{Curve, bars_plot, curves_plot};
 use anyhow::Result;
 use image::RgbImage;
-use std::f64::consts::TAU;
 
 /// Half width of a normal's 90 % band, standard deviations.
 const HALF_90: f64 = 1.644_853_626_951;
@@ -92,10 +92,9 @@ fn trajectory(table: &AngleTable, tracked: &Tracked, updates: &Updates, angle: u
         let std = f64::from(frame.estimate.angle_variance_rad2[angle]).max(0.0).sqrt();
         (seconds(tracked, frame.frame), frame.angles_rad[angle].to_degrees(), HALF_90 * std.to_degrees())
     });
-    let marks = table.rows().iter().zip(&tracked.frames).filter_map(|(row, frame)| {
-        let estimate = frame.angles_rad[angle];
-        let off = row.angles_rad[angle].filter(|_| updates.sees(table.first_frame(), row.frame))? - estimate;
-        Some((seconds(tracked, row.frame), (estimate + off - TAU * (off / TAU).round()).to_degrees()))
+    let marks = table.rows().iter().enumerate().filter_map(|(index, row)| {
+        let measured = measured_rad(table, tracked, updates, index, angle)?;
+        Some((seconds(tracked, row.frame), measured.to_degrees()))
     });
     let marks = marks.collect();
     Curve { marks, ..banded(name, points) }

@@ -58,14 +58,15 @@ fn the_folder_holds_every_file() {
     let (report, tracked, options) = report(&table);
     let folder = tempfile::tempdir().unwrap();
     let output = OutputDir::create(folder.path()).unwrap();
-    let origin = Origin { table: "walk.csv", model: "walking", options: &options, height_m: 1.8 };
+    let origin =
+        Origin { table: "walk.csv", model: "walking", options: &options, height_m: 1.8, motions: None, overlay: None };
     report.write(&origin, &table, &tracked, &output).unwrap();
     let mut names: Vec<String> =
         std::fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     let wanted = "anatomical.csv angles.mot cadence.png curves.csv curves_elbow_flexion.png curves_hip_flexion.png \
-        curves_knee_flexion.png curves_shoulder_flexion.png curves_trunk_lean.png cycle_position.png joints.trc \
-        phase_portrait.png range_of_motion.png repetitions.csv summary.json symmetry.csv trajectories_left_arm.png \
+        curves_knee_flexion.png curves_shoulder_flexion.png curves_trunk_lean.png cycle_position.png estimates.csv joints.trc \
+        measured.csv phase_portrait.png range_of_motion.png repetitions.csv summary.json symmetry.csv trajectories_left_arm.png \
         trajectories_left_leg.png trajectories_right_arm.png trajectories_right_leg.png \
         trajectories_trunk_and_links.png";
     assert_eq!(names.join(" "), wanted);

@@ -1,0 +1,87 @@
+//! The page: one file with styles, script, data and pictures, which loads nothing.
+
+use super::document::Document;
+use super::pictures::{Block, block_name};
+use anyhow::Result;
+use serde::Serialize;
+use std::io::Write;
+
+/// What stands before the data; the policy lets the page ask for nothing from outside.
+const HEAD: &str = include_str!("page/head.html");
+const BODY: &str = include_str!("page/body.html");
+const STYLES: [&str; 3] =
+    [include_str!("page/theme.css"), include_str!("page/layout.css"), include_str!("page/plot.css")];
+/// The parts of the script, each after those that it calls.
+const SCRIPTS: [&str; 13] = [
+    include_str!("page/element.js"),
+    include_str!("page/table_data.js"),
+    include_str!("page/axis.js"),
+    include_str!("page/series_data.js"),
+    include_str!("page/pointer.js"),
+    include_str!("page/plot.js"),
+    include_str!("page/bars.js"),
+    include_str!("page/figure.js"),
+    include_str!("page/player.js"),
+    include_str!("page/table_view.js"),
+    include_str!("page/summary.js"),
+    include_str!("page/theme.js"),
+    include_str!("page/main.js"),
+];
+
+/// Writes the page.
+///
+/// # Errors
+/// What the writer refuses.
+pub fn write_page(document: &Document, blocks: &[Block], writer: &mut dyn Write) -> Result<()> {
+    writeln!(writer, "{HEAD}<style>\n{}</style>\n</head>\n{BODY}", STYLES.concat())?;
+    write_data("data", document, writer)?;
+    for (index, block) in blocks.iter().enumerate() {
+        write_data(&block_name(index), block, writer)?;
+    }
+    writeln!(writer, "<script>\n'use strict';\n(() => {{\n{}}})();\n</script>\n</body>\n</html>", SCRIPTS.concat())?;
+    Ok(())
+}
+
+fn write_data(id: &str, data: &impl Serialize, writer: &mut dyn Write) -> Result<()> {
+    let json = serde_json::to_string(data)?;
+    writeln!(writer, "<script type=\"application/json\" id=\"{id}\">{}</script>", inert(&json))?;
+    Ok(())
+}
+
+/// JSON of the same meaning in which nothing can end a script element or begin a comment.
+fn inert(json: &str) -> String {
+    json.replace('<', "\\u003c")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::document::{FORMAT, Run};
+
+    #[test]
+    fn no_text_of_a_run_can_leave_its_script_element() {
+        let evil = "</script><script>alert(1)</script><!--\u{2028}&quot;";
+        let run = Run { name: evil.to_owned(), ..Run::default() };
+        let document = Document { format: FORMAT, sinew_version: "0", runs: vec![run] };
+        let mut page = Vec::new();
+        write_page(&document, &[Block(vec![None])], &mut page).unwrap();
+        let page = String::from_utf8(page).unwrap();
+        assert!(!page.contains("alert(1)</script>") && !page.contains("<!--"));
+        let data = page.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();
+        let back: serde_json::Value = serde_json::from_str(data).unwrap();
+        assert_eq!(back["runs"][0]["name"], evil);
+        assert_eq!(page.matches("<script").count(), 3);
+        assert_eq!(page.matches("</script>").count(), 3);
+    }
+
+    #[test]
+    fn the_page_names_no_address() {
+        for part in SCRIPTS.iter().chain(&STYLES).chain(&[HEAD, BODY]) {
+            // The name of SVG's elements is an address that nobody asks.
+            let rest = part.replace("http://www.w3.org/2000/svg", "");
+            for sign in ["http:", "https:", "//cdn", "url(", "@import", "import(", "fetch(", "src=\""] {
+                assert!(!rest.contains(sign), "{sign}");
+            }
+        }
+    }
+}
