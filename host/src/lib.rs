@@ -5,6 +5,7 @@ pub mod cli;
 pub mod cloud;
 pub mod config;
 pub mod cyclic;
+pub mod doctor;
 pub mod draw;
 pub mod evaluate;
 pub mod frames;

@@ -5,9 +5,11 @@
 
 pub mod angles;
 pub mod blobs;
+pub mod completions;
 pub mod ctrl_c;
 pub mod cut;
 pub mod demo;
+pub mod doctor;
 pub mod evaluate;
 pub mod evaluate_arm;
 pub mod evaluate_body;
@@ -72,6 +74,12 @@ pub enum Command {
     /// Measure how well something works.
     #[command(subcommand)]
     Evaluate(evaluate::Evaluate),
+    /// Tell what is wrong with a folder, a configuration, a model or a table.
+    Doctor(doctor::DoctorArgs),
+    /// Print a shell's completions of this command.
+    Completions(completions::CompletionsArgs),
+    /// Write manual pages.
+    Man(completions::ManArgs),
 }
 
 /// Runs one parsed command line.
@@ -92,6 +100,9 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
         Command::Blobs(args) => blobs::run(args),
         Command::Train(train) => train::run(train),
         Command::Evaluate(evaluate) => evaluate::run(evaluate),
+        Command::Doctor(args) => doctor::run(args),
+        Command::Completions(args) => completions::completions(args),
+        Command::Man(args) => completions::man(args),
     }
 }
 

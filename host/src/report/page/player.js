@@ -63,7 +63,8 @@ class Transport {
     const frames = this.players.map((player) => player.show(this.index));
     const rate = this.rate();
     const time = rate ? `, ${(this.index / rate).toFixed(2)} s` : '';
-    this.place.textContent = `frame ${frames[0]} (${this.index + 1} of ${this.count}${time})`;
+    const longest = frames[this.players.findIndex((player) => player.count === this.count)];
+    this.place.textContent = `frame ${longest} (${this.index + 1} of ${this.count}${time})`;
     this.onShow(frames);
   }
 

@@ -1,0 +1,52 @@
+//! `sinew doctor`: what is wrong with an input.
+
+use super::stdout::write_all;
+use crate::doctor::{Diagnosis, Severity, examine};
+use anyhow::{Result, bail};
+use clap::Args;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Options of `sinew doctor`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  sinew doctor my_frames my.toml my_skin.json")]
+pub struct DoctorArgs {
+    /// Folders of images, of clouds or of runs; configurations (.toml), models and persons (.json), angle tables (.csv).
+    #[arg(value_name = "PATH", required = true)]
+    pub paths: Vec<PathBuf>,
+    /// Print JSON in place of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Examines every path and tells what was found.
+///
+/// # Errors
+/// One of them has a problem, or the text cannot be written.
+pub fn run(args: &DoctorArgs) -> Result<()> {
+    let all: Vec<Diagnosis> = args.paths.iter().map(|path| examine(path)).collect();
+    let text = if args.json { serde_json::to_string_pretty(&all)? + "\n" } else { told(&all) };
+    write_all(text.as_bytes())?;
+    let ill = all.iter().filter(|diagnosis| diagnosis.worst() == Severity::Problem).count();
+    match ill {
+        0 => Ok(()),
+        _ => bail!("{ill} of {} have a problem; the lines above tell the remedy", all.len()),
+    }
+}
+
+fn told(all: &[Diagnosis]) -> String {
+    let mut text = String::new();
+    for diagnosis in all {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{} ({})", diagnosis.path, diagnosis.what);
+        for finding in &diagnosis.findings {
+            let sign = match finding.severity {
+                Severity::Good => "ok",
+                Severity::Warning => "warning",
+                Severity::Problem => "problem",
+            };
+            let _ = writeln!(text, "  {sign:<8} {}", finding.text);
+        }
+    }
+    text
+}

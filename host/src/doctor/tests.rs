@@ -1,0 +1,89 @@
+use super::*;
+use crate::config::DEFAULT_FILE;
+use crate::skin::model::DEFAULT_SKIN;
+use image::{Rgb, RgbImage};
+use std::fs;
+
+fn texts(diagnosis: &Diagnosis) -> String {
+    diagnosis.findings.iter().map(|finding| format!("{:?}: {}\n", finding.severity, finding.text)).collect()
+}
+
+fn frames(folder: &Path, names: &[&str], size: (u32, u32), colour: [u8; 3]) {
+    for name in names {
+        let mut image = RgbImage::from_pixel(size.0, size.1, Rgb(colour));
+        for (x, y) in [(4, 4), (5, 4), (4, 5), (5, 5)] {
+            image.put_pixel(x, y, Rgb([224, 172, 140]));
+        }
+        image.save(folder.join(name)).unwrap();
+    }
+}
+
+#[test]
+fn sound_frames_are_good() {
+    let folder = tempfile::tempdir().unwrap();
+    frames(folder.path(), &["f_1.png", "f_2.png", "f_10.png"], (20, 16), [60, 90, 200]);
+    fs::rename(folder.path().join("f_10.png"), folder.path().join("f_3.png")).unwrap();
+    let diagnosis = examine(folder.path());
+    assert_eq!(
+        (diagnosis.worst(), diagnosis.what.as_str()),
+        (Severity::Good, "folder of images"),
+        "{}",
+        texts(&diagnosis)
+    );
+}
+
+#[test]
+fn what_is_wrong_with_frames_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    frames(folder.path(), &["f_1.png", "f_2.png"], (20, 16), [10, 20, 30]);
+    frames(folder.path(), &["f_9.png"], (22, 16), [10, 20, 30]);
+    fs::write(folder.path().join("f_4.png"), "no picture").unwrap();
+    let diagnosis = examine(folder.path());
+    let found = texts(&diagnosis);
+    for sentence in [
+        "Warning: ",
+        "f_4.png",
+        "Problem: images differ in size (2 of 20x16, 1 of 22x16)",
+        "5 numbers between 1 and 9",
+        "are dark",
+    ] {
+        assert!(found.contains(sentence), "{sentence}\n{found}");
+    }
+    assert_eq!(diagnosis.worst(), Severity::Problem);
+}
+
+#[test]
+fn configurations_models_and_tables_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases: [(&str, &str, Severity, &str); 9] = [
+        ("arm.toml", DEFAULT_FILE, Severity::Good, "track arm"),
+        ("body.toml", "[root]\npersistence = 0.4\n", Severity::Good, "track body"),
+        ("typo.toml", "[tracker]\nparticle = 50\n", Severity::Problem, "particles"),
+        ("cut.json", "{\"format\": \"sinew-", Severity::Problem, "no JSON"),
+        ("model.json", "{\"format\": \"sinew-cyclic\", \"version\": 99}", Severity::Problem, "model.json"),
+        ("other.json", "{\"a\": 1}", Severity::Warning, "no `format`"),
+        ("table.csv", "frame,neck_rad\n", Severity::Problem, "table.csv"),
+        ("notes.txt", "", Severity::Problem, "not known"),
+        ("nothing.csv", "", Severity::Problem, ""),
+    ];
+    for (name, text, severity, sentence) in cases {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        let diagnosis = examine(&path);
+        assert_eq!(diagnosis.worst(), severity, "{name}: {}", texts(&diagnosis));
+        assert!(texts(&diagnosis).contains(sentence), "{name}: {}", texts(&diagnosis));
+    }
+    assert!(texts(&examine(&folder.path().join("gone"))).contains("no such file"));
+    let empty = tempfile::tempdir().unwrap();
+    assert_eq!(examine(empty.path()).worst(), Severity::Problem);
+    assert!(["gaussian", "histogram"].contains(&DEFAULT_SKIN));
+}
+
+#[test]
+fn shipped_models_are_good() {
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    for (name, what) in [("walking.json", "motion model"), ("skin_gaussian.json", "skin model")] {
+        let diagnosis = examine(&models.join(name));
+        assert_eq!((diagnosis.worst(), diagnosis.what.as_str()), (Severity::Good, what), "{}", texts(&diagnosis));
+    }
+}
