@@ -1,6 +1,7 @@
 //! The body's models on real motion before the simulated camera, as the book compares them (docs/measurements.md). Runs in release where
 //! `../shared/data` is at hand, and says so where not.
 
+use sinew::body::BodyPart;
 use sinew::body::tracking::{BodyModelKind, BodyTuning};
 use sinew::evaluate::body::MotionChoice;
 use sinew::evaluate::body::trial::{SeenMotion, TrialResult, trial};
@@ -12,6 +13,9 @@ const LARGEST_END_EFFECTOR_M: f64 = 0.032;
 const LARGEST_GUIDED_M: f64 = 0.026;
 /// Largest error (34) of the pelvic lift model with 100 particles, metres.
 const LARGEST_LIFT_M: f64 = 0.03;
+
+/// Largest mean errors (34) of an upper body, metres: end-effector with 100 particles, guided with 25.
+const LARGEST_UPPER_M: [f64; 2] = [0.03, 0.025];
 
 /// Arms over fixed legs, a walk, jumping jacks: none of them was tuned on.
 const MOTIONS: [&str; 3] =
@@ -43,6 +47,30 @@ fn goals_in_space_beat_angles_and_guided_proposals_beat_both() {
     assert!(end_effector < angular, "{end_effector} m, angular {angular} m");
     assert!((0.01..=LARGEST_END_EFFECTOR_M).contains(&end_effector), "end-effector {end_effector} m");
     assert!((0.01..=LARGEST_GUIDED_M).contains(&guided), "guided {guided} m");
+}
+
+/// A camera that sees no legs: arms that wave and direct traffic.
+#[test]
+fn an_upper_body_is_followed_without_legs() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/mocap");
+    if cfg!(debug_assertions) || !folder.is_dir() {
+        eprintln!("skipped: only in release and with ../shared/data beside the project");
+        return;
+    }
+    let motions = [MOTIONS[0], "cmu-expmap/train_directing_traffic_1.txt@0-5"];
+    let mut means = [0.0; 2];
+    for motion in motions {
+        let motion: MotionChoice = format!("{}/{motion}", folder.display()).parse().unwrap();
+        let seen = motion.read(None).unwrap().seen(BodyPart::Upper, 1).unwrap();
+        let cells = [(BodyModelKind::EndEffector, 100), (BodyModelKind::Guided, 25)];
+        for (mean, (model, particles)) in means.iter_mut().zip(cells) {
+            *mean += tracked(&seen, model, particles).error_m / motions.len() as f64;
+        }
+    }
+    println!("upper body: {means:.4?} m");
+    for (error, largest) in means.into_iter().zip(LARGEST_UPPER_M) {
+        assert!((0.008..=largest).contains(&error), "{means:?} m");
+    }
 }
 
 /// The paper's own experiment: 100 particles follow six repetitions without loss.

@@ -402,6 +402,7 @@ fn what_was_finished_before_ctrl_c_is_kept() {
     let scene = Scene::new("stick-wave");
     let options = BodyTrackOptions {
         folder: scene.path("in"),
+        part: None,
         model: BodyModelKind::Guided,
         particles: 30,
         skeleton: None,

@@ -5,6 +5,7 @@ pub mod body_measures;
 pub mod full_body;
 pub mod stick_figure;
 pub mod tree;
+pub mod upper_body;
 
 pub use arm::{ArmGeometry, Side};
 pub use body_measures::BodyMeasures;

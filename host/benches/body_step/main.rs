@@ -1,7 +1,9 @@
-//! One step of the body tracker on the built-in scene with a stick (2000 points, 16 capsules): frames a second with all threads by model and number
-//! of particles, the time relative to the angular model with as many, and how it grows with the points. `RAYON_NUM_THREADS=1` for one thread.
+//! One step of the body tracker on the built-in scene with a stick (2000 points; a whole body of 16 capsules, an upper one of 8): frames a second with
+//! all threads by model and number of particles, the time relative to the angular model with as many, and how it grows with points, particles and
+//! bones. `RAYON_NUM_THREADS=1` for one thread.
 
 use criterion::Criterion;
+use sinew::body::BodyPart;
 use sinew::body::tracking::{BodyFilter, BodyModelKind, BodyTuning};
 use sinew::evaluate::body::MotionChoice;
 use sinew::evaluate::body::trial::SeenMotion;
@@ -16,8 +18,9 @@ const PASSES: u64 = 3;
 
 /// Seconds of each step of one pass, every `stride`-th block of points kept.
 fn pass_s(seen: &SeenMotion, kind: BodyModelKind, particles: usize, stride: usize, seed: u64) -> Vec<f64> {
-    let mut filter = BodyFilter::new(kind, BodyTuning::default(), &seen.measures, seen.first_rad, particles, seed)
-        .expect("usable numbers");
+    let who = (&seen.measures, seen.first_rad);
+    let mut filter =
+        BodyFilter::of_part(seen.part, kind, BodyTuning::default(), who, particles, seed).expect("usable numbers");
     let step = |(frame, blocks): (usize, &Vec<_>)| {
         let kept: Vec<_> = blocks.iter().step_by(stride).copied().collect();
         let stick = seen.stick.get(frame).copied().unwrap_or(StickSight::Unseen);
@@ -34,24 +37,49 @@ fn median_s(seen: &SeenMotion, kind: BodyModelKind, particles: usize, stride: us
     times[times.len() / 2]
 }
 
-fn main() {
-    let seen = MotionChoice::StickWave.seen(None, 1).expect("a built-in scene");
-    println!("{} threads, 2000 points, median of a step", rayon::current_num_threads());
-    println!("{:16} {:>9} {:>12} {:>10} {:>14}", "model", "particles", "milliseconds", "frames/s", "over angular");
+/// Models against each other.
+fn print_models(seen: &SeenMotion) {
+    let part = seen.part.name();
+    println!(
+        "{:6} {:16} {:>9} {:>12} {:>10} {:>14}",
+        "body", "model", "particles", "milliseconds", "frames/s", "over angular"
+    );
     for particles in [100, 500] {
-        let angular = median_s(&seen, BodyModelKind::Angular, particles, 1);
+        let angular = median_s(seen, BodyModelKind::Angular, particles, 1);
         for kind in [BodyModelKind::Angular, BodyModelKind::EndEffector, BodyModelKind::Stick, BodyModelKind::Guided] {
-            let time = median_s(&seen, kind, particles, 1);
+            let time = median_s(seen, kind, particles, 1);
             let (name, ratio) = (kind.name(), time / angular);
-            println!("{name:16} {particles:>9} {:>12.2} {:>10.1} {ratio:>14.2}", 1.0e3 * time, 1.0 / time);
+            println!("{part:6} {name:16} {particles:>9} {:>12.2} {:>10.1} {ratio:>14.2}", 1.0e3 * time, 1.0 / time);
         }
     }
-    for stride in [1, 2, 4] {
-        let time = median_s(&seen, BodyModelKind::EndEffector, 500, stride);
-        println!("end-effector, 500 particles, {} points: {:.2} ms", 2000 / stride, 1.0e3 * time);
+}
+
+/// Milliseconds of end-effector by points (columns) and particles (rows).
+fn print_growth(seen: &SeenMotion) {
+    let strides = [1, 2, 4, 8];
+    print!("{:6} {:>9}", seen.part.name(), "particles");
+    for stride in strides {
+        print!(" {:>9} points", 2000 / stride);
+    }
+    for particles in [125, 250, 500, 1000] {
+        print!("\n{:6} {particles:>9}", "");
+        for stride in strides {
+            print!(" {:>16.2}", 1.0e3 * median_s(seen, BodyModelKind::EndEffector, particles, stride));
+        }
+    }
+    println!();
+}
+
+fn main() {
+    let read = MotionChoice::StickWave.read(None).expect("a built-in motion");
+    let [whole, upper] = [BodyPart::Whole, BodyPart::Upper].map(|part| read.seen(part, 1).expect("a built-in scene"));
+    if !std::env::args().any(|argument| argument == "--test") {
+        println!("{} threads, 2000 points, median of a step", rayon::current_num_threads());
+        [&whole, &upper].into_iter().for_each(print_models);
+        [&whole, &upper].into_iter().for_each(print_growth);
     }
     let mut criterion = Criterion::default().configure_from_args();
     criterion.bench_function("guided, 100 particles", |bencher| {
-        bencher.iter(|| pass_s(&seen, BodyModelKind::Guided, 100, 1, 1));
+        bencher.iter(|| pass_s(&whole, BodyModelKind::Guided, 100, 1, 1));
     });
 }

@@ -21,7 +21,7 @@ const ROUNDS: usize = 101;
 /// How near the hand has to come, metres.
 const TOLERANCE_M: f32 = 1.0e-3;
 /// A step ends the search when it promises less log density than this (`kinematics::inverse`): half of it is what a miss of the tolerance may cost.
-const LEAST_LOG_GAIN: f32 = 0.05;
+const LEAST_LOG_GAIN: f32 = 0.01;
 const MOST_STEPS: usize = 100;
 /// Greatest difference of an angle between the start and the pose that the goal is of, radians.
 const CHANGE_RAD: f32 = 0.3;

@@ -2,6 +2,7 @@
 //!
 //! The files' axes are the camera's turned by half about x: x to the picture's right, y up, z towards the camera.
 
+use crate::body::BodyPart;
 use crate::motion::export::{BvhFrame, ExportError, LayoutJoint, SkeletonLayout};
 use sinew_core::math::{Mat3, Vec3, axis_rotation};
 use sinew_core::skeleton::full_body::{
@@ -24,8 +25,8 @@ struct Node {
     turns: Option<usize>,
 }
 
-/// The 17 joints by their names, and `trunk`: one joint turns all that hangs on it, and neck and hips do not turn alike.
-fn nodes() -> Vec<Node> {
+/// The joints of `part` by their names, and `trunk`: one joint turns all that hangs on it, and neck and hips do not turn alike.
+fn nodes(part: BodyPart) -> Vec<Node> {
     let joint = |bone: usize, parent, turns| Node { name: BODY_JOINT_NAMES[bone], parent, between: vec![bone], turns };
     let mut nodes = vec![
         Node { name: BODY_JOINT_NAMES[PELVIS], parent: None, between: Vec::new(), turns: Some(PELVIS) },
@@ -42,7 +43,7 @@ fn nodes() -> Vec<Node> {
         nodes.push(joint(UPPER_ARMS[side], Some(first), Some(FOREARMS[side])));
         nodes.push(joint(FOREARMS[side], Some(first + 1), None));
     }
-    for side in 0..2 {
+    for side in if part == BodyPart::Whole { 0..2 } else { 0..0 } {
         let first = nodes.len();
         nodes.push(joint(HIPS[side], Some(0), Some(THIGHS[side])));
         nodes.push(joint(THIGHS[side], Some(first), Some(SHANKS[side])));
@@ -62,7 +63,7 @@ pub fn upwards(place_m: &Vec3) -> Vec3 {
 ///
 /// # Errors
 /// Offsets that are not finite.
-pub fn body_layout(skeleton: &BodySkeleton) -> Result<SkeletonLayout, ExportError> {
+pub fn body_layout(part: BodyPart, skeleton: &BodySkeleton) -> Result<SkeletonLayout, ExportError> {
     let offset_m = |bone: &usize| skeleton.bones()[*bone].offset_m;
     let end_m = |name: &str| match name {
         "head" => Some(Vec3::new(0.0, CROWN_M, 0.0)),
@@ -75,17 +76,17 @@ pub fn body_layout(skeleton: &BodySkeleton) -> Result<SkeletonLayout, ExportErro
         offset_m: upwards(&node.between.iter().map(offset_m).sum()),
         end_m: end_m(node.name),
     };
-    SkeletonLayout::new(nodes().into_iter().map(joint).collect())
+    SkeletonLayout::new(nodes(part).into_iter().map(joint).collect())
 }
 
 /// A pose of the body, for the layout of [`body_layout`].
 #[must_use]
-pub fn bvh_frame(skeleton: &BodySkeleton, angles_rad: &[f32; BODY_ANGLES]) -> BvhFrame {
+pub fn bvh_frame(part: BodyPart, skeleton: &BodySkeleton, angles_rad: &[f32; BODY_ANGLES]) -> BvhFrame {
     let rotations = local_rotations(skeleton, angles_rad);
     let turned = |node: Node| node.turns.map_or_else(Mat3::identity, |bone| rotation_upwards(&rotations[bone]));
     BvhFrame {
         root_position_m: upwards(&Vec3::new(angles_rad[0], angles_rad[1], angles_rad[2])),
-        local_rotations: nodes().into_iter().map(turned).collect(),
+        local_rotations: nodes(part).into_iter().map(turned).collect(),
     }
 }
 
@@ -115,6 +116,9 @@ mod tests {
     use crate::motion::bvh::parse;
     use crate::motion::export::write_bvh;
     use proptest::prelude::*;
+
+    const WHOLE: BodyPart = BodyPart::Whole;
+
     use sinew_core::kinematics::forward::posture;
     use sinew_core::skeleton::BodyMeasures;
     use sinew_core::skeleton::full_body::full_body;
@@ -132,7 +136,7 @@ mod tests {
                 angles[i] = low + (high - low) * shares[i];
             }
             let mut bytes = Vec::new();
-            write_bvh(&body_layout(&skeleton).unwrap(), &[bvh_frame(&skeleton, &angles)], 15.0, &mut bytes).unwrap();
+            write_bvh(&body_layout(WHOLE, &skeleton).unwrap(), &[bvh_frame(WHOLE, &skeleton, &angles)], 15.0, &mut bytes).unwrap();
             let motion = parse(&String::from_utf8(bytes).unwrap(), Path::new("track.bvh"), Some(0.01)).unwrap();
             let ends = posture(&skeleton, &Vec3::zeros(), &angles).ends;
             for (name, end) in BODY_JOINT_NAMES.iter().zip(&ends) {

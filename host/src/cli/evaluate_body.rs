@@ -1,6 +1,7 @@
 //! `sinew evaluate body`
 
-use crate::body::run::tuning_file;
+use crate::body::BodyPart;
+use crate::body::run::{inputs::check_part, tuning_file};
 use crate::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
 use crate::evaluate::body::trial::{SeenMotion, TrialResult, trial};
 use crate::evaluate::body::{BodyReport, BodyResult, Measured, MotionChoice, figures::figures, prediction};
@@ -21,6 +22,9 @@ pub struct EvaluateBodyArgs {
     /// Skeleton of the .amc files that have none in their folder.
     #[arg(long, value_name = "FILE.asf")]
     pub skeleton: Option<PathBuf>,
+    /// How much of the body the camera sees and the models track.
+    #[arg(long, value_enum, default_value_t = BodyPart::Whole)]
+    pub body: BodyPart,
     /// Models to compare.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "end-effector,angular,guided")]
     pub models: Vec<BodyModelKind>,
@@ -50,6 +54,9 @@ pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
             "--particles must be whole numbers from 1 to {MAX_BODY_PARTICLES}, not {count}"
         );
     }
+    for &model in &args.models {
+        check_part(args.body, model)?;
+    }
     let tuning = args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?;
     let output = OutputDir::create(&args.out)?;
     let cells = args.motion.len() * args.models.len() * args.particles.len();
@@ -57,16 +64,17 @@ pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
     progress.set_style(ProgressStyle::with_template("{pos}/{len} trials {wide_bar} {eta}")?);
     let (mut results, mut predicted) = (Vec::new(), None);
     for motion in &args.motion {
-        let seen: Vec<SeenMotion> = (1..=args.trials)
-            .into_par_iter()
-            .map(|seed| motion.seen(args.skeleton.as_deref(), seed))
-            .collect::<Result<_>>()?;
+        let read = motion.read(args.skeleton.as_deref())?;
+        let seeds = (1..=args.trials).into_par_iter();
+        let seen: Vec<SeenMotion> = seeds.map(|seed| read.seen(args.body, seed)).collect::<Result<_>>()?;
+        let of_truth: Vec<f64> = seen.iter().map(SeenMotion::smoothness_m).collect();
+        let truth = (motion.name(), Measured::of(&of_truth).mean);
         if predicted.is_none() {
             predicted = seen.first().map(|seen| prediction::predict(seen, &tuning)).transpose()?;
         }
         for &model in &args.models {
             for &particles in &args.particles {
-                results.push(cell(motion, &seen, model, &tuning, particles, &progress)?);
+                results.push(cell(&truth, &seen, model, &tuning, particles, &progress)?);
             }
         }
     }
@@ -95,9 +103,9 @@ pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
     super::stdout::write_all(text.as_bytes())
 }
 
-/// All trials of one cell, one after the other: a step takes all threads.
+/// All trials of one cell, one after the other: a step takes all threads. The motion comes by its name and its own smoothness, metres.
 fn cell(
-    motion: &MotionChoice,
+    (name, truth_smoothness_m): &(String, f64),
     seen: &[SeenMotion],
     model: BodyModelKind,
     tuning: &BodyTuning,
@@ -111,13 +119,13 @@ fn cell(
     }
     let of = |value: fn(&TrialResult) -> f64| Measured::of(&trials.iter().map(value).collect::<Vec<_>>());
     Ok(BodyResult {
-        motion: motion.name(),
+        motion: name.clone(),
         model,
         particles,
         error_m: of(|trial| trial.error_m),
         joint_error_m: of(|trial| trial.joint_error_m),
         smoothness_m: of(|trial| trial.smoothness_m),
-        truth_smoothness_m: Measured::of(&seen.iter().map(SeenMotion::smoothness_m).collect::<Vec<_>>()).mean,
+        truth_smoothness_m: *truth_smoothness_m,
         seconds_per_frame: of(|trial| trial.seconds_per_frame).mean,
         effective_share: of(|trial| trial.effective_share).mean,
     })

@@ -2,7 +2,7 @@
 
 use super::simulate::{clear_frames, pair};
 use crate::body::recording::DEFAULT_RATE_HZ;
-use crate::body::{BodyRecording, BodyRecordingOptions, Placement};
+use crate::body::{BodyPart, BodyRecording, BodyRecordingOptions, Placement};
 use crate::output::OutputDir;
 use crate::stereo::stick_wave::StickEnds;
 use crate::stereo::{Hidden, StereoOptions, StereoScene, pelvic_lift, stick_wave};
@@ -39,6 +39,9 @@ pub struct SimulateStereoArgs {
     /// Frames per second of the camera.
     #[arg(long, value_name = "HZ", default_value_t = DEFAULT_RATE_HZ)]
     pub rate: f32,
+    /// How much of the body the camera sees; the points are on it alone.
+    #[arg(long, value_enum, default_value_t = BodyPart::Whole)]
+    pub body: BodyPart,
     /// Points in a frame, outliers included.
     #[arg(long, value_name = "N", default_value_t = 2000)]
     pub points: usize,
@@ -87,6 +90,7 @@ pub fn run(args: &SimulateStereoArgs) -> Result<()> {
         ensure!(*last < frames, "--hide names frame {last}; the last one is {}", frames.saturating_sub(1));
     }
     let options = StereoOptions {
+        part: args.body,
         points: args.points,
         outliers: args.outliers,
         patches: args.patches,

@@ -2,6 +2,7 @@
 
 use super::ctrl_c::stop_flag;
 use super::stdout::write_all;
+use crate::body::BodyPart;
 use crate::body::run::{BodyEvent, BodyRunReport, BodyTrackOptions, BodyTrackRun, tuning_file};
 use crate::body::tracking::{BodyModelKind, BodyTuning};
 use crate::cloud::MAX_POINTS;
@@ -20,6 +21,9 @@ pub struct TrackBodyArgs {
     /// Folder for track.csv, track.bvh, track.trc, run.json and what else is asked for; files of these names are replaced.
     #[arg(long, value_name = "DIR", required_unless_present = "print_config")]
     pub out: Option<PathBuf>,
+    /// How much of the body is tracked: a camera that sees no legs asks for the upper part [default: that of DIR/run.json, or whole].
+    #[arg(long, value_enum)]
+    pub body: Option<BodyPart>,
     /// How particles move.
     #[arg(long, value_enum, default_value_t = BodyModelKind::Guided)]
     pub model: BodyModelKind,
@@ -75,6 +79,7 @@ pub fn run(args: &TrackBodyArgs) -> Result<()> {
     let out = args.out.as_deref().context("no --out was given")?;
     let options = BodyTrackOptions {
         folder: args.folder.clone().context("no DIR was given")?,
+        part: args.body,
         model: args.model,
         particles: args.particles.unwrap_or(BodyTrackOptions::default_particles(args.model)),
         skeleton: args.skeleton.clone(),

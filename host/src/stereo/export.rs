@@ -7,7 +7,7 @@ use super::stick_file::stick_csv;
 use super::stick_wave::StickEnds;
 use super::truth::truth_csv;
 use crate::body::pose_file::pose_json;
-use crate::body::{BodyFile, fit_pose};
+use crate::body::{BodyFile, BodyPart, fit_pose};
 use crate::cloud::write_ply;
 use crate::output::OutputDir;
 use anyhow::Result;
@@ -39,6 +39,8 @@ pub struct StereoReport<'a> {
     pub camera: &'a StereoCamera,
     /// Height of the camera above the floor, metres: the floor is the plane y = this.
     pub floor_y_m: f32,
+    /// How much of the body the camera saw.
+    pub body: BodyPart,
     /// Points asked for in a frame.
     pub points: usize,
     /// Points found in a frame, the mean.
@@ -95,6 +97,7 @@ impl StereoScene {
             rate_hz: self.recording().rate_hz,
             camera: &options.camera,
             floor_y_m,
+            body: options.part,
             points: options.points,
             points_mean: counts.iter().sum::<usize>() as f32 / counts.len().max(1) as f32,
             outliers: options.outliers,

@@ -65,6 +65,9 @@ fn layout() -> impl Iterator<Item = (usize, usize, BodyDirection, Place)> {
 pub fn markers(joints: &BodyJoints, radii_m: &[f32; BODY_BONES]) -> Vec<Option<Vec3>> {
     let [upper, lower] = [COLLARS, HIPS].map(|pair| axes(joints, pair));
     let marker = |(bone, side, rest, (share, direction)): (usize, usize, BodyDirection, Place)| {
+        if !(radii_m[bone] > 0.0) {
+            return None;
+        }
         let is_leg = THIGHS.contains(&bone) || SHANKS.contains(&bone);
         let [left, up, front] = if is_leg { lower } else { upper }?;
         let outward = if side == 0 { left } else { -left };

@@ -6,13 +6,13 @@ use super::hidden::Hidden;
 use super::markers::markers;
 use super::patches::{Disc, Patches};
 use super::visible::{VisiblePixel, capsules, visible_pixels};
-use crate::body::{BodyJoints, BodyRecording, measure};
+use crate::body::{BodyJoints, BodyPart, BodyRecording, measure};
 use anyhow::{Result, ensure};
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
 use sinew_core::random::Stream;
 use sinew_core::skeleton::BodyMeasures;
-use sinew_core::skeleton::full_body::{BODY_BONES, body_radii_m};
+use sinew_core::skeleton::full_body::BODY_BONES;
 
 /// Draws of a pixel for one point before the point is left out: nearly all of the body is behind patches.
 const MAX_TRIES: usize = 16;
@@ -28,6 +28,8 @@ pub const MOST_POINTS: usize = 1_000_000;
 pub struct StereoOptions {
     /// The camera.
     pub camera: StereoCamera,
+    /// How much of the body the camera sees.
+    pub part: BodyPart,
     /// Points of a frame before hidden ones are left out, outliers included.
     pub points: usize,
     /// Share of the points that are outliers.
@@ -42,7 +44,15 @@ pub struct StereoOptions {
 
 impl Default for StereoOptions {
     fn default() -> Self {
-        Self { camera: StereoCamera::default(), points: 2000, outliers: 0.1, patches: 4, hidden: Vec::new(), seed: 1 }
+        Self {
+            camera: StereoCamera::default(),
+            part: BodyPart::Whole,
+            points: 2000,
+            outliers: 0.1,
+            patches: 4,
+            hidden: Vec::new(),
+            seed: 1,
+        }
     }
 }
 
@@ -71,7 +81,7 @@ impl StereoScene {
         ensure!(!recording.joints_m.is_empty(), "the recording has no frame");
         let measures = measure(&recording)?;
         let patches = Patches::new(options.seed, options.patches);
-        Ok(Self { recording, measures, radii_m: body_radii_m(&measures), options, patches })
+        Ok(Self { recording, measures, radii_m: options.part.radii_m(&measures), options, patches })
     }
 
     /// Number of frames, at least one.

@@ -2,6 +2,7 @@
 
 use super::measures_source::read_measures;
 use super::options::{BodyTrackOptions, check_rate};
+use crate::body::BodyPart;
 use crate::body::pose_file::read_pose;
 use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::tracking::BodyModelKind;
@@ -43,6 +44,8 @@ pub struct BodyInputs {
     pub clouds: CloudFolder,
     /// Frames in a second.
     pub rate_hz: f32,
+    /// How much of the body is tracked.
+    pub part: BodyPart,
     /// The person.
     pub measures: BodyMeasures,
     /// The first pose inside the limits; `None` if it has to be found in the points.
@@ -65,6 +68,7 @@ struct SceneReport {
     rate_hz: Option<f32>,
     camera: Option<StereoCamera>,
     floor_y_m: Option<f32>,
+    body: Option<BodyPart>,
 }
 
 impl BodyInputs {
@@ -88,6 +92,8 @@ impl BodyInputs {
         let measures = measures(options, skeleton.as_deref(), &mut notes)?;
         let init = options.init.clone().or_else(|| beside("first_pose.json"));
         let first_rad = init.as_deref().map(|path| first_pose(path, &measures, &mut notes)).transpose()?;
+        let part = options.part.or(scene.body).unwrap_or_default();
+        check_part(part, options.model)?;
         let mut stick_file = options.stick.clone();
         let mut stick = BTreeMap::new();
         if options.model == BodyModelKind::Stick {
@@ -105,6 +111,7 @@ impl BodyInputs {
         Ok(Self {
             clouds,
             rate_hz,
+            part,
             measures,
             first_rad,
             stick,
@@ -121,6 +128,21 @@ impl BodyInputs {
             notes,
         })
     }
+}
+
+/// Refuses a model of limbs that are not tracked.
+///
+/// # Errors
+/// Names both options.
+pub fn check_part(part: BodyPart, model: BodyModelKind) -> Result<()> {
+    ensure!(
+        part == BodyPart::Whole || model != BodyModelKind::PelvicLift,
+        "--model {} holds the feet, and --body {} has none; choose another model, or --body {}",
+        model.name(),
+        part.name(),
+        BodyPart::Whole.name()
+    );
+    Ok(())
 }
 
 fn read_scene(path: &Path) -> Result<SceneReport> {

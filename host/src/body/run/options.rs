@@ -1,5 +1,6 @@
 //! What decides the result of a run.
 
+use crate::body::BodyPart;
 use crate::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
 use anyhow::{Result, ensure};
 use serde::Serialize;
@@ -15,6 +16,8 @@ pub const MAX_THREADS: usize = 256;
 pub struct BodyTrackOptions {
     /// Folder of clouds, or a folder that holds them in `points/`.
     pub folder: PathBuf,
+    /// How much of the body is tracked; what the folder's `run.json` says, or all, where there is none.
+    pub part: Option<BodyPart>,
     /// The motion model.
     pub model: BodyModelKind,
     /// Number of particles.

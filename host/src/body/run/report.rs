@@ -2,7 +2,7 @@
 
 use super::inputs::{BodyInputs, InputFiles};
 use super::options::BodyTrackOptions;
-use crate::body::BodyFile;
+use crate::body::{BodyFile, BodyPart};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -74,6 +74,8 @@ pub struct BodyRunReport {
     pub notes: Vec<String>,
     /// Where the inputs came from.
     pub inputs: InputFiles,
+    /// How much of the person is tracked.
+    pub part: BodyPart,
     /// The person.
     pub body: BodyFile,
     /// All options, with the numbers of the models.
@@ -103,6 +105,7 @@ impl BodyRunReport {
             skipped: Vec::new(),
             notes: inputs.notes.clone(),
             inputs: inputs.files.clone(),
+            part: inputs.part,
             body: BodyFile::from(&inputs.measures),
             options,
         }

@@ -49,7 +49,7 @@ impl BodyScore {
             self.marker_m.add(f64::from(surface.skin_distance_m(marker_m)));
         }
         let mut frame = RunningMean::default();
-        for (found_m, true_m) in estimate.ends_m.iter().zip(joints_m) {
+        for (found_m, true_m) in estimate.ends_m.iter().zip(joints_m).take(filter.part().bones()) {
             if let Some(true_m) = true_m {
                 let distance_m = f64::from((found_m - true_m).norm());
                 self.joint_m.add(distance_m);

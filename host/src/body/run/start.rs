@@ -1,5 +1,6 @@
 //! Where a body begins of which nothing is known but points: upright, facing the camera, then laid onto them.
 
+use crate::body::BodyPart;
 use crate::body::tracking::tuning::PointTuning;
 use anyhow::Result;
 use sinew_core::kinematics::inverse::{PoseDensity, Solve};
@@ -9,13 +10,15 @@ use sinew_core::observation::point_likelihood::PointLikelihood;
 use sinew_core::pik::guided::GuidedDensity;
 use sinew_core::pik::motion::BodyScene;
 use sinew_core::skeleton::BodyMeasures;
-use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, body_radii_m, full_body};
+use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, full_body};
 use sinew_core::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
 
 /// Points lie on the near skin, so the body's middle is as much behind theirs, metres.
 const HALF_DEPTH_M: f32 = 0.1;
 /// Where a body stands if there are no points at all, metres before the camera.
 const NO_POINTS_Z_M: f32 = 3.0;
+/// The middle of an upper body lies so much of the trunk above the pelvis.
+const UPPER_MIDDLE_SHARE: f32 = 0.7;
 /// Elbows and knees of the first guess: a straight one has a direction in which it cannot turn.
 const BENT_RAD: f32 = 0.2;
 /// From which distance on points count as outliers, stage by stage, metres: far ones pull first.
@@ -34,6 +37,7 @@ const ANGLE_STD_RAD: f32 = 0.4;
 /// # Errors
 /// Measures that no body has.
 pub fn pose_from_points(
+    part: BodyPart,
     measures: &BodyMeasures,
     points: &PointTuning,
     points_m: &[Vec3],
@@ -41,11 +45,15 @@ pub fn pose_from_points(
 ) -> Result<[f32; BODY_ANGLES]> {
     let mut scene = BodyScene {
         skeleton: full_body(measures)?,
-        radii_m: body_radii_m(measures),
+        radii_m: part.radii_m(measures),
         camera_m: Vec3::zeros(),
         likelihood: PointLikelihood { std_m: points.std_m, outlier_m: points.outlier_m },
     };
-    let mut pose = upright(middle(points_m).unwrap_or(Vec3::new(0.0, 0.0, NO_POINTS_Z_M)));
+    let mut pelvis_m = middle(points_m).unwrap_or(Vec3::new(0.0, 0.0, NO_POINTS_Z_M));
+    if part == BodyPart::Upper {
+        pelvis_m.y += UPPER_MIDDLE_SHARE * measures.trunk_m;
+    }
+    let mut pose = upright(pelvis_m);
     for outlier_m in STAGES_M {
         scene.likelihood.outlier_m = outlier_m;
         let mut stiffness = [1.0 / (ANGLE_STD_RAD * ANGLE_STD_RAD); BODY_ANGLES];
@@ -102,7 +110,8 @@ mod tests {
         let scene = StereoScene::new(recording, StereoOptions::default()).unwrap();
         let seen = SeenMotion::of_scene(&scene).unwrap();
         let tuning = BodyTuning::default().guided_points;
-        let pose = pose_from_points(&seen.measures, &tuning, &scene.points_m(0), &seen.clouds[0]).unwrap();
+        let pose =
+            pose_from_points(BodyPart::Whole, &seen.measures, &tuning, &scene.points_m(0), &seen.clouds[0]).unwrap();
         let skeleton = full_body(&seen.measures).unwrap();
         assert_eq!(skeleton.clamp(pose), pose);
         let ends = posture(&skeleton, &Vec3::zeros(), &pose).ends;
@@ -114,9 +123,9 @@ mod tests {
     #[test]
     fn no_points_and_one_point_are_starts_too() {
         let (measures, tuning) = (BodyMeasures::of_height(1.75).unwrap(), BodyTuning::default().guided_points);
-        let pose = pose_from_points(&measures, &tuning, &[], &[]).unwrap();
+        let pose = pose_from_points(BodyPart::Whole, &measures, &tuning, &[], &[]).unwrap();
         assert_eq!(pose[..3], [0.0, 0.0, NO_POINTS_Z_M]);
-        let one = pose_from_points(&measures, &tuning, &[Vec3::new(1.0, 0.0, 4.0)], &[]).unwrap();
+        let one = pose_from_points(BodyPart::Whole, &measures, &tuning, &[Vec3::new(1.0, 0.0, 4.0)], &[]).unwrap();
         assert_eq!(one[0], 1.0);
     }
 }

@@ -1,5 +1,6 @@
 //! `track.csv`: a row for each cloud.
 
+use crate::body::BodyPart;
 use crate::body::tracking::filter::{END_EFFECTORS, WholeBodyEstimate};
 use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_JOINT_NAMES};
 use sinew_core::skeleton::tree::SHIFTS;
@@ -7,13 +8,17 @@ use sinew_core::skeleton::tree::SHIFTS;
 /// Columns: frame, the root, every joint in metres (camera axes), every angle in radians, the filter's own state, of every end-effector
 /// spread and whether points show it, and how many points were weighed.
 #[must_use]
-pub fn header() -> Vec<String> {
+pub fn header(part: BodyPart) -> Vec<String> {
     let mut columns = vec!["frame".to_owned()];
-    columns.extend(coordinate_columns().take(SHIFTS));
-    columns.extend(BODY_JOINT_NAMES.iter().flat_map(|joint| ["x", "y", "z"].map(|axis| format!("{joint}_{axis}_m"))));
-    columns.extend(coordinate_columns().skip(SHIFTS));
+    columns.extend(coordinate_columns(part).take(SHIFTS));
+    columns.extend(
+        BODY_JOINT_NAMES[..part.bones()]
+            .iter()
+            .flat_map(|joint| ["x", "y", "z"].map(|axis| format!("{joint}_{axis}_m"))),
+    );
+    columns.extend(coordinate_columns(part).skip(SHIFTS));
     columns.extend(["effective_sample_size".to_owned(), "log_evidence".to_owned()]);
-    for bone in END_EFFECTORS {
+    for bone in end_effectors(part) {
         let joint = BODY_JOINT_NAMES[bone];
         columns.extend([format!("{joint}_spread_m"), format!("{joint}_observed")]);
     }
@@ -21,24 +26,29 @@ pub fn header() -> Vec<String> {
     columns
 }
 
+/// The end-effectors that `part` has.
+pub fn end_effectors(part: BodyPart) -> impl Iterator<Item = usize> {
+    END_EFFECTORS.into_iter().filter(move |&bone| bone < part.bones())
+}
+
 /// Columns of the skeleton's coordinates: the root's three shifts first, then all angles.
-pub fn coordinate_columns() -> impl Iterator<Item = String> {
-    BODY_ANGLE_NAMES
+pub fn coordinate_columns(part: BodyPart) -> impl Iterator<Item = String> {
+    part.coordinates()
         .iter()
-        .enumerate()
+        .map(|&index| (index, BODY_ANGLE_NAMES[index]))
         .map(|(index, name)| if index < SHIFTS { format!("{name}_m") } else { format!("{name}_rad") })
 }
 
 /// Cells of a row; numbers have as many digits as tell them from all others.
 #[must_use]
-pub fn cells(frame: u64, estimate: &WholeBodyEstimate, points: usize) -> Vec<String> {
+pub fn cells(part: BodyPart, frame: u64, estimate: &WholeBodyEstimate, points: usize) -> Vec<String> {
     let mut cells = vec![frame.to_string()];
-    let angles = estimate.angles_rad.iter().map(f32::to_string);
+    let angles = part.coordinates().iter().map(|&index| estimate.angles_rad[index].to_string());
     cells.extend(angles.clone().take(SHIFTS));
-    cells.extend(estimate.ends_m.iter().flat_map(|place| place.iter()).map(f32::to_string));
+    cells.extend(estimate.ends_m[..part.bones()].iter().flat_map(|place| place.iter()).map(f32::to_string));
     cells.extend(angles.skip(SHIFTS));
     cells.extend([estimate.effective_sample_size.to_string(), estimate.log_evidence.to_string()]);
-    for bone in END_EFFECTORS {
+    for bone in end_effectors(part) {
         cells.extend([estimate.spread_m[bone].to_string(), u8::from(estimate.observed[bone]).to_string()]);
     }
     cells.push(points.to_string());
@@ -62,7 +72,9 @@ mod tests {
             tempering: 1.0,
             is_degenerate: false,
         };
-        let (header, cells) = (header(), cells(7, &estimate, 1990));
+        let upper = cells(BodyPart::Upper, 7, &estimate, 1990);
+        assert_eq!(header(BodyPart::Upper).len(), upper.len());
+        let (header, cells) = (header(BodyPart::Whole), cells(BodyPart::Whole, 7, &estimate, 1990));
         assert_eq!(header.len(), cells.len());
         assert_eq!(header.iter().collect::<std::collections::BTreeSet<_>>().len(), header.len());
         let cell = |name: &str| cells[header.iter().position(|column| column == name).unwrap()].as_str();

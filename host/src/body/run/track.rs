@@ -88,7 +88,8 @@ impl BodyTrackRun {
             None => found_start(&mut inputs, &options)?,
         };
         let (model, tuning) = (options.model, options.tuning);
-        let mut filter = BodyFilter::new(model, tuning, &inputs.measures, first_rad, options.particles, options.seed)?;
+        let (part, who) = (inputs.part, (&inputs.measures, first_rad));
+        let mut filter = BodyFilter::of_part(part, model, tuning, who, options.particles, options.seed)?;
         if let Some(floor_y_m) = inputs.floor_y_m {
             filter = filter.above_floor(floor_y_m);
         }
@@ -106,8 +107,12 @@ impl BodyTrackRun {
         Ok(Self {
             filter,
             threads,
-            table: begin("track.csv", table::header())?,
-            particles: if options.particles_csv { Some(begin("particles.csv", particles::header())?) } else { None },
+            table: begin("track.csv", table::header(part))?,
+            particles: if options.particles_csv {
+                Some(begin("particles.csv", particles::header(part))?)
+            } else {
+                None
+            },
             pictures: if options.pictures { Some(BodyPictures::new(inputs.clouds.frames.len())?) } else { None },
             out,
             report: BodyRunReport::new(options, &inputs),
@@ -216,10 +221,10 @@ impl BodyTrackRun {
         self.step_s += start.elapsed().as_secs_f64();
         let points_m = cloud.map_or(&[][..], |cloud| &cloud.points_m);
         self.table
-            .write_record(table::cells(frame, &estimate, points_m.len()))
+            .write_record(table::cells(self.inputs.part, frame, &estimate, points_m.len()))
             .context("`track.csv` cannot be written")?;
         if let Some(particles) = &mut self.particles {
-            for row in particles::rows(frame, &self.filter) {
+            for row in particles::rows(self.inputs.part, frame, &self.filter) {
                 particles.write_record(row).context("`particles.csv` cannot be written")?;
             }
         }
@@ -237,8 +242,13 @@ impl BodyTrackRun {
 
     fn note_pose(&mut self, frame: u64, estimate: &WholeBodyEstimate) {
         let place = |end: &Vec3| Some(<[f32; 3]>::from(upwards(end)).map(f64::from));
-        let markers = TrcFrame { frame, positions_m: estimate.ends_m.iter().map(place).collect() };
-        self.poses.push((frame, bvh_frame(&self.filter.scene().skeleton, &estimate.angles_rad), markers));
+        let markers =
+            TrcFrame { frame, positions_m: estimate.ends_m[..self.inputs.part.bones()].iter().map(place).collect() };
+        self.poses.push((
+            frame,
+            bvh_frame(self.inputs.part, &self.filter.scene().skeleton, &estimate.angles_rad),
+            markers,
+        ));
         self.report.frames_finished += 1;
         self.report.degenerate_frames += usize::from(estimate.is_degenerate);
         self.effective_share.add(f64::from(estimate.effective_sample_size) / self.report.options.particles as f64);
@@ -281,9 +291,14 @@ impl BodyTrackRun {
             markers.push(places);
             before = Some((frame, pose));
         }
-        let layout = body_layout(&self.filter.scene().skeleton)?;
+        let layout = body_layout(self.inputs.part, &self.filter.scene().skeleton)?;
         self.out.write("track.bvh", |writer| Ok(write_bvh(&layout, &frames, rate_hz, writer)?))?;
-        let heading = TrcHeading { name: "track.trc", markers: &BODY_JOINT_NAMES, rate_hz, unit: TrcUnit::Metre };
+        let heading = TrcHeading {
+            name: "track.trc",
+            markers: &BODY_JOINT_NAMES[..self.inputs.part.bones()],
+            rate_hz,
+            unit: TrcUnit::Metre,
+        };
         let text = to_trc(&heading, &markers);
         self.out.write("track.trc", |writer| Ok(writer.write_all(text.as_bytes())?))
     }
@@ -316,7 +331,7 @@ fn found_start(inputs: &mut BodyInputs, options: &BodyTrackOptions) -> Result<[f
     let mut readable = clouds.filter_map(|frame| Some((frame.frame, read_cloud(frame, options.seed).ok()?)));
     let found = readable.find(|(_, cloud)| !cloud.points_m.is_empty());
     let (points_m, blocks) = found.as_ref().map_or((&[][..], &[][..]), |(_, cloud)| (&cloud.points_m, &cloud.blocks));
-    let pose = pose_from_points(&inputs.measures, &options.tuning.guided_points, points_m, blocks)?;
+    let pose = pose_from_points(inputs.part, &inputs.measures, &options.tuning.guided_points, points_m, blocks)?;
     inputs.notes.push(match &found {
         Some((frame, _)) => format!(
             "no first pose is given; someone upright who faces the camera is laid onto the points of frame {frame} (--init)"

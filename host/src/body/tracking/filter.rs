@@ -1,59 +1,55 @@
-//! The core's body tracker over many threads.
-//!
-//! Every particle draws from its own stream and results are stored by index, so the bits do not depend on the threads.
+//! A body or its upper part, tracked: one tracker of the core for each size, and its answers in the order of a whole body's bones.
 
 use super::model_kind::BodyModelKind;
+use super::sized::{SeenFrame, SizedBody, SizedFilter};
 use super::tuning::BodyTuning;
-use rayon::prelude::*;
+use crate::body::BodyPart;
 use sinew_core::error::ParameterError;
-use sinew_core::math::Vec3;
+use sinew_core::math::{Vec3, axis_rotation, wrap_angle};
 use sinew_core::observation::point_cloud::PointBlock;
 use sinew_core::observation::point_likelihood::PointLikelihood;
-use sinew_core::pik::angular::AngularMotion;
-use sinew_core::pik::end_effector::EndEffectorMotion;
-use sinew_core::pik::goal::GoalProcess;
-use sinew_core::pik::guided::GuidedMotion;
-use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene};
-use sinew_core::pik::processes::extrapolation::LinearGoals;
-use sinew_core::pik::processes::paper_extrapolation::PaperGoals;
-use sinew_core::pik::processes::pelvic_lift::FixedGoals;
-use sinew_core::pik::processes::stick::{StickGoals, StickSight};
-use sinew_core::pik::root::RootProcess;
-use sinew_core::skeleton::BodyMeasures;
-use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, FOREARMS, HEAD, SHANKS, body_radii_m, full_body};
-use sinew_core::tracker::body::{BodyEstimate, BodyFrame, BodyOptions, BodyTracker};
+use sinew_core::pik::motion::{BodyParticle, BodyScene};
+use sinew_core::pik::processes::stick::StickSight;
+use sinew_core::skeleton::full_body::{
+    BODY_ANGLES, BODY_BONES, BodySkeleton, FOREARMS, HEAD, PELVIS, SHANKS, TRUNK, body_radii_m, full_body,
+};
+use sinew_core::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
+use sinew_core::skeleton::upper_body::{
+    UPPER_ANGLES, UPPER_BONES, UPPER_COORDINATES, upper_body, upper_coordinates, upper_radii_m,
+};
+use sinew_core::skeleton::{BodyMeasures, Joint};
+use sinew_core::tracker::body::{BodyEstimate, BodyFrame, angles_of_rotation};
+use std::sync::OnceLock;
 
 /// Most particles of a body tracker.
 pub const MAX_BODY_PARTICLES: usize = 16_384;
 
-/// End-effectors with goals: head, hands and feet.
+/// End-effectors with goals: head, hands and feet; an upper body has the first three.
 pub const END_EFFECTORS: [usize; 5] = [HEAD, FOREARMS[0], FOREARMS[1], SHANKS[0], SHANKS[1]];
 /// Of these head and hands go with the root; feet stand.
-const CARRIED: usize = 3;
-/// End-effectors of the PIK paper (section 7.1.2): head and hands.
-const PAPER_END_EFFECTORS: [usize; 3] = [HEAD, FOREARMS[0], FOREARMS[1]];
-/// Standard deviation of every angle a frame for kappa = 500, radians (PIK paper, fig. 2).
-const PAPER_ANGLE_STD_RAD: f32 = 0.044_721_36;
-/// sigma of eq. (33), metres a frame: the paper does not print it.
-const PAPER_GOAL_STD_M: f32 = 0.05;
+pub(super) const CARRIED: usize = 3;
 
-/// A whole body's estimate.
+/// A whole body's estimate. Of an upper body the legs hang, are not observed and have no spread.
 pub type WholeBodyEstimate = BodyEstimate<BODY_BONES, BODY_ANGLES>;
 /// A whole body's hypothesis.
 pub type WholeBodyParticle = BodyParticle<BODY_BONES, BODY_ANGLES>;
 
-type Tracker = BodyTracker<BODY_BONES, BODY_ANGLES, MAX_BODY_PARTICLES, Vec<WholeBodyParticle>>;
+/// One tracker for each size of skeleton.
+#[derive(Debug, Clone)]
+enum Sizes {
+    Whole(Box<SizedFilter<BODY_BONES, BODY_ANGLES>>),
+    Upper(Box<SizedFilter<UPPER_BONES, UPPER_ANGLES>>),
+}
 
 /// One body, tracked.
 #[derive(Debug, Clone)]
 pub struct BodyFilter {
-    kind: BodyModelKind,
-    tuning: BodyTuning,
+    tracked: Sizes,
+    /// The whole body, with flesh where it is tracked.
     scene: BodyScene<BODY_BONES, BODY_ANGLES>,
-    goals: LinearGoals,
-    /// Second shift of the floor, metres (camera axes, y down).
     floor_y_m: f32,
-    tracker: Box<Tracker>,
+    /// Particles of an upper body as those of a whole one, once somebody asks for them.
+    completed: OnceLock<Vec<WholeBodyParticle>>,
 }
 
 impl BodyFilter {
@@ -69,27 +65,42 @@ impl BodyFilter {
         particles: usize,
         seed: u64,
     ) -> Result<Self, ParameterError> {
-        let (points, goals) = match kind {
-            BodyModelKind::Guided => (tuning.guided_points, tuning.guided),
-            _ => (tuning.points, tuning.end_effector),
-        };
+        Self::of_part(BodyPart::Whole, kind, tuning, (measures, first_rad), particles, seed)
+    }
+
+    /// As [`Self::new`], of the `part` of a body that is seen; its first pose is a whole body's.
+    ///
+    /// # Errors
+    /// Names the parameter that broke a rule.
+    pub fn of_part(
+        part: BodyPart,
+        kind: BodyModelKind,
+        tuning: BodyTuning,
+        (measures, first_rad): (&BodyMeasures, [f32; BODY_ANGLES]),
+        particles: usize,
+        seed: u64,
+    ) -> Result<Self, ParameterError> {
+        let points = if kind == BodyModelKind::Guided { tuning.guided_points } else { tuning.points };
         let scene = BodyScene {
             skeleton: full_body(measures)?,
-            radii_m: body_radii_m(measures),
+            radii_m: part.radii_m(measures),
             camera_m: Vec3::zeros(),
             likelihood: PointLikelihood { std_m: points.std_m, outlier_m: points.outlier_m },
         };
-        let goals =
-            LinearGoals::new(&END_EFFECTORS, BODY_BONES, goals.extrapolation(), goals.reach_std_m)?.carrying(CARRIED);
-        let first = BodyParticle::at(&scene.skeleton, first_rad);
-        let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::PelvicLift);
-        let options = BodyOptions {
-            least_effective_share: points.least_effective_share,
-            alignment: tuning.root.alignment().filter(|_| is_aligned),
+        let tracked = match part {
+            BodyPart::Whole => {
+                let coordinates = std::array::from_fn(|index| index);
+                let body = SizedBody { skeleton: scene.skeleton.clone(), radii_m: body_radii_m(measures), coordinates };
+                Sizes::Whole(Box::new(SizedFilter::new(kind, tuning, body, first_rad, particles, seed)?))
+            }
+            BodyPart::Upper => {
+                let (skeleton, coordinates) = (upper_body(measures)?, UPPER_COORDINATES);
+                let body = SizedBody { skeleton, radii_m: upper_radii_m(measures), coordinates };
+                let first_rad = upper_pose(&scene.skeleton, &scene.skeleton.clamp(first_rad));
+                Sizes::Upper(Box::new(SizedFilter::new(kind, tuning, body, first_rad, particles, seed)?))
+            }
         };
-        let set = vec![first; particles];
-        let tracker = Box::new(Tracker::new(&first, (set.clone(), set), options, seed)?);
-        Ok(Self { kind, tuning, scene, goals, floor_y_m: f32::INFINITY, tracker })
+        Ok(Self { tracked, scene, floor_y_m: f32::INFINITY, completed: OnceLock::new() })
     }
 
     /// Puts the floor of the pelvic lift: the pelvis stays above (camera axes, y down), metres.
@@ -99,7 +110,16 @@ impl BodyFilter {
         self
     }
 
-    /// The body and its camera.
+    /// How much of the body is tracked.
+    #[must_use]
+    pub fn part(&self) -> BodyPart {
+        match self.tracked {
+            Sizes::Whole(_) => BodyPart::Whole,
+            Sizes::Upper(_) => BodyPart::Upper,
+        }
+    }
+
+    /// The body and its camera; what is not tracked has no flesh.
     #[must_use]
     pub fn scene(&self) -> &BodyScene<BODY_BONES, BODY_ANGLES> {
         &self.scene
@@ -108,112 +128,115 @@ impl BodyFilter {
     /// The particles after the last step and their weights.
     #[must_use]
     pub fn particles(&self) -> (&[WholeBodyParticle], &[f32]) {
-        (self.tracker.particles(), self.tracker.weights())
-    }
-
-    /// One frame, `dt_s` seconds after the one before; `stick` is what is known of the stick, which only the stick model asks.
-    pub fn step(&mut self, blocks: &[PointBlock], dt_s: f32, stick: StickSight) -> WholeBodyEstimate {
-        let (tuning, goals) = (self.tuning, self.goals.clone());
-        let root = tuning.root.process();
-        let frame = BodyFrame { dt_s, blocks };
-        match self.kind {
-            BodyModelKind::EndEffector => self.advance(&with_goals(&tuning, &goals, root), &frame),
-            BodyModelKind::Guided => self.advance(&guided(&tuning, &goals, tuning.root.guided_process()), &frame),
-            BodyModelKind::Angular => self.advance(&angular(&tuning, root), &frame),
-            BodyModelKind::Stick => {
-                let process = StickGoals {
-                    hands: FOREARMS,
-                    sight: stick,
-                    camera_m: self.scene.camera_m,
-                    gamma_std_per_sqrt_s: tuning.stick_gamma_std,
-                    reach_std_m: tuning.stick_reach_std_m,
-                    others: &goals,
+        match &self.tracked {
+            Sizes::Whole(filter) => (filter.particles(), filter.weights()),
+            Sizes::Upper(filter) => {
+                let complete = |particle: &BodyParticle<UPPER_BONES, UPPER_ANGLES>| {
+                    let whole = BodyParticle::at(&self.scene.skeleton, whole_pose(&particle.angles_rad));
+                    BodyParticle { memory: particle.memory, ..whole }
                 };
-                self.advance(&with_goals(&tuning, &process, root), &frame)
-            }
-            BodyModelKind::PelvicLift => {
-                let reach_std_m = tuning.end_effector.reach_std_m;
-                let process = FixedGoals { end_effectors: &END_EFFECTORS, reach_std_m };
-                let root = RootProcess::pelvic_lift(tuning.lift_std_m, tuning.lift_turn_std_rad, self.floor_y_m);
-                self.advance(&with_goals(&tuning, &process, root), &frame)
-            }
-            BodyModelKind::EndEffectorPaper => {
-                let reach_std_m = tuning.end_effector.reach_std_m;
-                let end_effectors = &PAPER_END_EFFECTORS;
-                let process = PaperGoals { end_effectors, std_m: PAPER_GOAL_STD_M, reach_std_m };
-                let motion = EndEffectorMotion {
-                    angle_std_rad_per_sqrt_s: paper_angle_std(dt_s),
-                    pays: true,
-                    ..with_goals(&tuning, &process, root)
-                };
-                self.advance(&motion, &frame)
-            }
-            BodyModelKind::AngularPaper => {
-                let angle_std_rad_per_sqrt_s = paper_angle_std(dt_s);
-                self.advance(
-                    &AngularMotion { root, persistence: 1.0, angle_std_rad_per_sqrt_s, own_velocity: true },
-                    &frame,
-                )
+                let all = || filter.particles().iter().map(complete).collect();
+                (self.completed.get_or_init(all), filter.weights())
             }
         }
     }
 
-    /// The core's step, its particles shared out over the threads of the current pool.
-    fn advance<M: BodyMotion<BODY_BONES, BODY_ANGLES> + Sync>(
-        &mut self,
-        motion: &M,
-        frame: &BodyFrame<'_>,
-    ) -> WholeBodyEstimate {
-        self.tracker.step_with(&self.scene, motion, frame, |advance, particles, store| {
-            let advance_one = |(index, slot): (usize, &mut WholeBodyParticle)| advance.particle(index, slot);
-            let log_weights: Vec<f32> = particles.par_iter_mut().enumerate().map(advance_one).collect();
-            for (index, log_weight) in log_weights.into_iter().enumerate() {
-                store(index, log_weight);
+    /// One frame, `dt_s` seconds after the one before; `stick` is what is known of the stick, which only the stick model asks.
+    pub fn step(&mut self, blocks: &[PointBlock], dt_s: f32, stick: StickSight) -> WholeBodyEstimate {
+        let seen = SeenFrame { frame: BodyFrame { dt_s, blocks }, stick, floor_y_m: self.floor_y_m };
+        match &mut self.tracked {
+            Sizes::Whole(filter) => filter.step(&seen),
+            Sizes::Upper(filter) => {
+                self.completed = OnceLock::new();
+                let estimate = filter.step(&seen);
+                whole_estimate(&self.scene, &estimate)
             }
-        })
+        }
     }
 }
 
-/// kappa = 500 in every frame, as noise by root second.
-fn paper_angle_std(dt_s: f32) -> [f32; BODY_ANGLES] {
-    [PAPER_ANGLE_STD_RAD / dt_s.max(1.0e-4).sqrt(); BODY_ANGLES]
+/// Coordinates of an upper body that is posed as a whole one: its root turns as root and trunk together.
+fn upper_pose(whole: &BodySkeleton, angles_rad: &[f32; BODY_ANGLES]) -> [f32; UPPER_ANGLES] {
+    let mut pose = upper_coordinates(angles_rad);
+    let (Joint::Free([_, _, _, a, b, c]), Joint::Ball(trunk)) =
+        (whole.bones()[PELVIS].joint, whole.bones()[TRUNK].joint)
+    else {
+        return pose;
+    };
+    let turned = |axes: &[Vec3; 3], first: usize| {
+        axis_rotation(&axes[0], angles_rad[first])
+            * axis_rotation(&axes[1], angles_rad[first + 1])
+            * axis_rotation(&axes[2], angles_rad[first + 2])
+    };
+    let root = [a, b, c];
+    let rotation = turned(&root, SHIFTS) * turned(&trunk, FREE_ROOT_COORDINATES);
+    let [turn, tilt, pitch] = angles_of_rotation(&rotation, &root);
+    // Only the turn winds; the others have limits of less than a turn.
+    pose[SHIFTS] += wrap_angle(turn - pose[SHIFTS]);
+    (pose[SHIFTS + 1], pose[SHIFTS + 2]) = (tilt, pitch);
+    pose
 }
 
-fn angular(tuning: &BodyTuning, root: RootProcess) -> AngularMotion<BODY_ANGLES> {
-    AngularMotion {
-        root,
-        persistence: tuning.angular.persistence,
-        angle_std_rad_per_sqrt_s: tuning.angular.joint_std.per_angle(),
-        own_velocity: false,
+/// Coordinates of a whole body whose trunk is straight and whose legs hang.
+fn whole_pose(upper_rad: &[f32; UPPER_ANGLES]) -> [f32; BODY_ANGLES] {
+    let mut pose = [0.0; BODY_ANGLES];
+    for (&index, &angle) in UPPER_COORDINATES.iter().zip(upper_rad) {
+        pose[index] = angle;
+    }
+    pose
+}
+
+fn whole_estimate(
+    scene: &BodyScene<BODY_BONES, BODY_ANGLES>,
+    upper: &BodyEstimate<UPPER_BONES, UPPER_ANGLES>,
+) -> WholeBodyEstimate {
+    let angles_rad = whole_pose(&upper.angles_rad);
+    let mut ends_m = scene.posture(&angles_rad).ends;
+    ends_m[..UPPER_BONES].copy_from_slice(&upper.ends_m);
+    let (mut spread_m, mut observed) = ([0.0; BODY_BONES], [false; BODY_BONES]);
+    spread_m[..UPPER_BONES].copy_from_slice(&upper.spread_m);
+    observed[..UPPER_BONES].copy_from_slice(&upper.observed);
+    WholeBodyEstimate {
+        angles_rad,
+        ends_m,
+        spread_m,
+        observed,
+        effective_sample_size: upper.effective_sample_size,
+        log_evidence: upper.log_evidence,
+        tempering: upper.tempering,
+        is_degenerate: upper.is_degenerate,
     }
 }
 
-fn guided<'a>(
-    tuning: &BodyTuning,
-    process: &'a LinearGoals,
-    root: RootProcess,
-) -> GuidedMotion<'a, LinearGoals, BODY_ANGLES> {
-    GuidedMotion {
-        process,
-        root,
-        angle_std_rad_per_sqrt_s: tuning.guided.joint_std.per_angle(),
-        solver_steps: tuning.guided.solver_steps,
-        pulling_blocks: tuning.pulling_blocks,
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sinew_core::kinematics::forward::posture;
+    use sinew_core::skeleton::upper_body::UpperSkeleton;
 
-/// A model with goals, by the numbers of the end-effector model.
-fn with_goals<'a, P: GoalProcess<BODY_BONES>>(
-    tuning: &BodyTuning,
-    process: &'a P,
-    root: RootProcess,
-) -> EndEffectorMotion<'a, P, BODY_ANGLES> {
-    EndEffectorMotion {
-        process,
-        root,
-        angle_std_rad_per_sqrt_s: tuning.end_effector.joint_std.per_angle(),
-        solver_steps: tuning.end_effector.solver_steps,
-        pays: tuning.end_effector.pays,
-        draw_share: tuning.end_effector.draw_share,
+    #[test]
+    fn an_upper_body_is_posed_as_the_whole_one() {
+        let measures = BodyMeasures::of_height(1.7).unwrap();
+        let (whole, upper) = (full_body(&measures).unwrap(), upper_body(&measures).unwrap());
+        let mut lying = [0.0; BODY_ANGLES];
+        // As the pelvic lift begins: the trunk's bend on top of the pelvis' is more than half a turn.
+        (lying[3], lying[5], lying[6]) = (7.0, 3.1, 1.5);
+        for angles in [std::array::from_fn(|index| 0.4 * (index as f32).sin()), lying] {
+            an_upper_body_is_as(&whole.clamp(angles), &whole, &upper);
+        }
+    }
+
+    fn an_upper_body_is_as(angles: &[f32; BODY_ANGLES], whole: &BodySkeleton, upper: &UpperSkeleton) {
+        let pose = upper_pose(whole, angles);
+        assert_eq!(upper.clamp(pose), pose, "limits");
+        let found = posture(upper, &Vec3::zeros(), &pose).ends;
+        let wanted = posture(whole, &Vec3::zeros(), angles).ends;
+        for bone in 0..UPPER_BONES {
+            assert!((found[bone] - wanted[bone]).norm() < 1.0e-4, "bone {bone}: {} {}", found[bone], wanted[bone]);
+        }
+        let completed = posture(whole, &Vec3::zeros(), &whole_pose(&pose)).ends;
+        for bone in 0..UPPER_BONES {
+            assert!((completed[bone] - found[bone]).norm() < 1.0e-4, "bone {bone}");
+        }
     }
 }

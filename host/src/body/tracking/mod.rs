@@ -2,6 +2,7 @@
 
 pub mod filter;
 pub mod model_kind;
+mod sized;
 pub mod tuning;
 
 pub use filter::{BodyFilter, MAX_BODY_PARTICLES};

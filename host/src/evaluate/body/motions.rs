@@ -2,7 +2,7 @@
 
 use super::trial::SeenMotion;
 use crate::body::recording::DEFAULT_RATE_HZ;
-use crate::body::{BodyRecording, BodyRecordingOptions, Placement};
+use crate::body::{BodyPart, BodyRecording, BodyRecordingOptions, Placement};
 use crate::motion::asf;
 use crate::stereo::{StereoOptions, StereoScene, pelvic_lift, stick_wave};
 use anyhow::{Context, Result, bail};
@@ -62,21 +62,15 @@ impl MotionChoice {
         }
     }
 
-    /// The motion as the simulated stereo camera sees it with `seed`; `skeleton` is for .amc files without one beside them.
+    /// Reads the motion, once for all seeds; `skeleton` is for .amc files without one beside them.
     ///
     /// # Errors
     /// A file that cannot be read, by name.
-    pub fn seen(&self, skeleton: Option<&Path>, seed: u64) -> Result<SeenMotion> {
+    pub fn read(&self, skeleton: Option<&Path>) -> Result<ReadMotion> {
         let placement = Placement::default();
-        let (height_m, distance_m) = (placement.camera_height_m, placement.mean_distance_m);
-        let mut stick = Vec::new();
         let recording = match self {
-            Self::StickWave => {
-                let wave = stick_wave(seed, DEFAULT_RATE_HZ, height_m, distance_m)?;
-                stick = wave.stick_m.iter().map(|ends| StickSight::Ends(*ends)).collect();
-                wave.recording
-            }
-            Self::PelvicLift => pelvic_lift(DEFAULT_RATE_HZ, height_m, distance_m)?,
+            Self::StickWave => return Ok(ReadMotion { name: self.name(), recording: None }),
+            Self::PelvicLift => pelvic_lift(DEFAULT_RATE_HZ, placement.camera_height_m, placement.mean_distance_m)?,
             Self::File { path, between_s } => {
                 let is_amc = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("amc"));
                 let skeleton = skeleton.filter(|_| is_amc && asf::beside(path).is_err());
@@ -88,8 +82,43 @@ impl MotionChoice {
         if recording.joints_m.len() < 2 {
             bail!("`{}` has {} frames; tracking needs two", self.name(), recording.joints_m.len());
         }
-        let scene = StereoScene::new(recording, StereoOptions { seed, ..StereoOptions::default() })
-            .with_context(|| format!("`{}` makes no scene", self.name()))?;
+        Ok(ReadMotion { name: self.name(), recording: Some(recording) })
+    }
+
+    /// The motion as the simulated stereo camera sees all of it with `seed`.
+    ///
+    /// # Errors
+    /// As [`Self::read`] and [`ReadMotion::seen`].
+    pub fn seen(&self, skeleton: Option<&Path>, seed: u64) -> Result<SeenMotion> {
+        self.read(skeleton)?.seen(BodyPart::Whole, seed)
+    }
+}
+
+/// A motion that was read.
+#[derive(Debug, Clone)]
+pub struct ReadMotion {
+    name: String,
+    /// None of the person with the stick, whose motion differs by the seed.
+    recording: Option<BodyRecording>,
+}
+
+impl ReadMotion {
+    /// The motion as the simulated stereo camera sees `part` of it with `seed`.
+    ///
+    /// # Errors
+    /// A motion that makes no scene, by name.
+    pub fn seen(&self, part: BodyPart, seed: u64) -> Result<SeenMotion> {
+        let placement = Placement::default();
+        let (height_m, distance_m) = (placement.camera_height_m, placement.mean_distance_m);
+        let (recording, stick) = match &self.recording {
+            Some(recording) => (recording.clone(), Vec::new()),
+            None => {
+                let wave = stick_wave(seed, DEFAULT_RATE_HZ, height_m, distance_m)?;
+                (wave.recording, wave.stick_m.iter().map(|ends| StickSight::Ends(*ends)).collect())
+            }
+        };
+        let scene = StereoScene::new(recording, StereoOptions { seed, part, ..StereoOptions::default() })
+            .with_context(|| format!("`{}` makes no scene", self.name))?;
         Ok(SeenMotion { stick, floor_y_m: height_m, ..SeenMotion::of_scene(&scene)? })
     }
 }

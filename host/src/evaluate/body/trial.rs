@@ -3,7 +3,7 @@
 use crate::body::run::score::{BodyScore, RunningMean};
 use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::body::tracking::{BodyFilter, BodyModelKind, BodyTuning};
-use crate::body::{BodyJoints, fit_pose};
+use crate::body::{BodyJoints, BodyPart, fit_pose};
 use crate::cloud::blocks_of;
 use crate::stereo::StereoScene;
 use anyhow::Result;
@@ -17,6 +17,8 @@ use std::time::Instant;
 /// A motion as one camera saw it, ready for any number of trials.
 #[derive(Debug, Clone)]
 pub struct SeenMotion {
+    /// How much of the body was seen and is tracked.
+    pub part: BodyPart,
     /// Frames in a second.
     pub rate_hz: f32,
     /// True joints of each frame, metres.
@@ -47,6 +49,7 @@ impl SeenMotion {
         let joints_m: Vec<BodyJoints> = frames.iter().map(|&frame| *scene.joints_m(frame)).collect();
         let first = joints_m.first().copied().unwrap_or([None; BODY_BONES]);
         Ok(Self {
+            part: scene.options().part,
             rate_hz: scene.recording().rate_hz,
             first_rad: fit_pose(&full_body(&measures)?, &first, None).angles,
             markers_m: frames.iter().map(|&frame| scene.markers_m(frame)).collect(),
@@ -61,7 +64,7 @@ impl SeenMotion {
     /// Mean length that a joint goes in a frame, eq. (35), metres.
     #[must_use]
     pub fn smoothness_m(&self) -> f64 {
-        smoothness_m(self.joints_m.iter().copied())
+        smoothness_m(self.part, self.joints_m.iter().copied())
     }
 }
 
@@ -91,8 +94,9 @@ pub fn trial(
     particles: usize,
     seed: u64,
 ) -> Result<(TrialResult, Vec<WholeBodyEstimate>)> {
-    let mut filter = BodyFilter::new(kind, *tuning, &motion.measures, motion.first_rad, particles, seed)?
-        .above_floor(motion.floor_y_m);
+    let who = (&motion.measures, motion.first_rad);
+    let mut filter =
+        BodyFilter::of_part(motion.part, kind, *tuning, who, particles, seed)?.above_floor(motion.floor_y_m);
     let mut estimates = Vec::with_capacity(motion.clouds.len());
     let mut seconds = 0.0;
     for (frame, blocks) in motion.clouds.iter().enumerate().skip(1) {
@@ -109,7 +113,7 @@ pub fn trial(
     let result = TrialResult {
         error_m: score.marker_m.mean().unwrap_or(0.0),
         joint_error_m: score.joint_m.mean().unwrap_or(0.0),
-        smoothness_m: smoothness_m(estimates.iter().map(|estimate| estimate.ends_m.map(Some))),
+        smoothness_m: smoothness_m(motion.part, estimates.iter().map(|estimate| estimate.ends_m.map(Some))),
         seconds_per_frame: seconds / frames,
         effective_share: estimates.iter().map(|e| f64::from(e.effective_sample_size)).sum::<f64>()
             / (frames * particles as f64),
@@ -118,12 +122,12 @@ pub fn trial(
 }
 
 /// Eq. (35) from the second frame on: the mean over bones of how far a_l, the bone's start, goes in a frame.
-fn smoothness_m(frames: impl Iterator<Item = BodyJoints>) -> f64 {
+fn smoothness_m(part: BodyPart, frames: impl Iterator<Item = BodyJoints>) -> f64 {
     let mut sum = RunningMean::default();
     let mut before: Option<BodyJoints> = None;
     for joints in frames {
         if let Some(before) = before {
-            for parent in BODY_PARENTS.iter().flatten() {
+            for parent in BODY_PARENTS[..part.bones()].iter().flatten() {
                 let start = usize::from(*parent);
                 if let (Some(a), Some(b)) = (joints[start], before[start]) {
                     sum.add(f64::from((a - b).norm()));

@@ -1,0 +1,84 @@
+//! The upper body of a person whose legs are not seen: 9 bones, 8 of them with flesh, and 17 coordinates.
+//!
+//! Its bones are the first of [`super::full_body`] under the same indices. The trunk does not turn against the pelvis: without legs nothing tells
+//! both apart, so the root turns both.
+
+use super::body_measures::BodyMeasures;
+use super::full_body::{BODY_ANGLES, BODY_BONES, BODY_RADII, TRUNK, full_body};
+use super::tree::{Joint, Skeleton};
+use crate::error::ParameterError;
+
+/// Bones of an upper body: pelvis, trunk, head, collars and arms.
+pub const UPPER_BONES: usize = 9;
+/// Coordinates of an upper body: three shifts and 14 angles.
+pub const UPPER_ANGLES: usize = 17;
+/// An upper body.
+pub type UpperSkeleton = Skeleton<UPPER_BONES, UPPER_ANGLES>;
+
+/// Where each coordinate stands among those of a whole body: the root's, the head's and the arms'.
+pub const UPPER_COORDINATES: [usize; UPPER_ANGLES] = [0, 1, 2, 3, 4, 5, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
+
+/// Entries of a whole body's coordinates that an upper body has, too.
+#[must_use]
+pub fn upper_coordinates<T: Copy>(whole: &[T; BODY_ANGLES]) -> [T; UPPER_ANGLES] {
+    UPPER_COORDINATES.map(|index| whole[index % BODY_ANGLES])
+}
+
+/// Entries of a whole body's bones that an upper body has, too.
+#[must_use]
+pub fn upper_bones<T: Copy>(whole: &[T; BODY_BONES]) -> [T; UPPER_BONES] {
+    core::array::from_fn(|bone| whole[bone % BODY_BONES])
+}
+
+/// An upper body with the given measures; those of the legs are not read, but have to be lengths.
+///
+/// # Errors
+/// As [`BodyMeasures::checked`].
+pub fn upper_body(measures: &BodyMeasures) -> Result<UpperSkeleton, ParameterError> {
+    let whole = full_body(measures)?;
+    let mut bones = upper_bones(whole.bones());
+    bones[TRUNK].joint = Joint::Fixed;
+    Skeleton::new(bones, upper_coordinates(whole.limits()))
+}
+
+/// Radii of the capsules of an upper body with the given measures, metres; zero for a bone without flesh.
+#[must_use]
+pub fn upper_radii_m(measures: &BodyMeasures) -> [f32; UPPER_BONES] {
+    upper_bones(&BODY_RADII).map(|radius| radius * measures.girth)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::forward::posture;
+    use crate::math::Vec3;
+    use crate::random::Stream;
+    use crate::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_PARENTS};
+
+    #[test]
+    fn its_pose_is_that_of_a_whole_body_with_a_stiff_trunk() {
+        let measures = BodyMeasures::of_height(1.8).unwrap();
+        let (whole, upper) = (full_body(&measures).unwrap(), upper_body(&measures).unwrap());
+        let mut stream = Stream::new(3, 0, 0);
+        for _ in 0..50 {
+            let mut angles = whole.clamp(core::array::from_fn(|_| stream.normal()));
+            angles[6..9].fill(0.0);
+            let all = posture(&whole, &Vec3::zeros(), &angles);
+            let part = posture(&upper, &Vec3::zeros(), &upper_coordinates(&angles));
+            for bone in 0..UPPER_BONES {
+                assert!((all.ends[bone] - part.ends[bone]).norm() < 1.0e-5, "bone {bone}");
+            }
+        }
+    }
+
+    #[test]
+    fn it_has_what_does_not_hang_on_the_legs() {
+        assert!(BODY_PARENTS[..UPPER_BONES].iter().flatten().all(|parent| usize::from(*parent) < UPPER_BONES));
+        let is_left_out = |name: &str| ["trunk", "hip", "knee", "ankle"].iter().any(|part| name.contains(part));
+        for (index, name) in BODY_ANGLE_NAMES.iter().enumerate() {
+            assert_eq!(UPPER_COORDINATES.contains(&index), !is_left_out(name), "{name}");
+        }
+        let measures = BodyMeasures::of_height(1.75).unwrap();
+        assert_eq!(upper_radii_m(&measures).iter().filter(|radius| **radius > 0.0).count(), 8);
+    }
+}

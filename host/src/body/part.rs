@@ -1,0 +1,66 @@
+//! How much of a body is seen and tracked: all of it, or what a camera behind a desk sees.
+
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+use sinew_core::skeleton::BodyMeasures;
+use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, body_radii_m};
+use sinew_core::skeleton::upper_body::{UPPER_BONES, UPPER_COORDINATES};
+
+/// A whole body, or its upper part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BodyPart {
+    /// 17 bones, 16 capsules, 30 coordinates.
+    #[default]
+    Whole,
+    /// Pelvis, trunk, head and arms: 9 bones, 8 capsules, 17 coordinates.
+    Upper,
+}
+
+/// Places of all coordinates of a whole body.
+const ALL_COORDINATES: [usize; BODY_ANGLES] = {
+    let mut all = [0; BODY_ANGLES];
+    let mut index = 0;
+    while index < BODY_ANGLES {
+        all[index] = index;
+        index += 1;
+    }
+    all
+};
+
+impl BodyPart {
+    /// The name by which the command knows it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Whole => "whole",
+            Self::Upper => "upper",
+        }
+    }
+
+    /// How many of a whole body's first bones it has.
+    #[must_use]
+    pub fn bones(self) -> usize {
+        match self {
+            Self::Whole => BODY_BONES,
+            Self::Upper => UPPER_BONES,
+        }
+    }
+
+    /// Which of a whole body's coordinates it has; the first three are shifts.
+    #[must_use]
+    pub fn coordinates(self) -> &'static [usize] {
+        match self {
+            Self::Whole => &ALL_COORDINATES,
+            Self::Upper => &UPPER_COORDINATES,
+        }
+    }
+
+    /// Radii of a whole body's capsules, metres; zero for what is not part of it.
+    #[must_use]
+    pub fn radii_m(self, measures: &BodyMeasures) -> [f32; BODY_BONES] {
+        let mut radii_m = body_radii_m(measures);
+        radii_m[self.bones()..].fill(0.0);
+        radii_m
+    }
+}

@@ -1,0 +1,209 @@
+//! The core's body tracker for one size of skeleton, its particles over many threads.
+//!
+//! Every particle draws from its own stream and results are stored by index, so the bits do not depend on the threads.
+
+use super::filter::{CARRIED, END_EFFECTORS, MAX_BODY_PARTICLES};
+use super::model_kind::BodyModelKind;
+use super::tuning::{BodyTuning, JointStd};
+use rayon::prelude::*;
+use sinew_core::error::ParameterError;
+use sinew_core::math::Vec3;
+use sinew_core::observation::point_likelihood::PointLikelihood;
+use sinew_core::pik::angular::AngularMotion;
+use sinew_core::pik::end_effector::EndEffectorMotion;
+use sinew_core::pik::guided::GuidedMotion;
+use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene};
+use sinew_core::pik::processes::extrapolation::LinearGoals;
+use sinew_core::pik::processes::paper_extrapolation::PaperGoals;
+use sinew_core::pik::processes::pelvic_lift::FixedGoals;
+use sinew_core::pik::processes::stick::{StickGoals, StickSight};
+use sinew_core::pik::root::RootProcess;
+use sinew_core::skeleton::Skeleton;
+use sinew_core::skeleton::full_body::{FOREARMS, HEAD};
+use sinew_core::tracker::body::{BodyEstimate, BodyFrame, BodyOptions, BodyTracker};
+
+/// End-effectors of the PIK paper (section 7.1.2): head and hands.
+const PAPER_END_EFFECTORS: [usize; 3] = [HEAD, FOREARMS[0], FOREARMS[1]];
+/// Standard deviation of every angle a frame for kappa = 500, radians (PIK paper, fig. 2).
+const PAPER_ANGLE_STD_RAD: f32 = 0.044_721_36;
+/// sigma of eq. (33), metres a frame: the paper does not print it.
+const PAPER_GOAL_STD_M: f32 = 0.05;
+
+type Particle<const BONES: usize, const ANGLES: usize> = BodyParticle<BONES, ANGLES>;
+type Tracker<const BONES: usize, const ANGLES: usize> =
+    BodyTracker<BONES, ANGLES, MAX_BODY_PARTICLES, Vec<Particle<BONES, ANGLES>>>;
+
+/// A skeleton with its flesh, and which of a whole body's coordinates it has.
+#[derive(Debug, Clone)]
+pub(super) struct SizedBody<const BONES: usize, const ANGLES: usize> {
+    pub skeleton: Skeleton<BONES, ANGLES>,
+    pub radii_m: [f32; BONES],
+    pub coordinates: [usize; ANGLES],
+}
+
+/// What a frame tells, and where the floor of the pelvic lift is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SeenFrame<'a> {
+    pub frame: BodyFrame<'a>,
+    pub stick: StickSight,
+    /// Second shift of the floor, metres (camera axes, y down).
+    pub floor_y_m: f32,
+}
+
+/// A body of one size, tracked.
+#[derive(Debug, Clone)]
+pub(super) struct SizedFilter<const BONES: usize, const ANGLES: usize> {
+    kind: BodyModelKind,
+    tuning: BodyTuning,
+    scene: BodyScene<BONES, ANGLES>,
+    coordinates: [usize; ANGLES],
+    goals: LinearGoals,
+    tracker: Tracker<BONES, ANGLES>,
+}
+
+impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
+    /// `particles` particles of `body` that begin at `first_rad`.
+    ///
+    /// # Errors
+    /// Names the parameter that broke a rule.
+    pub fn new(
+        kind: BodyModelKind,
+        tuning: BodyTuning,
+        body: SizedBody<BONES, ANGLES>,
+        first_rad: [f32; ANGLES],
+        particles: usize,
+        seed: u64,
+    ) -> Result<Self, ParameterError> {
+        let (points, goals) = match kind {
+            BodyModelKind::Guided => (tuning.guided_points, tuning.guided),
+            _ => (tuning.points, tuning.end_effector),
+        };
+        let scene = BodyScene {
+            skeleton: body.skeleton,
+            radii_m: body.radii_m,
+            camera_m: Vec3::zeros(),
+            likelihood: PointLikelihood { std_m: points.std_m, outlier_m: points.outlier_m },
+        };
+        let goals = LinearGoals::new(end_effectors(BONES), BONES, goals.extrapolation(), goals.reach_std_m)?;
+        let first = BodyParticle::at(&scene.skeleton, first_rad);
+        let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::PelvicLift);
+        let options = BodyOptions {
+            least_effective_share: points.least_effective_share,
+            alignment: tuning.root.alignment().filter(|_| is_aligned),
+        };
+        let set = vec![first; particles];
+        let tracker = Tracker::new(&first, (set.clone(), set), options, seed)?;
+        let goals = goals.carrying(CARRIED);
+        Ok(Self { kind, tuning, scene, coordinates: body.coordinates, goals, tracker })
+    }
+
+    /// The particles after the last step.
+    pub fn particles(&self) -> &[Particle<BONES, ANGLES>] {
+        self.tracker.particles()
+    }
+
+    /// Their weights.
+    pub fn weights(&self) -> &[f32] {
+        self.tracker.weights()
+    }
+
+    /// One frame.
+    pub fn step(&mut self, seen: &SeenFrame<'_>) -> BodyEstimate<BONES, ANGLES> {
+        let (tuning, goals, coordinates) = (self.tuning, self.goals.clone(), self.coordinates);
+        let (frame, root) = (seen.frame, tuning.root.process());
+        let angle_std = |joints: &JointStd| coordinates.map(|index| joints.per_angle()[index]);
+        let goal_std = angle_std(&tuning.end_effector.joint_std);
+        let reach_std_m = tuning.end_effector.reach_std_m;
+        match self.kind {
+            BodyModelKind::EndEffector => self.advance(&with_goals(&tuning, goal_std, &goals, root), &frame),
+            BodyModelKind::Guided => {
+                let motion = GuidedMotion {
+                    process: &goals,
+                    root: tuning.root.guided_process(),
+                    angle_std_rad_per_sqrt_s: angle_std(&tuning.guided.joint_std),
+                    solver_steps: tuning.guided.solver_steps,
+                    pulling_blocks: tuning.pulling_blocks,
+                };
+                self.advance(&motion, &frame)
+            }
+            BodyModelKind::Angular => {
+                let angle_std_rad_per_sqrt_s = angle_std(&tuning.angular.joint_std);
+                let persistence = tuning.angular.persistence;
+                self.advance(
+                    &AngularMotion { root, persistence, angle_std_rad_per_sqrt_s, own_velocity: false },
+                    &frame,
+                )
+            }
+            BodyModelKind::Stick => {
+                let process = StickGoals {
+                    hands: FOREARMS,
+                    sight: seen.stick,
+                    camera_m: self.scene.camera_m,
+                    gamma_std_per_sqrt_s: tuning.stick_gamma_std,
+                    reach_std_m: tuning.stick_reach_std_m,
+                    others: &goals,
+                };
+                self.advance(&with_goals(&tuning, goal_std, &process, root), &frame)
+            }
+            BodyModelKind::PelvicLift => {
+                let process = FixedGoals { end_effectors: end_effectors(BONES), reach_std_m };
+                let root = RootProcess::pelvic_lift(tuning.lift_std_m, tuning.lift_turn_std_rad, seen.floor_y_m);
+                self.advance(&with_goals(&tuning, goal_std, &process, root), &frame)
+            }
+            BodyModelKind::EndEffectorPaper => {
+                let process = PaperGoals { end_effectors: &PAPER_END_EFFECTORS, std_m: PAPER_GOAL_STD_M, reach_std_m };
+                let angle_std = paper_angle_std(frame.dt_s);
+                let motion = EndEffectorMotion { pays: true, ..with_goals(&tuning, angle_std, &process, root) };
+                self.advance(&motion, &frame)
+            }
+            BodyModelKind::AngularPaper => {
+                let angle_std_rad_per_sqrt_s = paper_angle_std(frame.dt_s);
+                let motion = AngularMotion { root, persistence: 1.0, angle_std_rad_per_sqrt_s, own_velocity: true };
+                self.advance(&motion, &frame)
+            }
+        }
+    }
+
+    /// The core's step, its particles shared out over the threads of the current pool.
+    fn advance<M: BodyMotion<BONES, ANGLES> + Sync>(
+        &mut self,
+        motion: &M,
+        frame: &BodyFrame<'_>,
+    ) -> BodyEstimate<BONES, ANGLES> {
+        self.tracker.step_with(&self.scene, motion, frame, |advance, particles, store| {
+            let advance_one = |(index, slot): (usize, &mut Particle<BONES, ANGLES>)| advance.particle(index, slot);
+            let log_weights: Vec<f32> = particles.par_iter_mut().enumerate().map(advance_one).collect();
+            for (index, log_weight) in log_weights.into_iter().enumerate() {
+                store(index, log_weight);
+            }
+        })
+    }
+}
+
+/// The end-effectors of a body of `bones` bones.
+fn end_effectors(bones: usize) -> &'static [usize] {
+    let count = END_EFFECTORS.iter().take_while(|&&bone| bone < bones).count();
+    &END_EFFECTORS[..count]
+}
+
+/// kappa = 500 in every frame, as noise by root second.
+fn paper_angle_std<const ANGLES: usize>(dt_s: f32) -> [f32; ANGLES] {
+    [PAPER_ANGLE_STD_RAD / dt_s.max(1.0e-4).sqrt(); ANGLES]
+}
+
+/// A model with goals, by the numbers of the end-effector model.
+fn with_goals<'a, P, const ANGLES: usize>(
+    tuning: &BodyTuning,
+    angle_std_rad_per_sqrt_s: [f32; ANGLES],
+    process: &'a P,
+    root: RootProcess,
+) -> EndEffectorMotion<'a, P, ANGLES> {
+    EndEffectorMotion {
+        process,
+        root,
+        angle_std_rad_per_sqrt_s,
+        solver_steps: tuning.end_effector.solver_steps,
+        pays: tuning.end_effector.pays,
+        draw_share: tuning.end_effector.draw_share,
+    }
+}
