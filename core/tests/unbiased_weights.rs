@@ -59,6 +59,7 @@ fn scene(limits: [[f32; 2]; 2]) -> BodyScene<2, 2> {
         radii_m: [0.1; 2],
         camera_m: Vec3::new(0.0, 0.0, -5.0),
         likelihood: PointLikelihood { std_m: 0.15, outlier_m: 1.0 },
+        self_penetration: None,
     }
 }
 

@@ -33,6 +33,28 @@ impl Capsule {
         crate::math::abs(length(&(point_m - near_m)) - self.radius_m)
     }
 
+    /// How deep two capsules lie in one another, metres: the sum of their radii less the distance of their segments; negative where they are apart.
+    #[must_use]
+    pub fn depth_m(&self, other: &Self) -> f32 {
+        self.radius_m + other.radius_m - self.axis_distance_m(other)
+    }
+
+    /// Least distance between both segments, metres.
+    #[must_use]
+    pub fn axis_distance_m(&self, other: &Self) -> f32 {
+        let (u, v) = (self.end_m - self.start_m, other.end_m - other.start_m);
+        let between = self.start_m - other.start_m;
+        let (uu, uv, vv) = (u.dot(&u), u.dot(&v), v.dot(&v));
+        let (ub, vb) = (u.dot(&between), v.dot(&between));
+        let share = |value: f32, per: f32| if per > 0.0 { clamp(value / per, 0.0, 1.0) } else { 0.0 };
+        // The nearest places of both lines; any place of the first where they are parallel.
+        let s = share(uv * vb - vv * ub, max(uu * vv - uv * uv, 0.0));
+        let t = share(uv * s + vb, vv);
+        // The place of the first that is nearest to the second's, which may have been cut to its end.
+        let s = share(uv * t - ub, uu);
+        length(&(between + u * s - v * t))
+    }
+
     /// The point h of the skin that the camera at `camera_m` sees and that is nearest to `point_m` (eqs. 27 and 28).
     ///
     /// Where eq. (28) is silent, DESIGN.md section 3 holds: the sign is that of (x - p)'v, and on the round ends, as
@@ -120,6 +142,27 @@ mod tests {
             prop_assert!((found - own).abs() < 0.005, "{} found, {} is there round the axis' nearest place", found, own);
             // Eq. (28) asks per place of the axis: another place may see a nearer point, by less than the radius.
             prop_assert!(found <= all + radius && found >= all - 0.005, "{} found, {} is there", found, all);
+        }
+
+        #[test]
+        fn no_places_of_two_axes_are_nearer(a in place(0.3), b in place(0.3), c in place(0.3), d in place(0.3), kind in 0..4) {
+            let (b, d) = match kind {
+                0 => (a, d),
+                1 => (b, c + (b - a) * 0.7),
+                2 => (a, c),
+                _ => (b, d),
+            };
+            let of = |start_m, end_m| Capsule { start_m, end_m, radius_m: 0.05 };
+            let (one, other) = (of(a, b), of(c, d));
+            let mut least = f32::INFINITY;
+            for step in 0..=500 {
+                let at = a + (b - a) * (step as f32 / 500.0);
+                least = least.min((other.nearest_on_axis(&at).0 - at).norm());
+            }
+            let found = one.axis_distance_m(&other);
+            prop_assert!(found <= least + 1.0e-5 && found > least - 0.003, "{} {}", found, least);
+            prop_assert!((found - other.axis_distance_m(&one)).abs() < 1.0e-4);
+            prop_assert!((one.depth_m(&other) - (0.1 - found)).abs() < 1.0e-6);
         }
 
         #[test]

@@ -9,3 +9,4 @@ pub mod orientation;
 pub mod point_cloud;
 pub mod point_likelihood;
 pub mod point_pull;
+pub mod self_penetration;

@@ -7,6 +7,7 @@ use crate::math::Vec3;
 use crate::observation::body_surface::BodySurface;
 use crate::observation::point_cloud::PointBlock;
 use crate::observation::point_likelihood::PointLikelihood;
+use crate::observation::self_penetration::SelfPenetration;
 use crate::random::Stream;
 use crate::skeleton::Skeleton;
 use crate::skeleton::tree::FREE_ROOT_COORDINATES;
@@ -43,6 +44,8 @@ pub struct BodyScene<const BONES: usize, const ANGLES: usize> {
     pub camera_m: Vec3,
     /// Robust metric of the points.
     pub likelihood: PointLikelihood,
+    /// What limbs in limbs cost; `None` lets them pass through one another.
+    pub self_penetration: Option<SelfPenetration<BONES>>,
 }
 
 impl<const BONES: usize, const ANGLES: usize> BodyScene<BONES, ANGLES> {
@@ -50,6 +53,13 @@ impl<const BONES: usize, const ANGLES: usize> BodyScene<BONES, ANGLES> {
     #[must_use]
     pub fn posture(&self, angles_rad: &[f32; ANGLES]) -> Posture<BONES, ANGLES> {
         posture(&self.skeleton, &Vec3::zeros(), angles_rad)
+    }
+
+    /// log weight of a pose by its surface: the points' likelihood, and what limbs in limbs cost.
+    #[must_use]
+    pub fn log_weight(&self, surface: &BodySurface<BONES>, blocks: &[PointBlock]) -> f32 {
+        let apart = self.self_penetration.as_ref().map_or(0.0, |density| density.log_density(surface));
+        self.likelihood.log_likelihood(surface, blocks) + apart
     }
 
     /// The surface of a posture.

@@ -17,10 +17,16 @@ const FRAMES: usize = 60;
 const PASSES: u64 = 3;
 
 /// Seconds of each step of one pass, every `stride`-th block of points kept.
-fn pass_s(seen: &SeenMotion, kind: BodyModelKind, particles: usize, stride: usize, seed: u64) -> Vec<f64> {
+fn pass_s(
+    seen: &SeenMotion,
+    kind: BodyModelKind,
+    tuning: BodyTuning,
+    particles: usize,
+    stride: usize,
+    seed: u64,
+) -> Vec<f64> {
     let who = (&seen.measures, seen.first_rad);
-    let mut filter =
-        BodyFilter::of_part(seen.part, kind, BodyTuning::default(), who, particles, seed).expect("usable numbers");
+    let mut filter = BodyFilter::of_part(seen.part, kind, tuning, who, particles, seed).expect("usable numbers");
     let step = |(frame, blocks): (usize, &Vec<_>)| {
         let kept: Vec<_> = blocks.iter().step_by(stride).copied().collect();
         let stick = seen.stick.get(frame).copied().unwrap_or(StickSight::Unseen);
@@ -32,7 +38,8 @@ fn pass_s(seen: &SeenMotion, kind: BodyModelKind, particles: usize, stride: usiz
 }
 
 fn median_s(seen: &SeenMotion, kind: BodyModelKind, particles: usize, stride: usize) -> f64 {
-    let mut times: Vec<f64> = (1..=PASSES).flat_map(|seed| pass_s(seen, kind, particles, stride, seed)).collect();
+    let mut times: Vec<f64> =
+        (1..=PASSES).flat_map(|seed| pass_s(seen, kind, BodyTuning::default(), particles, stride, seed)).collect();
     times.sort_by(f64::total_cmp);
     times[times.len() / 2]
 }
@@ -70,6 +77,34 @@ fn print_growth(seen: &SeenMotion) {
     println!();
 }
 
+/// What one core does with few guided particles: the arithmetic of a smaller machine begins there.
+fn print_one_thread(seen: &SeenMotion) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    for (particles, stride) in [(25, 1), (25, 4), (50, 4)] {
+        let time = pool.install(|| median_s(seen, BodyModelKind::Guided, particles, stride));
+        let (part, points) = (seen.part.name(), 2000 / stride);
+        println!("{part:6} one thread, guided, {particles} particles, {points} points: {:.2} ms", 1.0e3 * time);
+    }
+}
+
+/// What limbs that may not pass through one another cost.
+fn print_self_penetration(seen: &SeenMotion) {
+    let apart = BodyTuning { self_penetration_std_m: 0.02, ..BodyTuning::default() };
+    for kind in [BodyModelKind::EndEffector, BodyModelKind::Guided] {
+        let mut times = [Vec::new(), Vec::new()];
+        for seed in 1..=PASSES {
+            for (times, tuning) in times.iter_mut().zip([BodyTuning::default(), apart]) {
+                times.extend(pass_s(seen, kind, tuning, 500, 1, seed));
+            }
+        }
+        let [without, with] = times.map(|mut times| {
+            times.sort_by(f64::total_cmp);
+            1.0e3 * times[times.len() / 2]
+        });
+        println!("{:16} 500 particles: {without:.2} ms, with self-penetration {with:.2} ms", kind.name());
+    }
+}
+
 fn main() {
     let read = MotionChoice::StickWave.read(None).expect("a built-in motion");
     let [whole, upper] = [BodyPart::Whole, BodyPart::Upper].map(|part| read.seen(part, 1).expect("a built-in scene"));
@@ -77,9 +112,11 @@ fn main() {
         println!("{} threads, 2000 points, median of a step", rayon::current_num_threads());
         [&whole, &upper].into_iter().for_each(print_models);
         [&whole, &upper].into_iter().for_each(print_growth);
+        [&whole, &upper].into_iter().for_each(print_one_thread);
+        print_self_penetration(&whole);
     }
     let mut criterion = Criterion::default().configure_from_args();
     criterion.bench_function("guided, 100 particles", |bencher| {
-        bencher.iter(|| pass_s(&whole, BodyModelKind::Guided, 100, 1, 1));
+        bencher.iter(|| pass_s(&whole, BodyModelKind::Guided, BodyTuning::default(), 100, 1, 1));
     });
 }

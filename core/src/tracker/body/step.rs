@@ -59,7 +59,7 @@ impl<M: BodyMotion<BONES, ANGLES>, const BONES: usize, const ANGLES: usize> Adva
         let proposed = self.motion.propose(&self.past, ancestor, &mut memory, &mut stream);
         *slot = BodyParticle { angles_rad: proposed.angles_rad, ends_m: proposed.posture.ends, memory };
         let scene = self.past.scene;
-        proposed.log_ratio + scene.likelihood.log_likelihood(&scene.surface(&proposed.posture), self.past.blocks)
+        proposed.log_ratio + scene.log_weight(&scene.surface(&proposed.posture), self.past.blocks)
     }
 }
 

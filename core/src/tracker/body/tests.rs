@@ -5,6 +5,7 @@ use crate::kinematics::forward::posture;
 use crate::math::Vec3;
 use crate::observation::point_cloud::PointCloud;
 use crate::observation::point_likelihood::PointLikelihood;
+use crate::observation::self_penetration::SelfPenetration;
 use crate::pik::angular::AngularMotion;
 use crate::pik::end_effector::EndEffectorMotion;
 use crate::pik::goal::LinearExtrapolation;
@@ -15,7 +16,7 @@ use crate::pik::root::{NO_PLANES, RootProcess};
 use crate::random::Stream;
 use crate::skeleton::BodyMeasures;
 use crate::skeleton::full_body::{
-    BODY_ANGLES, BODY_BONES, FOREARMS, HEAD, SHANKS, UPPER_ARMS, body_radii_m, full_body,
+    BODY_ANGLES, BODY_BONES, FOREARMS, HEAD, SHANKS, TRUNK, UPPER_ARMS, body_radii_m, full_body,
 };
 
 type Scene = BodyScene<BODY_BONES, BODY_ANGLES>;
@@ -35,6 +36,7 @@ fn scene() -> Scene {
         radii_m: body_radii_m(&measures),
         camera_m: Vec3::zeros(),
         likelihood: PointLikelihood { std_m: 0.15, outlier_m: 0.25 },
+        self_penetration: None,
     }
 }
 
@@ -211,6 +213,43 @@ fn frames_without_points_and_gaps_are_frames_like_others() {
     };
     let estimate = tracker.step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: one_point.blocks() });
     assert!(estimate.log_evidence.is_finite());
+}
+
+/// Weighted mean depth of the left forearm in the trunk, metres, while the arm is hidden beside the body.
+fn mean_depth_m(self_penetration: Option<SelfPenetration<BODY_BONES>>) -> f32 {
+    let scene = Scene { self_penetration, ..scene() };
+    let goals = goals();
+    let motion = end_effector(&goals);
+    let mut hanging = truth(0);
+    // The hand before the belly.
+    (hanging[12], hanging[14], hanging[15]) = (0.2, 1.0, 1.4);
+    let first = Particle::at(&scene.skeleton, hanging);
+    let mut tracker = Tracker::new(&first, (vec![first; 200], vec![first; 200]), OPTIONS, 3).unwrap();
+    let cloud = cloud(&scene, 0, &[UPPER_ARMS[0], FOREARMS[0]]);
+    let (mut depth, mut frames) = (0.0, 0.0);
+    for frame in 0..25 {
+        tracker.step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: cloud.blocks() });
+        if frame < 5 {
+            continue;
+        }
+        frames += 1.0;
+        for (particle, weight) in tracker.particles().iter().zip(tracker.weights()) {
+            let surface = scene.surface(&scene.posture(&particle.angles_rad));
+            let of = |bone: usize| surface.capsules.iter().find(|seen| seen.bone == bone).unwrap().capsule;
+            depth += weight * of(FOREARMS[0]).depth_m(&of(TRUNK)).max(0.0);
+        }
+    }
+    depth / frames
+}
+
+#[test]
+fn a_hidden_arm_stays_out_of_the_trunk_where_that_is_asked_for() {
+    let scene = scene();
+    let apart = SelfPenetration::new(&scene.skeleton, &scene.radii_m, 0.01).unwrap();
+    let (free, asked) = (mean_depth_m(None), mean_depth_m(Some(apart)));
+    println!("{free} {asked}");
+    assert!(free > 0.01 && free < 0.1, "{free}");
+    assert!(asked < 0.3 * free, "{asked} of {free}");
 }
 
 #[test]

@@ -48,6 +48,7 @@ pub fn pose_from_points(
         radii_m: part.radii_m(measures),
         camera_m: Vec3::zeros(),
         likelihood: PointLikelihood { std_m: points.std_m, outlier_m: points.outlier_m },
+        self_penetration: None,
     };
     let mut pelvis_m = middle(points_m).unwrap_or(Vec3::new(0.0, 0.0, NO_POINTS_Z_M));
     if part == BodyPart::Upper {

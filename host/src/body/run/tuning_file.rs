@@ -10,8 +10,7 @@ const MAX_SOLVER_STEPS: i64 = 100;
 /// Most blocks of points that a file may ask for.
 const MAX_PULLING_BLOCKS: i64 = 1_000_000;
 /// Numbers that may be zero; all others have to be greater.
-const MAY_BE_ZERO: [&str; 4] =
-    ["root.shift_std_m", "root.turn_std_rad", "points.least_effective_share", "guided_points.least_effective_share"];
+const MAY_BE_ZERO: [&str; 3] = ["root.shift_std_m", "root.turn_std_rad", "self_penetration_std_m"];
 
 /// Reads a configuration.
 ///
@@ -149,6 +148,8 @@ mod tests {
             ),
             ("[gided]\nstd_m = 1.0\n", "no key `gided`; the nearest one is `guided`"),
             ("[guided]\nstd_m = -1.0\n", "`guided.std_m` has to be from"),
+            ("self_penetration_std_m = -0.01\n", "`self_penetration_std_m` has to be from 0 to"),
+            ("self_penetration = 0.01\n", "the nearest one is `self_penetration_std_m`"),
             ("[guided]\nstd_m = nan\n", "`guided.std_m` has to be from"),
             ("[root]\npersistence = 1.5\n", "`root.persistence` has to be from 0 to 1"),
             ("[guided]\nsolver_steps = 0\n", "`guided.solver_steps` has to be from 1"),

@@ -86,6 +86,7 @@ impl BodyFilter {
             radii_m: part.radii_m(measures),
             camera_m: Vec3::zeros(),
             likelihood: PointLikelihood { std_m: points.std_m, outlier_m: points.outlier_m },
+            self_penetration: None,
         };
         let tracked = match part {
             BodyPart::Whole => {

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use sinew_core::error::ParameterError;
 use sinew_core::math::Vec3;
 use sinew_core::observation::point_likelihood::PointLikelihood;
+use sinew_core::observation::self_penetration::SelfPenetration;
 use sinew_core::pik::angular::AngularMotion;
 use sinew_core::pik::end_effector::EndEffectorMotion;
 use sinew_core::pik::guided::GuidedMotion;
@@ -78,11 +79,15 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             BodyModelKind::Guided => (tuning.guided_points, tuning.guided),
             _ => (tuning.points, tuning.end_effector),
         };
+        let std_m = tuning.self_penetration_std_m;
+        let apart = (std_m > 0.0).then(|| SelfPenetration::new(&body.skeleton, &body.radii_m, std_m));
+        let self_penetration = apart.transpose()?;
         let scene = BodyScene {
             skeleton: body.skeleton,
             radii_m: body.radii_m,
             camera_m: Vec3::zeros(),
             likelihood: PointLikelihood { std_m: points.std_m, outlier_m: points.outlier_m },
+            self_penetration,
         };
         let goals = LinearGoals::new(end_effectors(BONES), BONES, goals.extrapolation(), goals.reach_std_m)?;
         let first = BodyParticle::at(&scene.skeleton, first_rad);

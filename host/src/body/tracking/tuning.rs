@@ -172,6 +172,8 @@ pub struct BodyTuning {
     pub points: PointTuning,
     /// Points of the guided model.
     pub guided_points: PointTuning,
+    /// How far limbs may give way where they meet, metres: less flesh in flesh is likelier; zero lets them pass through one another.
+    pub self_penetration_std_m: f32,
     /// Walk of a hand along the stick, shares by root second.
     pub stick_gamma_std: f32,
     /// How closely a hand is on the stick, metres.
@@ -229,6 +231,7 @@ impl Default for BodyTuning {
             angular: AngularTuning { persistence: 0.46, joint_std: ANGULAR_JOINTS },
             points,
             guided_points: PointTuning { least_effective_share: 0.3, outlier_m: 0.25, ..points },
+            self_penetration_std_m: 0.0,
             stick_gamma_std: 0.2,
             stick_reach_std_m: 0.02,
             lift_std_m: 0.08,

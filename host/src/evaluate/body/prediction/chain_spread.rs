@@ -73,6 +73,7 @@ pub fn draw(measures: &BodyMeasures, first_rad: [f32; BODY_ANGLES], seed: u64) -
         radii_m: body_radii_m(measures),
         camera_m: Vec3::zeros(),
         likelihood: PointLikelihood { std_m: 1.0, outlier_m: 1.0 },
+        self_penetration: None,
     };
     let angle_std_rad_per_sqrt_s = [1.0 / KAPPA.sqrt(); BODY_ANGLES];
     let root = RootProcess::FIXED;

@@ -1,0 +1,109 @@
+//! Flesh does not pass through flesh: an optional density of poses (the PIK paper names it as future work).
+
+use super::body_surface::BodySurface;
+use super::capsule::Capsule;
+use crate::error::{ParameterError, positive};
+use crate::kinematics::forward::posture;
+use crate::math::{Vec3, max};
+use crate::skeleton::Skeleton;
+
+/// log p(theta) = -1/2 sum over pairs of bones (depth / std)^2, with depth what two capsules lie deeper in one another than at rest.
+///
+/// Bones that meet in a joint are no pair: parent and child, and children of one parent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelfPenetration<const BONES: usize> {
+    std_m: f32,
+    /// Depth that costs nothing, metres; infinite for what is no pair.
+    free_m: [[f32; BONES]; BONES],
+}
+
+impl<const BONES: usize> SelfPenetration<BONES> {
+    /// The density of a body whose flesh gives way by about `std_m` metres.
+    ///
+    /// # Errors
+    /// `std_m` has to be positive.
+    pub fn new<const ANGLES: usize>(
+        skeleton: &Skeleton<BONES, ANGLES>,
+        radii_m: &[f32; BONES],
+        std_m: f32,
+    ) -> Result<Self, ParameterError> {
+        let std_m = positive("self_penetration_std_m", std_m)?;
+        let rest = posture(skeleton, &Vec3::zeros(), &skeleton.clamp([0.0; ANGLES]));
+        let capsule =
+            |bone: usize| Capsule { start_m: rest.joints[bone], end_m: rest.ends[bone], radius_m: radii_m[bone] };
+        let mut free_m = [[f32::INFINITY; BONES]; BONES];
+        for (a, bone) in skeleton.bones().iter().enumerate() {
+            for (b, other) in skeleton.bones().iter().enumerate().take(a) {
+                let is_parent = |parent: Option<u8>, bone: usize| parent.map(usize::from) == Some(bone);
+                let meet = is_parent(bone.parent, b) || is_parent(other.parent, a) || bone.parent == other.parent;
+                if !meet {
+                    free_m[a][b] = max(capsule(a).depth_m(&capsule(b)), 0.0);
+                }
+            }
+        }
+        Ok(Self { std_m, free_m })
+    }
+
+    /// log density of the pose with this surface, up to its constant: zero where no flesh is in other flesh.
+    #[must_use]
+    pub fn log_density(&self, surface: &BodySurface<BONES>) -> f32 {
+        let mut sum = 0.0;
+        for (index, one) in surface.capsules.iter().enumerate() {
+            for other in surface.capsules.iter().take(index) {
+                let free_m = self.free_m.get(one.bone).and_then(|row| row.get(other.bone)).copied();
+                let Some(free_m) = free_m.filter(|free_m| free_m.is_finite()) else { continue };
+                let depth_m = max(one.capsule.depth_m(&other.capsule) - free_m, 0.0);
+                sum += depth_m * depth_m;
+            }
+        }
+        -sum / (2.0 * self.std_m * self.std_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::BodyMeasures;
+    use crate::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, BODY_BONES, body_radii_m, full_body};
+
+    /// log density of a pose given by names and degrees.
+    fn log_density(named: &[(&str, f32)]) -> f32 {
+        let measures = BodyMeasures::of_height(1.75).unwrap();
+        let (skeleton, radii) = (full_body(&measures).unwrap(), body_radii_m(&measures));
+        let mut angles = [0.0; BODY_ANGLES];
+        for (name, degrees) in named {
+            angles[BODY_ANGLE_NAMES.iter().position(|other| other == name).unwrap()] = degrees.to_radians();
+        }
+        let there = posture(&skeleton, &Vec3::zeros(), &skeleton.clamp(angles));
+        let surface = BodySurface::new(&there, &radii, Vec3::new(0.0, 0.0, -3.0));
+        SelfPenetration::<BODY_BONES>::new(&skeleton, &radii, 0.02).unwrap().log_density(&surface)
+    }
+
+    #[test]
+    fn poses_of_people_cost_nothing() {
+        for pose in [
+            &[][..],
+            &[("l_shoulder_elevation", 90.0), ("r_shoulder_elevation", 90.0)],
+            &[("l_hip_flexion", 90.0), ("l_knee_flexion", 90.0), ("r_hip_flexion", 40.0), ("r_knee_flexion", 60.0)],
+            &[("l_elbow_flexion", 130.0), ("head_turn", 60.0), ("trunk_pitch", 50.0)],
+        ] {
+            assert_eq!(log_density(pose), 0.0, "{pose:?}");
+        }
+    }
+
+    #[test]
+    fn a_forearm_in_the_trunk_and_legs_through_one_another_cost() {
+        // The upper arm hangs, turned inwards, the elbow bent: the forearm goes straight through the trunk.
+        let arm = [("l_shoulder_rotation", -90.0), ("l_elbow_flexion", 90.0)];
+        let other_way = [("l_shoulder_rotation", 90.0), ("l_elbow_flexion", 90.0)];
+        let inside = log_density(&arm).min(log_density(&other_way));
+        assert!(inside < -5.0, "{inside}");
+        assert!(log_density(&arm).max(log_density(&other_way)) > -0.5, "outwards is free");
+        let legs = log_density(&[("l_hip_abduction", -25.0), ("r_hip_abduction", -25.0)]);
+        assert!(legs < -5.0, "{legs}");
+        let measures = BodyMeasures::of_height(1.75).unwrap();
+        let (skeleton, radii) = (full_body(&measures).unwrap(), body_radii_m(&measures));
+        let refused = SelfPenetration::<BODY_BONES>::new(&skeleton, &radii, 0.0).unwrap_err();
+        assert_eq!(refused.parameter, "self_penetration_std_m");
+    }
+}
