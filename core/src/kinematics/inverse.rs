@@ -63,18 +63,20 @@ impl<const ANGLES: usize> Mode<ANGLES> {
 pub trait Solve<const BONES: usize, const ANGLES: usize>: PoseObjective<BONES, ANGLES> {
     /// Climbs from the pose of the frame before to the mode in at most `max_steps` steps.
     fn mode(&self, max_steps: usize) -> Mode<ANGLES> {
-        self.mode_from(&[], max_steps)
+        self.mode_from(&[self.start_rad()], max_steps)
     }
 
-    /// As [`Self::mode`], but climbs from the likeliest of the pose of the frame before and other `starts`: after a jump
-    /// the way from the old pose may end at a limit.
+    /// As [`Self::mode`], but climbs from the likeliest of `starts` (from the pose of the frame before where there is none): after a
+    /// jump the way from the old pose may end at a limit.
     fn mode_from(&self, starts: &[[f32; ANGLES]], max_steps: usize) -> Mode<ANGLES> {
-        let mut angles_rad = self.skeleton().clamp(self.start_rad());
+        let (first, others) =
+            starts.split_first().map_or((self.start_rad(), starts), |(first, others)| (*first, others));
+        let mut angles_rad = self.skeleton().clamp(first);
         // Two places in turns: a posture is too large to be handed on.
         let (mut here, mut there) = (Posture::folded(), Posture::folded());
         here.turn(self.skeleton(), &self.root_m(), &angles_rad);
         let mut log_density = self.log_density(&angles_rad, &here);
-        for start in starts {
+        for start in others {
             let other = self.skeleton().clamp(*start);
             there.turn(self.skeleton(), &self.root_m(), &other);
             let log_other = self.log_density(&other, &there);

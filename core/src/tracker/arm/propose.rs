@@ -258,24 +258,16 @@ impl FrameContext<'_> {
         (particle, proposal.log_importance_ratio(&draw, log_density, LimitMass::Neglected))
     }
 
-    /// Poses whose hand is at the goal: with the elbow as near to the ancestor's as can be, and where that breaks a limit with a
-    /// hanging elbow, too.
-    fn starts(&self, ancestor: &Particle, goal_m: &Vec3) -> Vec<[f32; ARM_ANGLES], 2> {
+    /// Poses whose hand is at the goal: with the elbow as near to the ancestor's as can be, and with a hanging elbow.
+    fn starts(&self, ancestor: &Particle, goal_m: &Vec3) -> [[f32; ARM_ANGLES]; 2] {
         let geometry = self.model.geometry();
         let hand_m = self.reachable.nearest(goal_m);
         let hanging_m = self.shoulder_m - geometry.up() * geometry.upper_arm_m;
-        let mut starts = Vec::new();
-        for wanted_m in [ancestor.elbow_m, hanging_m] {
+        [ancestor.elbow_m, hanging_m].map(|wanted_m| {
             let elbow_m = nearest_elbow(&self.shoulder_m, &hand_m, geometry.upper_arm_m, geometry.forearm_m, &wanted_m);
             let (elbow, hand) = (elbow_m - self.shoulder_m, hand_m - self.shoulder_m);
-            let start = geometry.angles_from_joints(&elbow, &hand, &ancestor.angles_rad);
-            // Two fit.
-            let _ = starts.push(start);
-            if self.model.skeleton().clamp(start) == start {
-                break;
-            }
-        }
-        starts
+            geometry.angles_from_joints(&elbow, &hand, &ancestor.angles_rad)
+        })
     }
 
     fn particle(&self, angles_rad: [f32; ARM_ANGLES]) -> Particle {
