@@ -3,7 +3,7 @@
 use assert_cmd::Command;
 use predicates::str::contains;
 use serde_json::Value;
-use sinew_tests::sinew_command;
+use sinew_tests::{shared_data, sinew_command};
 use std::fs;
 use std::path::Path;
 
@@ -64,6 +64,53 @@ fn predictions_have_spread_and_blocks(report: &Value, out: &Path) {
 }
 
 #[test]
+fn hidden_arms_are_counted_and_told_one_by_one() {
+    let root = tempfile::tempdir().unwrap();
+    let mut command = sinew(root.path());
+    command.args(["--motion", "pelvic-lift", "--models", "pelvic-lift", "--particles", "20", "--hide-arms", "40"]);
+    command
+        .args(["--trials", "1", "--out", "out"])
+        .assert()
+        .success()
+        .stdout(contains("hidden arms, pelvic-lift with 20"));
+    let report: Value = serde_json::from_slice(&fs::read(root.path().join("out/report.json")).unwrap()).unwrap();
+    let arms = report["hidden_arms"].as_array().unwrap();
+    // 198 frames: 16 before the first, 60 from one to the next, 50 from the last on.
+    let starts: Vec<u64> = arms.iter().map(|arm| arm["hidden"]["frames"]["start"].as_u64().unwrap()).collect();
+    assert_eq!(starts, [16, 76, 136]);
+    for arm in arms {
+        for number in ["error_before_m", "error_hidden_m", "spread_before_m", "spread_hidden_m"] {
+            let metres = arm[number].as_f64().unwrap();
+            assert!(metres > 0.0 && metres < 1.0, "{number}: {metres}");
+        }
+    }
+    let summary = &report["hidden_arm_summaries"][0];
+    assert_eq!(summary["arms"], 3);
+    assert!((0.0..=1.0).contains(&summary["as_wanted"].as_f64().unwrap()));
+}
+
+/// Eq. (34) over the markers that were glued to a person.
+#[test]
+fn recorded_markers_of_a_c3d_are_scored() {
+    let Some(take) = shared_data("mocap/hdm05/HDM_dg_06-03_03_120.c3d") else { return };
+    let root = tempfile::tempdir().unwrap();
+    let error_m = |words: &[&str]| {
+        let mut command = sinew(root.path());
+        command.arg("--motion").arg(&take).args(["--models", "guided", "--particles", "50", "--trials", "1"]);
+        command.args(words).args(["--out", "out"]).assert().success().stdout(contains("recorded markers of HDM"));
+        let report: Value = serde_json::from_slice(&fs::read(root.path().join("out/report.json")).unwrap()).unwrap();
+        let cell = &report["results"][0];
+        let floor_m = cell["recorded_floor_m"].as_f64().unwrap();
+        assert!((0.028..0.036).contains(&floor_m), "the nearest pose is {floor_m} m off");
+        cell["recorded_error_m"]["mean"].as_f64().unwrap()
+    };
+    for words in [&[][..], &["--hide", "r_arm:8-20"], &["--heading", "90"]] {
+        let error_m = error_m(words);
+        assert!((0.032..0.075).contains(&error_m), "{words:?}: {error_m}");
+    }
+}
+
+#[test]
 fn what_cannot_be_evaluated_is_named() {
     let root = tempfile::tempdir().unwrap();
     for (arguments, message) in [
@@ -71,6 +118,10 @@ fn what_cannot_be_evaluated_is_named() {
         (["--motion", "pelvic-lift@7-2", "--particles", "10"], "START-END"),
         (["--motion", "pelvic-lift", "--particles", "0"], "--particles must be whole numbers from 1 to 16384"),
         (["--motion", "pelvic-lift", "--trials", "0"], "--trials must be greater than zero"),
+        (["--motion", "pelvic-lift", "--hide-arms", "0"], "--hide-arms must be greater than zero"),
+        (["--motion", "pelvic-lift", "--hide", "l_arm:5-900"], "has no frame 900 to hide; the last one is 197"),
+        (["--motion", "pelvic-lift", "--heading", "90"], "--heading is for motion files"),
+        (["--motion", "pelvic-lift", "--heading", "nan"], "--heading has to be finite"),
     ] {
         let mut command = sinew(root.path());
         command.args(arguments).args(["--out", "out"]).assert().failure().stderr(contains(message));

@@ -41,24 +41,44 @@ const SOLE_M: f32 = 0.042;
 /// A mean heading shorter than this share of one is none: the person turns.
 const LEAST_HEADING: f32 = 0.3;
 
+/// A turn, then a shift.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RigidMotion {
+    turn: Mat3,
+    shift: Vec3,
+}
+
+impl RigidMotion {
+    /// Where `point` comes to lie.
+    #[must_use]
+    pub fn apply(&self, point: &Vec3) -> Vec3 {
+        self.turn * point + self.shift
+    }
+}
+
 impl Placement {
     /// Puts `frames` before the camera; `up` is the file's vertical, a unit vector. `false` if no frame shows the pelvis and where
     /// the person faces: then nothing is changed.
     #[must_use]
     pub fn place(&self, frames: &mut [BodyJoints], up: Vec3) -> bool {
-        let Some(front) = mean_front(frames, up) else { return false };
+        let Some(motion) = self.motion(frames, up) else { return false };
+        for joint in frames.iter_mut().flatten().flatten() {
+            *joint = motion.apply(joint);
+        }
+        true
+    }
+
+    /// What puts `frames` before the camera, as [`Self::place`] does.
+    #[must_use]
+    pub fn motion(&self, frames: &[BodyJoints], up: Vec3) -> Option<RigidMotion> {
+        let front = mean_front(frames, up)?;
         let left = up.cross(&front);
         // Rows: x = left, y = down, z = back, as of a person who faces the camera.
         let facing = Mat3::from_rows(&[left.transpose(), -up.transpose(), -front.transpose()]);
         let turn = axis_rotation(&-Vec3::y(), self.heading_rad) * facing;
-        for joint in frames.iter_mut().flatten().flatten() {
-            *joint = turn * *joint;
-        }
-        let Some(shift) = self.shift(frames) else { return false };
-        for joint in frames.iter_mut().flatten().flatten() {
-            *joint += shift;
-        }
-        true
+        let turned: Vec<BodyJoints> =
+            frames.iter().map(|joints| joints.map(|joint| joint.map(|joint| turn * joint))).collect();
+        Some(RigidMotion { turn, shift: self.shift(&turned)? })
     }
 
     /// From where the turned recording is to where the camera sees it.

@@ -3,11 +3,16 @@
 use crate::body::BodyPart;
 use crate::body::run::{inputs::check_part, tuning_file};
 use crate::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
+use crate::evaluate::body::hidden_arm::{self, HiddenArm};
 use crate::evaluate::body::trial::{SeenMotion, TrialResult, trial};
-use crate::evaluate::body::{BodyReport, BodyResult, Measured, MotionChoice, figures::figures, prediction};
+use crate::evaluate::body::{
+    BodyReport, BodyResult, Measured, MotionChoice, figures::figures, motions::ReadMotion, prediction,
+};
 use crate::output::OutputDir;
+use crate::stereo::Hidden;
 use anyhow::{Result, ensure};
 use clap::Args;
+use image::RgbImage;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -34,6 +39,15 @@ pub struct EvaluateBodyArgs {
     /// Trials of each cell, with seeds 1, 2, ... for camera and tracker.
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub trials: u64,
+    /// Turn the persons of motion files to their left, degrees: at 90 the trunk is before the left arm.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub heading: f32,
+    /// Leave out the points on a limb (l_arm, r_arm, l_leg, r_leg) from one frame to another, both included; may be repeated.
+    #[arg(long, value_name = "LIMB:FIRST-LAST")]
+    pub hide: Vec<Hidden>,
+    /// Also hide the points of the left and the right arm in turns, for this many frames at a time, and report how they are found again.
+    #[arg(long, value_name = "FRAMES")]
+    pub hide_arms: Option<usize>,
     /// Numbers of the models, as `sinew track body --config` reads them [default: the shipped ones].
     #[arg(long, value_name = "FILE.toml")]
     pub config: Option<PathBuf>,
@@ -47,6 +61,21 @@ pub struct EvaluateBodyArgs {
 /// # Errors
 /// A motion or configuration that cannot be read, an output that cannot be written.
 pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
+    check(args)?;
+    let tuning = args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?;
+    let output = OutputDir::create(&args.out)?;
+    let (report, prediction_figures) = evaluate(args, tuning)?;
+    output.write("report.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
+    output.write("table.csv", |writer| Ok(writer.write_all(report.to_csv().as_bytes())?))?;
+    for (name, picture) in figures(&report)?.into_iter().chain(prediction_figures) {
+        output.write_png(&name, &picture)?;
+    }
+    let text = format!("{}report, table and figures: {}\n", report.to_text(), args.out.display());
+    super::stdout::write_all(text.as_bytes())
+}
+
+/// Refuses numbers out of range by their option's name.
+fn check(args: &EvaluateBodyArgs) -> Result<()> {
     ensure!(args.trials > 0, "--trials must be greater than zero");
     for &count in &args.particles {
         ensure!(
@@ -57,16 +86,23 @@ pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
     for &model in &args.models {
         check_part(args.body, model)?;
     }
-    let tuning = args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?;
-    let output = OutputDir::create(&args.out)?;
-    let cells = args.motion.len() * args.models.len() * args.particles.len();
+    ensure!(args.heading.is_finite(), "--heading has to be finite");
+    ensure!(args.hide_arms != Some(0), "--hide-arms must be greater than zero");
+    Ok(())
+}
+
+/// All cells, and the figures of what models predict.
+fn evaluate(args: &EvaluateBodyArgs, tuning: BodyTuning) -> Result<(BodyReport, Vec<(String, RgbImage)>)> {
+    let rounds = 1 + usize::from(args.hide_arms.is_some());
+    let cells = args.motion.len() * args.models.len() * args.particles.len() * rounds;
     let progress = ProgressBar::new(cells as u64 * args.trials);
     progress.set_style(ProgressStyle::with_template("{pos}/{len} trials {wide_bar} {eta}")?);
-    let (mut results, mut predicted) = (Vec::new(), None);
+    let (mut results, mut predicted, mut hidden_arms) = (Vec::new(), None, Vec::new());
     for motion in &args.motion {
-        let read = motion.read(args.skeleton.as_deref())?;
+        let read = motion.read_turned(args.skeleton.as_deref(), args.heading.to_radians())?;
         let seeds = (1..=args.trials).into_par_iter();
-        let seen: Vec<SeenMotion> = seeds.map(|seed| read.seen(args.body, seed)).collect::<Result<_>>()?;
+        let seen: Vec<SeenMotion> =
+            seeds.map(|seed| read.seen_hiding(args.body, seed, &args.hide)).collect::<Result<_>>()?;
         let of_truth: Vec<f64> = seen.iter().map(SeenMotion::smoothness_m).collect();
         let truth = (motion.name(), Measured::of(&of_truth).mean);
         if predicted.is_none() {
@@ -76,6 +112,9 @@ pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
             for &particles in &args.particles {
                 results.push(cell(&truth, &seen, model, &tuning, particles, &progress)?);
             }
+        }
+        if let Some(length) = args.hide_arms {
+            hidden_arms.extend(hide_arms(args, (&motion.name(), &read), length, &tuning, &progress)?);
         }
     }
     progress.finish_and_clear();
@@ -90,17 +129,13 @@ pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
         results,
         angular_equals_end_effector_250: None,
         predictions,
+        hidden_arm_summaries: hidden_arm::summaries(&hidden_arms),
+        hidden_arms,
     };
     let wanted_m = report.mean_error_m(BodyModelKind::EndEffector, 250);
     report.angular_equals_end_effector_250 =
         wanted_m.and_then(|wanted_m| report.particles_for(BodyModelKind::Angular, wanted_m));
-    output.write("report.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
-    output.write("table.csv", |writer| Ok(writer.write_all(report.to_csv().as_bytes())?))?;
-    for (name, picture) in figures(&report)?.into_iter().chain(prediction_figures.unwrap_or_default()) {
-        output.write_png(&name, &picture)?;
-    }
-    let text = format!("{}report, table and figures: {}\n", report.to_text(), args.out.display());
-    super::stdout::write_all(text.as_bytes())
+    Ok((report, prediction_figures.unwrap_or_default()))
 }
 
 /// All trials of one cell, one after the other: a step takes all threads. The motion comes by its name and its own smoothness, metres.
@@ -118,15 +153,41 @@ fn cell(
         progress.inc(1);
     }
     let of = |value: fn(&TrialResult) -> f64| Measured::of(&trials.iter().map(value).collect::<Vec<_>>());
+    let recorded: Option<Vec<f64>> = trials.iter().map(|trial| trial.recorded_error_m).collect();
     Ok(BodyResult {
         motion: name.clone(),
         model,
         particles,
         error_m: of(|trial| trial.error_m),
+        recorded_error_m: recorded.map(|errors| Measured::of(&errors)),
+        recorded_floor_m: seen.first().map(SeenMotion::recorded_floor_m).transpose()?.flatten(),
         joint_error_m: of(|trial| trial.joint_error_m),
         smoothness_m: of(|trial| trial.smoothness_m),
         truth_smoothness_m: *truth_smoothness_m,
         seconds_per_frame: of(|trial| trial.seconds_per_frame).mean,
         effective_share: of(|trial| trial.effective_share).mean,
     })
+}
+
+/// One track of each seed, model and count in which arms are hidden for `length` frames at a time.
+fn hide_arms(
+    args: &EvaluateBodyArgs,
+    (name, motion): (&str, &ReadMotion),
+    length: usize,
+    tuning: &BodyTuning,
+    progress: &ProgressBar,
+) -> Result<Vec<HiddenArm>> {
+    let mut arms = Vec::new();
+    let frames = motion.seen(args.body, 1)?.clouds.len();
+    for seed in 1..=args.trials {
+        let windows = hidden_arm::windows(frames, length, seed);
+        let seen = motion.seen_hiding(args.body, seed, &windows)?;
+        for &model in &args.models {
+            for &particles in &args.particles {
+                arms.extend(hidden_arm::follow(name, (&seen, &windows), (model, particles), tuning, seed)?);
+                progress.inc(1);
+            }
+        }
+    }
+    Ok(arms)
 }

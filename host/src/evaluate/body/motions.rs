@@ -1,11 +1,11 @@
 //! The motions that an evaluation is given: files, parts of files, and the built-in ones.
 
 use super::trial::SeenMotion;
-use crate::body::recording::DEFAULT_RATE_HZ;
+use crate::body::recording::{DEFAULT_RATE_HZ, MarkerFrames};
 use crate::body::{BodyPart, BodyRecording, BodyRecordingOptions, Placement};
 use crate::motion::asf;
-use crate::stereo::{StereoOptions, StereoScene, pelvic_lift, stick_wave};
-use anyhow::{Context, Result, bail};
+use crate::stereo::{Hidden, StereoOptions, StereoScene, pelvic_lift, stick_wave};
+use anyhow::{Context, Result, bail, ensure};
 use sinew_core::pik::processes::stick::StickSight;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -67,22 +67,37 @@ impl MotionChoice {
     /// # Errors
     /// A file that cannot be read, by name.
     pub fn read(&self, skeleton: Option<&Path>) -> Result<ReadMotion> {
-        let placement = Placement::default();
+        self.read_turned(skeleton, 0.0)
+    }
+
+    /// As [`Self::read`], the person of a file turned to their left by `heading_rad`.
+    ///
+    /// # Errors
+    /// As [`Self::read`]; a turn of a built-in motion.
+    pub fn read_turned(&self, skeleton: Option<&Path>, heading_rad: f32) -> Result<ReadMotion> {
+        let placement = Placement { heading_rad, ..Placement::default() };
+        let is_file = matches!(self, Self::File { .. });
+        ensure!(is_file || heading_rad == 0.0, "--heading is for motion files; `{}` is built in", self.name());
+        let mut markers_m = Vec::new();
         let recording = match self {
-            Self::StickWave => return Ok(ReadMotion { name: self.name(), recording: None }),
+            Self::StickWave => return Ok(ReadMotion { name: self.name(), recording: None, markers_m }),
             Self::PelvicLift => pelvic_lift(DEFAULT_RATE_HZ, placement.camera_height_m, placement.mean_distance_m)?,
             Self::File { path, between_s } => {
                 let is_amc = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("amc"));
                 let skeleton = skeleton.filter(|_| is_amc && asf::beside(path).is_err());
+                let between_s = *between_s;
                 let options =
-                    BodyRecordingOptions { skeleton, between_s: *between_s, ..BodyRecordingOptions::default() };
-                BodyRecording::read(path, &options)?
+                    BodyRecordingOptions { skeleton, between_s, placement, ..BodyRecordingOptions::default() };
+                let (recording, recorded_m) = BodyRecording::read_with_markers(path, &options)?;
+                markers_m = recorded_m;
+                recording
             }
         };
-        if recording.joints_m.len() < 2 {
-            bail!("`{}` has {} frames; tracking needs two", self.name(), recording.joints_m.len());
+        let frames = recording.joints_m.len();
+        if frames < 2 {
+            bail!("`{}` has {frames} frames; tracking needs two", self.name());
         }
-        Ok(ReadMotion { name: self.name(), recording: Some(recording) })
+        Ok(ReadMotion { name: self.name(), recording: Some(recording), markers_m })
     }
 
     /// The motion as the simulated stereo camera sees all of it with `seed`.
@@ -100,6 +115,8 @@ pub struct ReadMotion {
     name: String,
     /// None of the person with the stick, whose motion differs by the seed.
     recording: Option<BodyRecording>,
+    /// Of a .c3d; else empty.
+    markers_m: MarkerFrames,
 }
 
 impl ReadMotion {
@@ -108,6 +125,14 @@ impl ReadMotion {
     /// # Errors
     /// A motion that makes no scene, by name.
     pub fn seen(&self, part: BodyPart, seed: u64) -> Result<SeenMotion> {
+        self.seen_hiding(part, seed, &[])
+    }
+
+    /// As [`Self::seen`], without points on the limbs that are `hidden`.
+    ///
+    /// # Errors
+    /// As [`Self::seen`]; a hidden frame that the motion does not have.
+    pub fn seen_hiding(&self, part: BodyPart, seed: u64, hidden: &[Hidden]) -> Result<SeenMotion> {
         let placement = Placement::default();
         let (height_m, distance_m) = (placement.camera_height_m, placement.mean_distance_m);
         let (recording, stick) = match &self.recording {
@@ -117,9 +142,15 @@ impl ReadMotion {
                 (wave.recording, wave.stick_m.iter().map(|ends| StickSight::Ends(*ends)).collect())
             }
         };
-        let scene = StereoScene::new(recording, StereoOptions { seed, part, ..StereoOptions::default() })
-            .with_context(|| format!("`{}` makes no scene", self.name))?;
-        Ok(SeenMotion { stick, floor_y_m: height_m, ..SeenMotion::of_scene(&scene)? })
+        let frames = recording.joints_m.len();
+        for last in hidden.iter().map(|hidden| *hidden.frames.end()) {
+            ensure!(last < frames, "`{}` has no frame {last} to hide; the last one is {}", self.name, frames - 1);
+        }
+        let options = StereoOptions { seed, part, hidden: hidden.to_vec(), ..StereoOptions::default() };
+        let scene = StereoScene::new(recording, options).with_context(|| format!("`{}` makes no scene", self.name))?;
+        // Those of an upper body are not told from those of the legs.
+        let recorded_markers_m = if part == BodyPart::Whole { self.markers_m.clone() } else { Vec::new() };
+        Ok(SeenMotion { stick, recorded_markers_m, floor_y_m: height_m, ..SeenMotion::of_scene(&scene)? })
     }
 }
 

@@ -1,5 +1,6 @@
 //! `report.json`, the table, and what the paper's figures ask of them.
 
+use super::hidden_arm::{self, HiddenArm, HiddenArmSummary};
 use super::prediction::PredictionReport;
 use crate::body::tracking::{BodyModelKind, BodyTuning};
 use serde::Serialize;
@@ -43,6 +44,12 @@ pub struct BodyResult {
     pub particles: usize,
     /// Eq. (34): markers from the skin, metres.
     pub error_m: Measured,
+    /// Eq. (34) over the markers of a .c3d, metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorded_error_m: Option<Measured>,
+    /// The same of the poses nearest to the true joints, metres: what no tracker of this body gets below.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorded_floor_m: Option<f64>,
     /// Joints from the true ones, metres.
     pub joint_error_m: Measured,
     /// Eq. (35), metres a frame.
@@ -77,6 +84,10 @@ pub struct BodyReport {
     pub angular_equals_end_effector_250: Option<f64>,
     /// What the models predict before they see a point: figures 2, 19 and 20.
     pub predictions: Option<PredictionReport>,
+    /// Arms that were hidden by `--hide-arms`, by model and number of particles.
+    pub hidden_arm_summaries: Vec<HiddenArmSummary>,
+    /// Each of these arms.
+    pub hidden_arms: Vec<HiddenArm>,
 }
 
 impl BodyReport {
@@ -162,10 +173,20 @@ impl BodyReport {
             }
         }
         text.push('\n');
+        for cell in &self.results {
+            if let (Some(error_m), Some(floor_m)) = (cell.recorded_error_m, cell.recorded_floor_m) {
+                let (model, error_cm, floor_cm) = (cell.model.name(), 100.0 * error_m.mean, 100.0 * floor_m);
+                let _ = writeln!(
+                    text,
+                    "recorded markers of {}: {model} with {} {error_cm:.2} cm; nearest pose {floor_cm:.2} cm",
+                    cell.motion, cell.particles
+                );
+            }
+        }
         if let Some(count) = self.angular_equals_end_effector_250 {
             let _ = writeln!(text, "angular needs {count:.0} particles for the error of end-effector with 250");
         }
-        text
+        text + &hidden_arm::to_text(&self.hidden_arm_summaries)
     }
 }
 
@@ -188,6 +209,8 @@ mod tests {
             model: BodyModelKind::Angular,
             particles,
             error_m: Measured::of(&[error]),
+            recorded_error_m: None,
+            recorded_floor_m: None,
             joint_error_m: Measured::of(&[error]),
             smoothness_m: Measured::of(&[0.01]),
             truth_smoothness_m: 0.01,
@@ -204,6 +227,8 @@ mod tests {
             results: vec![cell(100, 0.08), cell(10_000, 0.04)],
             angular_equals_end_effector_250: None,
             predictions: None,
+            hidden_arm_summaries: Vec::new(),
+            hidden_arms: Vec::new(),
         };
         let found = report.particles_for(BodyModelKind::Angular, 0.06).unwrap();
         assert!((found - 1000.0).abs() < 1.0e-6, "{found}");

@@ -1,5 +1,6 @@
 //! One tracker on one motion: the PIK paper's measures (eqs. 34 and 35).
 
+use crate::body::recording::MarkerFrames;
 use crate::body::run::score::{BodyScore, RunningMean};
 use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::body::tracking::{BodyFilter, BodyModelKind, BodyTuning};
@@ -8,10 +9,12 @@ use crate::cloud::blocks_of;
 use crate::stereo::StereoScene;
 use anyhow::Result;
 use rayon::prelude::*;
+use sinew_core::kinematics::forward::posture;
 use sinew_core::math::Vec3;
+use sinew_core::observation::body_surface::BodySurface;
 use sinew_core::observation::point_cloud::PointBlock;
 use sinew_core::pik::processes::stick::StickSight;
-use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BODY_PARENTS, full_body};
+use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BODY_PARENTS, body_radii_m, full_body};
 use std::time::Instant;
 
 /// A motion as one camera saw it, ready for any number of trials.
@@ -25,6 +28,8 @@ pub struct SeenMotion {
     pub joints_m: Vec<BodyJoints>,
     /// Markers of each frame, metres.
     pub markers_m: Vec<Vec<Option<Vec3>>>,
+    /// Markers of each frame that were recorded on the person, metres: of a .c3d; empty of other files.
+    pub recorded_markers_m: MarkerFrames,
     /// Points of each frame.
     pub clouds: Vec<Vec<PointBlock>>,
     /// The person's measures.
@@ -53,12 +58,31 @@ impl SeenMotion {
             rate_hz: scene.recording().rate_hz,
             first_rad: fit_pose(&full_body(&measures)?, &first, None).angles,
             markers_m: frames.iter().map(|&frame| scene.markers_m(frame)).collect(),
+            recorded_markers_m: Vec::new(),
             joints_m,
             clouds,
             measures,
             stick: Vec::new(),
             floor_y_m: f32::INFINITY,
         })
+    }
+
+    /// Eq. (34) of the poses nearest to the true joints, over the recorded markers and from the second frame on, metres: what no tracker of this body
+    /// gets below. `None` without such markers.
+    ///
+    /// # Errors
+    /// Measures that no body has.
+    pub fn recorded_floor_m(&self) -> Result<Option<f64>> {
+        let (skeleton, radii_m) = (full_body(&self.measures)?, body_radii_m(&self.measures));
+        let (mut sum, mut pose_rad) = (RunningMean::default(), self.first_rad);
+        for (joints, markers) in self.joints_m.iter().zip(&self.recorded_markers_m).skip(1) {
+            pose_rad = fit_pose(&skeleton, joints, Some(&pose_rad)).angles;
+            let surface = BodySurface::new(&posture(&skeleton, &Vec3::zeros(), &pose_rad), &radii_m, Vec3::zeros());
+            for marker_m in markers.iter().flatten() {
+                sum.add(f64::from(surface.skin_distance_m(marker_m)));
+            }
+        }
+        Ok(sum.mean())
     }
 
     /// Mean length that a joint goes in a frame, eq. (35), metres.
@@ -73,6 +97,8 @@ impl SeenMotion {
 pub struct TrialResult {
     /// Mean distance of the markers from the skin of the estimate, eq. (34), metres.
     pub error_m: f64,
+    /// The same for the recorded markers of a .c3d, metres.
+    pub recorded_error_m: Option<f64>,
     /// Mean distance of the joints from the true ones, metres.
     pub joint_error_m: f64,
     /// Mean length that the start of a bone goes in a frame, eq. (35), metres.
@@ -110,8 +136,13 @@ pub fn trial(
     for (estimate, (joints, markers)) in estimates.iter().zip(motion.joints_m.iter().zip(&motion.markers_m).skip(1)) {
         let _ = score.add(&filter, estimate, joints, markers);
     }
+    let mut recorded = BodyScore::default();
+    for (estimate, markers) in estimates.iter().zip(motion.recorded_markers_m.iter().skip(1)) {
+        let _ = recorded.add(&filter, estimate, &[None; BODY_BONES], markers);
+    }
     let result = TrialResult {
         error_m: score.marker_m.mean().unwrap_or(0.0),
+        recorded_error_m: recorded.marker_m.mean(),
         joint_error_m: score.joint_m.mean().unwrap_or(0.0),
         smoothness_m: smoothness_m(motion.part, estimates.iter().map(|estimate| estimate.ends_m.map(Some))),
         seconds_per_frame: seconds / frames,
