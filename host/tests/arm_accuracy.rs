@@ -1,13 +1,14 @@
 //! The accuracy of the default arm tracker that the book states, on rendered scenes that real motion drives. Runs in release where
 //! `../shared/data` is at hand, and says so where not.
 
+mod shared_data;
+
 use sinew::config::{Config, TrackerConfig};
 use sinew::evaluate::score::{Spread, run_all};
 use sinew::evaluate::{clips, observed::observe_all};
 use sinew::scene::SceneOptions;
 use sinew::skin::SkinModel;
 use sinew::skin::model::DEFAULT_SKIN;
-use std::path::Path;
 
 /// Largest median 3D error of the hand with 50 particles, metres.
 const LARGEST_ERROR_M: f64 = 0.12;
@@ -16,11 +17,7 @@ const LARGEST_ERROR_PX: f64 = 20.0;
 
 #[test]
 fn the_default_tracker_is_as_accurate_as_the_book_says() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/mocap");
-    if cfg!(debug_assertions) || !folder.is_dir() {
-        eprintln!("skipped: only in release and with ../shared/data beside the project");
-        return;
-    }
+    let Some(folder) = shared_data::in_release("mocap") else { return };
     let clips = clips::recorded(&folder).unwrap();
     assert!(clips.len() >= 6, "{} clips", clips.len());
     let skin = SkinModel::from_option(DEFAULT_SKIN).unwrap();

@@ -1,12 +1,13 @@
 //! The body's models on real motion before the simulated camera, as the book compares them (docs/measurements.md). Runs in release where
 //! `../shared/data` is at hand, and says so where not.
 
+mod shared_data;
+
 use sinew::body::BodyPart;
 use sinew::body::tracking::{BodyModelKind, BodyTuning};
 use sinew::evaluate::body::MotionChoice;
 use sinew::evaluate::body::hidden_arm::{HiddenArmSummary, follow, summaries, windows};
 use sinew::evaluate::body::trial::{SeenMotion, TrialResult, trial};
-use std::path::Path;
 
 /// Largest mean error (34) of the end-effector model with 100 particles, metres.
 const LARGEST_END_EFFECTOR_M: f64 = 0.032;
@@ -43,11 +44,7 @@ fn tracked(seen: &SeenMotion, model: BodyModelKind, particles: usize) -> TrialRe
 
 #[test]
 fn goals_in_space_beat_angles_and_guided_proposals_beat_both() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/mocap");
-    if cfg!(debug_assertions) || !folder.is_dir() {
-        eprintln!("skipped: only in release and with ../shared/data beside the project");
-        return;
-    }
+    let Some(folder) = shared_data::in_release("mocap") else { return };
     let skeleton = folder.join("cmu-walk/35/35.asf");
     let mut means = [0.0; 3];
     for motion in MOTIONS {
@@ -68,11 +65,7 @@ fn goals_in_space_beat_angles_and_guided_proposals_beat_both() {
 /// A camera that sees no legs: arms that wave and direct traffic.
 #[test]
 fn an_upper_body_is_followed_without_legs() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/mocap");
-    if cfg!(debug_assertions) || !folder.is_dir() {
-        eprintln!("skipped: only in release and with ../shared/data beside the project");
-        return;
-    }
+    let Some(folder) = shared_data::in_release("mocap") else { return };
     let motions = [MOTIONS[0], "cmu-expmap/train_directing_traffic_1.txt@0-5"];
     let mut means = [0.0; 2];
     for motion in motions {
@@ -92,11 +85,7 @@ fn an_upper_body_is_followed_without_legs() {
 /// Each arm in turns, 15 frames at a time, on six motions with three seeds.
 #[test]
 fn hidden_arms_are_found_again() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/mocap");
-    if cfg!(debug_assertions) || !folder.is_dir() {
-        eprintln!("skipped: only in release and with ../shared/data beside the project");
-        return;
-    }
+    let Some(folder) = shared_data::in_release("mocap") else { return };
     let skeleton = folder.join("cmu-walk/35/35.asf");
     let mut arms = Vec::new();
     for motion in HIDING_MOTIONS {
