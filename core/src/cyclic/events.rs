@@ -1,7 +1,7 @@
 //! Cycles counted and phases passed, from the cycle positions that a filter estimates.
 
 use super::phase::{POSITIONS_IN_CYCLE, position_difference, wrap_position};
-use crate::math::floor;
+use crate::math::{floor, min, round};
 use crate::saved_state::{SavedState, StateVisitor};
 
 /// Counts cycles from one estimate to the next.
@@ -19,6 +19,10 @@ pub struct CycleCounter {
 pub struct CycleStep {
     /// Position before, [0, 1).
     pub from: f32,
+    /// Position after, [0, 1).
+    pub to: f32,
+    /// Passages of position 0 on the way; negative backwards.
+    pub laps: i32,
     /// Cycles passed since; negative backwards.
     pub advance: f32,
     /// Time between both, frames.
@@ -56,9 +60,10 @@ impl CycleCounter {
         let expected = if expected.is_finite() { expected } else { 0.0 };
         let from = self.position;
         let advance = expected + position_difference(position, wrap_position(from + expected));
-        self.laps = self.laps.saturating_add(crate::math::round(from + advance - position) as i32);
+        let laps = round(from + advance - position) as i32;
+        self.laps = self.laps.saturating_add(laps);
         self.position = position;
-        CycleStep { from, advance, step_frames }
+        CycleStep { from, to: position, laps, advance, step_frames }
     }
 
     /// Whole cycles completed since the start; negative if the motion ran backwards.
@@ -82,14 +87,24 @@ impl CycleCounter {
 }
 
 impl CycleStep {
+    /// No way at `position`, in no time.
+    #[must_use]
+    pub fn none(position: f32) -> Self {
+        let position = wrap_position(position);
+        Self { from: position, to: position, laps: 0, advance: 0.0, step_frames: 0.0 }
+    }
+
     /// When `phase` was passed forwards, frames after the earlier estimate, in (0, step]; `None` if it was not.
     ///
-    /// Linear between both estimates; the first passage where a long step holds several.
+    /// Linear between both estimates; the first passage where a long step holds several. Whether it was passed is told by the
+    /// two positions and the laps, not by the way, whose rounding would count a phase at the border of two steps twice or never.
     #[must_use]
     pub fn passed(&self, phase: f32) -> Option<f32> {
+        let phase = wrap_position(phase);
+        let passages = self.laps + i32::from(self.to >= phase) - i32::from(self.from >= phase);
         let ahead = wrap_position(phase - self.from);
         let ahead = if ahead > 0.0 { ahead } else { 1.0 };
-        (self.advance > 0.0 && ahead <= self.advance).then(|| ahead / self.advance * self.step_frames)
+        (passages > 0).then(|| min(ahead / self.advance, 1.0) * self.step_frames)
     }
 }
 
@@ -116,6 +131,18 @@ mod tests {
             prop_assert!((counter.completed() as f32 - cycles.floor()).abs() <= 1.0);
             if velocity > 0.0 && velocity * step < 0.9 {
                 prop_assert!((passages as f32 - cycles).abs() <= 1.01);
+            }
+        }
+    }
+
+    #[test]
+    fn a_phase_at_the_border_of_two_steps_is_passed_once() {
+        for start in [0.0_f32, 0.05, 0.1, 0.2, 0.25] {
+            for way in [0.05_f32, 0.1, 0.2, 0.25, 0.5] {
+                let mut counter = CycleCounter::new(start);
+                let frames = (100.0 / way) as i32;
+                let passages = (1..=frames).filter(|&i| counter.advance(start + way * i as f32, way, 1.0).passed(0.25).is_some());
+                assert!((passages.count() as i32 - 100).abs() <= 1, "from {start} by {way}");
             }
         }
     }

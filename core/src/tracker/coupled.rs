@@ -56,7 +56,7 @@ impl<const N: usize> CoupledTracker<N> {
     pub fn first_frame(&mut self, model: &MotionModel<'_>, first: &AngleMeasurement<N>) -> CyclicFrame<N> {
         let estimate = self.filter.present(model, first);
         let from = estimate.cycle_position;
-        self.answer(model, estimate, CycleStep { from, advance: 0.0, step_frames: 0.0 })
+        self.answer(model, estimate, CycleStep::none(from))
     }
 
     /// One frame: predict and correct, count.
