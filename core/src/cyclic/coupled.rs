@@ -33,6 +33,8 @@ const PHASE_TEMPERING: f32 = 2.5;
 /// Share of the computed variance of an angle that is reported. The spread between people is taken wider and the evidence on the
 /// phase weaker than measured, for the gains' sake; without this share the bands hold more than they say.
 pub const BAND_CALIBRATION: f32 = 0.9;
+/// Parts of a step over frames that were left out: what a step costs does not grow with the gap before it.
+pub const MOST_SUBSTEPS: u8 = 6;
 /// An angle this many standard deviations off says nothing about the phase, and its own constant is learned anew.
 pub(super) const GATE_SIGMAS: f32 = 4.0;
 
@@ -171,9 +173,9 @@ impl<const N: usize> CoupledFilter<N> {
         self.correct(model, measurement)
     }
 
-    /// Moves on by `step_frames`, in substeps of at most one frame.
+    /// Moves on by `step_frames`, in substeps of one frame, longer ones where that would be more than [`MOST_SUBSTEPS`].
     pub fn predict(&mut self, model: &MotionModel<'_>, step_frames: f32) {
-        for step in Substeps::of(step_frames) {
+        for step in Substeps::few(step_frames, MOST_SUBSTEPS) {
             self.advance(model, step);
         }
         self.watch.unwatched_frames += step_frames;

@@ -205,3 +205,37 @@ fn from_anywhere_the_position_is_found_and_the_bands_hold_meanwhile() {
     let share = f64::from(inside) / f64::from(all);
     assert!(all > 13 && (0.8..=1.0).contains(&share), "{share} of {all} inside the band while searching");
 }
+
+/// A gap costs a few parts and not a part a frame; what is foretold across it is nearly the same.
+#[test]
+fn a_gap_in_few_parts_is_the_gap_frame_by_frame() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.1)));
+    let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.1), None).unwrap();
+    for frame in 1..=130 {
+        let seen = core::array::from_fn(|i| Some(person(i, 0.1 + frame as f32 / 65.0)));
+        filter.step(&model, &AngleMeasurement::new(&seen, 0.1).unwrap());
+    }
+    for gap in [9_u16, 20, 60, 200] {
+        let (mut few, mut many) = (filter, filter);
+        few.predict(&model, f32::from(gap));
+        for _ in 0..gap {
+            many.predict(&model, 1.0);
+        }
+        let (a, b) = (few.cycle(), many.cycle());
+        assert!(position_difference(a.position, b.position).abs() < 1.0e-3, "{gap}: {a:?} {b:?}");
+        let stds = [(a.position_variance, b.position_variance), (a.velocity_variance, b.velocity_variance)];
+        for (x, y) in stds {
+            assert!(((x / y).sqrt() - 1.0).abs() < 0.03, "{gap}: {a:?} {b:?}");
+        }
+        let (pose_a, pose_b) =
+            (few.present(&model, &AngleMeasurement::nothing()), many.present(&model, &AngleMeasurement::nothing()));
+        for i in 0..N {
+            let std = pose_b.angle_variance_rad2[i].sqrt();
+            assert!(wrap_angle(pose_a.angles_rad[i] - pose_b.angles_rad[i]).abs() < 0.05 * std, "{gap}: angle {i}");
+            let ratio = pose_a.angle_variance_rad2[i].sqrt() / std;
+            assert!((ratio - 1.0).abs() < 0.05, "{gap}: angle {i}: {ratio}");
+        }
+    }
+}

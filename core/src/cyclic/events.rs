@@ -141,7 +141,8 @@ mod tests {
             for way in [0.05_f32, 0.1, 0.2, 0.25, 0.5] {
                 let mut counter = CycleCounter::new(start);
                 let frames = (100.0 / way) as i32;
-                let passages = (1..=frames).filter(|&i| counter.advance(start + way * i as f32, way, 1.0).passed(0.25).is_some());
+                let passages =
+                    (1..=frames).filter(|&i| counter.advance(start + way * i as f32, way, 1.0).passed(0.25).is_some());
                 assert!((passages.count() as i32 - 100).abs() <= 1, "from {start} by {way}");
             }
         }

@@ -1,25 +1,37 @@
-//! A step of any length as steps of at most one frame: the noise of eqs. (9) and (10) is defined for those.
+//! A step of any length in parts: of at most one frame, as the noise of eqs. (9) and (10) is defined for those, or in few parts where
+//! the work of a step has a limit.
 
 use super::measurement::MAX_STEP_FRAMES;
-use crate::math::clamp;
+use crate::math::{clamp, max, min};
 
-/// The parts of a step: whole frames first, then what is left. At most 600.
+/// The parts of a step: whole ones first, then what is left.
 #[derive(Debug, Clone)]
 pub struct Substeps {
     left_frames: f32,
+    part_frames: f32,
 }
 
 impl Substeps {
-    /// The parts of `step_frames`, which is cut to 0..=600.
+    /// The parts of `step_frames`, which is cut to 0..=600: one frame each, so at most 600.
     #[inline]
     #[must_use]
     pub fn of(step_frames: f32) -> Self {
-        Self { left_frames: if step_frames.is_finite() { clamp(step_frames, 0.0, MAX_STEP_FRAMES) } else { 0.0 } }
+        let left_frames = if step_frames.is_finite() { clamp(step_frames, 0.0, MAX_STEP_FRAMES) } else { 0.0 };
+        Self { left_frames, part_frames: 1.0 }
+    }
+
+    /// As [`Self::of`], but no more than `parts` (at least one), all alike: beyond so many frames each part is longer than a frame.
+    #[inline]
+    #[must_use]
+    pub fn few(step_frames: f32, parts: u8) -> Self {
+        let whole = Self::of(step_frames);
+        let part_frames = max(whole.left_frames / f32::from(parts.max(1)), 1.0);
+        Self { part_frames, ..whole }
     }
 }
 
 /// What is left below this part of a frame is rounding.
-const LEAST_STEP_FRAMES: f32 = 1.0e-4;
+const LEAST_STEP_FRAMES: f32 = 1.0e-3;
 
 impl Iterator for Substeps {
     type Item = f32;
@@ -29,7 +41,7 @@ impl Iterator for Substeps {
         if self.left_frames < LEAST_STEP_FRAMES {
             return None;
         }
-        let step = crate::math::min(self.left_frames, 1.0);
+        let step = min(self.left_frames, self.part_frames);
         self.left_frames -= step;
         Some(step)
     }
@@ -45,5 +57,16 @@ mod tests {
         assert_eq!(Substeps::of(2.5).collect::<Vec<_>>(), [1.0, 1.0, 0.5]);
         assert_eq!(Substeps::of(1.0e9).count(), 600);
         assert_eq!(Substeps::of(f32::NAN).count(), 0);
+    }
+
+    #[test]
+    fn few_parts_are_frames_until_there_are_too_many() {
+        assert_eq!(Substeps::few(2.5, 8).collect::<Vec<_>>(), [1.0, 1.0, 0.5]);
+        assert_eq!(Substeps::few(12.0, 8).collect::<Vec<_>>(), [1.5; 8]);
+        for frames in [8.5, 10.1, 33.3, 511.7, 599.9, 1.0e9] {
+            let parts: Vec<_> = Substeps::few(frames, 8).collect();
+            assert!(parts.len() <= 8, "{frames}: {parts:?}");
+            assert!((parts.iter().sum::<f32>() - frames.min(600.0)).abs() < 2.0e-3, "{frames}: {parts:?}");
+        }
     }
 }

@@ -63,7 +63,7 @@ impl<const ANGLES: usize> Mode<ANGLES> {
 pub trait Solve<const BONES: usize, const ANGLES: usize>: PoseObjective<BONES, ANGLES> {
     /// Climbs from the pose of the frame before to the mode in at most `max_steps` steps.
     fn mode(&self, max_steps: usize) -> Mode<ANGLES> {
-        self.mode_from(&[self.start_rad()], max_steps)
+        self.mode_from(&[], max_steps)
     }
 
     /// As [`Self::mode`], but climbs from the likeliest of `starts` (from the pose of the frame before where there is none): after a

@@ -28,12 +28,14 @@ pub fn of_image(name: &str) -> Result<Option<Vec<u8>>> {
 }
 
 /// Frames of the synthetic walk.
-const WALK_FRAMES: u64 = 400;
+const WALK_FRAMES: u64 = 1200;
+/// Frames that are left out: a few, a second, more than the filter believes its position for, and more than it counts.
+const LEFT_OUT: [std::ops::Range<u64>; 4] = [150..153, 330..390, 420..480, 520..1140];
 /// Noise of its angles, radians.
 const WALK_NOISE_RAD: f32 = 0.1;
 
 /// The shipped model's own cycle with noise: angles missing now and then, a second without any, a change of speed, a jump to
-/// another place of the cycle, and rows left out.
+/// another place of the cycle, and rows left out, up to hundreds in a row.
 ///
 /// # Errors
 /// None in practice.
@@ -46,7 +48,7 @@ pub fn synthetic_walk(model: &CyclicModel) -> Result<AngleTable> {
         let mut noise = Stream::new(7, frame, 0);
         let slow = if frame > 200 { 0.8 } else { 1.0 };
         position = (position + slow / numbers.mean_duration_frames + if frame == 300 { 0.4 } else { 0.0 }).fract();
-        if (150..153).contains(&frame) {
+        if LEFT_OUT.iter().any(|gap| gap.contains(&frame)) {
             continue;
         }
         let hidden = (120..140).contains(&frame);
