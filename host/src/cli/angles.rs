@@ -10,6 +10,10 @@ use std::path::PathBuf;
 
 /// Options of `sinew angles`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate cyclic --model walking --out measured.csv
+  sinew track cyclic measured.csv --model walking --out est.csv --report run
+  sinew angles run/joints.trc --rate 60 --out walk.csv")]
 pub struct AnglesArgs {
     /// Motion in space (.bvh, .amc, .trc, .c3d, .txt of exponential maps) or 2D keypoints (a folder of OpenPose JSON, a COCO
     /// .json, a .csv).

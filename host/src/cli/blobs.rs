@@ -16,6 +16,9 @@ use std::path::{Path, PathBuf};
 
 /// Options of `sinew blobs`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate arm --motion builtin --frames 5 --out scene
+  sinew blobs scene/frames --out blobs.csv")]
 pub struct BlobsArgs {
     /// Folder of images, or one image.
     #[arg(value_name = "IMAGE|FOLDER")]

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 /// Options of `sinew completions`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  sinew completions bash > ~/.local/share/bash-completion/completions/sinew")]
+#[command(after_help = "Examples:\n  sinew completions bash > sinew.bash")]
 pub struct CompletionsArgs {
     /// The shell.
     #[arg(value_enum)]
@@ -19,7 +19,7 @@ pub struct CompletionsArgs {
 
 /// Options of `sinew man`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  sinew man --out man1 && man man1/sinew.1")]
+#[command(after_help = "Examples:\n  sinew man --out man1")]
 pub struct ManArgs {
     /// Folder for sinew.1 and a page for each command.
     #[arg(long, value_name = "DIR")]

@@ -11,6 +11,9 @@ use std::path::{Path, PathBuf};
 
 /// Options of `sinew cut`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate cyclic --model walking --out walk.csv
+  sinew cut walk.csv --out cuts.csv")]
 pub struct CutArgs {
     /// Angle tables, as `sinew angles` writes them.
     #[arg(required = true, value_name = "TABLE.csv")]

@@ -25,6 +25,7 @@ const MARK: &str = "demo.json";
 
 /// Options of `sinew demo`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  sinew demo --out run")]
 pub struct DemoArgs {
     /// Run directory, as that of `sinew track arm --overlay`, with the scene in DIR/scene.
     #[arg(long, value_name = "DIR", default_value = "out/demo")]

@@ -9,7 +9,9 @@ use std::path::PathBuf;
 
 /// Options of `sinew doctor`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  sinew doctor my_frames my.toml my_skin.json")]
+#[command(after_help = "Examples:
+  sinew simulate arm --motion builtin --frames 5 --out scene
+  sinew doctor scene/frames scene/camera.toml")]
 pub struct DoctorArgs {
     /// Folders of images, of clouds or of runs; configurations (.toml), models and persons (.json), angle tables (.csv).
     #[arg(value_name = "PATH", required = true)]

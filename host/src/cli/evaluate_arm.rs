@@ -18,6 +18,7 @@ const STACK_BYTES: usize = 32 << 20;
 
 /// Options of `sinew evaluate arm`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  sinew evaluate arm --clips 1 --seeds 1 --frames 110 --particles 20 --out arm")]
 pub struct EvaluateArmArgs {
     /// Folder of recorded motions; without it built-in reaches drive the scenes.
     #[arg(long, value_name = "DIR")]

@@ -19,6 +19,9 @@ use std::path::PathBuf;
 
 /// Options of `sinew evaluate body`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew evaluate body --motion pelvic-lift --models guided --particles 20 \\
+      --trials 1 --out body")]
 pub struct EvaluateBodyArgs {
     /// Motions: .bvh, .amc, .txt (exponential maps), .trc or .c3d files, FILE@START-END for a part in seconds, or stick-wave and
     /// pelvic-lift, which are built in.

@@ -12,6 +12,7 @@ use std::path::PathBuf;
 
 /// Options of `sinew evaluate cyclic`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  sinew evaluate cyclic --model running --seeds 1 --particles none --out cyclic")]
 pub struct EvaluateCyclicArgs {
     /// Cut list of the cycles to train on; without it the model of --model is used.
     #[arg(long, value_name = "CUTS.csv", conflicts_with = "model")]

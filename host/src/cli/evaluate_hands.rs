@@ -16,6 +16,10 @@ use std::path::{Path, PathBuf};
 
 /// Options of `sinew evaluate hands`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate arm --motion builtin --frames 20 --side both --out scene
+  printf 'frame,x,y,w,h\\n9,280,300,90,90\\n' > boxes.csv
+  sinew evaluate hands scene/frames --boxes boxes.csv --seeds 1")]
 pub struct EvaluateHandsArgs {
     /// Folder of video frames, all of one size, in natural order of their names.
     #[arg(value_name = "FOLDER")]

@@ -16,6 +16,10 @@ use std::path::PathBuf;
 
 /// Options of `sinew evaluate skin`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate arm --motion builtin --frames 20 --out scene
+  sinew segment scene/frames --out masks
+  sinew evaluate skin --images scene/frames --masks masks --skin histogram")]
 pub struct EvaluateSkinArgs {
     /// Folder of images; may be given several times, each with its --masks.
     #[arg(long, value_name = "DIR", required = true)]

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// Options of `sinew export`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  sinew export walking --form c --out walking_model.c")]
 pub struct ExportArgs {
     /// The motion model.
     #[arg(value_name = MODEL_VALUE)]

@@ -22,6 +22,7 @@ pub mod record;
 pub mod report;
 pub mod segment;
 pub mod simulate;
+pub mod simulate_cyclic;
 pub mod simulate_stereo;
 pub mod skin_args;
 pub mod stdout;
@@ -38,6 +39,7 @@ use clap::{Parser, Subcommand};
 /// Estimates how a human body moves, from a camera.
 #[derive(Debug, Parser)]
 #[command(name = "sinew", version, about, arg_required_else_help = true, subcommand_required = true)]
+#[command(after_help = "Examples:\n  sinew demo --out run\n  sinew report run --out run.html")]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -50,7 +52,12 @@ pub enum Command {
     /// Render a scene with known truth, track it, and print the error.
     Demo(demo::DemoArgs),
     /// Track a person: in video frames, point clouds, or angle tables.
-    #[command(subcommand)]
+    #[command(
+        subcommand,
+        after_help = "Examples:
+  sinew simulate arm --motion builtin --frames 30 --out scene
+  sinew track arm scene/frames --config scene/camera.toml --out run"
+    )]
     Track(track::Track),
     /// Make one page about a run or several: frames, plots, tables.
     Report(report::ReportArgs),
@@ -58,23 +65,33 @@ pub enum Command {
     Angles(angles::AnglesArgs),
     /// Find the cycles in angle tables.
     Cut(cut::CutArgs),
-    /// Make scenes with known truth: pictures of arms, points of whole bodies.
+    /// Make scenes with known truth, for whatever can be tracked.
     Simulate(simulate::SimulateArgs),
-    /// Write what the tracker of a run was given as a stream that firmware plays.
+    /// Write what a tracker was given as a stream for firmware.
     Record(record::RecordArgs),
     /// Write a motion model as firmware reads it.
     Export(export::ExportArgs),
     /// Write the skin mask of each image.
     Segment(segment::SegmentArgs),
-    /// Write the features and hand likelihood of each blob of each image.
+    /// Write features and hand likelihood of each blob.
     Blobs(blobs::BlobsArgs),
     /// Train a model.
-    #[command(subcommand)]
+    #[command(
+        subcommand,
+        after_help = "Examples:
+  sinew simulate cyclic --model walking --out walk.csv
+  sinew cut walk.csv --out cuts.csv
+  sinew train cyclic --cuts cuts.csv --out my_walk.json"
+    )]
     Train(train::Train),
     /// Measure how well something works.
-    #[command(subcommand)]
+    #[command(
+        subcommand,
+        after_help = "Examples:
+  sinew evaluate cyclic --model walking --seeds 1 --particles none --out cyclic"
+    )]
     Evaluate(evaluate::Evaluate),
-    /// Tell what is wrong with a folder, a configuration, a model or a table.
+    /// Tell what is wrong with a folder, a configuration, a model.
     Doctor(doctor::DoctorArgs),
     /// Print a shell's completions of this command.
     Completions(completions::CompletionsArgs),

@@ -9,6 +9,10 @@ use std::path::PathBuf;
 
 /// Options of `sinew record`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate arm --motion builtin --frames 20 --out scene
+  sinew track arm scene/frames --config scene/camera.toml --out run
+  sinew record run --out arm.stream")]
 pub struct RecordArgs {
     /// Folder of a run: of `sinew track arm` or `sinew demo`, or the report of `sinew track cyclic`.
     #[arg(value_name = "RUN_DIR")]

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 /// Options of `sinew report`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  sinew demo --out run && sinew report run --out run.html")]
+#[command(after_help = "Examples:\n  sinew demo --out run\n  sinew report run --out run.html")]
 pub struct ReportArgs {
     /// Folders that `sinew demo`, `sinew track` or `sinew evaluate` wrote; several stand side by side. Of `sinew track cyclic` it is
     /// the folder of --report.

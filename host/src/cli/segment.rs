@@ -14,6 +14,9 @@ use std::path::{Path, PathBuf};
 
 /// Options of `sinew segment`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate arm --motion builtin --frames 5 --out scene
+  sinew segment scene/frames --out masks")]
 pub struct SegmentArgs {
     /// Folder of images, or one image.
     #[arg(value_name = "IMAGE|FOLDER")]

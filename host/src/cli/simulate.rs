@@ -1,5 +1,6 @@
 //! `sinew simulate`: scenes with known truth.
 
+use super::simulate_cyclic::{self, SimulateCyclicArgs};
 use super::simulate_stereo::{self, SimulateStereoArgs};
 use crate::motion::{self, ArmMotion, ArmSide, ReadOptions, reach};
 use crate::output::OutputDir;
@@ -15,6 +16,10 @@ const BUILTIN_FRAMES: usize = 250;
 
 /// What to simulate.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate arm --motion builtin --frames 30 --out scene
+  sinew simulate stereo --motion stick-wave --points 300 --out points
+  sinew simulate cyclic --model running --out run.csv")]
 pub struct SimulateArgs {
     /// The subject.
     #[command(subcommand)]
@@ -28,6 +33,8 @@ pub enum SimulateSubject {
     Arm(SimulateArmArgs),
     /// A whole body before a stereo camera: points, truth and first pose.
     Stereo(SimulateStereoArgs),
+    /// A person who walks, runs or moves as another model says: measured angles.
+    Cyclic(SimulateCyclicArgs),
 }
 
 impl From<SideChoice> for Sides {
@@ -42,6 +49,7 @@ impl From<SideChoice> for Sides {
 
 /// Arguments of `sinew simulate arm`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  sinew simulate arm --motion builtin --frames 30 --out scene")]
 pub struct SimulateArmArgs {
     /// Motion: a .bvh, .amc or .txt (exponential maps) file, or `builtin` for random reaches.
     #[arg(long, value_name = "FILE|builtin")]
@@ -104,6 +112,7 @@ pub fn run(args: &SimulateArgs) -> Result<()> {
     match &args.subject {
         SimulateSubject::Arm(args) => run_arm(args),
         SimulateSubject::Stereo(args) => simulate_stereo::run(args),
+        SimulateSubject::Cyclic(args) => simulate_cyclic::run(args),
     }
 }
 

@@ -17,6 +17,7 @@ const PELVIC_LIFT: &str = "pelvic-lift";
 
 /// Arguments of `sinew simulate stereo`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  sinew simulate stereo --motion pelvic-lift --points 300 --out points")]
 pub struct SimulateStereoArgs {
     /// Motion: a .bvh, .amc, .txt (exponential maps), .trc or .c3d file, or one that is built in.
     #[arg(long, value_name = "FILE|stick-wave|pelvic-lift")]

@@ -12,6 +12,9 @@ use std::path::{Path, PathBuf};
 
 /// Options of `sinew track arm`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate arm --motion builtin --frames 30 --out scene
+  sinew track arm scene/frames --config scene/camera.toml --out run --overlay")]
 pub struct TrackArmArgs {
     /// Folder of video frames (PNG, JPEG, PPM), all of one size, tracked in natural order of their names.
     #[arg(value_name = "FOLDER", required_unless_present = "print_config")]

@@ -13,6 +13,9 @@ use std::path::{Path, PathBuf};
 
 /// Options of `sinew track body`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate stereo --motion pelvic-lift --points 300 --out points
+  sinew track body points --particles 20 --out run --pictures")]
 pub struct TrackBodyArgs {
     /// Folder of point clouds (PLY, PCD or CSV), one file a frame; or a folder that holds them in points/, as `simulate stereo` writes it.
     /// What it holds of body.json, first_pose.json, stick.csv, truth.csv and run.json (rate, camera, floor) is used.

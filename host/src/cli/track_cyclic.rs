@@ -17,6 +17,9 @@ use std::path::{Path, PathBuf};
 
 /// Options of `sinew track cyclic`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate cyclic --model walking --out walk.csv
+  sinew track cyclic walk.csv --model walking --out est.csv --report run")]
 pub struct TrackCyclicArgs {
     /// Angle table, made by `sinew angles` from a motion in space or from keypoints.
     pub table: PathBuf,

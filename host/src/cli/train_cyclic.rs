@@ -10,6 +10,10 @@ use std::path::PathBuf;
 
 /// Options of `sinew train cyclic`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate cyclic --model walking --out walk.csv
+  sinew cut walk.csv --out cuts.csv
+  sinew train cyclic --cuts cuts.csv --out my_walk.json")]
 pub struct TrainCyclicArgs {
     /// Cycles to train on: a CSV file `file,start_frame,end_frame`, end excluded, file relative to CUTS or absolute.
     #[arg(long, value_name = "CUTS.csv")]

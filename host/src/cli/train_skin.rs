@@ -12,6 +12,10 @@ use std::path::PathBuf;
 
 /// Options of `sinew train skin`.
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate arm --motion builtin --frames 20 --out scene
+  sinew segment scene/frames --out masks
+  sinew train skin --images scene/frames --masks masks --out my_skin.json")]
 pub struct TrainSkinArgs {
     /// Labelled pixels: rows `B G R label`, label 1 = skin, 2 = not (the UCI "Skin Segmentation" form).
     #[arg(long, value_name = "FILE", required_unless_present = "images", conflicts_with_all = ["images", "masks"])]
