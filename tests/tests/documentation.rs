@@ -48,7 +48,16 @@ fn every_sinew_command_of_the_readme_is_understood() {
 
 #[test]
 fn every_sinew_command_of_the_pages_for_users_is_understood() {
-    for (name, least) in [("coach.md", 5), ("keypoints.md", 5), ("report.md", 3)] {
+    let pages = [
+        ("coach.md", 5),
+        ("keypoints.md", 5),
+        ("report.md", 3),
+        ("first_run.md", 7),
+        ("track_arm.md", 3),
+        ("tuning.md", 4),
+        ("pictures.md", 8),
+    ];
+    for (name, least) in pages {
         let page = fs::read_to_string(workspace_root().join("docs").join(name)).unwrap();
         let commands: Vec<&str> = page.lines().filter_map(|line| line.strip_prefix("    sinew ")).collect();
         assert!(commands.len() >= least, "{name}: only {} commands", commands.len());
@@ -95,4 +104,34 @@ fn links_between_pages_lead_somewhere() {
         }
     }
     assert!(checked > 30, "only {checked} links");
+}
+
+/// Whether a file of `folder`, or of those below, holds a compiled example.
+fn has_example(folder: &Path) -> bool {
+    let compiled = |path: &Path| {
+        let text = fs::read_to_string(path).unwrap();
+        text.lines().any(|line| matches!(line.trim_start(), "//! ```" | "/// ```"))
+    };
+    let mut entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries.any(|path| if path.is_dir() { has_example(&path) } else { compiled(&path) })
+}
+
+#[test]
+fn every_public_module_of_the_core_has_a_compiled_example() {
+    let core = workspace_root().join("core/src");
+    let library = fs::read_to_string(core.join("lib.rs")).unwrap();
+    let modules: Vec<&str> =
+        library.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';')).collect();
+    assert!(modules.len() > 10, "{modules:?}");
+    let has = |name: &str| {
+        let file = core.join(format!("{name}.rs"));
+        let text = fs::read_to_string(file).unwrap_or_default();
+        text.contains("//! ```\n") || (core.join(name).is_dir() && has_example(&core.join(name)))
+    };
+    // The interface for C has its examples in C.
+    let without: Vec<&str> = modules.into_iter().filter(|name| *name != "c_api" && !has(name)).collect();
+    assert!(without.is_empty(), "without an example: {without:?}");
+    for main in ["tracker/cyclic", "tracker/body/mod", "tracker/arm/pair", "vision/front_end/mod"] {
+        assert!(fs::read_to_string(core.join(format!("{main}.rs"))).unwrap().contains("//! ```\n"), "{main}");
+    }
 }
