@@ -1,4 +1,19 @@
 //! Angles on the circle: weighted means that do not break where the circle closes.
+//!
+//! ```
+//! use sinew_core::angle::{CircularSum, angle_difference};
+//!
+//! // The mean of 350 and 20 degrees is 5, not 185.
+//! let mut sum = CircularSum::default();
+//! sum.add(350.0_f32.to_radians(), 1.0);
+//! sum.add(20.0_f32.to_radians(), 1.0);
+//! let mean_rad = sum.mean_rad().expect("they do not cancel");
+//! assert!((mean_rad.to_degrees() - 5.0).abs() < 0.01);
+//!
+//! // From 3.1 to -3.1 the short way leads over pi.
+//! let way_rad = angle_difference(-3.1, 3.1);
+//! assert!(way_rad > 0.0 && way_rad < 0.1);
+//! ```
 
 use crate::math::{atan2, ln, round, sin_cos, sqrt, wrap_angle};
 use core::f32::consts::{PI, TAU};

@@ -2,6 +2,22 @@
 //!
 //! Camera axes: x to the right of the image, y down, z along the line of sight; metres. Pixel axes: u right, v down,
 //! (0, 0) at the centre of the top left pixel. All trackers work in camera axes, so the camera centre is the origin.
+//!
+//! ```
+//! use sinew_core::camera::Camera;
+//! use sinew_core::math::Vec3;
+//!
+//! let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+//! let hand_m = Vec3::new(0.2, 0.1, 1.5);
+//! let pixel = camera.project(&hand_m).expect("the hand is in front of the camera");
+//! assert!(pixel.u_px > 319.5 && pixel.v_px > 239.5, "right of the middle, and below it");
+//!
+//! // A pixel is a ray; the nearest of its points to the hand is the hand.
+//! let ray = camera.back_project(pixel);
+//! assert!((ray.project(&hand_m) - hand_m).norm() < 1e-4);
+//! assert!(camera.project(&-hand_m).is_none(), "behind the camera is no image");
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use crate::error::{ParameterError, Rule, finite, positive};
 use crate::math::{Vec3, sin_cos, unit};

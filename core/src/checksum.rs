@@ -1,4 +1,12 @@
 //! CRC-32 (ISO 3309, polynomial 0x04C11DB7 reflected): tells data that a memory or a wire changed from what was written.
+//!
+//! ```
+//! use sinew_core::checksum::{Crc32, crc32};
+//!
+//! assert_eq!(crc32(b"123456789"), 0xCBF4_3926);
+//! let in_pieces = b"123456789".iter().fold(Crc32::new(), |crc, &byte| crc.and(byte));
+//! assert_eq!(in_pieces.value(), crc32(b"123456789"));
+//! ```
 
 /// Remainders of the 16 values of half a byte: small enough for any flash.
 const HALF_BYTES: [u32; 16] = half_bytes();

@@ -1,4 +1,13 @@
 //! Errors that name the parameter and the rule it broke.
+//!
+//! ```
+//! use sinew_core::error::positive;
+//!
+//! let refused = positive("forearm_m", -0.3).expect_err("a length is above zero");
+//! assert_eq!(refused.parameter, "forearm_m");
+//! assert!(refused.to_string().contains("forearm_m"), "{refused}");
+//! assert_eq!(positive("forearm_m", 0.3), Ok(0.3));
+//! ```
 
 use core::fmt;
 

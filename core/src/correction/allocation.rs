@@ -1,4 +1,14 @@
 //! How many particles each blob gets (arm paper, eqs. 4 and 5).
+//!
+//! ```
+//! use sinew_core::correction::allocation::allot;
+//!
+//! // 50 particles and three blobs, one of which is surely no hand.
+//! let mut counts = [0; 3];
+//! let free = allot(50, &[0.8, 0.4, 0.0], &mut counts);
+//! assert_eq!(usize::from(counts[0] + counts[1]) + free, 50);
+//! assert!(counts[0] > counts[1] && counts[2] == 0);
+//! ```
 
 /// Share T of the particles that ignore the blobs, eq. (5); `best_likelihood` is k.
 #[must_use]

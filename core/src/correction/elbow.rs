@@ -1,4 +1,14 @@
 //! The elbow that fits a hand (arm paper, section 3.2, as DESIGN.md section 4 completes it).
+//!
+//! ```
+//! use sinew_core::correction::elbow::nearest_elbow;
+//! use sinew_core::math::Vec3;
+//!
+//! let (shoulder_m, hand_m) = (Vec3::zeros(), Vec3::new(0.3, 0.3, 0.0));
+//! let elbow_m = nearest_elbow(&shoulder_m, &hand_m, 0.30, 0.35, &Vec3::new(0.0, 0.3, 0.1));
+//! assert!(((elbow_m - shoulder_m).norm() - 0.30).abs() < 1e-4, "the upper arm keeps its length");
+//! assert!(((hand_m - elbow_m).norm() - 0.35).abs() < 1e-4, "and so does the forearm");
+//! ```
 
 use crate::math::{Vec3, clamp, length, max, sqrt, unit};
 

@@ -2,6 +2,17 @@
 //!
 //! The predicted hand is projected on the camera's ray through the blob's centre. Around that foot H1 the corrected hand
 //! is drawn: wide along the ray, since depth is what one camera does not know, and narrow across it.
+//!
+//! ```
+//! use sinew_core::correction::hand::ReachableShell;
+//! use sinew_core::math::Vec3;
+//!
+//! // What a hand can reach that is 0.35 m beyond an elbow 0.3 m beyond the shoulder.
+//! let shell = ReachableShell { centre_m: Vec3::zeros(), inner_m: 0.05, outer_m: 0.65 };
+//! let too_far = Vec3::new(0.0, 0.0, 2.0);
+//! assert!(!shell.contains(&too_far));
+//! assert!((shell.nearest(&too_far) - Vec3::new(0.0, 0.0, 0.65)).norm() < 1e-5);
+//! ```
 
 use crate::camera::Ray;
 use crate::math::{Vec3, abs, clamp, length, min, sqrt, unit};

@@ -1,4 +1,17 @@
 //! Cycles counted and phases passed, from the cycle positions that a filter estimates.
+//!
+//! ```
+//! use sinew_core::cyclic::events::CycleCounter;
+//!
+//! // A fifth of a cycle a frame, from 0.1 on: position 0 is passed between the fourth frame and the fifth.
+//! let mut counter = CycleCounter::new(0.1);
+//! for frame in 1..=5 {
+//!     let position = (0.1 + 0.2 * frame as f32) % 1.0;
+//!     let step = counter.advance(position, 0.2, 1.0);
+//!     assert_eq!(step.passed(0.0).is_some(), frame == 5);
+//! }
+//! assert_eq!(counter.completed(), 1);
+//! ```
 
 use super::phase::{POSITIONS_IN_CYCLE, position_difference, wrap_position};
 use crate::math::{floor, min, round};

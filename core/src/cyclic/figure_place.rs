@@ -1,4 +1,20 @@
 //! Where the figure is and how long its segments are, filtered beside the pose (cyclic paper, section 3), and its joints.
+//!
+//! ```
+//! use sinew_core::cyclic::{FigurePlace, PlaceOptions};
+//!
+//! // A person whose trunk is 100 px long, half a centimetre a pixel, angles known to 0.1 rad, 30 frames a second.
+//! let options = PlaceOptions::of_person(100.0, 0.005, 0.1, 30.0)?;
+//! let mut place = FigurePlace::<1>::new(options)?;
+//! for frame in 0..30 {
+//!     // Three pixels a frame to the right; every fifth frame is missing.
+//!     let root_px = (frame % 5 != 4).then_some([300.0 + 3.0 * frame as f32, 200.0]);
+//!     place.step(1.0, root_px, &[Some(80.0)]);
+//! }
+//! let [x, y] = place.root_px().expect("it was seen a moment ago");
+//! assert!((x - 387.0).abs() < 6.0 && (y - 200.0).abs() < 1.0, "{x}, {y}");
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use super::image_filter::ScalarFilter;
 use crate::error::{ParameterError, positive};

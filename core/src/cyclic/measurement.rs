@@ -1,4 +1,14 @@
 //! What a frame says about the pose: any subset of the angles, each with its standard deviation.
+//!
+//! ```
+//! use sinew_core::cyclic::AngleMeasurement;
+//!
+//! // Three angles of which one was not seen, each known to five degrees, two frames after the last.
+//! let seen = AngleMeasurement::new(&[Some(0.1), None, Some(-3.0)], 5.0_f32.to_radians())?.after(2.0)?;
+//! assert_eq!((seen.present(3), seen.angle_rad(1)), (2, None));
+//! assert!(AngleMeasurement::new(&[Some(0.1)], 0.0).is_err(), "nothing is known exactly");
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use crate::error::{ParameterError, positive};
 

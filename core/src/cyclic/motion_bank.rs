@@ -1,4 +1,27 @@
 //! Which of several motions is it? Filters that run side by side, compared with a bounded memory.
+//!
+//! ```
+//! # #[cfg(feature = "walking-model")] {
+//! use sinew_core::cyclic::models::walking::WALKING;
+//! use sinew_core::cyclic::motion_bank::{DEFAULT_MEMORY_S, MotionBank, MotionEvidence};
+//! use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
+//!
+//! // One motion to choose from: is it walking, or none?
+//! let model = WALKING.model().expect("the shipped model is sound");
+//! let seen = |frame: usize| {
+//!     let pose = model.mean_pose_rad::<13>(model.point(frame as f32 * model.mean_cycle_velocity()));
+//!     AngleMeasurement::new(&pose.map(Some), 0.1).expect("a standard deviation above zero")
+//! };
+//! let mut filter = CoupledFilter::<13>::new(&model, &seen(0), None, None).expect("13 angles");
+//! let mut bank = MotionBank::<1, 13>::new(1, &seen(0), DEFAULT_MEMORY_S);
+//! for frame in 1..120 {
+//!     let estimate = filter.step(&model, &seen(frame));
+//!     let evidence = MotionEvidence::new(&model, &seen(frame), estimate.cycle_position, estimate.log_likelihood);
+//!     bank.add(&seen(frame), 1.0 / 60.0, &[evidence]);
+//! }
+//! assert_eq!(bank.likeliest(), Some(0));
+//! # }
+//! ```
 
 use super::angle_walk::AngleWalk;
 use super::{AngleMeasurement, MotionModel};

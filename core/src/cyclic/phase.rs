@@ -1,4 +1,12 @@
 //! The cycle position c as a point on a circle of circumference one.
+//!
+//! ```
+//! use sinew_core::cyclic::phase::{position_difference, wrap_position};
+//!
+//! assert!((wrap_position(1.25) - 0.25).abs() < 1e-6);
+//! // From 0.9 to 0.1 of a cycle the short way leads on.
+//! assert!((position_difference(0.1, 0.9) - 0.2).abs() < 1e-6);
+//! ```
 
 use crate::math::floor;
 

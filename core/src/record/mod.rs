@@ -12,6 +12,24 @@
 //!
 //! A stream is records one after the other; the last one is [`End`], which counts them. [`RecordStream`] reads from any [`Source`] with
 //! a buffer of fixed size, and goes on at the next sound record after a broken one.
+//!
+//! ```
+//! use sinew_core::record::{Cost, Kind, RecordStream, decode, encode};
+//!
+//! let cost = Cost { part: 1, frames: 120, total: 4_000_000, worst: 70_000 };
+//! let mut bytes = [0; 64];
+//! let length = encode(&cost, &mut bytes).expect("64 bytes suffice");
+//!
+//! let (record, used) = decode(&bytes[..length]).expect("it was written a line ago");
+//! assert_eq!((record.kind, used), (Kind::Cost, length));
+//! assert_eq!(record.read::<Cost>(), Ok(cost));
+//!
+//! // One wrong bit is found by the checksum.
+//! bytes[length - 1] ^= 1;
+//! assert!(decode(&bytes[..length]).is_err());
+//! let mut stream = RecordStream::<_, 256>::new(&bytes[..length]);
+//! assert!(matches!(stream.next_record(), Some(Err(_))));
+//! ```
 
 mod arm;
 mod camera;

@@ -3,6 +3,26 @@
 //! A type says once, in [`SavedState::visit`], which numbers it consists of and what range each has. Writing, counting and reading are
 //! three visitors of that one list, so they cannot disagree. All is little-endian words of four bytes; a state saved on one processor is
 //! read by any other.
+//!
+//! ```
+//! use sinew_core::cyclic::events::CycleCounter;
+//! use sinew_core::saved_state::{StateError, StateKind, restore, save};
+//!
+//! let mut counter = CycleCounter::new(0.9);
+//! counter.advance(0.1, 0.2, 1.0);
+//! let fingerprint = 7; // of the model and the options that the state belongs to
+//! let mut bytes = [0; 64];
+//! let length = save(StateKind::Cyclic, fingerprint, &mut counter, &mut bytes)?;
+//!
+//! let mut again = CycleCounter::zero();
+//! restore(StateKind::Cyclic, fingerprint, &mut again, &bytes[..length])?;
+//! assert_eq!(again, counter);
+//!
+//! // Another model refuses it.
+//! let foreign = restore(StateKind::Cyclic, 8, &mut again, &bytes[..length]);
+//! assert_eq!(foreign, Err(StateError::Foreign));
+//! # Ok::<(), StateError>(())
+//! ```
 
 mod envelope;
 mod visitors;

@@ -3,6 +3,22 @@
 //! Axes are the image's: x right, y down, in pixels. The angle of a joint is atan2(dy, dx) of the vector parent -> joint,
 //! relative to the image and not to the parent's own direction. The root has no angle: angle `i` belongs to joint `i + 1`.
 //! The tree is data, so figures with other joints work alike; [`HUMAN`] is the one of the paper.
+//!
+//! ```
+//! use sinew_core::skeleton::stick_figure::{HUMAN, HUMAN_ANGLES, HUMAN_JOINTS};
+//!
+//! let knee = HUMAN.angle_index("l_knee").expect("a person has knees");
+//! // Everything hangs, but for the trunk, which is the first angle and points up.
+//! let mut angles_rad = [1.5708; HUMAN_ANGLES];
+//! angles_rad[0] = -1.5708;
+//! let mut joints_px = [[0.0; 2]; HUMAN_JOINTS];
+//! HUMAN.joint_positions([320.0, 240.0], &[50.0; HUMAN_ANGLES], &angles_rad, &mut joints_px);
+//!
+//! let joints_px = joints_px.map(Some);
+//! let segment = HUMAN.segment(&joints_px, knee).expect("both of its ends are there");
+//! assert!((segment.length_px - 50.0).abs() < 1e-3);
+//! assert!((segment.angle_rad.expect("it has a length") - 1.5708).abs() < 1e-4);
+//! ```
 
 use crate::error::{ParameterError, Rule};
 use crate::math::{atan2, sin_cos, sqrt, wrap_angle};

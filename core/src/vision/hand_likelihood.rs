@@ -1,4 +1,15 @@
 //! How likely a blob is a hand: eqs. (6) to (9) of the arm paper, as printed or made fit for open hands.
+//!
+//! ```
+//! use sinew_core::vision::hand_likelihood::HandLikelihood;
+//!
+//! let likelihood = HandLikelihood::default();
+//! let image_px = 640.0 * 480.0;
+//! // The same shape as large as a hand at a metre, and as a speck.
+//! let hand = likelihood.of_features(4700.0, image_px, 0.9, 0.8);
+//! let speck = likelihood.of_features(60.0, image_px, 0.9, 0.8);
+//! assert!(hand > 0.9 && speck < 0.2, "{hand}, {speck}");
+//! ```
 
 use super::features::Blob;
 use crate::error::{ParameterError, Rule, not_negative, positive};

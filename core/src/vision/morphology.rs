@@ -3,6 +3,24 @@
 //! Border rule: what lies outside of the image counts as background for dilation and as foreground for erosion, that is,
 //! it decides nothing. Erosion and dilation are then adjoint: an opening never adds a pixel, a closing never removes
 //! one, and both change nothing when they are repeated.
+//!
+//! ```
+//! use sinew_core::vision::mask::{MaskMut, words_per_row};
+//! use sinew_core::vision::morphology::{open, scratch_words};
+//!
+//! let mut words = [0; 20 * words_per_row(40)];
+//! let mut mask = MaskMut::new(&mut words, 40, 20)?;
+//! mask.set(3, 3, true); // a speck
+//! for v in 8..14 {
+//!     for u in 10..30 {
+//!         mask.set(u, v, true);
+//!     }
+//! }
+//! open(&mut mask, &mut [0; scratch_words(40)])?;
+//! assert!(!mask.view().get(3, 3), "the speck is gone");
+//! assert_eq!(mask.view().count(), 6 * 20, "the rest stays");
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use super::mask::{MaskMut, last_word_bits, words_per_row};
 use crate::error::{ParameterError, Rule};

@@ -1,6 +1,18 @@
 //! Skin-coloured or not: a Gaussian in chromaticity, or a table over colours.
 //!
 //! Both classifiers turn a line of interleaved RGB bytes into bits, 32 pixels a word, pixel 0 in the lowest bit.
+//!
+//! ```
+//! use sinew_core::vision::skin::GaussianSkin;
+//!
+//! // Mean and covariance of r = R / (R + G + B) and g, three standard deviations, and not darker than 60.
+//! let skin = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 3.0, 60)?;
+//! let of_a_hand = skin.distance([200, 140, 110]).expect("bright enough to judge");
+//! let of_a_wall = skin.distance([20, 40, 90]).expect("bright enough to judge");
+//! assert!(of_a_hand < skin.threshold() && of_a_wall > skin.threshold());
+//! assert_eq!(skin.distance([5, 5, 5]), None, "black has no chromaticity");
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use crate::error::{ParameterError, Rule, finite, positive, within};
 use crate::math::sqrt;

@@ -1,4 +1,39 @@
 //! Two arms that share one list of blobs: a blob serves one hand, unless hands touch (DESIGN.md section 4).
+//!
+//! ```
+//! use sinew_core::camera::{Camera, Pixel};
+//! use sinew_core::math::Vec3;
+//! use sinew_core::observation::candidate::HandCandidate;
+//! use sinew_core::skeleton::{ArmGeometry, Side};
+//! use sinew_core::tracker::arm::{ArmImage, ArmModel, ArmOptions, ArmPair, PairFrame, Status};
+//!
+//! let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+//! let model = |side| {
+//!     ArmGeometry::new(side, 0.30, 0.35).and_then(|arm| ArmModel::new(camera, (640, 480), arm, ArmOptions::default()))
+//! };
+//! let (left, right) = (model(Side::Left)?, model(Side::Right)?);
+//! let shoulders_m = [Vec3::new(0.2, -0.1, 1.2), Vec3::new(-0.2, -0.1, 1.2)];
+//! let mut pair = ArmPair::<50>::new([&left, &right], shoulders_m, 1)?;
+//!
+//! // Two hands in one list; a person who faces the camera has the left one on the right of the picture.
+//! let hand = |u_px| HandCandidate {
+//!     centre: Pixel::new(u_px, 260.0),
+//!     moments_px2: [400.0, 0.0, 400.0],
+//!     area_px: 4700.0,
+//!     likelihood: 0.8,
+//! };
+//! let candidates = [hand(230.0), hand(410.0)];
+//! for frame in 0..15 {
+//!     let image = Some(ArmImage { candidates: &candidates, edges: &[] });
+//!     let estimates = pair.step([&left, &right], &PairFrame { timestamp_us: frame * 66_667, image, shoulders_m });
+//!     for (estimate, u_px) in estimates.iter().zip([410.0, 230.0]) {
+//!         assert_eq!(estimate.status, Status::Tracking);
+//!         let seen = camera.project(&estimate.joints.hand_m).expect("in front of the camera");
+//!         assert!((seen.u_px - u_px).abs() < 30.0);
+//!     }
+//! }
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use super::estimate::ArmEstimate;
 use super::frame::{ArmFrame, ArmImage, MAX_CANDIDATES, most_likely};
