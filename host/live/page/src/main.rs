@@ -1,0 +1,52 @@
+//! Builds the live page: `cargo run --release -p sinew-live-page -- --out out/live`.
+//!
+//! One HTML file with the tracker as WebAssembly and the built-in scene. It loads nothing, and its own rules forbid it to.
+
+mod builtin;
+mod fake_camera;
+mod module;
+mod page;
+mod recording;
+mod scene_pack;
+
+use anyhow::{Result, bail, ensure};
+use builtin::BuiltinScene;
+use clap::Parser;
+use sinew::output::OutputDir;
+use std::path::PathBuf;
+
+/// Most bytes of the page: what a visitor downloads.
+const MAX_PAGE_BYTES: usize = 1_500_000;
+
+/// Build the live page.
+#[derive(Debug, Parser)]
+struct Args {
+    /// Folder that gets `index.html`.
+    #[arg(long, value_name = "DIR", default_value = "out/live")]
+    out: PathBuf,
+    /// The module, where it was built already: `sinew_live.wasm`.
+    #[arg(long, value_name = "FILE")]
+    module: Option<PathBuf>,
+    /// Also write the built-in scene as a browser's fake camera shows it: `camera.y4m`, and `camera.json` with the truth.
+    #[arg(long)]
+    fake_camera: bool,
+}
+
+fn main() -> Result<()> {
+    let args = Args::parse();
+    let out = OutputDir::create(&args.out)?;
+    let module = match &args.module {
+        Some(file) => module::read(file)?,
+        None => module::build()?,
+    };
+    let quiet = BuiltinScene::new(0.0)?;
+    let page = page::page(&module, &scene_pack::packed(&quiet)?)?;
+    ensure!(page.len() < MAX_PAGE_BYTES, "the page has {} bytes; at most {MAX_PAGE_BYTES}", page.len());
+    out.write("index.html", |writer| Ok(writer.write_all(page.as_bytes())?))?;
+    if args.fake_camera {
+        fake_camera::write(&BuiltinScene::new(builtin::CAMERA_NOISE_STD)?, &out)?;
+    }
+    let Some(file) = out.join("index.html").to_str().map(str::to_owned) else { bail!("the path is not a text") };
+    println!("{file}: {} bytes, of which the module has {}; open it in a browser", page.len(), module.len());
+    Ok(())
+}

@@ -1,0 +1,63 @@
+//! One file with styles, script, module and scene.
+
+use crate::scene_pack::ScenePack;
+use anyhow::Result;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde::Serialize;
+
+const HEAD: &str = include_str!("../assets/head.html");
+const BODY: &str = include_str!("../assets/body.html");
+const STYLES: [&str; 2] = [include_str!("../assets/theme.css"), include_str!("../assets/layout.css")];
+/// The parts of the script, each after those that it calls.
+const SCRIPTS: [&str; 13] = [
+    include_str!("../assets/element.js"),
+    include_str!("../assets/notice.js"),
+    include_str!("../assets/size.js"),
+    include_str!("../assets/tracker.js"),
+    include_str!("../assets/recording.js"),
+    include_str!("../assets/scene.js"),
+    include_str!("../assets/video.js"),
+    include_str!("../assets/overlay.js"),
+    include_str!("../assets/timing.js"),
+    include_str!("../assets/settings.js"),
+    include_str!("../assets/pointer.js"),
+    include_str!("../assets/app.js"),
+    include_str!("../assets/main.js"),
+];
+
+/// What the script reads.
+#[derive(Debug, Serialize)]
+struct Data<'a> {
+    /// The module in base64.
+    module: String,
+    scene: &'a ScenePack,
+}
+
+/// The page's text.
+///
+/// # Errors
+/// None in practice: numbers that JSON cannot hold.
+pub fn page(module: &[u8], scene: &ScenePack) -> Result<String> {
+    let data = serde_json::to_string(&Data { module: STANDARD.encode(module), scene })?.replace('<', "\\u003c");
+    Ok(format!(
+        "{HEAD}<style>\n{}</style>\n</head>\n{BODY}<script type=\"application/json\" id=\"data\">{data}</script>\n\
+         <script>\n'use strict';\n(() => {{\n{}}})();\n</script>\n</body>\n</html>\n",
+        STYLES.concat(),
+        SCRIPTS.concat()
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_names_no_address_and_may_connect_to_none() {
+        for part in SCRIPTS.iter().chain(&STYLES).chain(&[HEAD, BODY]) {
+            assert!(!part.contains("http:") && !part.contains("https:") && !part.contains("</script>"), "{part}");
+            assert!(!["fetch(", "XMLHttpRequest", "WebSocket", "sendBeacon"].iter().any(|way| part.contains(way)));
+        }
+        assert!(HEAD.contains("default-src 'none'") && HEAD.contains("connect-src 'none'"));
+    }
+}

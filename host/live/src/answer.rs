@@ -1,0 +1,55 @@
+//! What a frame gave, as numbers in a row that a page can read.
+
+use sinew_core::camera::Pixel;
+use sinew_core::tracker::arm::{ArmEstimate, ArmModel, Particle, Status};
+
+/// Numbers of one answer, in the order of [`answer`].
+pub const ANSWER_NUMBERS: usize = 16;
+/// Numbers of one particle, in the order of [`particle`].
+pub const PARTICLE_NUMBERS: usize = 5;
+
+/// Status (0 tracking, 1 predicted, 2 lost); images of shoulder, elbow and hand, pixels, NaN behind the camera; the hand in camera axes, metres;
+/// its standard deviation, metres; effective sample size; likelihood of the blob that carries the estimate and its number, -1 without
+/// one; temporal edge pixels; whether all weights were zero.
+#[must_use]
+pub fn answer(estimate: &ArmEstimate, model: &ArmModel, edges: usize) -> [f32; ANSWER_NUMBERS] {
+    let status = match estimate.status {
+        Status::Tracking => 0.0,
+        Status::Predicted => 1.0,
+        Status::Lost => 2.0,
+    };
+    let joints = &estimate.joints;
+    let [shoulder, elbow, hand] =
+        [joints.shoulder_m, joints.elbow_m, joints.hand_m].map(|joint| place(model.camera().project(&joint)));
+    let carrier = estimate.candidate.map_or(-1.0, |index| index as f32);
+    let degenerate = if estimate.degenerate { 1.0 } else { 0.0 };
+    [
+        status,
+        shoulder[0],
+        shoulder[1],
+        elbow[0],
+        elbow[1],
+        hand[0],
+        hand[1],
+        joints.hand_m.x,
+        joints.hand_m.y,
+        joints.hand_m.z,
+        estimate.hand_std_m,
+        estimate.effective_sample_size,
+        estimate.hand_likelihood,
+        carrier,
+        edges as f32,
+        degenerate,
+    ]
+}
+
+/// Images of a particle's hand and elbow, pixels, and its weight.
+#[must_use]
+pub fn particle(particle: &Particle, weight: f32, model: &ArmModel) -> [f32; PARTICLE_NUMBERS] {
+    let [hand, elbow] = [particle.hand_m, particle.elbow_m].map(|joint| place(model.camera().project(&joint)));
+    [hand[0], hand[1], elbow[0], elbow[1], weight]
+}
+
+fn place(pixel: Option<Pixel>) -> [f32; 2] {
+    pixel.map_or([f32::NAN; 2], |pixel| [pixel.u_px, pixel.v_px])
+}

@@ -1,0 +1,23 @@
+//! The arm tracker on a browser's pictures, as a WebAssembly module without allocator and without a binding generator.
+//!
+//! A page writes a picture into the module's memory, calls `see` and `track`, and reads numbers: [`exports`] lists the functions.
+//! What they do is [`session::Session`], an ordinary structure. Vision is the whole-frame chain of [`sinew_core::vision::frame`] and the
+//! tracker has the defaults of `sinew track arm`, so that the answers have the same bits as the command's on the same pictures (a test).
+
+#![cfg_attr(target_arch = "wasm32", no_std)]
+
+pub mod answer;
+pub mod calibration;
+pub mod exports;
+pub mod frame;
+pub mod person;
+pub mod session;
+pub mod skin_model;
+pub mod slot;
+pub mod tint;
+
+#[cfg(target_arch = "wasm32")]
+#[panic_handler]
+fn stop(_: &core::panic::PanicInfo<'_>) -> ! {
+    core::arch::wasm32::unreachable()
+}
