@@ -1,12 +1,14 @@
 // One run after the other: a source of pictures, the tracker, and what is drawn of both.
 const TOLD_EVERY_MS = 200;
+// Numbers with so many digits; a joint behind the camera has no pixel.
+const told = (numbers, digits) => (numbers.every(Number.isFinite) ? numbers.map((number) => number.toFixed(digits)).join(', ') : '–');
 
 class App {
   constructor(tracker, scene, recording) {
     Object.assign(this, { tracker, scene, recording, source: null, shoulder: null, run: 0 });
-    this.work = new OffscreenCanvas(640, 480);
+    this.work = hiddenCanvas(640, 480);
     this.context = this.work.getContext('2d', { willReadFrequently: true });
-    this.mask = new OffscreenCanvas(640, 480);
+    this.mask = hiddenCanvas(640, 480);
     this.view = element('view').getContext('2d');
     this.pointer = watchPointer(element('view'), () => element('mirror').checked, (u, v) => this.click(u, v));
   }
@@ -27,8 +29,7 @@ class App {
   }
 
   #start(source, asked) {
-    [this.work.width, this.work.height] = [this.mask.width, this.mask.height] = fitted(source.width, source.height);
-    [element('view').width, element('view').height] = [this.work.width, this.work.height];
+    this.#fit(source);
     Object.assign(this, { source, asked, firstMs: null, timing: new Timing(), told: 0, error: null });
     this.setMirror(source.mirror);
     this.shoulder = null;
@@ -37,6 +38,14 @@ class App {
     this.#press(source.name);
     this.begin();
     source.start((picture, timeUs, about) => this.frame(picture, timeUs, about));
+  }
+
+  // Makes room for the source's pictures; whether that has changed anything.
+  #fit(source) {
+    const [width, height] = fitted(source.width, source.height);
+    if (this.work.width === width && this.work.height === height) return false;
+    for (const canvas of [this.work, this.mask, element('view')]) Object.assign(canvas, { width, height });
+    return true;
   }
 
   // The person of the built-in scene is known.
@@ -77,7 +86,10 @@ class App {
 
   frame(picture, timeUs, about) {
     const clock = [performance.now()];
-    if (about.isFirst) this.begin();
+    // A telephone that is turned gives pictures of another size, in which the shoulder is elsewhere.
+    const isTurned = this.#fit(this.source);
+    if (isTurned) this.shoulder = null;
+    if (isTurned || about.isFirst) this.begin();
     const { width, height } = this.work;
     this.context.drawImage(picture, 0, 0, width, height);
     const pixels = this.context.getImageData(0, 0, width, height);
@@ -116,8 +128,8 @@ class App {
     if (truth) this.errors.push(Math.hypot(answer.hand[0] - truth[0], answer.hand[1] - truth[1]));
     if (now - this.told < TOLD_EVERY_MS) return;
     this.told = now;
-    const rows = { status: answer.status, 'hand, pixels': answer.hand.map((at) => at.toFixed(0)).join(', ') };
-    if (answer.handM) rows['hand, metres'] = answer.handM.map((at) => at.toFixed(2)).join(', ');
+    const rows = { status: answer.status, 'hand, pixels': told(answer.hand, 0) };
+    if (answer.handM) rows['hand, metres'] = told(answer.handM, 2);
     rows.blobs = String(this.engine.blobs().length);
     rows['is a hand'] = `${Math.round(100 * answer.likelihood)} %`;
     if (answer.sampleSize) rows['effective particles'] = answer.sampleSize.toFixed(0);

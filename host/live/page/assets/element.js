@@ -11,3 +11,8 @@ function made(tag, text, attributes = {}) {
 
 // Bytes of a base64 text.
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+
+// A canvas that is not in the page.
+function hiddenCanvas(width, height) {
+  return Object.assign(document.createElement('canvas'), { width, height });
+}

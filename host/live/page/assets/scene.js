@@ -4,7 +4,7 @@ const FRAME_MS = (scene) => 1000 / scene.frames_per_second;
 class SceneSource {
   constructor(scene) {
     Object.assign(this, { name: 'scene', scene, width: scene.width, height: scene.height, mirror: false, running: false });
-    this.canvas = new OffscreenCanvas(scene.width, scene.height);
+    this.canvas = hiddenCanvas(scene.width, scene.height);
     this.context = this.canvas.getContext('2d');
   }
 

@@ -18,8 +18,8 @@ class Timing {
 
   rows() {
     const { between, picture = 0, vision = 0, tracker = 0, drawing = 0 } = this.means;
-    const told = (milliseconds) => `${milliseconds.toFixed(1)} ms`;
-    const rows = { 'taking the picture': told(picture), vision: told(vision), tracker: told(tracker), drawing: told(drawing) };
+    const length = (milliseconds) => `${milliseconds.toFixed(1)} ms`;
+    const rows = { 'taking the picture': length(picture), vision: length(vision), tracker: length(tracker), drawing: length(drawing) };
     return between ? { 'frames a second': (1000 / between).toFixed(1), ...rows } : rows;
   }
 }

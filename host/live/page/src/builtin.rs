@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use sinew::motion::{ArmSide, reach};
 use sinew::scene::{Scene, SceneOptions, Sides};
 use sinew_core::camera::Pixel;
+use sinew_live::person::Shoulder;
 
 /// Frames in a second.
 pub const RATE_HZ: f32 = 30.0;
@@ -56,6 +57,12 @@ impl BuiltinScene {
         let place_m = self.scene.body().shoulder_m(ArmSide::Right);
         let pixel = self.scene.camera().project(&place_m).context("the shoulder lies behind the camera")?;
         Ok((pixel, place_m.z))
+    }
+
+    /// The same as the page's tracker takes it.
+    pub fn placed_shoulder(&self) -> Result<Shoulder> {
+        let (pixel, distance_m) = self.shoulder()?;
+        Ok(Shoulder::At { pixel, distance_m })
     }
 
     /// Pixel of the middle of the hand in every frame.

@@ -2,6 +2,7 @@
 //!
 //! One HTML file with the tracker as WebAssembly and the built-in scene. It loads nothing, and its own rules forbid it to.
 
+mod bits;
 mod builtin;
 mod fake_camera;
 mod module;
@@ -27,9 +28,10 @@ struct Args {
     /// The module, where it was built already: `sinew_live.wasm`.
     #[arg(long, value_name = "FILE")]
     module: Option<PathBuf>,
-    /// Also write the built-in scene as a browser's fake camera shows it: `camera.y4m`, and `camera.json` with the truth.
+    /// Also write what `tests/browser/live.mjs` needs: the built-in scene as a browser's fake camera shows it (`camera.y4m`) with its truth
+    /// (`camera.json`), and some of its frames (`frames.rgba`) with this machine's answers to them (`bits.json`).
     #[arg(long)]
-    fake_camera: bool,
+    for_tests: bool,
 }
 
 fn main() -> Result<()> {
@@ -43,8 +45,10 @@ fn main() -> Result<()> {
     let page = page::page(&module, &scene_pack::packed(&quiet)?)?;
     ensure!(page.len() < MAX_PAGE_BYTES, "the page has {} bytes; at most {MAX_PAGE_BYTES}", page.len());
     out.write("index.html", |writer| Ok(writer.write_all(page.as_bytes())?))?;
-    if args.fake_camera {
-        fake_camera::write(&BuiltinScene::new(builtin::CAMERA_NOISE_STD)?, &out)?;
+    if args.for_tests {
+        let noisy = BuiltinScene::new(builtin::CAMERA_NOISE_STD)?;
+        fake_camera::write(&noisy, &out)?;
+        bits::write(&noisy, &out)?;
     }
     let Some(file) = out.join("index.html").to_str().map(str::to_owned) else { bail!("the path is not a text") };
     println!("{file}: {} bytes, of which the module has {}; open it in a browser", page.len(), module.len());

@@ -50,10 +50,12 @@ pub fn packed(scene: &BuiltinScene) -> Result<ScenePack> {
     let patches: Vec<Result<(u32, u32, String)>> = scene.frames.par_iter().map(|frame| patch(frame, &still)).collect();
     let hands = scene.hands()?;
     let (shoulder, distance) = scene.shoulder()?;
-    let frames = patches.into_iter().zip(hands).zip(recorded(scene)?).map(|((patch, hand), recorded)| {
-        let (x, y, jpeg) = patch?;
-        Ok(PackedFrame { x, y, jpeg, hand: tenths([hand.u_px, hand.v_px]), recorded })
-    });
+    let frames = patches.into_iter().zip(hands).zip(recorded(scene, scene.placed_shoulder()?)?).map(
+        |((patch, hand), recorded)| {
+            let (x, y, jpeg) = patch?;
+            Ok(PackedFrame { x, y, jpeg, hand: tenths([hand.u_px, hand.v_px]), recorded })
+        },
+    );
     let (width, height) = scene.size_px();
     Ok(ScenePack {
         width,
