@@ -1,8 +1,9 @@
 // Opens the live page in Chromium: its built-in scene, a fake camera that shows the same scene, and browsers that lack something.
 //
 //     cargo run --release -p sinew-live-page -- --out FOLDER --for-tests
-//     node live.mjs FOLDER
+//     node live.mjs FOLDER [PICTURE.png]
 //
+// PICTURE gets what the page looks like.
 // The browser is Debian's `chromium`, or the one that CHROMIUM names.
 import assert from 'node:assert/strict';
 import { existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -120,10 +121,15 @@ function tellErrors(name, errors) {
 
 async function builtInScene(page) {
   await page.locator('#use-scene').click();
+  if (process.argv[3]) {
+    await page.locator('#show-particles').check();
+    await page.locator('#show-timing').check();
+  }
   await waitForFrames(page, FRAMES);
   const list = (await frames(page)).slice(0, FRAMES);
   assert.deepEqual(list.map(({ number }) => number), [...Array(FRAMES).keys()], 'every frame comes in its turn');
   const errors = list.map(({ answer, number }) => distance(answer.hand, truth.hands[number]));
+  if (process.argv[3]) await page.screenshot({ path: process.argv[3] });
   tellErrors('built-in scene', errors);
   tellSpeed('built-in scene', list);
   check(errors.every((error) => error <= MAX_ERROR), 'the built-in scene is tracked');
@@ -252,6 +258,26 @@ const ask = (name) => async (page) => {
   await offersScene(page, name);
 };
 
+// A module that traps at its 30th picture.
+function trap() {
+  const instantiate = WebAssembly.instantiate;
+  WebAssembly.instantiate = async (bytes) => {
+    const { exports } = (await instantiate(bytes)).instance;
+    let left = 30;
+    const see = () => {
+      left -= 1;
+      if (left < 0) throw new WebAssembly.RuntimeError('unreachable');
+      return exports.see();
+    };
+    return { instance: { exports: { ...exports, see } } };
+  };
+}
+
+async function trapped(page) {
+  await page.locator('#use-scene').click();
+  await offersScene(page, 'tracker-stopped');
+}
+
 async function badVideo(page) {
   const path = join(scratch, 'broken.mp4');
   writeFileSync(path, 'this is no video');
@@ -310,6 +336,7 @@ try {
   await visit('no camera', { args: allowed }, ask('no-camera'));
   await visit('no cameras at all', { before: () => Object.defineProperty(navigator, 'mediaDevices', { value: undefined }) }, ask('camera-insecure'));
   await visit('no WebAssembly', { before: () => delete window.WebAssembly }, (page) => offersScene(page, 'no-webassembly'));
+  await visit('a trap', { before: trap }, trapped);
   console.log(`${checks} checks of the live page passed`);
 } finally {
   server.close();

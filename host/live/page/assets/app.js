@@ -37,7 +37,18 @@ class App {
     element('stop').disabled = false;
     this.#press(source.name);
     this.begin();
-    source.start((picture, timeUs, about) => this.frame(picture, timeUs, about));
+    source.start((picture, timeUs, about) => this.#guarded(() => this.frame(picture, timeUs, about)));
+  }
+
+  // A module that has trapped answers nothing more.
+  #guarded(work) {
+    try {
+      work();
+    } catch (error) {
+      if (!this.tracker || !(error instanceof WebAssembly.RuntimeError)) throw error;
+      this.tracker = null;
+      this.trouble('tracker-stopped');
+    }
   }
 
   // Makes room for the source's pictures; whether that has changed anything.

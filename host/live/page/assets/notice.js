@@ -7,6 +7,7 @@ const REASONS = {
   'camera-insecure': 'The browser gives cameras only to files and to secure pages. Open this file itself or serve it on localhost, or look at the built-in scene.',
   'camera-gone': 'The camera has stopped. Press Camera to start it again.',
   'video-unplayable': 'This file cannot be played as a video here. Try MP4 (H.264) or WebM, or look at the built-in scene.',
+  'tracker-stopped': 'The tracker has stopped by a fault of its own. Load the page again; the built-in scene can be played with what the tracker made of it when the page was built.',
   refused: 'That was refused: ',
 };
 

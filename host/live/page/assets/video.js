@@ -18,7 +18,8 @@ class VideoSource {
     this.running = true;
     let last = -Infinity;
     const step = (timeMs) => {
-      const isFirst = timeMs < last;
+      // A file that plays again; the times of a camera may jitter.
+      const isFirst = this.name === 'video' && timeMs < last;
       last = timeMs;
       onFrame(this.video, Math.max(0, 1000 * timeMs), { isFirst });
     };
