@@ -20,4 +20,6 @@ pub mod scene;
 pub mod skin;
 pub mod stereo;
 pub mod track;
+#[cfg(feature = "rerun")]
+pub mod viewer;
 pub mod wording;

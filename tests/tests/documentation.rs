@@ -56,6 +56,7 @@ fn every_sinew_command_of_the_pages_for_users_is_understood() {
         ("track_arm.md", 3),
         ("tuning.md", 4),
         ("pictures.md", 8),
+        ("viewer.md", 3),
     ];
     for (name, least) in pages {
         let page = fs::read_to_string(workspace_root().join("docs").join(name)).unwrap();

@@ -33,6 +33,7 @@ pub mod track_cyclic;
 pub mod train;
 pub mod train_cyclic;
 pub mod train_skin;
+pub mod viewer_args;
 
 use clap::{Parser, Subcommand};
 

@@ -3,6 +3,7 @@
 use super::ctrl_c::stop_flag;
 use super::skin_args::SkinArgs;
 use super::stdout::write_all;
+use super::viewer_args::ViewerArgs;
 use crate::config::{Config, DEFAULT_FILE, MAX_PARTICLES, VariantName};
 use crate::track::{Event, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
 use anyhow::{Context, Result};
@@ -56,6 +57,9 @@ pub struct TrackArmArgs {
     /// Refuse the folder if one of its images cannot be read; without it such a frame counts as missing.
     #[arg(long)]
     pub strict: bool,
+    /// The run for a viewer.
+    #[command(flatten)]
+    pub viewer: ViewerArgs,
 }
 
 fn particle_count(text: &str) -> Result<usize, String> {
@@ -77,6 +81,7 @@ pub fn run(args: &TrackArmArgs) -> Result<()> {
     if args.print_config {
         return write_all(DEFAULT_FILE.as_bytes());
     }
+    args.viewer.check()?;
     let folder = args.folder.clone().context("no FOLDER was given")?;
     let out = args.out.as_deref().context("no --out was given")?;
     let options = TrackOptions {
@@ -87,12 +92,14 @@ pub fn run(args: &TrackArmArgs) -> Result<()> {
         skin: args.skin.skin.clone(),
         calibrate: args.skin.calibrate,
         overlay: args.overlay,
-        particles_csv: args.particles_csv,
+        // The viewer shows them.
+        particles_csv: args.particles_csv || args.viewer.is_wanted(),
         strict: args.strict,
         config: effective_config(args)?,
     };
     let outcome = run_with_progress(options, out)?;
-    write_all((outcome.report.summary() + &contents(args, out)).as_bytes())
+    let viewer = args.viewer.write(out)?;
+    write_all((outcome.report.summary() + &contents(args, out) + &viewer).as_bytes())
 }
 
 /// The configuration file, or the defaults, with what the command line sets.
@@ -125,7 +132,7 @@ pub(super) fn run_with_progress(options: TrackOptions, out: &Path) -> Result<Run
 /// Where the results are.
 fn contents(args: &TrackArmArgs, out: &Path) -> String {
     let mut names = vec!["track.csv", "run.json", "hand.png"];
-    names.extend(args.particles_csv.then_some("particles.csv"));
+    names.extend((args.particles_csv || args.viewer.is_wanted()).then_some("particles.csv"));
     names.extend(args.overlay.then_some(["contact_sheet.png", "overlay/"]).into_iter().flatten());
     format!("results in `{}`: {}\n", out.display(), names.join(", "))
 }

@@ -2,6 +2,7 @@
 
 use super::ctrl_c::stop_flag;
 use super::stdout::write_all;
+use super::viewer_args::ViewerArgs;
 use crate::body::BodyPart;
 use crate::body::run::{BodyEvent, BodyRunReport, BodyTrackOptions, BodyTrackRun, tuning_file};
 use crate::body::tracking::{BodyModelKind, BodyTuning};
@@ -69,6 +70,9 @@ pub struct TrackBodyArgs {
     /// End the run at a cloud that cannot be read; without it such a frame counts as one without points.
     #[arg(long)]
     pub strict: bool,
+    /// The run for a viewer.
+    #[command(flatten)]
+    pub viewer: ViewerArgs,
 }
 
 /// Tracks the folder, or prints the default numbers.
@@ -79,6 +83,7 @@ pub fn run(args: &TrackBodyArgs) -> Result<()> {
     if args.print_config {
         return write_all(tuning_file::printed()?.as_bytes());
     }
+    args.viewer.check()?;
     let out = args.out.as_deref().context("no --out was given")?;
     let options = BodyTrackOptions {
         folder: args.folder.clone().context("no DIR was given")?,
@@ -93,12 +98,14 @@ pub fn run(args: &TrackBodyArgs) -> Result<()> {
         threads: args.threads,
         rate_hz: args.rate,
         strict: args.strict,
-        particles_csv: args.particles_csv,
+        // The viewer shows them.
+        particles_csv: args.particles_csv || args.viewer.is_wanted(),
         pictures: args.pictures,
         tuning: args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?,
     };
     let report = run_with_progress(options, out)?;
-    write_all((report.summary() + &contents(&report, out)).as_bytes())
+    let viewer = args.viewer.write(out)?;
+    write_all((report.summary() + &contents(&report, out) + &viewer).as_bytes())
 }
 
 /// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the current frame.

@@ -1,5 +1,6 @@
 //! `sinew track cyclic`: angles, phase and cadence from an angle table.
 
+use super::viewer_args::ViewerArgs;
 use crate::cyclic::model::MODEL_VALUE;
 use crate::cyclic::pictures::{OverlayFrames, animation};
 use crate::cyclic::report::body::Body;
@@ -76,6 +77,9 @@ pub struct TrackCyclicArgs {
     /// Height of the person, metres: the scale of the report's joints.trc.
     #[arg(long, value_name = "METRES", default_value_t = 1.75)]
     pub height: f64,
+    /// The run for a viewer.
+    #[command(flatten)]
+    pub viewer: ViewerArgs,
 }
 
 /// Tracks the table, writes the estimates, prints cycles and cadence.
@@ -85,14 +89,8 @@ pub struct TrackCyclicArgs {
 pub fn run(args: &TrackCyclicArgs) -> Result<()> {
     let options = options(args);
     options.check()?;
-    ensure!((0.3..=3.0).contains(&args.height), "`height` has to lie from 0.3 to 3 metres, not {}", args.height);
-    check_writable_file(&args.out)?;
+    check(args)?;
     let frames = args.overlay.as_deref().map(OverlayFrames::open).transpose()?;
-    if let Some(path) = &args.animation {
-        let is_gif = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gif"));
-        ensure!(is_gif, "`animation` has to end in .gif, not `{}`", path.display());
-        check_writable_file(path)?;
-    }
     let output = args.report.as_deref().map(OutputDir::create).transpose()?;
     let models = args.model.iter().map(|name| CyclicModel::from_option(name)).collect::<Result<Vec<_>>>()?;
     let angles = AngleTable::read(&args.table)?;
@@ -139,7 +137,27 @@ pub fn run(args: &TrackCyclicArgs) -> Result<()> {
     if overlay.is_some() || args.animation.is_some() {
         text.push_str(&show(args, &angles, &tracked, &report, overlay)?);
     }
+    if let Some(run) = &args.report {
+        text.push_str(&args.viewer.write(run)?);
+    }
     super::stdout::write_all(text.as_bytes())
+}
+
+/// What can be checked before anything is read.
+fn check(args: &TrackCyclicArgs) -> Result<()> {
+    ensure!((0.3..=3.0).contains(&args.height), "`height` has to lie from 0.3 to 3 metres, not {}", args.height);
+    ensure!(
+        !args.viewer.is_wanted() || args.report.is_some(),
+        "`--rerun` shows a run directory; give one with `--report DIR`"
+    );
+    args.viewer.check()?;
+    check_writable_file(&args.out)?;
+    if let Some(path) = &args.animation {
+        let is_gif = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gif"));
+        ensure!(is_gif, "`animation` has to end in .gif, not `{}`", path.display());
+        check_writable_file(path)?;
+    }
+    Ok(())
 }
 
 fn motion_cells(names: &[String], motions: &[NamedMotion]) -> MotionCells {

@@ -12,6 +12,29 @@ use sinew_core::tracker::arm::options::LimbCombination;
 use std::fs;
 use std::path::Path;
 
+/// The pictures of a run and how the tracker saw them.
+#[derive(Debug)]
+pub(crate) struct SeenFrames {
+    pub frames: FrameFolder,
+    pub skin: SkinModel,
+    pub config: Config,
+}
+
+impl SeenFrames {
+    /// Opens the images that the `options` of a run's record name.
+    pub fn open(options: &Value) -> Result<Self> {
+        let text = |name: &str| options[name].as_str().with_context(|| format!("run.json has no option `{name}`"));
+        let config: Config =
+            serde_json::from_value(options["config"].clone()).context("run.json has no configuration")?;
+        let frames = FrameFolder::open(Path::new(text("folder")?), false)?;
+        let mut skin = SkinModel::from_option(text("skin")?)?;
+        if let Some(rectangle) = rectangle(&options["calibrate"]) {
+            skin = skin.calibrated(frames.first().1, rectangle)?;
+        }
+        Ok(Self { frames, skin, config })
+    }
+}
+
 /// What is needed to see the frames of a run again.
 #[derive(Debug)]
 pub(super) struct ArmRun {
@@ -33,15 +56,9 @@ impl ArmRun {
             side != SideChoice::Both,
             "both arms were tracked; firmware plays one: `--side left` or `--side right`"
         );
-        let config: Config =
-            serde_json::from_value(options["config"].clone()).context("run.json has no configuration")?;
-        let frames = FrameFolder::open(Path::new(text("folder")?), false)?;
         let seed = options["seed"].as_u64().context("run.json has no option `seed`")?;
         let rate_hz = options["rate_hz"].as_f64().context("run.json has no option `rate_hz`")?;
-        let mut skin = SkinModel::from_option(text("skin")?)?;
-        if let Some(rectangle) = rectangle(&options["calibrate"]) {
-            skin = skin.calibrated(frames.first().1, rectangle)?;
-        }
+        let SeenFrames { frames, skin, config } = SeenFrames::open(options)?;
         let setup = setup(&config, frames.size_px(), side, seed)?;
         Ok(Self { frames, skin, config, setup, rate_hz })
     }

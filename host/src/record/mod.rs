@@ -7,6 +7,8 @@ mod cyclic;
 mod run_dir;
 mod stream_writer;
 
+#[cfg(feature = "rerun")]
+pub(crate) use arm_run::SeenFrames;
 pub use camera::interleaved;
 pub use cyclic::cyclic_stream;
 pub use run_dir::{Form, Recorded, record};

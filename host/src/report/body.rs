@@ -14,7 +14,7 @@ use sinew_core::skeleton::full_body::BODY_JOINT_NAMES;
 /// Name of the table of distances between track and truth.
 pub const ERROR_TABLE: &str = "joint_error.csv";
 /// The bones that are drawn.
-const BONES: [(&str, &str); 16] = [
+pub const BONES: [(&str, &str); 16] = [
     ("pelvis", "neck"),
     ("neck", "head"),
     ("neck", "l_shoulder"),
