@@ -1,4 +1,18 @@
 //! Forward kinematics (PIK paper, section 2.1, eq. 1).
+//!
+//! ```
+//! use sinew_core::kinematics::forward::posture;
+//! use sinew_core::math::Vec3;
+//! use sinew_core::skeleton::arm::FOREARM;
+//! use sinew_core::skeleton::{ArmGeometry, Side};
+//!
+//! // With all angles zero an arm hangs straight down.
+//! let arm = ArmGeometry::new(Side::Right, 0.30, 0.35)?;
+//! let shoulder_m = Vec3::new(-0.2, 0.0, 1.0);
+//! let hanging = posture(&arm.skeleton()?, &shoulder_m, &[0.0; 4]);
+//! assert!((hanging.ends[FOREARM] - (shoulder_m + Vec3::new(0.0, 0.65, 0.0))).norm() < 1e-5);
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use crate::math::{Mat3, Vec3, axis_rotation};
 use crate::skeleton::Skeleton;

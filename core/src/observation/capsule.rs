@@ -1,4 +1,15 @@
 //! The surface of one bone: a capsule, and the part of it that a camera sees (PIK paper, section 6.2).
+//!
+//! ```
+//! use sinew_core::math::Vec3;
+//! use sinew_core::observation::capsule::Capsule;
+//!
+//! let forearm = Capsule { start_m: Vec3::new(0.0, 0.0, 2.0), end_m: Vec3::new(0.3, 0.0, 2.0), radius_m: 0.04 };
+//! let point_m = Vec3::new(0.1, 0.1, 2.0);
+//! let (axis_m, _) = forearm.nearest_on_axis(&point_m);
+//! assert!((axis_m - Vec3::new(0.1, 0.0, 2.0)).norm() < 1e-6);
+//! assert!((forearm.skin_distance_m(&point_m) - 0.06).abs() < 1e-6);
+//! ```
 
 use crate::math::{Vec3, clamp, length, max, unit};
 

@@ -1,4 +1,17 @@
 //! A probability density over the orientation of a line in the image, modulo pi.
+//!
+//! ```
+//! use sinew_core::observation::orientation::OrientationDensity;
+//!
+//! // Votes for one orientation of 36; densities are relative to uniform.
+//! let flat = OrientationDensity::uniform(36)?;
+//! let mut votes = [0; 36];
+//! votes[flat.bin_of(0.5)] = 100;
+//! let limb = flat.from_votes(&votes);
+//! assert!(limb.at(0.5) > 10.0 && limb.at(2.0) < 1.0);
+//! assert_eq!(limb.bin_of(0.5 + std::f32::consts::PI), limb.bin_of(0.5), "a line has no direction");
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use crate::error::{ParameterError, Rule};
 use crate::math::{clamp, floor, ln, sqrt, wrap_orientation};

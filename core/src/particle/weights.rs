@@ -1,4 +1,16 @@
 //! Log-weights, normalised weights and effective sample size in one type, so that they never disagree.
+//!
+//! ```
+//! use sinew_core::particle::{Degenerate, Weights};
+//!
+//! let mut weights = Weights::<8>::uniform(2)?;
+//! weights.set_log(0, f32::NAN); // counts as zero
+//! weights.set_log(1, f32::NEG_INFINITY);
+//! // No particle fits: the frame has taught nothing, and that is an answer.
+//! assert_eq!(weights.normalise(), Err(Degenerate));
+//! assert_eq!(weights.normalised(), [0.5, 0.5]);
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use crate::error::{ParameterError, Rule};
 use crate::math::{exp, ln};

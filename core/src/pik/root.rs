@@ -1,4 +1,14 @@
 //! How a free root moves: the same in every motion model, drawn before the pose (DESIGN.md, section 3).
+//!
+//! ```
+//! use sinew_core::pik::root::RootProcess;
+//!
+//! // A pelvis that goes up and down over a floor 0.9 m below the camera, four times as far as it goes aside.
+//! let lift = RootProcess::pelvic_lift(0.1, 0.2, 0.9);
+//! assert!((lift.std(1, 1.0) - 4.0 * lift.std(0, 1.0)).abs() < 1e-6);
+//! assert_eq!(lift.shift_limits_m[1][1], 0.9);
+//! assert_eq!(RootProcess::FIXED.std(0, 1.0), 0.0);
+//! ```
 
 use crate::math::{max, sqrt};
 use crate::random::Stream;

@@ -1,4 +1,13 @@
 //! One stream of random numbers for each (seed, frame, index).
+//!
+//! ```
+//! use sinew_core::random::Stream;
+//!
+//! let mut die = Stream::new(1, 0, 0);
+//! let throws: Vec<u32> = (0..600).map(|_| die.below(6)).collect();
+//! assert!((0..6).all(|face| throws.iter().filter(|&&throw| throw == face).count() > 60));
+//! assert!((0..100).all(|_| (0.0..1.0).contains(&die.uniform())));
+//! ```
 
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;

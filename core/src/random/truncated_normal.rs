@@ -2,6 +2,16 @@
 //!
 //! One uniform number is turned into a draw by the inverse of the distribution function, so the work is bounded however
 //! far out the interval lies; beyond [`FAR_TAIL`] the inverse is taken in log space.
+//!
+//! ```
+//! use sinew_core::random::Stream;
+//!
+//! // Far out, where nearly no draw of a normal distribution falls, as fast as anywhere.
+//! let mut stream = Stream::new(1, 0, 0);
+//! let draws: Vec<f32> = (0..100).map(|_| stream.truncated_normal(20.0, 30.0)).collect();
+//! assert!(draws.iter().all(|draw| (20.0..=30.0).contains(draw)));
+//! assert!(draws.iter().sum::<f32>() / 100.0 < 20.2, "the tail falls steeply");
+//! ```
 
 use super::Stream;
 use super::normal::{log_upper_tail, tail_beside_one, upper_quantile, upper_tail};

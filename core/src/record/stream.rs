@@ -1,4 +1,20 @@
 //! Records one after the other, from any source of bytes.
+//!
+//! ```
+//! use sinew_core::record::{Cost, End, Failure, Kind, RecordStream, encode};
+//!
+//! // Two records and the end, which counts them.
+//! let mut bytes = [0; 256];
+//! let mut length = encode(&Failure { frame: 3, code: 1 }, &mut bytes).expect("there is room");
+//! length += encode(&Cost::zero(), &mut bytes[length..]).expect("there is room");
+//! length += encode(&End { records: 2 }, &mut bytes[length..]).expect("there is room");
+//!
+//! let mut stream = RecordStream::<_, 64>::new(&bytes[..length]);
+//! let first = stream.next_record().expect("there is one").expect("it is whole");
+//! assert_eq!(first.read::<Failure>(), Ok(Failure { frame: 3, code: 1 }));
+//! assert_eq!(stream.next_record().expect("another").expect("it is whole").kind, Kind::Cost);
+//! assert!(stream.next_record().is_none(), "the count is right");
+//! ```
 
 use super::header::{MARK, announced_len};
 use super::{End, Kind, Record, RecordError, decode};

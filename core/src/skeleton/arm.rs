@@ -8,6 +8,22 @@
 //!
 //! and the elbow by *flexion*. The singular directions of this order (deviation +-90 degrees) point inwards to the front
 //! and outwards to the back, where an arm cannot go: the limits exclude them.
+//!
+//! ```
+//! use sinew_core::kinematics::forward::posture;
+//! use sinew_core::math::Vec3;
+//! use sinew_core::skeleton::arm::{FOREARM, UPPER_ARM};
+//! use sinew_core::skeleton::{ArmGeometry, Side};
+//!
+//! // Angles to elbow and hand, and back.
+//! let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+//! let pose = [0.6, 0.2, 0.1, 1.2];
+//! let places = posture(&arm.skeleton()?, &Vec3::zeros(), &pose).ends;
+//! let found = arm.angles_from_joints(&places[UPPER_ARM], &places[FOREARM], &[0.0; 4]);
+//! assert!(found.iter().zip(pose).all(|(found, wanted)| (found - wanted).abs() < 1e-3), "{found:?}");
+//! assert!((arm.reach_m() - 0.65).abs() < 1e-6);
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use super::tree::{Bone, Joint, Limit, Skeleton};
 use crate::error::{ParameterError, Rule, finite, positive};

@@ -1,4 +1,15 @@
 //! How long a body's segments are, and how thick.
+//!
+//! ```
+//! use sinew_core::skeleton::BodyMeasures;
+//!
+//! let tall = BodyMeasures::of_height(1.90)?;
+//! let small = BodyMeasures::of_height(1.60)?;
+//! assert!(tall.thigh_m > small.thigh_m);
+//! // A measure of your own is checked.
+//! assert!(BodyMeasures { forearm_m: -0.2, ..tall }.checked().is_err());
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use crate::error::{ParameterError, positive};
 use crate::math::Vec3;

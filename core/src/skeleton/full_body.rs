@@ -9,6 +9,26 @@
 //! | trunk, head | pitch forward | tilt to the left | turn about up |
 //! | shoulder | as [`super::arm`] | | |
 //! | hip | flexion to the front | abduction | inward rotation |
+//!
+//! ```
+//! use sinew_core::kinematics::forward::posture;
+//! use sinew_core::math::Vec3;
+//! use sinew_core::skeleton::BodyMeasures;
+//! use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, FEET, FOREARMS, HEAD, full_body};
+//!
+//! let person = full_body(&BodyMeasures::of_height(1.75)?)?;
+//! let mut pose = [0.0; BODY_ANGLES];
+//! pose[2] = 3.0; // the root's shift along z: three metres away
+//! let standing = posture(&person, &Vec3::zeros(), &pose).ends;
+//! assert!(standing[HEAD].y < standing[FEET[0]].y, "y points down");
+//!
+//! let elbow = BODY_ANGLE_NAMES.iter().position(|name| *name == "l_elbow_flexion").expect("it has this name");
+//! pose[elbow] = 1.5;
+//! let bent = posture(&person, &Vec3::zeros(), &pose).ends;
+//! assert!(bent[FOREARMS[0]].z < standing[FOREARMS[0]].z, "the forearm points to the camera");
+//! assert_eq!(bent[FOREARMS[1]], standing[FOREARMS[1]], "the other arm stays");
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use super::arm::{ArmGeometry, Side};
 use super::body_measures::BodyMeasures;

@@ -2,6 +2,19 @@
 //!
 //! Its bones are the first of [`super::full_body`] under the same indices. The trunk does not turn against the pelvis: without legs nothing tells
 //! both apart, so the root turns both.
+//!
+//! ```
+//! use sinew_core::skeleton::BodyMeasures;
+//! use sinew_core::skeleton::full_body::BODY_ANGLES;
+//! use sinew_core::skeleton::upper_body::{UPPER_ANGLES, upper_body, upper_coordinates};
+//!
+//! let desk = upper_body(&BodyMeasures::of_height(1.75)?)?;
+//! assert_eq!(desk.limits().len(), UPPER_ANGLES);
+//! // A whole body's numbers, those of the upper body picked out.
+//! let whole: [usize; BODY_ANGLES] = std::array::from_fn(|index| index);
+//! assert_eq!(upper_coordinates(&whole)[6], 9, "trunk angles are left out");
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use super::body_measures::BodyMeasures;
 use super::full_body::{BODY_ANGLES, BODY_BONES, BODY_RADII, TRUNK, full_body};

@@ -1,4 +1,22 @@
 //! Temporal edge pixels: where the luminance has an edge and has changed since the frame before.
+//!
+//! ```
+//! use sinew_core::vision::edges::{EdgeDetector, EdgeList};
+//! use sinew_core::vision::mask::words_per_row;
+//!
+//! // A bright bar that moves by three pixels.
+//! const SIZE: (usize, usize) = (64, 32);
+//! let frame = |left: usize| -> Vec<u8> {
+//!     (0..SIZE.0 * SIZE.1).map(|i| if (left..left + 10).contains(&(i % SIZE.0)) { 200 } else { 40 }).collect()
+//! };
+//! let mut bits = [0; words_per_row(SIZE.0) * SIZE.1];
+//! EdgeDetector::default().find(&frame(23), &frame(20), SIZE.0, SIZE.1, &mut bits)?;
+//! let mut edges = EdgeList::<500>::new();
+//! edges.take_mask(&bits, SIZE.0);
+//! assert!(!edges.as_slice().is_empty() && edges.dropped == 0);
+//! assert!(edges.as_slice().iter().all(|pixel| (18..37).contains(&pixel.u)), "only where the bar is or was");
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use super::mask::{MAX_SIDE_PX, words_per_row};
 use crate::error::{ParameterError, Rule, within};

@@ -1,4 +1,13 @@
 //! The ellipse of a blob's area and perimeter, and how well it covers the blob: eq. (9) of the arm paper.
+//!
+//! ```
+//! use sinew_core::vision::ellipse::semi_axes;
+//! use std::f32::consts::PI;
+//!
+//! // A disc of radius 10.
+//! let (a, b) = semi_axes(PI * 100.0, 2.0 * PI * 10.0);
+//! assert!((a - 10.0).abs() < 0.05 && (b - 10.0).abs() < 0.05, "{a}, {b}");
+//! ```
 
 use super::distance::{CellRow, MAX_COLUMNS};
 use crate::math::{clamp, floor, max, sin_cos, sqrt};

@@ -1,6 +1,19 @@
 //! One-bit images: 32 pixels a word, pixel 0 of a row in the lowest bit of its first word.
 //!
 //! Invariant of both views: the bits of a row's last word beyond the image's width are zero.
+//!
+//! ```
+//! use sinew_core::vision::mask::{MaskMut, words_per_row};
+//!
+//! let mut words = [0; 5 * words_per_row(40)];
+//! let mut mask = MaskMut::new(&mut words, 40, 5)?;
+//! mask.set(33, 2, true);
+//! let view = mask.view();
+//! assert!(view.get(33, 2) && !view.get(33, 3));
+//! assert_eq!(view.row(2), [0, 1 << 1], "pixel 33 is bit 1 of the second word");
+//! assert_eq!(view.count(), 1);
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use crate::error::{ParameterError, Rule, positive};
 

@@ -1,4 +1,26 @@
 //! Skin calibration at run time: a sample of a box of pixels that shows only skin adapts a Gaussian model.
+//!
+//! ```
+//! use sinew_core::vision::components::BoundingBox;
+//! use sinew_core::vision::front_end::calibration::SkinSample;
+//! use sinew_core::vision::front_end::pixel_format::Rgb565;
+//! use sinew_core::vision::skin::GaussianSkin;
+//!
+//! // A hand of another colour than the model's, held into a box of 16 x 8 pixels.
+//! let trained = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?;
+//! let hand = [150_u16, 120, 110];
+//! let pixel = (hand[0] >> 3) << 11 | (hand[1] >> 2) << 5 | hand[2] >> 3;
+//! let bounds = BoundingBox { min_u: 8, min_v: 4, max_u: 23, max_v: 11 };
+//! let mut sample = SkinSample::<Rgb565, 256>::new(bounds);
+//! for v in 0..20 {
+//!     sample.line(v, &[pixel; 40]);
+//! }
+//! assert_eq!(sample.len(), 128, "what is outside of the box does not count");
+//! let adapted = sample.adapted(&trained)?;
+//! let far = |skin: &GaussianSkin| skin.distance(hand.map(|value| value as u8)).expect("bright enough");
+//! assert!(far(&adapted) < far(&trained));
+//! # Ok::<(), sinew_core::error::ParameterError>(())
+//! ```
 
 use super::pixel_format::{PixelFormat, odd_pair};
 use crate::error::{ParameterError, Rule};
