@@ -30,12 +30,13 @@ fn hands(folder: &Path, boxes: &Path) -> Command {
 #[test]
 fn hands_are_scored_and_floors_are_required() {
     let root = tempfile::tempdir().unwrap();
-    let (folder, boxes, json) = (frames(root.path()), root.path().join("boxes.csv"), root.path().join("hands.json"));
+    let (folder, boxes, out) = (frames(root.path()), root.path().join("boxes.csv"), root.path().join("hands"));
     fs::write(&boxes, "frame,x,y,w,h\n0,0,0,640,480\n5,0,0,640,480\n").unwrap();
-    hands(&folder, &boxes).arg("--json").arg(&json).assert().success().stdout(contains("(2 boxes)"));
-    let report: serde_json::Value = serde_json::from_slice(&fs::read(&json).unwrap()).unwrap();
+    hands(&folder, &boxes).arg("--out").arg(&out).assert().success().stdout(contains("(2 boxes)"));
+    let report: serde_json::Value = serde_json::from_slice(&fs::read(out.join("hands.json")).unwrap()).unwrap();
     assert_eq!(report["whole"]["inside"]["median"], 1.0);
     assert_eq!(report["frames"], 6);
+    assert_eq!(fs::read_to_string(out.join("hands.csv")).unwrap().lines().count(), 7);
     fs::write(&boxes, "frame,x,y,w,h\n5,0,0,1,1\n").unwrap();
     hands(&folder, &boxes).assert().success();
     hands(&folder, &boxes).arg("--require").assert().code(1).stderr(contains("misses the floors"));

@@ -1,11 +1,13 @@
 //! `sinew angles`: a motion in space or 2D keypoints as an angle table.
 
+use super::console::Console;
 use crate::cyclic::projection::{UpAxis, View};
 use crate::cyclic::recording::{RecordingOptions, angles};
 use crate::keypoints::{DEFAULT_MIN_CONFIDENCE, Facing};
 use crate::output::check_writable_file;
 use anyhow::{Result, ensure};
 use clap::Args;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Options of `sinew angles`.
@@ -54,7 +56,7 @@ pub struct AnglesArgs {
 ///
 /// # Errors
 /// Bad input, or an output that cannot be written.
-pub fn run(args: &AnglesArgs) -> Result<()> {
+pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
     let confidence = args.min_confidence;
     ensure!(confidence >= 0.0 && confidence.is_finite(), "`--min-confidence {confidence}`: it has to be zero or more");
     check_writable_file(&args.out)?;
@@ -72,18 +74,26 @@ pub fn run(args: &AnglesArgs) -> Result<()> {
     let found = angles(&args.motion, &options)?;
     found.table.write(&args.out)?;
     for note in &found.notes {
-        eprintln!("{note}");
+        console.note(note);
     }
     let rows = found.table.rows();
     let count = found.table.angle_count();
     let cells = (0..rows.len()).flat_map(|row| (0..count).map(move |angle| (row, angle)));
     let missing = cells.filter(|(row, angle)| found.table.row_angle_rad(*row, *angle).is_none()).count();
+    let missing_share = missing as f64 / (count * rows.len()) as f64;
     let rate = found.rate_hz.map_or_else(|| "an unknown rate".to_owned(), |rate| format!("{rate} frames per second"));
     let report = format!(
         "{} frames at {rate}, {:.1} % of the angles missing\nwrote {}\n",
         rows.len(),
-        100.0 * missing as f64 / (count * rows.len()) as f64,
+        100.0 * missing_share,
         args.out.display()
     );
-    super::stdout::write_all(report.as_bytes())
+    let json = json!({
+        "frames": rows.len(),
+        "rate_hz": found.rate_hz,
+        "missing_share": missing_share,
+        "notes": found.notes,
+        "out": args.out,
+    });
+    console.answer(&report, &json)
 }

@@ -1,5 +1,6 @@
 //! `sinew blobs`: features and hand likelihood of each blob.
 
+use super::console::Console;
 use super::image_run::{Skipped, load_each};
 use super::skin_args::SkinArgs;
 use crate::frames::FrameReader;
@@ -9,6 +10,7 @@ use anyhow::Result;
 use clap::{Args, ValueEnum};
 use image::RgbImage;
 use serde::Serialize;
+use serde_json::json;
 use sinew_core::vision::blobs::LikelyBlob;
 use sinew_core::vision::edges::EdgeDetector;
 use sinew_core::vision::hand_likelihood::{HandLikelihood, LikelihoodForm};
@@ -111,7 +113,7 @@ const COLUMNS: [&str; 25] = [
 ///
 /// # Errors
 /// Bad input, no image that can be read, or an output that cannot be written.
-pub fn run(args: &BlobsArgs) -> Result<()> {
+pub fn run(args: &BlobsArgs, console: &Console) -> Result<()> {
     let mut model = args.skin.load()?;
     let input = ImageInput::open(&args.input)?;
     if let Some(path) = &args.out {
@@ -120,12 +122,13 @@ pub fn run(args: &BlobsArgs) -> Result<()> {
     let likelihood = HandLikelihood::default();
     let mut reader = FrameReader::new(likelihood, EdgeDetector::default())?;
     let mut found: Vec<(String, AreaPx, Vec<LikelyBlob>)> = Vec::new();
-    let mut skipped = Skipped::new(args.strict);
+    let mut skipped = Skipped::new(args.strict, *console);
     load_each(&input.files, &args.skin, &mut model, &mut skipped, |model, index, image| {
         reader.forget_last_frame();
         let view = reader.read(image, &*model.for_image(image)?)?;
         if view.dropped_blobs > 0 {
-            eprintln!("`{}`: {} less likely blobs are left out", input.files[index].display(), view.dropped_blobs);
+            let name = input.files[index].display();
+            console.note(format!("`{name}`: {} less likely blobs are left out", view.dropped_blobs));
         }
         found.push((file_name(&input.files[index]), area_px(image), view.blobs));
         Ok(())
@@ -138,12 +141,12 @@ pub fn run(args: &BlobsArgs) -> Result<()> {
         .collect();
     let text = match args.format {
         TableFormat::Csv => csv_text(&rows)?,
-        TableFormat::Json => (serde_json::to_string_pretty(&rows)? + "\n").into_bytes(),
+        TableFormat::Json => serde_json::to_string_pretty(&rows)? + "\n",
     };
-    match &args.out {
-        Some(path) => write_atomically(path, |writer| Ok(writer.write_all(&text)?)),
-        None => super::stdout::write_all(&text),
-    }
+    let Some(path) = &args.out else { return console.answer(&text, &rows) };
+    write_atomically(path, |writer| Ok(writer.write_all(text.as_bytes())?))?;
+    let json = json!({ "images": found.len(), "blobs": rows.len(), "skipped": skipped.reasons(), "out": path });
+    console.answer("", &json)
 }
 
 /// Area of an image, pixels.
@@ -195,13 +198,13 @@ fn row<'a>(
     }
 }
 
-fn csv_text(rows: &[BlobRow<'_>]) -> Result<Vec<u8>> {
+fn csv_text(rows: &[BlobRow<'_>]) -> Result<String> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     writer.write_record(COLUMNS)?;
     for row in rows {
         writer.serialize(row)?;
     }
-    Ok(writer.into_inner()?)
+    Ok(String::from_utf8(writer.into_inner()?)?)
 }
 
 #[cfg(test)]

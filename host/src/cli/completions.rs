@@ -1,11 +1,12 @@
 //! `sinew completions` and `sinew man`: what a shell and `man` know about the command.
 
 use super::Cli;
-use super::stdout::write_all;
+use super::console::Console;
 use crate::output::OutputDir;
 use anyhow::Result;
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Options of `sinew completions`.
@@ -30,17 +31,18 @@ pub struct ManArgs {
 ///
 /// # Errors
 /// Standard output that cannot be written.
-pub fn completions(args: &CompletionsArgs) -> Result<()> {
+pub fn completions(args: &CompletionsArgs, console: &Console) -> Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "sinew", &mut script);
-    write_all(&script)
+    let script = String::from_utf8(script)?;
+    console.answer(&script, &json!({ "shell": args.shell.to_string(), "script": script }))
 }
 
 /// Writes the manual pages.
 ///
 /// # Errors
 /// A folder that cannot be written.
-pub fn man(args: &ManArgs) -> Result<()> {
+pub fn man(args: &ManArgs, console: &Console) -> Result<()> {
     let output = OutputDir::create(&args.out)?;
     let mut root = Cli::command();
     root.build();
@@ -57,5 +59,6 @@ pub fn man(args: &ManArgs) -> Result<()> {
         })?;
         count += 1;
     }
-    write_all(format!("{count} manual pages: {}\n", args.out.display()).as_bytes())
+    let text = format!("{count} manual pages: {}\n", args.out.display());
+    console.answer(&text, &json!({ "pages": count, "out": args.out }))
 }

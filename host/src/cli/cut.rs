@@ -1,11 +1,13 @@
 //! `sinew cut`: the cycles of angle tables as a cut list.
 
+use super::console::Console;
 use crate::cyclic::AngleTable;
 use crate::cyclic::cuts::{self, Cut};
 use crate::cyclic::cutting::{CuttingOptions, cycles};
 use crate::output::check_writable_file;
 use anyhow::{Context, Result, bail};
 use clap::Args;
+use serde_json::json;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -36,38 +38,43 @@ pub struct CutArgs {
 ///
 /// # Errors
 /// Bad input, no cycle in any table, or an output that cannot be written.
-pub fn run(args: &CutArgs) -> Result<()> {
+pub fn run(args: &CutArgs, console: &Console) -> Result<()> {
     check_writable_file(&args.out)?;
     let options = CuttingOptions { rate_hz: args.rate, shortest_s: args.shortest, longest_s: args.longest };
     let mut all: Vec<Cut> = Vec::new();
-    let mut report = String::new();
+    let (mut report, mut tables, mut left_out) = (String::new(), Vec::new(), Vec::new());
     for path in &args.tables {
         let table = AngleTable::read(path)?;
         match cycles(&table, &path.display().to_string(), options) {
             Ok(mut found) => {
                 let frames: u64 = found.iter().map(Cut::duration_frames).sum();
                 let mean = frames as f64 / found.len() as f64;
+                let per_minute = 60.0 * args.rate / mean;
                 writeln!(
                     report,
-                    "{}: {} cycles of {mean:.1} frames on the mean, {:.1} a minute",
+                    "{}: {} cycles of {mean:.1} frames on the mean, {per_minute:.1} a minute",
                     path.display(),
                     found.len(),
-                    60.0 * args.rate / mean
                 )?;
+                let cycles = found.len();
+                tables.push(json!({ "table": path, "cycles": cycles, "mean_frames": mean, "per_minute": per_minute }));
                 let name = name_from(&args.out, path)?;
                 found.iter_mut().for_each(|cut| cut.file.clone_from(&name));
                 all.extend(found);
             }
-            Err(error) if args.tables.len() > 1 => eprintln!("left out: {error}"),
+            Err(error) if args.tables.len() > 1 => {
+                console.note(format!("left out: {error}"));
+                left_out.push(error.to_string());
+            }
             Err(error) => return Err(error.into()),
         }
     }
     if all.is_empty() {
-        bail!("no table has a cycle; the reasons stand above");
+        bail!("no table has a cycle: {}", left_out.join("; "));
     }
     cuts::write(&args.out, &all)?;
     writeln!(report, "wrote {}", args.out.display())?;
-    super::stdout::write_all(report.as_bytes())
+    console.answer(&report, &json!({ "tables": tables, "left_out": left_out, "out": args.out }))
 }
 
 /// How a list at `list` names `table`: relative where the table lies in the list's folder or below it, else absolute.

@@ -1,6 +1,6 @@
 //! `sinew demo`: a rendered scene with known truth, tracked, and compared with the truth.
 
-use super::stdout::write_all;
+use super::console::Console;
 use super::track_arm::run_with_progress;
 use crate::config::Config;
 use crate::motion::{ArmSide, reach};
@@ -11,6 +11,7 @@ use crate::track::{RunOutcome, SideChoice, TrackOptions};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use serde::Serialize;
+use serde_json::json;
 use statrs::statistics::{Data, Distribution, OrderStatistics};
 use std::path::{Path, PathBuf};
 
@@ -56,14 +57,15 @@ pub struct DemoError {
 ///
 /// # Errors
 /// An output that cannot be written, or [`crate::track::Interrupted`].
-pub fn run(args: &DemoArgs) -> Result<()> {
+pub fn run(args: &DemoArgs, console: &Console) -> Result<()> {
     let out = OutputDir::create(&args.out)?;
     let scene = render(&out, args.seed)?;
-    let outcome = run_with_progress(track_options(&out, args.seed)?, out.path())?;
+    let outcome = run_with_progress(track_options(&out, args.seed)?, out.path(), console)?;
     let error = compare(&scene, &outcome)?;
     let json = serde_json::to_string_pretty(&error)? + "\n";
     out.write("error.json", |writer| Ok(writer.write_all(json.as_bytes())?))?;
-    write_all(report(&outcome, &error, out.path()).as_bytes())
+    let json = json!({ "error": error, "run": outcome.report, "out": out.path() });
+    console.answer(&report(&outcome, &error, out.path()), &json)
 }
 
 /// A person who reaches about with the right arm; the face shows half of the time, the hand is hidden a tenth of it.

@@ -1,6 +1,6 @@
 //! `sinew doctor`: what is wrong with an input.
 
-use super::stdout::write_all;
+use super::console::Console;
 use crate::doctor::{Diagnosis, Severity, examine};
 use anyhow::{Result, bail};
 use clap::Args;
@@ -16,19 +16,15 @@ pub struct DoctorArgs {
     /// Folders of images, of clouds or of runs; configurations (.toml), models and persons (.json), angle tables (.csv).
     #[arg(value_name = "PATH", required = true)]
     pub paths: Vec<PathBuf>,
-    /// Print JSON in place of text.
-    #[arg(long)]
-    pub json: bool,
 }
 
 /// Examines every path and tells what was found.
 ///
 /// # Errors
 /// One of them has a problem, or the text cannot be written.
-pub fn run(args: &DoctorArgs) -> Result<()> {
+pub fn run(args: &DoctorArgs, console: &Console) -> Result<()> {
     let all: Vec<Diagnosis> = args.paths.iter().map(|path| examine(path)).collect();
-    let text = if args.json { serde_json::to_string_pretty(&all)? + "\n" } else { told(&all) };
-    write_all(text.as_bytes())?;
+    console.answer(&told(&all), &all)?;
     let ill = all.iter().filter(|diagnosis| diagnosis.worst() == Severity::Problem).count();
     match ill {
         0 => Ok(()),

@@ -1,5 +1,6 @@
 //! `sinew evaluate ...`
 
+use super::console::Console;
 use super::evaluate_arm::{self, EvaluateArmArgs};
 use super::evaluate_body::{self, EvaluateBodyArgs};
 use super::evaluate_cyclic::{self, EvaluateCyclicArgs};
@@ -26,12 +27,12 @@ pub enum Evaluate {
 ///
 /// # Errors
 /// As the chosen evaluation.
-pub fn run(evaluate: &Evaluate) -> anyhow::Result<()> {
+pub fn run(evaluate: &Evaluate, console: &Console) -> anyhow::Result<()> {
     match evaluate {
-        Evaluate::Arm(args) => evaluate_arm::run(args),
-        Evaluate::Body(args) => evaluate_body::run(args),
-        Evaluate::Cyclic(args) => evaluate_cyclic::run(args),
-        Evaluate::Hands(args) => evaluate_hands::run(args),
-        Evaluate::Skin(args) => evaluate_skin::run(args),
+        Evaluate::Arm(args) => evaluate_arm::run(args, console),
+        Evaluate::Body(args) => evaluate_body::run(args, console),
+        Evaluate::Cyclic(args) => evaluate_cyclic::run(args, console),
+        Evaluate::Hands(args) => evaluate_hands::run(args, console),
+        Evaluate::Skin(args) => evaluate_skin::run(args, console),
     }
 }

@@ -1,5 +1,6 @@
 //! `sinew evaluate arm`
 
+use super::console::Console;
 use super::skin_args::SkinArgs;
 use crate::config::{Config, VariantName};
 use crate::draw::plot::{Curve, bars_plot, curves_plot};
@@ -11,6 +12,8 @@ use crate::scene::SceneOptions;
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde::Serialize;
+use serde_json::json;
+use std::fmt::Write as _;
 use std::path::PathBuf;
 
 /// Stack of a worker thread: the trackers with thousands of particles are built there.
@@ -64,7 +67,7 @@ struct Report {
 ///
 /// # Errors
 /// A clip that is missing, an option out of range, an output that cannot be written.
-pub fn run(args: &EvaluateArmArgs) -> Result<()> {
+pub fn run(args: &EvaluateArmArgs, console: &Console) -> Result<()> {
     ensure!(args.seeds > 0 && args.clips > 0, "--seeds and --clips must be greater than zero");
     ensure!(args.frames > 105, "--frames must be greater than 105; those from 101 on are scored, not {}", args.frames);
     ensure!(args.skin.calibrate.is_none(), "--calibrate has no use here: every scene has a skin of its own");
@@ -80,9 +83,8 @@ pub fn run(args: &EvaluateArmArgs) -> Result<()> {
     output.write_png("error_2d.png", &curves_plot("2D hand error", "particles", "error, px", true, &pixels)?)?;
     let bars: Vec<(String, f64)> = report.options.iter().map(|row| (row.name.clone(), row.error_m.median)).collect();
     output.write_png("options.png", &bars_plot("Each option's own effect", "3D hand error, m", &bars)?)?;
-    print(&report);
-    println!("tables and plots: {}", args.out.display());
-    Ok(())
+    let text = format!("{}tables and plots: {}\n", told(&report), args.out.display());
+    console.answer(&text, &json!({ "out": args.out, "report": report }))
 }
 
 fn measure(args: &EvaluateArmArgs) -> Result<Report> {
@@ -153,33 +155,40 @@ fn curves(rows: &[Row], values: fn(&Row) -> [f64; 3]) -> Vec<Curve> {
     curves
 }
 
-fn print(report: &Report) {
-    let line = |row: &Row| {
-        let (m, px) = (&row.error_m, &row.error_px);
-        println!(
-            "{:<36} {:>5}   {:.3} ({:.3}-{:.3}) m   {:>6.1} ({:.1}-{:.1}) px",
-            row.name, row.particles, m.median, m.lower, m.upper, px.median, px.lower, px.upper
-        );
+/// The rows for a person.
+fn told(report: &Report) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut tell = |heading: &str, rows: &[Row]| {
+        let _ = writeln!(text, "{heading}");
+        for row in rows {
+            let (m, px) = (&row.error_m, &row.error_px);
+            let _ = writeln!(
+                text,
+                "{:<36} {:>5}   {:.3} ({:.3}-{:.3}) m   {:>6.1} ({:.1}-{:.1}) px",
+                row.name, row.particles, m.median, m.lower, m.upper, px.median, px.lower, px.upper
+            );
+        }
     };
-    println!("{} scenes; median over runs (quartiles) of a run's mean hand error", report.scenes.len());
-    report.variants.iter().for_each(line);
-    println!("each option's own effect:");
-    report.options.iter().for_each(line);
-    println!("as the arm paper prints them:");
-    report.as_printed.iter().for_each(line);
+    let scenes = report.scenes.len();
+    tell(&format!("{scenes} scenes; median over runs (quartiles) of a run's mean hand error"), &report.variants);
+    tell("each option's own effect:", &report.options);
+    tell("as the arm paper prints them:", &report.as_printed);
     let pik = report.variants.iter().find(|row| row.name == "pik" && row.particles == 50);
     if let Some(pik) = pik {
         let mut bootstrap = report.variants.iter().filter(|row| row.name == "bootstrap");
-        match bootstrap.find(|row| row.error_m.median <= pik.error_m.median) {
-            Some(row) => println!("bootstrap equals pik with 50 at {} particles", row.particles),
-            None => println!("bootstrap equals pik with 50 at none of these counts"),
-        }
+        let _ = match bootstrap.find(|row| row.error_m.median <= pik.error_m.median) {
+            Some(row) => writeln!(text, "bootstrap equals pik with 50 at {} particles", row.particles),
+            None => writeln!(text, "bootstrap equals pik with 50 at none of these counts"),
+        };
     }
-    println!(
+    let _ = writeln!(
+        text,
         "recovered within {} frames of the return: {:.0} % without a false blob, {:.0} % with one ({} runs each)",
         experiments::RECOVERY_FRAMES,
         100.0 * report.recovery.without_false_blob,
         100.0 * report.recovery.with_false_blob,
         report.recovery.runs
     );
+    text
 }

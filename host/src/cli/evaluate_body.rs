@@ -1,5 +1,6 @@
 //! `sinew evaluate body`
 
+use super::console::Console;
 use crate::body::BodyPart;
 use crate::body::run::{inputs::check_part, tuning_file};
 use crate::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
@@ -13,8 +14,9 @@ use crate::stereo::Hidden;
 use anyhow::{Result, ensure};
 use clap::Args;
 use image::RgbImage;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use rayon::prelude::*;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Options of `sinew evaluate body`.
@@ -63,18 +65,18 @@ pub struct EvaluateBodyArgs {
 ///
 /// # Errors
 /// A motion or configuration that cannot be read, an output that cannot be written.
-pub fn run(args: &EvaluateBodyArgs) -> Result<()> {
+pub fn run(args: &EvaluateBodyArgs, console: &Console) -> Result<()> {
     check(args)?;
     let tuning = args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?;
     let output = OutputDir::create(&args.out)?;
-    let (report, prediction_figures) = evaluate(args, tuning)?;
+    let (report, prediction_figures) = evaluate(args, tuning, console)?;
     output.write("report.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
     output.write("table.csv", |writer| Ok(writer.write_all(report.to_csv().as_bytes())?))?;
     for (name, picture) in figures(&report)?.into_iter().chain(prediction_figures) {
         output.write_png(&name, &picture)?;
     }
     let text = format!("{}report, table and figures: {}\n", report.to_text(), args.out.display());
-    super::stdout::write_all(text.as_bytes())
+    console.answer(&text, &json!({ "out": args.out, "report": report }))
 }
 
 /// Refuses numbers out of range by their option's name.
@@ -95,11 +97,14 @@ fn check(args: &EvaluateBodyArgs) -> Result<()> {
 }
 
 /// All cells, and the figures of what models predict.
-fn evaluate(args: &EvaluateBodyArgs, tuning: BodyTuning) -> Result<(BodyReport, Vec<(String, RgbImage)>)> {
+fn evaluate(
+    args: &EvaluateBodyArgs,
+    tuning: BodyTuning,
+    console: &Console,
+) -> Result<(BodyReport, Vec<(String, RgbImage)>)> {
     let rounds = 1 + usize::from(args.hide_arms.is_some());
     let cells = args.motion.len() * args.models.len() * args.particles.len() * rounds;
-    let progress = ProgressBar::new(cells as u64 * args.trials);
-    progress.set_style(ProgressStyle::with_template("{pos}/{len} trials {wide_bar} {eta}")?);
+    let progress = console.bar(cells as u64 * args.trials, "{pos}/{len} trials {wide_bar} {eta}")?;
     let (mut results, mut predicted, mut hidden_arms) = (Vec::new(), None, Vec::new());
     for motion in &args.motion {
         let read = motion.read_turned(args.skeleton.as_deref(), args.heading.to_radians())?;

@@ -1,5 +1,6 @@
 //! `sinew evaluate cyclic`
 
+use super::console::Console;
 use crate::cyclic::model::MODEL_VALUE;
 use crate::cyclic::training::{TrainingOptions, train};
 use crate::cyclic::{CutList, CyclicModel};
@@ -8,6 +9,7 @@ use crate::evaluate::cyclic::{CyclicReport, Setting, figures::figures, long_runs
 use crate::output::OutputDir;
 use anyhow::{Result, ensure};
 use clap::Args;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Options of `sinew evaluate cyclic`.
@@ -47,7 +49,7 @@ const SPARSE_PARTICLES: [usize; 2] = [10_000, 50_000];
 ///
 /// # Errors
 /// A list, table or model that cannot be read, an output that cannot be written.
-pub fn run(args: &EvaluateCyclicArgs) -> Result<()> {
+pub fn run(args: &EvaluateCyclicArgs, console: &Console) -> Result<()> {
     ensure!(args.seeds > 0, "--seeds must be greater than zero");
     ensure!(args.rate > 0.0 && args.rate.is_finite(), "--rate must be greater than zero, not {}", args.rate);
     let particles = particles(&args.particles)?;
@@ -91,7 +93,7 @@ pub fn run(args: &EvaluateCyclicArgs) -> Result<()> {
         output.write_png(&name, &picture)?;
     }
     let text = format!("{}tables and plots: {}\n", report.to_text(), args.out.display());
-    super::stdout::write_all(text.as_bytes())
+    console.answer(&text, &json!({ "out": args.out, "report": report }))
 }
 
 fn particles(list: &[String]) -> Result<Vec<usize>> {

@@ -1,11 +1,11 @@
 //! `sinew evaluate hands`: both hands on real frames with reference boxes.
 
-use super::stdout::write_all;
+use super::console::Console;
 use crate::config::Config;
 use crate::evaluate::hands::{ReferenceBox, read_boxes};
 use crate::evaluate::hands_report::{HandsOptions, report};
 use crate::images::folder::{list_images, load_rgb};
-use crate::output::{check_writable_file, write_atomically};
+use crate::output::OutputDir;
 use crate::skin::SkinModel;
 use crate::skin::model::DEFAULT_SKIN;
 use crate::track::RATES_HZ;
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Examples:
   sinew simulate arm --motion builtin --frames 20 --side both --out scene
   printf 'frame,x,y,w,h\\n9,280,300,90,90\\n' > boxes.csv
-  sinew evaluate hands scene/frames --boxes boxes.csv --seeds 1")]
+  sinew evaluate hands scene/frames --boxes boxes.csv --seeds 1 --out hands")]
 pub struct EvaluateHandsArgs {
     /// Folder of video frames, all of one size, in natural order of their names.
     #[arg(value_name = "FOLDER")]
@@ -39,9 +39,9 @@ pub struct EvaluateHandsArgs {
     /// Skin model: gaussian or histogram (shipped), or a FILE made by `sinew train skin`.
     #[arg(long, value_name = "gaussian|histogram|FILE", default_value = DEFAULT_SKIN)]
     pub skin: String,
-    /// Also write all numbers to this file.
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
+    /// Folder for the scores as hands.csv and hands.json.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Fail if a median misses the project's floors.
     #[arg(long)]
     pub require: bool,
@@ -63,20 +63,19 @@ fn window_px(text: &str) -> Result<(u32, u32), String> {
 ///
 /// # Errors
 /// Bad input, or medians below the floors.
-pub fn run(args: &EvaluateHandsArgs) -> Result<()> {
+pub fn run(args: &EvaluateHandsArgs, console: &Console) -> Result<()> {
     let skin = SkinModel::from_option(&args.skin)?;
     let boxes = read_boxes(&args.boxes)?;
-    if let Some(file) = &args.json {
-        check_writable_file(file)?;
-    }
     let frames = load_frames(&args.folder)?;
     check(args, &frames, &boxes)?;
+    let output = args.out.as_deref().map(OutputDir::create).transpose()?;
     let options = HandsOptions { rate_hz: args.rate, seeds: args.seeds, window_px: args.window };
     let report = report(&frames, &boxes, options, &Config::default(), &skin)?;
-    if let Some(file) = &args.json {
-        write_atomically(file, |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
+    if let Some(output) = output {
+        output.write("hands.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
+        output.write("hands.csv", |writer| Ok(writer.write_all(report.to_csv().as_bytes())?))?;
     }
-    write_all(report.table().as_bytes())?;
+    console.answer(&report.table(), &report)?;
     let misses = report.misses();
     if args.require && !misses.is_empty() {
         bail!("`{}` misses the floors: {}", args.folder.display(), misses.join("; "));

@@ -1,6 +1,8 @@
 //! `sinew evaluate skin`: pixel scores of a skin model on images with masks.
 
+use super::console::Console;
 use super::train_skin::report_unmasked;
+use crate::output::OutputDir;
 use crate::skin::SkinModel;
 use crate::skin::confusion::{Confusion, median};
 use crate::skin::folds;
@@ -11,7 +13,7 @@ use anyhow::{Result, bail, ensure};
 use clap::Args;
 use rayon::prelude::*;
 use serde::Serialize;
-use std::io::Write;
+use std::fmt::Write;
 use std::path::PathBuf;
 
 /// Options of `sinew evaluate skin`.
@@ -19,7 +21,7 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:
   sinew simulate arm --motion builtin --frames 20 --out scene
   sinew segment scene/frames --out masks
-  sinew evaluate skin --images scene/frames --masks masks --skin histogram")]
+  sinew evaluate skin --images scene/frames --masks masks --out skin")]
 pub struct EvaluateSkinArgs {
     /// Folder of images; may be given several times, each with its --masks.
     #[arg(long, value_name = "DIR", required = true)]
@@ -42,9 +44,9 @@ pub struct EvaluateSkinArgs {
     /// Score masks after the tracker's opening and closing; without it, each pixel by its own colour.
     #[arg(long)]
     pub morphology: bool,
-    /// Print JSON in place of a table.
-    #[arg(long)]
-    pub json: bool,
+    /// Folder for the scores as skin.csv and skin.json.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// Scores of one folder pair.
@@ -60,6 +62,9 @@ struct Row {
 
 #[derive(Debug, Serialize)]
 struct Report<'a> {
+    format: &'static str,
+    version: u32,
+    sinew_version: &'static str,
     model: &'a str,
     cross_validated: bool,
     morphology: bool,
@@ -67,34 +72,54 @@ struct Report<'a> {
     skipped: Vec<String>,
 }
 
-/// Scores the model and prints a table or JSON.
+/// Scores the model and prints a table.
 ///
 /// # Errors
 /// Bad input, or no image that can be read.
-pub fn run(args: &EvaluateSkinArgs) -> Result<()> {
+pub fn run(args: &EvaluateSkinArgs, console: &Console) -> Result<()> {
     let list = pairs::find(&args.images, &args.masks)?;
-    report_unmasked(&list);
+    let output = args.out.as_deref().map(OutputDir::create).transpose()?;
+    report_unmasked(&list, console);
     let (judged, model) = match args.cross_validate {
         Some(count) => {
             (cross_validated(&list, count as usize, args)?, format!("{:?}, cross-validated", args.kind).to_lowercase())
         }
         None => {
             let model = SkinModel::from_option(&args.skin)?;
-            warn_if_trained_on(&model, &list);
+            warn_if_trained_on(&model, &list, console);
             (judge(&list.pairs, |_| &model, args.morphology)?, args.skin.clone())
         }
     };
     let skipped: Vec<String> = judged.iter().filter_map(|image| image.as_ref().err().cloned()).collect();
-    skipped.iter().for_each(|reason| eprintln!("skipped: {reason}"));
+    skipped.iter().for_each(|reason| console.note(format!("skipped: {reason}")));
     let rows = table(&list, &judged)?;
     let cross_validated = args.cross_validate.is_some();
-    print_report(&Report { model: &model, cross_validated, morphology: args.morphology, rows, skipped }, args.json)
+    let report = Report {
+        format: "sinew-evaluate-skin",
+        version: 1,
+        sinew_version: env!("CARGO_PKG_VERSION"),
+        model: &model,
+        cross_validated,
+        morphology: args.morphology,
+        rows,
+        skipped,
+    };
+    if let Some(output) = output {
+        output.write("skin.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
+        output.write("skin.csv", |writer| {
+            let mut table = csv::Writer::from_writer(writer);
+            report.rows.iter().try_for_each(|row| table.serialize(row))?;
+            Ok(table.flush()?)
+        })?;
+    }
+    console.answer(&told(&report), &report)
 }
 
 /// A training image's score says nothing about other images.
-fn warn_if_trained_on(model: &SkinModel, list: &PairList) {
+fn warn_if_trained_on(model: &SkinModel, list: &PairList, console: &Console) {
     for name in list.groups.iter().filter(|name| model.trained_on.sources.contains(name)) {
-        eprintln!("note: the model was trained on a folder named {name}; if it is this one, use --cross-validate");
+        let remedy = "if it is this one, use --cross-validate";
+        console.note(format!("note: the model was trained on a folder named {name}; {remedy}"));
     }
 }
 
@@ -154,21 +179,16 @@ fn table(list: &PairList, judged: &Judged) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-fn print_report(report: &Report<'_>, json: bool) -> Result<()> {
-    let mut text = Vec::new();
-    if json {
-        serde_json::to_writer_pretty(&mut text, report)?;
-        writeln!(text)?;
-    } else {
-        writeln!(text, "model: {}", report.model)?;
-        writeln!(text, "{:<24} images  precision  recall  F1     median image F1", "folder")?;
-        for row in &report.rows {
-            writeln!(
-                text,
-                "{:<24} {:>6}  {:>9.3}  {:>6.3}  {:.3}  {:>15.3}",
-                row.images_folder, row.images, row.precision, row.recall, row.f1, row.median_image_f1
-            )?;
-        }
+fn told(report: &Report<'_>) -> String {
+    let mut text = format!("model: {}\n", report.model);
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{:<24} images  precision  recall  F1     median image F1", "folder");
+    for row in &report.rows {
+        let _ = writeln!(
+            text,
+            "{:<24} {:>6}  {:>9.3}  {:>6.3}  {:.3}  {:>15.3}",
+            row.images_folder, row.images, row.precision, row.recall, row.f1, row.median_image_f1
+        );
     }
-    super::stdout::write_all(&text)
+    text
 }

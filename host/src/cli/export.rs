@@ -1,11 +1,12 @@
 //! `sinew export`: a motion model as firmware reads it.
 
-use super::stdout::write_all;
+use super::console::Console;
 use crate::cyclic::CyclicModel;
 use crate::cyclic::model::MODEL_VALUE;
 use crate::output::{check_writable_file, write_atomically};
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
+use serde_json::json;
 use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -39,7 +40,7 @@ pub enum ModelForm {
 ///
 /// # Errors
 /// No such model, one that firmware cannot use, an output that cannot be written.
-pub fn run(args: &ExportArgs) -> Result<()> {
+pub fn run(args: &ExportArgs, console: &Console) -> Result<()> {
     check_writable_file(&args.out)?;
     let model = CyclicModel::from_option(&args.model)?;
     let angles = model.view().angle_count();
@@ -63,7 +64,13 @@ pub fn run(args: &ExportArgs) -> Result<()> {
         bytes.len(),
         args.out.display()
     );
-    write_all(report.as_bytes())
+    let json = json!({
+        "positions": model.view().position_count(),
+        "angles": angles,
+        "bytes": bytes.len(),
+        "out": args.out,
+    });
+    console.answer(&report, &json)
 }
 
 /// The file's name without its ending, which has to be a name in C.

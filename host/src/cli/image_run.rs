@@ -1,38 +1,46 @@
 //! Images one after the other, each taken alone: what `segment` and `blobs` share.
 
+use super::console::Console;
 use super::skin_args::SkinArgs;
 use crate::images::load_rgb;
 use crate::skin::SkinModel;
 use anyhow::{Result, bail};
 use image::RgbImage;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The images that could not be read so far.
 #[derive(Debug)]
 pub struct Skipped {
     strict: bool,
-    names: Vec<PathBuf>,
+    console: Console,
+    reasons: Vec<String>,
 }
 
 impl Skipped {
     /// None so far; `strict` makes the first one an error.
     #[must_use]
-    pub fn new(strict: bool) -> Self {
-        Self { strict, names: Vec::new() }
+    pub fn new(strict: bool, console: Console) -> Self {
+        Self { strict, console, reasons: Vec::new() }
     }
 
     /// How many.
     #[must_use]
     pub fn count(&self) -> usize {
-        self.names.len()
+        self.reasons.len()
     }
 
-    fn add(&mut self, path: &Path, reason: &str) -> Result<()> {
+    /// Why, one sentence each.
+    #[must_use]
+    pub fn reasons(&self) -> &[String] {
+        &self.reasons
+    }
+
+    fn add(&mut self, reason: String) -> Result<()> {
         if self.strict {
             bail!("{reason}; --strict was given");
         }
-        eprintln!("skipped: {reason}");
-        self.names.push(path.to_path_buf());
+        self.console.note(format!("skipped: {reason}"));
+        self.reasons.push(reason);
         Ok(())
     }
 }
@@ -56,7 +64,7 @@ pub fn load_each(
             Err(error) if files.len() == 1 => return Err(error.into()),
             Err(error) if index == 0 && skin.calibrate.is_some() => bail!("{error}; --calibrate needs the first image"),
             Err(error) => {
-                skipped.add(file, &error.to_string())?;
+                skipped.add(error.to_string())?;
                 continue;
             }
         };
@@ -69,7 +77,7 @@ pub fn load_each(
         bail!("none of the {} images can be read", files.len());
     }
     if skipped.count() > 0 {
-        eprintln!("{} of {} images were skipped", skipped.count(), files.len());
+        skipped.console.note(format!("{} of {} images were skipped", skipped.count(), files.len()));
     }
     Ok(())
 }

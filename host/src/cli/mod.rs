@@ -1,11 +1,12 @@
 //! The command tree: one file per subcommand, each with its `...Args` and a `run`.
 //!
 //! To add a subcommand, write `cli/NAME.rs` with `pub struct NameArgs` (`clap::Args`) and
-//! `pub fn run(args: &NameArgs) -> anyhow::Result<()>`, then add a variant and an arm here.
+//! `pub fn run(args: &NameArgs, console: &Console) -> anyhow::Result<()>`, then add a variant and an arm here.
 
 pub mod angles;
 pub mod blobs;
 pub mod completions;
+pub mod console;
 pub mod ctrl_c;
 pub mod cut;
 pub mod demo;
@@ -36,6 +37,7 @@ pub mod train_skin;
 pub mod viewer_args;
 
 use clap::{Parser, Subcommand};
+use console::Console;
 
 /// Estimates how a human body moves, from a camera.
 #[derive(Debug, Parser)]
@@ -45,6 +47,9 @@ pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+    /// How results are told.
+    #[command(flatten)]
+    pub console: Console,
 }
 
 /// The subcommands of `sinew`.
@@ -105,22 +110,23 @@ pub enum Command {
 /// # Errors
 /// Whatever the subcommand refuses, with the file or option, the rule it broke, and the remedy.
 pub fn run(cli: &Cli) -> anyhow::Result<()> {
+    let console = &cli.console;
     match &cli.command {
-        Command::Demo(args) => demo::run(args),
-        Command::Track(track) => track::run(track),
-        Command::Angles(args) => angles::run(args),
-        Command::Report(args) => report::run(args),
-        Command::Cut(args) => cut::run(args),
-        Command::Simulate(args) => simulate::run(args),
-        Command::Record(args) => record::run(args),
-        Command::Export(args) => export::run(args),
-        Command::Segment(args) => segment::run(args),
-        Command::Blobs(args) => blobs::run(args),
-        Command::Train(train) => train::run(train),
-        Command::Evaluate(evaluate) => evaluate::run(evaluate),
-        Command::Doctor(args) => doctor::run(args),
-        Command::Completions(args) => completions::completions(args),
-        Command::Man(args) => completions::man(args),
+        Command::Demo(args) => demo::run(args, console),
+        Command::Track(track) => track::run(track, console),
+        Command::Angles(args) => angles::run(args, console),
+        Command::Report(args) => report::run(args, console),
+        Command::Cut(args) => cut::run(args, console),
+        Command::Simulate(args) => simulate::run(args, console),
+        Command::Record(args) => record::run(args, console),
+        Command::Export(args) => export::run(args, console),
+        Command::Segment(args) => segment::run(args, console),
+        Command::Blobs(args) => blobs::run(args, console),
+        Command::Train(train) => train::run(train, console),
+        Command::Evaluate(evaluate) => evaluate::run(evaluate, console),
+        Command::Doctor(args) => doctor::run(args, console),
+        Command::Completions(args) => completions::completions(args, console),
+        Command::Man(args) => completions::man(args, console),
     }
 }
 

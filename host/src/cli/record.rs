@@ -1,10 +1,11 @@
 //! `sinew record`: the input of a run as a stream for firmware.
 
-use super::stdout::write_all;
+use super::console::Console;
 use crate::output::{check_writable_file, write_atomically};
 use crate::record::{self, Form};
 use anyhow::Result;
 use clap::Args;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Options of `sinew record`.
@@ -29,9 +30,11 @@ pub struct RecordArgs {
 ///
 /// # Errors
 /// A folder that holds no run that firmware can play, an output that cannot be written.
-pub fn run(args: &RecordArgs) -> Result<()> {
+pub fn run(args: &RecordArgs, console: &Console) -> Result<()> {
     check_writable_file(&args.out)?;
     let recorded = record::record(&args.run, args.form)?;
     write_atomically(&args.out, |writer| Ok(writer.write_all(&recorded.bytes)?))?;
-    write_all(format!("{}: {} bytes in `{}`\n", recorded.what, recorded.bytes.len(), args.out.display()).as_bytes())
+    let bytes = recorded.bytes.len();
+    let text = format!("{}: {bytes} bytes in `{}`\n", recorded.what, args.out.display());
+    console.answer(&text, &json!({ "what": recorded.what, "bytes": bytes, "out": args.out }))
 }

@@ -1,10 +1,11 @@
 //! `sinew report`: one page about one run or several.
 
-use super::stdout::write_all;
+use super::console::Console;
 use crate::output::{check_writable_file, write_atomically};
 use crate::report::Page;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Options of `sinew report`.
@@ -24,7 +25,7 @@ pub struct ReportArgs {
 ///
 /// # Errors
 /// A path that is no folder, a folder that holds nothing of a run, or an output that cannot be written.
-pub fn run(args: &ReportArgs) -> Result<()> {
+pub fn run(args: &ReportArgs, console: &Console) -> Result<()> {
     let is_page = args
         .out
         .extension()
@@ -35,7 +36,7 @@ pub fn run(args: &ReportArgs) -> Result<()> {
     write_atomically(&args.out, |writer| page.write(writer))?;
     let bytes =
         std::fs::metadata(&args.out).with_context(|| format!("`{}` cannot be read back", args.out.display()))?.len();
-    let mut text = String::new();
+    let (mut text, mut runs) = (String::new(), Vec::new());
     for run in page.runs() {
         let notices = match run.notices.len() {
             0 => String::new(),
@@ -49,7 +50,14 @@ pub fn run(args: &ReportArgs) -> Result<()> {
             run.plots.len(),
             run.tables.len()
         ));
+        runs.push(json!({
+            "name": run.name,
+            "kind": run.kind.to_string(),
+            "plots": run.plots.len(),
+            "tables": run.tables.len(),
+            "notices": run.notices.len(),
+        }));
     }
     text.push_str(&format!("page of {:.1} MB: {}\n", bytes as f64 / 1.0e6, args.out.display()));
-    write_all(text.as_bytes())
+    console.answer(&text, &json!({ "runs": runs, "bytes": bytes, "out": args.out }))
 }

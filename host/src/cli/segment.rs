@@ -1,5 +1,6 @@
 //! `sinew segment`: skin masks of images.
 
+use super::console::Console;
 use super::image_run::{Skipped, load_each};
 use super::skin_args::SkinArgs;
 use crate::images::ImageInput;
@@ -7,6 +8,7 @@ use crate::output::OutputDir;
 use anyhow::{Result, bail};
 use clap::Args;
 use image::ImageFormat;
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::io::Cursor;
@@ -39,20 +41,20 @@ pub struct SegmentArgs {
 ///
 /// # Errors
 /// Bad input, no image that can be read, or an output that cannot be written.
-pub fn run(args: &SegmentArgs) -> Result<()> {
+pub fn run(args: &SegmentArgs, console: &Console) -> Result<()> {
     let mut model = args.skin.load()?;
     let input = ImageInput::open(&args.input)?;
     let out = OutputDir::create(&args.out)?;
     refuse_own_input(&input.files, out.path())?;
     let names = mask_names(&input.files);
     for (file, name) in input.files.iter().zip(&names).filter(|(_, name)| name.renamed) {
-        eprintln!(
+        console.note(format!(
             "`{}` shares its stem with another image: its mask is `{}`",
             file.display(),
             Path::new(&name.file).display()
-        );
+        ));
     }
-    let mut skipped = Skipped::new(args.strict);
+    let mut skipped = Skipped::new(args.strict, *console);
     load_each(&input.files, &args.skin, &mut model, &mut skipped, |model, index, image| {
         let mut mask = model.classify(image)?;
         if !args.raw {
@@ -63,7 +65,8 @@ pub fn run(args: &SegmentArgs) -> Result<()> {
         out.write(&names[index].file, |writer| Ok(writer.write_all(png.get_ref())?))
     })?;
     let done = input.files.len() - skipped.count();
-    super::stdout::write_all(format!("{done} masks written to {}\n", out.path().display()).as_bytes())
+    let text = format!("{done} masks written to {}\n", out.path().display());
+    console.answer(&text, &json!({ "masks": done, "skipped": skipped.reasons(), "out": out.path() }))
 }
 
 /// A mask would take the name of its image.

@@ -1,5 +1,6 @@
 //! `sinew simulate`: scenes with known truth.
 
+use super::console::Console;
 use super::simulate_cyclic::{self, SimulateCyclicArgs};
 use super::simulate_stereo::{self, SimulateStereoArgs};
 use crate::motion::{self, ArmMotion, ArmSide, ReadOptions, reach};
@@ -8,6 +9,7 @@ use crate::scene::{Scene, SceneOptions, Sides};
 use crate::track::SideChoice;
 use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -108,15 +110,15 @@ pub(super) fn pair<T: FromStr>(text: &str) -> Result<(T, T), String> {
 ///
 /// # Errors
 /// A motion that cannot be read, an option out of range, a folder that cannot be written or holds frames already.
-pub fn run(args: &SimulateArgs) -> Result<()> {
+pub fn run(args: &SimulateArgs, console: &Console) -> Result<()> {
     match &args.subject {
-        SimulateSubject::Arm(args) => run_arm(args),
-        SimulateSubject::Stereo(args) => simulate_stereo::run(args),
-        SimulateSubject::Cyclic(args) => simulate_cyclic::run(args),
+        SimulateSubject::Arm(args) => run_arm(args, console),
+        SimulateSubject::Stereo(args) => simulate_stereo::run(args, console),
+        SimulateSubject::Cyclic(args) => simulate_cyclic::run(args, console),
     }
 }
 
-fn run_arm(args: &SimulateArmArgs) -> Result<()> {
+fn run_arm(args: &SimulateArmArgs, console: &Console) -> Result<()> {
     let motion = arm_motion(args)?;
     let options = SceneOptions {
         frames: args.frames.unwrap_or_else(|| motion.len()),
@@ -133,8 +135,8 @@ fn run_arm(args: &SimulateArmArgs) -> Result<()> {
     let output = OutputDir::create(&args.out)?;
     clear_frames(&output.join("frames"), "frame_", ".png", args.force)?;
     scene.write_folder(&output)?;
-    println!("{} frames, camera.toml and truth.csv in `{}`", scene.len(), args.out.display());
-    Ok(())
+    let text = format!("{} frames, camera.toml and truth.csv in `{}`\n", scene.len(), args.out.display());
+    console.answer(&text, &json!({ "frames": scene.len(), "out": args.out }))
 }
 
 /// The motion at the camera's rate.

@@ -1,10 +1,12 @@
 //! `sinew simulate cyclic`: measured angles of a person who moves as a motion model says.
 
+use super::console::Console;
 use crate::cyclic::model::MODEL_VALUE;
 use crate::cyclic::{CyclicModel, SyntheticPerson};
 use crate::output::check_writable_file;
 use anyhow::{Result, ensure};
 use clap::Args;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Arguments of `sinew simulate cyclic`.
@@ -38,7 +40,7 @@ pub struct SimulateCyclicArgs {
 ///
 /// # Errors
 /// A model that cannot be read, a number out of range, an output that cannot be written.
-pub fn run(args: &SimulateCyclicArgs) -> Result<()> {
+pub fn run(args: &SimulateCyclicArgs, console: &Console) -> Result<()> {
     let SimulateCyclicArgs { sigma_deg, missing, rate, seed, .. } = *args;
     ensure!((0.0..=90.0).contains(&sigma_deg), "--sigma-deg has to lie from 0 to 90 degrees, not {sigma_deg}");
     ensure!((0.0..1.0).contains(&missing), "--missing has to be a share of at least 0 and less than 1, not {missing}");
@@ -55,5 +57,12 @@ pub fn run(args: &SimulateCyclicArgs) -> Result<()> {
         person.cycle_frames(),
         args.out.display()
     );
-    super::stdout::write_all(text.as_bytes())
+    let json = json!({
+        "frames": table.rows().len(),
+        "rate_hz": rate,
+        "cycles": args.cycles,
+        "cycle_frames": person.cycle_frames(),
+        "out": args.out,
+    });
+    console.answer(&text, &json)
 }

@@ -1,5 +1,6 @@
 //! `sinew simulate stereo`: a whole body before a stereo camera.
 
+use super::console::Console;
 use super::simulate::{clear_frames, pair};
 use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::{BodyPart, BodyRecording, BodyRecordingOptions, Placement};
@@ -8,6 +9,7 @@ use crate::stereo::stick_wave::StickEnds;
 use crate::stereo::{Hidden, StereoOptions, StereoScene, pelvic_lift, stick_wave};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Name of the built-in motion with a stick.
@@ -70,7 +72,7 @@ pub struct SimulateStereoArgs {
 ///
 /// # Errors
 /// A motion that cannot be read, an option out of range, a folder that cannot be written or holds points already.
-pub fn run(args: &SimulateStereoArgs) -> Result<()> {
+pub fn run(args: &SimulateStereoArgs, console: &Console) -> Result<()> {
     ensure!(args.rate > 0.0 && args.rate.is_finite(), "--rate has to be greater than zero, not {}", args.rate);
     ensure!(args.rate <= 1000.0, "--rate has to be at most 1000 Hz, not {}", args.rate);
     ensure!(
@@ -104,8 +106,8 @@ pub fn run(args: &SimulateStereoArgs) -> Result<()> {
     clear_frames(&output.join("points"), "", ".ply", args.force)?;
     let name = args.motion.display().to_string();
     scene.write_folder(&name, placement.camera_height_m, stick_m.as_deref(), &output)?;
-    println!("{} frames of points with their truth in `{}`", scene.len(), args.out.display());
-    Ok(())
+    let text = format!("{} frames of points with their truth in `{}`\n", scene.len(), args.out.display());
+    console.answer(&text, &json!({ "frames": scene.len(), "out": args.out }))
 }
 
 /// The person's joints, and the ends of a stick in each frame.

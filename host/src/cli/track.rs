@@ -1,5 +1,6 @@
 //! `sinew track ...`
 
+use super::console::Console;
 use super::track_arm::{self, TrackArmArgs};
 use super::track_body::{self, TrackBodyArgs};
 use super::track_cyclic::{self, TrackCyclicArgs};
@@ -20,10 +21,10 @@ pub enum Track {
 ///
 /// # Errors
 /// As the chosen tracker.
-pub fn run(track: &Track) -> anyhow::Result<()> {
+pub fn run(track: &Track, console: &Console) -> anyhow::Result<()> {
     match track {
-        Track::Arm(args) => track_arm::run(args),
-        Track::Body(args) => track_body::run(args),
-        Track::Cyclic(args) => track_cyclic::run(args),
+        Track::Arm(args) => track_arm::run(args, console),
+        Track::Body(args) => track_body::run(args, console),
+        Track::Cyclic(args) => track_cyclic::run(args, console),
     }
 }

@@ -1,14 +1,14 @@
 //! `sinew track arm`: shoulder, elbow and hand for every frame of a folder.
 
+use super::console::Console;
 use super::ctrl_c::stop_flag;
 use super::skin_args::SkinArgs;
-use super::stdout::write_all;
 use super::viewer_args::ViewerArgs;
 use crate::config::{Config, DEFAULT_FILE, MAX_PARTICLES, VariantName};
 use crate::track::{Event, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
 use anyhow::{Context, Result};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Options of `sinew track arm`.
@@ -77,9 +77,9 @@ fn rate_hz(text: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// Bad input, an output that cannot be written, or [`crate::track::Interrupted`].
-pub fn run(args: &TrackArmArgs) -> Result<()> {
+pub fn run(args: &TrackArmArgs, console: &Console) -> Result<()> {
     if args.print_config {
-        return write_all(DEFAULT_FILE.as_bytes());
+        return console.answer(DEFAULT_FILE, &Config::default());
     }
     args.viewer.check()?;
     let folder = args.folder.clone().context("no FOLDER was given")?;
@@ -97,9 +97,11 @@ pub fn run(args: &TrackArmArgs) -> Result<()> {
         strict: args.strict,
         config: effective_config(args)?,
     };
-    let outcome = run_with_progress(options, out)?;
-    let viewer = args.viewer.write(out)?;
-    write_all((outcome.report.summary() + &contents(args, out) + &viewer).as_bytes())
+    let report = run_with_progress(options, out, console)?.report;
+    let viewer = args.viewer.write(out, console)?;
+    let names = contents(args);
+    let text = format!("{}results in `{}`: {}\n{viewer}", report.summary(), out.display(), names.join(", "));
+    console.answer(&text, &json!({ "out": out, "contents": names, "viewer": args.viewer.rerun, "run": report }))
 }
 
 /// The configuration file, or the defaults, with what the command line sets.
@@ -114,14 +116,13 @@ fn effective_config(args: &TrackArmArgs) -> Result<Config> {
 ///
 /// # Errors
 /// As [`TrackRun::prepare`] and [`TrackRun::run`].
-pub(super) fn run_with_progress(options: TrackOptions, out: &Path) -> Result<RunOutcome> {
+pub(super) fn run_with_progress(options: TrackOptions, out: &Path, console: &Console) -> Result<RunOutcome> {
     let run = TrackRun::prepare(options, out)?;
-    // Hidden by itself where standard error is no terminal.
-    let bar = ProgressBar::new(run.frame_count() as u64);
-    bar.set_style(ProgressStyle::with_template("{wide_bar} frame {pos} of {len}, {per_sec}")?);
+    let bar = console.bar(run.frame_count() as u64, "{wide_bar} frame {pos} of {len}, {per_sec}")?;
     let outcome = run.run(stop_flag()?, &mut |event| match event {
         Event::Skipped(image) => {
-            bar.suspend(|| eprintln!("skipped frame {}: `{}`: {}", image.frame, image.file, image.reason));
+            let text = format!("skipped frame {}: `{}`: {}", image.frame, image.file, image.reason);
+            bar.suspend(|| console.note(text));
         }
         Event::Finished(frames) => bar.set_position(frames as u64),
     });
@@ -129,10 +130,10 @@ pub(super) fn run_with_progress(options: TrackOptions, out: &Path) -> Result<Run
     outcome
 }
 
-/// Where the results are.
-fn contents(args: &TrackArmArgs, out: &Path) -> String {
+/// What the run directory holds.
+fn contents(args: &TrackArmArgs) -> Vec<&'static str> {
     let mut names = vec!["track.csv", "run.json", "hand.png"];
     names.extend((args.particles_csv || args.viewer.is_wanted()).then_some("particles.csv"));
     names.extend(args.overlay.then_some(["contact_sheet.png", "overlay/"]).into_iter().flatten());
-    format!("results in `{}`: {}\n", out.display(), names.join(", "))
+    names
 }

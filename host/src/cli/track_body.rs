@@ -1,7 +1,7 @@
 //! `sinew track body`: a whole body from point clouds.
 
+use super::console::Console;
 use super::ctrl_c::stop_flag;
-use super::stdout::write_all;
 use super::viewer_args::ViewerArgs;
 use crate::body::BodyPart;
 use crate::body::run::{BodyEvent, BodyRunReport, BodyTrackOptions, BodyTrackRun, tuning_file};
@@ -9,7 +9,7 @@ use crate::body::tracking::{BodyModelKind, BodyTuning};
 use crate::cloud::MAX_POINTS;
 use anyhow::{Context, Result};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Options of `sinew track body`.
@@ -79,9 +79,9 @@ pub struct TrackBodyArgs {
 ///
 /// # Errors
 /// Bad input, an output that cannot be written, or [`crate::track::Interrupted`].
-pub fn run(args: &TrackBodyArgs) -> Result<()> {
+pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
     if args.print_config {
-        return write_all(tuning_file::printed()?.as_bytes());
+        return console.answer(&tuning_file::printed()?, &BodyTuning::default());
     }
     args.viewer.check()?;
     let out = args.out.as_deref().context("no --out was given")?;
@@ -103,36 +103,37 @@ pub fn run(args: &TrackBodyArgs) -> Result<()> {
         pictures: args.pictures,
         tuning: args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?,
     };
-    let report = run_with_progress(options, out)?;
-    let viewer = args.viewer.write(out)?;
-    write_all((report.summary() + &contents(&report, out) + &viewer).as_bytes())
+    let report = run_with_progress(options, out, console)?;
+    let viewer = args.viewer.write(out, console)?;
+    let names = contents(&report);
+    let text = format!("{}results in `{}`: {}\n{viewer}", report.summary(), out.display(), names.join(", "));
+    console.answer(&text, &json!({ "out": out, "contents": names, "viewer": args.viewer.rerun, "run": report }))
 }
 
 /// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the current frame.
-fn run_with_progress(options: BodyTrackOptions, out: &Path) -> Result<BodyRunReport> {
+fn run_with_progress(options: BodyTrackOptions, out: &Path, console: &Console) -> Result<BodyRunReport> {
     let run = BodyTrackRun::prepare(options, out)?;
-    // Hidden by itself where standard error is no terminal.
-    let bar = ProgressBar::new(run.frame_count() as u64);
-    bar.set_style(ProgressStyle::with_template("{wide_bar} frame {pos} of {len}, {per_sec}")?);
+    let bar = console.bar(run.frame_count() as u64, "{wide_bar} frame {pos} of {len}, {per_sec}")?;
+    let told = |text: String| bar.suspend(|| console.note(text));
     let outcome = run.run(stop_flag()?, &mut |event| match event {
-        BodyEvent::Note(note) => bar.suspend(|| eprintln!("note: {note}")),
-        BodyEvent::Skipped(cloud) => bar.suspend(|| eprintln!("skipped frame {}: {}", cloud.frame, cloud.reason)),
-        BodyEvent::OverCap(points) => bar.suspend(|| {
-            eprintln!("note: a cloud has {points} points; {MAX_POINTS} of them, drawn at random, are weighed, here and in all like it");
-        }),
+        BodyEvent::Note(note) => told(format!("note: {note}")),
+        BodyEvent::Skipped(cloud) => told(format!("skipped frame {}: {}", cloud.frame, cloud.reason)),
+        BodyEvent::OverCap(points) => told(format!(
+            "note: a cloud has {points} points; {MAX_POINTS} of them, drawn at random, are weighed, here and in all like it"
+        )),
         BodyEvent::Finished(frames) => bar.set_position(frames as u64),
     });
     bar.finish_and_clear();
     outcome
 }
 
-/// Where the results are.
-fn contents(report: &BodyRunReport, out: &Path) -> String {
+/// What the run directory holds.
+fn contents(report: &BodyRunReport) -> Vec<&'static str> {
     let mut names = vec!["track.csv", "track.bvh", "track.trc", "run.json"];
     names.extend(report.options.particles_csv.then_some("particles.csv"));
     if report.options.pictures {
         names.extend(["contact_sheet.png", "effective_samples.png"]);
         names.extend(report.joint_error_m.map(|_| "joint_error.png"));
     }
-    format!("results in `{}`: {}\n", out.display(), names.join(", "))
+    names
 }

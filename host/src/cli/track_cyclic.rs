@@ -1,5 +1,6 @@
 //! `sinew track cyclic`: angles, phase and cadence from an angle table.
 
+use super::console::Console;
 use super::viewer_args::ViewerArgs;
 use crate::cyclic::model::MODEL_VALUE;
 use crate::cyclic::pictures::{OverlayFrames, animation};
@@ -14,6 +15,7 @@ use crate::cyclic::{AngleTable, CyclicModel};
 use crate::output::{OutputDir, check_writable_file};
 use anyhow::{Result, ensure};
 use clap::Args;
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Options of `sinew track cyclic`.
@@ -86,7 +88,7 @@ pub struct TrackCyclicArgs {
 ///
 /// # Errors
 /// A table or model that cannot be used, an option out of range, an output that cannot be written.
-pub fn run(args: &TrackCyclicArgs) -> Result<()> {
+pub fn run(args: &TrackCyclicArgs, console: &Console) -> Result<()> {
     let options = options(args);
     options.check()?;
     check(args)?;
@@ -94,13 +96,8 @@ pub fn run(args: &TrackCyclicArgs) -> Result<()> {
     let output = args.report.as_deref().map(OutputDir::create).transpose()?;
     let models = args.model.iter().map(|name| CyclicModel::from_option(name)).collect::<Result<Vec<_>>>()?;
     let angles = AngleTable::read(&args.table)?;
-    let overlay = match &frames {
-        Some(frames) => {
-            OverlayFrames::check(&angles)?;
-            Some((frames, OutputDir::create(&overlay_folder(&args.out))?))
-        }
-        None => None,
-    };
+    let overlay = frames.as_ref().map(|frames| with_output(frames, &angles, &args.out)).transpose()?;
+    let drawn_into = overlay.as_ref().map(|(_, folder)| folder.path().to_path_buf());
     let (tracked, motions) = match models.as_slice() {
         [model] => (track(&angles, model, &options)?, None),
         several => {
@@ -117,15 +114,13 @@ pub fn run(args: &TrackCyclicArgs) -> Result<()> {
     }
     text.push_str(&format!("wrote {}\n", args.out.display()));
     if let Some(output) = output {
-        let name = args.table.display().to_string();
-        let model = args.model.join(", ");
         let drawn = overlay.as_ref().map(|(frames, folder)| OverlayOrigin {
             folder: folder.path().display().to_string(),
             images: frames.names(),
         });
         let origin = Origin {
-            table: &name,
-            model: &model,
+            table: &args.table.display().to_string(),
+            model: &args.model.join(", "),
             options: &options,
             height_m: args.height,
             motions: motions.as_ref(),
@@ -135,12 +130,22 @@ pub fn run(args: &TrackCyclicArgs) -> Result<()> {
         text.push_str(&format!("report: {}\n", output.path().display()));
     }
     if overlay.is_some() || args.animation.is_some() {
-        text.push_str(&show(args, &angles, &tracked, &report, overlay)?);
+        text.push_str(&show(args, &angles, &tracked, &report, overlay, console)?);
     }
     if let Some(run) = &args.report {
-        text.push_str(&args.viewer.write(run)?);
+        text.push_str(&args.viewer.write(run, console)?);
     }
-    super::stdout::write_all(text.as_bytes())
+    let json = json!({
+        "summary": report.summary,
+        "symmetries": report.symmetries,
+        "motion_frames": motions.as_ref().map(|motions| motion_counts(&args.model, motions)),
+        "out": args.out,
+        "report": args.report,
+        "overlay": drawn_into,
+        "animation": args.animation,
+        "viewer": args.viewer.rerun,
+    });
+    console.answer(&text, &json)
 }
 
 /// What can be checked before anything is read.
@@ -165,12 +170,26 @@ fn motion_cells(names: &[String], motions: &[NamedMotion]) -> MotionCells {
     motions.iter().map(|motion| (name(motion), motion.probability)).collect()
 }
 
-/// In how many frames each motion was named.
-fn told_motions(names: &[String], motions: &MotionCells) -> String {
+/// In how many frames each motion was named, in the order of the options, none of them last.
+fn motion_counts<'a>(names: &'a [String], motions: &MotionCells) -> Vec<(&'a str, usize)> {
     let count = |name: &str| motions.iter().filter(|(other, _)| other == name).count();
-    let counts = names.iter().map(String::as_str).chain([NO_MOTION]);
-    let counts: Vec<String> = counts.map(|name| format!("{name} in {}", count(name))).collect();
+    names.iter().map(String::as_str).chain([NO_MOTION]).map(|name| (name, count(name))).collect()
+}
+
+fn told_motions(names: &[String], motions: &MotionCells) -> String {
+    let counts = motion_counts(names, motions);
+    let counts: Vec<String> = counts.iter().map(|(name, count)| format!("{name} in {count}")).collect();
     format!("motion: {} frames\n", counts.join(", "))
+}
+
+/// The frames with the folder of their overlays.
+fn with_output<'f>(
+    frames: &'f OverlayFrames,
+    angles: &AngleTable,
+    out: &Path,
+) -> Result<(&'f OverlayFrames, OutputDir)> {
+    OverlayFrames::check(angles)?;
+    Ok((frames, OutputDir::create(&overlay_folder(out))?))
 }
 
 /// `estimate_overlay` beside `estimate.csv`.
@@ -189,6 +208,7 @@ fn show(
     tracked: &Tracked,
     report: &Report,
     overlay: Option<(&OverlayFrames, OutputDir)>,
+    console: &Console,
 ) -> Result<String> {
     let body = Body::of_table(angles, args.height);
     let figures = figures(angles, tracked, &report.measured_shares, &body, args.sigma_deg.to_radians())?;
@@ -196,10 +216,10 @@ fn show(
     if let Some((frames, folder)) = overlay {
         let overlaid = frames.draw(angles, tracked, &figures, &body, &folder)?;
         for reason in overlaid.skipped.iter().take(TOLD_REASONS) {
-            eprintln!("overlay: {reason}; skipped");
+            console.note(format!("overlay: {reason}; skipped"));
         }
         if overlaid.skipped.len() > TOLD_REASONS {
-            eprintln!("overlay: {} more of the kind", overlaid.skipped.len() - TOLD_REASONS);
+            console.note(format!("overlay: {} more of the kind", overlaid.skipped.len() - TOLD_REASONS));
         }
         text.push_str(&format!("overlay: {} pictures in {}\n", overlaid.written, folder.path().display()));
     }
@@ -207,7 +227,7 @@ fn show(
         animation::write(path, angles, &figures, &body, tracked.rate_hz)?;
         let longest = animation::LONGEST_S;
         if tracked.frames.len() as f64 > longest * tracked.rate_hz {
-            eprintln!("animation: only the first {longest} seconds are shown");
+            console.note(format!("animation: only the first {longest} seconds are shown"));
         }
         text.push_str(&format!("animation: {}\n", path.display()));
     }

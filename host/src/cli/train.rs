@@ -1,5 +1,6 @@
 //! `sinew train ...`
 
+use super::console::Console;
 use super::train_cyclic::{self, TrainCyclicArgs};
 use super::train_skin::{self, TrainSkinArgs};
 use clap::Subcommand;
@@ -17,9 +18,9 @@ pub enum Train {
 ///
 /// # Errors
 /// As the chosen training.
-pub fn run(train: &Train) -> anyhow::Result<()> {
+pub fn run(train: &Train, console: &Console) -> anyhow::Result<()> {
     match train {
-        Train::Skin(args) => train_skin::run(args),
-        Train::Cyclic(args) => train_cyclic::run(args),
+        Train::Skin(args) => train_skin::run(args, console),
+        Train::Cyclic(args) => train_cyclic::run(args, console),
     }
 }

@@ -1,11 +1,13 @@
 //! `sinew train cyclic`: a motion model from cut cycles.
 
+use super::console::Console;
 use crate::cyclic::cuts::CutList;
 use crate::cyclic::model_file;
 use crate::cyclic::training::{TrainingOptions, read_cycles, train_on, uneven_turns};
 use crate::output::{check_writable_file, write_atomically};
 use anyhow::Result;
 use clap::Args;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Options of `sinew train cyclic`.
@@ -33,7 +35,7 @@ pub struct TrainCyclicArgs {
 ///
 /// # Errors
 /// Bad input, or an output that cannot be written.
-pub fn run(args: &TrainCyclicArgs) -> Result<()> {
+pub fn run(args: &TrainCyclicArgs, console: &Console) -> Result<()> {
     check_writable_file(&args.out)?;
     let list = CutList::read(&args.cuts)?;
     let cycles = read_cycles(&list)?;
@@ -54,7 +56,14 @@ pub fn run(args: &TrainCyclicArgs) -> Result<()> {
         args.out.display()
     );
     for angle in uneven_turns(&cycles) {
-        eprintln!("note: {angle}");
+        console.note(format!("note: {angle}"));
     }
-    super::stdout::write_all(report.as_bytes())
+    let json = json!({
+        "positions": args.length,
+        "mean_cycle_frames": numbers.mean_duration_frames,
+        "rate_hz": numbers.rate_hz,
+        "trained_on": on,
+        "out": args.out,
+    });
+    console.answer(&report, &json)
 }

@@ -1,5 +1,6 @@
 //! `sinew train skin`: a skin model from labelled pixels or from images with masks.
 
+use super::console::Console;
 use crate::output::{check_writable_file, write_atomically};
 use crate::skin::model::{ModelKind, SkinModel};
 use crate::skin::model_file;
@@ -8,6 +9,7 @@ use crate::skin::training::{TrainingOptions, pairs_set, pixels_set, train};
 use crate::skin::training_set::TrainingSet;
 use anyhow::{Result, bail};
 use clap::Args;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Options of `sinew train skin`.
@@ -47,41 +49,41 @@ pub struct TrainSkinArgs {
 ///
 /// # Errors
 /// Bad input, or an output that cannot be written.
-pub fn run(args: &TrainSkinArgs) -> Result<()> {
+pub fn run(args: &TrainSkinArgs, console: &Console) -> Result<()> {
     check_writable_file(&args.out)?;
     let (set, default_kind) = match &args.pixels {
         Some(path) => (pixels_set(path, args.seed)?, ModelKind::Gaussian),
-        None => (read_pairs(args)?, ModelKind::Histogram),
+        None => (read_pairs(args, console)?, ModelKind::Histogram),
     };
     let kind = args.kind.unwrap_or(default_kind);
     let (model, _) = train(&set, TrainingOptions { kind, folds: args.folds as usize, seed: args.seed })?;
     let json = model_file::to_json(&model)?;
     write_atomically(&args.out, |writer| Ok(writer.write_all(json.as_bytes())?))?;
     let report = summary(&model) + &format!("wrote {}\n", args.out.display());
-    super::stdout::write_all(report.as_bytes())
+    console.answer(&report, &json!({ "kind": model.kind(), "trained_on": model.trained_on, "out": args.out }))
 }
 
-fn read_pairs(args: &TrainSkinArgs) -> Result<TrainingSet> {
+fn read_pairs(args: &TrainSkinArgs, console: &Console) -> Result<TrainingSet> {
     let list = pairs::find(&args.images, &args.masks)?;
-    report_unmasked(&list);
+    report_unmasked(&list, console);
     let (set, skipped) = pairs_set(&list, args.seed)?;
     for (path, reason) in &skipped {
-        eprintln!("skipped `{}`: {reason}", path.display());
+        console.note(format!("skipped `{}`: {reason}", path.display()));
     }
     if args.strict && !(skipped.is_empty() && list.without_mask.is_empty()) {
         bail!("{} images cannot be used, and --strict was given", skipped.len() + list.without_mask.len());
     }
     if !skipped.is_empty() {
-        eprintln!("{} image-mask pairs were skipped", skipped.len());
+        console.note(format!("{} image-mask pairs were skipped", skipped.len()));
     }
     Ok(set)
 }
 
 /// Counts and names the images without a mask on standard error.
-pub(super) fn report_unmasked(list: &PairList) {
+pub(super) fn report_unmasked(list: &PairList, console: &Console) {
     if !list.without_mask.is_empty() {
         let names: Vec<String> = list.without_mask.iter().map(|path| path.display().to_string()).collect();
-        eprintln!("{} images have no mask and are left out: {}", names.len(), names.join(", "));
+        console.note(format!("{} images have no mask and are left out: {}", names.len(), names.join(", ")));
     }
 }
 

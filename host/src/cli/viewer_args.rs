@@ -1,5 +1,6 @@
 //! `--rerun`: a run for the Rerun viewer.
 
+use super::console::Console;
 use anyhow::{Result, bail};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -39,11 +40,11 @@ impl ViewerArgs {
     /// # Errors
     /// What is wrong with the run or the file.
     #[cfg(feature = "rerun")]
-    pub fn write(&self, run: &Path) -> Result<String> {
+    pub fn write(&self, run: &Path, console: &Console) -> Result<String> {
         let Some(file) = &self.rerun else { return Ok(String::new()) };
         let shown = crate::viewer::write(run, file)?;
         for note in &shown.notes {
-            eprintln!("note: {}: {note}", file.display());
+            console.note(format!("note: {}: {note}", file.display()));
         }
         Ok(format!("for the Rerun viewer, {} frames: {}\n", shown.frames, file.display()))
     }
@@ -53,7 +54,7 @@ impl ViewerArgs {
     /// # Errors
     /// None.
     #[cfg(not(feature = "rerun"))]
-    pub fn write(&self, _run: &Path) -> Result<String> {
+    pub fn write(&self, _run: &Path, _console: &Console) -> Result<String> {
         Ok(String::new())
     }
 }

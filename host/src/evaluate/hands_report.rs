@@ -89,8 +89,12 @@ pub struct HandsOptions {
 /// All scores of one sequence.
 #[derive(Debug, Clone, Serialize)]
 pub struct HandsReport {
+    /// What this is: `sinew-evaluate-hands`.
+    pub format: &'static str,
+    /// Version of the form.
+    pub version: u32,
     /// Version of the project.
-    pub version: &'static str,
+    pub sinew_version: &'static str,
     /// How the frames were tracked.
     pub options: HandsOptions,
     /// Number of frames.
@@ -120,7 +124,9 @@ pub fn report(
         ViewScores::of(&runs).ok_or_else(|| anyhow::anyhow!("zero seeds were asked for; give at least one"))
     };
     Ok(HandsReport {
-        version: env!("CARGO_PKG_VERSION"),
+        format: "sinew-evaluate-hands",
+        version: 1,
+        sinew_version: env!("CARGO_PKG_VERSION"),
         options,
         frames: frames.len(),
         whole: view(None)?,
@@ -150,6 +156,26 @@ impl HandsReport {
             most("confused frames, moving window", window.confused.median),
         ];
         all.into_iter().flatten().collect()
+    }
+
+    /// A row for each way to see the frames and each score, all shares.
+    #[must_use]
+    pub fn to_csv(&self) -> String {
+        let mut text = String::from("frames_seen,score,median,lowest,highest,two_constants,boxes\n");
+        for (seen, view) in [("whole", &self.whole), ("window", &self.window)] {
+            let scores = [
+                ("inside the box", view.inside, Some(view.constant_inside)),
+                ("near its centre", view.centred, Some(view.constant_centred)),
+                ("confused frames", view.confused, None),
+            ];
+            for (score, SeedSpread { median, lowest, highest }, constant) in scores {
+                let constant = constant.map_or_else(String::new, |share| format!("{share:.4}"));
+                let boxes = view.boxes;
+                // Writing to a string cannot fail.
+                let _ = writeln!(text, "{seen},{score},{median:.4},{lowest:.4},{highest:.4},{constant},{boxes}");
+            }
+        }
+        text
     }
 
     /// The report as a table for people.
@@ -192,7 +218,16 @@ mod tests {
     fn report_of(whole: ViewScores, window: ViewScores) -> HandsReport {
         let options = HandsOptions { rate_hz: 15.0, seeds: 1, window_px: (4, 3) };
         let ranking = HandRanking { hands: 1, others: 0, filled_area: None, paper_area: None };
-        HandsReport { version: "0", options, frames: 1, whole, window, ranking }
+        HandsReport {
+            format: "sinew-evaluate-hands",
+            version: 1,
+            sinew_version: "0",
+            options,
+            frames: 1,
+            whole,
+            window,
+            ranking,
+        }
     }
 
     #[test]
@@ -200,6 +235,15 @@ mod tests {
         assert!(report_of(view(0.95, 0.0, 0.05), view(0.0, 0.85, 0.05)).misses().is_empty());
         assert_eq!(report_of(view(0.94, 0.0, 0.06), view(0.0, 0.84, 0.06)).misses().len(), 4);
         assert_eq!(report_of(view(f64::NAN, 0.0, 0.0), view(0.0, f64::NAN, 0.0)).misses().len(), 2);
+    }
+
+    #[test]
+    fn the_csv_has_a_row_for_each_score_of_each_view() {
+        let text = report_of(view(0.5, 0.25, 0.0), view(1.0, 0.75, 0.125)).to_csv();
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 7);
+        assert_eq!(lines[1], "whole,inside the box,0.5000,0.5000,0.5000,0.1000,9");
+        assert_eq!(lines[6], "window,confused frames,0.1250,0.1250,0.1250,,9");
     }
 
     #[test]

@@ -10,17 +10,23 @@ use serde_json::Value;
 /// Most pictures of such a folder that are shown.
 const MOST_PICTURES: usize = 24;
 
+/// Evaluations whose folders hold nothing but tables: a file that each has, and its name on the page.
+const PLAIN_EVALUATIONS: [(&str, &str); 2] =
+    [("hands.json", "Evaluation of both hands on real frames"), ("skin.json", "Evaluation of a skin model")];
+
 /// Whatever is in `folder`.
 pub fn other_run(mut folder: RunFolder, pictures: &mut Pictures) -> Run {
-    let mut run = Run {
-        name: folder.path().display().to_string(),
-        kind: "Folder with tables, records or pictures".to_owned(),
-        ..Run::default()
+    let mut run = Run { name: folder.path().display().to_string(), ..Run::default() };
+    run.kind = match PLAIN_EVALUATIONS.iter().find(|(name, _)| folder.has(name)) {
+        Some((_, kind)) => (*kind).to_owned(),
+        None => {
+            folder.notice(
+                Level::Note,
+                "this is no folder of a track or an evaluation that is known here; its files are shown as they are",
+            );
+            "Folder with tables, records or pictures".to_owned()
+        }
     };
-    folder.notice(
-        Level::Note,
-        "this is no folder of a track or an evaluation that is known here; its files are shown as they are",
-    );
     let names = folder.names();
     for name in &names {
         if name.ends_with(".json")

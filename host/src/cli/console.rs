@@ -1,0 +1,54 @@
+//! What the command tells a person or a script: results on standard output, everything else on standard error.
+
+use super::stdout::write_all;
+use anyhow::Result;
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use std::fmt::Display;
+
+/// The options that every subcommand has.
+#[derive(Debug, Clone, Copy, Default, Args)]
+#[command(next_help_heading = "Global options")]
+pub struct Console {
+    /// Tell errors only: no notes, no progress bar.
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+    /// Print results as JSON, for scripts.
+    #[arg(long, global = true)]
+    pub json: bool,
+}
+
+impl Console {
+    /// Tells on standard error what a user should know and a script need not, unless `--quiet` was given.
+    pub fn note(&self, text: impl Display) {
+        if !self.quiet {
+            eprintln!("{text}");
+        }
+    }
+
+    /// Prints a result: `text`, or with `--json` the same as one line of JSON. A reader that has gone away is no error.
+    ///
+    /// # Errors
+    /// A failure of the operating system.
+    pub fn answer(&self, text: &str, json: &impl Serialize) -> Result<()> {
+        if self.json {
+            let mut line = serde_json::to_vec(json)?;
+            line.push(b'\n');
+            return write_all(&line);
+        }
+        write_all(text.as_bytes())
+    }
+
+    /// A progress bar on standard error; hidden where that is no terminal, and with `--quiet`.
+    ///
+    /// # Errors
+    /// A `template` that indicatif does not know.
+    pub fn bar(&self, length: u64, template: &str) -> Result<ProgressBar> {
+        // `new` hides the bar by itself where standard error is no terminal.
+        let bar = if self.quiet { ProgressBar::hidden() } else { ProgressBar::new(length) };
+        bar.set_length(length);
+        bar.set_style(ProgressStyle::with_template(template)?);
+        Ok(bar)
+    }
+}
