@@ -7,7 +7,7 @@ use crate::motion::{ArmSide, reach};
 use crate::output::OutputDir;
 use crate::scene::{Scene, SceneOptions, Sides};
 use crate::skin::model::DEFAULT_SKIN;
-use crate::track::{RunOutcome, SideChoice, TrackOptions};
+use crate::track::{RunOutcome, SideChoice, TrackOptions, TrackRun};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use serde::Serialize;
@@ -60,7 +60,7 @@ pub struct DemoError {
 pub fn run(args: &DemoArgs, console: &Console) -> Result<()> {
     let out = OutputDir::create(&args.out)?;
     let scene = render(&out, args.seed)?;
-    let outcome = run_with_progress(track_options(&out, args.seed)?, out.path(), console)?;
+    let outcome = run_with_progress(TrackRun::prepare(track_options(&out, args.seed)?, out.path())?, console)?;
     let error = compare(&scene, &outcome)?;
     let json = serde_json::to_string_pretty(&error)? + "\n";
     out.write("error.json", |writer| Ok(writer.write_all(json.as_bytes())?))?;

@@ -5,11 +5,11 @@ use super::ctrl_c::stop_flag;
 use super::skin_args::SkinArgs;
 use super::viewer_args::ViewerArgs;
 use crate::config::{Config, DEFAULT_FILE, MAX_PARTICLES, VariantName};
-use crate::track::{Event, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
+use crate::track::{Event, Interrupted, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
 use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Options of `sinew track arm`.
 #[derive(Debug, Args)]
@@ -57,6 +57,9 @@ pub struct TrackArmArgs {
     /// Refuse the folder if one of its images cannot be read; without it such a frame counts as missing.
     #[arg(long)]
     pub strict: bool,
+    /// Go on with the run in DIR that Ctrl-C ended; the other options have to be the same.
+    #[arg(long)]
+    pub resume: bool,
     /// The run for a viewer.
     #[command(flatten)]
     pub viewer: ViewerArgs,
@@ -97,7 +100,13 @@ pub fn run(args: &TrackArmArgs, console: &Console) -> Result<()> {
         strict: args.strict,
         config: effective_config(args)?,
     };
-    let report = run_with_progress(options, out, console)?.report;
+    let run = if args.resume { TrackRun::resume(options, out)? } else { TrackRun::prepare(options, out)? };
+    let report = run_with_progress(run, console).inspect_err(|error| {
+        if error.is::<Interrupted>() {
+            console.note("the same command with --resume goes on from there");
+        }
+    })?;
+    let report = report.report;
     let viewer = args.viewer.write(out, console)?;
     let names = contents(args);
     let text = format!("{}results in `{}`: {}\n{viewer}", report.summary(), out.display(), names.join(", "));
@@ -115,10 +124,11 @@ fn effective_config(args: &TrackArmArgs) -> Result<Config> {
 /// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the current frame.
 ///
 /// # Errors
-/// As [`TrackRun::prepare`] and [`TrackRun::run`].
-pub(super) fn run_with_progress(options: TrackOptions, out: &Path, console: &Console) -> Result<RunOutcome> {
-    let run = TrackRun::prepare(options, out)?;
+/// As [`TrackRun::run`].
+pub(super) fn run_with_progress(run: TrackRun, console: &Console) -> Result<RunOutcome> {
     let bar = console.bar(run.frame_count() as u64, "{wide_bar} frame {pos} of {len}, {per_sec}")?;
+    bar.set_position(run.frames_finished() as u64);
+    bar.reset_eta();
     let outcome = run.run(stop_flag()?, &mut |event| match event {
         Event::Skipped(image) => {
             let text = format!("skipped frame {}: `{}`: {}", image.frame, image.file, image.reason);

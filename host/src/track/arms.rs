@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use serde::Serialize;
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::Vec3;
+use sinew_core::saved_state::{SavedState, StateKind, restore, save, saved_bytes};
 use sinew_core::skeleton::Side;
 use sinew_core::skeleton::arm::WIDE_ARM_LIMITS;
 use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmPair, ArmTracker, PairFrame, Particle};
@@ -94,6 +95,30 @@ impl ArmSet {
         }
     }
 
+    /// The state of the trackers after the last step, as [`ArmSet::restore`] takes it.
+    ///
+    /// # Errors
+    /// None that a user can bring about.
+    pub fn saved(&mut self) -> Result<Vec<u8>> {
+        match &mut self.trackers {
+            Sized::Small(trackers) => trackers.saved(),
+            Sized::Middle(trackers) => trackers.saved(),
+            Sized::Large(trackers) => trackers.saved(),
+        }
+    }
+
+    /// Puts the trackers into a state that was saved with the same configuration, sides and size.
+    ///
+    /// # Errors
+    /// The bytes are not whole, or of other trackers.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        match &mut self.trackers {
+            Sized::Small(trackers) => trackers.restore(bytes),
+            Sized::Middle(trackers) => trackers.restore(bytes),
+            Sized::Large(trackers) => trackers.restore(bytes),
+        }
+    }
+
     /// Images of shoulder, elbow and hand; `None` where one lies behind the camera.
     #[must_use]
     pub fn joints_px(&self, joints_m: [Vec3; 3]) -> Option<[Pixel; 3]> {
@@ -125,6 +150,26 @@ impl<const CAPACITY: usize> Trackers<CAPACITY> {
             return Ok(Self::Two(Box::new(ArmPair::new([left, right], [*left_m, *right_m], seed)?)));
         }
         Ok(Self::One(Box::new(ArmTracker::new(&models[0], shoulders_m[0], seed)?)))
+    }
+
+    fn saved(&mut self) -> Result<Vec<u8>> {
+        fn bytes(kind: StateKind, state: &mut impl SavedState) -> Result<Vec<u8>> {
+            let mut bytes = vec![0; saved_bytes(state)];
+            save(kind, 0, state, &mut bytes)?;
+            Ok(bytes)
+        }
+        match self {
+            Self::One(tracker) => bytes(StateKind::Arm, tracker.as_mut()),
+            Self::Two(pair) => bytes(StateKind::ArmPair, pair.as_mut()),
+        }
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        match self {
+            Self::One(tracker) => restore(StateKind::Arm, 0, tracker.as_mut(), bytes)?,
+            Self::Two(pair) => restore(StateKind::ArmPair, 0, pair.as_mut(), bytes)?,
+        }
+        Ok(())
     }
 
     #[inline(never)]

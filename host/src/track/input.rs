@@ -4,11 +4,11 @@ use crate::images::{ImageFileError, list_images, load_rgb};
 use anyhow::{Result, bail};
 use image::{ImageReader, RgbImage};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// An image that could not be read; the frame counts as missing.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SkippedImage {
     /// Number of the frame, from 0.
     pub frame: usize,

@@ -5,6 +5,7 @@ mod input;
 mod particles;
 pub(crate) mod pictures;
 mod report;
+mod resume;
 mod run;
 mod table;
 

@@ -4,6 +4,7 @@ use super::arms::{ArmSet, ArmView};
 use crate::draw::contact_sheet::ContactSheet;
 use crate::draw::overlay::{Overlay, OverlayArm, OverlayBlob, draw};
 use crate::frames::FrameView;
+use crate::images::load_rgb;
 use crate::output::OutputDir;
 use crate::wording::{side_name, status_name};
 use anyhow::Result;
@@ -71,6 +72,21 @@ impl Pictures {
             if let Some(picture) = picture? {
                 self.sheet.add(shot.frame, &picture);
             }
+        }
+        Ok(())
+    }
+
+    /// Takes the thumbnails of frames that were drawn before from their overlays.
+    ///
+    /// # Errors
+    /// An overlay that cannot be read.
+    pub fn take_up(&mut self, frames: impl Iterator<Item = usize>) -> Result<()> {
+        for frame in frames {
+            if !self.sheet.wants(frame) {
+                continue;
+            }
+            let overlay = load_rgb(&self.folder.join(&self.names[frame].1))?;
+            self.sheet.add(frame, &overlay);
         }
         Ok(())
     }

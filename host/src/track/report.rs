@@ -4,7 +4,8 @@ use super::input::SkippedImage;
 use super::run::TrackOptions;
 use crate::wording::{side_name, status_name};
 use serde::Serialize;
-use sinew_core::tracker::arm::{ArmEstimate, Status};
+use sinew_core::skeleton::Side;
+use sinew_core::tracker::arm::Status;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -82,9 +83,9 @@ impl RunReport {
     }
 
     /// Counts one side's answer to one frame.
-    pub fn count(&mut self, estimate: &ArmEstimate) {
-        let counts = self.status_counts.entry(side_name(estimate.side)).or_default();
-        match estimate.status {
+    pub fn count(&mut self, side: Side, status: Status) {
+        let counts = self.status_counts.entry(side_name(side)).or_default();
+        match status {
             Status::Tracking => counts.tracking += 1,
             Status::Predicted => counts.predicted += 1,
             Status::Lost => counts.lost += 1,

@@ -5,6 +5,7 @@ use super::input::{FrameFolder, SkippedImage};
 use super::particles::{PARTICLE_HEADER, particle_rows};
 use super::pictures::{Pictures, Shot};
 use super::report::RunReport;
+use super::resume::Left;
 use super::table::{HEADER, TrackRow};
 use crate::config::Config;
 use crate::draw::plot::{HandSample, hand_plot};
@@ -85,17 +86,19 @@ pub struct RunOutcome {
 /// A run whose inputs were all checked.
 #[derive(Debug)]
 pub struct TrackRun {
-    frames: FrameFolder,
-    skin: SkinModel,
-    reader: FrameReader,
-    arms: ArmSet,
+    pub(super) frames: FrameFolder,
+    pub(super) skin: SkinModel,
+    pub(super) reader: FrameReader,
+    pub(super) arms: ArmSet,
     camera: Camera,
-    out: OutputDir,
-    pictures: Option<Pictures>,
-    track: csv::Writer<PendingFile>,
-    particles: Option<csv::Writer<PendingFile>>,
-    report: RunReport,
-    samples: Vec<HandSample>,
+    pub(super) out: OutputDir,
+    pub(super) pictures: Option<Pictures>,
+    pub(super) track: csv::Writer<PendingFile>,
+    pub(super) particles: Option<csv::Writer<PendingFile>>,
+    pub(super) report: RunReport,
+    pub(super) samples: Vec<HandSample>,
+    /// Time that was spent before a resumption, seconds.
+    pub(super) seconds: f64,
 }
 
 impl TrackRun {
@@ -133,13 +136,20 @@ impl TrackRun {
         let particles = if options.particles_csv { Some(table("particles.csv", &PARTICLE_HEADER)?) } else { None };
         let names = (0..frames.files().len()).map(|frame| frames.name(frame)).collect();
         let report = RunReport::new(options, names, frames.size_px());
-        Ok(Self { frames, skin, reader, arms, camera, out, pictures, track, particles, report, samples: Vec::new() })
+        let (samples, seconds) = (Vec::new(), 0.0);
+        Ok(Self { frames, skin, reader, arms, camera, out, pictures, track, particles, report, samples, seconds })
     }
 
     /// Number of frames.
     #[must_use]
     pub fn frame_count(&self) -> usize {
         self.frames.files().len()
+    }
+
+    /// Number of frames that were finished before the run was ended and taken up again; otherwise none.
+    #[must_use]
+    pub fn frames_finished(&self) -> usize {
+        self.report.frames_finished
     }
 
     /// Tracks all frames, or those before `stop` is set, and writes the run directory.
@@ -152,10 +162,11 @@ impl TrackRun {
         let (frames, out) = (self.frame_count(), self.out.path().to_path_buf());
         let tracked = self.track_all(stop, notify);
         let finished = self.report.frames_finished;
-        self.report.frames_per_second = finished as f64 / start.elapsed().as_secs_f64().max(1.0e-9);
+        self.seconds += start.elapsed().as_secs_f64();
+        self.report.frames_per_second = finished as f64 / self.seconds.max(1.0e-9);
         self.report.complete = tracked.is_ok() && finished == frames;
         let interrupted = tracked.is_ok() && finished < frames;
-        let written = self.write_results();
+        let written = self.write_results(interrupted);
         if let Err(error) = tracked {
             let kept = match &written {
                 Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
@@ -171,7 +182,7 @@ impl TrackRun {
     }
 
     fn track_all(&mut self, stop: &AtomicBool, notify: &mut dyn FnMut(Event<'_>)) -> Result<()> {
-        let frames: Vec<usize> = (0..self.frame_count()).collect();
+        let frames: Vec<usize> = (self.report.frames_finished..self.frame_count()).collect();
         for chunk in frames.chunks(self.chunk_length()) {
             let mut shots = Vec::new();
             for (&frame, image) in chunk.iter().zip(self.load(chunk)) {
@@ -232,7 +243,7 @@ impl TrackRun {
                 particles.write_record(cells).context("`particles.csv` cannot be written")?;
             }
         }
-        self.report.count(estimate);
+        self.report.count(estimate.side, estimate.status);
         self.samples.push(HandSample {
             time_s: row.time_s as f32,
             side: estimate.side,
@@ -261,8 +272,10 @@ impl TrackRun {
         (frame as f64 * 1.0e6 / self.report.options.rate_hz).round() as u64
     }
 
-    /// Gives the tables their names and writes plot, sheet and report. Each file is tried, also where another one failed.
-    fn write_results(self) -> Result<RunOutcome> {
+    /// Gives the tables their names and writes plot, sheet and report. Each file is tried, also where another one failed. An
+    /// interrupted run leaves what [`TrackRun::resume`] needs.
+    fn write_results(mut self, interrupted: bool) -> Result<RunOutcome> {
+        let left = if interrupted { Some(Left::of(&mut self)?) } else { None };
         let Self { out, track, particles, pictures, report, samples, .. } = self;
         let mut results = vec![finish(track)];
         results.extend(particles.map(finish));
@@ -271,6 +284,7 @@ impl TrackRun {
         results.push(hand_plot(&samples, report.image_size_px).and_then(|plot| out.write_png("hand.png", &plot)));
         results.extend(pictures.map(|pictures| out.write_png("contact_sheet.png", &pictures.contact_sheet())));
         results.into_iter().collect::<Result<()>>()?;
+        Left::write(left, &out)?;
         Ok(RunOutcome { report, samples })
     }
 }
