@@ -7,12 +7,12 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum CloudError {
     /// The operating system refused the file or folder.
-    #[error("`{}` cannot be read ({source}); check the path", path.display())]
+    #[error("`{}` cannot be read ({reason}); check the path", path.display())]
     Unreadable {
         /// The file or folder.
         path: PathBuf,
         /// The operating system's reason.
-        source: std::io::Error,
+        reason: std::io::Error,
     },
     /// The file ending is none of those that are read.
     #[error("`{}` is no cloud of points that can be read; files that end in {} are", path.display(), extension_list())]

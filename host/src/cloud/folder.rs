@@ -30,7 +30,7 @@ impl CloudFolder {
     /// If the folder is missing, is a file, is empty, holds no cloud or clouds of several kinds, or if the names do not
     /// number the frames.
     pub fn open(folder: &Path) -> Result<Self, CloudError> {
-        let unreadable = |source| CloudError::Unreadable { path: folder.to_path_buf(), source };
+        let unreadable = |reason| CloudError::Unreadable { path: folder.to_path_buf(), reason };
         if folder.is_file() {
             return Err(CloudError::NotAFolder(folder.to_path_buf()));
         }

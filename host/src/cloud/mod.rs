@@ -78,7 +78,7 @@ pub fn blocks_of(points_m: &mut [Vec3]) -> Vec<PointBlock> {
 /// Names the file, the rule that it broke, and the remedy.
 pub fn read(path: &Path) -> Result<PointCloud, CloudError> {
     let extension = extension(path).ok_or_else(|| CloudError::UnknownKind { path: path.to_path_buf() })?;
-    let unreadable = |source| CloudError::Unreadable { path: path.to_path_buf(), source };
+    let unreadable = |reason| CloudError::Unreadable { path: path.to_path_buf(), reason };
     let bytes_there = std::fs::metadata(path).map_err(unreadable)?.len();
     if bytes_there > MAX_FILE_BYTES {
         return Err(CloudError::TooLarge { path: path.to_path_buf(), bytes: bytes_there });

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum CyclicError {
     /// The operating system refused the file.
-    #[error("`{}` cannot be read ({source}); check the path", path.display())]
+    #[error("`{}` cannot be read ({reason}); check the path", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
         /// The operating system's reason.
-        source: std::io::Error,
+        reason: std::io::Error,
     },
     /// A line breaks a rule of the format.
     #[error("{}:{line}: {rule}", path.display())]
@@ -61,7 +61,7 @@ impl CyclicError {
 
 /// Reads a text file; a byte order mark is dropped, bytes that are not UTF-8 are replaced.
 pub(crate) fn read_text(path: &Path) -> Result<String, CyclicError> {
-    let bytes = std::fs::read(path).map_err(|source| CyclicError::Unreadable { path: path.to_path_buf(), source })?;
+    let bytes = std::fs::read(path).map_err(|reason| CyclicError::Unreadable { path: path.to_path_buf(), reason })?;
     let text = String::from_utf8_lossy(&bytes);
     Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned())
 }

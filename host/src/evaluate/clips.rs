@@ -32,7 +32,7 @@ pub fn recorded(folder: &Path) -> Result<Vec<Clip>> {
     let found = recordings::available(folder);
     ensure!(
         !found.is_empty(),
-        "`{}` holds none of the recorded clips; give the folder of the recordings with --mocap, or use --builtin",
+        "`{}` holds none of the recorded clips; give the folder of the recordings, or leave --mocap out for built-in reaches",
         folder.display()
     );
     let clip = |clip: recordings::Clip| Clip {

@@ -60,7 +60,12 @@ impl ReferenceBox {
 /// # Errors
 /// Names the file and line that cannot be read.
 pub fn read_boxes(path: &Path) -> Result<Vec<ReferenceBox>> {
-    let mut reader = csv::Reader::from_path(path).with_context(|| format!("boxes `{}`", path.display()))?;
+    let mut reader = csv::Reader::from_path(path).with_context(|| {
+        format!(
+            "boxes `{}` cannot be read; check the path, and give a table with the columns frame,x,y,w,h",
+            path.display()
+        )
+    })?;
     let boxes: Vec<ReferenceBox> = reader
         .deserialize()
         .collect::<Result<_, _>>()

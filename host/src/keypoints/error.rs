@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum KeypointError {
     /// The operating system refused the file.
-    #[error("keypoints `{}` cannot be read ({source}); check the path", path.display())]
+    #[error("keypoints `{}` cannot be read ({reason}); check the path", path.display())]
     Unreadable {
         /// The file or folder.
         path: PathBuf,
         /// The operating system's reason.
-        source: std::io::Error,
+        reason: std::io::Error,
     },
     /// A place in the file breaks a rule of the format.
     #[error("{}: {place}: {rule}", path.display())]
@@ -45,7 +45,7 @@ impl KeypointError {
 
 /// Reads a text file; a byte order mark is dropped.
 pub(crate) fn read_text(path: &Path) -> Result<String, KeypointError> {
-    let bytes = std::fs::read(path).map_err(|source| KeypointError::Unreadable { path: path.to_path_buf(), source })?;
+    let bytes = std::fs::read(path).map_err(|reason| KeypointError::Unreadable { path: path.to_path_buf(), reason })?;
     let text = String::from_utf8_lossy(&bytes);
     Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned())
 }

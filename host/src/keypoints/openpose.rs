@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// The folder has no JSON file, or one breaks a rule.
 pub fn read_folder(folder: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
-    let unreadable = |source| KeypointError::Unreadable { path: folder.to_path_buf(), source };
+    let unreadable = |reason| KeypointError::Unreadable { path: folder.to_path_buf(), reason };
     let mut files: Vec<PathBuf> = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();

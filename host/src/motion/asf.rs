@@ -47,7 +47,7 @@ pub struct Skeleton {
 /// If there is none, or more than one.
 pub fn beside(motion: &Path) -> Result<PathBuf, MotionError> {
     let folder = motion.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let unreadable = |source| MotionError::Unreadable { path: folder.to_path_buf(), source };
+    let unreadable = |reason| MotionError::Unreadable { path: folder.to_path_buf(), reason };
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();

@@ -16,7 +16,7 @@ const BLOCK_BYTES: usize = 512;
 /// # Errors
 /// The file cannot be read, is no C3D file, is damaged, or names no unit that is known.
 pub fn read(path: &Path) -> Result<MarkerMotion, MotionError> {
-    let bytes = std::fs::read(path).map_err(|source| MotionError::Unreadable { path: path.to_path_buf(), source })?;
+    let bytes = std::fs::read(path).map_err(|reason| MotionError::Unreadable { path: path.to_path_buf(), reason })?;
     let broken = |rule: String| MotionError::broken(path, 0, rule);
     if bytes.len() < 2 * BLOCK_BYTES || bytes[1] != MAGIC {
         return Err(broken("this is no C3D file".into()));

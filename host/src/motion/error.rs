@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum MotionError {
     /// The operating system refused the file.
-    #[error("motion `{}` cannot be read ({source}); check the path", path.display())]
+    #[error("motion `{}` cannot be read ({reason}); check the path", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
         /// The operating system's reason.
-        source: std::io::Error,
+        reason: std::io::Error,
     },
     /// A line breaks a rule of the format.
     #[error("{}:{line}: {rule}", path.display())]
@@ -24,7 +24,7 @@ pub enum MotionError {
         rule: String,
     },
     /// The file ending is none of those that are read.
-    #[error("motion `{}` is of no known kind; give a .bvh, a .amc (with its .asf), or a .txt of exponential maps", path.display())]
+    #[error("motion `{}` is of no known kind; give a .bvh, a .amc (with its .asf), a .txt of exponential maps, or for a whole body a .trc or .c3d", path.display())]
     UnknownKind {
         /// The file.
         path: PathBuf,
@@ -65,7 +65,7 @@ impl MotionError {
 
 /// Reads a text file; bytes that are not UTF-8 (old comments) are replaced.
 pub(crate) fn read_text(path: &Path) -> Result<String, MotionError> {
-    let bytes = std::fs::read(path).map_err(|source| MotionError::Unreadable { path: path.to_path_buf(), source })?;
+    let bytes = std::fs::read(path).map_err(|reason| MotionError::Unreadable { path: path.to_path_buf(), reason })?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 

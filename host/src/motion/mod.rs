@@ -93,6 +93,9 @@ pub fn read(path: &Path, options: &ReadOptions<'_>) -> Result<Motion, MotionErro
         let rule = format!("must be greater than zero, not {rate}");
         return Err(MotionError::Parameter { parameter: "frames_per_second", rule });
     }
+    // What is not there is of no kind, whatever its name.
+    let unreadable = |reason| MotionError::Unreadable { path: path.to_path_buf(), reason };
+    std::fs::metadata(path).map_err(unreadable)?;
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     match extension.as_str() {
         "bvh" => bvh::read(path, options.metres_per_unit),

@@ -27,7 +27,9 @@ pub struct LabelledPixels {
 /// # Errors
 /// Names the file, the line and what is wrong there; or says which label is missing.
 pub fn read(path: &Path) -> Result<LabelledPixels> {
-    let bytes = fs::read(path).with_context(|| format!("`{}` cannot be read", path.display()))?;
+    let bytes = fs::read(path).with_context(|| {
+        format!("`{}` cannot be read; check the path, and give a file of rows `B G R label`", path.display())
+    })?;
     let Ok(text) = std::str::from_utf8(&bytes) else {
         bail!("`{}` is not a text file; give rows `B G R label` (1 skin, 2 not)", path.display());
     };
