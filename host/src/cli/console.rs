@@ -6,6 +6,10 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::fmt::Display;
+use std::time::Duration;
+
+/// How often a spinner turns.
+const TICK: Duration = Duration::from_millis(100);
 
 /// The options that every subcommand has.
 #[derive(Debug, Clone, Copy, Default, Args)]
@@ -50,5 +54,19 @@ impl Console {
         bar.set_length(length);
         bar.set_style(ProgressStyle::with_template(template)?);
         Ok(bar)
+    }
+
+    /// Does what takes long and has no count, while standard error, if it is a terminal, shows `what` and for how long.
+    ///
+    /// # Errors
+    /// As `work`.
+    pub fn busy<T>(&self, what: &'static str, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        let spinner = if self.quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
+        spinner.set_style(ProgressStyle::with_template("{spinner} {msg}, {elapsed}")?);
+        spinner.set_message(what);
+        spinner.enable_steady_tick(TICK);
+        let done = work();
+        spinner.finish_and_clear();
+        done
     }
 }

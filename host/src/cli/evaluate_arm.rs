@@ -73,7 +73,7 @@ pub fn run(args: &EvaluateArmArgs, console: &Console) -> Result<()> {
     ensure!(args.skin.calibrate.is_none(), "--calibrate has no use here: every scene has a skin of its own");
     let output = OutputDir::create(&args.out)?;
     let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build()?;
-    let report = pool.install(|| measure(args))?;
+    let report = console.busy("rendering and tracking", || pool.install(|| measure(args)))?;
     output.write("arm.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
     output.write("arm.csv", |writer| Ok(writer.write_all(table(&report).as_bytes())?))?;
     let curve = |unit: fn(&Row) -> [f64; 3]| curves(&report.variants, unit);

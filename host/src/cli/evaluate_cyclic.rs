@@ -67,26 +67,29 @@ pub fn run(args: &EvaluateCyclicArgs, console: &Console) -> Result<()> {
     };
     let setting = Setting { cycles: &cycles, model: &model, rate_hz: args.rate, seeds: args.seeds };
     let sparse_particles: Vec<usize> = if particles.is_empty() { Vec::new() } else { SPARSE_PARTICLES.to_vec() };
-    let report = CyclicReport {
-        format: "sinew-evaluate-cyclic",
-        version: 1,
-        sinew_version: env!("CARGO_PKG_VERSION"),
-        model: name,
-        test: args.test.as_ref().map_or_else(|| "synthetic".to_owned(), |path| path.display().to_string()),
-        cycles: cycles.len(),
-        frames: cycles.iter().map(|cycle| cycle.truth.rows().len()).sum(),
-        seeds: args.seeds,
-        noise: setting.noise_table()?,
-        smoothed: setting.smoothed()?,
-        particles: setting.particle_table(&particles)?,
-        sparse: setting.sparse_measurements()?,
-        sparse_particles: setting.sparse_particles(&sparse_particles)?,
-        starts: setting.starts(&particles)?,
-        long_runs: match &args.long {
-            Some(path) => long_runs(&CutList::read(path)?, &model, args.rate, &FILTERS, 1)?,
-            None => Vec::new(),
-        },
+    let measure = || {
+        Ok(CyclicReport {
+            format: "sinew-evaluate-cyclic",
+            version: 1,
+            sinew_version: env!("CARGO_PKG_VERSION"),
+            model: name,
+            test: args.test.as_ref().map_or_else(|| "synthetic".to_owned(), |path| path.display().to_string()),
+            cycles: cycles.len(),
+            frames: cycles.iter().map(|cycle| cycle.truth.rows().len()).sum(),
+            seeds: args.seeds,
+            noise: setting.noise_table()?,
+            smoothed: setting.smoothed()?,
+            particles: setting.particle_table(&particles)?,
+            sparse: setting.sparse_measurements()?,
+            sparse_particles: setting.sparse_particles(&sparse_particles)?,
+            starts: setting.starts(&particles)?,
+            long_runs: match &args.long {
+                Some(path) => long_runs(&CutList::read(path)?, &model, args.rate, &FILTERS, 1)?,
+                None => Vec::new(),
+            },
+        })
     };
+    let report = console.busy("tracking", measure)?;
     output.write("cyclic.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
     output.write("cyclic.csv", |writer| Ok(writer.write_all(report.to_csv().as_bytes())?))?;
     for (name, picture) in figures(&setting, &report)? {

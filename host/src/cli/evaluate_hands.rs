@@ -70,7 +70,8 @@ pub fn run(args: &EvaluateHandsArgs, console: &Console) -> Result<()> {
     check(args, &frames, &boxes)?;
     let output = args.out.as_deref().map(OutputDir::create).transpose()?;
     let options = HandsOptions { rate_hz: args.rate, seeds: args.seeds, window_px: args.window };
-    let report = report(&frames, &boxes, options, &Config::default(), &skin)?;
+    let track = || report(&frames, &boxes, options, &Config::default(), &skin);
+    let report = console.busy("tracking", track)?;
     if let Some(output) = output {
         output.write("hands.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
         output.write("hands.csv", |writer| Ok(writer.write_all(report.to_csv().as_bytes())?))?;
