@@ -57,7 +57,7 @@ fn every_sinew_command_of_the_pages_for_users_is_understood() {
         ("tuning.md", 4),
         ("pictures.md", 8),
         ("viewer.md", 3),
-        ("command.md", 4),
+        ("command.md", 6),
     ];
     for (name, least) in pages {
         let page = fs::read_to_string(workspace_root().join("docs").join(name)).unwrap();

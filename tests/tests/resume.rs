@@ -190,7 +190,7 @@ fn a_run_begun_otherwise_is_refused_by_what_differs() {
     fs::write(&state, &kept).unwrap();
 
     fs::rename(scene.input().join("5.png"), scene.input().join("5b.png")).unwrap();
-    refused(&[], &["frame 5 was 5.png and is 5b.png", anew]);
+    refused(&[], &["number 5 was 5.png and is 5b.png", anew]);
     fs::rename(scene.input().join("5b.png"), scene.input().join("5.png")).unwrap();
     let image = fs::read(scene.input().join("8.png")).unwrap();
     fs::copy(scene.input().join("0.png"), scene.input().join("8.png")).unwrap();

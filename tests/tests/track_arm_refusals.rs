@@ -190,5 +190,5 @@ fn no_folder_and_no_output() {
     let output = sinew_command().args(["track", "arm"]).output().unwrap();
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2));
-    assert!(message.contains("<FOLDER>") && message.contains("--out"), "{message}");
+    assert!(message.contains("<FOLDER|VIDEO>") && message.contains("--out"), "{message}");
 }

@@ -5,6 +5,7 @@ use super::image_run::{Skipped, load_each};
 use super::skin_args::SkinArgs;
 use crate::frames::FrameReader;
 use crate::images::ImageInput;
+use crate::images::video::frame_name;
 use crate::output::{check_writable_file, write_atomically};
 use anyhow::Result;
 use clap::{Args, ValueEnum};
@@ -22,8 +23,8 @@ use std::path::{Path, PathBuf};
   sinew simulate arm --motion builtin --frames 5 --out scene
   sinew blobs scene/frames --out blobs.csv")]
 pub struct BlobsArgs {
-    /// Folder of images, or one image.
-    #[arg(value_name = "IMAGE|FOLDER")]
+    /// Folder of images, one image, or a video (read by ffmpeg).
+    #[arg(value_name = "IMAGE|FOLDER|VIDEO")]
     pub input: PathBuf,
     /// Form of the table.
     #[arg(long, value_enum, default_value = "csv")]
@@ -123,14 +124,17 @@ pub fn run(args: &BlobsArgs, console: &Console) -> Result<()> {
     let mut reader = FrameReader::new(likelihood, EdgeDetector::default())?;
     let mut found: Vec<(String, AreaPx, Vec<LikelyBlob>)> = Vec::new();
     let mut skipped = Skipped::new(args.strict, *console);
-    load_each(&input.files, &args.skin, &mut model, &mut skipped, |model, index, image| {
+    load_each(&input, &args.skin, &mut model, &mut skipped, |model, index, image| {
         reader.forget_last_frame();
         let view = reader.read(image, &*model.for_image(image)?)?;
+        let name = match &input {
+            ImageInput::Files(files) => file_name(&files[index]),
+            ImageInput::Video(file) => frame_name(file, index),
+        };
         if view.dropped_blobs > 0 {
-            let name = input.files[index].display();
             console.note(format!("`{name}`: {} less likely blobs are left out", view.dropped_blobs));
         }
-        found.push((file_name(&input.files[index]), area_px(image), view.blobs));
+        found.push((name, area_px(image), view.blobs));
         Ok(())
     })?;
     let rows: Vec<BlobRow<'_>> = found
@@ -143,10 +147,15 @@ pub fn run(args: &BlobsArgs, console: &Console) -> Result<()> {
         TableFormat::Csv => csv_text(&rows)?,
         TableFormat::Json => serde_json::to_string_pretty(&rows)? + "\n",
     };
-    let Some(path) = &args.out else { return console.answer(&text, &rows) };
-    write_atomically(path, |writer| Ok(writer.write_all(text.as_bytes())?))?;
-    let json = json!({ "images": found.len(), "blobs": rows.len(), "skipped": skipped.reasons(), "out": path });
-    console.answer("", &json)
+    match &args.out {
+        Some(path) => {
+            write_atomically(path, |writer| Ok(writer.write_all(text.as_bytes())?))?;
+            let (images, blobs, reasons) = (found.len(), rows.len(), skipped.reasons());
+            console.answer("", &json!({ "images": images, "blobs": blobs, "skipped": reasons, "out": path }))?;
+        }
+        None => console.answer(&text, &rows)?,
+    }
+    skipped.whole()
 }
 
 /// Area of an image, pixels.

@@ -2,25 +2,29 @@
 
 use super::console::Console;
 use super::skin_args::SkinArgs;
-use crate::images::load_rgb;
+use crate::images::{ImageInput, VideoError, VideoFacts, VideoFrames, load_rgb};
 use crate::skin::SkinModel;
 use anyhow::{Result, bail};
 use image::RgbImage;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// The images that could not be read so far.
+/// What the progress bar shows.
+const BAR: &str = "{wide_bar} image {pos} of {len}, {per_sec}";
+
+/// What could not be read so far.
 #[derive(Debug)]
 pub struct Skipped {
     strict: bool,
     console: Console,
     reasons: Vec<String>,
+    broken: Option<VideoError>,
 }
 
 impl Skipped {
     /// None so far; `strict` makes the first one an error.
     #[must_use]
     pub fn new(strict: bool, console: Console) -> Self {
-        Self { strict, console, reasons: Vec::new() }
+        Self { strict, console, reasons: Vec::new(), broken: None }
     }
 
     /// How many.
@@ -35,6 +39,14 @@ impl Skipped {
         &self.reasons
     }
 
+    /// After what was read is written: why a video ended before its end.
+    ///
+    /// # Errors
+    /// It did.
+    pub fn whole(self) -> Result<()> {
+        self.broken.map_or(Ok(()), |broken| bail!("{broken}; what came before is written"))
+    }
+
     fn add(&mut self, reason: String) -> Result<()> {
         if self.strict {
             bail!("{reason}; --strict was given");
@@ -45,26 +57,72 @@ impl Skipped {
     }
 }
 
-/// Calls `take` with the model, the index and the image of each file that can be read.
+/// Calls `take` with the model, the index and the image of each file, or frame of a video, that can be read.
 ///
-/// The model is calibrated on the first file, if that was asked for; the file then has to be readable.
+/// The model is calibrated on the first one, if that was asked for; it then has to be readable.
 ///
 /// # Errors
-/// Whatever `take` refuses; an unreadable image if strict or if no image can be read; a bad calibration.
+/// Whatever `take` refuses; an unreadable image if strict or if no image can be read; a bad calibration; no ffmpeg for a video.
 pub fn load_each(
-    files: &[PathBuf],
+    input: &ImageInput,
     skin: &SkinArgs,
     model: &mut SkinModel,
     skipped: &mut Skipped,
     mut take: impl FnMut(&SkinModel, usize, &RgbImage) -> Result<()>,
 ) -> Result<()> {
+    match input {
+        ImageInput::Files(files) => load_files(files, skin, model, skipped, &mut take),
+        ImageInput::Video(file) => load_video(file, skin, model, skipped, &mut take),
+    }
+}
+
+/// What is done with each image.
+type Take<'a> = &'a mut dyn FnMut(&SkinModel, usize, &RgbImage) -> Result<()>;
+
+fn load_video(
+    file: &Path,
+    skin: &SkinArgs,
+    model: &mut SkinModel,
+    skipped: &mut Skipped,
+    take: Take<'_>,
+) -> Result<()> {
+    let mut frames = VideoFrames::open(file, VideoFacts::read(file)?.rate_hz)?;
+    let bar = skipped.console.bar(frames.expected() as u64, BAR)?;
+    for index in 0.. {
+        bar.set_position(index as u64);
+        let image = match frames.next_frame() {
+            Ok(Some(image)) => image,
+            Ok(None) => break,
+            Err(broken) => {
+                skipped.broken = Some(broken);
+                break;
+            }
+        };
+        if let (0, Some(rectangle)) = (index, skin.calibrate) {
+            *model = model.calibrated(&image, rectangle)?;
+        }
+        take(model, index, &image)?;
+    }
+    bar.finish_and_clear();
+    Ok(())
+}
+
+fn load_files(
+    files: &[PathBuf],
+    skin: &SkinArgs,
+    model: &mut SkinModel,
+    skipped: &mut Skipped,
+    take: Take<'_>,
+) -> Result<()> {
+    let bar = skipped.console.bar(files.len() as u64, BAR)?;
     for (index, file) in files.iter().enumerate() {
+        bar.set_position(index as u64);
         let image = match load_rgb(file) {
             Ok(image) => image,
             Err(error) if files.len() == 1 => return Err(error.into()),
             Err(error) if index == 0 && skin.calibrate.is_some() => bail!("{error}; --calibrate needs the first image"),
             Err(error) => {
-                skipped.add(error.to_string())?;
+                bar.suspend(|| skipped.add(error.to_string()))?;
                 continue;
             }
         };
@@ -73,6 +131,7 @@ pub fn load_each(
         }
         take(model, index, &image)?;
     }
+    bar.finish_and_clear();
     if skipped.count() == files.len() {
         bail!("none of the {} images can be read", files.len());
     }

@@ -4,6 +4,7 @@ use super::console::Console;
 use super::image_run::{Skipped, load_each};
 use super::skin_args::SkinArgs;
 use crate::images::ImageInput;
+use crate::images::video::frame_name;
 use crate::output::OutputDir;
 use anyhow::{Result, bail};
 use clap::Args;
@@ -20,8 +21,8 @@ use std::path::{Path, PathBuf};
   sinew simulate arm --motion builtin --frames 5 --out scene
   sinew segment scene/frames --out masks")]
 pub struct SegmentArgs {
-    /// Folder of images, or one image.
-    #[arg(value_name = "IMAGE|FOLDER")]
+    /// Folder of images, one image, or a video (read by ffmpeg).
+    #[arg(value_name = "IMAGE|FOLDER|VIDEO")]
     pub input: PathBuf,
     /// Folder for the masks: 255 = skin, named like their images, .png.
     #[arg(long, value_name = "DIR")]
@@ -45,9 +46,13 @@ pub fn run(args: &SegmentArgs, console: &Console) -> Result<()> {
     let mut model = args.skin.load()?;
     let input = ImageInput::open(&args.input)?;
     let out = OutputDir::create(&args.out)?;
-    refuse_own_input(&input.files, out.path())?;
-    let names = mask_names(&input.files);
-    for (file, name) in input.files.iter().zip(&names).filter(|(_, name)| name.renamed) {
+    let files = match &input {
+        ImageInput::Files(files) => files.as_slice(),
+        ImageInput::Video(_) => &[],
+    };
+    refuse_own_input(files, out.path())?;
+    let names = mask_names(files);
+    for (file, name) in files.iter().zip(&names).filter(|(_, name)| name.renamed) {
         console.note(format!(
             "`{}` shares its stem with another image: its mask is `{}`",
             file.display(),
@@ -55,18 +60,21 @@ pub fn run(args: &SegmentArgs, console: &Console) -> Result<()> {
         ));
     }
     let mut skipped = Skipped::new(args.strict, *console);
-    load_each(&input.files, &args.skin, &mut model, &mut skipped, |model, index, image| {
+    let mut done = 0;
+    load_each(&input, &args.skin, &mut model, &mut skipped, |model, index, image| {
         let mut mask = model.classify(image)?;
         if !args.raw {
             mask.clean()?;
         }
         let mut png = Cursor::new(Vec::new());
         mask.to_gray().write_to(&mut png, ImageFormat::Png)?;
-        out.write(&names[index].file, |writer| Ok(writer.write_all(png.get_ref())?))
+        done += 1;
+        let name = names.get(index).map_or_else(|| frame_name(&args.input, index).into(), |name| name.file.clone());
+        out.write(name, |writer| Ok(writer.write_all(png.get_ref())?))
     })?;
-    let done = input.files.len() - skipped.count();
     let text = format!("{done} masks written to {}\n", out.path().display());
-    console.answer(&text, &json!({ "masks": done, "skipped": skipped.reasons(), "out": out.path() }))
+    console.answer(&text, &json!({ "masks": done, "skipped": skipped.reasons(), "out": out.path() }))?;
+    skipped.whole()
 }
 
 /// A mask would take the name of its image.

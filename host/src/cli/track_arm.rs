@@ -5,11 +5,15 @@ use super::ctrl_c::stop_flag;
 use super::skin_args::SkinArgs;
 use super::viewer_args::ViewerArgs;
 use crate::config::{Config, DEFAULT_FILE, MAX_PARTICLES, VariantName};
+use crate::images::{VideoFacts, is_video};
 use crate::track::{Event, Interrupted, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
 use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
+
+/// Rate of a folder of frames that does not say, Hz.
+const DEFAULT_RATE_HZ: f64 = 15.0;
 
 /// Options of `sinew track arm`.
 #[derive(Debug, Args)]
@@ -17,8 +21,9 @@ use std::path::PathBuf;
   sinew simulate arm --motion builtin --frames 30 --out scene
   sinew track arm scene/frames --config scene/camera.toml --out run --overlay")]
 pub struct TrackArmArgs {
-    /// Folder of video frames (PNG, JPEG, PPM), all of one size, tracked in natural order of their names.
-    #[arg(value_name = "FOLDER", required_unless_present = "print_config")]
+    /// Folder of video frames (PNG, JPEG, PPM), all of one size, tracked in natural order of their names; or a video (MP4, MOV, AVI,
+    /// MKV, WebM, ...), which the installed ffmpeg reads.
+    #[arg(value_name = "FOLDER|VIDEO", required_unless_present = "print_config")]
     pub folder: Option<PathBuf>,
     /// Folder for track.csv, run.json, hand.png and what else is asked for; files of these names are replaced, each as a
     /// whole, when the run ends.
@@ -45,9 +50,9 @@ pub struct TrackArmArgs {
     /// Skin model and calibration.
     #[command(flatten)]
     pub skin: SkinArgs,
-    /// Frames per second of the camera.
-    #[arg(long, value_name = "HZ", default_value_t = 15.0, value_parser = rate_hz, allow_negative_numbers = true)]
-    pub rate: f64,
+    /// Frames per second of the camera; of a video, how many are taken [default: 15, of a video its own].
+    #[arg(long, value_name = "HZ", value_parser = rate_hz, allow_negative_numbers = true)]
+    pub rate: Option<f64>,
     /// Draw what was found on every frame, into DIR/overlay, and some of these pictures on DIR/contact_sheet.png.
     #[arg(long)]
     pub overlay: bool,
@@ -87,10 +92,15 @@ pub fn run(args: &TrackArmArgs, console: &Console) -> Result<()> {
     args.viewer.check()?;
     let folder = args.folder.clone().context("no FOLDER was given")?;
     let out = args.out.as_deref().context("no --out was given")?;
+    let rate_hz = match args.rate {
+        Some(rate_hz) => rate_hz,
+        None if is_video(&folder) => VideoFacts::read(&folder)?.rate_hz,
+        None => DEFAULT_RATE_HZ,
+    };
     let options = TrackOptions {
         folder,
         side: args.side,
-        rate_hz: args.rate,
+        rate_hz,
         seed: args.seed,
         skin: args.skin.skin.clone(),
         calibrate: args.skin.calibrate,

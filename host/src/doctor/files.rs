@@ -6,8 +6,9 @@ use crate::body::run::tuning_file;
 use crate::config::Config;
 use crate::cyclic::angle_table::{ANGLES, COLUMNS};
 use crate::cyclic::{AngleTable, CyclicModel};
-use crate::images::load_rgb;
+use crate::images::{VideoFacts, VideoFrames, is_video, load_rgb};
 use crate::skin::SkinModel;
+use image::RgbImage;
 use serde_json::Value;
 use std::path::Path;
 
@@ -20,6 +21,7 @@ pub(super) fn examine(path: &Path) -> Diagnosis {
         "toml" => configuration(path),
         "json" => json(path),
         "csv" => table(path),
+        _ if is_video(path) => video(path),
         "png" | "jpg" | "jpeg" | "ppm" => {
             let mut diagnosis = Diagnosis::new(path, "image");
             let size = load_rgb(path).map(|image| format!("{}x{} pixels", image.width(), image.height()));
@@ -28,11 +30,22 @@ pub(super) fn examine(path: &Path) -> Diagnosis {
         }
         _ => {
             let mut diagnosis = Diagnosis::new(path, "file");
-            let known = "folders of images or clouds, run directories, .toml, .json, .csv and images";
+            let known = "folders of images or clouds, run directories, .toml, .json, .csv, images and videos";
             diagnosis.add(Severity::Problem, format!("this kind of file is not known here; examined are {known}"));
             diagnosis
         }
     }
+}
+
+fn video(path: &Path) -> Diagnosis {
+    let mut diagnosis = Diagnosis::new(path, "video");
+    let facts = VideoFacts::read(path).and_then(|facts| {
+        let frames = VideoFrames::open(path, facts.rate_hz)?;
+        let (width, height) = frames.first().map_or((0, 0), RgbImage::dimensions);
+        Ok(format!("{} frames of {width}x{height} pixels, {:.3} per second", facts.frames, facts.rate_hz))
+    });
+    diagnosis.add_result(facts.map_err(Into::into));
+    diagnosis
 }
 
 /// A configuration of arms or of bodies; the problem told is that of the kind whose sections it has.

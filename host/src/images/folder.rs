@@ -1,6 +1,7 @@
 //! Image files of a folder in natural order, and one file as 8-bit RGB.
 
 use super::jpeg::reaches_end_of_image;
+use super::video::is_video;
 use image::{ImageFormat, ImageReader, Limits, RgbImage};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -39,7 +40,7 @@ pub enum InputError {
         found: String,
     },
     /// A single file whose extension is not read.
-    #[error("`{}` is not an image that can be read; files that end in {} are read", .0.display(), extension_list())]
+    #[error("`{}` is not an image that can be read; give one ({}), a folder of them, or a video", .0.display(), extension_list())]
     NotAnImage(PathBuf),
     /// The operating system refused to list the folder.
     #[error("`{}` cannot be listed: {source}; check its permissions", .folder.display())]
@@ -61,26 +62,31 @@ pub struct ImageFileError {
     pub reason: String,
 }
 
-/// What a command was given: a folder of images or one image file.
+/// What a command was given.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ImageInput {
-    /// The files in natural order; never empty.
-    pub files: Vec<PathBuf>,
+pub enum ImageInput {
+    /// A folder of images or one image: the files in natural order; never empty.
+    Files(Vec<PathBuf>),
+    /// A video.
+    Video(PathBuf),
 }
 
 impl ImageInput {
-    /// Accepts a folder (its images) or a single image file.
+    /// Accepts a folder (its images), a single image file, or a video.
     ///
     /// # Errors
     /// [`InputError`] as for [`list_images`], or if a single file's extension is not read.
     pub fn open(path: &Path) -> Result<Self, InputError> {
+        if is_video(path) {
+            return Ok(Self::Video(path.to_path_buf()));
+        }
         if path.is_file() {
             if !has_image_extension(path) {
                 return Err(InputError::NotAnImage(path.to_path_buf()));
             }
-            return Ok(Self { files: vec![path.to_path_buf()] });
+            return Ok(Self::Files(vec![path.to_path_buf()]));
         }
-        Ok(Self { files: list_images(path)? })
+        Ok(Self::Files(list_images(path)?))
     }
 }
 

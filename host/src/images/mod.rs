@@ -2,5 +2,7 @@
 
 pub mod folder;
 pub mod jpeg;
+pub mod video;
 
 pub use folder::{ImageFileError, ImageInput, InputError, list_images, load_rgb};
+pub use video::{VideoError, VideoFacts, VideoFrames, is_video};

@@ -1,6 +1,7 @@
 //! The run of one arm, as its `run.json` tells it.
 
 use crate::config::Config;
+use crate::images::is_video;
 use crate::skin::{Rectangle, SkinModel};
 use crate::track::{ArmSet, FrameFolder, SideChoice};
 use anyhow::{Context, Result, ensure};
@@ -26,7 +27,13 @@ impl SeenFrames {
         let text = |name: &str| options[name].as_str().with_context(|| format!("run.json has no option `{name}`"));
         let config: Config =
             serde_json::from_value(options["config"].clone()).context("run.json has no configuration")?;
-        let frames = FrameFolder::open(Path::new(text("folder")?), false)?;
+        let folder = Path::new(text("folder")?);
+        ensure!(
+            !is_video(folder),
+            "a video was tracked, and this needs a run on images: `ffmpeg -i {} FOLDER/%06d.png`, then track FOLDER",
+            folder.display()
+        );
+        let frames = FrameFolder::open(folder, false)?;
         let mut skin = SkinModel::from_option(text("skin")?)?;
         if let Some(rectangle) = rectangle(&options["calibrate"]) {
             skin = skin.calibrated(frames.first().1, rectangle)?;

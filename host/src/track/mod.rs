@@ -1,4 +1,4 @@
-//! Tracking the arms of one image folder.
+//! Tracking the arms of one image folder or video.
 
 mod arms;
 mod input;
@@ -7,6 +7,7 @@ pub(crate) mod pictures;
 mod report;
 mod resume;
 mod run;
+mod source;
 mod table;
 
 pub use arms::{ArmSet, ArmView, SideChoice};

@@ -1,6 +1,7 @@
 //! The pictures of a run: an overlay a frame, and the contact sheet.
 
 use super::arms::{ArmSet, ArmView};
+use super::source::FrameSource;
 use crate::draw::contact_sheet::ContactSheet;
 use crate::draw::overlay::{Overlay, OverlayArm, OverlayBlob, draw};
 use crate::frames::FrameView;
@@ -28,6 +29,8 @@ const RAY_DEPTHS: f32 = 1.2;
 pub struct Shot {
     /// Number of the frame.
     pub frame: usize,
+    /// Its name.
+    pub name: String,
     /// The frame.
     pub image: RgbImage,
     /// What the front end found.
@@ -39,19 +42,23 @@ pub struct Shot {
 /// Draws overlays and keeps the thumbnails for the contact sheet.
 #[derive(Debug)]
 pub struct Pictures {
-    names: Vec<(String, String)>,
+    names: Names,
     folder: OutputDir,
     sheet: ContactSheet,
 }
 
 impl Pictures {
-    /// Overlays of `files` in `folder`.
+    /// Overlays of `frames` in `folder`.
     ///
     /// # Errors
     /// None that a user can bring about.
-    pub fn new(files: &[PathBuf], folder: OutputDir) -> Result<Self> {
-        let sheet = ContactSheet::new(files.len(), SHEET_TILES)?;
-        Ok(Self { names: overlay_names(files), folder, sheet })
+    pub(super) fn new(frames: &FrameSource, folder: OutputDir) -> Result<Self> {
+        let sheet = ContactSheet::new(frames.count(), SHEET_TILES)?;
+        let names = match frames {
+            FrameSource::Folder(frames) => Names::Files(overlay_names(frames.files())),
+            FrameSource::Video(_) => Names::Same,
+        };
+        Ok(Self { names, folder, sheet })
     }
 
     /// Draws and writes the overlays of some frames, in parallel; what is written does not depend on the threads.
@@ -62,8 +69,8 @@ impl Pictures {
         let written: Vec<Result<Option<RgbImage>>> = shots
             .par_iter()
             .map(|shot| {
-                let (file, overlay) = &self.names[shot.frame];
-                let picture = draw_shot(shot, file, arms);
+                let overlay = self.names.of_overlay(shot.frame, &shot.name);
+                let picture = draw_shot(shot, &shot.name, arms);
                 self.folder.write_png(overlay, &picture)?;
                 Ok(self.sheet.wants(shot.frame).then_some(picture))
             })
@@ -80,12 +87,12 @@ impl Pictures {
     ///
     /// # Errors
     /// An overlay that cannot be read.
-    pub fn take_up(&mut self, frames: impl Iterator<Item = usize>) -> Result<()> {
-        for frame in frames {
+    pub fn take_up(&mut self, frames: impl Iterator<Item = (usize, String)>) -> Result<()> {
+        for (frame, name) in frames {
             if !self.sheet.wants(frame) {
                 continue;
             }
-            let overlay = load_rgb(&self.folder.join(&self.names[frame].1))?;
+            let overlay = load_rgb(&self.folder.join(self.names.of_overlay(frame, &name)))?;
             self.sheet.add(frame, &overlay);
         }
         Ok(())
@@ -95,6 +102,24 @@ impl Pictures {
     #[must_use]
     pub fn contact_sheet(self) -> RgbImage {
         self.sheet.finish()
+    }
+}
+
+/// How overlays are named.
+#[derive(Debug)]
+enum Names {
+    /// After the files of a folder: the name of each and of its overlay.
+    Files(Vec<(String, String)>),
+    /// As the frames, which are named like pictures.
+    Same,
+}
+
+impl Names {
+    fn of_overlay<'a>(&'a self, frame: usize, name: &'a str) -> &'a str {
+        match self {
+            Self::Files(names) => names.get(frame).map_or(name, |(_, overlay)| overlay),
+            Self::Same => name,
+        }
     }
 }
 

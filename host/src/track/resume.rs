@@ -35,7 +35,8 @@ pub(super) struct Left {
     options: Value,
     /// The folder, absolute.
     folder: PathBuf,
-    files: Vec<String>,
+    /// What tells the frames from others.
+    frames: Vec<String>,
     frames_finished: usize,
     seconds: f64,
     skipped: Vec<SkippedImage>,
@@ -55,18 +56,17 @@ impl Left {
     /// Of a run that goes no further; its tables are added by [`Left::write`].
     pub fn of(run: &mut TrackRun) -> Result<Self> {
         let finished = run.report.frames_finished;
-        let last_image = finished.checked_sub(1).and_then(|last| run.frames.load(last).ok());
         Ok(Self {
             version: VERSION,
             sinew_version: env!("CARGO_PKG_VERSION").to_owned(),
             options: compared(&run.report.options)?,
             folder: absolute(&run.report.options.folder)?,
-            files: run.report.inputs.files.clone(),
+            frames: run.frames.identity(),
             frames_finished: finished,
             seconds: run.seconds,
             skipped: run.report.skipped.clone(),
             skin_crc32: crc32fast::hash(model_file::to_json(&run.skin)?.as_bytes()),
-            last_image_crc32: last_image.map(|image| crc32fast::hash(image.as_raw())),
+            last_image_crc32: run.last_image_crc32,
             tables_crc32: BTreeMap::new(),
             trackers: STANDARD.encode(run.arms.saved()?),
             samples: STANDARD.encode(run.samples.iter().flat_map(sample_bytes).collect::<Vec<u8>>()),
@@ -138,12 +138,12 @@ impl Left {
 
     /// Refuses other images or another skin than the run was begun with.
     fn check_inputs(&self, run: &TrackRun) -> Result<()> {
-        let (before, now) = (&self.files, &run.report.inputs.files);
+        let (before, now) = (&self.frames, &run.frames.identity());
         if before != now {
             let place = before.iter().zip(now).position(|(a, b)| a != b).unwrap_or(before.len().min(now.len()));
             let name = |files: &[String]| files.get(place).cloned().unwrap_or_else(|| "none".to_owned());
             bail!(
-                "the images of `{}` have changed: frame {place} was {} and is {}; {REMEDY}",
+                "the frames of `{}` have changed: number {place} was {} and is {}; {REMEDY}",
                 self.folder.display(),
                 name(before),
                 name(now)
@@ -151,7 +151,6 @@ impl Left {
         }
         let skin_crc32 = crc32fast::hash(model_file::to_json(&run.skin)?.as_bytes());
         ensure!(self.skin_crc32 == skin_crc32, "the skin model is not the one that the run was begun with; {REMEDY}");
-        ensure!(self.frames_finished <= now.len(), "`{RESUME_FILE}` tells of more frames than there are; {REMEDY}");
         Ok(())
     }
 }
@@ -182,7 +181,8 @@ impl TrackRun {
         run.seconds = left.seconds;
         if let Some(pictures) = &mut run.pictures {
             let is_drawn = |frame: &usize| !left.skipped.iter().any(|skipped| skipped.frame == *frame);
-            pictures.take_up((0..left.frames_finished).filter(is_drawn))?;
+            let drawn = (0..left.frames_finished).filter(is_drawn);
+            pictures.take_up(drawn.map(|frame| (frame, run.frames.name(frame))))?;
         }
         run.look_again(left.last_image_crc32)?;
         run.report.skipped = left.skipped;
@@ -192,7 +192,8 @@ impl TrackRun {
     /// Shows the front end the last finished frame, so that the next one has the edges that it would have had.
     fn look_again(&mut self, crc32: Option<u32>) -> Result<()> {
         let Some(last) = self.report.frames_finished.checked_sub(1) else { return Ok(()) };
-        let image = self.frames.load(last).ok();
+        let image = self.frames.load(last, 1)?.pop().and_then(Result::ok);
+        self.last_image_crc32 = crc32;
         ensure!(
             crc32 == image.as_ref().map(|image| crc32fast::hash(image.as_raw())),
             "`{}` has changed since the run was ended; {REMEDY}",

@@ -1,11 +1,12 @@
-//! One run over an image folder: load, read, step, record, frame by frame.
+//! One run over an image folder or a video: load, read, step, record, frame by frame.
 
 use super::arms::{ArmSet, SideChoice};
-use super::input::{FrameFolder, SkippedImage};
+use super::input::SkippedImage;
 use super::particles::{PARTICLE_HEADER, particle_rows};
 use super::pictures::{Pictures, Shot};
 use super::report::RunReport;
 use super::resume::Left;
+use super::source::FrameSource;
 use super::table::{HEADER, TrackRow};
 use crate::config::Config;
 use crate::draw::plot::{HandSample, hand_plot};
@@ -14,7 +15,6 @@ use crate::output::{OutputDir, PendingFile};
 use crate::skin::{Rectangle, SkinModel};
 use anyhow::{Context, Result, anyhow, bail};
 use image::RgbImage;
-use rayon::prelude::*;
 use serde::Serialize;
 use sinew_core::camera::Camera;
 use std::path::{Path, PathBuf};
@@ -31,11 +31,11 @@ const CHUNK_BYTES: usize = 64 << 20;
 /// Everything that decides the result of a run.
 #[derive(Debug, Clone, Serialize)]
 pub struct TrackOptions {
-    /// Folder of the frames.
+    /// Folder of the frames, or a video.
     pub folder: PathBuf,
     /// Which arms.
     pub side: SideChoice,
-    /// Frames per second of the camera.
+    /// Frames per second of the camera; of a video, how many are taken.
     pub rate_hz: f64,
     /// Seed of all that is random.
     pub seed: u64,
@@ -86,7 +86,7 @@ pub struct RunOutcome {
 /// A run whose inputs were all checked.
 #[derive(Debug)]
 pub struct TrackRun {
-    pub(super) frames: FrameFolder,
+    pub(super) frames: FrameSource,
     pub(super) skin: SkinModel,
     pub(super) reader: FrameReader,
     pub(super) arms: ArmSet,
@@ -99,6 +99,8 @@ pub struct TrackRun {
     pub(super) samples: Vec<HandSample>,
     /// Time that was spent before a resumption, seconds.
     pub(super) seconds: f64,
+    /// CRC-32 of the pixels of the last finished frame; none where its image could not be read.
+    pub(super) last_image_crc32: Option<u32>,
 }
 
 impl TrackRun {
@@ -111,7 +113,7 @@ impl TrackRun {
             bail!("`rate` must lie from {} to {} Hz, not {}", RATES_HZ[0], RATES_HZ[1], options.rate_hz);
         }
         let trained = SkinModel::from_option(&options.skin)?;
-        let frames = FrameFolder::open(&options.folder, options.strict)?;
+        let frames = FrameSource::open(&options.folder, options.strict, options.rate_hz)?;
         let skin = match (options.calibrate, frames.first()) {
             (None, _) => trained,
             (Some(rectangle), (0, first)) => trained.calibrated(first, rectangle)?,
@@ -125,8 +127,7 @@ impl TrackRun {
         let reader = FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
-        let pictures =
-            if options.overlay { Some(Pictures::new(frames.files(), out.subfolder("overlay")?)?) } else { None };
+        let pictures = if options.overlay { Some(Pictures::new(&frames, out.subfolder("overlay")?)?) } else { None };
         let table = |name: &str, header: &[&str]| -> Result<csv::Writer<PendingFile>> {
             let mut writer = csv::Writer::from_writer(out.begin(name)?);
             writer.write_record(header)?;
@@ -135,15 +136,28 @@ impl TrackRun {
         let track = table("track.csv", &HEADER)?;
         let particles = if options.particles_csv { Some(table("particles.csv", &PARTICLE_HEADER)?) } else { None };
         let names = (0..frames.files().len()).map(|frame| frames.name(frame)).collect();
-        let report = RunReport::new(options, names, frames.size_px());
-        let (samples, seconds) = (Vec::new(), 0.0);
-        Ok(Self { frames, skin, reader, arms, camera, out, pictures, track, particles, report, samples, seconds })
+        let report = RunReport { frames: frames.count(), ..RunReport::new(options, names, frames.size_px()) };
+        Ok(Self {
+            frames,
+            skin,
+            reader,
+            arms,
+            camera,
+            out,
+            pictures,
+            track,
+            particles,
+            report,
+            samples: Vec::new(),
+            seconds: 0.0,
+            last_image_crc32: None,
+        })
     }
 
-    /// Number of frames.
+    /// Number of frames; of a video, what it says.
     #[must_use]
     pub fn frame_count(&self) -> usize {
-        self.frames.files().len()
+        self.frames.count()
     }
 
     /// Number of frames that were finished before the run was ended and taken up again; otherwise none.
@@ -159,13 +173,19 @@ impl TrackRun {
     /// the same.
     pub fn run(mut self, stop: &AtomicBool, notify: &mut dyn FnMut(Event<'_>)) -> Result<RunOutcome> {
         let start = Instant::now();
-        let (frames, out) = (self.frame_count(), self.out.path().to_path_buf());
+        let out = self.out.path().to_path_buf();
         let tracked = self.track_all(stop, notify);
         let finished = self.report.frames_finished;
+        if matches!(self.frames, FrameSource::Video(_)) {
+            // Only now it is known how many there are.
+            self.report.inputs.files = (0..finished).map(|frame| self.frames.name(frame)).collect();
+            self.report.frames = if matches!(tracked, Ok(true)) { finished } else { self.report.frames.max(finished) };
+        }
+        let frames = self.report.frames;
         self.seconds += start.elapsed().as_secs_f64();
         self.report.frames_per_second = finished as f64 / self.seconds.max(1.0e-9);
-        self.report.complete = tracked.is_ok() && finished == frames;
-        let interrupted = tracked.is_ok() && finished < frames;
+        self.report.complete = matches!(tracked, Ok(true));
+        let interrupted = matches!(tracked, Ok(false));
         let written = self.write_results(interrupted);
         if let Err(error) = tracked {
             let kept = match &written {
@@ -181,11 +201,16 @@ impl TrackRun {
         Ok(outcome)
     }
 
-    fn track_all(&mut self, stop: &AtomicBool, notify: &mut dyn FnMut(Event<'_>)) -> Result<()> {
-        let frames: Vec<usize> = (self.report.frames_finished..self.frame_count()).collect();
-        for chunk in frames.chunks(self.chunk_length()) {
+    /// Whether the last frame was reached.
+    fn track_all(&mut self, stop: &AtomicBool, notify: &mut dyn FnMut(Event<'_>)) -> Result<bool> {
+        let (most, mut begin) = (self.chunk_length(), self.report.frames_finished);
+        loop {
+            let images = self.frames.load(begin, most)?;
+            if images.is_empty() {
+                return Ok(true);
+            }
             let mut shots = Vec::new();
-            for (&frame, image) in chunk.iter().zip(self.load(chunk)) {
+            for (frame, image) in (begin..).zip(images) {
                 if stop.load(Ordering::Relaxed) {
                     break;
                 }
@@ -195,11 +220,13 @@ impl TrackRun {
             if let Some(pictures) = &mut self.pictures {
                 pictures.draw(&shots, &self.arms)?;
             }
+            begin += most;
             if stop.load(Ordering::Relaxed) {
-                break;
+                // A folder's last frame is known as such.
+                let is_folder = matches!(self.frames, FrameSource::Folder(_));
+                return Ok(is_folder && self.report.frames_finished == self.frames.count());
             }
         }
-        Ok(())
     }
 
     /// One frame from pixels to its row of the table.
@@ -210,6 +237,7 @@ impl TrackRun {
         notify: &mut dyn FnMut(Event<'_>),
     ) -> Result<Option<Shot>> {
         let image = image.map_err(|skipped| self.skip(skipped, notify)).ok();
+        self.last_image_crc32 = image.as_ref().map(|image| crc32fast::hash(image.as_raw()));
         let view = image.as_ref().map(|image| self.reader.read(image, &self.skin)).transpose()?;
         let arms = self.arms.step(self.timestamp_us(frame), view.as_ref());
         for arm in &arms {
@@ -224,7 +252,8 @@ impl TrackRun {
             self.record(&row)?;
         }
         self.report.frames_finished += 1;
-        let shot = |(image, view): (RgbImage, FrameView)| Shot { frame, image, view, arms };
+        let name = self.frames.name(frame);
+        let shot = |(image, view): (RgbImage, FrameView)| Shot { frame, name, image, view, arms };
         Ok(image.zip(view).filter(|_| self.pictures.is_some()).map(shot))
     }
 
@@ -255,11 +284,6 @@ impl TrackRun {
             effective_sample_size: estimate.effective_sample_size,
         });
         Ok(())
-    }
-
-    /// Decodes some frames in parallel.
-    fn load(&self, frames: &[usize]) -> Vec<Result<RgbImage, SkippedImage>> {
-        frames.par_iter().map(|&frame| self.frames.load(frame)).collect()
     }
 
     fn chunk_length(&self) -> usize {

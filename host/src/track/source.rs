@@ -1,0 +1,145 @@
+//! Where the frames of a run come from: a folder of images, or a video.
+
+use super::input::{FrameFolder, SkippedImage};
+use crate::images::video::{VIDEO_EXTENSIONS, frame_name};
+use crate::images::{VideoError, VideoFrames, is_video};
+use anyhow::{Result, ensure};
+use image::RgbImage;
+use rayon::prelude::*;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Frames of one size, the first of which can be read.
+#[derive(Debug)]
+pub(super) enum FrameSource {
+    /// A folder of images.
+    Folder(FrameFolder),
+    /// A video, whose frames come one after the other.
+    Video(Box<VideoSource>),
+}
+
+/// A video that is being read.
+#[derive(Debug)]
+pub(super) struct VideoSource {
+    frames: VideoFrames,
+    first: RgbImage,
+    /// Number of the next frame.
+    next: usize,
+    /// What ended the video, until it is told.
+    end: Option<VideoError>,
+}
+
+impl FrameSource {
+    /// Opens a folder or a video, of which `rate_hz` frames per second are taken.
+    ///
+    /// # Errors
+    /// As [`FrameFolder::open`] and [`VideoFrames::open`].
+    pub fn open(path: &Path, strict: bool, rate_hz: f64) -> Result<Self> {
+        ensure!(
+            is_video(path) || !path.is_file(),
+            "`{}` is not a folder; give the folder that holds the images, or a video ({})",
+            path.display(),
+            VIDEO_EXTENSIONS.map(|extension| format!(".{extension}")).join(", ")
+        );
+        if !is_video(path) {
+            return Ok(Self::Folder(FrameFolder::open(path, strict)?));
+        }
+        let frames = VideoFrames::open(path, rate_hz)?;
+        let first = frames.first().cloned().unwrap_or_default();
+        Ok(Self::Video(Box::new(VideoSource { frames, first, next: 0, end: None })))
+    }
+
+    /// Number of frames: of a folder what it holds, of a video what it says.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Folder(folder) => folder.files().len(),
+            Self::Video(video) => video.frames.expected(),
+        }
+    }
+
+    /// The files of a folder; none of a video.
+    pub fn files(&self) -> &[PathBuf] {
+        match self {
+            Self::Folder(folder) => folder.files(),
+            Self::Video(_) => &[],
+        }
+    }
+
+    /// What tells these frames from others, beside the path: the names of a folder's files, the size of a video's.
+    pub fn identity(&self) -> Vec<String> {
+        match self {
+            Self::Folder(folder) => (0..folder.files().len()).map(|frame| folder.name(frame)).collect(),
+            Self::Video(video) => {
+                let bytes = fs::metadata(video.frames.file()).map_or(0, |facts| facts.len());
+                vec![format!("a video of {bytes} bytes")]
+            }
+        }
+    }
+
+    /// Name of one frame.
+    pub fn name(&self, frame: usize) -> String {
+        match self {
+            Self::Folder(folder) => folder.name(frame),
+            Self::Video(video) => frame_name(video.frames.file(), frame),
+        }
+    }
+
+    /// Width and height of every frame, pixels.
+    pub fn size_px(&self) -> (u32, u32) {
+        match self {
+            Self::Folder(folder) => folder.size_px(),
+            Self::Video(video) => video.first.dimensions(),
+        }
+    }
+
+    /// Number and picture of the first frame that can be read.
+    pub fn first(&self) -> (usize, &RgbImage) {
+        match self {
+            Self::Folder(folder) => folder.first(),
+            Self::Video(video) => (0, &video.first),
+        }
+    }
+
+    /// Reads the frames from `begin` on, `most` of them, decoded in parallel where that can be done. None is the end.
+    ///
+    /// # Errors
+    /// A video that is broken, once all frames before the break were given; a frame of a video that was passed already.
+    pub fn load(&mut self, begin: usize, most: usize) -> Result<Vec<Result<RgbImage, SkippedImage>>> {
+        match self {
+            Self::Folder(folder) => {
+                let end = folder.files().len().min(begin + most);
+                Ok((begin..end).into_par_iter().map(|frame| folder.load(frame)).collect())
+            }
+            Self::Video(video) => {
+                ensure!(begin >= video.next, "a video is read forwards; frame {begin} was passed");
+                while video.next < begin && video.step().is_some() {}
+                let frames: Vec<_> = std::iter::from_fn(|| video.step().map(Ok)).take(most).collect();
+                match video.end.take() {
+                    Some(end) if frames.is_empty() => Err(end.into()),
+                    end => {
+                        video.end = end;
+                        Ok(frames)
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl VideoSource {
+    fn step(&mut self) -> Option<RgbImage> {
+        if self.end.is_some() {
+            return None;
+        }
+        match self.frames.next_frame() {
+            Ok(image) => {
+                self.next += usize::from(image.is_some());
+                image
+            }
+            Err(error) => {
+                self.end = Some(error);
+                None
+            }
+        }
+    }
+}
