@@ -37,6 +37,11 @@ fn hands_are_scored_and_floors_are_required() {
     assert_eq!(report["whole"]["inside"]["median"], 1.0);
     assert_eq!(report["frames"], 6);
     assert_eq!(fs::read_to_string(out.join("hands.csv")).unwrap().lines().count(), 7);
+    let mut page = sinew(&["report", "--out", root.path().join("page.html").to_str().unwrap()]);
+    page.arg(&out)
+        .assert()
+        .success()
+        .stdout(contains("(Evaluation of both hands on real frames): 0 plots").and(contains("notice").not()));
     fs::write(&boxes, "frame,x,y,w,h\n5,0,0,1,1\n").unwrap();
     hands(&folder, &boxes).assert().success();
     hands(&folder, &boxes).arg("--require").assert().code(1).stderr(contains("misses the floors"));
