@@ -30,7 +30,7 @@ impl ViewerArgs {
             bail!("`--rerun {}` has to end in .rrd, so that the viewer opens it", file.display());
         }
         if cfg!(not(feature = "rerun")) {
-            bail!("`--rerun` is not part of this build; `cargo install --path host --features rerun` has it");
+            bail!("`--rerun` is not part of this build; `cargo install --locked --path host --features rerun` has it");
         }
         crate::output::check_writable_file(file)
     }
