@@ -31,6 +31,7 @@ pub mod body_surface;
 pub mod candidate;
 pub mod capsule;
 pub mod hough;
+pub mod limb_likelihood;
 pub mod limbs;
 pub mod orientation;
 pub mod point_cloud;

@@ -51,7 +51,7 @@ impl PointLikelihood {
 /// A point that is seen from p: (|x-p| - r)^2. A hidden one: |x-p|^2 - 2 r rho + r^2, with rho the part of x - p along v, or
 /// across the line of sight on the round ends; both are one formula in rho. Branch-free, so that it runs on vectors.
 #[inline(always)]
-fn lower_to<const BONES: usize>(
+pub(super) fn lower_to<const BONES: usize>(
     least: &mut [f32; BLOCK_POINTS],
     seen: &SeenCapsule,
     surface: &BodySurface<BONES>,
@@ -112,35 +112,45 @@ impl NearestSkin {
 
 /// Capsules that can be the nearest to some point of a block; 32 at most, as a skeleton's bones.
 #[derive(Debug)]
-struct NearCapsules {
+pub(super) struct NearCapsules {
     indices: [u8; 32],
     count: usize,
 }
 
 impl NearCapsules {
     /// Room for all capsules.
-    const fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self { indices: [0; 32], count: 0 }
     }
 
     /// Those found last.
-    fn indices(&self) -> &[u8] {
+    pub(super) fn indices(&self) -> &[u8] {
         self.indices.get(..self.count).unwrap_or(&[])
     }
 
     /// Finds the capsules that can lie nearest to a point of `block` and nearer than `outlier_m`.
     fn find<const BONES: usize>(&mut self, surface: &BodySurface<BONES>, block: &PointBlock, outlier_m: f32) {
+        self.find_or_within(surface, block, outlier_m, |_| 0.0);
+    }
+
+    /// As [`Self::find`], and those that can come nearer to a point than what `reach_m` says of their bone, metres.
+    pub(super) fn find_or_within<const BONES: usize>(
+        &mut self,
+        surface: &BodySurface<BONES>,
+        block: &PointBlock,
+        outlier_m: f32,
+        reach_m: impl Fn(usize) -> f32,
+    ) {
         let bounds = surface.distance_bounds(&block.centre_m, block.radius_m);
         let count = surface.capsules.len();
         let mut bound = outlier_m;
         for &most in bounds.most.iter().take(count) {
             bound = min(bound, most);
         }
-        // A hair wider, for rounding.
-        let bound = bound * 1.0001 + 1.0e-6;
         self.count = 0;
-        for (index, &least) in bounds.least.iter().enumerate().take(count) {
-            if least > bound {
+        for (index, (&least, seen)) in bounds.least.iter().zip(&surface.capsules).enumerate() {
+            // A hair wider, for rounding.
+            if least > max(bound, reach_m(seen.bone)) * 1.0001 + 1.0e-6 {
                 continue;
             }
             if let Some(slot) = self.indices.get_mut(self.count) {

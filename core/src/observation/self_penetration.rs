@@ -6,6 +6,7 @@ use crate::error::{ParameterError, positive};
 use crate::kinematics::forward::posture;
 use crate::math::{Vec3, max};
 use crate::skeleton::Skeleton;
+use crate::skeleton::limbs::{Limbs, MAX_GROUPS, TRUNK_GROUP};
 
 /// log p(theta) = -1/2 sum over pairs of bones (depth / std)^2, with depth what two capsules lie deeper in one another than at rest.
 ///
@@ -47,16 +48,26 @@ impl<const BONES: usize> SelfPenetration<BONES> {
     /// log density of the pose with this surface, up to its constant: zero where no flesh is in other flesh.
     #[must_use]
     pub fn log_density(&self, surface: &BodySurface<BONES>) -> f32 {
-        let mut sum = 0.0;
+        self.log_densities(surface, &Limbs::none())[TRUNK_GROUP]
+    }
+
+    /// The same in the trunk's place, then the part of it in which each limb has a share.
+    #[must_use]
+    pub fn log_densities(&self, surface: &BodySurface<BONES>, limbs: &Limbs<BONES>) -> [f32; MAX_GROUPS] {
+        let mut sums = [0.0; MAX_GROUPS];
         for (index, one) in surface.capsules.iter().enumerate() {
             for other in surface.capsules.iter().take(index) {
                 let free_m = self.free_m.get(one.bone).and_then(|row| row.get(other.bone)).copied();
                 let Some(free_m) = free_m.filter(|free_m| free_m.is_finite()) else { continue };
                 let depth_m = max(one.capsule.depth_m(&other.capsule) - free_m, 0.0);
-                sum += depth_m * depth_m;
+                let (group, another) = (limbs.group(one.bone), limbs.group(other.bone));
+                for (place, sum) in sums.iter_mut().enumerate() {
+                    let has_share = place == TRUNK_GROUP || place == group || place == another;
+                    *sum += if has_share { depth_m * depth_m } else { 0.0 };
+                }
             }
         }
-        -sum / (2.0 * self.std_m * self.std_m)
+        sums.map(|sum| -sum / (2.0 * self.std_m * self.std_m))
     }
 }
 

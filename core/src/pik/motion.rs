@@ -5,11 +5,13 @@ use super::root::RootProcess;
 use crate::kinematics::forward::{Posture, posture};
 use crate::math::Vec3;
 use crate::observation::body_surface::BodySurface;
+use crate::observation::limb_likelihood::{ExpectedBody, GroupLogs};
 use crate::observation::point_cloud::PointBlock;
 use crate::observation::point_likelihood::PointLikelihood;
 use crate::observation::self_penetration::SelfPenetration;
 use crate::random::Stream;
 use crate::skeleton::Skeleton;
+use crate::skeleton::limbs::{MAX_GROUPS, TRUNK_GROUP};
 use crate::skeleton::tree::FREE_ROOT_COORDINATES;
 
 /// One hypothesis.
@@ -21,6 +23,8 @@ pub struct BodyParticle<const BONES: usize, const ANGLES: usize> {
     pub ends_m: [Vec3; BONES],
     /// What the motion model keeps.
     pub memory: GoalMemory,
+    /// Log-weights by the last frame's points: of the whole pose in the trunk's place, then of each limb.
+    pub log_weights: GroupLogs,
 }
 
 impl<const BONES: usize, const ANGLES: usize> BodyParticle<BONES, ANGLES> {
@@ -29,7 +33,7 @@ impl<const BONES: usize, const ANGLES: usize> BodyParticle<BONES, ANGLES> {
     pub fn at(skeleton: &Skeleton<BONES, ANGLES>, angles_rad: [f32; ANGLES]) -> Self {
         let angles_rad = skeleton.clamp(angles_rad);
         let ends_m = posture(skeleton, &Vec3::zeros(), &angles_rad).ends;
-        Self { angles_rad, ends_m, memory: [0.0; MEMORY] }
+        Self { angles_rad, ends_m, memory: [0.0; MEMORY], log_weights: [0.0; MAX_GROUPS] }
     }
 }
 
@@ -55,11 +59,28 @@ impl<const BONES: usize, const ANGLES: usize> BodyScene<BONES, ANGLES> {
         posture(&self.skeleton, &Vec3::zeros(), angles_rad)
     }
 
-    /// log weight of a pose by its surface: the points' likelihood, and what limbs in limbs cost.
+    /// log weights of a pose by its surface: the points' likelihood and what limbs in limbs cost in the trunk's place, then each limb's own
+    /// part of both, about the body that `expected` has.
     #[must_use]
-    pub fn log_weight(&self, surface: &BodySurface<BONES>, blocks: &[PointBlock]) -> f32 {
-        let apart = self.self_penetration.as_ref().map_or(0.0, |density| density.log_density(surface));
-        self.likelihood.log_likelihood(surface, blocks) + apart
+    pub fn log_weights(
+        &self,
+        surface: &BodySurface<BONES>,
+        blocks: &[PointBlock],
+        expected: &ExpectedBody<BONES>,
+    ) -> GroupLogs {
+        let mut logs = [0.0; MAX_GROUPS];
+        if expected.limbs().count() > 1 {
+            logs = expected.log_weights(&self.likelihood, surface, blocks);
+        } else {
+            logs[TRUNK_GROUP] = self.likelihood.log_likelihood(surface, blocks);
+        }
+        if let Some(density) = &self.self_penetration {
+            let apart = density.log_densities(surface, expected.limbs());
+            for (log, apart) in logs.iter_mut().zip(apart) {
+                *log += apart;
+            }
+        }
+        logs
     }
 
     /// The surface of a posture.

@@ -24,11 +24,13 @@
 pub mod arm;
 pub mod body_measures;
 pub mod full_body;
+pub mod limbs;
 pub mod stick_figure;
 pub mod tree;
 pub mod upper_body;
 
 pub use arm::{ArmGeometry, Side};
 pub use body_measures::BodyMeasures;
+pub use limbs::Limbs;
 pub use stick_figure::{StickFigure, StickJoint};
 pub use tree::{Bone, Joint, Limit, Skeleton};

@@ -2,9 +2,9 @@
 
 use super::mean_rotation::{angles_of_rotation, mean_rotation};
 use crate::math::{Mat3, Vec3, axis_rotation, sqrt};
-use crate::pik::motion::{BodyParticle, BodyScene};
-use crate::skeleton::Joint;
+use crate::pik::motion::BodyParticle;
 use crate::skeleton::tree::SHIFTS;
+use crate::skeleton::{Joint, Limbs, Skeleton};
 
 /// What is known after a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,44 +17,52 @@ pub struct BodyEstimate<const BONES: usize, const ANGLES: usize> {
     pub spread_m: [f32; BONES],
     /// Whether the points show each bone; `false` as well where the frame had no points.
     pub observed: [bool; BONES],
-    /// Effective number of particles.
+    /// Effective number of particles; limb by limb that of the group with the fewest.
     pub effective_sample_size: f32,
-    /// ln of the mean weight, a frame's part of the log evidence; zero without points.
+    /// ln of the mean weight (of whole poses), a frame's part of the log evidence; zero without points.
     pub log_evidence: f32,
-    /// Exponent that the weights were flattened with; 1 where they were not.
+    /// Exponent that the weights of whole poses were flattened with; 1 where they were not.
     pub tempering: f32,
     /// Whether no particle had a weight: the frame was then as if it had no points.
     pub is_degenerate: bool,
 }
 
-/// The weighted mean pose: shifts and hinges by their mean, balls by their mean rotation, then inside the limits.
+/// Puts the weighted mean of one group's coordinates into `mean_rad`: shifts and hinges by their mean, balls by their mean rotation, then
+/// inside the limits.
 ///
 /// An angle that winds (a free root's turn) is given the turn nearest to the heaviest particle's.
-#[must_use]
-pub fn mean_pose<const BONES: usize, const ANGLES: usize>(
-    scene: &BodyScene<BONES, ANGLES>,
-    particles: &[BodyParticle<BONES, ANGLES>],
-    weights: &[f32],
-) -> [f32; ANGLES] {
+pub(super) fn mean_of_group<const BONES: usize, const ANGLES: usize>(
+    skeleton: &Skeleton<BONES, ANGLES>,
+    (particles, weights): (&[BodyParticle<BONES, ANGLES>], &[f32]),
+    (limbs, group): (&Limbs<BONES>, usize),
+    mean_rad: &mut [f32; ANGLES],
+) {
     let heaviest = particles.iter().zip(weights).fold(None, |best: Option<(&BodyParticle<_, _>, f32)>, (p, &w)| {
         if best.is_none_or(|(_, most)| w > most) { Some((p, w)) } else { best }
     });
     let mut result = heaviest.map_or([0.0; ANGLES], |(particle, _)| particle.angles_rad);
     let mut first = 0;
-    for bone in scene.skeleton.bones() {
+    for (index, bone) in skeleton.bones().iter().enumerate() {
         let count = bone.joint.angle_count();
-        match bone.joint {
-            Joint::Fixed => {}
-            Joint::Hinge(_) => mean_coordinates(&mut result, first..first + count, particles, weights),
-            Joint::Ball(axes) => mean_ball(&mut result, first, &axes, particles, weights),
-            Joint::Free([_, _, _, a, b, c]) => {
-                mean_coordinates(&mut result, first..first + SHIFTS, particles, weights);
-                mean_ball(&mut result, first + SHIFTS, &[a, b, c], particles, weights);
+        if limbs.group(index) == group {
+            match bone.joint {
+                Joint::Fixed => {}
+                Joint::Hinge(_) => mean_coordinates(&mut result, first..first + count, particles, weights),
+                Joint::Ball(axes) => mean_ball(&mut result, first, &axes, particles, weights),
+                Joint::Free([_, _, _, a, b, c]) => {
+                    mean_coordinates(&mut result, first..first + SHIFTS, particles, weights);
+                    mean_ball(&mut result, first + SHIFTS, &[a, b, c], particles, weights);
+                }
             }
         }
         first += count;
     }
-    scene.skeleton.clamp(result)
+    let result = skeleton.clamp(result);
+    for angle in 0..ANGLES {
+        if limbs.group(skeleton.bone_of_angle(angle)) == group {
+            mean_rad[angle] = result[angle];
+        }
+    }
 }
 
 /// Plain means: limits keep a hinge within less than a turn.
@@ -98,14 +106,16 @@ fn mean_ball<const BONES: usize, const ANGLES: usize>(
     }
 }
 
-/// Standard deviation of each bone's end, metres.
-#[must_use]
-pub fn spread_m<const BONES: usize, const ANGLES: usize>(
-    particles: &[BodyParticle<BONES, ANGLES>],
-    weights: &[f32],
-) -> [f32; BONES] {
-    let mut result = [0.0; BONES];
+/// Puts the standard deviation of the ends of one group's bones into `spread_m`, metres.
+pub(super) fn spread_of_group<const BONES: usize, const ANGLES: usize>(
+    (particles, weights): (&[BodyParticle<BONES, ANGLES>], &[f32]),
+    (limbs, group): (&Limbs<BONES>, usize),
+    spread_m: &mut [f32; BONES],
+) {
     for bone in 0..BONES {
+        if limbs.group(bone) != group {
+            continue;
+        }
         let mut mean = Vec3::zeros();
         for (particle, &weight) in particles.iter().zip(weights) {
             mean += particle.ends_m[bone] * weight;
@@ -115,7 +125,6 @@ pub fn spread_m<const BONES: usize, const ANGLES: usize>(
             let off = particle.ends_m[bone] - mean;
             variance += weight * off.dot(&off);
         }
-        result[bone] = sqrt(variance);
+        spread_m[bone] = sqrt(variance);
     }
-    result
 }

@@ -68,6 +68,7 @@
 
 mod alignment;
 mod estimate;
+mod limb_by_limb;
 mod mean_rotation;
 mod observed;
 mod step;

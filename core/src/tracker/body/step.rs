@@ -1,19 +1,27 @@
 //! The body tracker's step: resample, move on, weigh, estimate (PIK paper, sections 5.1 and 6).
 
 use super::alignment::RootAlignment;
-use super::estimate::{BodyEstimate, mean_pose, spread_m};
+use super::estimate::{BodyEstimate, mean_of_group, spread_of_group};
 use super::observed::observed;
 use super::tempering::temper;
 use crate::error::{ParameterError, Rule};
-use crate::math::{Vec3, clamp};
+use crate::math::{Vec3, clamp, min};
+use crate::observation::limb_likelihood::ExpectedBody;
 use crate::observation::point_cloud::PointBlock;
 use crate::particle::Weights;
 use crate::particle::resampling::systematic;
 use crate::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
 use crate::random::Stream;
+use crate::skeleton::Limbs;
+use crate::skeleton::limbs::TRUNK_GROUP;
+use crate::skeleton::tree::FREE_ROOT_COORDINATES;
 
 /// Stream of the resampling; particles have their own index.
 const RESAMPLING_STREAM: u32 = u32::MAX;
+/// Stream of what is drawn limb by limb.
+const LIMB_STREAM: u32 = u32::MAX - 1;
+/// Share of the estimate's velocity with which the body is expected to go on: between staying and going on.
+const EXPECTED_PERSISTENCE: f32 = 0.5;
 /// Velocities are not followed for longer than this across a gap, seconds; the noise grows all the same.
 const LONGEST_STRIDE_S: f32 = 0.2;
 
@@ -22,12 +30,15 @@ const LONGEST_STRIDE_S: f32 = 0.2;
 pub struct BodyOptions {
     /// Weights are flattened until at least this share of the particles is effective; zero never flattens.
     pub least_effective_share: f32,
+    /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
+    pub limb_by_limb: bool,
     /// How the root is laid onto the points before particles are drawn; `None` leaves it to its process.
     pub alignment: Option<RootAlignment>,
 }
 
 /// What is used unless told otherwise.
-pub const DEFAULT_BODY_OPTIONS: BodyOptions = BodyOptions { least_effective_share: 0.0, alignment: None };
+pub const DEFAULT_BODY_OPTIONS: BodyOptions =
+    BodyOptions { least_effective_share: 0.0, limb_by_limb: false, alignment: None };
 
 /// One frame.
 #[derive(Debug, Clone, Copy)]
@@ -45,31 +56,34 @@ pub struct Advance<'a, M, const BONES: usize, const ANGLES: usize> {
     past: FramePast<'a, BONES, ANGLES>,
     ancestors: &'a [u16],
     particles: &'a [BodyParticle<BONES, ANGLES>],
+    expected: &'a ExpectedBody<BONES>,
     seed: u64,
     frame: u64,
 }
 
 impl<M: BodyMotion<BONES, ANGLES>, const BONES: usize, const ANGLES: usize> Advance<'_, M, BONES, ANGLES> {
-    /// Makes particle `index` of the new set and returns its log-weight.
-    pub fn particle(&self, index: usize, slot: &mut BodyParticle<BONES, ANGLES>) -> f32 {
+    /// Makes particle `index` of the new set, with its log-weights: that of the whole pose, then of each limb.
+    pub fn particle(&self, index: usize, slot: &mut BodyParticle<BONES, ANGLES>) {
         let ancestor = self.ancestors.get(index).and_then(|&ancestor| self.particles.get(usize::from(ancestor)));
-        let Some(ancestor) = ancestor else { return f32::NEG_INFINITY };
+        let Some(ancestor) = ancestor else { return };
         let mut stream = Stream::new(self.seed, self.frame, index as u32);
         let mut memory = ancestor.memory;
         let proposed = self.motion.propose(&self.past, ancestor, &mut memory, &mut stream);
-        *slot = BodyParticle { angles_rad: proposed.angles_rad, ends_m: proposed.posture.ends, memory };
         let scene = self.past.scene;
-        proposed.log_ratio + scene.log_weight(&scene.surface(&proposed.posture), self.past.blocks)
+        let mut log_weights = scene.log_weights(&scene.surface(&proposed.posture), self.past.blocks, self.expected);
+        log_weights[TRUNK_GROUP] += proposed.log_ratio;
+        *slot = BodyParticle { angles_rad: proposed.angles_rad, ends_m: proposed.posture.ends, memory, log_weights };
     }
 }
 
 /// State of the tracker: up to `N` particles, kept in two sets `S` (arrays in firmware, vectors on a host).
 #[derive(Debug, Clone)]
 pub struct BodyTracker<const BONES: usize, const ANGLES: usize, const N: usize, S> {
-    particles: S,
-    next: S,
-    weights: Weights<N>,
-    ancestors: heapless::Vec<u16, N>,
+    pub(super) particles: S,
+    pub(super) next: S,
+    expected: ExpectedBody<BONES>,
+    pub(super) weights: Weights<N>,
+    pub(super) ancestors: heapless::Vec<u16, N>,
     options: BodyOptions,
     first_m: [Vec3; BONES],
     before: BodyParticle<BONES, ANGLES>,
@@ -108,6 +122,7 @@ where
         Ok(Self {
             particles,
             next,
+            expected: ExpectedBody::new(Limbs::none()),
             weights,
             ancestors,
             options,
@@ -126,7 +141,7 @@ where
         self.particles.as_ref()
     }
 
-    /// Their weights, which sum to one.
+    /// Their weights, which sum to one; equal after a step limb by limb, which ends with the resampling.
     #[must_use]
     pub fn weights(&self) -> &[f32] {
         self.weights.normalised()
@@ -139,25 +154,20 @@ where
         motion: &M,
         frame: &BodyFrame<'_>,
     ) -> BodyEstimate<BONES, ANGLES> {
-        self.step_with(scene, motion, frame, |advance, particles, store| {
+        self.step_with(scene, motion, frame, |advance, particles| {
             for (index, slot) in particles.iter_mut().enumerate() {
-                store(index, advance.particle(index, slot));
+                advance.particle(index, slot);
             }
         })
     }
 
-    /// One frame whose particles `advance_all` moves: it has to call [`Advance::particle`] once for each slot, in any order, and
-    /// to store each log-weight.
+    /// One frame whose particles `advance_all` moves: it has to call [`Advance::particle`] once for each slot, in any order.
     pub fn step_with<M: BodyMotion<BONES, ANGLES>>(
         &mut self,
         scene: &BodyScene<BONES, ANGLES>,
         motion: &M,
         frame: &BodyFrame<'_>,
-        advance_all: impl FnOnce(
-            &Advance<'_, M, BONES, ANGLES>,
-            &mut [BodyParticle<BONES, ANGLES>],
-            &mut dyn FnMut(usize, f32),
-        ),
+        advance_all: impl FnOnce(&Advance<'_, M, BONES, ANGLES>, &mut [BodyParticle<BONES, ANGLES>]),
     ) -> BodyEstimate<BONES, ANGLES> {
         let is_first = self.frame == 0;
         self.frame += 1;
@@ -165,12 +175,13 @@ where
         systematic(self.weights.normalised(), offset, &mut self.ancestors);
         // No time, or time that runs back, is the shortest time that still lets particles differ.
         let dt_s = clamp(frame.dt_s, 1.0e-4, 10.0);
-        let fades = crate::math::min(1.0, LONGEST_STRIDE_S / dt_s);
+        let fades = min(1.0, LONGEST_STRIDE_S / dt_s);
         let angle_velocity_per_s = self.angle_velocity_per_s.map(|velocity| velocity * fades);
         let mut root_change = motion.root().expected_change(&angle_velocity_per_s, dt_s);
         if let Some(alignment) = self.options.alignment {
             root_change = alignment.root_change(scene, frame.blocks, &self.before.angles_rad, &root_change, dt_s);
         }
+        self.expect(scene, frame, &angle_velocity_per_s, &root_change, dt_s);
         let advance = Advance {
             motion,
             past: FramePast {
@@ -185,13 +196,38 @@ where
             },
             ancestors: &self.ancestors,
             particles: self.particles.as_ref(),
+            expected: &self.expected,
             seed: self.seed,
             frame: self.frame,
         };
-        let weights = &mut self.weights;
-        advance_all(&advance, self.next.as_mut(), &mut |index, log_weight| weights.set_log(index, log_weight));
+        advance_all(&advance, self.next.as_mut());
         core::mem::swap(&mut self.particles, &mut self.next);
         self.conclude(scene, frame, dt_s)
+    }
+
+    /// Where the body is expected, for limbs that are weighed by what they explain beside it.
+    fn expect(
+        &mut self,
+        scene: &BodyScene<BONES, ANGLES>,
+        frame: &BodyFrame<'_>,
+        angle_velocity_per_s: &[f32; ANGLES],
+        root_change: &[f32; FREE_ROOT_COORDINATES],
+        dt_s: f32,
+    ) {
+        if !self.options.limb_by_limb {
+            return;
+        }
+        let mut expected_rad = self.before.angles_rad;
+        for (index, angle) in expected_rad.iter_mut().enumerate() {
+            *angle += if index < scene.skeleton.root_coordinates() {
+                root_change.get(index).copied().unwrap_or(0.0)
+            } else {
+                EXPECTED_PERSISTENCE * angle_velocity_per_s[index] * dt_s
+            };
+        }
+        let surface = scene.surface(&scene.posture(&scene.skeleton.clamp(expected_rad)));
+        self.expected = ExpectedBody::new(Limbs::of(&scene.skeleton));
+        self.expected.expect(&scene.likelihood, &surface, frame.blocks);
     }
 
     /// Weights, mean pose, spread and velocities of the new set.
@@ -201,20 +237,28 @@ where
         frame: &BodyFrame<'_>,
         dt_s: f32,
     ) -> BodyEstimate<BONES, ANGLES> {
+        let limbs = *self.expected.limbs();
+        let mut stream = Stream::new(self.seed, self.frame, LIMB_STREAM);
+        let (mut angles_rad, mut spread_m) = ([0.0; ANGLES], [0.0; BONES]);
+        let (mut whole, mut effective_sample_size) = (Ok(0.0), f32::INFINITY);
         let mut tempering = 1.0;
-        if self.options.least_effective_share > 0.0 {
-            tempering = temper(&self.weights, self.options.least_effective_share * self.weights.len() as f32);
-            for index in 0..self.weights.len() {
-                let log_weight = self.weights.log().get(index).copied().unwrap_or(f32::NEG_INFINITY);
-                self.weights.set_log(index, tempering * log_weight);
+        // The trunk comes last: what belongs to the whole pose stays as it was weighed.
+        for group in (0..limbs.count()).rev() {
+            tempering = self.weigh(group);
+            whole = self.weights.normalise();
+            effective_sample_size = min(effective_sample_size, self.weights.effective_sample_size());
+            let weighed = (self.particles.as_ref(), self.weights.normalised());
+            mean_of_group(&scene.skeleton, weighed, (&limbs, group), &mut angles_rad);
+            spread_of_group(weighed, (&limbs, group), &mut spread_m);
+            if limbs.count() > 1 {
+                self.resample_group(&scene.skeleton, (&limbs, group), &mut stream);
             }
         }
-        let evidence = self.weights.normalise();
-        let (particles, weights) = (self.particles.as_ref(), self.weights.normalised());
-        let angles_rad = mean_pose(scene, particles, weights);
+        if limbs.count() > 1 {
+            self.join_groups(scene);
+        }
         let posture = scene.posture(&angles_rad);
         let mean = BodyParticle { angles_rad, ends_m: posture.ends, ..self.before };
-        let spread_m = spread_m(particles, weights);
         for i in 0..ANGLES {
             self.angle_velocity_per_s[i] = (mean.angles_rad[i] - self.before.angles_rad[i]) / dt_s;
         }
@@ -227,10 +271,27 @@ where
             ends_m: mean.ends_m,
             spread_m,
             observed: observed(&scene.surface(&posture), frame.blocks),
-            effective_sample_size: self.weights.effective_sample_size(),
-            log_evidence: evidence.unwrap_or(0.0),
+            effective_sample_size,
+            log_evidence: whole.unwrap_or(0.0),
             tempering,
-            is_degenerate: evidence.is_err(),
+            is_degenerate: whole.is_err(),
         }
+    }
+
+    /// Sets the log-weights of one group, flattened; gives the exponent.
+    fn weigh(&mut self, group: usize) -> f32 {
+        let set = |weights: &mut Weights<N>, particles: &S, exponent: f32| {
+            for (index, particle) in particles.as_ref().iter().enumerate() {
+                let log = particle.log_weights.get(group).copied().unwrap_or(f32::NEG_INFINITY);
+                weights.set_log(index, exponent * log);
+            }
+        };
+        set(&mut self.weights, &self.particles, 1.0);
+        if !(self.options.least_effective_share > 0.0) {
+            return 1.0;
+        }
+        let exponent = temper(&self.weights, self.options.least_effective_share * self.weights.len() as f32);
+        set(&mut self.weights, &self.particles, exponent);
+        exponent
     }
 }

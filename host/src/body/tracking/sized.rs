@@ -29,6 +29,8 @@ const PAPER_END_EFFECTORS: [usize; 3] = [HEAD, FOREARMS[0], FOREARMS[1]];
 const PAPER_ANGLE_STD_RAD: f32 = 0.044_721_36;
 /// sigma of eq. (33), metres a frame: the paper does not print it.
 const PAPER_GOAL_STD_M: f32 = 0.05;
+/// Least effective share of whole poses with the settings that the paper prints.
+const PAPER_EFFECTIVE_SHARE: f32 = 0.05;
 
 type Particle<const BONES: usize, const ANGLES: usize> = BodyParticle<BONES, ANGLES>;
 type Tracker<const BONES: usize, const ANGLES: usize> =
@@ -91,9 +93,11 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         };
         let goals = LinearGoals::new(end_effectors(BONES), BONES, goals.extrapolation(), goals.reach_std_m)?;
         let first = BodyParticle::at(&scene.skeleton, first_rad);
+        let is_printed = matches!(kind, BodyModelKind::EndEffectorPaper | BodyModelKind::AngularPaper);
         let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::PelvicLift);
         let options = BodyOptions {
-            least_effective_share: points.least_effective_share,
+            least_effective_share: if is_printed { PAPER_EFFECTIVE_SHARE } else { points.least_effective_share },
+            limb_by_limb: points.limb_by_limb && !is_printed,
             alignment: tuning.root.alignment().filter(|_| is_aligned),
         };
         let set = vec![first; particles];
@@ -175,12 +179,8 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         motion: &M,
         frame: &BodyFrame<'_>,
     ) -> BodyEstimate<BONES, ANGLES> {
-        self.tracker.step_with(&self.scene, motion, frame, |advance, particles, store| {
-            let advance_one = |(index, slot): (usize, &mut Particle<BONES, ANGLES>)| advance.particle(index, slot);
-            let log_weights: Vec<f32> = particles.par_iter_mut().enumerate().map(advance_one).collect();
-            for (index, log_weight) in log_weights.into_iter().enumerate() {
-                store(index, log_weight);
-            }
+        self.tracker.step_with(&self.scene, motion, frame, |advance, particles| {
+            particles.par_iter_mut().enumerate().for_each(|(index, slot)| advance.particle(index, slot));
         })
     }
 }

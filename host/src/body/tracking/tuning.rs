@@ -152,6 +152,8 @@ pub struct PointTuning {
     pub outlier_m: f32,
     /// Least share of effective particles; zero never flattens the weights.
     pub least_effective_share: f32,
+    /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
+    pub limb_by_limb: bool,
 }
 
 /// Everything that a body tracker's results depend on, but the number of particles and the seed.
@@ -206,12 +208,12 @@ impl Default for BodyTuning {
             pays: false,
             draw_share: 0.44,
         };
-        let points = PointTuning { std_m: 0.15, outlier_m: 0.275, least_effective_share: 0.05 };
+        let points = PointTuning { std_m: 0.15, outlier_m: 0.275, least_effective_share: 0.2, limb_by_limb: true };
         Self {
             root: RootTuning {
                 persistence: 0.5,
-                shift_std_m: 0.039,
-                turn_std_rad: 0.1,
+                shift_std_m: 0.015,
+                turn_std_rad: 0.05,
                 aligned: true,
                 aligned_shift_std_m: 0.3,
                 aligned_turn_std_rad: 0.6,
@@ -230,7 +232,7 @@ impl Default for BodyTuning {
             pulling_blocks: 32,
             angular: AngularTuning { persistence: 0.46, joint_std: ANGULAR_JOINTS },
             points,
-            guided_points: PointTuning { least_effective_share: 0.3, outlier_m: 0.25, ..points },
+            guided_points: PointTuning { least_effective_share: 0.3, limb_by_limb: false, outlier_m: 0.25, ..points },
             self_penetration_std_m: 0.0,
             stick_gamma_std: 0.2,
             stick_reach_std_m: 0.02,
