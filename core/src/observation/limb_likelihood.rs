@@ -13,7 +13,7 @@ use heapless::Vec;
 /// Blocks of points that are looked at; of a larger cloud every n-th is, and counts n times.
 pub const MAX_BLOCKS: usize = 256;
 /// An owner that is no group.
-const NOBODY: u8 = u8::MAX;
+const NOBODY: u32 = u32::MAX;
 
 /// Log-weights of one pose: the whole body's likelihood in the trunk's place, then what each limb adds.
 pub type GroupLogs = [f32; MAX_GROUPS];
@@ -21,12 +21,12 @@ pub type GroupLogs = [f32; MAX_GROUPS];
 /// The expected skin about a block of points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct ExpectedSkin {
-    /// Squared distances from the nearest group's skin, at most tau; squared metres.
+    /// Squared distances from the nearest group's skin, at most tau; squared metres; zero, as in the next, for what is no point.
     nearest: [f32; BLOCK_POINTS],
     /// From the nearest skin of any other group.
     other: [f32; BLOCK_POINTS],
-    /// The nearest group.
-    owner: [u8; BLOCK_POINTS],
+    /// The nearest group; as wide as a distance, so that loops over points are loops over vectors.
+    owner: [u32; BLOCK_POINTS],
     /// For each group the greatest distance of a point from all others' skin, metres: beyond it the group adds nothing.
     reach_m: [f32; MAX_GROUPS],
 }
@@ -77,13 +77,16 @@ impl<const BONES: usize> ExpectedBody<BONES> {
         for (block, skin) in blocks.iter().step_by(self.stride).zip(&self.skins) {
             near.find_or_within(surface, block, likelihood.outlier_m, |bone| skin.reach_of(self.limbs.group(bone)));
             let mut all = [tau; BLOCK_POINTS];
-            for group in 0..self.limbs.count() {
-                let Some(own) = self.squared_m(group, &near, surface, block, tau) else { continue };
+            let mut left = self.groups_of(&near, surface);
+            while left != 0 {
+                let group = left.trailing_zeros() as usize;
+                left &= left - 1;
+                let own = self.squared_m(group, &near, surface, block, tau);
                 for i in 0..BLOCK_POINTS {
                     all[i] = min(all[i], own[i]);
                 }
                 if group != TRUNK_GROUP {
-                    add(&mut sums, group, skin.gain(group, &own, block.count));
+                    add(&mut sums, group, skin.gain(group, &own));
                 }
             }
             let sum: f32 = all.iter().take(usize::from(block.count)).sum();
@@ -93,7 +96,19 @@ impl<const BONES: usize> ExpectedBody<BONES> {
         sums.map(|sum| sum * scale)
     }
 
-    /// Squared distances of a block's points from one group's skin, at most tau; `None` if none of it is near.
+    /// The groups of the capsules in `near`, a bit each.
+    #[inline]
+    fn groups_of(&self, near: &NearCapsules, surface: &BodySurface<BONES>) -> u32 {
+        let mut groups = 0;
+        for &index in near.indices() {
+            if let Some(seen) = surface.capsules.get(usize::from(index)) {
+                groups |= 1 << self.limbs.group(seen.bone);
+            }
+        }
+        groups
+    }
+
+    /// Squared distances of a block's points from one group's skin, at most tau.
     #[inline]
     fn squared_m(
         &self,
@@ -102,12 +117,12 @@ impl<const BONES: usize> ExpectedBody<BONES> {
         surface: &BodySurface<BONES>,
         block: &PointBlock,
         tau: f32,
-    ) -> Option<[f32; BLOCK_POINTS]> {
-        let mut own = None;
+    ) -> [f32; BLOCK_POINTS] {
+        let mut own = [tau; BLOCK_POINTS];
         for &index in near.indices() {
             let Some(seen) = surface.capsules.get(usize::from(index)) else { continue };
             if self.limbs.group(seen.bone) == group {
-                lower_to(own.get_or_insert([tau; BLOCK_POINTS]), seen, surface, block);
+                lower_to(&mut own, seen, surface, block);
             }
         }
         own
@@ -140,8 +155,11 @@ impl ExpectedSkin {
                 let is_nearest = own[i] < skin.nearest[i];
                 skin.other[i] = if is_nearest { skin.nearest[i] } else { min(skin.other[i], own[i]) };
                 skin.nearest[i] = min(skin.nearest[i], own[i]);
-                skin.owner[i] = if is_nearest { group as u8 } else { skin.owner[i] };
+                skin.owner[i] = if is_nearest { group as u32 } else { skin.owner[i] };
             }
+        }
+        for i in usize::from(block.count)..BLOCK_POINTS {
+            (skin.nearest[i], skin.other[i]) = (0.0, 0.0);
         }
         for group in 0..limbs.count() {
             let greatest = skin.others(group).into_iter().fold(0.0, max);
@@ -157,12 +175,12 @@ impl ExpectedSkin {
     fn others(&self, group: usize) -> [f32; BLOCK_POINTS] {
         let mut others = self.nearest;
         for i in 0..BLOCK_POINTS {
-            others[i] = if usize::from(self.owner[i]) == group { self.other[i] } else { others[i] };
+            others[i] = if self.owner[i] == group as u32 { self.other[i] } else { others[i] };
         }
         others
     }
 
-    /// What the trunk, which is weighed with all limbs, needs no reach for.
+    /// How far a group's skin may be to add something; nothing is asked of the trunk's, which is weighed with the whole pose.
     #[inline]
     fn reach_of(&self, group: usize) -> f32 {
         if group == TRUNK_GROUP { 0.0 } else { self.reach_m.get(group).copied().unwrap_or(0.0) }
@@ -170,14 +188,12 @@ impl ExpectedSkin {
 
     /// By how much squared distances `own` of one group lie below those of all others, summed over the block's points.
     #[inline]
-    fn gain(&self, group: usize, own: &[f32; BLOCK_POINTS], count: u8) -> f32 {
-        let others = self.others(group);
-        let mut sum = 0.0;
+    fn gain(&self, group: usize, own: &[f32; BLOCK_POINTS]) -> f32 {
+        let mut nearer = self.others(group);
         for i in 0..BLOCK_POINTS {
-            let nearer = max(others[i] - own[i], 0.0);
-            sum += if i < usize::from(count) { nearer } else { 0.0 };
+            nearer[i] = max(nearer[i] - own[i], 0.0);
         }
-        sum
+        nearer.iter().sum()
     }
 }
 
