@@ -9,10 +9,10 @@ use sinew::evaluate::body::MotionChoice;
 use sinew::evaluate::body::hidden_arm::{HiddenArmSummary, follow, summaries, windows};
 use sinew::evaluate::body::trial::{SeenMotion, TrialResult, trial};
 
-/// Largest mean error (34) of the end-effector model with 100 particles, metres.
-const LARGEST_END_EFFECTOR_M: f64 = 0.032;
+/// Largest mean error (34) of the end-effector and the angular model with 100 particles, metres.
+const LARGEST_UNGUIDED_M: f64 = 0.024;
 /// Largest mean error (34) of the guided model with 50 particles, metres.
-const LARGEST_GUIDED_M: f64 = 0.026;
+const LARGEST_GUIDED_M: f64 = 0.024;
 /// Largest error (34) of the pelvic lift model with 100 particles, metres.
 const LARGEST_LIFT_M: f64 = 0.03;
 
@@ -43,7 +43,7 @@ fn tracked(seen: &SeenMotion, model: BodyModelKind, particles: usize) -> TrialRe
 }
 
 #[test]
-fn goals_in_space_beat_angles_and_guided_proposals_beat_both() {
+fn fifty_guided_particles_do_what_a_hundred_do_by_goals_or_angles() {
     let Some(folder) = shared_data::in_release("mocap") else { return };
     let skeleton = folder.join("cmu-walk/35/35.asf");
     let mut means = [0.0; 3];
@@ -57,8 +57,10 @@ fn goals_in_space_beat_angles_and_guided_proposals_beat_both() {
     }
     let [end_effector, angular, guided] = means;
     println!("end-effector {end_effector:.4}, angular {angular:.4}, guided with 50 {guided:.4} m");
-    assert!(end_effector < angular, "{end_effector} m, angular {angular} m");
-    assert!((0.01..=LARGEST_END_EFFECTOR_M).contains(&end_effector), "end-effector {end_effector} m");
+    // Which of both is better depends on the motions (docs/measurements.md); neither is lost on any.
+    for (model, error_m) in [("end-effector", end_effector), ("angular", angular)] {
+        assert!((0.01..=LARGEST_UNGUIDED_M).contains(&error_m), "{model} {error_m} m");
+    }
     assert!((0.01..=LARGEST_GUIDED_M).contains(&guided), "guided {guided} m");
 }
 
