@@ -122,6 +122,11 @@ impl<const BONES: usize> ExpectedBody<BONES> {
         for &index in near.indices() {
             let Some(seen) = surface.capsules.get(usize::from(index)) else { continue };
             if self.limbs.group(seen.bone) == group {
+    /// Other limbs, from the next [`Self::expect`] on.
+    pub const fn set_limbs(&mut self, limbs: Limbs<BONES>) {
+        self.limbs = limbs;
+    }
+
                 lower_to(&mut own, seen, surface, block);
             }
         }
@@ -146,11 +151,7 @@ impl ExpectedSkin {
         let everywhere = [tau; BLOCK_POINTS];
         let mut skin =
             Self { nearest: everywhere, other: everywhere, owner: [NOBODY; BLOCK_POINTS], reach_m: [0.0; MAX_GROUPS] };
-        for group in 0..limbs.count() {
-            let mut own = everywhere;
-            for seen in surface.capsules.iter().filter(|seen| limbs.group(seen.bone) == group) {
-                lower_to(&mut own, seen, surface, block);
-            }
+        for (group, own) in squared_by_group(surface, limbs, block, tau).iter().enumerate().take(limbs.count()) {
             for i in 0..BLOCK_POINTS {
                 let is_nearest = own[i] < skin.nearest[i];
                 skin.other[i] = if is_nearest { skin.nearest[i] } else { min(skin.other[i], own[i]) };
@@ -199,4 +200,20 @@ impl ExpectedSkin {
 
 #[cfg(test)]
 #[path = "limb_likelihood_tests.rs"]
+/// Squared distances of a block's points from the skin of each group of bones, at most `most`; square metres.
+pub(crate) fn squared_by_group<const BONES: usize>(
+    surface: &BodySurface<BONES>,
+    limbs: &Limbs<BONES>,
+    block: &PointBlock,
+    most: f32,
+) -> [[f32; BLOCK_POINTS]; MAX_GROUPS] {
+    let mut squared_m = [[most; BLOCK_POINTS]; MAX_GROUPS];
+    for seen in &surface.capsules {
+        if let Some(least) = squared_m.get_mut(limbs.group(seen.bone)) {
+            lower_to(least, seen, surface, block);
+        }
+    }
+    squared_m
+}
+
 mod tests;

@@ -1,26 +1,45 @@
 //! Which bones a frame's points show.
 
-use crate::math::{length, max, sqrt};
+use crate::math::{length, max, min, sqrt};
 use crate::observation::body_surface::BodySurface;
+use crate::observation::limb_likelihood::squared_by_group;
 use crate::observation::point_cloud::PointBlock;
 use crate::observation::point_likelihood::NearestSkin;
+use crate::skeleton::Limbs;
+use crate::skeleton::limbs::TRUNK_GROUP;
 
 /// A point nearer to a bone's skin than this belongs to it, metres.
-const NEAR_M: f32 = 0.08;
+const NEAR_M: f32 = 0.06;
+/// A point speaks for a limb if the skin of every other limb and of the trunk is farther by this, metres.
+const CLEARER_M: f32 = 0.03;
 /// A bone with less than this share of the points that its size lets expect is not observed.
 const LEAST_SHARE: f32 = 0.25;
 
-/// Whether the points show each bone: enough of them lie on its skin and on no other's.
+/// Whether the points show each bone: enough of them lie on its skin and, where it is part of a limb, clearly on no other limb's nor the
+/// trunk's. A limb that is hidden before the trunk, say, would else be shown by the trunk's points.
 ///
 /// What to expect follows from the size in which each bone would appear to the camera, as if none hid another: a limb behind the
 /// trunk is not observed. Without points nothing is; a bone without flesh has no skin to show.
 #[must_use]
-pub fn observed<const BONES: usize>(surface: &BodySurface<BONES>, blocks: &[PointBlock]) -> [bool; BONES] {
-    let mut counts = [0.0_f32; BONES];
+pub fn observed<const BONES: usize>(
+    surface: &BodySurface<BONES>,
+    limbs: &Limbs<BONES>,
+    blocks: &[PointBlock],
+) -> [bool; BONES] {
+    let (mut counts, mut found) = ([0.0_f32; BONES], 0.0);
     for block in blocks {
         let nearest = NearestSkin::find(surface, block, NEAR_M);
-        for &index in nearest.capsule.iter().take(usize::from(block.count)) {
-            if let Some(count) = surface.capsules.get(usize::from(index)).and_then(|seen| counts.get_mut(seen.bone)) {
+        let squared_m = squared_by_group(surface, limbs, block, f32::INFINITY);
+        for (i, &index) in nearest.capsule.iter().enumerate().take(usize::from(block.count)) {
+            let Some(seen) = surface.capsules.get(usize::from(index)) else { continue };
+            found += 1.0;
+            let group = limbs.group(seen.bone);
+            let mut other = f32::INFINITY;
+            for (_, squared_m) in squared_m.iter().enumerate().filter(|(another, _)| *another != group) {
+                other = min(other, squared_m[i]);
+            }
+            let is_clear = group == TRUNK_GROUP || sqrt(other) > sqrt(nearest.squared_m[i]) + CLEARER_M;
+            if let (true, Some(count)) = (is_clear, counts.get_mut(seen.bone)) {
                 *count += 1.0;
             }
         }
@@ -33,10 +52,54 @@ pub fn observed<const BONES: usize>(surface: &BodySurface<BONES>, blocks: &[Poin
         let r = seen.capsule.radius_m;
         sizes[seen.bone] = (2.0 * r * foreshortened + 3.0 * r * r) / squared;
     }
-    let (found, size): (f32, f32) = (counts.iter().sum(), sizes.iter().sum());
+    let size: f32 = sizes.iter().sum();
     let mut result = [false; BONES];
     for bone in 0..BONES {
         result[bone] = counts[bone] > 0.0 && counts[bone] >= LEAST_SHARE * found * sizes[bone] / size;
     }
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::forward::posture;
+    use crate::math::Vec3;
+    use crate::observation::point_cloud::PointCloud;
+    use crate::skeleton::BodyMeasures;
+    use crate::skeleton::full_body::{BODY_ANGLES, BODY_BONES, FOREARMS, TRUNK, body_radii_m, full_body};
+
+    /// Which bones a standing body 2.5 m away shows if the points lie on the visible skin of those that are not in `hidden`, while the
+    /// left arm is believed to lie across the trunk.
+    fn shown(hidden: &[usize]) -> [bool; BODY_BONES] {
+        let measures = BodyMeasures::of_height(1.75).unwrap();
+        let (skeleton, radii_m) = (full_body(&measures).unwrap(), body_radii_m(&measures));
+        let mut angles = [0.0; BODY_ANGLES];
+        (angles[2], angles[12], angles[14], angles[15]) = (2.5, 0.2, -1.2, 1.6);
+        let there = posture(&skeleton, &Vec3::zeros(), &skeleton.clamp(angles));
+        let surface = BodySurface::new(&there, &radii_m, Vec3::zeros());
+        let mut points = Vec::new();
+        for seen in surface.capsules.iter().filter(|seen| !hidden.contains(&seen.bone)) {
+            for i in 0..60 {
+                let axis = seen.capsule.start_m + seen.along_m * (i as f32 / 60.0);
+                points.push(axis - axis.normalize() * seen.capsule.radius_m);
+            }
+        }
+        let mut cloud = PointCloud::<128>::new();
+        assert_eq!(cloud.set(&mut points, &Vec3::zeros()).over_capacity, 0);
+        observed(&surface, &Limbs::of(&skeleton), cloud.blocks())
+    }
+
+    #[test]
+    fn a_hidden_forearm_is_not_shown_by_the_trunk_behind_it() {
+        let all = shown(&[]);
+        assert!(all[FOREARMS[0]] && all[FOREARMS[1]] && all[TRUNK]);
+        let hidden = shown(&[FOREARMS[0]]);
+        assert!(!hidden[FOREARMS[0]] && hidden[FOREARMS[1]] && hidden[TRUNK]);
+    }
+
+    #[test]
+    fn without_points_nothing_is_shown() {
+        assert_eq!(shown(&core::array::from_fn::<usize, BODY_BONES, _>(|bone| bone)), [false; BODY_BONES]);
+    }
 }

@@ -226,7 +226,7 @@ where
             };
         }
         let surface = scene.surface(&scene.posture(&scene.skeleton.clamp(expected_rad)));
-        self.expected = ExpectedBody::new(Limbs::of(&scene.skeleton));
+        self.expected.set_limbs(Limbs::of(&scene.skeleton));
         self.expected.expect(&scene.likelihood, &surface, frame.blocks);
     }
 
@@ -270,7 +270,7 @@ where
             angles_rad: mean.angles_rad,
             ends_m: mean.ends_m,
             spread_m,
-            observed: observed(&scene.surface(&posture), frame.blocks),
+            observed,
             effective_sample_size,
             log_evidence: whole.unwrap_or(0.0),
             tempering,
@@ -295,3 +295,4 @@ where
         exponent
     }
 }
+        let observed = observed(&scene.surface(&posture), &Limbs::of(&scene.skeleton), frame.blocks);

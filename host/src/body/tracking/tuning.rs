@@ -208,12 +208,12 @@ impl Default for BodyTuning {
             pays: false,
             draw_share: 0.44,
         };
-        let points = PointTuning { std_m: 0.15, outlier_m: 0.275, least_effective_share: 0.2, limb_by_limb: true };
+        let points = PointTuning { std_m: 0.15, outlier_m: 0.14, least_effective_share: 0.2, limb_by_limb: true };
         Self {
             root: RootTuning {
                 persistence: 0.5,
-                shift_std_m: 0.015,
-                turn_std_rad: 0.05,
+                shift_std_m: 0.006,
+                turn_std_rad: 0.018,
                 aligned: true,
                 aligned_shift_std_m: 0.3,
                 aligned_turn_std_rad: 0.6,
@@ -232,7 +232,7 @@ impl Default for BodyTuning {
             pulling_blocks: 32,
             angular: AngularTuning { persistence: 0.46, joint_std: ANGULAR_JOINTS },
             points,
-            guided_points: PointTuning { least_effective_share: 0.3, limb_by_limb: false, outlier_m: 0.25, ..points },
+            guided_points: PointTuning { least_effective_share: 0.3, limb_by_limb: false, std_m: 0.1, outlier_m: 0.16 },
             self_penetration_std_m: 0.0,
             stick_gamma_std: 0.2,
             stick_reach_std_m: 0.02,
