@@ -16,6 +16,7 @@ pub mod motion;
 pub mod output;
 pub mod record;
 pub mod report;
+pub mod resume;
 pub mod scene;
 pub mod skin;
 pub mod stereo;

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     match sinew::cli::run(&sinew::cli::Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) if error.is::<sinew::track::Interrupted>() => {
+        Err(error) if error.is::<sinew::resume::Interrupted>() => {
             eprintln!("{error}");
             // 128 + SIGINT, what shells expect of a program that Ctrl-C ended.
             ExitCode::from(130)

@@ -8,6 +8,7 @@ use sinew::cyclic::tracking::FilterName;
 use sinew::cyclic::training::{TrainingOptions, train};
 use sinew::evaluate::cyclic::experiments::SIGMAS_DEG;
 use sinew::evaluate::cyclic::{Cell, Protocol, Setting, test_cycles};
+use sinew::resume::Cells;
 
 /// Degrees over 13 angles at each sigma, by an independent implementation of the paper's filter with the same training.
 const REFERENCE_DEG: [(Protocol, FilterName, [f64; 6]); 4] = [
@@ -41,7 +42,7 @@ fn the_filters_are_as_accurate_as_the_book_says() {
     let model = train(&list, TrainingOptions { length: 100, rate_hz: 60.0 }).unwrap();
     let cycles = test_cycles(&CutList::read(&folder.join("test_cuts.csv")).unwrap()).unwrap();
     assert_eq!(cycles.iter().map(|cycle| cycle.truth.rows().len()).sum::<usize>(), 886);
-    let setting = Setting { cycles: &cycles, model: &model, rate_hz: 60.0, seeds: 20 };
+    let setting = Setting { cycles: &cycles, model: &model, rate_hz: 60.0, seeds: 20, cells: &Cells::not_kept() };
     let cells = setting.noise_table().unwrap();
     for (protocol, filter, wanted) in REFERENCE_DEG {
         for ((found, wanted), sigma) in errors_deg(&cells, protocol, filter).iter().zip(wanted).zip(SIGMAS_DEG) {

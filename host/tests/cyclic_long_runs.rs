@@ -10,6 +10,7 @@ use sinew::cyclic::tracking::FilterName;
 use sinew::cyclic::{CutList, CyclicModel};
 use sinew::evaluate::cyclic::experiments::SIGMAS_DEG;
 use sinew::evaluate::cyclic::{Cell, Protocol, Setting, long_runs, test_cycles};
+use sinew::resume::Cells;
 use std::path::Path;
 
 /// Greatest relative error of the mean cadence from the third cycle on.
@@ -88,7 +89,9 @@ fn walkers_of_another_source_are_followed_with_bands_that_hold() {
     let folder = tempfile::tempdir().unwrap();
     let cycles = test_cycles(&list(&data, folder.path(), &WALKS)).unwrap();
     let model = CyclicModel::from_option("walking").unwrap();
-    let cells = Setting { cycles: &cycles, model: &model, rate_hz: 60.0, seeds: 5 }.noise_table().unwrap();
+    let cells = Setting { cycles: &cycles, model: &model, rate_hz: 60.0, seeds: 5, cells: &Cells::not_kept() }
+        .noise_table()
+        .unwrap();
     let of = |filter| -> Vec<&Cell> {
         cells.iter().filter(|cell| cell.filter == filter && cell.protocol == Protocol::Noisy).collect()
     };

@@ -7,6 +7,7 @@ use sinew::cyclic::CutList;
 use sinew::cyclic::tracking::StartName;
 use sinew::cyclic::training::{TrainingOptions, train};
 use sinew::evaluate::cyclic::{Cell, Setting, test_cycles};
+use sinew::resume::Cells;
 
 /// Particles that are compared with a known start, and with an unknown one; seeds.
 const PARTICLES: [usize; 3] = [1000, 20_000, 100_000];
@@ -28,7 +29,7 @@ fn more_particles_and_an_unknown_phase_do_what_the_book_says() {
     let list = CutList::read(&folder.join("train_cuts.csv")).unwrap();
     let model = train(&list, TrainingOptions { length: 100, rate_hz: 60.0 }).unwrap();
     let cycles = test_cycles(&CutList::read(&folder.join("test_cuts.csv")).unwrap()).unwrap();
-    let setting = Setting { cycles: &cycles, model: &model, rate_hz: 60.0, seeds: SEEDS };
+    let setting = Setting { cycles: &cycles, model: &model, rate_hz: 60.0, seeds: SEEDS, cells: &Cells::not_kept() };
     let table = setting.particle_table(&PARTICLES).unwrap();
     let [few, more, most] = std::array::from_fn(|i| table[i].error_deg);
     println!("standard start: {few:.2}, {more:.2}, {most:.2} degrees; the last {:.3} of the first", most / few);

@@ -175,6 +175,37 @@ async function twoRuns(runs) {
   await close(page);
 }
 
+// Thirty frames at 15 Hz beside thirty at 30 Hz: moments are thirtieths of a second for the first second, then fifteenths.
+async function twoRates(runs) {
+  const page = await open(report('rates', runs.slow, runs.fast));
+  const frames = () => page.locator('.player img').evaluateAll((images) => images.map((image) => image.dataset.frame));
+  equal(await page.locator('.transport input').getAttribute('max'), '44', 'the slider goes from moment to moment');
+  equal(await frames(), ['0', '0'], 'both begin together');
+  await slide(page, 20);
+  equal([await frames(), (await place(page)).startsWith('0.67 s (21 of 45, frames 10, 20')], [['10', '20'], true], 'the slider goes by time');
+  await page.keyboard.press('ArrowRight');
+  equal(await frames(), ['10', '21'], 'a step is to the next frame of either run');
+  await page.keyboard.press('ArrowRight');
+  equal(await frames(), ['11', '22'], 'frames of one moment are shown together');
+  await slide(page, 32);
+  equal(await frames(), ['17', '29'], 'a run that has ended shows its last frame');
+  await page.keyboard.press('End');
+  equal(await frames(), ['29', '29'], 'the end is that of the longer run');
+  const plot = page.locator('[data-plot="arm hand_likelihood"] > svg').last();
+  await plot.scrollIntoViewIfNeeded();
+  const size = await plot.boundingBox();
+  await plot.click({ position: { x: size.width * 0.3, y: 60 } });
+  const [slow, fast] = (await frames()).map(Number);
+  check(fast > 4 && fast < 29 && slow === Math.floor(fast / 2), `a click goes to the moment of a frame, ${slow} beside ${fast}`);
+  await page.keyboard.press('Home');
+  await page.keyboard.press('Space');
+  await page.waitForFunction(() => Number(document.querySelectorAll('.player img')[1].dataset.frame) >= 6);
+  await page.keyboard.press('Space');
+  const [played, beside] = (await frames()).map(Number);
+  equal(played, Math.min(Math.floor(beside / 2), 29), 'playing keeps them together');
+  await close(page);
+}
+
 async function motionPage(runs) {
   const page = await open(report('walk', runs.walk));
   const estimates = rows(join(runs.walk, 'estimates.csv'));
@@ -228,6 +259,7 @@ try {
   await demoPage(runs);
   await themes(join(folder, 'demo.html'));
   await twoRuns(runs);
+  await twoRates(runs);
   await motionPage(runs);
   await hostilePage(runs);
   await otherPages(runs);

@@ -27,6 +27,10 @@ export function makeRuns(sinew, folder) {
   run('demo', '--seed', '2', '--out', at('other'));
   walkTable(at('walk.csv'));
   run('track', 'cyclic', at('walk.csv'), '--model', 'walking', '--out', at('estimate.csv'), '--report', at('walk'));
+  run('simulate', 'arm', '--motion', 'builtin', '--frames', '30', '--out', at('frames'));
+  for (const [name, rate] of [['slow', '15'], ['fast', '30']]) {
+    run('track', 'arm', join(at('frames'), 'frames'), '--config', join(at('frames'), 'camera.toml'), '--rate', rate, '--overlay', '--out', at(name));
+  }
   run('simulate', 'stereo', '--motion', 'stick-wave', '--points', '300', '--out', at('scene'));
   run('track', 'body', at('scene'), '--particles', '20', '--pictures', '--out', at('body'));
   run('evaluate', 'arm', '--clips', '1', '--seeds', '1', '--frames', '110', '--particles', '10,20', '--variants', 'pik,bootstrap', '--out', at('arms'));
@@ -34,6 +38,6 @@ export function makeRuns(sinew, folder) {
   cpSync(at('demo'), at('broken'), { recursive: true });
   rmSync(join(at('broken'), 'track.csv'));
   writeFileSync(join(at('broken'), 'run.json'), '{"version": 1, "seed"');
-  const names = ['demo', 'other', 'walk', 'body', 'arms', 'bodies', 'broken'];
+  const names = ['demo', 'other', 'slow', 'fast', 'walk', 'body', 'arms', 'bodies', 'broken'];
   return Object.fromEntries(names.map((name) => [name, at(name)]));
 }

@@ -1,6 +1,8 @@
 //! Instruments that the tests of this package share.
 
+use std::collections::BTreeMap;
 use std::env;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
@@ -37,6 +39,35 @@ fn build_sinew() -> PathBuf {
         .expect("cargo runs");
     assert!(output.status.success(), "sinew cannot be built: {}", String::from_utf8_lossy(&output.stderr));
     profile_folder.join(format!("sinew{}", env::consts::EXE_SUFFIX))
+}
+
+/// Every file below `folder`, by its path from there; the numbers in `run.json` that `times` names are left out, which differ from run to run.
+///
+/// # Panics
+/// If something cannot be read, or `run.json` has no such number.
+#[must_use]
+pub fn files_below(folder: &Path, times: &[&str]) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![(String::new(), folder.to_path_buf())];
+    while let Some((prefix, folder)) = folders.pop() {
+        for entry in fs::read_dir(folder).expect("the folder can be read") {
+            let path = entry.expect("the folder can be read").path();
+            let name = format!("{prefix}{}", path.file_name().unwrap_or_default().to_string_lossy());
+            if path.is_dir() {
+                folders.push((format!("{name}/"), path));
+            } else {
+                files.insert(name, fs::read(path).expect("the file can be read"));
+            }
+        }
+    }
+    if let Some(bytes) = files.get_mut("run.json") {
+        let mut report: serde_json::Value = serde_json::from_slice(bytes).expect("run.json is JSON");
+        for name in times {
+            assert!(report[*name].take().as_f64().is_some_and(|time| time > 0.0), "run.json has no {name}");
+        }
+        *bytes = report.to_string().into_bytes();
+    }
+    files
 }
 
 /// Root folder of the workspace.

@@ -96,3 +96,20 @@ fn a_slip_of_the_finger_gets_the_right_word() {
         assert!(code == Some(2) && text.contains(right) && text.contains("similar"), "{words}: {text}");
     }
 }
+
+/// The tests are built without the feature `rerun`.
+#[test]
+fn a_build_without_the_viewer_says_how_to_get_one() {
+    let root = tempfile::tempdir().unwrap();
+    fs::create_dir(root.path().join("in")).unwrap();
+    for words in [
+        "track arm in --out run --rerun run.rrd",
+        "track body in --out run --rerun run.rrd",
+        "track cyclic walk.csv --model walking --out est.csv --report run --rerun run.rrd",
+    ] {
+        let (code, text) = message(root.path(), words);
+        assert!(code == Some(1) && text.contains("`--rerun` is not part of this build"), "{words}: {text}");
+        assert!(text.contains("`cargo install --locked --path host --features rerun` has it"), "{words}: {text}");
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1, "{words} wrote something");
+    }
+}

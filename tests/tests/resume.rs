@@ -1,10 +1,10 @@
 //! `sinew track arm --resume`: a run that was broken off and taken up again writes what an unbroken one writes.
 
 use image::{Rgb, RgbImage};
-use serde_json::Value;
 use sinew::config::Config;
-use sinew::track::{Event, Interrupted, SideChoice, TrackOptions, TrackRun};
-use sinew_tests::sinew_command;
+use sinew::resume::Interrupted;
+use sinew::track::{Event, SideChoice, TrackOptions, TrackRun};
+use sinew_tests::{files_below, sinew_command};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -102,25 +102,8 @@ impl Scene {
         (output.status.success(), String::from_utf8(output.stderr).unwrap())
     }
 
-    /// Every file of a run directory; of `run.json` all but the speed.
     fn files(&self, out: &str) -> BTreeMap<String, Vec<u8>> {
-        let mut files = BTreeMap::new();
-        let mut folders = vec![(String::new(), self.out(out))];
-        while let Some((prefix, folder)) = folders.pop() {
-            for entry in fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                let name = format!("{prefix}{}", path.file_name().unwrap().to_string_lossy());
-                if path.is_dir() {
-                    folders.push((format!("{name}/"), path));
-                } else {
-                    files.insert(name, fs::read(path).unwrap());
-                }
-            }
-        }
-        let mut report: Value = serde_json::from_slice(&files["run.json"]).unwrap();
-        assert!(report["frames_per_second"].take().as_f64().unwrap() > 0.0);
-        files.insert("run.json".to_owned(), report.to_string().into_bytes());
-        files
+        files_below(&self.out(out), &["frames_per_second"])
     }
 
     /// Breaks runs off after so many frames, takes them up, and expects what an unbroken run writes.

@@ -83,12 +83,35 @@ fn a_video_is_tracked_as_its_frames_are() {
     assert_eq!(fs::read_dir(video.join("overlay")).unwrap().count(), FRAMES);
     let page = sinew(root, "report of_video --out page.html");
     assert!(page.status.success() && !String::from_utf8_lossy(&page.stdout).contains("notice"), "{page:?}");
-    let refused = told(&sinew(root, "record of_video --out stream"));
-    assert!(refused.contains("both arms") || refused.contains("a video was tracked"), "{refused}");
 
     let doctor = sinew(root, "doctor clip.mkv");
     let text = String::from_utf8_lossy(&doctor.stdout).into_owned();
     assert!(doctor.status.success() && text.contains("30 frames of 640x480 pixels, 15.000 per second"), "{text}");
+}
+
+#[test]
+fn a_video_is_recorded_for_firmware_as_its_frames_are() {
+    let Some(root) = scene() else { return };
+    let root = root.path();
+    let bytes = fs::read(lossless(root)).unwrap();
+    for (input, run) in [("scene/frames", "of_folder"), ("clip.mkv", "of_video")] {
+        let output = sinew(root, &format!("track arm {input} --config scene/camera.toml --out {run}"));
+        assert!(output.status.success(), "{}", told(&output));
+        for form in ["tracker", "camera"] {
+            let output = sinew(root, &format!("record {run} --form {form} --out {run}.{form}"));
+            assert!(output.status.success(), "{}", told(&output));
+            assert!(String::from_utf8_lossy(&output.stdout).contains("of 30 frames"), "{output:?}");
+        }
+    }
+    for form in ["tracker", "camera"] {
+        let [folder, video] =
+            ["of_folder", "of_video"].map(|run| fs::read(root.join(format!("{run}.{form}"))).unwrap());
+        assert!(folder == video, "{form}");
+    }
+    fs::write(root.join("clip.mkv"), &bytes[..bytes.len() / 2]).unwrap();
+    let refused = sinew(root, "record of_video --out broken");
+    assert!(!refused.status.success() && told(&refused).contains("is broken after"), "{}", told(&refused));
+    assert!(!root.join("broken").exists());
 }
 
 #[test]

@@ -22,11 +22,11 @@ use core::f32::consts::PI;
 /// Invariants: all numbers finite, angles in (-pi, pi], covariance symmetric and positive semi-definite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KalmanFilter<const N: usize> {
-    angles_rad: [f32; N],
-    turns: [i32; N],
-    velocities: [f32; N],
-    covariance: KinematicCovariance<N>,
-    cycle: CycleState,
+    pub(super) angles_rad: [f32; N],
+    pub(super) turns: [i32; N],
+    pub(super) velocities: [f32; N],
+    pub(super) covariance: KinematicCovariance<N>,
+    pub(super) cycle: CycleState,
 }
 
 const _: () = assert!(size_of::<KalmanFilter<HUMAN_ANGLES>>() <= 2560, "the state has to fit 2.5 KiB");

@@ -75,6 +75,7 @@ pub mod interpolation;
 pub mod joint_update;
 pub mod kalman;
 pub mod kalman_options;
+mod kalman_state;
 #[cfg(test)]
 mod kalman_tests;
 pub mod log_product;

@@ -46,6 +46,8 @@ pub enum StateError {
         needed: usize,
     },
     /// The bytes are no state of this kind, were cut, or were changed.
+    /// Of the tracker of a body.
+    Body = 5,
     Corrupt,
     /// Saved by another version.
     Version,

@@ -1,6 +1,7 @@
 //! What the command tells a person or a script: results on standard output, everything else on standard error.
 
 use super::stdout::write_all;
+use crate::resume::Interrupted;
 use anyhow::Result;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -54,6 +55,18 @@ impl Console {
         bar.set_length(length);
         bar.set_style(ProgressStyle::with_template(template)?);
         Ok(bar)
+    }
+
+    /// Passes on how a run ended, and says where Ctrl-C ended it that it can be gone on with.
+    ///
+    /// # Errors
+    /// That of the run.
+    pub fn resumable<T>(&self, ended: Result<T>) -> Result<T> {
+        ended.inspect_err(|error| {
+            if error.is::<Interrupted>() {
+                self.note("the same command with --resume goes on from there");
+            }
+        })
     }
 
     /// Does what takes long and has no count, while standard error, if it is a terminal, shows `what` and for how long.

@@ -56,7 +56,7 @@ pub struct DemoError {
 /// Renders, tracks, compares, and says where to look.
 ///
 /// # Errors
-/// An output that cannot be written, or [`crate::track::Interrupted`].
+/// An output that cannot be written, or [`crate::resume::Interrupted`].
 pub fn run(args: &DemoArgs, console: &Console) -> Result<()> {
     let out = OutputDir::create(&args.out)?;
     let scene = render(&out, args.seed)?;

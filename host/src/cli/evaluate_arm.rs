@@ -1,6 +1,7 @@
 //! `sinew evaluate arm`
 
 use super::console::Console;
+use super::ctrl_c::stop_flag;
 use super::skin_args::SkinArgs;
 use crate::config::{Config, VariantName};
 use crate::draw::plot::{Curve, bars_plot, curves_plot};
@@ -8,13 +9,16 @@ use crate::evaluate::clips::{builtin, recorded};
 use crate::evaluate::experiments::{self, Recovery, Row, as_printed, row, variant_name};
 use crate::evaluate::observed::{ObservedScene, observe_all};
 use crate::output::OutputDir;
+use crate::resume::{Begun, Cells, Stop, text_crc32};
 use crate::scene::SceneOptions;
+use crate::skin::{SkinModel, model_file};
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde::Serialize;
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 /// Stack of a worker thread: the trackers with thousands of particles are built there.
 const STACK_BYTES: usize = 32 << 20;
@@ -47,6 +51,9 @@ pub struct EvaluateArmArgs {
     /// Folder for the tables and plots.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Go on with the evaluation in --out that Ctrl-C ended; the other options have to be the same.
+    #[arg(long)]
+    pub resume: bool,
 }
 
 /// What `DIR/arm.json` holds.
@@ -66,14 +73,26 @@ struct Report {
 /// Renders the scenes, tracks them with everything that is compared, and writes tables and plots.
 ///
 /// # Errors
-/// A clip that is missing, an option out of range, an output that cannot be written.
+/// A clip that is missing, an option out of range, an output that cannot be written, or [`crate::resume::Interrupted`].
 pub fn run(args: &EvaluateArmArgs, console: &Console) -> Result<()> {
+    let flag = stop_flag()?;
+    console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))
+}
+
+/// As [`run`], ended by `stop` in the place of Ctrl-C.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_until(args: &EvaluateArmArgs, console: &Console, stop: Stop<'_>) -> Result<()> {
     ensure!(args.seeds > 0 && args.clips > 0, "--seeds and --clips must be greater than zero");
     ensure!(args.frames > 105, "--frames must be greater than 105; those from 101 on are scored, not {}", args.frames);
     ensure!(args.skin.calibrate.is_none(), "--calibrate has no use here: every scene has a skin of its own");
+    let skin = args.skin.load()?;
+    let begun = begun(args, &skin)?;
     let output = OutputDir::create(&args.out)?;
+    let cells = Cells::keep(&output, &begun, args.resume, stop)?;
     let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build()?;
-    let report = console.busy("rendering and tracking", || pool.install(|| measure(args)))?;
+    let report = console.busy("rendering and tracking", || pool.install(|| measure(args, &skin, &cells)))?;
     output.write("arm.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
     output.write("arm.csv", |writer| Ok(writer.write_all(table(&report).as_bytes())?))?;
     let curve = |unit: fn(&Row) -> [f64; 3]| curves(&report.variants, unit);
@@ -83,12 +102,28 @@ pub fn run(args: &EvaluateArmArgs, console: &Console) -> Result<()> {
     output.write_png("error_2d.png", &curves_plot("2D hand error", "particles", "error, px", true, &pixels)?)?;
     let bars: Vec<(String, f64)> = report.options.iter().map(|row| (row.name.clone(), row.error_m.median)).collect();
     output.write_png("options.png", &bars_plot("Each option's own effect", "3D hand error, m", &bars)?)?;
+    cells.end()?;
     let text = format!("{}tables and plots: {}\n", told(&report), args.out.display());
     console.answer(&text, &json!({ "out": args.out, "report": report }))
 }
 
-fn measure(args: &EvaluateArmArgs) -> Result<Report> {
-    let skin = args.skin.load()?;
+/// What the cells depend on, beside the scenes.
+fn begun(args: &EvaluateArmArgs, skin: &SkinModel) -> Result<Begun> {
+    let variants: Vec<&str> = args.variants.iter().map(|variant| variant_name(*variant)).collect();
+    let options = json!({
+        "mocap": args.mocap,
+        "clips": args.clips,
+        "seeds": args.seeds,
+        "frames": args.frames,
+        "particles": args.particles,
+        "variants": variants,
+        "skin": args.skin.skin,
+    });
+    let begun = Begun::new("evaluate arm", &options, &[])?;
+    Ok(begun.reading("the skin model", text_crc32(&model_file::to_json(skin)?)))
+}
+
+fn measure(args: &EvaluateArmArgs, skin: &SkinModel, cells: &Cells<'_>) -> Result<Report> {
     let mut clips = match &args.mocap {
         Some(folder) => recorded(folder)?,
         None => builtin(args.clips as u64),
@@ -97,9 +132,9 @@ fn measure(args: &EvaluateArmArgs) -> Result<Report> {
     let seeds: Vec<u64> = (1..=args.seeds).collect();
     let base = Config::default();
     let options = SceneOptions { frames: args.frames, ..SceneOptions::default() };
-    let scenes: Vec<ObservedScene> = observe_all(&clips, &seeds, &options, &base, &skin)?;
-    let mut effects = experiments::options(&scenes, VariantName::Pik)?;
-    effects.extend(experiments::options(&scenes, VariantName::Corrected)?);
+    let scenes: Vec<ObservedScene> = observe_all(&clips, &seeds, &options, &base, skin, cells)?;
+    let mut effects = experiments::options(&scenes, VariantName::Pik, cells)?;
+    effects.extend(experiments::options(&scenes, VariantName::Corrected, cells)?);
     let printed = [(VariantName::Corrected, 50), (VariantName::Standard, 50), (VariantName::Standard, 1000)];
     Ok(Report {
         format: "sinew-evaluate-arm",
@@ -107,13 +142,16 @@ fn measure(args: &EvaluateArmArgs) -> Result<Report> {
         sinew_version: env!("CARGO_PKG_VERSION"),
         frames: args.frames,
         scenes: scenes.iter().map(|scene| (scene.clip.clone(), scene.seed)).collect(),
-        variants: experiments::variants(&scenes, &args.variants, &args.particles)?,
+        variants: experiments::variants(&scenes, &args.variants, &args.particles, cells)?,
         options: effects,
         as_printed: printed
             .into_iter()
-            .map(|(variant, n)| row(&format!("{} as printed", variant_name(variant)), &scenes, &as_printed(variant, n)))
+            .map(|(variant, n)| {
+                let name = format!("{} as printed", variant_name(variant));
+                row(&name, &scenes, &as_printed(variant, n), cells)
+            })
             .collect::<Result<_>>()?,
-        recovery: experiments::recovery(&clips, &seeds, &base, &skin)?,
+        recovery: experiments::recovery(&clips, &seeds, &base, skin, cells)?,
     })
 }
 

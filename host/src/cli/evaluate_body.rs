@@ -1,6 +1,7 @@
 //! `sinew evaluate body`
 
 use super::console::Console;
+use super::ctrl_c::stop_flag;
 use crate::body::BodyPart;
 use crate::body::run::{inputs::check_part, tuning_file};
 use crate::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
@@ -10,6 +11,7 @@ use crate::evaluate::body::{
     BodyReport, BodyResult, Measured, MotionChoice, figures::figures, motions::ReadMotion, prediction,
 };
 use crate::output::OutputDir;
+use crate::resume::{Begun, Cells, Stop};
 use crate::stereo::Hidden;
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -18,6 +20,7 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde_json::json;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 /// Options of `sinew evaluate body`.
 #[derive(Debug, Args)]
@@ -59,22 +62,36 @@ pub struct EvaluateBodyArgs {
     /// Folder for report.json, table.csv and figures.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Go on with the evaluation in --out that Ctrl-C ended; the other options have to be the same.
+    #[arg(long)]
+    pub resume: bool,
 }
 
 /// Tracks every motion with every model and count, and writes what came out.
 ///
 /// # Errors
-/// A motion or configuration that cannot be read, an output that cannot be written.
+/// A motion or configuration that cannot be read, an output that cannot be written, or [`crate::resume::Interrupted`].
 pub fn run(args: &EvaluateBodyArgs, console: &Console) -> Result<()> {
+    let flag = stop_flag()?;
+    console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))
+}
+
+/// As [`run`], ended by `stop` in the place of Ctrl-C.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_until(args: &EvaluateBodyArgs, console: &Console, stop: Stop<'_>) -> Result<()> {
     check(args)?;
     let tuning = args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?;
     let output = OutputDir::create(&args.out)?;
-    let (report, prediction_figures) = evaluate(args, tuning, console)?;
+    let cells = Cells::keep(&output, &begun(args, &tuning)?, args.resume, stop)?;
+    let (report, prediction_figures) = evaluate(args, tuning, &cells, console)?;
     output.write("report.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
     output.write("table.csv", |writer| Ok(writer.write_all(report.to_csv().as_bytes())?))?;
     for (name, picture) in figures(&report)?.into_iter().chain(prediction_figures) {
         output.write_png(&name, &picture)?;
     }
+    cells.end()?;
     let text = format!("{}report, table and figures: {}\n", report.to_text(), args.out.display());
     console.answer(&text, &json!({ "out": args.out, "report": report }))
 }
@@ -96,21 +113,41 @@ fn check(args: &EvaluateBodyArgs) -> Result<()> {
     Ok(())
 }
 
+/// What the cells depend on, beside the motions.
+fn begun(args: &EvaluateBodyArgs, tuning: &BodyTuning) -> Result<Begun> {
+    let models: Vec<&str> = args.models.iter().map(|model| model.name()).collect();
+    let options = json!({
+        "motion": args.motion.iter().map(MotionChoice::name).collect::<Vec<_>>(),
+        "skeleton": args.skeleton,
+        "body": args.body.name(),
+        "models": models,
+        "particles": args.particles,
+        "trials": args.trials,
+        "heading": args.heading,
+        "hide": args.hide,
+        "hide_arms": args.hide_arms,
+        "config": tuning,
+    });
+    Begun::new("evaluate body", &options, &[])
+}
+
 /// All cells, and the figures of what models predict.
 fn evaluate(
     args: &EvaluateBodyArgs,
     tuning: BodyTuning,
+    cells: &Cells<'_>,
     console: &Console,
 ) -> Result<(BodyReport, Vec<(String, RgbImage)>)> {
     let rounds = 1 + usize::from(args.hide_arms.is_some());
-    let cells = args.motion.len() * args.models.len() * args.particles.len() * rounds;
-    let progress = console.bar(cells as u64 * args.trials, "{pos}/{len} trials {wide_bar} {eta}")?;
+    let count = args.motion.len() * args.models.len() * args.particles.len() * rounds;
+    let progress = console.bar(count as u64 * args.trials, "{pos}/{len} trials {wide_bar} {eta}")?;
     let (mut results, mut predicted, mut hidden_arms) = (Vec::new(), None, Vec::new());
     for motion in &args.motion {
         let read = motion.read_turned(args.skeleton.as_deref(), args.heading.to_radians())?;
         let seeds = (1..=args.trials).into_par_iter();
-        let seen: Vec<SeenMotion> =
-            seeds.map(|seed| read.seen_hiding(args.body, seed, &args.hide)).collect::<Result<_>>()?;
+        let seen: Vec<SeenMotion> = seeds
+            .map(|seed| cells.go_on().and_then(|()| read.seen_hiding(args.body, seed, &args.hide)))
+            .collect::<Result<_>>()?;
         let of_truth: Vec<f64> = seen.iter().map(SeenMotion::smoothness_m).collect();
         let truth = (motion.name(), Measured::of(&of_truth).mean);
         if predicted.is_none() {
@@ -118,11 +155,11 @@ fn evaluate(
         }
         for &model in &args.models {
             for &particles in &args.particles {
-                results.push(cell(&truth, &seen, model, &tuning, particles, &progress)?);
+                results.push(cell(&truth, &seen, (model, particles), (&tuning, cells), &progress)?);
             }
         }
         if let Some(length) = args.hide_arms {
-            hidden_arms.extend(hide_arms(args, (&motion.name(), &read), length, &tuning, &progress)?);
+            hidden_arms.extend(hide_arms(args, (&motion.name(), &read), length, (&tuning, cells), &progress)?);
         }
     }
     progress.finish_and_clear();
@@ -150,14 +187,14 @@ fn evaluate(
 fn cell(
     (name, truth_smoothness_m): &(String, f64),
     seen: &[SeenMotion],
-    model: BodyModelKind,
-    tuning: &BodyTuning,
-    particles: usize,
+    (model, particles): (BodyModelKind, usize),
+    (tuning, cells): (&BodyTuning, &Cells<'_>),
     progress: &ProgressBar,
 ) -> Result<BodyResult> {
     let mut trials: Vec<TrialResult> = Vec::with_capacity(seen.len());
     for (seed, motion) in (1..).zip(seen) {
-        trials.push(trial(motion, model, tuning, particles, seed)?.0);
+        let key = json!(["trial", name, motion.key(), model.name(), particles, seed]);
+        trials.push(cells.cell(&key, || Ok(trial(motion, model, tuning, particles, seed)?.0))?);
         progress.inc(1);
     }
     let of = |value: fn(&TrialResult) -> f64| Measured::of(&trials.iter().map(value).collect::<Vec<_>>());
@@ -182,7 +219,7 @@ fn hide_arms(
     args: &EvaluateBodyArgs,
     (name, motion): (&str, &ReadMotion),
     length: usize,
-    tuning: &BodyTuning,
+    (tuning, cells): (&BodyTuning, &Cells<'_>),
     progress: &ProgressBar,
 ) -> Result<Vec<HiddenArm>> {
     let mut arms = Vec::new();
@@ -192,7 +229,7 @@ fn hide_arms(
         let seen = motion.seen_hiding(args.body, seed, &windows)?;
         for &model in &args.models {
             for &particles in &args.particles {
-                arms.extend(hidden_arm::follow(name, (&seen, &windows), (model, particles), tuning, seed)?);
+                arms.extend(hidden_arm::follow(name, (&seen, &windows), (model, particles), (tuning, cells), seed)?);
                 progress.inc(1);
             }
         }

@@ -1,16 +1,19 @@
 //! `sinew evaluate cyclic`
 
 use super::console::Console;
+use super::ctrl_c::stop_flag;
 use crate::cyclic::model::MODEL_VALUE;
 use crate::cyclic::training::{TrainingOptions, train};
 use crate::cyclic::{CutList, CyclicModel};
 use crate::evaluate::cyclic::experiments::FILTERS;
 use crate::evaluate::cyclic::{CyclicReport, Setting, figures::figures, long_runs, synthetic, test_cycles};
 use crate::output::OutputDir;
+use crate::resume::{Begun, Cells, Stop, text_crc32};
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
 /// Options of `sinew evaluate cyclic`.
 #[derive(Debug, Args)]
@@ -40,6 +43,9 @@ pub struct EvaluateCyclicArgs {
     /// Folder for the tables and plots.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Go on with the evaluation in --out that Ctrl-C ended; the other options have to be the same.
+    #[arg(long)]
+    pub resume: bool,
 }
 
 /// Particles of figure 5a, as in the paper.
@@ -48,8 +54,17 @@ const SPARSE_PARTICLES: [usize; 2] = [10_000, 50_000];
 /// Measures all tables and figures and writes them.
 ///
 /// # Errors
-/// A list, table or model that cannot be read, an output that cannot be written.
+/// A list, table or model that cannot be read, an output that cannot be written, or [`crate::resume::Interrupted`].
 pub fn run(args: &EvaluateCyclicArgs, console: &Console) -> Result<()> {
+    let flag = stop_flag()?;
+    console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))
+}
+
+/// As [`run`], ended by `stop` in the place of Ctrl-C.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_until(args: &EvaluateCyclicArgs, console: &Console, stop: Stop<'_>) -> Result<()> {
     ensure!(args.seeds > 0, "--seeds must be greater than zero");
     ensure!(args.rate > 0.0 && args.rate.is_finite(), "--rate must be greater than zero, not {}", args.rate);
     let particles = particles(&args.particles)?;
@@ -65,7 +80,8 @@ pub fn run(args: &EvaluateCyclicArgs, console: &Console) -> Result<()> {
         Some(path) => test_cycles(&CutList::read(path)?)?,
         None => synthetic::cycles(&model, args.rate)?,
     };
-    let setting = Setting { cycles: &cycles, model: &model, rate_hz: args.rate, seeds: args.seeds };
+    let cells = Cells::keep(&output, &begun(args, &model)?, args.resume, stop)?;
+    let setting = Setting { cycles: &cycles, model: &model, rate_hz: args.rate, seeds: args.seeds, cells: &cells };
     let sparse_particles: Vec<usize> = if particles.is_empty() { Vec::new() } else { SPARSE_PARTICLES.to_vec() };
     let measure = || {
         Ok(CyclicReport {
@@ -95,8 +111,24 @@ pub fn run(args: &EvaluateCyclicArgs, console: &Console) -> Result<()> {
     for (name, picture) in figures(&setting, &report)? {
         output.write_png(&name, &picture)?;
     }
+    cells.end()?;
     let text = format!("{}tables and plots: {}\n", report.to_text(), args.out.display());
     console.answer(&text, &json!({ "out": args.out, "report": report }))
+}
+
+/// What the cells depend on, beside the cycles.
+fn begun(args: &EvaluateCyclicArgs, model: &CyclicModel) -> Result<Begun> {
+    let options = json!({
+        "train": args.train,
+        "model": args.model,
+        "test": args.test,
+        "long": args.long,
+        "rate": args.rate,
+        "seeds": args.seeds,
+        "particles": args.particles,
+    });
+    let numbers = text_crc32(&format!("{:?}", model.numbers()));
+    Ok(Begun::new("evaluate cyclic", &options, &[])?.reading("the model", numbers))
 }
 
 fn particles(list: &[String]) -> Result<Vec<usize>> {

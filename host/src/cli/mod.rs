@@ -14,7 +14,7 @@ pub mod doctor;
 pub mod evaluate;
 pub mod evaluate_arm;
 pub mod evaluate_body;
-mod evaluate_cyclic;
+pub mod evaluate_cyclic;
 pub mod evaluate_hands;
 pub mod evaluate_skin;
 pub mod export;

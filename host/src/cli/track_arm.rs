@@ -6,7 +6,7 @@ use super::skin_args::SkinArgs;
 use super::viewer_args::ViewerArgs;
 use crate::config::{Config, DEFAULT_FILE, MAX_PARTICLES, VariantName};
 use crate::images::{VideoFacts, is_video};
-use crate::track::{Event, Interrupted, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
+use crate::track::{Event, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
 use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::json;
@@ -62,7 +62,7 @@ pub struct TrackArmArgs {
     /// Refuse the folder if one of its images cannot be read; without it such a frame counts as missing.
     #[arg(long)]
     pub strict: bool,
-    /// Go on with the run in DIR that Ctrl-C ended; the other options have to be the same.
+    /// Go on with the run in --out that Ctrl-C ended; the other options have to be the same.
     #[arg(long)]
     pub resume: bool,
     /// The run for a viewer.
@@ -84,7 +84,7 @@ fn rate_hz(text: &str) -> Result<f64, String> {
 /// Tracks the folder, or prints the default configuration.
 ///
 /// # Errors
-/// Bad input, an output that cannot be written, or [`crate::track::Interrupted`].
+/// Bad input, an output that cannot be written, or [`crate::resume::Interrupted`].
 pub fn run(args: &TrackArmArgs, console: &Console) -> Result<()> {
     if args.print_config {
         return console.answer(DEFAULT_FILE, &Config::default());
@@ -111,11 +111,7 @@ pub fn run(args: &TrackArmArgs, console: &Console) -> Result<()> {
         config: effective_config(args)?,
     };
     let run = if args.resume { TrackRun::resume(options, out)? } else { TrackRun::prepare(options, out)? };
-    let report = run_with_progress(run, console).inspect_err(|error| {
-        if error.is::<Interrupted>() {
-            console.note("the same command with --resume goes on from there");
-        }
-    })?;
+    let report = console.resumable(run_with_progress(run, console))?;
     let report = report.report;
     let viewer = args.viewer.write(out, console)?;
     let names = contents(args);

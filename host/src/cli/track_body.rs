@@ -10,7 +10,7 @@ use crate::cloud::MAX_POINTS;
 use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Options of `sinew track body`.
 #[derive(Debug, Args)]
@@ -70,6 +70,9 @@ pub struct TrackBodyArgs {
     /// End the run at a cloud that cannot be read; without it such a frame counts as one without points.
     #[arg(long)]
     pub strict: bool,
+    /// Go on with the run in --out that Ctrl-C ended; the other options have to be the same, but for --threads.
+    #[arg(long)]
+    pub resume: bool,
     /// The run for a viewer.
     #[command(flatten)]
     pub viewer: ViewerArgs,
@@ -78,7 +81,7 @@ pub struct TrackBodyArgs {
 /// Tracks the folder, or prints the default numbers.
 ///
 /// # Errors
-/// Bad input, an output that cannot be written, or [`crate::track::Interrupted`].
+/// Bad input, an output that cannot be written, or [`crate::resume::Interrupted`].
 pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
     if args.print_config {
         return console.answer(&tuning_file::printed()?, &BodyTuning::default());
@@ -103,7 +106,8 @@ pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
         pictures: args.pictures,
         tuning: args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?,
     };
-    let report = run_with_progress(options, out, console)?;
+    let run = if args.resume { BodyTrackRun::resume(options, out)? } else { BodyTrackRun::prepare(options, out)? };
+    let report = console.resumable(run_with_progress(run, console))?;
     let viewer = args.viewer.write(out, console)?;
     let names = contents(&report);
     let text = format!("{}results in `{}`: {}\n{viewer}", report.summary(), out.display(), names.join(", "));
@@ -111,9 +115,10 @@ pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
 }
 
 /// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the current frame.
-fn run_with_progress(options: BodyTrackOptions, out: &Path, console: &Console) -> Result<BodyRunReport> {
-    let run = BodyTrackRun::prepare(options, out)?;
+fn run_with_progress(run: BodyTrackRun, console: &Console) -> Result<BodyRunReport> {
     let bar = console.bar(run.frame_count() as u64, "{wide_bar} frame {pos} of {len}, {per_sec}")?;
+    bar.set_position(run.frames_finished() as u64);
+    bar.reset_eta();
     let told = |text: String| bar.suspend(|| console.note(text));
     let outcome = run.run(stop_flag()?, &mut |event| match event {
         BodyEvent::Note(note) => told(format!("note: {note}")),

@@ -1,6 +1,7 @@
 //! `sinew track cyclic`: angles, phase and cadence from an angle table.
 
 use super::console::Console;
+use super::ctrl_c::stop_flag;
 use super::viewer_args::ViewerArgs;
 use crate::cyclic::model::MODEL_VALUE;
 use crate::cyclic::pictures::{OverlayFrames, animation};
@@ -8,15 +9,16 @@ use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::figures;
 use crate::cyclic::report::{Origin, OverlayOrigin, Report};
 use crate::cyclic::tracking::table::{self, MotionCells, NO_MOTION};
-use crate::cyclic::tracking::{
-    FilterName, NamedMotion, StartName, Tracked, TrackingOptions, Updates, track, track_bank,
-};
+use crate::cyclic::tracking::{FilterName, NamedMotion, StartName, TableRun, Tracked, TrackingOptions, Updates};
 use crate::cyclic::{AngleTable, CyclicModel};
 use crate::output::{OutputDir, check_writable_file};
+use crate::resume::{Begun, Interrupted, Left, ResumeFile, file_crc32, text_crc32};
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde_json::json;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// Options of `sinew track cyclic`.
 #[derive(Debug, Args)]
@@ -79,73 +81,199 @@ pub struct TrackCyclicArgs {
     /// Height of the person, metres: the scale of the report's joints.trc.
     #[arg(long, value_name = "METRES", default_value_t = 1.75)]
     pub height: f64,
+    /// Go on with the run to --out that Ctrl-C ended; what decides the estimates has to be the same.
+    #[arg(long)]
+    pub resume: bool,
     /// The run for a viewer.
     #[command(flatten)]
     pub viewer: ViewerArgs,
 }
 
+/// The subcommand, in what it leaves.
+const COMMAND: &str = "track cyclic";
+
 /// Tracks the table, writes the estimates, prints cycles and cadence.
 ///
 /// # Errors
-/// A table or model that cannot be used, an option out of range, an output that cannot be written.
+/// A table or model that cannot be used, an option out of range, an output that cannot be written, or [`Interrupted`].
 pub fn run(args: &TrackCyclicArgs, console: &Console) -> Result<()> {
+    console.resumable(run_until(args, console, stop_flag()?, &mut |_| ()))
+}
+
+/// As [`run`], ended by `stop` in the place of Ctrl-C; `notify` is told how many rows are answered.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_until(
+    args: &TrackCyclicArgs,
+    console: &Console,
+    stop: &AtomicBool,
+    notify: &mut dyn FnMut(usize),
+) -> Result<()> {
     let options = options(args);
     options.check()?;
     check(args)?;
     let frames = args.overlay.as_deref().map(OverlayFrames::open).transpose()?;
+    let file = ResumeFile::beside(&args.out, COMMAND);
+    let left: Option<Left<Option<String>>> = args.resume.then(|| file.read(&args.out)).transpose()?;
     let output = args.report.as_deref().map(OutputDir::create).transpose()?;
     let models = args.model.iter().map(|name| CyclicModel::from_option(name)).collect::<Result<Vec<_>>>()?;
     let angles = AngleTable::read(&args.table)?;
-    let overlay = frames.as_ref().map(|frames| with_output(frames, &angles, &args.out)).transpose()?;
-    let drawn_into = overlay.as_ref().map(|(_, folder)| folder.path().to_path_buf());
-    let (tracked, motions) = match models.as_slice() {
-        [model] => (track(&angles, model, &options)?, None),
-        several => {
-            let bank = track_bank(&angles, several, &options)?;
-            let cells = motion_cells(&args.model, &bank.motions);
-            (bank.tracked, Some(cells))
-        }
-    };
-    table::write(&tracked, motions.as_ref(), &args.out)?;
-    let report = Report::new(&angles, &tracked, &options);
-    let mut text = told(&report);
-    if let Some(motions) = &motions {
-        text.push_str(&told_motions(&args.model, motions));
+    let begun = begun(args, &models)?;
+    let mut run = TableRun::begin(&angles, &models, &options)?;
+    if let Some(left) = &left {
+        left.begun.check_options(&begun, &args.out)?;
+        left.begun.check_inputs(&begun)?;
+        run.restore(left.finished, left.state.as_deref())?;
     }
-    text.push_str(&format!("wrote {}\n", args.out.display()));
-    if let Some(output) = output {
-        let drawn = overlay.as_ref().map(|(frames, folder)| OverlayOrigin {
+    let overlay = frames.as_ref().map(|frames| with_output(frames, &angles, &args.out)).transpose()?;
+    let start = Instant::now();
+    let shown = Shown { args, angles: &angles, options: &options, output, overlay };
+    let ended =
+        follow(&mut run, stop, notify, console).and_then(|is_complete| shown.write(&run, is_complete, stop, console));
+    let seconds = left.map_or(0.0, |left| left.seconds) + start.elapsed().as_secs_f64();
+    let is_interrupted = ended.as_ref().is_err_and(|error| error.is::<Interrupted>());
+    let left = if is_interrupted { Some(Left::new(begun, run.finished(), seconds, None, run.saved()?)) } else { None };
+    file.put(left.as_ref())?;
+    ended
+}
+
+/// How the estimates come about; what is made of them may differ from run to run.
+fn begun(args: &TrackCyclicArgs, models: &[CyclicModel]) -> Result<Begun> {
+    let options = json!({
+        "model": args.model,
+        "filter": args.filter,
+        "sigma_deg": args.sigma_deg,
+        "particles": args.particles,
+        "init": args.init,
+        "initial_cycle_position": args.initial_cycle_position,
+        "initial_cycle_velocity": args.initial_cycle_velocity,
+        "update_every": args.update_every,
+        "update_at": args.update_at,
+        "smooth": args.smooth,
+        "rate": args.rate,
+        "seed": args.seed,
+    });
+    let begun = Begun::new(COMMAND, &options, &[])?.on(&args.table)?;
+    let begun = begun.reading(format!("`{}`", args.table.display()), file_crc32(&args.table)?);
+    let named = args.model.iter().zip(models);
+    Ok(named.fold(begun, |begun, (name, model)| {
+        begun.reading(format!("the model `{name}`"), text_crc32(&format!("{:?}", model.numbers())))
+    }))
+}
+
+/// Tracks with a progress bar on standard error, if that is a terminal, until the last row or Ctrl-C; whether it was the last row.
+fn follow(run: &mut TableRun<'_>, stop: &AtomicBool, notify: &mut dyn FnMut(usize), console: &Console) -> Result<bool> {
+    let bar = console.bar(run.rows() as u64, "{wide_bar} row {pos} of {len}, {per_sec}")?;
+    bar.set_position(run.finished() as u64);
+    bar.reset_eta();
+    let ended = run.run(stop, &mut |finished| {
+        bar.set_position(finished as u64);
+        notify(finished);
+    });
+    bar.finish_and_clear();
+    ended
+}
+
+/// What is made of a run.
+struct Shown<'a> {
+    args: &'a TrackCyclicArgs,
+    angles: &'a AngleTable,
+    options: &'a TrackingOptions,
+    output: Option<OutputDir>,
+    overlay: Option<(&'a OverlayFrames, OutputDir)>,
+}
+
+impl Shown<'_> {
+    /// Writes the estimates; of a complete run also report and pictures, and tells what came out.
+    fn write(&self, run: &TableRun<'_>, is_complete: bool, stop: &AtomicBool, console: &Console) -> Result<()> {
+        let Self { args, angles, options, .. } = self;
+        let (tracked, motions) = run.answered()?;
+        let motions = motions.map(|motions| motion_cells(&args.model, &motions));
+        table::write(&tracked, motions.as_ref(), &args.out)?;
+        let interrupted =
+            || Interrupted { finished: run.finished(), all: Some(run.rows()), unit: "rows", out: args.out.clone() };
+        ensure!(is_complete, interrupted());
+        let report = Report::new(angles, &tracked, options);
+        let mut text = told(&report);
+        if let Some(motions) = &motions {
+            text.push_str(&told_motions(&args.model, motions));
+        }
+        text.push_str(&format!("wrote {}\n", args.out.display()));
+        if let Some(output) = &self.output {
+            self.write_report(&report, &tracked, motions.as_ref(), output)?;
+            text.push_str(&format!("report: {}\n", output.path().display()));
+        }
+        if self.overlay.is_some() || args.animation.is_some() {
+            text.push_str(&self.draw(&tracked, &report, stop, console)?);
+            // Those that are drawn are kept; a resumption draws all.
+            ensure!(!stop.load(Ordering::Relaxed), interrupted());
+        }
+        if let Some(run) = &args.report {
+            text.push_str(&args.viewer.write(run, console)?);
+        }
+        let json = json!({
+            "summary": report.summary,
+            "symmetries": report.symmetries,
+            "motion_frames": motions.as_ref().map(|motions| motion_counts(&args.model, motions)),
+            "out": args.out,
+            "report": args.report,
+            "overlay": self.overlay.as_ref().map(|(_, folder)| folder.path()),
+            "animation": args.animation,
+            "viewer": args.viewer.rerun,
+        });
+        console.answer(&text, &json)
+    }
+
+    fn write_report(
+        &self,
+        report: &Report,
+        tracked: &Tracked,
+        motions: Option<&MotionCells>,
+        output: &OutputDir,
+    ) -> Result<()> {
+        let args = self.args;
+        let drawn = self.overlay.as_ref().map(|(frames, folder)| OverlayOrigin {
             folder: folder.path().display().to_string(),
             images: frames.names(),
         });
         let origin = Origin {
             table: &args.table.display().to_string(),
             model: &args.model.join(", "),
-            options: &options,
+            options: self.options,
             height_m: args.height,
-            motions: motions.as_ref(),
+            motions,
             overlay: drawn.as_ref(),
         };
-        report.write(&origin, &angles, &tracked, &output)?;
-        text.push_str(&format!("report: {}\n", output.path().display()));
+        report.write(&origin, self.angles, tracked, output)
     }
-    if overlay.is_some() || args.animation.is_some() {
-        text.push_str(&show(args, &angles, &tracked, &report, overlay, console)?);
+
+    /// Draws overlays and animation unless `stop` is set; tells on standard error what was skipped.
+    fn draw(&self, tracked: &Tracked, report: &Report, stop: &AtomicBool, console: &Console) -> Result<String> {
+        let (args, angles) = (self.args, self.angles);
+        let body = Body::of_table(angles, args.height);
+        let figures = figures(angles, tracked, &report.measured_shares, &body, args.sigma_deg.to_radians())?;
+        let mut text = String::new();
+        if let Some((frames, folder)) = &self.overlay {
+            let overlaid = frames.draw((angles, tracked), &figures, &body, folder, stop)?;
+            for reason in overlaid.skipped.iter().take(TOLD_REASONS) {
+                console.note(format!("overlay: {reason}; skipped"));
+            }
+            if overlaid.skipped.len() > TOLD_REASONS {
+                console.note(format!("overlay: {} more of the kind", overlaid.skipped.len() - TOLD_REASONS));
+            }
+            text.push_str(&format!("overlay: {} pictures in {}\n", overlaid.written, folder.path().display()));
+        }
+        if let Some(path) = args.animation.as_ref().filter(|_| !stop.load(Ordering::Relaxed)) {
+            animation::write(path, angles, &figures, &body, tracked.rate_hz)?;
+            let longest = animation::LONGEST_S;
+            if tracked.frames.len() as f64 > longest * tracked.rate_hz {
+                console.note(format!("animation: only the first {longest} seconds are shown"));
+            }
+            text.push_str(&format!("animation: {}\n", path.display()));
+        }
+        Ok(text)
     }
-    if let Some(run) = &args.report {
-        text.push_str(&args.viewer.write(run, console)?);
-    }
-    let json = json!({
-        "summary": report.summary,
-        "symmetries": report.symmetries,
-        "motion_frames": motions.as_ref().map(|motions| motion_counts(&args.model, motions)),
-        "out": args.out,
-        "report": args.report,
-        "overlay": drawn_into,
-        "animation": args.animation,
-        "viewer": args.viewer.rerun,
-    });
-    console.answer(&text, &json)
 }
 
 /// What can be checked before anything is read.
@@ -200,39 +328,6 @@ fn overlay_folder(out: &Path) -> PathBuf {
 
 /// Most reasons for skipped overlays that are told.
 const TOLD_REASONS: usize = 5;
-
-/// Draws overlays and animation; tells on standard error what was skipped.
-fn show(
-    args: &TrackCyclicArgs,
-    angles: &AngleTable,
-    tracked: &Tracked,
-    report: &Report,
-    overlay: Option<(&OverlayFrames, OutputDir)>,
-    console: &Console,
-) -> Result<String> {
-    let body = Body::of_table(angles, args.height);
-    let figures = figures(angles, tracked, &report.measured_shares, &body, args.sigma_deg.to_radians())?;
-    let mut text = String::new();
-    if let Some((frames, folder)) = overlay {
-        let overlaid = frames.draw(angles, tracked, &figures, &body, &folder)?;
-        for reason in overlaid.skipped.iter().take(TOLD_REASONS) {
-            console.note(format!("overlay: {reason}; skipped"));
-        }
-        if overlaid.skipped.len() > TOLD_REASONS {
-            console.note(format!("overlay: {} more of the kind", overlaid.skipped.len() - TOLD_REASONS));
-        }
-        text.push_str(&format!("overlay: {} pictures in {}\n", overlaid.written, folder.path().display()));
-    }
-    if let Some(path) = &args.animation {
-        animation::write(path, angles, &figures, &body, tracked.rate_hz)?;
-        let longest = animation::LONGEST_S;
-        if tracked.frames.len() as f64 > longest * tracked.rate_hz {
-            console.note(format!("animation: only the first {longest} seconds are shown"));
-        }
-        text.push_str(&format!("animation: {}\n", path.display()));
-    }
-    Ok(text)
-}
 
 /// Cycles and cadence, and how alike the sides are, for a terminal.
 fn told(report: &Report) -> String {

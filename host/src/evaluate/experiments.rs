@@ -5,11 +5,13 @@ use super::clips::Clip;
 use super::observed::{ObservedScene, observe_all};
 use super::score::{FrameError, Spread, run_all, track};
 use crate::config::{CombinationName, Config, EstimateName, TrackerConfig, VariantName};
+use crate::resume::Cells;
 use crate::scene::SceneOptions;
 use crate::skin::SkinModel;
 use anyhow::Result;
 use rayon::prelude::*;
 use serde::Serialize;
+use serde_json::json;
 
 /// Errors of one tracker over all scenes.
 #[derive(Debug, Clone, Serialize)]
@@ -30,8 +32,8 @@ pub struct Row {
 ///
 /// # Errors
 /// As [`run_all`].
-pub fn row(name: &str, scenes: &[ObservedScene], tracker: &TrackerConfig) -> Result<Row> {
-    let runs: Vec<(f64, f64)> = run_all(scenes, tracker)?.iter().map(|run| (run.mean_m, run.mean_px)).collect();
+pub fn row(name: &str, scenes: &[ObservedScene], tracker: &TrackerConfig, cells: &Cells<'_>) -> Result<Row> {
+    let runs: Vec<(f64, f64)> = run_all(scenes, tracker, cells)?.iter().map(|run| (run.mean_m, run.mean_px)).collect();
     let spread = |value: fn(&(f64, f64)) -> f64| Spread::of(&runs.iter().map(value).collect::<Vec<_>>());
     Ok(Row {
         name: name.to_owned(),
@@ -46,11 +48,16 @@ pub fn row(name: &str, scenes: &[ObservedScene], tracker: &TrackerConfig) -> Res
 ///
 /// # Errors
 /// As [`row`].
-pub fn variants(scenes: &[ObservedScene], names: &[VariantName], particles: &[usize]) -> Result<Vec<Row>> {
+pub fn variants(
+    scenes: &[ObservedScene],
+    names: &[VariantName],
+    particles: &[usize],
+    cells: &Cells<'_>,
+) -> Result<Vec<Row>> {
     let jobs = names.iter().flat_map(|&variant| particles.iter().map(move |&particles| (variant, particles)));
     jobs.map(|(variant, particles)| {
         let tracker = TrackerConfig { variant, particles, ..TrackerConfig::default() };
-        row(variant_name(variant), scenes, &tracker)
+        row(variant_name(variant), scenes, &tracker, cells)
     })
     .collect()
 }
@@ -87,7 +94,7 @@ pub fn as_printed(variant: VariantName, particles: usize) -> TrackerConfig {
 ///
 /// # Errors
 /// As [`row`].
-pub fn options(scenes: &[ObservedScene], variant: VariantName) -> Result<Vec<Row>> {
+pub fn options(scenes: &[ObservedScene], variant: VariantName, cells: &Cells<'_>) -> Result<Vec<Row>> {
     let base = || TrackerConfig { variant, ..TrackerConfig::default() };
     let changed = [
         ("default", base()),
@@ -100,7 +107,8 @@ pub fn options(scenes: &[ObservedScene], variant: VariantName) -> Result<Vec<Row
         ("mean of all particles", TrackerConfig { estimate: EstimateName::Mean, ..base() }),
         ("mean of both limbs", TrackerConfig { combination: CombinationName::Mean, ..base() }),
     ];
-    changed.iter().map(|(name, tracker)| row(&format!("{}: {name}", variant_name(variant)), scenes, tracker)).collect()
+    let named = |name: &str| format!("{}: {name}", variant_name(variant));
+    changed.iter().map(|(name, tracker)| row(&named(name), scenes, tracker, cells)).collect()
 }
 
 /// Frames in which the hand is away in the recovery scenes.
@@ -133,8 +141,8 @@ fn recovered(errors: &[FrameError], width_px: u32) -> bool {
 /// Sends the hand away and sees whether the default tracker finds it again.
 ///
 /// # Errors
-/// As [`observe_all`] and [`track`].
-pub fn recovery(clips: &[Clip], seeds: &[u64], base: &Config, skin: &SkinModel) -> Result<Recovery> {
+/// As [`observe_all`], [`track`] and [`Cells::cell`].
+pub fn recovery(clips: &[Clip], seeds: &[u64], base: &Config, skin: &SkinModel, cells: &Cells<'_>) -> Result<Recovery> {
     let share = |false_blob_fraction: f32| -> Result<f64> {
         let options = SceneOptions {
             frames: AWAY.end + 15,
@@ -143,10 +151,13 @@ pub fn recovery(clips: &[Clip], seeds: &[u64], base: &Config, skin: &SkinModel) 
             false_blob_fraction,
             ..SceneOptions::default()
         };
-        let scenes = observe_all(clips, seeds, &options, base, skin)?;
+        let scenes = observe_all(clips, seeds, &options, base, skin, cells)?;
         let found: Vec<bool> = scenes
             .par_iter()
-            .map(|scene| Ok(recovered(&track(scene, &base.tracker, scene.seed)?, scene.size_px.0)))
+            .map(|scene| {
+                let key = json!(["recovery", scene.key(), f64::from(false_blob_fraction)]);
+                cells.cell(&key, || Ok(recovered(&track(scene, &base.tracker, scene.seed)?, scene.size_px.0)))
+            })
             .collect::<Result<_>>()?;
         Ok(found.iter().filter(|found| **found).count() as f64 / found.len().max(1) as f64)
     };

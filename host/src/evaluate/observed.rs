@@ -4,11 +4,13 @@ use super::clips::Clip;
 use crate::config::Config;
 use crate::frames::{FrameReader, FrameView};
 use crate::motion::ArmSide;
+use crate::resume::{Cells, crc32_of};
 use crate::scene::{Scene, SceneOptions, Sides};
 use crate::skin::SkinModel;
 use crate::track::SideChoice;
 use anyhow::Result;
 use rayon::prelude::*;
+use serde_json::{Value, json};
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
 
@@ -44,6 +46,14 @@ pub struct ObservedScene {
     pub views: Vec<FrameView>,
     /// The truth.
     pub truth: Vec<HandTruth>,
+}
+
+impl ObservedScene {
+    /// What tells this scene from others that the same options and skin model make.
+    #[must_use]
+    pub fn key(&self) -> Value {
+        json!([self.clip, self.seed, crc32_of(&self.truth)])
+    }
 }
 
 /// Renders the scene of `clip` and sends every frame through the front end.
@@ -88,16 +98,20 @@ pub fn observe(clip: &Clip, options: &SceneOptions, base: &Config, skin: &SkinMo
 /// All clips with all seeds, in parallel; the order does not depend on the threads.
 ///
 /// # Errors
-/// As [`observe`].
+/// As [`observe`] and [`Cells::go_on`].
 pub fn observe_all(
     clips: &[Clip],
     seeds: &[u64],
     options: &SceneOptions,
     base: &Config,
     skin: &SkinModel,
+    cells: &Cells<'_>,
 ) -> Result<Vec<ObservedScene>> {
     let jobs: Vec<(&Clip, u64)> = clips.iter().flat_map(|clip| seeds.iter().map(move |&seed| (clip, seed))).collect();
     jobs.into_par_iter()
-        .map(|(clip, seed)| observe(clip, &SceneOptions { seed, ..options.clone() }, base, skin))
+        .map(|(clip, seed)| {
+            cells.go_on()?;
+            observe(clip, &SceneOptions { seed, ..options.clone() }, base, skin)
+        })
         .collect()
 }

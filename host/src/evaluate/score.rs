@@ -2,9 +2,12 @@
 
 use super::observed::ObservedScene;
 use crate::config::TrackerConfig;
+use crate::resume::Cells;
 use crate::track::ArmSet;
 use anyhow::Result;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 use statrs::statistics::{Data, OrderStatistics};
 
 /// First frame that counts: the paper looks at its trackers after 100 frames.
@@ -20,7 +23,7 @@ pub struct FrameError {
 }
 
 /// Mean errors of one run.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct RunError {
     /// Mean 3D error of the scored frames, metres.
     pub mean_m: f64,
@@ -29,7 +32,7 @@ pub struct RunError {
 }
 
 /// Median over runs with quartiles.
-#[derive(Debug, Clone, Copy, serde::Serialize)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub struct Spread {
     /// Lower quartile.
     pub lower: f64,
@@ -78,10 +81,14 @@ pub fn summarise(errors: &[FrameError]) -> RunError {
     }
 }
 
-/// Tracks every scene with its own seed and returns the runs' mean errors, in the scenes' order.
+/// Tracks every scene with its own seed and returns the runs' mean errors, in the scenes' order; each run is a cell.
 ///
 /// # Errors
-/// As [`track`].
-pub fn run_all(scenes: &[ObservedScene], tracker: &TrackerConfig) -> Result<Vec<RunError>> {
-    scenes.par_iter().map(|scene| Ok(summarise(&track(scene, tracker, scene.seed)?))).collect()
+/// As [`track`] and [`Cells::cell`].
+pub fn run_all(scenes: &[ObservedScene], tracker: &TrackerConfig, cells: &Cells<'_>) -> Result<Vec<RunError>> {
+    let run = |scene: &ObservedScene| {
+        let key = json!(["run", scene.key(), tracker]);
+        cells.cell(&key, || Ok(summarise(&track(scene, tracker, scene.seed)?)))
+    };
+    scenes.par_iter().map(run).collect()
 }

@@ -7,22 +7,20 @@ use anyhow::Result;
 use sinew_core::math::Vec3;
 use sinew_core::record::{ArmInput, CANDIDATES_A_RECORD, CandidateChunk, EDGES_A_RECORD, EdgeChunk};
 
-/// The stream of a run: the host's vision, firmware's tracker.
-pub(super) fn tracker_stream(run: &ArmRun) -> Result<Vec<u8>> {
+/// The stream of a run and its number of frames: the host's vision, firmware's tracker.
+pub(super) fn tracker_stream(run: &mut ArmRun) -> Result<(Vec<u8>, usize)> {
     let mut reader = FrameReader::new(run.config.likelihood.build()?, run.config.edges.build()?)?;
     let mut stream = StreamWriter::default();
     stream.push(&run.setup)?;
-    for frame in 0..run.frames.files().len() {
-        let view = match run.frames.load(frame) {
-            Ok(image) => Some(reader.read(&image, &run.skin)?),
-            Err(_) => {
-                reader.forget_last_frame();
-                None
-            }
-        };
-        push_frame(&mut stream, frame, run.timestamp_us(frame), run.setup.shoulder_m, view.as_ref())?;
-    }
-    stream.finish()
+    let (skin, shoulder_m) = (run.skin.clone(), run.setup.shoulder_m);
+    let frames = run.each_frame(|frame, timestamp_us, image| {
+        let view = image.map(|image| reader.read(&image, &skin)).transpose()?;
+        if view.is_none() {
+            reader.forget_last_frame();
+        }
+        push_frame(&mut stream, frame, timestamp_us, shoulder_m, view.as_ref())
+    })?;
+    Ok((stream.finish()?, frames))
 }
 
 fn push_frame(

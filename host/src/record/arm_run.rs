@@ -1,11 +1,11 @@
 //! The run of one arm, as its `run.json` tells it.
 
 use crate::config::Config;
-use crate::images::is_video;
 use crate::skin::{Rectangle, SkinModel};
-use crate::track::{ArmSet, FrameFolder, SideChoice};
+use crate::track::{ArmSet, FrameSource, SideChoice};
 use anyhow::{Context, Result, ensure};
 use clap::ValueEnum;
+use image::RgbImage;
 use serde_json::Value;
 use sinew_core::record::ArmSetup;
 use sinew_core::skeleton::Side;
@@ -13,27 +13,25 @@ use sinew_core::tracker::arm::options::LimbCombination;
 use std::fs;
 use std::path::Path;
 
+/// Frames that are read ahead.
+const CHUNK: usize = 8;
+
 /// The pictures of a run and how the tracker saw them.
 #[derive(Debug)]
 pub(crate) struct SeenFrames {
-    pub frames: FrameFolder,
+    pub frames: FrameSource,
     pub skin: SkinModel,
     pub config: Config,
 }
 
 impl SeenFrames {
-    /// Opens the images that the `options` of a run's record name.
+    /// Opens the images or the video that the `options` of a run's record name.
     pub fn open(options: &Value) -> Result<Self> {
         let text = |name: &str| options[name].as_str().with_context(|| format!("run.json has no option `{name}`"));
         let config: Config =
             serde_json::from_value(options["config"].clone()).context("run.json has no configuration")?;
-        let folder = Path::new(text("folder")?);
-        ensure!(
-            !is_video(folder),
-            "a video was tracked, and this needs a run on images: `ffmpeg -i {} FOLDER/%06d.png`, then track FOLDER",
-            folder.display()
-        );
-        let frames = FrameFolder::open(folder, false)?;
+        let rate_hz = options["rate_hz"].as_f64().context("run.json has no option `rate_hz`")?;
+        let frames = FrameSource::open(Path::new(text("folder")?), false, rate_hz)?;
         let mut skin = SkinModel::from_option(text("skin")?)?;
         if let Some(rectangle) = rectangle(&options["calibrate"]) {
             skin = skin.calibrated(frames.first().1, rectangle)?;
@@ -45,7 +43,7 @@ impl SeenFrames {
 /// What is needed to see the frames of a run again.
 #[derive(Debug)]
 pub(super) struct ArmRun {
-    pub frames: FrameFolder,
+    pub frames: FrameSource,
     pub skin: SkinModel,
     pub config: Config,
     pub setup: ArmSetup,
@@ -70,8 +68,19 @@ impl ArmRun {
         Ok(Self { frames, skin, config, setup, rate_hz })
     }
 
-    pub fn timestamp_us(&self, frame: usize) -> u64 {
-        (frame as f64 * 1.0e6 / self.rate_hz).round() as u64
+    /// Shows every frame with its time in microseconds, once and in order; `None` is an image that cannot be read. Gives their number.
+    pub fn each_frame(&mut self, mut show: impl FnMut(usize, u64, Option<RgbImage>) -> Result<()>) -> Result<usize> {
+        let mut frame = 0;
+        loop {
+            let images = self.frames.load(frame, CHUNK)?;
+            if images.is_empty() {
+                return Ok(frame);
+            }
+            for image in images {
+                show(frame, (frame as f64 * 1.0e6 / self.rate_hz).round() as u64, image.ok())?;
+                frame += 1;
+            }
+        }
     }
 }
 

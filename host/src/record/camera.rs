@@ -8,17 +8,17 @@ use image::RgbImage;
 use sinew_core::camera::Pixel;
 use sinew_core::record::{ArmInput, ArmSetup, CameraLine, CameraSetup, LINE_PIXELS};
 
-/// The stream of a run's images. Wider ones than firmware's lines are made smaller by the mean of square blocks. Skin is what the run's
+/// The stream of a run's images and their number. Wider ones than firmware's lines are made smaller by the mean of square blocks. Skin is what the run's
 /// Gaussian says in the light of the first image.
-pub(super) fn camera_stream(run: &ArmRun) -> Result<Vec<u8>> {
+pub(super) fn camera_stream(run: &mut ArmRun) -> Result<(Vec<u8>, usize)> {
     let (width, _) = run.frames.size_px();
     let block = width.div_ceil(LINE_PIXELS as u32);
     let first = run.frames.first().1;
     let mut stream = StreamWriter::default();
     stream.push(&camera_setup(run, &smaller(first, block))?)?;
     stream.push(&arm_setup(&run.setup, block))?;
-    for frame in 0..run.frames.files().len() {
-        let image = run.frames.load(frame).ok();
+    let shoulder_m = run.setup.shoulder_m;
+    let frames = run.each_frame(|frame, timestamp_us, image| {
         if let Some(image) = &image {
             for (row, pixels) in smaller(image, block).rows().enumerate() {
                 let pixels = pixels.map(|pixel| rgb565(pixel.0)).collect();
@@ -27,14 +27,14 @@ pub(super) fn camera_stream(run: &ArmRun) -> Result<Vec<u8>> {
         }
         stream.push(&ArmInput {
             frame: u32::try_from(frame)?,
-            timestamp_us: run.timestamp_us(frame),
+            timestamp_us,
             has_image: image.is_some(),
-            shoulder_m: run.setup.shoulder_m,
+            shoulder_m,
             candidates: 0,
             edges: 0,
-        })?;
-    }
-    stream.finish()
+        })
+    })?;
+    Ok((stream.finish()?, frames))
 }
 
 fn camera_setup(run: &ArmRun, first: &RgbImage) -> Result<CameraSetup> {

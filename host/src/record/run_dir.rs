@@ -50,12 +50,12 @@ pub fn record(folder: &Path, form: Form) -> Result<Recorded> {
 }
 
 fn arm_run(report: &Path, form: Form) -> Result<Recorded> {
-    let run = ArmRun::open(report)?;
-    let (bytes, what) = match form {
-        Form::Tracker => (tracker_stream(&run)?, "blobs and edges"),
-        Form::Camera => (camera_stream(&run)?, "lines"),
+    let mut run = ArmRun::open(report)?;
+    let ((bytes, frames), what) = match form {
+        Form::Tracker => (tracker_stream(&mut run)?, "blobs and edges"),
+        Form::Camera => (camera_stream(&mut run)?, "lines"),
     };
-    Ok(Recorded { bytes, what: format!("{what} of {} frames", run.frames.files().len()) })
+    Ok(Recorded { bytes, what: format!("{what} of {frames} frames") })
 }
 
 fn cyclic_run(summary: &Path) -> Result<Recorded> {

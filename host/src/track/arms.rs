@@ -2,12 +2,13 @@
 
 use crate::config::{BodyConfig, Config};
 use crate::frames::FrameView;
+use crate::resume::{from_text, to_text};
 use anyhow::Result;
 use clap::ValueEnum;
 use serde::Serialize;
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::Vec3;
-use sinew_core::saved_state::{SavedState, StateKind, restore, save, saved_bytes};
+use sinew_core::saved_state::StateKind;
 use sinew_core::skeleton::Side;
 use sinew_core::skeleton::arm::WIDE_ARM_LIMITS;
 use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmPair, ArmTracker, PairFrame, Particle};
@@ -95,11 +96,11 @@ impl ArmSet {
         }
     }
 
-    /// The state of the trackers after the last step, as [`ArmSet::restore`] takes it.
+    /// The state of the trackers after the last step as text, which [`ArmSet::restore`] takes.
     ///
     /// # Errors
     /// None that a user can bring about.
-    pub fn saved(&mut self) -> Result<Vec<u8>> {
+    pub fn saved(&mut self) -> Result<String> {
         match &mut self.trackers {
             Sized::Small(trackers) => trackers.saved(),
             Sized::Middle(trackers) => trackers.saved(),
@@ -110,12 +111,12 @@ impl ArmSet {
     /// Puts the trackers into a state that was saved with the same configuration, sides and size.
     ///
     /// # Errors
-    /// The bytes are not whole, or of other trackers.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+    /// The text is not whole, or of other trackers.
+    pub fn restore(&mut self, saved: &str) -> Result<()> {
         match &mut self.trackers {
-            Sized::Small(trackers) => trackers.restore(bytes),
-            Sized::Middle(trackers) => trackers.restore(bytes),
-            Sized::Large(trackers) => trackers.restore(bytes),
+            Sized::Small(trackers) => trackers.restore(saved),
+            Sized::Middle(trackers) => trackers.restore(saved),
+            Sized::Large(trackers) => trackers.restore(saved),
         }
     }
 
@@ -152,24 +153,18 @@ impl<const CAPACITY: usize> Trackers<CAPACITY> {
         Ok(Self::One(Box::new(ArmTracker::new(&models[0], shoulders_m[0], seed)?)))
     }
 
-    fn saved(&mut self) -> Result<Vec<u8>> {
-        fn bytes(kind: StateKind, state: &mut impl SavedState) -> Result<Vec<u8>> {
-            let mut bytes = vec![0; saved_bytes(state)];
-            save(kind, 0, state, &mut bytes)?;
-            Ok(bytes)
-        }
+    fn saved(&mut self) -> Result<String> {
         match self {
-            Self::One(tracker) => bytes(StateKind::Arm, tracker.as_mut()),
-            Self::Two(pair) => bytes(StateKind::ArmPair, pair.as_mut()),
+            Self::One(tracker) => to_text(StateKind::Arm, tracker.as_mut()),
+            Self::Two(pair) => to_text(StateKind::ArmPair, pair.as_mut()),
         }
     }
 
-    fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+    fn restore(&mut self, saved: &str) -> Result<()> {
         match self {
-            Self::One(tracker) => restore(StateKind::Arm, 0, tracker.as_mut(), bytes)?,
-            Self::Two(pair) => restore(StateKind::ArmPair, 0, pair.as_mut(), bytes)?,
+            Self::One(tracker) => from_text(StateKind::Arm, saved, tracker.as_mut()),
+            Self::Two(pair) => from_text(StateKind::ArmPair, saved, pair.as_mut()),
         }
-        Ok(())
     }
 
     #[inline(never)]

@@ -13,5 +13,6 @@ mod table;
 pub use arms::{ArmSet, ArmView, SideChoice};
 pub use input::{FrameFolder, SkippedImage};
 pub use report::{Inputs, REPORT_VERSION, RunReport, StatusCounts};
-pub use run::{Event, Interrupted, RATES_HZ, RunOutcome, TrackOptions, TrackRun};
+pub use run::{Event, RATES_HZ, RunOutcome, TrackOptions, TrackRun};
+pub use source::{FrameSource, VideoSource};
 pub use table::{HEADER, TrackRow};

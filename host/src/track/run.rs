@@ -5,13 +5,14 @@ use super::input::SkippedImage;
 use super::particles::{PARTICLE_HEADER, particle_rows};
 use super::pictures::{Pictures, Shot};
 use super::report::RunReport;
-use super::resume::Left;
+use super::resume;
 use super::source::FrameSource;
 use super::table::{HEADER, TrackRow};
 use crate::config::Config;
 use crate::draw::plot::{HandSample, hand_plot};
 use crate::frames::{FrameReader, FrameView};
 use crate::output::{OutputDir, PendingFile};
+use crate::resume::Interrupted;
 use crate::skin::{Rectangle, SkinModel};
 use anyhow::{Context, Result, anyhow, bail};
 use image::RgbImage;
@@ -60,18 +61,6 @@ pub enum Event<'a> {
     Skipped(&'a SkippedImage),
     /// So many frames are in the table.
     Finished(usize),
-}
-
-/// Ctrl-C ended the run; what was finished is written.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("stopped by Ctrl-C after {finished} of {frames} frames; their results are in `{}`", .out.display())]
-pub struct Interrupted {
-    /// Frames in the table.
-    pub finished: usize,
-    /// Frames in the folder.
-    pub frames: usize,
-    /// The run directory.
-    pub out: PathBuf,
 }
 
 /// What a run returns beside its files.
@@ -196,7 +185,7 @@ impl TrackRun {
         }
         let outcome = written?;
         if interrupted {
-            return Err(Interrupted { finished, frames, out }.into());
+            return Err(Interrupted { finished, all: Some(frames), unit: "frames", out }.into());
         }
         Ok(outcome)
     }
@@ -299,7 +288,7 @@ impl TrackRun {
     /// Gives the tables their names and writes plot, sheet and report. Each file is tried, also where another one failed. An
     /// interrupted run leaves what [`TrackRun::resume`] needs.
     fn write_results(mut self, interrupted: bool) -> Result<RunOutcome> {
-        let left = if interrupted { Some(Left::of(&mut self)?) } else { None };
+        let left = if interrupted { Some(resume::left(&mut self)?) } else { None };
         let Self { out, track, particles, pictures, report, samples, .. } = self;
         let mut results = vec![finish(track)];
         results.extend(particles.map(finish));
@@ -308,7 +297,7 @@ impl TrackRun {
         results.push(hand_plot(&samples, report.image_size_px).and_then(|plot| out.write_png("hand.png", &plot)));
         results.extend(pictures.map(|pictures| out.write_png("contact_sheet.png", &pictures.contact_sheet())));
         results.into_iter().collect::<Result<()>>()?;
-        Left::write(left, &out)?;
+        resume::put(left, &report.options, &out)?;
         Ok(RunOutcome { report, samples })
     }
 }

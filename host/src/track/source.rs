@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 /// Frames of one size, the first of which can be read.
 #[derive(Debug)]
-pub(super) enum FrameSource {
+pub enum FrameSource {
     /// A folder of images.
     Folder(FrameFolder),
     /// A video, whose frames come one after the other.
@@ -20,7 +20,7 @@ pub(super) enum FrameSource {
 
 /// A video that is being read.
 #[derive(Debug)]
-pub(super) struct VideoSource {
+pub struct VideoSource {
     frames: VideoFrames,
     first: RgbImage,
     /// Number of the next frame.
@@ -50,6 +50,7 @@ impl FrameSource {
     }
 
     /// Number of frames: of a folder what it holds, of a video what it says.
+    #[must_use]
     pub fn count(&self) -> usize {
         match self {
             Self::Folder(folder) => folder.files().len(),
@@ -58,6 +59,7 @@ impl FrameSource {
     }
 
     /// The files of a folder; none of a video.
+    #[must_use]
     pub fn files(&self) -> &[PathBuf] {
         match self {
             Self::Folder(folder) => folder.files(),
@@ -66,6 +68,7 @@ impl FrameSource {
     }
 
     /// What tells these frames from others, beside the path: the names of a folder's files, the size of a video's.
+    #[must_use]
     pub fn identity(&self) -> Vec<String> {
         match self {
             Self::Folder(folder) => (0..folder.files().len()).map(|frame| folder.name(frame)).collect(),
@@ -77,6 +80,7 @@ impl FrameSource {
     }
 
     /// Name of one frame.
+    #[must_use]
     pub fn name(&self, frame: usize) -> String {
         match self {
             Self::Folder(folder) => folder.name(frame),
@@ -85,6 +89,7 @@ impl FrameSource {
     }
 
     /// Width and height of every frame, pixels.
+    #[must_use]
     pub fn size_px(&self) -> (u32, u32) {
         match self {
             Self::Folder(folder) => folder.size_px(),
@@ -93,6 +98,7 @@ impl FrameSource {
     }
 
     /// Number and picture of the first frame that can be read.
+    #[must_use]
     pub fn first(&self) -> (usize, &RgbImage) {
         match self {
             Self::Folder(folder) => folder.first(),

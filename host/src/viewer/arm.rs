@@ -5,6 +5,7 @@ use super::recording::{Moment, Recording};
 use super::{Shown, colour, jpeg, scalars, weighted_points};
 use crate::frames::FrameReader;
 use crate::record::SeenFrames;
+use crate::track::{FrameFolder, FrameSource};
 use anyhow::Result;
 use re_sdk_types::archetypes::{Clear, EncodedImage, LineStrips2D, LineStrips3D, Pinhole, Points2D, ViewCoordinates};
 use serde_json::Value;
@@ -34,7 +35,14 @@ pub(super) fn write(folder: &Path, report: &Value, recording: &mut Recording<'_>
     let mut shown = Shown { frames: frames.len(), ..Shown::default() };
     recording.constant("world", &ViewCoordinates::RDF())?;
     match SeenFrames::open(&report["options"]) {
-        Ok(seen) => pictures(&seen, &frames, recording)?,
+        Ok(seen) => match &seen.frames {
+            FrameSource::Folder(images) => pictures(&seen, images, &frames, recording)?,
+            // They would have to be kept, since they are looked at twice.
+            FrameSource::Video(_) => shown.notes.push(
+                "no pictures and no blobs: a video was tracked; `ffmpeg -i VIDEO FOLDER/%06d.png`, then track FOLDER"
+                    .to_owned(),
+            ),
+        },
         Err(error) => shown.notes.push(format!("no pictures and no blobs: {error:#}")),
     }
     for side in track.distinct_sides() {
@@ -57,16 +65,21 @@ pub(super) fn write(folder: &Path, report: &Value, recording: &mut Recording<'_>
 }
 
 /// The camera, its frames, and what was found in them by the vision that the tracker had.
-fn pictures(seen: &SeenFrames, frames: &BTreeMap<i64, Moment>, recording: &mut Recording<'_>) -> Result<()> {
-    let (width_px, height_px) = seen.frames.size_px();
+fn pictures(
+    seen: &SeenFrames,
+    images: &FrameFolder,
+    frames: &BTreeMap<i64, Moment>,
+    recording: &mut Recording<'_>,
+) -> Result<()> {
+    let (width_px, height_px) = images.size_px();
     let camera = seen.config.camera.build(width_px, height_px)?;
     let (focal, centre) = (camera.focal_px(), camera.centre());
     let columns = [[focal, 0.0, 0.0], [0.0, focal, 0.0], [centre.u_px + HALF_PX, centre.v_px + HALF_PX, 1.0]];
     recording.constant(CAMERA, &Pinhole::new(columns).with_resolution([width_px as f32, height_px as f32]))?;
 
     let entity = format!("{CAMERA}/frame");
-    let in_folder = |frame: i64| usize::try_from(frame).ok().filter(|&frame| frame < seen.frames.files().len());
-    let loaded = |frame: i64| in_folder(frame).and_then(|frame| seen.frames.load(frame).ok());
+    let in_folder = |frame: i64| usize::try_from(frame).ok().filter(|&frame| frame < images.files().len());
+    let loaded = |frame: i64| in_folder(frame).and_then(|frame| images.load(frame).ok());
     let mut missing = Vec::new();
     let pictures = frames.values().filter_map(|&moment| {
         let Some(image) = loaded(moment.frame) else {

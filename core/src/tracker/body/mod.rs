@@ -71,6 +71,7 @@ mod estimate;
 mod limb_by_limb;
 mod mean_rotation;
 mod observed;
+mod saved;
 mod step;
 mod tempering;
 #[cfg(test)]

@@ -85,12 +85,12 @@ pub struct BodyTracker<const BONES: usize, const ANGLES: usize, const N: usize, 
     pub(super) weights: Weights<N>,
     pub(super) ancestors: heapless::Vec<u16, N>,
     options: BodyOptions,
-    first_m: [Vec3; BONES],
-    before: BodyParticle<BONES, ANGLES>,
-    angle_velocity_per_s: [f32; ANGLES],
-    velocity_m_per_s: [Vec3; BONES],
-    seed: u64,
-    frame: u64,
+    pub(super) first_m: [Vec3; BONES],
+    pub(super) before: BodyParticle<BONES, ANGLES>,
+    pub(super) angle_velocity_per_s: [f32; ANGLES],
+    pub(super) velocity_m_per_s: [Vec3; BONES],
+    pub(super) seed: u64,
+    pub(super) frame: u64,
 }
 
 impl<const BONES: usize, const ANGLES: usize, const N: usize, S> BodyTracker<BONES, ANGLES, N, S>

@@ -14,6 +14,7 @@ use crate::pik::motion::{BodyMotion, BodyParticle, BodyScene};
 use crate::pik::processes::extrapolation::LinearGoals;
 use crate::pik::root::{NO_PLANES, RootProcess};
 use crate::random::Stream;
+use crate::saved_state::{StateError, StateKind, restore, save, saved_bytes};
 use crate::skeleton::BodyMeasures;
 use crate::skeleton::full_body::{
     BODY_ANGLES, BODY_BONES, FOREARMS, HEAD, SHANKS, TRUNK, UPPER_ARMS, body_radii_m, full_body,
@@ -348,4 +349,29 @@ fn spread_grows_down_the_chain_under_angular_noise_and_not_under_goals() {
     assert!(ratio_by_goals < 1.25 && ratio_by_goals < 0.85 * ratio, "by goals: {ratio_by_goals}, angular {ratio}");
     let lying = posture(&scene().skeleton, &Vec3::zeros(), &truth(0));
     assert!(lying.ends.iter().all(|end| end.norm().is_finite()));
+}
+
+#[test]
+fn a_tracker_goes_on_from_its_saved_state_as_if_nothing_had_been() {
+    let (scene, goals) = (scene(), goals());
+    let motion = guided(&goals);
+    for options in [OPTIONS, LIMB_BY_LIMB] {
+        let mut tracker = tracker_of(&scene, 20, 5, options);
+        for frame in 1..=4 {
+            tracker.step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: cloud(&scene, frame, &[]).blocks() });
+        }
+        let mut bytes = vec![0; saved_bytes(&mut tracker)];
+        save(StateKind::Body, 1, &mut tracker, &mut bytes).unwrap();
+        let mut other = tracker_of(&scene, 20, 6, options);
+        restore(StateKind::Body, 1, &mut other, &bytes).unwrap();
+        for frame in 5..=7 {
+            let cloud = cloud(&scene, frame, &[]);
+            let seen = BodyFrame { dt_s: DT_S, blocks: cloud.blocks() };
+            let whole = tracker.step(&scene, &motion, &seen);
+            assert_eq!(other.step(&scene, &motion, &seen), whole, "frame {frame}");
+        }
+        assert_eq!((other.particles(), other.weights()), (tracker.particles(), tracker.weights()));
+        let mut fewer = tracker_of(&scene, 19, 5, options);
+        assert_eq!(restore(StateKind::Body, 1, &mut fewer, &bytes), Err(StateError::Illegal));
+    }
 }

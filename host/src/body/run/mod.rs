@@ -6,6 +6,7 @@ pub mod options;
 pub mod particles;
 pub mod pictures;
 pub mod report;
+mod resume;
 pub mod score;
 pub mod start;
 pub mod table;

@@ -33,6 +33,12 @@ impl BodyPictures {
         Ok(Self { choice, tiles: Vec::new(), effective: Vec::new(), error_cm: Vec::new() })
     }
 
+    /// Whether the points of the `index`-th cloud are drawn.
+    #[must_use]
+    pub fn wants(&self, index: usize) -> bool {
+        self.choice.wants(index)
+    }
+
     /// Takes the frame number `frame`, the `index`-th cloud, at `time_s`.
     pub fn add(
         &mut self,

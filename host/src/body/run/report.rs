@@ -3,14 +3,14 @@
 use super::inputs::{BodyInputs, InputFiles};
 use super::options::BodyTrackOptions;
 use crate::body::{BodyFile, BodyPart};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// Version of the form of `run.json`.
 pub const REPORT_VERSION: u32 = 1;
 
 /// A cloud that could not be read.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SkippedCloud {
     /// Number of the frame.
     pub frame: u64,
@@ -21,7 +21,7 @@ pub struct SkippedCloud {
 }
 
 /// How many points there were.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct PointCounts {
     /// Points that were weighed.
     pub used: u64,

@@ -4,6 +4,7 @@ use super::inputs::BodyInputs;
 use super::options::BodyTrackOptions;
 use super::pictures::BodyPictures;
 use super::report::{BodyRunReport, SkippedCloud};
+use super::resume::{self, Answer};
 use super::score::{BodyScore, RunningMean};
 use super::start::pose_from_points;
 use super::{particles, table};
@@ -13,7 +14,7 @@ use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::cloud::{self, CloudFrame, MAX_POINTS, blocks_of};
 use crate::motion::export::{BvhFrame, TrcFrame, TrcHeading, TrcUnit, to_trc, write_bvh};
 use crate::output::{OutputDir, PendingFile};
-use crate::track::Interrupted;
+use crate::resume::Interrupted;
 use anyhow::{Context, Result, anyhow, bail};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -50,8 +51,8 @@ pub type Notify<'a> = &'a mut (dyn FnMut(BodyEvent<'_>) + Send);
 
 /// A cloud ready for the tracker.
 #[derive(Debug)]
-struct ReadCloud {
-    points_m: Vec<Vec3>,
+pub(super) struct ReadCloud {
+    pub points_m: Vec<Vec3>,
     blocks: Vec<PointBlock>,
     skipped: usize,
     before_cap: usize,
@@ -60,19 +61,22 @@ struct ReadCloud {
 /// A run whose inputs were all checked.
 #[derive(Debug)]
 pub struct BodyTrackRun {
-    inputs: BodyInputs,
-    filter: BodyFilter,
+    pub(super) inputs: BodyInputs,
+    pub(super) filter: BodyFilter,
     threads: ThreadPool,
-    out: OutputDir,
-    table: csv::Writer<PendingFile>,
-    particles: Option<csv::Writer<PendingFile>>,
-    pictures: Option<BodyPictures>,
-    report: BodyRunReport,
+    pub(super) out: OutputDir,
+    pub(super) table: csv::Writer<PendingFile>,
+    pub(super) particles: Option<csv::Writer<PendingFile>>,
+    pub(super) pictures: Option<BodyPictures>,
+    pub(super) report: BodyRunReport,
     score: BodyScore,
     effective_share: RunningMean,
-    step_s: f64,
-    before: Option<u64>,
-    poses: Vec<(u64, BvhFrame, TrcFrame)>,
+    /// Wall time of the steps, seconds.
+    pub(super) step_s: f64,
+    /// Time that was spent before a resumption, seconds.
+    pub(super) seconds: f64,
+    /// The answers so far.
+    pub(super) answers: Vec<Answer>,
 }
 
 impl BodyTrackRun {
@@ -120,8 +124,8 @@ impl BodyTrackRun {
             score: BodyScore::default(),
             effective_share: RunningMean::default(),
             step_s: 0.0,
-            before: None,
-            poses: Vec::new(),
+            seconds: 0.0,
+            answers: Vec::new(),
         })
     }
 
@@ -129,6 +133,12 @@ impl BodyTrackRun {
     #[must_use]
     pub fn frame_count(&self) -> usize {
         self.inputs.clouds.frames.len()
+    }
+
+    /// Number of frames that were finished before the run was ended and taken up again; otherwise none.
+    #[must_use]
+    pub fn frames_finished(&self) -> usize {
+        self.report.frames_finished
     }
 
     /// Tracks all clouds, or those before `stop` is set, and writes the run directory.
@@ -144,10 +154,11 @@ impl BodyTrackRun {
         }
         let tracked = self.track_all(stop, notify);
         let finished = self.report.frames_finished;
-        self.report.frames_per_second = finished as f64 / start.elapsed().as_secs_f64().max(1.0e-9);
+        self.seconds += start.elapsed().as_secs_f64();
+        self.report.frames_per_second = finished as f64 / self.seconds.max(1.0e-9);
         self.report.complete = tracked.is_ok() && finished == frames;
         let interrupted = tracked.is_ok() && finished < frames;
-        let written = self.write_results();
+        let written = self.write_results(interrupted);
         if let Err(error) = tracked {
             let kept = match &written {
                 Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
@@ -157,23 +168,23 @@ impl BodyTrackRun {
         }
         let report = written?;
         if interrupted {
-            return Err(Interrupted { finished, frames, out }.into());
+            return Err(Interrupted { finished, all: Some(frames), unit: "frames", out }.into());
         }
         Ok(report)
     }
 
     fn track_all(&mut self, stop: &AtomicBool, notify: Notify<'_>) -> Result<()> {
-        let frames = self.inputs.clouds.frames.clone();
-        let seed = self.report.seed;
-        for (chunk_index, chunk) in frames.chunks(CHUNK).enumerate() {
+        let (begin, seed) = (self.report.frames_finished, self.report.seed);
+        let frames = self.inputs.clouds.frames[begin..].to_vec();
+        for chunk in frames.chunks(CHUNK) {
             let clouds: Vec<Result<ReadCloud, SkippedCloud>> =
                 self.threads.install(|| chunk.par_iter().map(|frame| read_cloud(frame, seed)).collect());
-            for (place, (frame, cloud)) in chunk.iter().zip(clouds).enumerate() {
+            for (frame, cloud) in chunk.iter().zip(clouds) {
                 if stop.load(Ordering::Relaxed) {
                     return Ok(());
                 }
                 let cloud = self.counted(cloud, notify)?;
-                self.track_frame(chunk_index * CHUNK + place, frame.frame, cloud.as_ref())?;
+                self.track_frame(frame.frame, cloud.as_ref())?;
                 notify(BodyEvent::Finished(self.report.frames_finished));
             }
         }
@@ -206,17 +217,17 @@ impl BodyTrackRun {
     }
 
     /// One frame from points to its row.
-    fn track_frame(&mut self, index: usize, frame: u64, cloud: Option<&ReadCloud>) -> Result<()> {
-        let rate_hz = self.inputs.rate_hz;
-        let frames_gone = self.before.map_or(1, |before| frame - before);
-        let dt_s = (frames_gone as f64 / f64::from(rate_hz)) as f32;
+    fn track_frame(&mut self, frame: u64, cloud: Option<&ReadCloud>) -> Result<()> {
+        let before = self.answers.last().map(|answer| answer.frame);
+        let frames_gone = before.map_or(1, |before| frame - before);
+        let dt_s = (frames_gone as f64 / f64::from(self.inputs.rate_hz)) as f32;
         let blocks = cloud.map_or(&[][..], |cloud| &cloud.blocks);
         let stick = self.inputs.stick.get(&frame).copied().unwrap_or(StickSight::Unseen);
         let start = Instant::now();
-        let (threads, filter, is_first) = (&self.threads, &mut self.filter, self.before.is_none());
-        let estimate = threads.install(|| match is_first {
-            true => first_look(filter, blocks, stick),
-            false => filter.step(blocks, dt_s, stick),
+        let (threads, filter) = (&self.threads, &mut self.filter);
+        let estimate = threads.install(|| match before {
+            None => first_look(filter, blocks, stick),
+            Some(_) => filter.step(blocks, dt_s, stick),
         });
         self.step_s += start.elapsed().as_secs_f64();
         let points_m = cloud.map_or(&[][..], |cloud| &cloud.points_m);
@@ -228,34 +239,30 @@ impl BodyTrackRun {
                 particles.write_record(row).context("`particles.csv` cannot be written")?;
             }
         }
-        let truth = self.inputs.truth.get(&frame).filter(|_| !is_first);
-        let joint_error_m =
-            truth.and_then(|truth| self.score.add(&self.filter, &estimate, &truth.joints_m, &truth.markers_m));
-        if let Some(pictures) = &mut self.pictures {
-            let time_s = frame as f64 / f64::from(rate_hz);
-            pictures.add((index, frame, time_s), points_m, (&self.filter, &estimate), joint_error_m);
-        }
-        self.note_pose(frame, &estimate);
-        self.before = Some(frame);
+        self.take(self.report.frames_finished, Answer { frame, estimate }, points_m);
         Ok(())
     }
 
-    fn note_pose(&mut self, frame: u64, estimate: &WholeBodyEstimate) {
-        let place = |end: &Vec3| Some(<[f32; 3]>::from(upwards(end)).map(f64::from));
-        let markers =
-            TrcFrame { frame, positions_m: estimate.ends_m[..self.inputs.part.bones()].iter().map(place).collect() };
-        self.poses.push((
-            frame,
-            bvh_frame(self.inputs.part, &self.filter.scene().skeleton, &estimate.angles_rad),
-            markers,
-        ));
+    /// Takes the answer to the `index`-th cloud for everything but the tables.
+    pub(super) fn take(&mut self, index: usize, answer: Answer, points_m: &[Vec3]) {
+        let Answer { frame, estimate } = &answer;
+        let truth = self.inputs.truth.get(frame).filter(|_| index > 0);
+        let joint_error_m =
+            truth.and_then(|truth| self.score.add(&self.filter, estimate, &truth.joints_m, &truth.markers_m));
+        if let Some(pictures) = &mut self.pictures {
+            let time_s = *frame as f64 / f64::from(self.inputs.rate_hz);
+            pictures.add((index, *frame, time_s), points_m, (&self.filter, estimate), joint_error_m);
+        }
         self.report.frames_finished += 1;
         self.report.degenerate_frames += usize::from(estimate.is_degenerate);
         self.effective_share.add(f64::from(estimate.effective_sample_size) / self.report.options.particles as f64);
+        self.answers.push(answer);
     }
 
-    /// Gives the tables their names and writes the other files. Each one is tried, also where another one failed.
-    fn write_results(mut self) -> Result<BodyRunReport> {
+    /// Gives the tables their names and writes the other files. Each one is tried, also where another one failed. An interrupted run leaves
+    /// what [`BodyTrackRun::resume`] needs.
+    fn write_results(mut self, interrupted: bool) -> Result<BodyRunReport> {
+        let left = if interrupted { Some(resume::left(&mut self)?) } else { None };
         self.report.seconds_per_step = self.step_s / self.report.frames_finished.max(1) as f64;
         self.report.effective_share = self.effective_share.mean().unwrap_or(0.0);
         (self.report.error_m, self.report.joint_error_m) = (self.score.marker_m.mean(), self.score.joint_m.mean());
@@ -268,37 +275,38 @@ impl BodyTrackRun {
         let json = serde_json::to_string_pretty(&self.report)? + "\n";
         results.push(self.out.write("run.json", |writer| Ok(writer.write_all(json.as_bytes())?)));
         results.into_iter().collect::<Result<()>>()?;
+        resume::put(left, &self.report.options, &self.out)?;
         Ok(self.report)
     }
 
     /// `track.bvh` and `track.trc`; no frame at all is no file.
-    fn write_motion(&mut self) -> Result<()> {
-        if self.poses.is_empty() {
+    fn write_motion(&self) -> Result<()> {
+        if self.answers.is_empty() {
             return Ok(());
         }
-        let rate_hz = f64::from(self.inputs.rate_hz);
-        let poses = std::mem::take(&mut self.poses);
+        let (part, rate_hz) = (self.inputs.part, f64::from(self.inputs.rate_hz));
         let is_short = self.inputs.clouds.missing() <= MAX_REPEATED_FRAMES;
-        let mut frames: Vec<BvhFrame> = Vec::with_capacity(poses.len());
-        let mut markers = Vec::with_capacity(poses.len());
-        let mut before = None;
-        for (frame, pose, places) in poses {
+        let mut frames: Vec<BvhFrame> = Vec::with_capacity(self.answers.len());
+        let mut markers = Vec::with_capacity(self.answers.len());
+        let mut before: Option<(u64, BvhFrame)> = None;
+        for Answer { frame, estimate } in &self.answers {
             if let (Some((number, last)), true) = (before, is_short) {
                 // An animation has a frame for every number: what has no file keeps the pose before.
-                frames.extend((number + 1..frame).map(|_| BvhFrame::clone(&last)));
+                frames.extend((number + 1..*frame).map(|_| last.clone()));
             }
+            let pose = bvh_frame(part, &self.filter.scene().skeleton, &estimate.angles_rad);
             frames.push(pose.clone());
-            markers.push(places);
-            before = Some((frame, pose));
+            let place = |end: &Vec3| Some(<[f32; 3]>::from(upwards(end)).map(f64::from));
+            markers.push(TrcFrame {
+                frame: *frame,
+                positions_m: estimate.ends_m[..part.bones()].iter().map(place).collect(),
+            });
+            before = Some((*frame, pose));
         }
-        let layout = body_layout(self.inputs.part, &self.filter.scene().skeleton)?;
+        let layout = body_layout(part, &self.filter.scene().skeleton)?;
         self.out.write("track.bvh", |writer| Ok(write_bvh(&layout, &frames, rate_hz, writer)?))?;
-        let heading = TrcHeading {
-            name: "track.trc",
-            markers: &BODY_JOINT_NAMES[..self.inputs.part.bones()],
-            rate_hz,
-            unit: TrcUnit::Metre,
-        };
+        let heading =
+            TrcHeading { name: "track.trc", markers: &BODY_JOINT_NAMES[..part.bones()], rate_hz, unit: TrcUnit::Metre };
         let text = to_trc(&heading, &markers);
         self.out.write("track.trc", |writer| Ok(writer.write_all(text.as_bytes())?))
     }
@@ -314,7 +322,7 @@ fn first_look(filter: &BodyFilter, blocks: &[PointBlock], stick: StickSight) -> 
 }
 
 /// Reads one cloud, at most [`MAX_POINTS`] of it, in the order in which it is weighed.
-fn read_cloud(frame: &CloudFrame, seed: u64) -> Result<ReadCloud, SkippedCloud> {
+pub(super) fn read_cloud(frame: &CloudFrame, seed: u64) -> Result<ReadCloud, SkippedCloud> {
     let mut read = cloud::read(&frame.path).map_err(|error| SkippedCloud {
         frame: frame.frame,
         file: frame.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),

@@ -4,12 +4,15 @@ use super::model_kind::BodyModelKind;
 use super::sized::{SeenFrame, SizedBody, SizedFilter};
 use super::tuning::BodyTuning;
 use crate::body::BodyPart;
+use crate::resume::{from_text, to_text};
+use anyhow::Result;
 use sinew_core::error::ParameterError;
 use sinew_core::math::{Vec3, axis_rotation, wrap_angle};
 use sinew_core::observation::point_cloud::PointBlock;
 use sinew_core::observation::point_likelihood::PointLikelihood;
 use sinew_core::pik::motion::{BodyParticle, BodyScene};
 use sinew_core::pik::processes::stick::StickSight;
+use sinew_core::saved_state::StateKind;
 use sinew_core::skeleton::full_body::{
     BODY_ANGLES, BODY_BONES, BodySkeleton, FOREARMS, HEAD, PELVIS, SHANKS, TRUNK, body_radii_m, full_body,
 };
@@ -139,6 +142,29 @@ impl BodyFilter {
                 let all = || filter.particles().iter().map(complete).collect();
                 (self.completed.get_or_init(all), filter.weights())
             }
+        }
+    }
+
+    /// The state of the tracker after the last step as text, which [`Self::restore`] takes.
+    ///
+    /// # Errors
+    /// None that a user can bring about.
+    pub fn saved(&mut self) -> Result<String> {
+        match &mut self.tracked {
+            Sizes::Whole(filter) => to_text(StateKind::Body, filter.tracker_mut()),
+            Sizes::Upper(filter) => to_text(StateKind::Body, filter.tracker_mut()),
+        }
+    }
+
+    /// Puts the tracker into a state that was saved with the same part, model, numbers and count of particles.
+    ///
+    /// # Errors
+    /// The text is not whole, or of another tracker.
+    pub fn restore(&mut self, saved: &str) -> Result<()> {
+        self.completed = OnceLock::new();
+        match &mut self.tracked {
+            Sizes::Whole(filter) => from_text(StateKind::Body, saved, filter.tracker_mut()),
+            Sizes::Upper(filter) => from_text(StateKind::Body, saved, filter.tracker_mut()),
         }
     }
 

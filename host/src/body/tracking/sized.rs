@@ -33,7 +33,7 @@ const PAPER_GOAL_STD_M: f32 = 0.05;
 const PAPER_EFFECTIVE_SHARE: f32 = 0.05;
 
 type Particle<const BONES: usize, const ANGLES: usize> = BodyParticle<BONES, ANGLES>;
-type Tracker<const BONES: usize, const ANGLES: usize> =
+pub(super) type Tracker<const BONES: usize, const ANGLES: usize> =
     BodyTracker<BONES, ANGLES, MAX_BODY_PARTICLES, Vec<Particle<BONES, ANGLES>>>;
 
 /// A skeleton with its flesh, and which of a whole body's coordinates it has.
@@ -114,6 +114,11 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
     /// Their weights.
     pub fn weights(&self) -> &[f32] {
         self.tracker.weights()
+    }
+
+    /// The core's tracker, whose state is saved.
+    pub fn tracker_mut(&mut self) -> &mut Tracker<BONES, ANGLES> {
+        &mut self.tracker
     }
 
     /// One frame.

@@ -14,6 +14,7 @@ use anyhow::{Result, anyhow};
 use image::RgbImage;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Images of a recording in natural order: frame k of the table is image k, counted from 0.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -60,17 +61,17 @@ impl OverlayFrames {
     }
 
     /// Draws `figures` (one a row of `table`) on their images and writes them into `folder`. A frame without an image, an image that
-    /// cannot be read, and one of another size than the first are skipped and told.
+    /// cannot be read, and one of another size than the first are skipped and told. Nothing more is drawn once `stop` is set.
     ///
     /// # Errors
     /// A picture that cannot be written.
     pub fn draw(
         &self,
-        table: &AngleTable,
-        tracked: &Tracked,
+        (table, tracked): (&AngleTable, &Tracked),
         figures: &[Figure],
         body: &Body,
         folder: &OutputDir,
+        stop: &AtomicBool,
     ) -> Result<Overlaid> {
         let names = overlay_names(&self.files);
         let image = |frame: u64| usize::try_from(frame).ok().and_then(|frame| self.files.get(frame));
@@ -78,6 +79,7 @@ impl OverlayFrames {
         let size = rows.iter().find_map(|row| Some(load_rgb(image(figures[*row].frame)?).ok()?.dimensions()));
         let results: Vec<Result<Option<String>>> = rows
             .par_iter()
+            .filter(|_| !stop.load(Ordering::Relaxed))
             .map(|row| {
                 let figure = &figures[*row];
                 let file = image(figure.frame).ok_or_else(|| anyhow!("frame {} has no image", figure.frame))?;

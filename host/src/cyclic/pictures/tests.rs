@@ -9,6 +9,7 @@ use image::codecs::gif::GifDecoder;
 use std::fs;
 use std::io::BufReader;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// The shipped walk; hips at (100 + f, 90), trunk 60 px, the other lengths those of a person of that size; frames from `first` on.
 fn keypoints(first: u64, frames: u64, mirrored: bool) -> AngleTable {
@@ -42,7 +43,7 @@ fn overlaid(folder: &Path, table: &AngleTable) -> (Overlaid, std::path::PathBuf)
     let (tracked, figures, body) = run(table);
     let output = OutputDir::create(&folder.join("out")).unwrap();
     let frames = OverlayFrames::open(&folder.join("in")).unwrap();
-    (frames.draw(table, &tracked, &figures, &body, &output).unwrap(), folder.join("out"))
+    (frames.draw((table, &tracked), &figures, &body, &output, &AtomicBool::new(false)).unwrap(), folder.join("out"))
 }
 
 #[test]

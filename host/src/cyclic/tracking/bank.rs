@@ -1,11 +1,10 @@
 //! Several motions at once: every model's filter over the same table, and which motion each frame shows.
 
 use super::options::TrackingOptions;
-use super::run::{Tracked, TrackedFrame, cycles, first_seen, measured, step_of, track};
-use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
+use super::run::{Tracked, TrackedFrame, cycles, first_seen, measured, step_of};
 use crate::cyclic::turns::nearest_turn;
 use crate::cyclic::{AngleTable, CyclicModel};
-use anyhow::{Result, ensure};
+use anyhow::Result;
 use sinew_core::cyclic::events::CycleCounter;
 use sinew_core::cyclic::motion_bank::{DEFAULT_MEMORY_S, MotionBank, MotionEvidence};
 use sinew_core::cyclic::{AngleMeasurement, MotionModel};
@@ -25,58 +24,26 @@ pub struct NamedMotion {
     pub shown: usize,
 }
 
-/// A run with several models.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BankTracked {
-    /// The estimate of the motion that is shown, frame by frame.
-    pub tracked: Tracked,
-    /// One entry a row of the table.
-    pub motions: Vec<NamedMotion>,
-}
-
-/// Tracks `table` by each of `models` and names the likeliest motion of each frame.
-///
-/// Angles are unwrapped across a change of motion; the cycles go on by the way to the other motion's position.
+/// The motion of each row, from the `runs` of the models.
 ///
 /// # Errors
-/// As [`track`]; no model or too many, models that differ in rate or number of angles.
-pub fn track_bank(table: &AngleTable, models: &[CyclicModel], options: &TrackingOptions) -> Result<BankTracked> {
-    ensure!(
-        (1..=MOST_MOTIONS).contains(&models.len()),
-        "`--model`: 1 to {MOST_MOTIONS} motions can be told apart, not {}",
-        models.len()
-    );
-    let kind = |model: &CyclicModel| (model.numbers().angle_count, model.numbers().rate_hz);
-    ensure!(
-        models.iter().all(|model| kind(model) == kind(&models[0])),
-        "`--model`: motions can be told apart by models of one rate and one number of angles; train them alike"
-    );
-    let runs = models.iter().map(|model| track(table, model, options)).collect::<Result<Vec<_>>>()?;
-    let motions = if models[0].numbers().angle_count > ANGLES {
-        named::<SPACE_ANGLES>(table, models, &runs, options)?
-    } else {
-        named::<ANGLES>(table, models, &runs, options)?
-    };
-    Ok(BankTracked { tracked: shown(&runs, &motions), motions })
-}
-
-/// The motion of each row, from the `runs` of the models.
-fn named<const N: usize>(
+/// None for rows of the table.
+pub(super) fn named<const N: usize>(
     table: &AngleTable,
     models: &[CyclicModel],
     runs: &[Tracked],
     options: &TrackingOptions,
 ) -> Result<Vec<NamedMotion>> {
     let views: Vec<MotionModel<'_>> = models.iter().map(CyclicModel::view).collect();
-    let first = first_seen(table)?;
+    let (first, rows) = (first_seen(table)?, &table.rows()[..runs[0].frames.len()]);
     let sigma_rad = options.sigma_rad as f32;
     let angles = measured::<N>(table, first);
     let mut bank =
         MotionBank::<MOST_MOTIONS, N>::new(runs.len(), &AngleMeasurement::new(&angles, sigma_rad)?, DEFAULT_MEMORY_S);
     let mut shown = bank.best();
-    let mut motions: Vec<NamedMotion> = Vec::with_capacity(table.rows().len());
+    let mut motions: Vec<NamedMotion> = Vec::with_capacity(rows.len());
     motions.resize(first + 1, name(&bank, shown));
-    for (index, pair) in table.rows().windows(2).enumerate().skip(first) {
+    for (index, pair) in rows.windows(2).enumerate().skip(first) {
         let [before, row] = pair else { continue };
         let used = options.updates.uses(table.first_frame(), row.frame);
         let angles = if used { measured(table, index + 1) } else { [None; N] };
@@ -94,7 +61,7 @@ fn named<const N: usize>(
     // Before a motion was named, the one that will be; the likeliest at the end if none ever is.
     let named = motions.iter().position(|named| named.motion.is_some());
     let first_shown = named.map_or(bank.best(), |index| motions[index].shown);
-    motions[..named.unwrap_or(table.rows().len())].iter_mut().for_each(|named| named.shown = first_shown);
+    motions[..named.unwrap_or(rows.len())].iter_mut().for_each(|named| named.shown = first_shown);
     Ok(motions)
 }
 
@@ -104,8 +71,9 @@ fn name<const N: usize>(bank: &MotionBank<MOST_MOTIONS, N>, shown: usize) -> Nam
     NamedMotion { motion, probability: f64::from(probability), shown }
 }
 
-/// The frames of the shown motions as one run.
-fn shown(runs: &[Tracked], motions: &[NamedMotion]) -> Tracked {
+/// The frames of the shown motions as one run. Angles are unwrapped across a change of motion; the cycles go on by the way to the other
+/// motion's position.
+pub(super) fn shown(runs: &[Tracked], motions: &[NamedMotion]) -> Tracked {
     let mut frames: Vec<TrackedFrame> = Vec::with_capacity(motions.len());
     let mut counter: Option<CycleCounter> = None;
     for (index, named) in motions.iter().enumerate() {

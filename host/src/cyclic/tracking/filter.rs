@@ -8,6 +8,7 @@ use sinew_core::cyclic::particle::{ParticleOptions, Spread};
 use sinew_core::cyclic::{
     AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel,
 };
+use sinew_core::saved_state::{SavedState, StateVisitor};
 
 /// A filter with its model and its first state.
 #[derive(Debug)]
@@ -87,6 +88,16 @@ impl<'m, const N: usize> Filter<'m, N> {
             Kind::Kalman(filter, options) => filter.step(&self.model, options, measurement),
             Kind::Particle(filter) => filter.step(&self.model, measurement),
             Kind::Coupled(filter) => filter.step(&self.model, measurement),
+        }
+    }
+}
+
+impl<const N: usize> SavedState for Filter<'_, N> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        match &mut self.kind {
+            Kind::Kalman(filter, _) => filter.visit(visitor),
+            Kind::Particle(filter) => filter.visit(visitor),
+            Kind::Coupled(filter) => filter.visit(visitor),
         }
     }
 }

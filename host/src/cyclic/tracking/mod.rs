@@ -8,9 +8,12 @@ pub mod particles;
 pub mod run;
 pub mod summary;
 pub mod table;
+pub mod table_run;
+mod walk;
 
-pub use bank::{BankTracked, NamedMotion, track_bank};
+pub use bank::NamedMotion;
 pub use measurements::Measurements;
 pub use options::{FilterName, StartName, TrackingOptions, Updates};
 pub use run::{SideEstimate, Tracked, TrackedFrame, track};
 pub use summary::Summary;
+pub use table_run::TableRun;

@@ -2,10 +2,10 @@
 
 use crate::cyclic::CyclicError;
 use clap::ValueEnum;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Which filter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FilterName {
     /// The phase-coupled filter: measurements correct the position in the cycle too.
@@ -39,7 +39,7 @@ impl FilterName {
 }
 
 /// What is known of the first state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StartName {
     /// The first row's angles, the model's velocities, the best matching (or given) position in the cycle.

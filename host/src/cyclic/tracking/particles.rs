@@ -3,6 +3,8 @@
 //! Every particle draws from its own stream and the chunks' sums are added in their order, so the result has the same bits on
 //! any number of threads.
 
+use super::walk::visit_estimate;
+use crate::resume::{real, reals};
 use rayon::prelude::*;
 use sinew_core::cyclic::particle::{
     CyclicParticle, ParticleOptions, factors_len, fill_factors, fill_positions, first_particle,
@@ -12,6 +14,7 @@ use sinew_core::cyclic::particle_resampling::{Comb, WeightShare};
 use sinew_core::cyclic::particle_sweep::{CHUNK, ParticleTarget, sweep};
 use sinew_core::cyclic::particle_tracker::{count_turns, log_likelihood, resampling_offset};
 use sinew_core::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
+use sinew_core::saved_state::{SavedState, StateVisitor};
 
 /// [`sweep`] with the widest vectors of those named that the processor has. No operation is contracted or taken in another order,
 /// so the bits are those of any other processor.
@@ -124,6 +127,27 @@ impl<const N: usize> ParticleFilter<N> {
             comb.choose(particles, weights, &teeth, next);
         });
         std::mem::swap(&mut self.particles, &mut self.next);
+    }
+}
+
+impl<const N: usize> SavedState for ParticleFilter<N> {
+    /// Weights and the next generation are written before they are read.
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.long(&mut self.seed);
+        visitor.long(&mut self.frame);
+        let mut count = self.particles.len();
+        visitor.index(&mut count, u32::MAX as usize);
+        if count != self.particles.len() {
+            visitor.refuse();
+            return;
+        }
+        for particle in &mut self.particles {
+            reals(&mut particle.angles_rad, visitor);
+            reals(&mut particle.velocities, visitor);
+            real(&mut particle.cycle_position, visitor);
+            real(&mut particle.cycle_velocity, visitor);
+        }
+        visit_estimate(&mut self.last, visitor);
     }
 }
 

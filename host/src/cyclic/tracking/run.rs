@@ -1,16 +1,15 @@
 //! One pass of a filter over an angle table.
 
-use super::filter::{Filter, Pass};
-use super::measurements::Measurements;
 use super::options::TrackingOptions;
+use super::table_run::TableRun;
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
-use crate::cyclic::smoothing::replace_estimates;
 use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, bail};
+use sinew_core::cyclic::CyclicEstimate;
 use sinew_core::cyclic::events::CycleCounter;
 use sinew_core::cyclic::measurement::MAX_STEP_FRAMES;
-use sinew_core::cyclic::{CyclicEstimate, MotionModel};
 use std::f64::consts::TAU;
+use std::sync::atomic::AtomicBool;
 
 /// What the filter answered to one row.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,19 +51,9 @@ pub struct Tracked {
 /// # Errors
 /// An option out of range, a rate so low that a step is too long, a table without any angle.
 pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions) -> Result<Tracked> {
-    let view = model.view();
-    let (frames, rate_hz, step_frames) = if view.angle_count() > ANGLES {
-        let measurements = Measurements::<SPACE_ANGLES>::new(table, &view, options)?;
-        ensure!(
-            table.angle_count() == SPACE_ANGLES,
-            "the model has two angles a joint, the table one; make the table with `sinew angles --view space`, or train a model on such tables"
-        );
-        (frames_of(table, view, options, &measurements)?, measurements.rate_hz(), measurements.step_frames())
-    } else {
-        let measurements = Measurements::<ANGLES>::new(table, &view, options)?;
-        (frames_of(table, view, options, &measurements)?, measurements.rate_hz(), measurements.step_frames())
-    };
-    Ok(Tracked { frames, rate_hz, step_frames })
+    let mut run = TableRun::begin(table, std::slice::from_ref(model), options)?;
+    run.run(&AtomicBool::new(false), &mut |_| ())?;
+    Ok(run.answered()?.0)
 }
 
 /// Index of the first row with an angle.
@@ -81,40 +70,6 @@ pub(super) fn step_of(before: &AngleRow, row: &AngleRow, step_frames: f64) -> f6
     (step_frames * (row.frame - before.frame) as f64).min(f64::from(MAX_STEP_FRAMES))
 }
 
-/// Every row's answer by a filter for `N` angles that begins at the first row with an angle.
-fn frames_of<const N: usize>(
-    table: &AngleTable,
-    view: MotionModel<'_>,
-    options: &TrackingOptions,
-    measurements: &Measurements<'_, N>,
-) -> Result<Vec<TrackedFrame>> {
-    let first = measurements.first();
-    let mut filter = Filter::<N>::new(view, options, &measurements.first_angles_rad(), measurements.step_frames())?;
-    let mut pass = if options.smooth { Pass::begin(&filter) } else { None };
-    let mut frames: Vec<TrackedFrame> = Vec::with_capacity(table.rows().len());
-    // Rows before the first one with an angle are answered with the first state as well.
-    let start = filter.first_estimate();
-    let mut counter = CycleCounter::new(start.cycle_position);
-    frames.extend(table.rows()[..=first].iter().map(|row| tracked(row.frame, &start, 0.0)));
-    for (index, row) in table.rows().iter().enumerate().skip(first + 1) {
-        let measurement = measurements.at(index)?;
-        let estimate = filter.step(&measurement);
-        if let Some(pass) = &mut pass {
-            pass.add(&filter, measurement);
-        }
-        counter.advance(estimate.cycle_position, estimate.cycle_velocity_per_frame, measurement.step_frames());
-        frames.push(tracked(row.frame, &estimate, cycles(&counter)));
-    }
-    if let Some(pass) = pass {
-        replace_estimates(&mut frames[first..], &pass.smoothed());
-        let start = frames[first].clone();
-        for frame in &mut frames[..first] {
-            *frame = TrackedFrame { frame: frame.frame, ..start.clone() };
-        }
-    }
-    Ok(frames)
-}
-
 /// Cycles since the start, with their part.
 pub(super) fn cycles(counter: &CycleCounter) -> f64 {
     let (laps, part) = counter.laps_and_part();
@@ -126,7 +81,7 @@ pub(super) fn measured<const N: usize>(table: &AngleTable, index: usize) -> [Opt
 }
 
 /// The answer of a frame, so many cycles after the first.
-fn tracked<const N: usize>(frame: u64, estimate: &CyclicEstimate<N>, cycles: f64) -> TrackedFrame {
+pub(super) fn tracked<const N: usize>(frame: u64, estimate: &CyclicEstimate<N>, cycles: f64) -> TrackedFrame {
     let unwrapped = |i: usize| f64::from(estimate.angles_rad[i]) + TAU * f64::from(estimate.turns[i]);
     let side = (N == SPACE_ANGLES).then(|| SideEstimate {
         angles_rad: std::array::from_fn(|i| unwrapped(ANGLES + i)),

@@ -3,9 +3,11 @@
 use super::trial::{SeenMotion, trial};
 use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::body::tracking::{BodyModelKind, BodyTuning};
+use crate::resume::Cells;
 use crate::stereo::{Hidden, Limb};
 use anyhow::Result;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 use sinew_core::skeleton::full_body::{FOREARMS, UPPER_ARMS};
 use std::fmt::Write;
 
@@ -37,7 +39,7 @@ pub struct HiddenArm {
 }
 
 /// Errors are means over elbow and wrist; spread and flag are those of the wrist's bone.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Course {
     /// Mean error of the ten frames before, metres.
     pub error_before_m: f64,
@@ -76,23 +78,26 @@ pub fn windows(frames: usize, length: usize, seed: u64) -> Vec<Hidden> {
     (0..).zip(starts).map(|(turn, start)| Hidden { limb: limb(turn), frames: start..=start + length - 1 }).collect()
 }
 
-/// Tracks `seen`, the `motion` in which arms are hidden as `windows` says, and follows each of these arms.
+/// Tracks `seen`, the `motion` in which arms are hidden as `windows` says, and follows each of these arms; all of them are a cell.
 ///
 /// # Errors
-/// Names a parameter of the tracker that broke a rule.
+/// Names a parameter of the tracker that broke a rule; as [`Cells::cell`].
 pub fn follow(
     motion: &str,
     (seen, windows): (&SeenMotion, &[Hidden]),
     (model, particles): (BodyModelKind, usize),
-    tuning: &BodyTuning,
+    (tuning, cells): (&BodyTuning, &Cells<'_>),
     seed: u64,
 ) -> Result<Vec<HiddenArm>> {
-    let (_, estimates) = trial(seen, model, tuning, particles, seed)?;
-    let arm = |hidden: &Hidden| {
-        let (hidden, course) = (hidden.clone(), course(seen, &estimates, hidden)?);
-        Some(HiddenArm { motion: motion.to_owned(), model, particles, seed, hidden, course })
+    let key = json!(["hidden arms", motion, seen.key(), model.name(), particles, seed]);
+    let courses: Vec<Option<Course>> = cells.cell(&key, || {
+        let (_, estimates) = trial(seen, model, tuning, particles, seed)?;
+        Ok(windows.iter().map(|hidden| course(seen, &estimates, hidden)).collect())
+    })?;
+    let arm = |(hidden, course): (&Hidden, Option<Course>)| {
+        Some(HiddenArm { motion: motion.to_owned(), model, particles, seed, hidden: hidden.clone(), course: course? })
     };
-    Ok(windows.iter().filter_map(arm).collect())
+    Ok(windows.iter().zip(courses).filter_map(arm).collect())
 }
 
 /// The course of one hidden arm in a track whose first estimate is that of the frame 1; `None` where the truth misses the arm or the track

@@ -6,9 +6,12 @@ use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::body::tracking::{BodyFilter, BodyModelKind, BodyTuning};
 use crate::body::{BodyJoints, BodyPart, fit_pose};
 use crate::cloud::blocks_of;
+use crate::resume::crc32_of;
 use crate::stereo::StereoScene;
 use anyhow::Result;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use sinew_core::kinematics::forward::posture;
 use sinew_core::math::Vec3;
 use sinew_core::observation::body_surface::BodySurface;
@@ -67,6 +70,12 @@ impl SeenMotion {
         })
     }
 
+    /// What tells this motion from others that the same options and seed make.
+    #[must_use]
+    pub fn key(&self) -> Value {
+        crc32_of(&(&self.joints_m, &self.recorded_markers_m, &self.measures, &self.first_rad, &self.stick))
+    }
+
     /// Eq. (34) of the poses nearest to the true joints, over the recorded markers and from the second frame on, metres: what no tracker of this body
     /// gets below. `None` without such markers.
     ///
@@ -93,7 +102,7 @@ impl SeenMotion {
 }
 
 /// What a trial measured.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TrialResult {
     /// Mean distance of the markers from the skin of the estimate, eq. (34), metres.
     pub error_m: f64,

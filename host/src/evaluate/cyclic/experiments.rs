@@ -4,8 +4,10 @@ use super::protocol::{Errors, LONG_ANGLES, Protocol, TestCycle, pooled};
 use crate::cyclic::CyclicModel;
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates};
+use crate::resume::{Cells, crc32_of};
 use anyhow::Result;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 /// Measurement noises of the paper's table 1, degrees.
 pub const SIGMAS_DEG: [f64; 6] = [1.0, 3.0, 6.0, 29.0, 57.0, 115.0];
@@ -19,7 +21,7 @@ pub const SKIPS: [u64; 8] = [1, 2, 3, 5, 8, 12, 20, 30];
 pub const LATE_FRAME: usize = 5;
 
 /// One cell of a table.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Cell {
     /// Protocol.
     pub protocol: Protocol,
@@ -58,6 +60,8 @@ pub struct Setting<'a> {
     pub rate_hz: f64,
     /// Repetitions where noise or particles are drawn.
     pub seeds: u64,
+    /// Where the cells of all tables are kept.
+    pub cells: &'a Cells<'a>,
 }
 
 /// Which measurements of a cycle are used.
@@ -81,6 +85,12 @@ impl Setting<'_> {
     }
 
     fn measure(&self, protocol: Protocol, options: &TrackingOptions, density: Density) -> Result<Cell> {
+        // Tables that share a cell measure it once.
+        let key = json!([protocol, format!("{options:?}"), format!("{density:?}"), crc32_of(&self.cycles)]);
+        self.cells.cell(&key, || self.measured(protocol, options, density))
+    }
+
+    fn measured(&self, protocol: Protocol, options: &TrackingOptions, density: Density) -> Result<Cell> {
         let errors = match density {
             Density::Every(every) => {
                 let options = TrackingOptions { updates: Updates::Every(every), ..options.clone() };
@@ -121,7 +131,7 @@ impl Setting<'_> {
     /// Table 1: every filter with every sigma, under both protocols.
     ///
     /// # Errors
-    /// As [`pooled`].
+    /// As [`pooled`] and [`Cells::cell`].
     pub fn noise_table(&self) -> Result<Vec<Cell>> {
         let mut cells = Vec::new();
         for protocol in PROTOCOLS {
@@ -137,7 +147,7 @@ impl Setting<'_> {
     /// Beside table 1: `coupled` with the whole recording known (`--smooth`).
     ///
     /// # Errors
-    /// As [`pooled`].
+    /// As [`pooled`] and [`Cells::cell`].
     pub fn smoothed(&self) -> Result<Vec<Cell>> {
         let jobs = PROTOCOLS.into_iter().flat_map(|protocol| SIGMAS_DEG.map(|sigma| (protocol, sigma)));
         jobs.map(|(protocol, sigma)| {
@@ -150,7 +160,7 @@ impl Setting<'_> {
     /// Table 2: the particle filter at sigma 29 degrees with more and more particles.
     ///
     /// # Errors
-    /// As [`pooled`].
+    /// As [`pooled`] and [`Cells::cell`].
     pub fn particle_table(&self, particles: &[usize]) -> Result<Vec<Cell>> {
         particles.iter().map(|&particles| self.particles(particles, StartName::Standard, 1)).collect()
     }
@@ -166,7 +176,7 @@ impl Setting<'_> {
     /// Figure 4b: fewer and fewer measurements at sigma 29 degrees, and two a cycle at sigma 6, for the Kalman filters.
     ///
     /// # Errors
-    /// As [`pooled`].
+    /// As [`pooled`] and [`Cells::cell`].
     pub fn sparse_measurements(&self) -> Result<Vec<Cell>> {
         let mut cells = Vec::new();
         for filter in FILTERS {
@@ -183,7 +193,7 @@ impl Setting<'_> {
     /// Figure 5a: fewer and fewer measurements with particles.
     ///
     /// # Errors
-    /// As [`pooled`].
+    /// As [`pooled`] and [`Cells::cell`].
     pub fn sparse_particles(&self, particles: &[usize]) -> Result<Vec<Cell>> {
         let jobs = particles.iter().flat_map(|&count| SKIPS.map(|skip| (count, skip)));
         jobs.map(|(count, skip)| self.particles(count, StartName::Standard, skip)).collect()
@@ -192,7 +202,7 @@ impl Setting<'_> {
     /// Figure 5b: the three ways to start, with more and more particles.
     ///
     /// # Errors
-    /// As [`pooled`].
+    /// As [`pooled`] and [`Cells::cell`].
     pub fn starts(&self, particles: &[usize]) -> Result<Vec<Cell>> {
         let starts = [StartName::Standard, StartName::Uniform, StartName::Random];
         let jobs = starts.into_iter().flat_map(|start| particles.iter().map(move |&count| (start, count)));

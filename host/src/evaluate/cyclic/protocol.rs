@@ -5,7 +5,7 @@ use crate::cyclic::tracking::{TrackingOptions, track};
 use crate::cyclic::{AngleRow, AngleTable, CutList, CyclicModel};
 use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sinew_core::random::Stream;
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 pub const LONG_ANGLES: [usize; 9] = [0, 2, 3, 5, 6, 8, 9, 11, 12];
 
 /// What the measurement is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Protocol {
     /// The true angle; sigma only tells the filter how much to trust it (the paper's protocol).

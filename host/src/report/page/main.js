@@ -48,12 +48,13 @@ function build() {
   document.title = `Sinew report: ${runs.map((run) => run.name).join(', ')}`;
   const tables = runs.map((run) => new Map(run.tables.map((table) => [table.name, new TableData(table)])));
   const players = runs.map((run, at) => (run.player && run.player.frames.length ? new PlayerView(run.player, tables[at]) : null));
+  const shown = players.filter(Boolean);
   let transport = null;
   const views = runs.map((run, at) => {
     run.beside = isSeveral;
     const onFrame = (frame) => {
       const index = players[at] ? players[at].player.frames.indexOf(frame) : -1;
-      if (index >= 0) transport.go(index);
+      if (index >= 0) transport.goToFrame(shown.indexOf(players[at]), index);
     };
     const isBars = (plot) => plot.series.some((series) => series.style === 'bars');
     return run.plots.map((plot) => (isBars(plot) ? new BarsView(plot, run, tables[at]) : new PlotView(plot, run, tables[at], onFrame)));
@@ -76,13 +77,11 @@ function build() {
     element('footer', {}, `Made by sinew ${data.sinew_version}. The page is one file and loads nothing.`),
   );
   drawRows(plots.rows);
-  const shown = players.filter(Boolean);
   if (shown.length) {
     transport = new Transport(shown, () => {
       players.forEach((player, at) => {
         if (!player) return;
-        const frame = player.player.frames[Math.min(transport.index, player.count - 1)];
-        for (const view of views[at]) view.showFrame(frame);
+        for (const view of views[at]) view.showFrame(player.frame);
       });
     });
     page.append(transport.node);

@@ -1,0 +1,51 @@
+//! A body tracker's state as it is saved.
+
+use super::step::BodyTracker;
+use crate::math::Vec3;
+use crate::pik::motion::BodyParticle;
+use crate::saved_state::{FINITE, SavedState, StateVisitor};
+
+fn places(values: &mut [Vec3], visitor: &mut impl StateVisitor) {
+    for value in values {
+        visitor.reals(value.as_mut_slice(), &FINITE);
+    }
+}
+
+impl<const BONES: usize, const ANGLES: usize> SavedState for BodyParticle<BONES, ANGLES> {
+    /// The log-weights are left out: each step sets them anew before it reads them.
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.reals(&mut self.angles_rad, &FINITE);
+        places(&mut self.ends_m, visitor);
+        visitor.reals(&mut self.memory, &FINITE);
+    }
+}
+
+impl<const BONES: usize, const ANGLES: usize, const N: usize, S> SavedState for BodyTracker<BONES, ANGLES, N, S>
+where
+    S: AsMut<[BodyParticle<BONES, ANGLES>]>,
+{
+    /// A state is for a tracker with as many particles. The other set, the ancestors and where the body is expected are written before they are
+    /// read.
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.long(&mut self.seed);
+        visitor.long(&mut self.frame);
+        let particles = self.particles.as_mut();
+        let mut count = particles.len();
+        visitor.index(&mut count, N);
+        if count != particles.len() {
+            visitor.refuse();
+            return;
+        }
+        for particle in particles.iter_mut() {
+            particle.visit(visitor);
+        }
+        self.weights.visit(visitor);
+        if self.weights.len() != count {
+            visitor.refuse();
+        }
+        places(&mut self.first_m, visitor);
+        self.before.visit(visitor);
+        visitor.reals(&mut self.angle_velocity_per_s, &FINITE);
+        places(&mut self.velocity_m_per_s, visitor);
+    }
+}

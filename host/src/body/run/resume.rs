@@ -1,0 +1,154 @@
+//! Going on with a run that Ctrl-C ended: the tracker's state and what each frame was answered with.
+//!
+//! Animation, markers, errors and pictures are made anew from the answers; of clouds only those on the contact sheet are read again.
+
+use super::options::BodyTrackOptions;
+use super::report::{PointCounts, SkippedCloud};
+use super::track::{BodyTrackRun, read_cloud};
+use crate::body::tracking::filter::WholeBodyEstimate;
+use crate::output::OutputDir;
+use crate::resume::{Begun, Left, List, ResumeFile, file_crc32, from_text, real, reals, to_text};
+use anyhow::Result;
+use serde::{Deserialize, Serialize};
+use sinew_core::math::Vec3;
+use sinew_core::saved_state::{SavedState, StateKind, StateVisitor};
+use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES};
+use std::path::Path;
+
+const COMMAND: &str = "track body";
+
+/// What the tables of a run do not hold.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct BodyState {
+    skipped: Vec<SkippedCloud>,
+    points: PointCounts,
+    /// Wall time of the steps, seconds.
+    step_s: f64,
+    /// The tracker.
+    tracker: String,
+    /// The answer to each finished frame.
+    answers: String,
+}
+
+/// A finished frame.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Answer {
+    pub frame: u64,
+    pub estimate: WholeBodyEstimate,
+}
+
+/// What an answer is before it is read.
+const NO_ANSWER: Answer = Answer {
+    frame: 0,
+    estimate: WholeBodyEstimate {
+        angles_rad: [0.0; BODY_ANGLES],
+        ends_m: [Vec3::new(0.0, 0.0, 0.0); BODY_BONES],
+        spread_m: [0.0; BODY_BONES],
+        observed: [false; BODY_BONES],
+        effective_sample_size: 0.0,
+        log_evidence: 0.0,
+        tempering: 0.0,
+        is_degenerate: false,
+    },
+};
+
+impl SavedState for Answer {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.long(&mut self.frame);
+        let estimate = &mut self.estimate;
+        reals(&mut estimate.angles_rad, visitor);
+        estimate.ends_m.iter_mut().for_each(|end| reals(end.as_mut_slice(), visitor));
+        reals(&mut estimate.spread_m, visitor);
+        estimate.observed.iter_mut().for_each(|flag| visitor.flag(flag));
+        for value in [&mut estimate.effective_sample_size, &mut estimate.log_evidence, &mut estimate.tempering] {
+            real(value, visitor);
+        }
+        visitor.flag(&mut estimate.is_degenerate);
+    }
+}
+
+/// What `run` leaves, but for its tables.
+pub(super) fn left(run: &mut BodyTrackRun) -> Result<Left<BodyState>> {
+    let mut answers = List::new(std::mem::take(&mut run.answers), NO_ANSWER);
+    let state = BodyState {
+        skipped: run.report.skipped.clone(),
+        points: run.report.points,
+        step_s: run.step_s,
+        tracker: run.filter.saved()?,
+        answers: to_text(StateKind::Body, &mut answers)?,
+    };
+    run.answers = answers.entries;
+    let begun = read_by(begun(&run.report.options)?, run)?;
+    Ok(Left::new(begun, run.report.frames_finished, run.seconds, run.last_cloud_crc32(), state))
+}
+
+/// Writes what is left beside the tables that it belongs to; without anything left removes that of an earlier run.
+pub(super) fn put(left: Option<Left<BodyState>>, options: &BodyTrackOptions, out: &OutputDir) -> Result<()> {
+    let tables: &[&str] = if options.particles_csv { &["track.csv", "particles.csv"] } else { &["track.csv"] };
+    let left = left.map(|left| left.with_tables(out, tables)).transpose()?;
+    ResumeFile::in_folder(out.path(), COMMAND).put(left.as_ref())
+}
+
+/// How a run with these options is begun, before anything is read. Results do not depend on the threads.
+fn begun(options: &BodyTrackOptions) -> Result<Begun> {
+    Begun::new(COMMAND, options, &["folder", "threads"])?.on(&options.folder)
+}
+
+/// The same with what `run` reads.
+fn read_by(mut begun: Begun, run: &BodyTrackRun) -> Result<Begun> {
+    let files = &run.inputs.files;
+    for path in [&files.skeleton, &files.init, &files.stick, &files.truth, &files.scene].into_iter().flatten() {
+        begun = begun.reading(format!("`{}`", path.display()), file_crc32(path)?);
+    }
+    let clouds = &run.inputs.clouds.frames;
+    Ok(begun.with_frames(clouds.iter().map(|cloud| cloud_name(&cloud.path)).collect()))
+}
+
+fn cloud_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+impl BodyTrackRun {
+    /// Checks everything as [`BodyTrackRun::prepare`] does, and takes up the run in `out` that was ended by Ctrl-C: what it will have
+    /// written at its end is, bit for bit, what it would have written without a break, but for the times in `run.json`.
+    ///
+    /// # Errors
+    /// As [`BodyTrackRun::prepare`]; there is no such run in `out`, or it was begun with other options, inputs or another version.
+    pub fn resume(options: BodyTrackOptions, out: &Path) -> Result<Self> {
+        let left: Left<BodyState> = ResumeFile::in_folder(out, COMMAND).read(out)?;
+        let now = begun(&options)?;
+        left.begun.check_options(&now, out)?;
+        let mut run = Self::prepare(options, out)?;
+        left.begun.check_inputs(&read_by(now, &run)?)?;
+        run.table = left.reopened("track.csv", &run.out)?;
+        if run.particles.is_some() {
+            run.particles = Some(left.reopened("particles.csv", &run.out)?);
+        }
+        let mut answers = List::new(Vec::new(), NO_ANSWER);
+        from_text(StateKind::Body, &left.state.answers, &mut answers)?;
+        for (index, answer) in answers.entries.into_iter().enumerate() {
+            let wants = run.pictures.as_ref().is_some_and(|pictures| pictures.wants(index));
+            let cloud = run.inputs.clouds.frames.get(index).filter(|_| wants);
+            let points_m = cloud.and_then(|cloud| Some(read_cloud(cloud, run.report.seed).ok()?.points_m));
+            run.take(index, answer, &points_m.unwrap_or_default());
+        }
+        if let Some(last) = run.last_cloud() {
+            left.check_last(&cloud_name(last), run.last_cloud_crc32())?;
+        }
+        run.filter.restore(&left.state.tracker)?;
+        run.seconds = left.seconds;
+        run.step_s = left.state.step_s;
+        (run.report.skipped, run.report.points) = (left.state.skipped, left.state.points);
+        Ok(run)
+    }
+
+    /// File of the last finished frame.
+    fn last_cloud(&self) -> Option<&Path> {
+        let last = self.report.frames_finished.checked_sub(1)?;
+        Some(&self.inputs.clouds.frames.get(last)?.path)
+    }
+
+    fn last_cloud_crc32(&self) -> Option<u32> {
+        file_crc32(self.last_cloud()?).ok()
+    }
+}

@@ -1,0 +1,172 @@
+//! A run over an angle table that may be stopped between rows and taken up again.
+
+use super::bank::{MOST_MOTIONS, NamedMotion, named, shown};
+use super::options::TrackingOptions;
+use super::run::Tracked;
+use super::walk::Walk;
+use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
+use crate::cyclic::{AngleTable, CyclicModel};
+use crate::resume::{REMEDY, from_text, to_text};
+use anyhow::{Result, ensure};
+use sinew_core::saved_state::{SavedState, StateKind, StateVisitor};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The filters of all models over one table, row by row.
+#[derive(Debug)]
+pub struct TableRun<'a> {
+    table: &'a AngleTable,
+    models: &'a [CyclicModel],
+    options: &'a TrackingOptions,
+    walks: Walks<'a>,
+    /// Frames per second of the recording, and frames of the model in one of these.
+    rates: (f64, f64),
+}
+
+/// One filter a model.
+#[derive(Debug)]
+enum Walks<'a> {
+    Plane(Vec<Walk<'a, ANGLES>>),
+    Space(Vec<Walk<'a, SPACE_ANGLES>>),
+}
+
+impl<'a> TableRun<'a> {
+    /// Filters at the first row with an angle (see [`super::StartName`]), which is answered with the first state. With several models the
+    /// likeliest motion of each row is named and shown.
+    ///
+    /// # Errors
+    /// An option out of range, a rate so low that a step is too long, a table without any angle; no model or too many, models that differ
+    /// in rate or number of angles.
+    pub fn begin(table: &'a AngleTable, models: &'a [CyclicModel], options: &'a TrackingOptions) -> Result<Self> {
+        options.check()?;
+        ensure!(
+            (1..=MOST_MOTIONS).contains(&models.len()),
+            "`--model`: 1 to {MOST_MOTIONS} motions can be told apart, not {}",
+            models.len()
+        );
+        let kind = |model: &CyclicModel| (model.numbers().angle_count, model.numbers().rate_hz);
+        ensure!(
+            models.iter().all(|model| kind(model) == kind(&models[0])),
+            "`--model`: motions can be told apart by models of one rate and one number of angles; train them alike"
+        );
+        if models[0].numbers().angle_count > ANGLES {
+            ensure!(
+                table.angle_count() == SPACE_ANGLES,
+                "the model has two angles a joint, the table one; make the table with `sinew angles --view space`, or train a model on such tables"
+            );
+            let walks = walks(table, models, options)?;
+            return Ok(Self { table, models, options, rates: rates(&walks), walks: Walks::Space(walks) });
+        }
+        let walks = walks(table, models, options)?;
+        Ok(Self { table, models, options, rates: rates(&walks), walks: Walks::Plane(walks) })
+    }
+
+    /// Rows that are answered.
+    #[must_use]
+    pub fn finished(&self) -> usize {
+        match &self.walks {
+            Walks::Plane(walks) => walks[0].finished(),
+            Walks::Space(walks) => walks[0].finished(),
+        }
+    }
+
+    /// Rows of the table.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.table.rows().len()
+    }
+
+    /// Answers all rows, or those before `stop` is set; `notify` is told how many there are after each. Whether the last one was reached.
+    ///
+    /// # Errors
+    /// None for rows of the table.
+    pub fn run(&mut self, stop: &AtomicBool, notify: &mut dyn FnMut(usize)) -> Result<bool> {
+        while self.finished() < self.rows() {
+            if stop.load(Ordering::Relaxed) {
+                return Ok(false);
+            }
+            self.step()?;
+            notify(self.finished());
+        }
+        Ok(true)
+    }
+
+    fn step(&mut self) -> Result<()> {
+        match &mut self.walks {
+            Walks::Plane(walks) => walks.iter_mut().try_for_each(Walk::step),
+            Walks::Space(walks) => walks.iter_mut().try_for_each(Walk::step),
+        }
+    }
+
+    /// What was answered so far, as if the table ended there, and where there are several models the motion of each row.
+    ///
+    /// # Errors
+    /// None for rows of the table.
+    pub fn answered(&self) -> Result<(Tracked, Option<Vec<NamedMotion>>)> {
+        match &self.walks {
+            Walks::Plane(walks) => self.told(walks),
+            Walks::Space(walks) => self.told(walks),
+        }
+    }
+
+    fn told<const N: usize>(&self, walks: &[Walk<'_, N>]) -> Result<(Tracked, Option<Vec<NamedMotion>>)> {
+        let (rate_hz, step_frames) = self.rates;
+        let run = |walk: &Walk<'_, N>| Tracked { frames: walk.frames(), rate_hz, step_frames };
+        let mut runs: Vec<Tracked> = walks.iter().map(run).collect();
+        if runs.len() == 1 {
+            return Ok((runs.remove(0), None));
+        }
+        let motions = named::<N>(self.table, self.models, &runs, self.options)?;
+        Ok((shown(&runs, &motions), Some(motions)))
+    }
+
+    /// The state after the last row that is answered as text, which [`TableRun::restore`] takes; `None` where the whole recording is asked
+    /// for: the way back needs the states of all rows, which are sooner computed again than read.
+    ///
+    /// # Errors
+    /// None that a user can bring about.
+    pub fn saved(&mut self) -> Result<Option<String>> {
+        if self.options.smooth {
+            return Ok(None);
+        }
+        Ok(Some(to_text(StateKind::Cyclic, &mut self.walks)?))
+    }
+
+    /// Goes on from a state that was saved after `finished` rows with the same table, models and options.
+    ///
+    /// # Errors
+    /// The text is not whole, or of another run.
+    pub fn restore(&mut self, finished: usize, saved: Option<&str>) -> Result<()> {
+        match saved {
+            Some(text) => from_text(StateKind::Cyclic, text, &mut self.walks)?,
+            None => {
+                while self.finished() < finished.min(self.rows()) {
+                    self.step()?;
+                }
+            }
+        }
+        ensure!(self.finished() == finished, "what the run left does not fit its number of rows; {REMEDY}");
+        Ok(())
+    }
+}
+
+impl SavedState for Walks<'_> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        match self {
+            Self::Plane(walks) => walks.iter_mut().for_each(|walk| walk.visit(visitor)),
+            Self::Space(walks) => walks.iter_mut().for_each(|walk| walk.visit(visitor)),
+        }
+    }
+}
+
+fn walks<'a, const N: usize>(
+    table: &'a AngleTable,
+    models: &'a [CyclicModel],
+    options: &'a TrackingOptions,
+) -> Result<Vec<Walk<'a, N>>> {
+    models.iter().map(|model| Walk::begin(table, model.view(), options)).collect()
+}
+
+fn rates<const N: usize>(walks: &[Walk<'_, N>]) -> (f64, f64) {
+    let measurements = walks[0].measurements();
+    (measurements.rate_hz(), measurements.step_frames())
+}

@@ -1,0 +1,170 @@
+//! What a run that Ctrl-C ended leaves: how far it got and its state, in a file beside its results.
+
+use super::begun::copy_with_crc32;
+use super::{Begun, REMEDY, file_crc32};
+use crate::output::{OutputDir, PendingFile, write_atomically};
+use anyhow::{Context, Result, bail, ensure};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Name of the file in a run directory.
+pub const RESUME_FILE: &str = "resume.json";
+
+/// A run as it was left; `S` is what the command needs of it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Left<S> {
+    /// How it was begun.
+    pub begun: Begun,
+    /// Frames that are finished.
+    pub finished: usize,
+    /// Time spent so far, seconds.
+    pub seconds: f64,
+    /// CRC-32 of the last finished frame's input; none where it could not be read.
+    pub last_crc32: Option<u32>,
+    /// CRC-32 of each table that is written on.
+    tables_crc32: BTreeMap<String, u32>,
+    /// The rest.
+    pub state: S,
+}
+
+impl<S> Left<S> {
+    /// A run that goes no further; [`Left::with_tables`] says what there is of its tables.
+    pub fn new(begun: Begun, finished: usize, seconds: f64, last_crc32: Option<u32>, state: S) -> Self {
+        Self { begun, finished, seconds, last_crc32, tables_crc32: BTreeMap::new(), state }
+    }
+
+    /// Remembers the content of tables that were written into `out`.
+    ///
+    /// # Errors
+    /// One cannot be read.
+    pub fn with_tables(mut self, out: &OutputDir, names: &[&str]) -> Result<Self> {
+        for name in names {
+            self.tables_crc32.insert((*name).to_owned(), file_crc32(&out.join(name))?);
+        }
+        Ok(self)
+    }
+
+    /// The table `name` of the finished frames, to be written on.
+    ///
+    /// # Errors
+    /// It is no longer as it was left.
+    pub fn reopened(&self, name: &str, out: &OutputDir) -> Result<csv::Writer<PendingFile>> {
+        let mut pending = out.begin(name)?;
+        let sum = copy_with_crc32(&out.join(name), &mut pending)?;
+        ensure!(
+            self.tables_crc32.get(name) == Some(&sum),
+            "`{}` has changed since the run was ended; {REMEDY}",
+            out.join(name).display()
+        );
+        Ok(csv::Writer::from_writer(pending))
+    }
+
+    /// Refuses another input for the last finished frame, `name`, than there was; `crc32` is that of the present one.
+    ///
+    /// # Errors
+    /// It is another.
+    pub fn check_last(&self, name: &str, crc32: Option<u32>) -> Result<()> {
+        ensure!(self.last_crc32 == crc32, "`{name}` has changed since the run was ended; {REMEDY}");
+        Ok(())
+    }
+}
+
+/// Where a run of one command keeps what it leaves.
+#[derive(Debug, Clone)]
+pub struct ResumeFile {
+    path: PathBuf,
+    command: &'static str,
+}
+
+impl ResumeFile {
+    /// [`RESUME_FILE`] in the run directory `out`.
+    #[must_use]
+    pub fn in_folder(out: &Path, command: &'static str) -> Self {
+        Self { path: out.join(RESUME_FILE), command }
+    }
+
+    /// `NAME_resume.json` beside the table `NAME.csv`.
+    #[must_use]
+    pub fn beside(table: &Path, command: &'static str) -> Self {
+        let stem = table.file_stem().unwrap_or_default().to_string_lossy();
+        Self { path: table.with_file_name(format!("{stem}_{RESUME_FILE}")), command }
+    }
+
+    /// Name of the file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes what is left; nothing left removes what an earlier run left.
+    ///
+    /// # Errors
+    /// The file cannot be written or removed.
+    pub fn put<S: Serialize>(&self, left: Option<&Left<S>>) -> Result<()> {
+        match left {
+            Some(left) => write_atomically(&self.path, |writer| Ok(serde_json::to_writer_pretty(writer, left)?)),
+            None => match fs::remove_file(&self.path) {
+                Err(error) if self.path.exists() => {
+                    Err(error).context(format!("`{}` cannot be removed", self.path.display()))
+                }
+                _ => Ok(()),
+            },
+        }
+    }
+
+    /// Reads what was left in `out`.
+    ///
+    /// # Errors
+    /// There is nothing, or it is of another version or command, or not whole.
+    pub fn read<S: DeserializeOwned>(&self, out: &Path) -> Result<Left<S>> {
+        let path = self.path.display();
+        if !self.path.exists() {
+            let report: Option<Value> =
+                fs::read(out.join("run.json")).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
+            if report.is_some_and(|report| report["complete"] == true) {
+                bail!("the run in `{}` is complete; {REMEDY}", out.display());
+            }
+            bail!("`{}` holds no run that Ctrl-C ended (no `{path}`); {REMEDY}", out.display());
+        }
+        let text = fs::read_to_string(&self.path).with_context(|| format!("`{path}` cannot be read; {REMEDY}"))?;
+        // As a value first: its numbers are parsed exactly.
+        let value: Value = serde_json::from_str(&text).with_context(|| format!("`{path}` is not JSON; {REMEDY}"))?;
+        Begun::check_kind(&value["begun"], self.command, &self.path)?;
+        serde_json::from_value(value).with_context(|| format!("`{path}` is not whole; {REMEDY}"))
+    }
+}
+
+/// CRC-32 of text that stands for an input.
+#[must_use]
+pub fn text_crc32(text: &str) -> u32 {
+    crc32fast::hash(text.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn what_was_left_comes_back_exactly_and_to_its_own_command_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let begun = Begun::new("track arm", &json!({ "seed": 1 }), &[]).unwrap();
+        let numbers = vec![0.1, 1.0 / 3.0, f64::MIN_POSITIVE, 6.283_185_307_179_586e-7, -1.0e300];
+        let left = Left::new(begun, 3, 0.1 + 0.2, Some(9), numbers.clone());
+        let file = ResumeFile::in_folder(folder.path(), "track arm");
+        file.put(Some(&left)).unwrap();
+        let back: Left<Vec<f64>> = file.read(folder.path()).unwrap();
+        assert_eq!((back.finished, back.seconds.to_bits(), back.last_crc32), (3, (0.1_f64 + 0.2).to_bits(), Some(9)));
+        assert_eq!(back.state, numbers);
+        let other = ResumeFile::in_folder(folder.path(), "track body");
+        let message = other.read::<Vec<f64>>(folder.path()).unwrap_err().to_string();
+        assert!(message.contains("left by `sinew track arm`, not by `sinew track body`"), "{message}");
+        file.put::<()>(None).unwrap();
+        file.put::<()>(None).unwrap();
+        assert!(file.read::<Vec<f64>>(folder.path()).unwrap_err().to_string().contains("holds no run"));
+    }
+}

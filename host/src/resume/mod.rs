@@ -1,0 +1,19 @@
+//! Going on with a run that Ctrl-C ended: what such a run leaves beside its results, and what it is compared with when it is taken up.
+//!
+//! [`Begun`] says how a run was begun, [`Left`] adds how far it got and in which state it was, [`ResumeFile`] is where that is kept.
+//! A state is text ([`to_text`]) by way of the core's saved states, so that it comes back bit for bit. Evaluations keep [`Cells`] instead.
+
+mod begun;
+mod cells;
+mod interrupted;
+mod left;
+mod state_text;
+
+pub use begun::{Begun, absolute, file_crc32};
+pub use cells::{CELLS_FOLDER, Cells, Stop, crc32_of};
+pub use interrupted::Interrupted;
+pub use left::{Left, RESUME_FILE, ResumeFile, text_crc32};
+pub use state_text::{List, from_text, long_real, optional, real, reals, to_text};
+
+/// What to do where a run cannot be gone on with.
+pub const REMEDY: &str = "leave --resume out to begin anew";
