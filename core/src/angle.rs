@@ -19,6 +19,16 @@ use crate::math::{atan2, ln, round, sin_cos, sqrt, wrap_angle};
 use core::f32::consts::{PI, TAU};
 
 /// `angle_rad` in (-pi, pi] and the whole turns taken off it: unwrapped = wrapped + 2 pi turns.
+///
+/// ```
+/// use core::f32::consts::TAU;
+/// use sinew_core::angle::split_turns;
+///
+/// // An angle that wound twice and a bit: filters keep the bit precise, however often it winds.
+/// let (rest_rad, turns) = split_turns(2.0 * TAU + 0.25);
+/// assert_eq!(turns, 2);
+/// assert!((rest_rad - 0.25).abs() < 1e-5);
+/// ```
 #[inline]
 #[must_use]
 pub fn split_turns(angle_rad: f32) -> (f32, i32) {
@@ -30,6 +40,14 @@ pub fn split_turns(angle_rad: f32) -> (f32, i32) {
 }
 
 /// The shorter way from `from_rad` to `to_rad`, in (-pi, pi].
+///
+/// ```
+/// use sinew_core::angle::angle_difference;
+///
+/// // From a heading of 350 degrees to one of 20 it is 30 degrees to the left, not 330 to the right.
+/// let way_rad = angle_difference(20.0_f32.to_radians(), 350.0_f32.to_radians());
+/// assert!((way_rad.to_degrees() - 30.0).abs() < 1e-3);
+/// ```
 #[inline]
 #[must_use]
 pub fn angle_difference(to_rad: f32, from_rad: f32) -> f32 {
@@ -38,6 +56,19 @@ pub fn angle_difference(to_rad: f32, from_rad: f32) -> f32 {
 }
 
 /// Sums of cosines and sines of weighted angles.
+///
+/// ```
+/// use sinew_core::angle::CircularSum;
+///
+/// // Three headings about north, the middle one twice as sure.
+/// let mut headings = CircularSum::default();
+/// for (heading, weight) in [(350.0_f32, 1.0), (0.0, 2.0), (10.0, 1.0)] {
+///     headings.add(heading.to_radians(), weight);
+/// }
+/// assert!(headings.mean_rad().is_some_and(|mean_rad| mean_rad.abs() < 1e-4));
+/// // Their spread is sqrt((10^2 + 10^2) / 4) degrees.
+/// assert!(headings.std_rad().is_some_and(|std_rad| (std_rad.to_degrees() - 7.1).abs() < 0.05));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CircularSum {
     cosine: f32,

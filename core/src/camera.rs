@@ -26,6 +26,13 @@ use crate::math::{Vec3, sin_cos, unit};
 const UNDISTORT_STEPS: usize = 12;
 
 /// A point of the image, pixels.
+///
+/// ```
+/// use sinew_core::camera::Pixel;
+///
+/// let (thumb, wrist) = (Pixel::new(320.0, 200.0), Pixel::new(350.0, 240.0));
+/// assert_eq!(thumb.distance_px(wrist), 50.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
@@ -52,6 +59,20 @@ impl Pixel {
 }
 
 /// Radial (`k1..k3`) and tangential (`p1`, `p2`) distortion, the Brown-Conrady model in OpenCV's order of terms.
+///
+/// ```
+/// use sinew_core::camera::{Camera, Distortion};
+/// use sinew_core::math::Vec3;
+///
+/// // A wide lens draws what lies at the edge towards the middle; `undistort` puts it back.
+/// let pinhole = Camera::from_field_of_view(640, 480, 1.4)?;
+/// let lens = pinhole.with_distortion(Distortion { k1: -0.2, ..Distortion::default() })?;
+/// let hand_m = Vec3::new(0.8, 0.0, 1.2);
+/// let (ideal, seen) = (pinhole.project(&hand_m).unwrap(), lens.project(&hand_m).unwrap());
+/// assert!(ideal.u_px - seen.u_px > 20.0);
+/// assert!(lens.undistort(seen).distance_px(ideal) < 0.1);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Distortion {
     /// Radial coefficient of r^2.
@@ -67,6 +88,18 @@ pub struct Distortion {
 }
 
 /// A half line from the camera: `origin + s * direction`, s >= 0.
+///
+/// ```
+/// use sinew_core::camera::{Camera, Pixel};
+///
+/// // All that a pixel says about a hand is the ray that it lies on; a metre away it may be here.
+/// let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// let ray = camera.back_project(Pixel::new(400.0, 300.0));
+/// let hand_m = ray.origin + ray.direction;
+/// assert!((ray.project(&hand_m) - hand_m).norm() < 1e-6);
+/// assert!(camera.project(&hand_m).is_some_and(|seen| seen.distance_px(Pixel::new(400.0, 300.0)) < 1e-3));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
     /// Camera centre, metres (P of the arm paper).
@@ -84,6 +117,19 @@ impl Ray {
 }
 
 /// Intrinsic parameters of a pinhole camera.
+///
+/// ```
+/// use sinew_core::camera::{Camera, Pixel};
+/// use sinew_core::math::Vec3;
+///
+/// // Calibrated: focal lengths and principal point. Half a metre away, 10 cm are a fifth of a focal length.
+/// let camera = Camera::new(600.0, 600.0, Pixel::new(320.0, 240.0))?;
+/// assert_eq!(camera.project(&Vec3::new(0.1, 0.0, 0.5)), Some(Pixel::new(440.0, 240.0)));
+/// // Not calibrated: the field of view from the data sheet has to do.
+/// let webcam = Camera::from_field_of_view(640, 480, 60.0_f32.to_radians())?;
+/// assert!((webcam.focal_px() - 554.3).abs() < 0.1);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     focal_u_px: f32,

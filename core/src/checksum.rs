@@ -28,6 +28,14 @@ const fn half_bytes() -> [u32; 16] {
 }
 
 /// A checksum that grows byte by byte.
+///
+/// ```
+/// use sinew_core::checksum::{Crc32, crc32};
+///
+/// // Byte by byte as they arrive; a word stands for its four bytes, the lowest first.
+/// let received = Crc32::new().and(b'a').and_word(u32::from_le_bytes(*b"bcde"));
+/// assert_eq!(received.value(), crc32(b"abcde"));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Crc32 {
     remainder: u32,
@@ -70,6 +78,15 @@ impl Crc32 {
 }
 
 /// Checksum of `bytes`.
+///
+/// ```
+/// use sinew_core::checksum::crc32;
+///
+/// // Computed when the program is built: nothing of it is left at run time.
+/// const BANNER: u32 = crc32(b"sinew");
+/// assert_eq!(BANNER, crc32(b"sinew"));
+/// assert_ne!(BANNER, crc32(b"sinev"), "one wrong bit is found");
+/// ```
 #[must_use]
 pub const fn crc32(bytes: &[u8]) -> u32 {
     let mut sum = Crc32::new();

@@ -12,6 +12,17 @@
 use core::fmt;
 
 /// The rule that a parameter broke.
+///
+/// ```
+/// use sinew_core::error::Rule;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// // Which rule it was tells a sensor that failed from a length typed wrongly.
+/// let rule = |forearm_m| ArmGeometry::new(Side::Left, 0.3, forearm_m).map_err(|refused| refused.rule);
+/// assert_eq!(rule(f32::NAN), Err(Rule::Finite));
+/// assert_eq!(rule(-0.3), Err(Rule::Positive));
+/// assert!(rule(0.3).is_ok());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -73,6 +84,17 @@ impl fmt::Display for Rule {
 }
 
 /// A parameter that cannot be used, and why.
+///
+/// ```
+/// use sinew_core::error::{ParameterError, Rule, positive};
+///
+/// // In a constructor of one's own: the first parameter that breaks its rule is named.
+/// fn frame_duration_s(rate_hz: f32) -> Result<f32, ParameterError> {
+///     Ok(1.0 / positive("rate_hz", rate_hz)?)
+/// }
+/// assert_eq!(frame_duration_s(0.0), Err(ParameterError::new("rate_hz", Rule::Positive)));
+/// assert_eq!(frame_duration_s(50.0), Ok(0.02));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ParameterError {
@@ -100,6 +122,13 @@ impl core::error::Error for ParameterError {}
 
 /// Returns `value` if it is finite.
 ///
+/// ```
+/// use sinew_core::error::{Rule, finite};
+///
+/// assert_eq!(finite("tilt_rad", -0.2), Ok(-0.2));
+/// assert!(finite("tilt_rad", f32::NAN).is_err_and(|error| error.rule == Rule::Finite));
+/// ```
+///
 /// # Errors
 /// [`Rule::Finite`] otherwise.
 pub fn finite(parameter: &'static str, value: f32) -> Result<f32, ParameterError> {
@@ -107,6 +136,13 @@ pub fn finite(parameter: &'static str, value: f32) -> Result<f32, ParameterError
 }
 
 /// Returns `value` if it is finite and greater than zero.
+///
+/// ```
+/// use sinew_core::error::{Rule, positive};
+///
+/// assert_eq!(positive("sigma_rad", 0.1), Ok(0.1));
+/// assert!(positive("sigma_rad", 0.0).is_err_and(|error| error.rule == Rule::Positive));
+/// ```
 ///
 /// # Errors
 /// [`Rule::Finite`] or [`Rule::Positive`] otherwise.
@@ -116,6 +152,13 @@ pub fn positive(parameter: &'static str, value: f32) -> Result<f32, ParameterErr
 
 /// Returns `value` if it is finite and zero or greater.
 ///
+/// ```
+/// use sinew_core::error::{Rule, not_negative};
+///
+/// assert_eq!(not_negative("walk_std_px", 0.0), Ok(0.0), "something that stands still is allowed");
+/// assert!(not_negative("walk_std_px", -1.0).is_err_and(|error| error.rule == Rule::NotNegative));
+/// ```
+///
 /// # Errors
 /// [`Rule::Finite`] or [`Rule::NotNegative`] otherwise.
 pub fn not_negative(parameter: &'static str, value: f32) -> Result<f32, ParameterError> {
@@ -123,6 +166,14 @@ pub fn not_negative(parameter: &'static str, value: f32) -> Result<f32, Paramete
 }
 
 /// Returns `value` if it lies in `low..=high`.
+///
+/// ```
+/// use sinew_core::error::{Rule, within};
+///
+/// assert_eq!(within("probability", 1.0, 0.0, 1.0), Ok(1.0), "the ends belong to it");
+/// let refused = within("probability", 1.5, 0.0, 1.0).map_err(|error| error.rule);
+/// assert_eq!(refused, Err(Rule::Within { low: 0.0, high: 1.0 }));
+/// ```
 ///
 /// # Errors
 /// [`Rule::Finite`] or [`Rule::Within`] otherwise.

@@ -20,8 +20,26 @@
 use core::f32::consts::{FRAC_2_PI, PI, TAU};
 
 /// Three-component vector of metres (or a unit direction).
+///
+/// ```
+/// use sinew_core::math::Vec3;
+///
+/// // Camera axes: x to the right, y down, z away from the camera.
+/// let (elbow_m, hand_m) = (Vec3::new(0.2, 0.1, 1.0), Vec3::new(0.2, 0.4, 1.0));
+/// assert_eq!((hand_m - elbow_m).normalize(), Vec3::y(), "the forearm hangs");
+/// ```
 pub type Vec3 = nalgebra::Vector3<f32>;
 /// 3x3 matrix, in this crate a rotation unless said otherwise.
+///
+/// ```
+/// use core::f32::consts::FRAC_PI_2;
+/// use sinew_core::math::{Mat3, Vec3, axis_rotation};
+///
+/// // Two quarter turns one after the other, the right one first.
+/// let turned: Mat3 = axis_rotation(&Vec3::z(), FRAC_PI_2) * axis_rotation(&Vec3::x(), FRAC_PI_2);
+/// assert!((turned * Vec3::y() - Vec3::z()).norm() < 1e-6);
+/// assert!((turned * turned.transpose() - Mat3::identity()).norm() < 1e-6);
+/// ```
 pub type Mat3 = nalgebra::Matrix3<f32>;
 
 /// Largest absolute error of [`sin_cos`] (asserted by a test against `f64`).
@@ -30,6 +48,14 @@ pub const SIN_COS_MAX_ERROR: f32 = 1.2e-7;
 pub const SIN_COS_MAX_ARGUMENT_RAD: f32 = 1.0e4;
 
 /// Square root; NaN below zero.
+///
+/// ```
+/// use core::f32::consts::SQRT_2;
+/// use sinew_core::math::sqrt;
+///
+/// assert_eq!(sqrt(2.0), SQRT_2, "rounded correctly, to the last bit");
+/// assert!(sqrt(-1.0).is_nan());
+/// ```
 #[inline]
 #[must_use]
 pub fn sqrt(x: f32) -> f32 {
@@ -68,6 +94,16 @@ pub const SQRT_BRANCH_FREE_MAX_ERROR: f32 = 3.0e-7;
 
 /// Square root without a branch or a processor's instruction, so that a loop over lanes of points is a loop over vectors: Newton's
 /// method for 1/sqrt(x) from the exponent halved. Zero for zero; meaningless below zero and below 10^-36.
+///
+/// ```
+/// use sinew_core::math::{SQRT_BRANCH_FREE_MAX_ERROR, sqrt_branch_free};
+///
+/// // Distances of a block of points at once.
+/// let roots = [0.0, 1.0, 2.25, 1.0e6].map(sqrt_branch_free);
+/// for (root, exact) in roots.into_iter().zip([0.0, 1.0, 1.5, 1000.0_f32]) {
+///     assert!((root - exact).abs() <= SQRT_BRANCH_FREE_MAX_ERROR * exact);
+/// }
+/// ```
 #[inline(always)]
 #[must_use]
 pub fn sqrt_branch_free(x: f32) -> f32 {
@@ -80,6 +116,14 @@ pub fn sqrt_branch_free(x: f32) -> f32 {
 }
 
 /// e to the power of `x`.
+///
+/// ```
+/// use core::f32::consts::LN_2;
+/// use sinew_core::math::exp;
+///
+/// // A log-weight that is ln 2 greater is twice the weight.
+/// assert!((exp(-3.0 + LN_2) / exp(-3.0) - 2.0).abs() < 1e-6);
+/// ```
 #[inline]
 #[must_use]
 pub fn exp(x: f32) -> f32 {
@@ -87,6 +131,14 @@ pub fn exp(x: f32) -> f32 {
 }
 
 /// Natural logarithm.
+///
+/// ```
+/// use sinew_core::math::ln;
+///
+/// // Two small likelihoods: their product is lost in `f32`, the sum of their logarithms is not.
+/// assert_eq!(1.0e-30_f32 * 1.0e-30, 0.0);
+/// assert!((ln(1.0e-30) + ln(1.0e-30) + 138.155).abs() < 1e-3);
+/// ```
 #[inline]
 #[must_use]
 pub fn ln(x: f32) -> f32 {
@@ -94,6 +146,15 @@ pub fn ln(x: f32) -> f32 {
 }
 
 /// Angle of the vector (x, y) in (-pi, pi].
+///
+/// ```
+/// use core::f32::consts::{FRAC_PI_2, PI};
+/// use sinew_core::math::atan2;
+///
+/// // With y downwards, as in an image: a limb that hangs, and one that points to the left.
+/// assert_eq!(atan2(1.0, 0.0), FRAC_PI_2);
+/// assert_eq!(atan2(0.0, -1.0), PI);
+/// ```
 #[inline]
 #[must_use]
 pub fn atan2(y: f32, x: f32) -> f32 {
@@ -101,6 +162,14 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 }
 
 /// Arc cosine; arguments beyond +-1 are clamped, so rounding never gives NaN.
+///
+/// ```
+/// use sinew_core::math::acos;
+///
+/// assert!((acos(0.5).to_degrees() - 60.0).abs() < 1e-4);
+/// // The scalar product of a unit vector with itself may be a little above one.
+/// assert_eq!(acos(1.000_000_1), 0.0);
+/// ```
 #[inline]
 #[must_use]
 pub fn acos(x: f32) -> f32 {
@@ -110,6 +179,13 @@ pub fn acos(x: f32) -> f32 {
 /// Arc sine; arguments beyond +-1 are clamped, so rounding never gives NaN.
 ///
 /// By the arc tangent, since libm's arc sine takes a root in f64, which a core with single-precision hardware has to emulate.
+///
+/// ```
+/// use sinew_core::math::asin;
+///
+/// assert!((asin(0.5).to_degrees() - 30.0).abs() < 1e-4);
+/// assert_eq!(asin(1.000_000_1), core::f32::consts::FRAC_PI_2);
+/// ```
 #[inline]
 #[must_use]
 pub fn asin(x: f32) -> f32 {
@@ -118,6 +194,14 @@ pub fn asin(x: f32) -> f32 {
 }
 
 /// Complementary error function.
+///
+/// ```
+/// use core::f32::consts::FRAC_1_SQRT_2;
+/// use sinew_core::math::erfc;
+///
+/// // 5 % of a normal distribution lie further than 1.96 standard deviations from its mean.
+/// assert!((erfc(1.96 * FRAC_1_SQRT_2) - 0.05).abs() < 1e-4);
+/// ```
 #[inline]
 #[must_use]
 pub fn erfc(x: f32) -> f32 {
@@ -125,6 +209,12 @@ pub fn erfc(x: f32) -> f32 {
 }
 
 /// Largest whole number not above `x`.
+///
+/// ```
+/// use sinew_core::math::floor;
+///
+/// assert_eq!([floor(1.75), floor(-0.25), floor(-3.0)], [1.0, -1.0, -3.0]);
+/// ```
 #[inline]
 #[must_use]
 pub fn floor(x: f32) -> f32 {
@@ -137,6 +227,12 @@ pub fn floor(x: f32) -> f32 {
 }
 
 /// Nearest whole number, halves away from zero.
+///
+/// ```
+/// use sinew_core::math::round;
+///
+/// assert_eq!([round(2.4), round(2.5), round(-2.5)], [2.0, 3.0, -3.0]);
+/// ```
 #[inline]
 #[must_use]
 pub fn round(x: f32) -> f32 {
@@ -147,6 +243,13 @@ pub fn round(x: f32) -> f32 {
 pub const ROUND_SMALL_LIMIT: f32 = 4_194_304.0;
 
 /// Nearest whole number, halves to the even one, for arguments below [`ROUND_SMALL_LIMIT`] in size. Two additions without a branch, so that loops over arrays are vectorised.
+///
+/// ```
+/// use sinew_core::math::{ROUND_SMALL_LIMIT, round_small};
+///
+/// assert_eq!([2.4, 2.5, 3.5, -0.7].map(round_small), [2.0, 2.0, 4.0, -1.0]);
+/// assert_eq!(round_small(ROUND_SMALL_LIMIT - 1.0), ROUND_SMALL_LIMIT - 1.0);
+/// ```
 #[inline]
 #[must_use]
 pub fn round_small(x: f32) -> f32 {
@@ -155,6 +258,16 @@ pub fn round_small(x: f32) -> f32 {
 }
 
 /// `angle_rad` moved by whole turns to within rounding of [-pi, pi], where either end will do. Without a branch.
+///
+/// ```
+/// use core::f32::consts::TAU;
+/// use sinew_core::math::least_angle;
+///
+/// // How far the angles of many particles are off a measured one, in a loop that becomes vector instructions.
+/// let off_rad = [6.2, 0.1, -3.0].map(|angle_rad| least_angle(angle_rad - 0.05));
+/// assert!((off_rad[0] - (6.15 - TAU)).abs() < 1e-5, "the short way");
+/// assert!((off_rad[1] - 0.05).abs() < 1e-5 && (off_rad[2] + 3.05).abs() < 1e-5);
+/// ```
 #[inline]
 #[must_use]
 pub fn least_angle(angle_rad: f32) -> f32 {
@@ -162,6 +275,14 @@ pub fn least_angle(angle_rad: f32) -> f32 {
 }
 
 /// As [`wrap_angle`], without a branch or a call: for loops over many angles of few turns.
+///
+/// ```
+/// use core::f32::consts::PI;
+/// use sinew_core::math::wrap_angle_small;
+///
+/// assert!((wrap_angle_small(1.5 * PI) + 0.5 * PI).abs() < 1e-6);
+/// assert_eq!(wrap_angle_small(-PI), PI, "the lower end does not belong to it");
+/// ```
 #[inline]
 #[must_use]
 pub fn wrap_angle_small(angle_rad: f32) -> f32 {
@@ -172,6 +293,15 @@ pub fn wrap_angle_small(angle_rad: f32) -> f32 {
 
 /// e to the power of `x` in [-80, 0], relative error below [`EXP_SMALL_MAX_ERROR`], exactly 1 at 0. Without a branch or a
 /// call: for loops over many numbers. Outside of the interval the result means nothing.
+///
+/// ```
+/// use sinew_core::math::{EXP_SMALL_MAX_ERROR, exp, exp_small};
+///
+/// // Log-weights relative to the greatest are never above zero.
+/// let weights = [0.0, -1.0, -20.0].map(exp_small);
+/// assert_eq!(weights[0], 1.0);
+/// assert!((weights[2] / exp(-20.0) - 1.0).abs() < 2.0 * EXP_SMALL_MAX_ERROR);
+/// ```
 #[inline]
 #[must_use]
 pub fn exp_small(x: f32) -> f32 {
@@ -192,6 +322,13 @@ pub fn exp_small(x: f32) -> f32 {
 pub const EXP_SMALL_MAX_ERROR: f32 = 3.0e-7;
 
 /// Absolute value.
+///
+/// ```
+/// use sinew_core::math::abs;
+///
+/// let (expected_px, seen_px) = (120.0, 123.5);
+/// assert_eq!(abs(expected_px - seen_px), 3.5);
+/// ```
 #[inline]
 #[must_use]
 pub fn abs(x: f32) -> f32 {
@@ -199,6 +336,15 @@ pub fn abs(x: f32) -> f32 {
 }
 
 /// Smaller of two numbers; `b` where they compare equal or either is NaN.
+///
+/// ```
+/// use sinew_core::math::min;
+///
+/// assert_eq!(min(0.2, 0.3), 0.2);
+/// // Bit for bit the same on every target, zeros and NaN included.
+/// assert_eq!(min(0.0, -0.0).to_bits(), (-0.0_f32).to_bits());
+/// assert_eq!(min(f32::NAN, 0.3), 0.3);
+/// ```
 #[inline]
 #[must_use]
 pub fn min(a: f32, b: f32) -> f32 {
@@ -206,6 +352,14 @@ pub fn min(a: f32, b: f32) -> f32 {
 }
 
 /// Greater of two numbers; `b` where they compare equal or either is NaN.
+///
+/// ```
+/// use sinew_core::math::max;
+///
+/// // A variance that rounding took below zero.
+/// assert_eq!(max(-1.0e-9, 0.0), 0.0);
+/// assert_eq!(max(f32::NAN, 0.0), 0.0, "what is no number gives the second");
+/// ```
 #[inline]
 #[must_use]
 pub fn max(a: f32, b: f32) -> f32 {
@@ -213,6 +367,14 @@ pub fn max(a: f32, b: f32) -> f32 {
 }
 
 /// `x` moved into `low..=high`; `low` wins where the interval is inverted.
+///
+/// ```
+/// use sinew_core::math::clamp;
+///
+/// // An elbow bends from 0 to 150 degrees.
+/// assert_eq!([-4.0, 90.0, 170.0].map(|bent| clamp(bent, 0.0, 150.0)), [0.0, 90.0, 150.0]);
+/// assert_eq!(clamp(0.5, 1.0, 0.0), 1.0, "limits the wrong way round do not panic");
+/// ```
 #[inline]
 #[must_use]
 pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
@@ -223,6 +385,14 @@ pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
 ///
 /// Reduction by multiples of pi/2 (Cody and Waite, three parts), then Taylor polynomials of degree 9 and 10 on
 /// [-pi/4, pi/4]. NaN for NaN and infinity. Beyond [`SIN_COS_MAX_ARGUMENT_RAD`] the error grows with the argument.
+///
+/// ```
+/// use sinew_core::math::{SIN_COS_MAX_ERROR, sin_cos};
+///
+/// let (sine, cosine) = sin_cos(30.0_f32.to_radians());
+/// assert!((sine - 0.5).abs() <= 2.0 * SIN_COS_MAX_ERROR);
+/// assert!((cosine * cosine - 0.75).abs() <= 4.0 * SIN_COS_MAX_ERROR);
+/// ```
 #[inline]
 #[must_use]
 pub fn sin_cos(x_rad: f32) -> (f32, f32) {
@@ -249,6 +419,14 @@ pub fn sin_cos(x_rad: f32) -> (f32, f32) {
 }
 
 /// `angle_rad` moved by whole turns into (-pi, pi].
+///
+/// ```
+/// use core::f32::consts::PI;
+/// use sinew_core::math::wrap_angle;
+///
+/// assert!((wrap_angle(7.0 * PI / 3.0) - PI / 3.0).abs() < 1e-6);
+/// assert_eq!(wrap_angle(-PI), PI, "of the two names of a half turn one is used");
+/// ```
 #[inline]
 #[must_use]
 pub fn wrap_angle(angle_rad: f32) -> f32 {
@@ -257,6 +435,14 @@ pub fn wrap_angle(angle_rad: f32) -> f32 {
 }
 
 /// `angle_rad` of an undirected line moved by half turns into [0, pi).
+///
+/// ```
+/// use sinew_core::math::wrap_orientation;
+///
+/// // A line has no front end: at -30 degrees it is the one at 150.
+/// let orientation_rad = wrap_orientation(-30.0_f32.to_radians());
+/// assert!((orientation_rad.to_degrees() - 150.0).abs() < 1e-4);
+/// ```
 #[inline]
 #[must_use]
 pub fn wrap_orientation(angle_rad: f32) -> f32 {
@@ -265,6 +451,13 @@ pub fn wrap_orientation(angle_rad: f32) -> f32 {
 }
 
 /// Unit vector along `v`, or `None` where `v` is too short (or not finite) to have a direction.
+///
+/// ```
+/// use sinew_core::math::{Vec3, unit};
+///
+/// assert_eq!(unit(Vec3::new(0.0, -2.0, 0.0)), Some(-Vec3::y()));
+/// assert_eq!(unit(Vec3::zeros()), None);
+/// ```
 #[inline]
 #[must_use]
 pub fn unit(v: Vec3) -> Option<Vec3> {
@@ -273,6 +466,13 @@ pub fn unit(v: Vec3) -> Option<Vec3> {
 }
 
 /// Euclidean length of `v`.
+///
+/// ```
+/// use sinew_core::math::{Vec3, length};
+///
+/// let (shoulder_m, elbow_m) = (Vec3::new(0.0, 0.0, 2.0), Vec3::new(0.1, 0.2, 2.2));
+/// assert!((length(&(elbow_m - shoulder_m)) - 0.3).abs() < 1e-6, "an upper arm of 30 cm");
+/// ```
 #[inline]
 #[must_use]
 pub fn length(v: &Vec3) -> f32 {
@@ -280,6 +480,14 @@ pub fn length(v: &Vec3) -> f32 {
 }
 
 /// Rotation by `angle_rad` about the unit vector `axis` (right-handed), Rodrigues' formula.
+///
+/// ```
+/// use sinew_core::math::{Vec3, axis_rotation};
+///
+/// // The thumb of the right hand along the axis, the fingers curl from x to y.
+/// let turned = axis_rotation(&Vec3::z(), 90.0_f32.to_radians()) * Vec3::x();
+/// assert!((turned - Vec3::y()).norm() < 1e-6);
+/// ```
 #[inline]
 #[must_use]
 pub fn axis_rotation(axis: &Vec3, angle_rad: f32) -> Mat3 {

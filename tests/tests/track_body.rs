@@ -425,8 +425,8 @@ fn what_was_finished_before_ctrl_c_is_kept() {
         }
     });
     let stopped = stopped.unwrap_err();
-    let interrupted = stopped.downcast_ref::<sinew::track::Interrupted>().unwrap();
-    assert_eq!((interrupted.finished, interrupted.frames), (3, FRAMES));
+    let interrupted = stopped.downcast_ref::<sinew::resume::Interrupted>().unwrap();
+    assert_eq!((interrupted.finished, interrupted.all), (3, Some(FRAMES)));
     assert_sound(&scene.path("out/track.csv"));
     assert_eq!((scene.table("out").rows.len(), &scene.report("out")["complete"]), (3, &false.into()));
     assert!(scene.path("out/track.bvh").is_file() && scene.path("out/contact_sheet.png").is_file());

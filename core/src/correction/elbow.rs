@@ -16,6 +16,20 @@ use crate::math::{Vec3, clamp, length, max, sqrt, unit};
 ///
 /// The circle is that of the spheres of radius `upper_arm_m` around the shoulder and `forearm_m` around the hand; where
 /// they do not meet (the hand is out of reach, or too near), the elbow lies on the line of shoulder and hand.
+///
+/// ```
+/// use sinew_core::correction::elbow::nearest_elbow;
+/// use sinew_core::math::Vec3;
+///
+/// // The elbow was predicted too high; both lengths let it hang straight below the shoulder.
+/// let (shoulder_m, predicted_m) = (Vec3::zeros(), Vec3::new(0.0, 0.2, 0.0));
+/// let elbow_m = nearest_elbow(&shoulder_m, &Vec3::new(0.35, 0.30, 0.0), 0.30, 0.35, &predicted_m);
+/// assert!((elbow_m - Vec3::new(0.0, 0.30, 0.0)).norm() < 1e-5);
+///
+/// // A hand out of reach stretches the arm.
+/// let elbow_m = nearest_elbow(&shoulder_m, &Vec3::new(2.0, 0.0, 0.0), 0.30, 0.35, &predicted_m);
+/// assert!((elbow_m - Vec3::new(0.30, 0.0, 0.0)).norm() < 1e-5);
+/// ```
 #[must_use]
 pub fn nearest_elbow(shoulder_m: &Vec3, hand_m: &Vec3, upper_arm_m: f32, forearm_m: f32, predicted_m: &Vec3) -> Vec3 {
     let span = hand_m - shoulder_m;

@@ -19,6 +19,19 @@ use crate::math::{Vec3, abs, clamp, length, min, sqrt, unit};
 use crate::random::Stream;
 
 /// Where the hand can be: between two spheres around the shoulder.
+///
+/// ```
+/// use sinew_core::camera::Ray;
+/// use sinew_core::correction::hand::ReachableShell;
+/// use sinew_core::math::Vec3;
+///
+/// // A shoulder a metre before the camera, whose optical axis meets it.
+/// let shell = ReachableShell { centre_m: Vec3::new(0.0, 0.0, 1.0), inner_m: 0.05, outer_m: 0.65 };
+/// let ray = Ray { origin: Vec3::zeros(), direction: Vec3::z() };
+/// // No hand is two metres away: it comes back along the ray that it was seen on.
+/// let hand_m = shell.along_ray(&Vec3::new(0.0, 0.0, 2.0), &ray);
+/// assert!((hand_m.z - 1.65).abs() < 1e-6);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReachableShell {
     /// Shoulder, metres.
@@ -84,6 +97,19 @@ impl ReachableShell {
 pub const MIN_DEPTH_M: f32 = 0.05;
 
 /// How a corrected hand spreads around H1.
+///
+/// ```
+/// use sinew_core::camera::Ray;
+/// use sinew_core::correction::hand::{HandSpread, log_density_on_ray};
+/// use sinew_core::math::Vec3;
+///
+/// // One camera knows well where a hand is across its ray, and badly how far away.
+/// let spread = HandSpread { along_std_m: 0.10, across_std_m: 0.01 };
+/// let ray = Ray { origin: Vec3::zeros(), direction: Vec3::z() };
+/// let log_density = |x, z| log_density_on_ray(&Vec3::new(x, 0.0, z), &Vec3::new(0.0, 0.0, 0.8), &ray, &spread);
+/// let (deeper, beside) = (log_density(0.0, 0.85), log_density(0.05, 0.8));
+/// assert!(deeper > beside + 12.0, "five centimetres are little along the ray and much across");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandSpread {
     /// Standard deviation along the ray, metres.
@@ -93,6 +119,24 @@ pub struct HandSpread {
 }
 
 /// A draw around `mean_m` (a point on the ray): normal along and across `ray`.
+///
+/// ```
+/// use sinew_core::camera::Ray;
+/// use sinew_core::correction::hand::{HandSpread, draw_on_ray};
+/// use sinew_core::math::Vec3;
+/// use sinew_core::random::Stream;
+///
+/// let ray = Ray { origin: Vec3::zeros(), direction: Vec3::z() };
+/// let spread = HandSpread { along_std_m: 0.10, across_std_m: 0.01 };
+/// let (mut along_m2, mut across_m2) = (0.0, 0.0);
+/// for particle in 0..1000 {
+///     let mut stream = Stream::new(7, 0, particle);
+///     let off = draw_on_ray(&Vec3::new(0.0, 0.0, 0.8), &ray, &spread, &mut stream) - Vec3::new(0.0, 0.0, 0.8);
+///     along_m2 += off.z * off.z / 1000.0;
+///     across_m2 += off.x * off.x / 1000.0;
+/// }
+/// assert!((along_m2 / 0.0100 - 1.0).abs() < 0.15 && (across_m2 / 0.0001 - 1.0).abs() < 0.15);
+/// ```
 #[must_use]
 pub fn draw_on_ray(mean_m: &Vec3, ray: &Ray, spread: &HandSpread, stream: &mut Stream) -> Vec3 {
     let noise = stream.normal3();
@@ -102,6 +146,20 @@ pub fn draw_on_ray(mean_m: &Vec3, ray: &Ray, spread: &HandSpread, stream: &mut S
 }
 
 /// ln density of [`draw_on_ray`] at `point`, per cubic metre.
+///
+/// ```
+/// use sinew_core::camera::Ray;
+/// use sinew_core::correction::hand::{HandSpread, log_density_on_ray};
+/// use sinew_core::math::Vec3;
+///
+/// let ray = Ray { origin: Vec3::zeros(), direction: Vec3::z() };
+/// let spread = HandSpread { along_std_m: 0.10, across_std_m: 0.01 };
+/// let mean_m = Vec3::new(0.0, 0.0, 0.8);
+/// let at = |point_m: Vec3| log_density_on_ray(&point_m, &mean_m, &ray, &spread);
+/// // One standard deviation in any direction costs a half.
+/// assert!((at(mean_m) - at(mean_m + Vec3::new(0.0, 0.0, 0.10)) - 0.5).abs() < 1e-4);
+/// assert!((at(mean_m) - at(mean_m + Vec3::new(0.0, 0.01, 0.0)) - 0.5).abs() < 1e-4);
+/// ```
 #[must_use]
 pub fn log_density_on_ray(point: &Vec3, mean_m: &Vec3, ray: &Ray, spread: &HandSpread) -> f32 {
     use crate::math::ln;

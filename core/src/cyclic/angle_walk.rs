@@ -14,7 +14,7 @@ const MAX_VARIANCE: f32 = PI * PI / 3.0;
 
 /// Where each angle is, by a random walk seen in noise. `N` is a capacity.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AngleWalk<const N: usize> {
+pub(super) struct AngleWalk<const N: usize> {
     /// Mean and variance of each angle; `None` where it was never seen.
     angles: [Option<(f32, f32)>; N],
 }
@@ -28,7 +28,7 @@ impl<const N: usize> Default for AngleWalk<N> {
 impl<const N: usize> AngleWalk<N> {
     /// Goes on by `step_s` seconds and takes in the measurement; gives ln of its density given those before. An angle that is seen
     /// for the first time is uniform on the circle.
-    pub fn step(&mut self, measurement: &AngleMeasurement<N>, step_s: f32) -> f32 {
+    pub(super) fn step(&mut self, measurement: &AngleMeasurement<N>, step_s: f32) -> f32 {
         let mut log_likelihood = 0.0;
         for (i, angle) in self.angles.iter_mut().enumerate() {
             let noise = measurement.std_rad()[i] * measurement.std_rad()[i];

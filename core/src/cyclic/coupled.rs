@@ -39,6 +39,27 @@ pub const MOST_SUBSTEPS: u8 = 6;
 pub(super) const GATE_SIGMAS: f32 = 4.0;
 
 /// State of the filter `coupled` for models of up to `N` angles.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::phase::position_difference;
+/// use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
+///
+/// // Somebody walks into view, nobody knows where in the cycle: the filter looks everywhere until it has found it.
+/// let model = WALKING.model()?;
+/// let position = |frame: u8| 0.7 + f32::from(frame) * model.mean_cycle_velocity();
+/// let seen = |frame| AngleMeasurement::new(&model.mean_pose_rad::<13>(model.point(position(frame))).map(Some), 0.1);
+/// let mut filter = CoupledFilter::anywhere(&model, &seen(0)?)?;
+/// assert!(filter.is_searching());
+/// for frame in 1..=90 {
+///     filter.step(&model, &seen(frame)?);
+/// }
+/// assert!(!filter.is_searching());
+/// assert!(position_difference(filter.cycle().position, position(90)).abs() < 0.02);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoupledFilter<const N: usize> {
     pub(super) blocks: [AngleBlock; N],

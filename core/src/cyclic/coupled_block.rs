@@ -19,6 +19,16 @@ const SLOPE: usize = 4;
 const ROUNDING: f32 = 5.0 / 8_388_608.0;
 
 /// Direction in which an angle depends on its parts at a cycle position.
+///
+/// ```
+/// use sinew_core::cyclic::coupled_block::Basis;
+///
+/// // Somebody who leans 0.1 rad more than the mean and swings 0.2 rad wider: a quarter of a cycle in, both add up.
+/// let parts = [0.1, 0.0, 0.2, 0.0, 0.0];
+/// let basis = Basis::at(0.25);
+/// let deviation_rad: f32 = basis.value.iter().zip(parts).map(|(value, part)| value * part).sum();
+/// assert!((deviation_rad - 0.3).abs() < 1e-6);
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Basis {
     /// (1, cos, sin, 1, 0).
@@ -38,15 +48,15 @@ impl Basis {
 
 /// Stationary spread of a block.
 #[derive(Debug, Clone, Copy)]
-pub struct Spread {
+pub(super) struct Spread {
     /// Variance of a, rad^2.
-    pub offset: f32,
+    pub(super) offset: f32,
     /// Variance of p and of q, rad^2.
-    pub swing: f32,
+    pub(super) swing: f32,
     /// Variance of d, rad^2.
-    pub rest: f32,
+    pub(super) rest: f32,
     /// Rate of d per cycle.
-    pub rate: f32,
+    pub(super) rate: f32,
 }
 
 impl Spread {
@@ -57,16 +67,38 @@ impl Spread {
 
 /// Gain-free view of a measured angle: what it says about z.
 #[derive(Debug, Clone, Copy)]
-pub struct Outlook {
+pub(super) struct Outlook {
     /// Derivative of the angle by (c, v).
-    pub gradient: [f32; 2],
+    pub(super) gradient: [f32; 2],
     /// Covariance of the parts with the angle, given z.
-    pub column: [f32; PARTS],
+    pub(super) column: [f32; PARTS],
     /// Variance of the angle given z, rad^2.
-    pub variance: f32,
+    pub(super) variance: f32,
 }
 
 /// Five parts given z.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::models::walking::WALKING;
+/// # use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
+/// # let model = WALKING.model()?;
+/// # let leaning = |frame: u8| {
+/// #     let mut pose_rad = model.mean_pose_rad::<13>(model.point(f32::from(frame) * model.mean_cycle_velocity()));
+/// #     pose_rad[0] += 0.1;
+/// #     AngleMeasurement::new(&pose_rad.map(Some), 0.05)
+/// # };
+/// # let mut filter = CoupledFilter::new(&model, &leaning(0)?, Some(0.0), None)?;
+/// // After four seconds of somebody whose first angle is always 0.1 rad more than the mean:
+/// for frame in 1..=240 {
+///     filter.step(&model, &leaning(frame)?);
+/// }
+/// let block = &filter.blocks()[0];
+/// assert!((block.mean[0] - 0.1).abs() < 0.03, "the constant is known");
+/// assert!(block.mean[1].abs() < 0.03 && block.mean[2].abs() < 0.03, "and there is no swing");
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AngleBlock {
     /// Means at the mean of z.
@@ -96,7 +128,7 @@ impl SavedState for AngleBlock {
 impl AngleBlock {
     /// Nothing known but the spread between people.
     #[must_use]
-    pub fn unknown(spread: &Spread) -> Self {
+    pub(super) fn unknown(spread: &Spread) -> Self {
         let mut covariance = [0.0; PACKED];
         for (i, variance) in spread.diagonal().into_iter().enumerate() {
             covariance[packed_index(i, i)] = variance;
@@ -106,7 +138,7 @@ impl AngleBlock {
 
     /// Nothing at all, known exactly.
     #[must_use]
-    pub const fn zero() -> Self {
+    pub(super) const fn zero() -> Self {
         Self { mean: [0.0; PARTS], regression: [[0.0; 2]; PARTS], covariance: [0.0; PACKED] }
     }
 
@@ -124,13 +156,20 @@ impl AngleBlock {
     }
 
     /// The constant is as uncertain as `variance` more.
-    pub fn loosen_offset(&mut self, variance: f32) {
+    pub(super) fn loosen_offset(&mut self, variance: f32) {
         self.covariance[0] += variance;
     }
 
     /// Moves on by `phase` cycles: a, p, q keep the part `memory`, d follows its process; `z_map` is the regression of the
     /// old z on the new one, `z_rest` (cc, cv, vv) what it leaves unexplained.
-    pub fn advance(&mut self, spread: &Spread, phase: f32, memory: f32, z_map: &[[f32; 2]; 2], z_rest: &[f32; 3]) {
+    pub(super) fn advance(
+        &mut self,
+        spread: &Spread,
+        phase: f32,
+        memory: f32,
+        z_map: &[[f32; 2]; 2],
+        z_rest: &[f32; 3],
+    ) {
         let scaled = spread.rate * phase;
         let decay = exp(-scaled);
         let rest_map =
@@ -193,7 +232,7 @@ impl AngleBlock {
 
     /// What the angle depends on; `mean_slope` is that of the mean cycle, rad per cycle.
     #[must_use]
-    pub fn outlook(&self, basis: &Basis, mean_slope: f32) -> Outlook {
+    pub(super) fn outlook(&self, basis: &Basis, mean_slope: f32) -> Outlook {
         let h = &basis.value;
         let mut gradient = [mean_slope + dot(&basis.slope, &self.mean), 0.0];
         let mut column = [0.0; PARTS];
@@ -206,7 +245,7 @@ impl AngleBlock {
     }
 
     /// Takes in a measured angle that lies `residual` off; z has moved by `shift` at the same time.
-    pub fn correct(&mut self, outlook: &Outlook, noise_variance: f32, residual: f32, shift: [f32; 2]) {
+    pub(super) fn correct(&mut self, outlook: &Outlook, noise_variance: f32, residual: f32, shift: [f32; 2]) {
         let inverse = 1.0 / (outlook.variance + noise_variance);
         let g = &outlook.gradient;
         let rest = residual - g[0] * shift[0] - g[1] * shift[1];
@@ -226,7 +265,7 @@ impl AngleBlock {
     }
 
     /// The means follow z by `shift`.
-    pub fn follow(&mut self, shift: [f32; 2]) {
+    pub(super) fn follow(&mut self, shift: [f32; 2]) {
         for i in 0..PARTS {
             self.mean[i] += self.regression[i][0] * shift[0] + self.regression[i][1] * shift[1];
         }

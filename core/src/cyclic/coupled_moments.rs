@@ -8,6 +8,21 @@ use super::{AngleMeasurement, MotionModel};
 use crate::math::wrap_angle;
 
 /// How one angle's parts move on: parts <- map parts + noise.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::models::walking::WALKING;
+/// # use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
+/// # let model = WALKING.model()?;
+/// # let filter = CoupledFilter::<13>::new(&model, &AngleMeasurement::nothing(), Some(0.0), None)?;
+/// // How a person's constant and the rest of an angle move on in six frames.
+/// let knee = filter.transition(&model, 6.0).blocks[5];
+/// assert!(knee.map[0][0] > 0.99, "the constant lasts");
+/// assert!(knee.map[3][3] < knee.map[0][0], "the rest is forgotten sooner");
+/// assert!(knee.noise[3][3] > knee.noise[0][0], "and drawn anew");
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BlockTransition {
     /// Row: new part, column: old part.
@@ -18,6 +33,23 @@ pub struct BlockTransition {
 
 /// A step of the phase-coupled filter as a linear map with noise. (c, v) move by [1, `step_frames`; 0, 1]; the angles' parts move
 /// on each by themselves.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
+///
+/// // What a step of two frames adds to the uncertainty of position and velocity, whatever is known of them.
+/// let model = WALKING.model()?;
+/// let filter = CoupledFilter::<13>::new(&model, &AngleMeasurement::nothing(), Some(0.0), None)?;
+/// let transition = filter.transition(&model, 2.0);
+/// let [position_noise, _, velocity_noise] = transition.cycle_noise;
+/// assert_eq!(transition.step_frames, 2.0);
+/// assert!((velocity_noise - 2.0 * 1.0e-4 * 1.0e-4).abs() < 1e-10, "0.0001 cycles per frame^2");
+/// assert!(position_noise > 0.0);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoupledTransition<const N: usize> {
     /// Length of the step, frames at the model's rate.

@@ -16,14 +16,23 @@ pub(super) const MARGIN: f32 = 4.0e-6;
 /// A measurement with less than this part of the innovation's variance comes after a gap: differences nearly cancel.
 pub(super) const SEVERE: f32 = 1.0e-3;
 /// Greatest variance of an angle, rad^2: (4 pi)^2. Beyond it the angle is unknown, and the squares stay within `f32`.
-pub const MAX_ANGLE_VARIANCE: f32 = 158.0;
+pub(super) const MAX_ANGLE_VARIANCE: f32 = 158.0;
 /// Greatest variance of an angular velocity, (rad per frame)^2: pi^2, half a turn between two frames.
-pub const MAX_VELOCITY_VARIANCE: f32 = 9.87;
+pub(super) const MAX_VELOCITY_VARIANCE: f32 = 9.87;
 
 /// Symmetric covariance of N angles and N velocities.
 ///
 /// Invariant: the whole is positive semi-definite. The two symmetric blocks are kept as whole rows, which may differ from
 /// their columns by rounding; [`Self::entry`] reads one of the two.
+///
+/// ```
+/// use sinew_core::cyclic::covariance::KinematicCovariance;
+///
+/// // Two angles known to 0.1 rad, their velocities to 0.02 rad a frame. Angles come first.
+/// let covariance = KinematicCovariance::diagonal(&[0.01; 2], &[0.0004; 2]);
+/// assert_eq!((covariance.entry(0, 0), covariance.entry(2, 2)), (0.01, 0.0004));
+/// assert_eq!(covariance.entry(0, 2), 0.0, "nothing ties an angle to its velocity before the first step");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KinematicCovariance<const N: usize> {
     /// Angle and angle, symmetric.
@@ -77,7 +86,7 @@ impl<const N: usize> KinematicCovariance<N> {
     ///
     /// Only as many rows of noise are added as the triangles hold.
     #[inline]
-    pub fn advance(&mut self, step: f32, before: &[f32], after: &[f32], fraction: f32, scale: f32) {
+    pub(super) fn advance(&mut self, step: f32, before: &[f32], after: &[f32], fraction: f32, scale: f32) {
         // Half of what the velocities gain, of which the other blocks are made up.
         let half: [[f32; N]; N] = interpolated(before, after, fraction, 0.5 * scale * step * step);
         let transposed = transpose(&self.cross);
@@ -97,7 +106,7 @@ impl<const N: usize> KinematicCovariance<N> {
     /// Shrinks what has grown beyond all knowledge in a long gap: row and column of an angle or a velocity are scaled, which
     /// keeps the matrix positive semi-definite.
     #[inline]
-    pub fn saturate(&mut self) {
+    pub(super) fn saturate(&mut self) {
         for i in 0..N {
             if self.angle[i][i] > MAX_ANGLE_VARIANCE {
                 let scale = (1.0 - MARGIN) * sqrt(MAX_ANGLE_VARIANCE / self.angle[i][i]);

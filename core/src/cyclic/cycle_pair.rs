@@ -8,13 +8,13 @@ const TEMPORAL_STD: f32 = 1.0e-4;
 
 /// Covariance of (c, v), in cycles and frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CyclePair {
+pub(super) struct CyclePair {
     /// Variance of c.
-    pub cc: f32,
+    pub(super) cc: f32,
     /// Covariance of c and v.
-    pub cv: f32,
+    pub(super) cv: f32,
     /// Variance of v.
-    pub vv: f32,
+    pub(super) vv: f32,
 }
 
 impl SavedState for CyclePair {
@@ -29,7 +29,7 @@ impl SavedState for CyclePair {
 
 /// What measurements say about (c, v): the normal equations of their residuals.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Information {
+pub(super) struct Information {
     /// Matrix: cc, cv, vv.
     matrix: [f32; 3],
     vector: [f32; 2],
@@ -37,11 +37,11 @@ pub struct Information {
 
 impl Information {
     /// Nothing.
-    pub const NONE: Self = Self { matrix: [0.0; 3], vector: [0.0; 2] };
+    pub(super) const NONE: Self = Self { matrix: [0.0; 3], vector: [0.0; 2] };
 
     /// Adds a residual with derivatives `gradient` by (c, v).
     #[inline]
-    pub fn add(&mut self, gradient: &[f32; 2], weight: f32, residual: f32) {
+    pub(super) fn add(&mut self, gradient: &[f32; 2], weight: f32, residual: f32) {
         let [g, h] = *gradient;
         self.matrix[0] += weight * g * g;
         self.matrix[1] += weight * g * h;
@@ -54,7 +54,7 @@ impl Information {
 impl CyclePair {
     /// Moves on by `step` frames. Gives the regression of the old (c, v) on the new one, and the covariance (cc, cv, vv)
     /// which that leaves unexplained.
-    pub fn advance(&mut self, step: f32) -> ([[f32; 2]; 2], [f32; 3]) {
+    pub(super) fn advance(&mut self, step: f32) -> ([[f32; 2]; 2], [f32; 3]) {
         let Self { cc, cv, vv } = *self;
         let noise = TEMPORAL_STD * TEMPORAL_STD * step;
         let square = step * step;
@@ -74,7 +74,7 @@ impl CyclePair {
     }
 
     /// Takes in what was measured; gives the shift of (c, v).
-    pub fn correct(&mut self, information: &Information) -> [f32; 2] {
+    pub(super) fn correct(&mut self, information: &Information) -> [f32; 2] {
         let [x, y] = information.vector;
         *self = self.with(information);
         [self.cc * x + self.cv * y, self.cv * x + self.vv * y]
@@ -91,7 +91,7 @@ impl CyclePair {
     /// Part of the sum of squared residuals that (c, v) explains, and by how much its uncertainty widens the residuals' joint
     /// normal density: ln det(1 + covariance times information).
     #[must_use]
-    pub fn explained(&self, information: &Information) -> (f32, f32) {
+    pub(super) fn explained(&self, information: &Information) -> (f32, f32) {
         let [x, y] = information.vector;
         let after = self.with(information);
         let explained = x * (after.cc * x + after.cv * y) + y * (after.cv * x + after.vv * y);
@@ -102,14 +102,14 @@ impl CyclePair {
     /// Variance along a gradient.
     #[inline]
     #[must_use]
-    pub fn along(&self, gradient: &[f32; 2]) -> f32 {
+    pub(super) fn along(&self, gradient: &[f32; 2]) -> f32 {
         let [g, h] = *gradient;
         max(g * g * self.cc + 2.0 * g * h * self.cv + h * h * self.vv, 0.0)
     }
 
     /// Inverse (cc, cv, vv); the correlation is kept within what can be inverted.
     #[must_use]
-    pub fn inverse(&self) -> [f32; 3] {
+    pub(super) fn inverse(&self) -> [f32; 3] {
         let (cc, vv) = (max(self.cc, 1.0e-14), max(self.vv, 1.0e-14));
         let root = sqrt(cc * vv);
         let correlation = clamp(self.cv / root, -0.999, 0.999);

@@ -9,6 +9,22 @@ const MAX_POSITION_VARIANCE: f32 = 1.0;
 const MAX_VELOCITY_VARIANCE: f32 = 0.25;
 
 /// c, v and their covariance.
+///
+/// ```
+/// use sinew_core::cyclic::cycle_state::CycleState;
+///
+/// let mut cycle = CycleState {
+///     position: 0.9,
+///     velocity: 0.02,
+///     position_variance: 0.0,
+///     covariance: 0.0,
+///     velocity_variance: 1.0e-6,
+/// };
+/// // Ten frames without a measurement: a velocity that is 0.001 off may have led 0.01 astray.
+/// cycle.advance(10.0, 0.0);
+/// assert!((cycle.position - 0.1).abs() < 1e-6);
+/// assert!((cycle.position_variance - 0.01 * 0.01).abs() < 1e-8);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CycleState {
     /// Position c, [0, 1).

@@ -7,6 +7,23 @@
 /// Spread of the deviation's parts, as the phase-coupled filter needs it. Borrowed, like the whole model; n numbers each.
 ///
 /// A model without it (empty slices) still serves the other filters.
+///
+/// ```
+/// use sinew_core::cyclic::Deviation;
+/// use sinew_core::math::exp;
+///
+/// // One angle: people hold it about 5 degrees otherwise, and swing it 3 degrees wider or less.
+/// let deviation = Deviation {
+///     offset_std_rad: &[0.08],
+///     swing_std_rad: &[0.05],
+///     rest_std_rad: &[0.03],
+///     rest_rate_per_cycle: &[6.0],
+/// };
+/// assert!(!deviation.is_absent() && Deviation::default().is_absent());
+/// // What is left over is half forgotten after a quarter of a cycle.
+/// let scaled = deviation.rest_rate_per_cycle[0] * 0.25;
+/// assert!(((1.0 + scaled) * exp(-scaled) - 0.56).abs() < 0.01);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Deviation<'a> {
     /// Standard deviation of the constant a, radians.

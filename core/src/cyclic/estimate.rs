@@ -1,6 +1,26 @@
 //! What every cyclic filter answers after a frame.
 
 /// Pose, phase and how sure they are. `N` is a capacity; entries beyond the model's angles are zero.
+///
+/// ```
+/// # use sinew_core::cyclic::CycleStart;
+/// use core::f32::consts::TAU;
+///
+/// # let start = CycleStart::<1> {
+/// #     angles_rad: [7.0],
+/// #     extra_variance_rad2: [0.0],
+/// #     velocities: [0.0],
+/// #     cycle_position: 0.25,
+/// #     cycle_velocity: 1.0 / 64.0,
+/// # };
+/// # let estimate = start.estimate();
+/// // An angle that has wound once: 7 rad.
+/// assert_eq!(estimate.turns, [1]);
+/// assert!((estimate.angles_rad[0] + TAU * estimate.turns[0] as f32 - 7.0).abs() < 1e-5);
+/// // 64 frames a cycle at 60 frames a second.
+/// let (cadence_per_min, _) = estimate.cadence_per_min(60.0);
+/// assert_eq!(cadence_per_min, 56.25);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicEstimate<const N: usize> {
     /// Angles in (-pi, pi].

@@ -20,6 +20,16 @@ use crate::saved_state::{SavedState, StateVisitor};
 /// Counts cycles from one estimate to the next.
 ///
 /// Invariant: whole cycles and the part of a cycle are kept apart, so that the count stays exact however long it runs.
+///
+/// ```
+/// use sinew_core::cyclic::events::CycleCounter;
+///
+/// // Three cycles went by unseen; the velocity tells how many they were.
+/// let mut counter = CycleCounter::new(0.25);
+/// counter.advance(0.27, 0.02, 150.0);
+/// assert_eq!(counter.completed(), 3);
+/// assert!((counter.cycles() - 3.02).abs() < 1e-4);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CycleCounter {
     start: f32,
@@ -28,6 +38,16 @@ pub struct CycleCounter {
 }
 
 /// The way through the cycle between two frames.
+///
+/// ```
+/// use sinew_core::cyclic::events::CycleCounter;
+///
+/// // The heel strikes at position 0, between two frames: four fifths of a frame after the earlier one.
+/// let mut counter = CycleCounter::new(0.92);
+/// let step = counter.advance(0.02, 0.1, 1.0);
+/// assert!(step.passed(0.0).is_some_and(|frames| (frames - 0.8).abs() < 1e-4));
+/// assert_eq!(step.passed(0.5), None, "the other heel is not due yet");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CycleStep {
     /// Position before, [0, 1).

@@ -30,6 +30,17 @@ const LENGTH_WALK_PER_S: f32 = 0.1;
 const ROOT_LOST_TRUNKS: f32 = 0.5;
 
 /// How root and lengths are filtered; `px` stands for any unit of the picture's plane.
+///
+/// ```
+/// use sinew_core::cyclic::PlaceOptions;
+///
+/// // Pictures of 20 frames a second instead of 30: the root's acceleration a frame grows with the square.
+/// let slow = PlaceOptions::of_person(100.0, 0.005, 0.1, 20.0)?;
+/// let quick = PlaceOptions::of_person(100.0, 0.005, 0.1, 30.0)?;
+/// assert!((slow.root_acceleration_px / quick.root_acceleration_px - 2.25).abs() < 1e-4);
+/// assert!((slow.keypoint_std_px - 7.07).abs() < 0.01, "an angle that is 0.1 rad off, at a trunk of 100 px");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaceOptions {
     /// Standard deviation of each coordinate of a keypoint, px.
@@ -77,6 +88,20 @@ impl PlaceOptions {
 }
 
 /// Root and segment lengths over time, each with its own filter. What was never seen is `None`.
+///
+/// ```
+/// use sinew_core::cyclic::{FigurePlace, PlaceOptions};
+///
+/// let options = PlaceOptions::of_person(100.0, 0.005, 0.1, 30.0)?;
+/// let mut place = FigurePlace::<2>::new(options)?;
+/// place.step(1.0, Some([300.0, 200.0]), &[Some(80.0), None]);
+/// assert_eq!(place.lengths_px(), [Some(80.0), None], "the second segment was never seen");
+/// // A second behind a pillar, and nobody knows where the person is; limbs keep their length.
+/// place.step(30.0, None, &[None; 2]);
+/// assert_eq!(place.root_px(), None);
+/// assert!(place.lengths_px()[0].is_some());
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FigurePlace<const N: usize> {
     options: PlaceOptions,

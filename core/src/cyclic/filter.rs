@@ -4,6 +4,24 @@ use super::{AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanF
 use crate::error::ParameterError;
 
 /// Which filter, with what may be chosen in it.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::filter::FilterChoice;
+/// use sinew_core::cyclic::{AngleMeasurement, KalmanOptions, models::walking::WALKING};
+/// use sinew_core::tracker::cyclic::{CyclicTracker, CyclicTrackerOptions, FirstPhase};
+///
+/// // The paper's filter in place of the default.
+/// let filter = FilterChoice::Kalman(KalmanOptions::default());
+/// let options = CyclicTrackerOptions { filter, ..CyclicTrackerOptions::default() };
+/// let (model, unseen) = (WALKING.model()?, AngleMeasurement::nothing().into());
+/// let mut tracker = CyclicTracker::<13>::new(&model, options, &unseen, FirstPhase::default())?;
+/// // Its speed is the first one for ever; the default learns it from the angles.
+/// assert_eq!(tracker.step(&model, &unseen).estimate.cycle_velocity_per_frame, model.mean_cycle_velocity());
+/// assert_ne!(FilterChoice::default(), filter);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum FilterChoice {
     /// The phase-coupled filter (`coupled`).
@@ -14,6 +32,28 @@ pub enum FilterChoice {
 }
 
 /// State of one of the filters for models of up to `N` angles.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::filter::{CyclicFilter, FilterChoice};
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::{AngleMeasurement, KalmanOptions};
+///
+/// // Both filters, one after the other, on half a second of the mean cycle.
+/// let model = WALKING.model()?;
+/// let pose_rad = |frame: u8| model.mean_pose_rad::<13>(model.point(f32::from(frame) * model.mean_cycle_velocity()));
+/// let seen = |frame| AngleMeasurement::new(&pose_rad(frame).map(Some), 0.1);
+/// for choice in [FilterChoice::Coupled, FilterChoice::Kalman(KalmanOptions::default())] {
+///     let mut filter = CyclicFilter::new(&model, &choice, &seen(0)?, Some(0.0), None)?;
+///     for frame in 1..30 {
+///         filter.step(&model, &choice, &seen(frame)?);
+///     }
+///     let estimate = filter.step(&model, &choice, &seen(30)?);
+///     assert!((estimate.angles_rad[0] - pose_rad(30)[0]).abs() < 0.05);
+/// }
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "there is no allocator, and at 13 angles both variants are of like size")]
 pub enum CyclicFilter<const N: usize> {

@@ -7,6 +7,13 @@ pub const DEFAULT_GATE_SIGMAS: f32 = 3.09;
 
 /// Value that a chi-square variable with `degrees` degrees of freedom exceeds as often as a standard normal exceeds
 /// `sigmas` (Wilson and Hilferty 1931; within 4 % from `sigmas` 1 to 4).
+///
+/// ```
+/// use sinew_core::cyclic::gate::{DEFAULT_GATE_SIGMAS, chi_square_quantile};
+///
+/// // Tables say 34.53 for 13 degrees of freedom and a probability of 0.001.
+/// assert!((chi_square_quantile(13, DEFAULT_GATE_SIGMAS) - 34.53).abs() < 0.2);
+/// ```
 #[must_use]
 pub fn chi_square_quantile(degrees: usize, sigmas: f32) -> f32 {
     if degrees == 0 {
@@ -19,6 +26,14 @@ pub fn chi_square_quantile(degrees: usize, sigmas: f32) -> f32 {
 }
 
 /// Whether a normalised innovation squared (NIS) lies beyond the gate.
+///
+/// ```
+/// use sinew_core::cyclic::gate::{DEFAULT_GATE_SIGMAS, is_outlier};
+///
+/// assert!(!is_outlier(20.0, 13, DEFAULT_GATE_SIGMAS), "13 angles, each a little off");
+/// assert!(is_outlier(20.0, 1, DEFAULT_GATE_SIGMAS), "one angle, 4.5 standard deviations off");
+/// assert!(!is_outlier(0.0, 0, DEFAULT_GATE_SIGMAS), "nothing seen, nothing wrong");
+/// ```
 #[must_use]
 pub fn is_outlier(innovation_squared: f32, present_angles: usize, sigmas: f32) -> bool {
     present_angles > 0 && !(innovation_squared <= chi_square_quantile(present_angles, sigmas))

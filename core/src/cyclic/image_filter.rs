@@ -5,6 +5,22 @@ use crate::error::{ParameterError, not_negative, positive};
 /// A Kalman filter of one number that walks at random, with a velocity if its acceleration is not zero.
 ///
 /// Segment lengths in pixels have no velocity (`acceleration_std` 0, a small `walk_std`); the root's coordinates have one.
+///
+/// ```
+/// use sinew_core::cyclic::image_filter::ScalarFilter;
+///
+/// // A coordinate that moves two pixels a frame, seen in every second frame with an error of a pixel.
+/// let mut filter = ScalarFilter::new(100.0, 1.0, 0.0, 0.02)?;
+/// for frame in 1..=40_u8 {
+///     let seen = (frame % 2 == 0).then_some(100.0 + 2.0 * f32::from(frame));
+///     filter.step(1.0, seen, 1.0);
+/// }
+/// assert!((filter.value() - 180.0).abs() < 0.5 && filter.variance() < 0.5);
+/// // What was not seen is bridged, and less sure.
+/// filter.step(5.0, None, 1.0);
+/// assert!((filter.value() - 190.0).abs() < 1.0 && filter.variance() > 0.5);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScalarFilter {
     value: f32,

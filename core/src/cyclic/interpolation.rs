@@ -7,6 +7,19 @@ use crate::math::{min, sqrt};
 use core::f32::consts::TAU;
 
 /// A cycle position as two neighbouring stored positions and the part of the way between them.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+///
+/// // A hundred positions are stored; this one lies between the last and the first.
+/// let model = WALKING.model()?;
+/// let point = model.point(0.9975);
+/// assert_eq!((point.before, point.after), (99, 0));
+/// assert!((point.fraction - 0.75).abs() < 1e-3);
+/// # }
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclePoint {
     /// Index of the stored position at or before the point.

@@ -20,7 +20,7 @@ const SQUARE: usize = 4;
 ///
 /// Invariant: `order` has each number below N once, and `count` is at most N.
 #[derive(Debug, Clone, Copy)]
-pub struct SeenAngles<const N: usize> {
+pub(super) struct SeenAngles<const N: usize> {
     /// Numbers of the angles: those seen, then the others.
     order: [usize; N],
     /// Number of angles seen.
@@ -35,7 +35,7 @@ impl<const N: usize> SeenAngles<N> {
     /// What a measurement shows of the first `angle_count` angles, relative to those predicted: the shorter way round.
     #[inline]
     #[must_use]
-    pub fn of(measurement: &AngleMeasurement<N>, predicted_rad: &[f32; N], angle_count: usize) -> Self {
+    pub(super) fn of(measurement: &AngleMeasurement<N>, predicted_rad: &[f32; N], angle_count: usize) -> Self {
         let mut seen = Self { order: [0; N], count: 0, innovation_rad: [0.0; N], noise_variance: [0.0; N] };
         let mut unseen = N;
         for i in (0..N).rev() {
@@ -63,22 +63,22 @@ impl<const N: usize> SeenAngles<N> {
     /// Number of angles seen.
     #[inline]
     #[must_use]
-    pub const fn count(&self) -> usize {
+    pub(super) const fn count(&self) -> usize {
         self.count
     }
 }
 
 /// What an update says about the mean.
 #[derive(Debug, Clone, Copy)]
-pub struct MeanShift<const N: usize> {
+pub(super) struct MeanShift<const N: usize> {
     /// To be added to the angles.
-    pub angles_rad: [f32; N],
+    pub(super) angles_rad: [f32; N],
     /// To be added to the velocities.
-    pub velocities: [f32; N],
+    pub(super) velocities: [f32; N],
     /// Normalised innovation squared.
-    pub squared: f32,
+    pub(super) squared: f32,
     /// Determinant of the innovation's covariance.
-    pub determinant: LogProduct,
+    pub(super) determinant: LogProduct,
 }
 
 /// Columns of the covariance that the angles seen call for, scaled by the roots of their innovation variances. A row here is
@@ -103,7 +103,7 @@ impl<const N: usize> KinematicCovariance<N> {
     ///
     /// With `keeps_velocities` the gain moves the angles only (Joseph's form): the velocities keep their covariance.
     #[inline]
-    pub fn correct(&mut self, seen: &SeenAngles<N>, keeps_velocities: bool) -> MeanShift<N> {
+    pub(super) fn correct(&mut self, seen: &SeenAngles<N>, keeps_velocities: bool) -> MeanShift<N> {
         let count = seen.count.min(N);
         let mut columns = Columns {
             ahead: self.angle,

@@ -20,6 +20,27 @@ use core::f32::consts::PI;
 /// State of the filters `paper` and `paper-cut` for models of up to `N` angles.
 ///
 /// Invariants: all numbers finite, angles in (-pi, pi], covariance symmetric and positive semi-definite.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::{AngleMeasurement, CycleStart, KalmanFilter, KalmanOptions};
+///
+/// let (model, options) = (WALKING.model()?, KalmanOptions::default());
+/// let pose_rad = |frame: u8| model.mean_pose_rad::<13>(model.point(f32::from(frame) * model.mean_cycle_velocity()));
+/// let start = CycleStart::standard(&model, &pose_rad(0).map(Some), Some(0.0), None)?;
+/// let mut filter = KalmanFilter::new(&model, &options, &start)?;
+/// for frame in 1..=20 {
+///     filter.step(&model, &options, &AngleMeasurement::new(&pose_rad(frame).map(Some), 0.1)?);
+/// }
+/// // Ten frames without a picture: on along the mean cycle, and less sure.
+/// let seen_variance = filter.covariance().angle_variances()[0];
+/// let bridged = filter.step(&model, &options, &AngleMeasurement::nothing().after(10.0)?);
+/// assert!((bridged.angles_rad[0] - pose_rad(30)[0]).abs() < 0.1);
+/// assert!(bridged.angle_variance_rad2[0] > 2.0 * seen_variance);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KalmanFilter<const N: usize> {
     pub(super) angles_rad: [f32; N],
@@ -32,6 +53,27 @@ pub struct KalmanFilter<const N: usize> {
 const _: () = assert!(size_of::<KalmanFilter<HUMAN_ANGLES>>() <= 2560, "the state has to fit 2.5 KiB");
 
 /// What a frame's measurement was like, seen from the prediction.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::gate::chi_square_quantile;
+/// use sinew_core::cyclic::{AngleMeasurement, CycleStart, GainReach, KalmanFilter, KalmanOptions};
+///
+/// # let model = WALKING.model()?;
+/// # let start = CycleStart::standard(&model, &[None; 13], Some(0.3), None)?;
+/// let mut filter = KalmanFilter::new(&model, &KalmanOptions::default(), &start)?;
+/// // Two angles as expected, and once more half a turn off.
+/// let mut angles_rad = [None; 13];
+/// (angles_rad[0], angles_rad[1]) = (Some(filter.angles_rad()[0]), Some(filter.angles_rad()[1]));
+/// let expected = filter.correct(&model, GainReach::Full, &AngleMeasurement::new(&angles_rad, 0.1)?);
+/// assert!(expected.squared < 1e-6 && expected.present == 2);
+/// let turned = angles_rad.map(|angle| angle.map(|rad: f32| rad + core::f32::consts::PI));
+/// let wrong = filter.correct(&model, GainReach::Full, &AngleMeasurement::new(&turned, 0.1)?);
+/// assert!(wrong.squared > chi_square_quantile(2, 4.0) && wrong.log_likelihood < expected.log_likelihood);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Innovation {
     /// ln of the density of the measurement given those before; 0 where nothing was seen.

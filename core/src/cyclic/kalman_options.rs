@@ -5,6 +5,26 @@ use crate::error::{ParameterError, not_negative, positive};
 
 /// How far the Kalman gain reaches: the paper's "meaning that only these quantities of the state vector are updated" has
 /// two readings.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::{AngleMeasurement, CycleStart, GainReach, KalmanFilter, KalmanOptions};
+///
+/// # let (model, options) = (WALKING.model()?, KalmanOptions::default());
+/// # let start = CycleStart::standard(&model, &[Some(0.0); 13], Some(0.3), None)?;
+/// let mut filter = KalmanFilter::<13>::new(&model, &options, &start)?;
+/// filter.predict(&model, &options, 1.0);
+/// // An angle that is off moves the velocities only where the gain reaches them.
+/// let seen = AngleMeasurement::new(&filter.angles_rad().map(|rad| Some(rad + 0.1)), 0.1)?;
+/// let velocities = *filter.velocities();
+/// filter.correct(&model, GainReach::AnglesOnly, &seen);
+/// assert_eq!(*filter.velocities(), velocities);
+/// filter.correct(&model, GainReach::Full, &seen);
+/// assert_ne!(*filter.velocities(), velocities);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum GainReach {
     /// The full gain: angles and, by their covariance, velocities (`paper`).
@@ -15,6 +35,27 @@ pub enum GainReach {
 }
 
 /// How the covariance of the acceleration scales with k = v / `v_ref`.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::{CovarianceScaling, CycleStart, KalmanFilter, KalmanOptions};
+///
+/// # use sinew_core::error::ParameterError;
+/// # let model = WALKING.model()?;
+/// // At half the reference speed the noise of the acceleration is 1/16, or 1/4.
+/// let start = CycleStart::standard(&model, &[Some(0.0); 13], Some(0.3), Some(0.5 * model.reference_velocity()))?;
+/// let grown = |scaling| {
+///     let options = KalmanOptions { scaling, ..KalmanOptions::default() };
+///     let mut filter = KalmanFilter::<13>::new(&model, &options, &start)?;
+///     filter.predict(&model, &options, 1.0);
+///     Ok::<f32, ParameterError>(filter.covariance().velocity_variances()[0] - options.velocity_variance)
+/// };
+/// let ratio = grown(CovarianceScaling::Square)? / grown(CovarianceScaling::FourthPower)?;
+/// assert!((ratio - 4.0).abs() < 0.05);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CovarianceScaling {
     /// By k^4, as the algebra has it: the acceleration scales by k^2.
@@ -25,6 +66,17 @@ pub enum CovarianceScaling {
 }
 
 /// Options of a Kalman filter; [`Default`] gives the paper's with the decisions named in `docs/cyclic_tracker.md`.
+///
+/// ```
+/// use sinew_core::cyclic::{GainReach, KalmanOptions};
+///
+/// // The paper's filter with velocities that follow the model alone, and a wider gate that lets nothing beyond it in.
+/// let options = KalmanOptions { gate_sigmas: 4.0, protect_from_outliers: true, ..KalmanOptions::cut() };
+/// assert_eq!(options.gain, GainReach::AnglesOnly);
+/// assert!(options.check().is_ok());
+/// let refused = KalmanOptions { angle_variance: 0.0, ..options }.check();
+/// assert!(refused.is_err_and(|error| error.parameter == "angle_variance"));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KalmanOptions {
     /// How far the gain reaches.

@@ -4,7 +4,7 @@ use crate::math::ln;
 
 /// ln of a product of positive numbers between 1e-18 and 1e18.
 #[derive(Debug, Clone, Copy)]
-pub struct LogProduct {
+pub(super) struct LogProduct {
     product: f32,
     logarithm: f32,
 }
@@ -13,13 +13,13 @@ impl LogProduct {
     /// The empty product.
     #[inline]
     #[must_use]
-    pub const fn one() -> Self {
+    pub(super) const fn one() -> Self {
         Self { product: 1.0, logarithm: 0.0 }
     }
 
     /// Multiplies by `factor`.
     #[inline]
-    pub fn multiply(&mut self, factor: f32) {
+    pub(super) fn multiply(&mut self, factor: f32) {
         self.product *= factor;
         if !(1.0e-18..1.0e18).contains(&self.product) {
             self.logarithm += ln(self.product);
@@ -30,7 +30,7 @@ impl LogProduct {
     /// Logarithm of the product.
     #[inline]
     #[must_use]
-    pub fn ln(self) -> f32 {
+    pub(super) fn ln(self) -> f32 {
         self.logarithm + ln(self.product)
     }
 }

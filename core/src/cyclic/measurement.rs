@@ -18,6 +18,17 @@ pub const MAX_STEP_FRAMES: f32 = 600.0;
 /// One frame's measured angles; `N` is a capacity, angles beyond the model's are ignored.
 ///
 /// Invariant: the angles present are finite, all standard deviations finite and positive, the step in (0, 600] frames.
+///
+/// ```
+/// use sinew_core::cyclic::AngleMeasurement;
+///
+/// // A short segment's angle is less sure than a long one's. What is no number counts as not seen.
+/// let angles_rad = [Some(0.3), Some(-0.1), Some(f32::NAN)];
+/// let seen = AngleMeasurement::with_std(&angles_rad, &[0.05, 0.2, 0.05])?.after(3.0)?;
+/// assert_eq!((seen.angle_rad(2), seen.present(3)), (None, 2));
+/// assert_eq!(seen.step_frames(), 3.0, "two frames were left out");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AngleMeasurement<const N: usize> {
     angles_rad: [Option<f32>; N],

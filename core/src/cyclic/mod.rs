@@ -53,7 +53,7 @@
 //! ```
 
 mod angle_blocks;
-pub mod angle_walk;
+mod angle_walk;
 pub mod coupled;
 pub mod coupled_block;
 pub mod coupled_moments;
@@ -62,7 +62,7 @@ mod coupled_state;
 #[cfg(test)]
 mod coupled_tests;
 pub mod covariance;
-pub mod cycle_pair;
+mod cycle_pair;
 pub mod cycle_state;
 pub mod deviation;
 pub mod estimate;
@@ -72,13 +72,13 @@ pub mod filter;
 pub mod gate;
 pub mod image_filter;
 pub mod interpolation;
-pub mod joint_update;
+mod joint_update;
 pub mod kalman;
 pub mod kalman_options;
 mod kalman_state;
 #[cfg(test)]
 mod kalman_tests;
-pub mod log_product;
+mod log_product;
 pub mod measurement;
 pub mod model;
 pub mod model_bytes;

@@ -13,6 +13,19 @@ use core::fmt;
 pub const MAX_ANGLES: usize = MAX_ROWS;
 
 /// A part of a motion model that cannot be used, why, and where.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+///
+/// // It says where among thousands of numbers the one is that cannot be.
+/// let mut table = WALKING.clone();
+/// table.mean_pose_rad[17][3] = f32::NAN;
+/// let refused = table.model().unwrap_err();
+/// assert_eq!(refused.error.parameter, "mean_pose_rad");
+/// assert_eq!((refused.position, refused.angle), (Some(17), Some(3)));
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ModelError {
@@ -46,6 +59,27 @@ impl fmt::Display for ModelError {
 impl core::error::Error for ModelError {}
 
 /// The numbers of a motion model with n angles and l positions, not yet checked.
+///
+/// ```
+/// use sinew_core::cyclic::{Deviation, ModelParts, MotionModel};
+///
+/// // One angle that swings by half a radian, at four positions of the cycle, seen at 20 frames a second.
+/// let parts = ModelParts {
+///     angle_count: 1,
+///     mean_pose_rad: &[0.0, 0.5, 0.0, -0.5],
+///     mean_velocity: &[0.5, 0.0, -0.5, 0.0],
+///     mean_acceleration: &[0.0, -1.0, 0.0, 1.0],
+///     acceleration_covariance: &[0.01; 4],
+///     turns_per_cycle: &[0],
+///     mean_duration_frames: 20.0,
+///     rate_hz: 20.0,
+///     deviation: Deviation::default(),
+/// };
+/// assert_eq!(MotionModel::new(parts)?.mean_cycle_velocity(), 0.05);
+/// // Five poses at four positions.
+/// assert!(MotionModel::new(ModelParts { mean_pose_rad: &[0.0; 5], ..parts }).is_err());
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModelParts<'a> {
     /// Number n of angles.
@@ -89,6 +123,22 @@ impl<'a> ModelParts<'a> {
 /// A checked motion model.
 ///
 /// Invariants: all numbers are finite, the lengths agree, each covariance is positive semi-definite.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+///
+/// let model = WALKING.model()?;
+/// assert_eq!((model.angle_count(), model.position_count()), (13, 100));
+/// // Somebody at half the mean speed has half the velocities at the same poses.
+/// let point = model.point(0.3);
+/// let ratio = model.speed_ratio(0.5 * model.reference_velocity());
+/// let (pose_rad, velocity) = (model.mean_pose_rad::<13>(point), model.mean_velocity::<13>(point).map(|v| ratio * v));
+/// assert_eq!(ratio, 0.5);
+/// assert!(pose_rad.iter().chain(&velocity).all(|value| value.is_finite()));
+/// # }
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionModel<'a> {
     parts: ModelParts<'a>,

@@ -30,6 +30,15 @@ pub const HEADER_BYTES: usize = 28;
 pub const MAX_POSITIONS: usize = 1000;
 
 /// Why bytes are no motion model.
+///
+/// ```
+/// use sinew_core::cyclic::HumanModelTable;
+/// use sinew_core::cyclic::model_bytes::{MAGIC, ModelBytesError};
+///
+/// // A picture, and a model of which only the first word came.
+/// assert_eq!(HumanModelTable::from_bytes(b"GIF89a"), Err(ModelBytesError::NoModel));
+/// assert_eq!(HumanModelTable::from_bytes(&MAGIC.to_le_bytes()), Err(ModelBytesError::Version));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ModelBytesError {
@@ -60,6 +69,24 @@ impl fmt::Display for ModelBytesError {
 impl core::error::Error for ModelBytesError {}
 
 /// What the header of a model says.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::model_bytes::{ModelBytesError, ModelHeader, write};
+/// # use sinew_core::cyclic::models::walking::WALKING;
+///
+/// # let mut memory = [0; 64 * 1024];
+/// # let length = write(&WALKING.model().expect("the shipped model is sound"), &mut memory).expect("it fits");
+/// # let flash = &mut memory[..length];
+/// // Which model is in flash, before a filter is made for it.
+/// let header = ModelHeader::read(flash)?;
+/// assert_eq!((header.angle_count, header.position_count), (13, 100));
+/// assert_eq!(header.byte_count(), flash.len());
+/// flash[1000] ^= 1;
+/// assert_eq!(ModelHeader::read(flash), Err(ModelBytesError::Checksum));
+/// # }
+/// # Ok::<(), sinew_core::cyclic::model_bytes::ModelBytesError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModelHeader {
     /// Number n of angles.
@@ -175,6 +202,21 @@ impl ModelHeader {
 
 /// Writes `model` into `bytes` and gives the number of bytes written; `None` where they are too few (see
 /// [`ModelHeader::byte_count`]) or the model has no deviation.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::HumanModelTable;
+/// use sinew_core::cyclic::model_bytes::write;
+/// use sinew_core::cyclic::models::walking::WALKING;
+///
+/// let model = WALKING.model().expect("the shipped model is sound");
+/// let mut bytes = [0; 64 * 1024];
+/// let length = write(&model, &mut bytes).expect("64 KiB suffice");
+/// assert_eq!(HumanModelTable::from_bytes(&bytes[..length])?, WALKING);
+/// assert_eq!(write(&model, &mut bytes[..1000]), None);
+/// # }
+/// # Ok::<(), sinew_core::cyclic::model_bytes::ModelBytesError>(())
+/// ```
 pub fn write(model: &MotionModel<'_>, bytes: &mut [u8]) -> Option<usize> {
     let parts = model.parts();
     let header = ModelHeader {

@@ -9,6 +9,28 @@ use crate::skeleton::stick_figure::HUMAN_ANGLES;
 pub const PAPER_POSITIONS: usize = 100;
 
 /// A motion model of `ANGLES` angles and `POSITIONS` positions, `PACKED` = `ANGLES` (`ANGLES` + 1) / 2, as plain arrays.
+///
+/// ```
+/// use sinew_core::cyclic::ModelTable;
+///
+/// // One angle at four positions, in flash: a packed covariance of one angle is one number.
+/// static SWING: ModelTable<4, 1, 1> = ModelTable {
+///     mean_acceleration: [[0.0], [-1.0], [0.0], [1.0]],
+///     acceleration_covariance: [[0.01]; 4],
+///     mean_pose_rad: [[0.0], [0.5], [0.0], [-0.5]],
+///     mean_velocity: [[0.5], [0.0], [-0.5], [0.0]],
+///     offset_std_rad: [0.08],
+///     swing_std_rad: [0.05],
+///     rest_std_rad: [0.03],
+///     rest_rate_per_cycle: [6.0],
+///     turns_per_cycle: [0],
+///     mean_duration_frames: 20.0,
+///     rate_hz: 20.0,
+/// };
+/// let model = SWING.model()?;
+/// assert_eq!(model.mean_pose_rad(model.point(0.125)), [0.25], "half-way up");
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelTable<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> {
     /// See [`ModelParts::mean_acceleration`].
@@ -36,6 +58,19 @@ pub struct ModelTable<const POSITIONS: usize, const ANGLES: usize, const PACKED:
 }
 
 /// The table of the paper's figure and reference cycle.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::HumanModelTable;
+/// use sinew_core::cyclic::models::walking::WALKING;
+///
+/// // A model of one's own has the same type as the shipped one: a parameter, not a generic.
+/// fn cadence_per_min(table: &HumanModelTable) -> f32 {
+///     60.0 * table.rate_hz / table.mean_duration_frames
+/// }
+/// assert!((40.0..80.0).contains(&cadence_per_min(&WALKING)), "cycles of two steps");
+/// # }
+/// ```
 pub type HumanModelTable = ModelTable<PAPER_POSITIONS, HUMAN_ANGLES, { packed_len(HUMAN_ANGLES) }>;
 
 const _: () = assert!(size_of::<HumanModelTable>() <= 64 * 1024, "the model has to fit 64 KiB of flash");

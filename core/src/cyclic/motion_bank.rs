@@ -36,6 +36,22 @@ const POSE_SPREAD_RAD: f32 = 0.44;
 const POSE_LIMIT_SIGMAS: f32 = 1.5;
 
 /// What a frame says of one motion.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::AngleMeasurement;
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::motion_bank::MotionEvidence;
+///
+/// // The pose of position 0.2 lies nearer to itself than to the opposite one.
+/// let model = WALKING.model()?;
+/// let seen = AngleMeasurement::new(&model.mean_pose_rad::<13>(model.point(0.2)).map(Some), 0.1)?;
+/// let near = MotionEvidence::new(&model, &seen, 0.2, 0.0);
+/// let far = MotionEvidence::new(&model, &seen, 0.7, 0.0);
+/// assert!(near.pose_distance < 1e-6 && far.pose_distance > 0.5);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MotionEvidence {
     /// Log-likelihood that the motion's filter gave the frame.
@@ -68,9 +84,28 @@ impl MotionEvidence {
 ///
 /// Among the motions the one whose mean cycle the pose lies nearest to is the likeliest, by one spread for all: after a few
 /// cycles a filter has learned the person's deviations, whatever the motion, and predicts almost as well with a wrong model as with the right one.
-/// It is named if its filter predicts better than "none", which is one half a walk at random from where each angle was
-/// ([`AngleWalk`]), as any motion may be taken, and one half an angle anywhere on the circle. Older evidence fades, so that the
+/// It is named if its filter predicts better than "none", which is one half a walk at random from where each angle was,
+/// as any motion may be taken, and one half an angle anywhere on the circle. Older evidence fades, so that the
 /// scores stay bounded and a change of motion is noticed.
+///
+/// ```
+/// use sinew_core::cyclic::AngleMeasurement;
+/// use sinew_core::cyclic::motion_bank::{DEFAULT_MEMORY_S, MotionBank, MotionEvidence};
+///
+/// // Two motions of one angle. For a second the filter of the second one predicts well, that of the first badly.
+/// let seen = AngleMeasurement::new(&[Some(0.2)], 0.1)?;
+/// let mut bank = MotionBank::<2, 1>::new(2, &seen, DEFAULT_MEMORY_S);
+/// let bad = MotionEvidence { log_likelihood: -8.0, pose_distance: 1.0 };
+/// let good = MotionEvidence { log_likelihood: 1.3, pose_distance: 0.1 };
+/// for _ in 0..60 {
+///     bank.add(&seen, 1.0 / 60.0, &[bad, good]);
+/// }
+/// assert_eq!(bank.likeliest(), Some(1));
+/// let [first, second] = bank.probabilities();
+/// assert!(first < 0.01 && second > 0.9);
+/// assert!((first + second + bank.none_probability() - 1.0).abs() < 1e-5);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionBank<const MOTIONS: usize, const N: usize> {
     /// Log-likelihood of each motion above that of uniform angles.

@@ -20,6 +20,27 @@ pub use super::particle_table::{factors_len, fill_factors};
 const MAX_ANGLES: usize = super::model::MAX_ANGLES;
 
 /// One hypothesis: the paper's state vector.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::particle::{CyclicParticle, ParticleOptions, first_particle};
+/// use sinew_core::cyclic::{CycleStart, MotionModel};
+///
+/// /// How far a hypothesis has the first angle off the mean cycle at its own position.
+/// fn off_rad(model: &MotionModel<'_>, particle: &CyclicParticle<13>) -> f32 {
+///     let [mean_rad, ..] = model.mean_pose_rad::<13>(model.point(particle.cycle_position));
+///     (particle.angles_rad[0] - mean_rad).abs()
+/// }
+///
+/// # let model = WALKING.model()?;
+/// let pose_rad = model.mean_pose_rad::<13>(model.point(0.3));
+/// let start = CycleStart::standard(&model, &pose_rad.map(Some), Some(0.3), None)?;
+/// let particle = first_particle(&model, &[], &start, &ParticleOptions::default(), (1, 0));
+/// assert!(off_rad(&model, &particle) < 0.1);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicParticle<const N: usize> {
     /// Angles in (-pi, pi].
@@ -33,6 +54,26 @@ pub struct CyclicParticle<const N: usize> {
 }
 
 /// How the first particles are spread.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::CycleStart;
+/// use sinew_core::cyclic::particle::{ParticleOptions, Spread, first_particle};
+///
+/// # let model = WALKING.model()?;
+/// # let start = CycleStart::<13>::standard(&model, &[Some(0.0); 13], Some(0.5), None)?;
+/// // How many of a hundred particles begin in the half of the cycle about the start at 0.5.
+/// let near = |spread| {
+///     let options = ParticleOptions { spread, ..ParticleOptions::default() };
+///     let position = |index| first_particle(&model, &[], &start, &options, (1, index)).cycle_position;
+///     (0..100).filter(|&index| (0.25..0.75).contains(&position(index))).count()
+/// };
+/// assert_eq!(near(Spread::Standard), 100);
+/// assert!((30..70).contains(&near(Spread::Random)));
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Spread {
     /// About the start, with the standard deviations of [`ParticleOptions`].
@@ -46,6 +87,18 @@ pub enum Spread {
 }
 
 /// Options of the particle filter.
+///
+/// ```
+/// use sinew_core::cyclic::KalmanOptions;
+/// use sinew_core::cyclic::particle::{ParticleOptions, Spread};
+///
+/// // By default as sure at the start as the Kalman filters.
+/// let (particles, kalman) = (ParticleOptions::default(), KalmanOptions::default());
+/// assert!((particles.start_std * particles.start_std / kalman.angle_variance - 1.0).abs() < 1e-5);
+/// // A person of whom nothing is known but the first picture: anywhere that it allows, at a speed 10 % off or less.
+/// let anywhere = ParticleOptions { spread: Spread::UniformPosition, velocity_std: 0.1 / 64.0, ..particles };
+/// assert!(anywhere.velocity_std > particles.velocity_std);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParticleOptions {
     /// How the first particles are spread.
@@ -76,6 +129,23 @@ impl Default for ParticleOptions {
 /// Particle number `index` of the first generation.
 ///
 /// `positions` says where in the cycle a uniform start may be, as [`fill_positions`] wrote it; the other starts do not read it.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::CycleStart;
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::particle::{ParticleOptions, first_particle};
+///
+/// let model = WALKING.model()?;
+/// let start = CycleStart::<13>::standard(&model, &[Some(0.2); 13], Some(0.5), None)?;
+/// // Particle 7 under seed 1, whoever draws it and in which order.
+/// let draw = |seed, index| first_particle(&model, &[], &start, &ParticleOptions::default(), (seed, index));
+/// assert_eq!(draw(1, 7), draw(1, 7));
+/// assert!(draw(1, 7) != draw(1, 8) && draw(1, 7) != draw(2, 7));
+/// assert!((draw(1, 7).angles_rad[0] - 0.2).abs() < 0.07, "a hundredth of a radian of spread");
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[must_use]
 pub fn first_particle<const N: usize>(
     model: &MotionModel<'_>,
@@ -122,6 +192,23 @@ pub fn first_particle<const N: usize>(
 ///
 /// Every position is as likely as any other before the first frame, which is known when the particles are drawn. Without any
 /// angle seen, or a spread in the model, the sums rise evenly. `positions` has one number for each stored position.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::CycleStart;
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::particle::fill_positions;
+///
+/// // A first picture of the pose at 0.3: nearly all of the weight lies about there.
+/// let model = WALKING.model()?;
+/// let first_rad = model.mean_pose_rad::<13>(model.point(0.3)).map(Some);
+/// let start = CycleStart::standard(&model, &first_rad, None, None)?;
+/// let mut sums = [0.0; 100];
+/// fill_positions(&model, &start, &mut sums);
+/// assert!((sums[40] - sums[20]) / sums[99] > 0.9);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 pub fn fill_positions<const N: usize>(model: &MotionModel<'_>, start: &CycleStart<N>, positions: &mut [f32]) {
     let spread = model.deviation_std_rad::<N>();
     let count = model.position_count() as f32;

@@ -19,6 +19,33 @@ struct AngleSums {
 }
 
 /// Weighted sums over particles relative to a target, weights relative to the greatest.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::particle::{ParticleOptions, first_particle};
+/// use sinew_core::cyclic::particle_moments::ParticleMoments;
+/// use sinew_core::cyclic::particle_sweep::{ParticleTarget, sweep};
+/// # use sinew_core::cyclic::{AngleMeasurement, CycleStart};
+///
+/// # let model = WALKING.model()?;
+/// # let start = CycleStart::<13>::standard(&model, &[Some(0.0); 13], Some(0.3), None)?;
+/// # let seen = AngleMeasurement::new(&[Some(0.05); 13], 0.1)?;
+/// # let target = ParticleTarget::new(&seen, 13, &start.estimate());
+/// # let options = ParticleOptions::default();
+/// // Two chunks of fifty particles, which two threads may sweep; added in their order they give the estimate.
+/// let mut all = ParticleMoments::nothing();
+/// for first in [0, 50] {
+///     let draw = |i: usize| first_particle(&model, &[], &start, &options, (1, first + i as u32));
+///     let (mut particles, mut weights) = (core::array::from_fn::<_, 50, _>(draw), [0.0; 50]);
+///     all.merge(&sweep(&model, &[], &options, (&target, 1.0), (1, 1, first), &mut particles, &mut weights));
+/// }
+/// let estimate = all.estimate(&target);
+/// assert!((estimate.cycle_position - (0.3 + model.mean_cycle_velocity())).abs() < 0.01);
+/// assert!(all.share().weight <= 100.0);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParticleMoments<const N: usize> {
     angles: [AngleSums; N],

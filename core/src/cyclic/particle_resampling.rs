@@ -6,7 +6,7 @@ use crate::math::{exp, exp_small, max};
 
 /// Turns log-weights into weights relative to `greatest` and returns their sum, taken in eight parts; NaN weighs nothing.
 #[inline(always)]
-pub fn exponentiate(greatest: f32, weights: &mut [f32]) -> f32 {
+pub(super) fn exponentiate(greatest: f32, weights: &mut [f32]) -> f32 {
     let mut sums = [0.0; 8];
     let (eights, rest) = weights.as_chunks_mut::<8>();
     for eight in eights {
@@ -34,11 +34,23 @@ pub(super) fn relative_weight(log_weight: f32, greatest: f32) -> f32 {
 /// Greatest of the log-weights; negative infinity where there is none.
 #[inline]
 #[must_use]
-pub fn greatest(log_weights: &[f32]) -> f32 {
+pub(super) fn greatest(log_weights: &[f32]) -> f32 {
     log_weights.iter().fold(f32::NEG_INFINITY, |best, &value| max(value, best))
 }
 
 /// How much some particles weigh: the greatest of their log-weights, and the sum of their weights relative to it.
+///
+/// ```
+/// use core::f32::consts::LN_2;
+/// use sinew_core::cyclic::particle_resampling::WeightShare;
+///
+/// // Two chunks, the best particle of the second weighs half as much as that of the first.
+/// let first = WeightShare { greatest_log_weight: -10.0, weight: 300.0 };
+/// let second = WeightShare { greatest_log_weight: -10.0 - LN_2, weight: 100.0 };
+/// let scale = second.scale(first.greatest_log_weight);
+/// assert!((first.weight + scale * second.weight - 350.0).abs() < 1e-3);
+/// assert_eq!(WeightShare::NOTHING.scale(-10.0), 0.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeightShare {
     /// Negative infinity of no particle.
@@ -63,6 +75,26 @@ impl WeightShare {
 }
 
 /// A comb of `count` equidistant teeth over the sum of all weights: each tooth takes the particle that it hits.
+///
+/// ```
+/// use sinew_core::cyclic::particle::CyclicParticle;
+/// use sinew_core::cyclic::particle_resampling::{Comb, WeightShare};
+///
+/// // Three particles with weights 1, 1/2 and 1/2; the next generation has four.
+/// let particles = [0.1, 0.2, 0.3].map(|angle_rad| CyclicParticle {
+///     angles_rad: [angle_rad],
+///     velocities: [0.0],
+///     cycle_position: 0.0,
+///     cycle_velocity: 0.0,
+/// });
+/// let all = WeightShare { greatest_log_weight: 0.0, weight: 2.0 };
+/// let comb = Comb::new(all, 0.3, 4);
+/// let mut next = [particles[0]; 4];
+/// for teeth in comb.teeth(&[all]) {
+///     comb.choose(&particles, &[1.0, 0.5, 0.5], &teeth, &mut next);
+/// }
+/// assert_eq!(next.map(|particle| particle.angles_rad[0]), [0.1, 0.1, 0.2, 0.3]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Comb {
     all: WeightShare,
@@ -72,6 +104,20 @@ pub struct Comb {
 }
 
 /// The teeth that hit one chunk of particles.
+///
+/// ```
+/// use sinew_core::cyclic::particle_resampling::{ChunkTeeth, Comb, WeightShare};
+///
+/// // Two chunks of which the first weighs three times as much gets three quarters of 400 new particles; each may be
+/// // resampled by a thread of its own.
+/// let share = |weight| WeightShare { greatest_log_weight: 0.0, weight };
+/// let comb = Comb::new(share(80.0), 0.5, 400);
+/// let mut ends = [0; 2];
+/// for (end, ChunkTeeth { first, count, .. }) in ends.iter_mut().zip(comb.teeth(&[share(60.0), share(20.0)])) {
+///     *end = first + count;
+/// }
+/// assert_eq!(ends, [300, 400]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChunkTeeth {
     /// Number of the first tooth.

@@ -21,6 +21,29 @@ use crate::random::lanes::LANES;
 pub const CHUNK: usize = 1024;
 
 /// What a frame's particles are compared with: the measured angles, and the last estimate's where none was seen.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::particle::{ParticleOptions, first_particle};
+/// use sinew_core::cyclic::particle_sweep::{ParticleTarget, sweep};
+/// use sinew_core::cyclic::{AngleMeasurement, CycleStart};
+///
+/// # let model = WALKING.model()?;
+/// # let start = CycleStart::<13>::standard(&model, &[Some(0.0); 13], Some(0.3), None)?;
+/// // Nothing was seen but the first angle, so two particles that differ in another one weigh the same.
+/// let mut angles_rad = [None; 13];
+/// angles_rad[0] = Some(0.1);
+/// let target = ParticleTarget::new(&AngleMeasurement::new(&angles_rad, 0.1)?, 13, &start.estimate());
+/// let options = ParticleOptions::default();
+/// let mut particles = [first_particle(&model, &[], &start, &options, (1, 0)); 2];
+/// particles[1].angles_rad[4] += 0.5;
+/// let mut weights = [0.0; 2];
+/// sweep(&model, &[], &options, (&target, 1.0), (1, 1, 0), &mut particles, &mut weights);
+/// assert_eq!(weights, [1.0, 1.0]);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct ParticleTarget<const N: usize> {
     pub(super) angles_rad: [f32; N],
@@ -97,6 +120,31 @@ impl<const N: usize> ParticleLanes<N> {
 /// the greatest and returns their sums.
 ///
 /// `factors` is what [`super::particle_table::fill_factors`] wrote; `key` is (seed, frame, `first_index`).
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::particle::{ParticleOptions, fill_factors, first_particle};
+/// use sinew_core::cyclic::particle_sweep::{ParticleTarget, sweep};
+/// use sinew_core::cyclic::{AngleMeasurement, CycleStart};
+///
+/// # let model = WALKING.model()?;
+/// # let start = CycleStart::<13>::standard(&model, &[Some(0.0); 13], Some(0.3), None)?;
+/// # let seen = AngleMeasurement::new(&[Some(0.05); 13], 0.1)?;
+/// # let mut factors = [0.0; 20_800];
+/// # fill_factors(&model, &mut factors);
+/// // The first frame of a hundred particles, under seed 1.
+/// let options = ParticleOptions::default();
+/// let draw = |index: usize| first_particle(&model, &[], &start, &options, (1, index as u32));
+/// let mut particles = core::array::from_fn::<_, 100, _>(draw);
+/// let target = ParticleTarget::new(&seen, 13, &start.estimate());
+/// let mut weights = [0.0; 100];
+/// let moments = sweep(&model, &factors, &options, (&target, 1.0), (1, 1, 0), &mut particles, &mut weights);
+/// assert!((moments.share().weight - weights.iter().sum::<f32>()).abs() < 1e-3);
+/// assert!(weights.iter().all(|weight| (0.0..=1.0).contains(weight)), "relative to the greatest");
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[inline(always)]
 pub fn sweep<const N: usize>(
     model: &MotionModel<'_>,

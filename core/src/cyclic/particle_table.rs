@@ -21,6 +21,17 @@ const fn len_of_position(angles: usize) -> usize {
 }
 
 /// Numbers that [`fill_factors`] writes: 20,800 for 13 angles and 100 positions.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::particle::factors_len;
+///
+/// // How large the static memory for a model has to be, numbers.
+/// assert_eq!(factors_len(&WALKING.model()?), 20_800);
+/// # }
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
 #[must_use]
 pub const fn factors_len(model: &MotionModel<'_>) -> usize {
     len_of_position(model.angle_count()) * model.position_count()
@@ -29,6 +40,21 @@ pub const fn factors_len(model: &MotionModel<'_>) -> usize {
 /// Writes mean accelerations and the Cholesky factors of the covariances at all positions, computed once a model.
 ///
 /// `factors` has [`factors_len`] numbers; what does not fit is left out, and particles there move without noise.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::particle::{factors_len, fill_factors};
+///
+/// // Once for each model, before the first particle moves.
+/// let model = WALKING.model()?;
+/// let mut factors = [0.0; 20_800];
+/// assert_eq!(factors.len(), factors_len(&model));
+/// fill_factors(&model, &mut factors);
+/// assert_eq!(factors[..13], WALKING.mean_acceleration[0], "each position begins with its mean");
+/// # }
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
 pub fn fill_factors(model: &MotionModel<'_>, factors: &mut [f32]) {
     let n = model.angle_count();
     let mut packed = [0.0; packed_len(MAX_ANGLES)];

@@ -17,6 +17,29 @@ const RESAMPLING_STREAM: u32 = u32::MAX;
 const MOST_CHUNKS: usize = 8;
 
 /// What the model holds ready for the particles, in the caller's memory.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::particle::{ParticleOptions, Spread, fill_factors, fill_positions};
+/// use sinew_core::cyclic::particle_tracker::ParticleTables;
+/// use sinew_core::cyclic::{CycleStart, ParticleTracker};
+///
+/// # let model = WALKING.model()?;
+/// # let first_rad = model.mean_pose_rad::<13>(model.point(0.3)).map(Some);
+/// // A start anywhere that the first pose allows needs both tables; `factors` may be shared by several trackers.
+/// let start = CycleStart::standard(&model, &first_rad, None, None)?;
+/// let (mut factors, mut positions) = ([0.0; 20_800], [0.0; 100]);
+/// fill_factors(&model, &mut factors);
+/// fill_positions(&model, &start, &mut positions);
+/// let tables = ParticleTables { factors: &factors, positions: &positions };
+/// let options = ParticleOptions { spread: Spread::UniformPosition, ..ParticleOptions::default() };
+/// let tracker = ParticleTracker::<13, 100>::new(&model, tables, options, &start, 1);
+/// let near = tracker.particles().iter().filter(|particle| (0.2..0.4).contains(&particle.cycle_position));
+/// assert!(near.count() > 85);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct ParticleTables<'a> {
     /// Written by [`super::particle::fill_factors`]; borrowed in every step, best from a `static`.
@@ -26,6 +49,29 @@ pub struct ParticleTables<'a> {
 }
 
 /// `P` particles of up to `N` angles. The same seed and number of particles give the bits of the host's parallel filter.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::particle::{ParticleOptions, fill_factors};
+/// use sinew_core::cyclic::particle_tracker::ParticleTables;
+/// use sinew_core::cyclic::{AngleMeasurement, CycleStart, ParticleTracker};
+///
+/// let model = WALKING.model()?;
+/// let mut factors = [0.0; 20_800];
+/// fill_factors(&model, &mut factors);
+/// let tables = ParticleTables { factors: &factors, positions: &[] };
+/// let pose_rad = |frame: u8| model.mean_pose_rad::<13>(model.point(f32::from(frame) * model.mean_cycle_velocity()));
+/// let start = CycleStart::standard(&model, &pose_rad(0).map(Some), Some(0.0), None)?;
+/// let mut tracker = ParticleTracker::<13, 200>::new(&model, tables, ParticleOptions::default(), &start, 1);
+/// let mut estimate = start.estimate();
+/// for frame in 1..=30 {
+///     estimate = tracker.step(&model, tables, &AngleMeasurement::new(&pose_rad(frame).map(Some), 0.1)?);
+/// }
+/// assert!((estimate.angles_rad[0] - pose_rad(30)[0]).abs() < 0.1);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ParticleTracker<const N: usize, const P: usize> {
     options: ParticleOptions,
@@ -115,6 +161,20 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
 }
 
 /// ln of the density of a measurement given those before, from how much all `count` particles weigh.
+///
+/// ```
+/// use sinew_core::cyclic::AngleMeasurement;
+/// use sinew_core::cyclic::particle_resampling::WeightShare;
+/// use sinew_core::cyclic::particle_tracker::log_likelihood;
+/// use sinew_core::random::normal::log_density;
+///
+/// // A hundred particles, all of them exactly at the measured angle: the density at a normal's mean, std 0.1 rad.
+/// let seen = AngleMeasurement::new(&[Some(0.4)], 0.1)?;
+/// let all = WeightShare { greatest_log_weight: 0.0, weight: 100.0 };
+/// let expected = log_density(0.0) - sinew_core::math::ln(0.1);
+/// assert!((log_likelihood(&seen, 1, all, 100) - expected).abs() < 1e-5);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[must_use]
 pub fn log_likelihood<const N: usize>(
     measurement: &AngleMeasurement<N>,
@@ -132,6 +192,20 @@ pub fn log_likelihood<const N: usize>(
 }
 
 /// Whole turns since the start, by the shorter way from the last estimate.
+///
+/// ```
+/// # use sinew_core::cyclic::CycleStart;
+/// use sinew_core::cyclic::particle_tracker::count_turns;
+///
+/// # let at = |angle_rad: f32| {
+/// #     let (angles_rad, extra_variance_rad2, velocities) = ([angle_rad], [0.0], [0.0]);
+/// #     CycleStart { angles_rad, extra_variance_rad2, velocities, cycle_position: 0.0, cycle_velocity: 0.0 }.estimate()
+/// # };
+/// // From 3.1 to -3.1 rad the short way leads over the seam: one turn more.
+/// let (last, mut estimate) = (at(3.1), at(-3.1));
+/// count_turns(&mut estimate, &last);
+/// assert_eq!(estimate.turns, [last.turns[0] + 1]);
+/// ```
 pub fn count_turns<const N: usize>(estimate: &mut CyclicEstimate<N>, last: &CyclicEstimate<N>) {
     for i in 0..N {
         let (_, turned) = split_turns(estimate.angles_rad[i] - last.angles_rad[i]);
@@ -141,6 +215,15 @@ pub fn count_turns<const N: usize>(estimate: &mut CyclicEstimate<N>, last: &Cycl
 }
 
 /// The random offset of a frame's systematic resampling, in [0, 1).
+///
+/// ```
+/// use sinew_core::cyclic::particle_tracker::resampling_offset;
+///
+/// // The same on every machine, another one in every frame.
+/// assert_eq!(resampling_offset(1, 20), resampling_offset(1, 20));
+/// assert_ne!(resampling_offset(1, 20), resampling_offset(1, 21));
+/// assert!((0.0..1.0).contains(&resampling_offset(1, 20)));
+/// ```
 #[must_use]
 pub fn resampling_offset(seed: u64, frame: u64) -> f32 {
     Stream::new(seed, frame, RESAMPLING_STREAM).uniform()

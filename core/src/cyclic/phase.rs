@@ -14,6 +14,14 @@ use crate::math::floor;
 pub(crate) const POSITIONS_IN_CYCLE: core::ops::RangeInclusive<f32> = 0.0..=1.0_f32.next_down();
 
 /// `position` moved by whole cycles into [0, 1); 0 for NaN and infinity.
+///
+/// ```
+/// use sinew_core::cyclic::phase::wrap_position;
+///
+/// // A tenth of a cycle further on, over the end of one and into the next.
+/// assert!((wrap_position(0.95 + 0.1) - 0.05).abs() < 1e-6);
+/// assert_eq!(wrap_position(-0.25), 0.75);
+/// ```
 #[inline]
 #[must_use]
 pub fn wrap_position(position: f32) -> f32 {
@@ -22,6 +30,13 @@ pub fn wrap_position(position: f32) -> f32 {
 }
 
 /// The way from `from` to `to` by the shorter arc, in (-0.5, 0.5] cycles.
+///
+/// ```
+/// use sinew_core::cyclic::phase::position_difference;
+///
+/// // An estimate of 0.98 at a true position of 0.03 lags by a twentieth of a cycle.
+/// assert!((position_difference(0.98, 0.03) + 0.05).abs() < 1e-6);
+/// ```
 #[inline]
 #[must_use]
 pub fn position_difference(to: f32, from: f32) -> f32 {

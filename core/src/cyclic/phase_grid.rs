@@ -29,6 +29,27 @@ const TEMPERED_ANGLES: f32 = 13.0;
 const LIMIT_SIGMAS: f32 = 4.0;
 
 /// Weights of position and speed; their sum is one.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::AngleMeasurement;
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::phase_grid::PhaseGrid;
+///
+/// // Somebody about whom nothing is known walks on from position 0.7: before long the grid believes in one place.
+/// let model = WALKING.model()?;
+/// let mut grid = PhaseGrid::uniform();
+/// assert!(grid.weight_near(0.7) < 0.4);
+/// for frame in 0..30_u8 {
+///     let position = 0.7 + f32::from(frame) * model.mean_cycle_velocity();
+///     let pose_rad = model.mean_pose_rad::<13>(model.point(position));
+///     grid.advance(&model, 1.0);
+///     grid.weigh(&model, &AngleMeasurement::new(&pose_rad.map(Some), 0.1)?, 1.0);
+/// }
+/// assert!(grid.weight_near(0.7 + 29.0 * model.mean_cycle_velocity()) > 0.9);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhaseGrid {
     weights: [[f32; POSITIONS]; SPEEDS],
@@ -37,6 +58,22 @@ pub struct PhaseGrid {
 }
 
 /// A place of the cycle: means and covariance of position and velocity.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::phase::position_difference;
+/// use sinew_core::cyclic::phase_grid::PhaseGrid;
+///
+/// // Known to a twentieth of a cycle, at about the mean speed.
+/// let model = WALKING.model()?;
+/// let mode = PhaseGrid::near(0.3).mode(&model);
+/// assert!(mode.weight > 0.9 && position_difference(mode.position, 0.3).abs() < 0.01);
+/// let [position_variance, _, _] = mode.covariance;
+/// assert!((0.03 * 0.03..0.07 * 0.07).contains(&position_variance));
+/// # }
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhaseMode {
     /// Part of the weight within [`MODE_REACH`] of the position.

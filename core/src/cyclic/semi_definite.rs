@@ -8,12 +8,29 @@ use crate::math::{abs, sqrt};
 pub const MAX_ROWS: usize = 32;
 
 /// Entries of the lower triangle of a matrix with `rows` rows.
+///
+/// ```
+/// use sinew_core::cyclic::semi_definite::packed_len;
+///
+/// // A covariance of 13 angles, 91 numbers instead of 169.
+/// const COVARIANCE: [f32; packed_len(13)] = [0.0; packed_len(13)];
+/// assert_eq!(COVARIANCE.len(), 91);
+/// ```
 #[must_use]
 pub const fn packed_len(rows: usize) -> usize {
     rows * (rows + 1) / 2
 }
 
 /// Place of entry (`row`, `column`) of a symmetric matrix, in either order.
+///
+/// ```
+/// use sinew_core::cyclic::semi_definite::packed_index;
+///
+/// // Row by row: (0,0); (1,0), (1,1); (2,0), (2,1), (2,2).
+/// let packed = [4.0, 0.5, 9.0, 0.1, 0.2, 1.0];
+/// assert_eq!(packed[packed_index(2, 1)], 0.2);
+/// assert_eq!(packed_index(1, 2), packed_index(2, 1));
+/// ```
 #[inline]
 #[must_use]
 pub const fn packed_index(row: usize, column: usize) -> usize {
@@ -32,6 +49,15 @@ pub const DIAGONAL_EXCESS: f32 = 1.0e-4;
 ///
 /// The matrix is scaled to a diagonal of ones and eliminated with the greatest remaining pivot first, which is stable for
 /// singular matrices. False for other lengths, for NaN, and beyond [`MAX_ROWS`].
+///
+/// ```
+/// use sinew_core::cyclic::semi_definite::is_positive_semi_definite;
+///
+/// // Two angles with variance 1: a covariance of 0.9 can be, one of 1.1 cannot; one that ties them fully is allowed.
+/// assert!(is_positive_semi_definite(&[1.0, 0.9, 1.0], 2));
+/// assert!(!is_positive_semi_definite(&[1.0, 1.1, 1.0], 2));
+/// assert!(is_positive_semi_definite(&[1.0, 1.0, 1.0], 2));
+/// ```
 #[must_use]
 pub fn is_positive_semi_definite(packed: &[f32], rows: usize) -> bool {
     if rows > MAX_ROWS || packed.len() != packed_len(rows) {
@@ -110,7 +136,7 @@ fn rest_is_zero(matrix: &[[f32; MAX_ROWS]; MAX_ROWS], done: &[bool; MAX_ROWS], r
 
 /// Writes the lower triangular L with L L' = the matrix, its diagonal raised by [`DIAGONAL_EXCESS`], into `factor` (both
 /// packed). A column whose pivot has vanished all the same becomes zero; nothing is written where a slice is too short.
-pub fn semi_cholesky(packed: &[f32], rows: usize, factor: &mut [f32]) {
+pub(super) fn semi_cholesky(packed: &[f32], rows: usize, factor: &mut [f32]) {
     if packed.len() < packed_len(rows) || factor.len() < packed_len(rows) {
         return;
     }

@@ -13,6 +13,23 @@ pub(super) const LEAST_SPREAD_RAD: f32 = 0.05;
 pub const MAX_CYCLE_VELOCITY: f32 = 0.5;
 
 /// First state of a filter.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::CycleStart;
+/// use sinew_core::cyclic::models::walking::WALKING;
+///
+/// // The first picture shows all angles but one; that one is taken from the mean cycle, and is less sure.
+/// let model = WALKING.model()?;
+/// let mut first_rad = model.mean_pose_rad::<13>(model.point(0.3)).map(Some);
+/// first_rad[5] = None;
+/// let start = CycleStart::standard(&model, &first_rad, None, None)?;
+/// assert!((start.cycle_position - 0.3).abs() < 0.02);
+/// assert_eq!(start.extra_variance_rad2[4], 0.0);
+/// assert!(start.extra_variance_rad2[5] > 0.0);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CycleStart<const N: usize> {
     /// Angles, radians, any turn.
@@ -103,6 +120,19 @@ impl<const N: usize> CycleStart<N> {
 
 /// The stored position whose mean pose is nearest to the angles seen, each difference relative to the angle's spread;
 /// 0 where nothing is seen.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::start::best_position;
+///
+/// // Where in the cycle a single picture is.
+/// let model = WALKING.model()?;
+/// let pose_rad = model.mean_pose_rad::<13>(model.point(0.62)).map(Some);
+/// assert_eq!(best_position(&model, &pose_rad), 0.62);
+/// # }
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
 #[must_use]
 pub fn best_position<const N: usize>(model: &MotionModel<'_>, angles_rad: &[Option<f32>; N]) -> f32 {
     let count = model.position_count();

@@ -5,6 +5,15 @@ use super::measurement::MAX_STEP_FRAMES;
 use crate::math::{clamp, max, min};
 
 /// The parts of a step: whole ones first, then what is left.
+///
+/// ```
+/// use sinew_core::cyclic::substeps::Substeps;
+///
+/// assert!(Substeps::of(2.5).eq([1.0, 1.0, 0.5]));
+/// // A gap of twelve frames in six parts at most: the work has a limit.
+/// assert!(Substeps::few(12.0, 6).eq([2.0; 6]));
+/// assert!(Substeps::few(2.5, 6).eq([1.0, 1.0, 0.5]), "fewer frames than parts");
+/// ```
 #[derive(Debug, Clone)]
 pub struct Substeps {
     left_frames: f32,

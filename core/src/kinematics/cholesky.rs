@@ -8,6 +8,18 @@ use crate::math::sqrt;
 const SMALL: usize = 8;
 
 /// Lower triangular factor; entries above the diagonal are zero.
+///
+/// ```
+/// use sinew_core::kinematics::cholesky::Cholesky;
+/// use sinew_core::math::ln;
+///
+/// let factor = Cholesky::new(&[[4.0, 2.0], [2.0, 3.0]]).expect("it is positive definite");
+/// let x = factor.solve(&[8.0, 7.0]);
+/// assert!((x[0] - 1.25).abs() < 1e-6 && (x[1] - 1.5).abs() < 1e-6, "4 x + 2 y = 8, 2 x + 3 y = 7");
+/// assert!((factor.log_determinant() - ln(8.0)).abs() < 1e-6);
+/// // A density with a saddle has no factor.
+/// assert_eq!(Cholesky::new(&[[1.0, 2.0], [2.0, 1.0]]), None);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cholesky<const N: usize> {
     /// Rows of L.

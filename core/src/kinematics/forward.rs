@@ -18,6 +18,21 @@ use crate::math::{Mat3, Vec3, axis_rotation};
 use crate::skeleton::Skeleton;
 
 /// Where all bones of a skeleton are in one pose.
+///
+/// ```
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::arm::{FOREARM, UPPER_ARM};
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// let pose = posture(&arm.skeleton()?, &Vec3::new(0.2, -0.1, 1.2), &[0.6, 0.2, 0.1, 1.2]);
+/// assert_eq!(pose.joints[FOREARM], pose.ends[UPPER_ARM], "the forearm begins at the elbow");
+/// assert!(((pose.ends[FOREARM] - pose.joints[FOREARM]).norm() - 0.35).abs() < 1e-5);
+/// // The elbow is a hinge across the forearm.
+/// assert!(pose.axes[3].dot(&(pose.ends[FOREARM] - pose.joints[FOREARM])).abs() < 1e-5);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Posture<const BONES: usize, const ANGLES: usize> {
     /// Joint at which each bone starts, metres.
@@ -29,6 +44,22 @@ pub struct Posture<const BONES: usize, const ANGLES: usize> {
 }
 
 /// The posture of `skeleton` at `root_m` with `angles_rad`.
+///
+/// ```
+/// use core::f32::consts::FRAC_PI_2;
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::{Bone, Joint, Limit, Skeleton};
+///
+/// // Two links of a metre that lie along x at rest, hinged in the plane of the image.
+/// let link = |parent| Bone { parent, joint: Joint::Hinge(Vec3::z()), offset_m: Vec3::x() };
+/// let chain = Skeleton::new([link(None), link(Some(0))], [Limit::from_degrees(-180.0, 180.0); 2])?;
+/// // A quarter turn and back again: an L.
+/// let bent = posture(&chain, &Vec3::new(5.0, 0.0, 0.0), &[FRAC_PI_2, -FRAC_PI_2]);
+/// assert!((bent.ends[0] - Vec3::new(5.0, 1.0, 0.0)).norm() < 1e-6);
+/// assert!((bent.ends[1] - Vec3::new(6.0, 1.0, 0.0)).norm() < 1e-6);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[inline]
 #[must_use]
 pub fn posture<const BONES: usize, const ANGLES: usize>(

@@ -14,6 +14,24 @@ const STEP_TOLERANCE_RAD: f32 = 1.0e-4;
 const FIRST_STEP_RAD: f32 = 0.2;
 
 /// Climbs from the objective's start to its mode in at most `max_steps` steps along the gradient, cut to the limits.
+///
+/// ```
+/// use sinew_core::kinematics::gradient_projection::mode_by_gradient;
+/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::math::{Mat3, Vec3};
+/// use sinew_core::skeleton::arm::FOREARM;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// let goals = [Goal { bone: FOREARM, position_m: Vec3::new(0.3, 0.3, -0.2), precision: Mat3::identity() * 400.0 }];
+/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
+/// let density =
+///     PoseDensity { skeleton: &arm, root_m, goals: &goals, previous_rad, stiffness: [4.0; 4], held: 0 };
+/// // The same mode as by Gauss-Newton steps, which need far fewer of them.
+/// let (slow, fast) = (mode_by_gradient(&density, 400), density.mode(10));
+/// assert!((slow.log_density - fast.log_density).abs() < 0.05);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[must_use]
 pub fn mode_by_gradient<const BONES: usize, const ANGLES: usize>(
     objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),

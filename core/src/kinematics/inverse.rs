@@ -18,6 +18,22 @@ const STEP_TOLERANCE_RAD: f32 = 1.0e-3;
 const LEAST_LOG_GAIN: f32 = 0.01;
 
 /// The mode and what is known of the density around it.
+///
+/// ```
+/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::math::{Mat3, Vec3};
+/// use sinew_core::skeleton::arm::FOREARM;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// // A goal 0.95 m away and an arm of 0.65 m: the answer is the stretched arm, and says by how much it misses.
+/// let goals = [Goal { bone: FOREARM, position_m: Vec3::new(0.95, 0.0, 0.0), precision: Mat3::identity() * 400.0 }];
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let (root_m, previous_rad) = (Vec3::zeros(), [1.2, -0.5, 0.0, 0.5]);
+/// let mode =
+///     PoseDensity { skeleton: &arm, root_m, goals: &goals, previous_rad, stiffness: [0.01; 4], held: 0 }.mode(30);
+/// assert!((mode.residual_m - 0.30).abs() < 0.02 && mode.angles_rad[3] < 0.1, "{mode:?}");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mode<const ANGLES: usize> {
     /// The most likely pose found, inside the limits.
@@ -37,6 +53,24 @@ pub struct Mode<const ANGLES: usize> {
 }
 
 /// Why a search for a mode ended.
+///
+/// ```
+/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve, Stop};
+/// # use sinew_core::math::{Mat3, Vec3};
+/// # use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
+/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
+/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
+/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
+/// # let density =
+/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
+///
+/// let (hurried, patient) = (density.mode(1), density.mode(20));
+/// assert_eq!(hurried.stop, Stop::StepsUsed);
+/// assert!(patient.converged() && patient.log_density >= hurried.log_density);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stop {
     /// The last step was shorter than a thousandth of a radian in every angle.
@@ -60,6 +94,27 @@ impl<const ANGLES: usize> Mode<ANGLES> {
 }
 
 /// The solver of any [`PoseObjective`].
+///
+/// ```
+/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
+/// # use sinew_core::math::{Mat3, Vec3};
+/// # use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
+/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
+/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
+/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
+/// # let density =
+/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
+///
+/// let mode = density.mode(10);
+/// let hand_m = density.posture(&mode.angles_rad).ends[FOREARM];
+/// assert!((hand_m - goals[0].position_m).norm() < 0.1, "near the goal; the angles are stiff");
+/// // More than one idea of where to begin: the likeliest is taken, and one step from there is enough.
+/// let near = density.mode_from(&[[0.0; 4], mode.angles_rad], 1);
+/// assert!((near.log_density - mode.log_density).abs() < 0.01);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub trait Solve<const BONES: usize, const ANGLES: usize>: PoseObjective<BONES, ANGLES> {
     /// Climbs from the pose of the frame before to the mode in at most `max_steps` steps.
     fn mode(&self, max_steps: usize) -> Mode<ANGLES> {

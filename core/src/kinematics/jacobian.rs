@@ -5,6 +5,21 @@ use crate::math::Vec3;
 use crate::skeleton::Skeleton;
 
 /// Derivative of the end of `bone` with respect to `angle`, metres per radian.
+///
+/// ```
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::kinematics::jacobian::column;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::arm::{FOREARM, UPPER_ARM};
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// let arm = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
+/// let pose = posture(&arm, &Vec3::zeros(), &[0.4, 0.2, 0.1, 1.0]);
+/// // Angle 3 is the elbow: it swings the hand on a circle as wide as the forearm, and leaves the elbow where it is.
+/// assert!((column(&arm, &pose, FOREARM, 3).norm() - 0.35).abs() < 1e-5);
+/// assert_eq!(column(&arm, &pose, UPPER_ARM, 3), Vec3::zeros());
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[inline]
 #[must_use]
 pub fn column<const BONES: usize, const ANGLES: usize>(

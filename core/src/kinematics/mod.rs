@@ -28,7 +28,7 @@
 //! # Ok::<(), sinew_core::error::ParameterError>(())
 //! ```
 
-pub mod body_information;
+pub(crate) mod body_information;
 pub mod cholesky;
 pub mod forward;
 pub mod gradient_projection;

@@ -6,6 +6,25 @@ use crate::math::{Mat3, Vec3, length, max};
 use crate::skeleton::Skeleton;
 
 /// Where an end-effector wants to be.
+///
+/// ```
+/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::math::{Mat3, Vec3};
+/// use sinew_core::skeleton::arm::FOREARM;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// // What one camera knows: where the hand is across its axis, to a centimetre, and nothing along it.
+/// let across = Mat3::from_diagonal(&Vec3::new(10_000.0, 10_000.0, 0.0));
+/// let goals = [Goal { bone: FOREARM, position_m: Vec3::new(0.3, 0.3, 7.0), precision: across }];
+/// let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
+/// let density =
+///     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [1.0; 4], held: 0 };
+/// # use sinew_core::kinematics::inverse::PoseObjective;
+/// let hand_m = density.posture(&density.mode(20).angles_rad).ends[FOREARM];
+/// assert!((hand_m.xy() - goals[0].position_m.xy()).norm() < 0.01, "seven metres away do not matter: {hand_m}");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
     /// The bone whose end is to go there.
@@ -17,6 +36,28 @@ pub struct Goal {
 }
 
 /// log p(theta | g, theta before) of eq. (12), up to its constant.
+///
+/// ```
+/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
+/// # use sinew_core::math::{Mat3, Vec3};
+/// # use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
+/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
+/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
+/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
+/// # let density =
+/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
+///
+/// // A goal pulls at the hand, stiffness holds every angle where it was: the mode lies between.
+/// let log_density = |angles_rad: &[f32; 4]| density.log_density(angles_rad, &density.posture(angles_rad));
+/// let mode = density.mode(20);
+/// assert!(log_density(&mode.angles_rad) > log_density(&previous_rad) + 1.0);
+/// // Angles that are held stay, whatever the goal wants.
+/// let held = PoseDensity { held: 3, ..density }.mode(20);
+/// assert_eq!(held.angles_rad[..3], previous_rad[..3]);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct PoseDensity<'a, const BONES: usize, const ANGLES: usize> {
     /// The body.
@@ -34,6 +75,50 @@ pub struct PoseDensity<'a, const BONES: usize, const ANGLES: usize> {
 }
 
 /// A log density of poses that has its greatest values where some squares are least: what the solver climbs.
+///
+/// ```
+/// use sinew_core::kinematics::forward::Posture;
+/// use sinew_core::kinematics::inverse::{PoseObjective, Solve};
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::{ArmGeometry, Side, Skeleton};
+///
+/// /// A density of your own: poses near one that is comfortable.
+/// struct Comfort {
+///     skeleton: Skeleton<2, 4>,
+///     rest_rad: [f32; 4],
+/// }
+///
+/// impl PoseObjective<2, 4> for Comfort {
+///     fn skeleton(&self) -> &Skeleton<2, 4> {
+///         &self.skeleton
+///     }
+///     fn root_m(&self) -> Vec3 {
+///         Vec3::zeros()
+///     }
+///     fn start_rad(&self) -> [f32; 4] {
+///         [1.0; 4]
+///     }
+///     fn held(&self) -> usize {
+///         0
+///     }
+///     fn log_density(&self, angles_rad: &[f32; 4], _posture: &Posture<2, 4>) -> f32 {
+///         (0..4).map(|i| -0.5 * (angles_rad[i] - self.rest_rad[i]) * (angles_rad[i] - self.rest_rad[i])).sum()
+///     }
+///     fn derivatives(&self, angles_rad: &[f32; 4], _posture: &Posture<2, 4>) -> ([f32; 4], [[f32; 4]; 4]) {
+///         let gradient = core::array::from_fn(|i| self.rest_rad[i] - angles_rad[i]);
+///         (gradient, core::array::from_fn(|i| core::array::from_fn(|j| f32::from(u8::from(i == j)))))
+///     }
+///     fn residual_m(&self, _posture: &Posture<2, 4>) -> f32 {
+///         0.0
+///     }
+/// }
+///
+/// // The solver climbs it inside the limits: no elbow bends backwards, however comfortable.
+/// let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// let mode = Comfort { skeleton, rest_rad: [0.3, 0.1, 0.0, -0.5] }.mode(10);
+/// assert!((mode.angles_rad[0] - 0.3).abs() < 1e-3 && mode.angles_rad[3] == 0.0, "{mode:?}");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub trait PoseObjective<const BONES: usize, const ANGLES: usize> {
     /// The body.
     fn skeleton(&self) -> &Skeleton<BONES, ANGLES>;

@@ -6,6 +6,24 @@ use crate::math::{Vec3, max, sqrt_branch_free, unit};
 use heapless::Vec;
 
 /// A capsule with what is the same for all points of a cloud: v of eq. (28) is constant along a bone.
+///
+/// ```
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::observation::body_surface::BodySurface;
+/// use sinew_core::skeleton::arm::FOREARM;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// // An arm that hangs two metres before the camera: where along its forearm does a point lie?
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.40)?.skeleton()?;
+/// let hanging = posture(&arm, &Vec3::new(0.0, 0.0, 2.0), &[0.0; 4]);
+/// let surface = BodySurface::new(&hanging, &[0.05, 0.04], Vec3::zeros());
+/// let forearm = surface.capsules.iter().find(|seen| seen.bone == FOREARM).expect("it has flesh");
+/// let (place_m, share) = forearm.axis_point(&Vec3::new(0.1, 0.4, 1.9));
+/// assert!((share - 0.25).abs() < 1e-5, "a quarter of the way from the elbow");
+/// assert!((place_m - Vec3::new(0.0, 0.4, 2.0)).norm() < 1e-5);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenCapsule {
     /// The capsule.
@@ -23,6 +41,22 @@ pub struct SeenCapsule {
 }
 
 /// The capsules of one pose, at most one a bone.
+///
+/// ```
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::observation::body_surface::BodySurface;
+/// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::{BODY_ANGLES, body_radii_m, full_body};
+///
+/// let measures = BodyMeasures::of_height(1.75)?;
+/// let standing = posture(&full_body(&measures)?, &Vec3::new(0.0, 0.0, 3.0), &[0.0; BODY_ANGLES]);
+/// let surface = BodySurface::new(&standing, &body_radii_m(&measures), Vec3::zeros());
+/// assert_eq!(surface.capsules.len(), 16, "all bones but the pelvis");
+/// // A marker on the chest, ten centimetres before the skin: the trunk is 12.5 cm thick.
+/// assert!((surface.skin_distance_m(&Vec3::new(0.0, -0.2, 2.775)) - 0.1).abs() < 1e-5);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodySurface<const BONES: usize> {
     /// Camera centre c, metres.
@@ -44,7 +78,7 @@ struct CapsuleLanes<const BONES: usize> {
 
 /// Bounds of the distances from a ball to each capsule's visible skin, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DistanceBounds<const BONES: usize> {
+pub(crate) struct DistanceBounds<const BONES: usize> {
     /// No point of the ball is nearer.
     pub least: [f32; BONES],
     /// No point of the ball is farther.
@@ -84,7 +118,7 @@ impl<const BONES: usize> BodySurface<BONES> {
     /// With D the distance of the ball's centre from a bone, R the ball's radius and r the bone's, no point is nearer than D - R - r
     /// or r - D - R, and none is farther than the root of (D + R)^2 + r^2, the hidden case.
     #[must_use]
-    pub fn distance_bounds(&self, centre_m: &Vec3, radius_m: f32) -> DistanceBounds<BONES> {
+    pub(crate) fn distance_bounds(&self, centre_m: &Vec3, radius_m: f32) -> DistanceBounds<BONES> {
         let lanes = &self.lanes;
         let mut bounds = DistanceBounds { least: [0.0; BONES], most: [0.0; BONES] };
         for i in 0..BONES {

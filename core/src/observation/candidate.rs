@@ -5,6 +5,18 @@ use crate::math::{exp, ln, max, sqrt};
 use core::f32::consts::PI;
 
 /// The part of a blob that an arm tracker uses: a few numbers, so that a frame's list is small state.
+///
+/// ```
+/// use sinew_core::observation::candidate::HandCandidate;
+///
+/// // An ellipse of 40 by 20 pixels has its own area; turned edge on it is half as wide.
+/// let flat = HandCandidate { moments_px2: [100.0, 0.0, 25.0], ..HandCandidate::default() };
+/// let edge = HandCandidate { moments_px2: [100.0, 0.0, 6.25], ..flat };
+/// assert!((flat.length_weighted_area_px(0.5) - 628.3).abs() < 0.1);
+/// // What leans on the length keeps more of it, and so says better how far the hand is.
+/// let kept = |length_share| edge.length_weighted_area_px(length_share) / flat.length_weighted_area_px(length_share);
+/// assert!((kept(0.5) - 0.5).abs() < 1e-3 && kept(0.65) > 0.6);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]

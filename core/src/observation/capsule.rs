@@ -14,6 +14,20 @@
 use crate::math::{Vec3, clamp, length, max, unit};
 
 /// All points within a radius of a line segment. A segment without length is a sphere.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::observation::capsule::Capsule;
+///
+/// // Two metres away, across the line of sight. The camera does not see its back:
+/// // the nearest skin that it sees to a point behind is the edge.
+/// let bone = Capsule { start_m: Vec3::new(-0.2, 0.0, 2.0), end_m: Vec3::new(0.2, 0.0, 2.0), radius_m: 0.05 };
+/// let skin_m = bone.nearest_visible(&Vec3::zeros(), &Vec3::new(0.0, 0.1, 2.2));
+/// assert!((skin_m - Vec3::new(0.0, 0.05, 2.0)).norm() < 1e-5);
+/// // A second one crosses it six centimetres behind: they are four centimetres deep in one another.
+/// let other = Capsule { start_m: Vec3::new(0.0, -0.2, 2.06), end_m: Vec3::new(0.0, 0.2, 2.06), radius_m: 0.05 };
+/// assert!((bone.depth_m(&other) - 0.04).abs() < 1e-5);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capsule {
     /// One end of the segment, metres.

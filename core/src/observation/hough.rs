@@ -15,6 +15,17 @@ pub const CHECK_EVERY: usize = 10;
 pub const MAX_WINDOW: usize = 32;
 
 /// Settings of the transform.
+///
+/// ```
+/// use sinew_core::observation::hough::HoughSettings;
+///
+/// // Half of the work at most, on a coarser histogram.
+/// let quick = HoughSettings { bins: 18, max_pairs: 500, ..HoughSettings::default() };
+/// assert!(quick.check().is_ok());
+/// // A wrong value is refused by its name.
+/// let wrong = HoughSettings { window: 1, ..quick };
+/// assert_eq!(wrong.check().map_err(|error| error.parameter), Err("hough.window"));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HoughSettings {
     /// Bins of the histogram over pi.
@@ -68,6 +79,19 @@ impl HoughSettings {
 }
 
 /// What the transform found.
+///
+/// ```
+/// use sinew_core::observation::hough::{HoughSettings, dynamic_hough};
+/// use sinew_core::random::Stream;
+/// use sinew_core::vision::edges::EdgePixel;
+///
+/// // One clean line: the drawing ends long before the bound, as soon as the variance has settled.
+/// let line = core::array::from_fn::<EdgePixel, 90, _>(|i| EdgePixel { u: 100 + 2 * i as u16, v: 80 });
+/// let settings = HoughSettings::default();
+/// let found = dynamic_hough(&line, &settings, &mut Stream::new(1, 0, 0)).expect("enough pixels");
+/// assert!(found.stable && found.pairs < settings.max_pairs / 2, "{} pairs", found.pairs);
+/// assert!(found.density.at(0.0) > 3.0, "times as likely as by chance");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HoughResult {
     /// Density of the orientation.
@@ -105,6 +129,19 @@ impl StopRule {
 }
 
 /// Orientation density of the lines in `pixels`; uniform where they are too few or too near to one another.
+///
+/// ```
+/// use sinew_core::observation::hough::{HoughSettings, dynamic_hough};
+/// use sinew_core::random::Stream;
+/// use sinew_core::vision::edges::EdgePixel;
+///
+/// // A limb that goes as far down as across.
+/// let limb = core::array::from_fn::<EdgePixel, 60, _>(|i| EdgePixel { u: 100 + i as u16, v: 80 + i as u16 });
+/// let find = |pixels: &[EdgePixel]| dynamic_hough(pixels, &HoughSettings::default(), &mut Stream::new(1, 0, 0));
+/// let density = find(&limb).expect("enough pixels").density;
+/// assert!(density.at(45.0_f32.to_radians()) > 4.0 * density.at(135.0_f32.to_radians()));
+/// assert!(find(&limb[..5]).is_none(), "five pixels say nothing");
+/// ```
 #[must_use]
 pub fn dynamic_hough(pixels: &[EdgePixel], settings: &HoughSettings, stream: &mut Stream) -> Option<HoughResult> {
     let uniform = OrientationDensity::uniform(settings.bins).ok()?;

@@ -16,6 +16,39 @@ pub const MAX_BLOCKS: usize = 256;
 const NOBODY: u32 = u32::MAX;
 
 /// Log-weights of one pose: the whole body's likelihood in the trunk's place, then what each limb adds.
+///
+/// ```
+/// use sinew_core::observation::limb_likelihood::{ExpectedBody, GroupLogs};
+/// use sinew_core::pik::motion::BodyScene;
+/// use sinew_core::skeleton::Limbs;
+/// use sinew_core::skeleton::limbs::TRUNK_GROUP;
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
+/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
+/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// # let points_of = |pose: &[f32; 4]| {
+/// #     let surface = scene.surface(&scene.posture(pose));
+/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
+/// #         let bone = &surface.capsules[i % 2].capsule;
+/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
+/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
+/// #     });
+/// #     let mut cloud = PointCloud::<2>::new();
+/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
+/// #     cloud
+/// # };
+///
+/// // Where nobody asks limb by limb, the whole body's weight stands in the trunk's place and all others are zero.
+/// let pose = [0.5, 0.1, 0.1, 1.0];
+/// let (cloud, surface) = (points_of(&pose), scene.surface(&scene.posture(&pose)));
+/// let logs: GroupLogs = scene.log_weights(&surface, cloud.blocks(), &ExpectedBody::new(Limbs::none()));
+/// assert_eq!(logs[TRUNK_GROUP], scene.likelihood.log_likelihood(&surface, cloud.blocks()));
+/// assert!(logs[1..].iter().all(|log| *log == 0.0));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub type GroupLogs = [f32; MAX_GROUPS];
 
 /// The expected skin about a block of points.
@@ -32,6 +65,43 @@ struct ExpectedSkin {
 }
 
 /// The expected body about all points of a frame.
+///
+/// ```
+/// use sinew_core::observation::limb_likelihood::ExpectedBody;
+/// use sinew_core::pik::motion::BodyScene;
+/// use sinew_core::skeleton::Limbs;
+/// use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
+/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
+/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// # let points_of = |pose: &[f32; 4]| {
+/// #     let surface = scene.surface(&scene.posture(pose));
+/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
+/// #         let bone = &surface.capsules[i % 2].capsule;
+/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
+/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
+/// #     });
+/// #     let mut cloud = PointCloud::<2>::new();
+/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
+/// #     cloud
+/// # };
+///
+/// // An elbow was expected at 1.0 rad, the points show it at 1.4 rad.
+/// let [expected, shown] = [1.0, 1.4].map(|elbow_rad| [0.5, 0.1, 0.1, elbow_rad]);
+/// let cloud = points_of(&shown);
+/// let surface_of = |pose| scene.surface(&scene.posture(pose));
+/// let mut body = ExpectedBody::new(Limbs::of(&scene.skeleton));
+/// body.expect(&scene.likelihood, &surface_of(&expected), cloud.blocks());
+/// // The forearm is a limb of its own: a pose that has it where the points are gains by it.
+/// let forearm = body.limbs().group(FOREARM);
+/// let gain = |pose| body.log_weights(&scene.likelihood, &surface_of(pose), cloud.blocks())[forearm];
+/// assert!(gain(&shown) > gain(&expected) + 1.0, "{} {}", gain(&shown), gain(&expected));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ExpectedBody<const BONES: usize> {
     limbs: Limbs<BONES>,
@@ -50,6 +120,11 @@ impl<const BONES: usize> ExpectedBody<BONES> {
     #[must_use]
     pub const fn limbs(&self) -> &Limbs<BONES> {
         &self.limbs
+    }
+
+    /// Other limbs, from the next [`Self::expect`] on.
+    pub const fn set_limbs(&mut self, limbs: Limbs<BONES>) {
+        self.limbs = limbs;
     }
 
     /// Takes `surface` as what is expected about `blocks`.
@@ -122,16 +197,27 @@ impl<const BONES: usize> ExpectedBody<BONES> {
         for &index in near.indices() {
             let Some(seen) = surface.capsules.get(usize::from(index)) else { continue };
             if self.limbs.group(seen.bone) == group {
-    /// Other limbs, from the next [`Self::expect`] on.
-    pub const fn set_limbs(&mut self, limbs: Limbs<BONES>) {
-        self.limbs = limbs;
-    }
-
                 lower_to(&mut own, seen, surface, block);
             }
         }
         own
     }
+}
+
+/// Squared distances of a block's points from the skin of each group of bones, at most `most`; square metres.
+pub(crate) fn squared_by_group<const BONES: usize>(
+    surface: &BodySurface<BONES>,
+    limbs: &Limbs<BONES>,
+    block: &PointBlock,
+    most: f32,
+) -> [[f32; BLOCK_POINTS]; MAX_GROUPS] {
+    let mut squared_m = [[most; BLOCK_POINTS]; MAX_GROUPS];
+    for seen in &surface.capsules {
+        if let Some(least) = squared_m.get_mut(limbs.group(seen.bone)) {
+            lower_to(least, seen, surface, block);
+        }
+    }
+    squared_m
 }
 
 fn add(sums: &mut GroupLogs, group: usize, value: f32) {
@@ -200,20 +286,4 @@ impl ExpectedSkin {
 
 #[cfg(test)]
 #[path = "limb_likelihood_tests.rs"]
-/// Squared distances of a block's points from the skin of each group of bones, at most `most`; square metres.
-pub(crate) fn squared_by_group<const BONES: usize>(
-    surface: &BodySurface<BONES>,
-    limbs: &Limbs<BONES>,
-    block: &PointBlock,
-    most: f32,
-) -> [[f32; BLOCK_POINTS]; MAX_GROUPS] {
-    let mut squared_m = [[most; BLOCK_POINTS]; MAX_GROUPS];
-    for seen in &surface.capsules {
-        if let Some(least) = squared_m.get_mut(limbs.group(seen.bone)) {
-            lower_to(least, seen, surface, block);
-        }
-    }
-    squared_m
-}
-
 mod tests;

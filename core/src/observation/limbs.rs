@@ -9,11 +9,11 @@ use crate::vision::edges::{EdgePixel, EdgeThinning};
 use heapless::Vec;
 
 /// Most pixels kept for one limb.
-pub const MAX_LIMB_PIXELS: usize = 256;
+pub(crate) const MAX_LIMB_PIXELS: usize = 256;
 
 /// Pixels of both limbs.
 #[derive(Debug, Clone, Default)]
-pub struct LimbPixels {
+pub(crate) struct LimbPixels {
     /// Near the upper arm.
     pub upper: Vec<EdgePixel, MAX_LIMB_PIXELS>,
     /// Near the forearm.
@@ -29,6 +29,23 @@ impl LimbPixels {
 }
 
 /// Image of an arm: its three joints.
+///
+/// ```
+/// use sinew_core::camera::Camera;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+/// use sinew_core::tracker::arm::{ArmModel, ArmOptions};
+///
+/// let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// // What to draw over the picture: an arm that hangs before the camera.
+/// let [shoulder_m, elbow_m, hand_m] = [0.0, 0.30, 0.65].map(|y_m| Vec3::new(0.0, y_m, 1.5));
+/// let image = model.image_points(&shoulder_m, &elbow_m, &hand_m).expect("in front of the camera");
+/// assert!(image.shoulder.v_px < image.elbow.v_px && image.elbow.v_px < image.hand.v_px);
+/// assert!((image.hand.u_px - image.shoulder.u_px).abs() < 1e-3, "straight below");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmImagePoints {
     /// Image of the shoulder.
@@ -79,16 +96,9 @@ impl Segment {
     }
 }
 
-/// Distance of `point` from the segment `a`-`b`, pixels.
-#[must_use]
-pub fn distance_to_segment_px(point: Pixel, a: Pixel, b: Pixel) -> f32 {
-    let segment = Segment::new(a, b);
-    sqrt(segment.distance_squared(&segment.row(point.v_px), point.u_px))
-}
-
 /// Sorts `pixels` to the limbs of `arm` within `band_px`, into `result`. Where a limb would get more than [`MAX_LIMB_PIXELS`], every 2^k-th
 /// is kept ([`EdgeThinning`]). Fast where `pixels` come row by row.
-pub fn split(pixels: &[EdgePixel], arm: &ArmImagePoints, band_px: f32, result: &mut LimbPixels) {
+pub(crate) fn split(pixels: &[EdgePixel], arm: &ArmImagePoints, band_px: f32, result: &mut LimbPixels) {
     let limbs = [Segment::new(arm.shoulder, arm.elbow), Segment::new(arm.elbow, arm.hand)];
     result.upper.clear();
     result.fore.clear();
@@ -222,7 +232,7 @@ mod tests {
 
     #[test]
     fn a_point_like_limb_has_a_distance_too() {
-        let p = Pixel::new(3.0, 4.0);
-        assert_eq!(distance_to_segment_px(p, Pixel::default(), Pixel::default()), 5.0);
+        let limb = Segment::new(Pixel::default(), Pixel::default());
+        assert_eq!(limb.distance_squared(&limb.row(4.0), 3.0), 25.0);
     }
 }

@@ -36,5 +36,5 @@ pub mod limbs;
 pub mod orientation;
 pub mod point_cloud;
 pub mod point_likelihood;
-pub mod point_pull;
+pub(crate) mod point_pull;
 pub mod self_penetration;

@@ -22,6 +22,23 @@ use core::f32::consts::PI;
 pub const MAX_BINS: usize = 72;
 
 /// Histogram density of an orientation. It is stored relative to the uniform density: 1 everywhere means uniform.
+///
+/// ```
+/// use sinew_core::observation::orientation::OrientationDensity;
+///
+/// // Three quarters of the votes for one of 36 orientations, the others for one across it.
+/// let flat = OrientationDensity::uniform(36)?;
+/// let mut votes = [0; 36];
+/// votes[flat.bin_of_line(1.0, 0.1)] = 75;
+/// votes[flat.bin_of_line(-0.1, 1.0)] = 25;
+/// let mut density = flat.from_votes(&votes).smoothed();
+/// assert!(density.at(0.1) > 2.0 * density.at(0.1 + core::f32::consts::FRAC_PI_2));
+/// // Nothing was seen for a while: it goes half of the way back to uniform, where every density is 1.
+/// let before = density.at(0.1);
+/// density.fade(0.5);
+/// assert!((density.at(0.1) - 0.5 * (before + 1.0)).abs() < 1e-4);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OrientationDensity {
     bins: [f32; MAX_BINS],
@@ -159,6 +176,17 @@ fn half_turns(du: f32, dv: f32) -> f32 {
 /// Running circular variance of orientations, on the doubled angle.
 ///
 /// For small spreads it is the plain variance in square radians: -2 ln R / 4, R the doubled angles' resultant length.
+///
+/// ```
+/// use sinew_core::observation::orientation::OrientationVariance;
+///
+/// // Lines a tenth of a radian to both sides of the horizontal; which way they are drawn does not matter.
+/// let mut variance = OrientationVariance::default();
+/// for (du, dv) in [(1.0, 0.1), (1.0, -0.1), (-1.0, -0.1), (-1.0, 0.1)] {
+///     variance.add(du, dv);
+/// }
+/// assert!((variance.variance_rad2() - 0.01).abs() < 2e-4);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct OrientationVariance {
     cosine: f32,

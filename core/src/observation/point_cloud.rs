@@ -13,6 +13,19 @@ const CELL_M: f32 = 0.02;
 pub const NEAREST_M: f32 = 0.01;
 
 /// Neighbouring points, coordinate by coordinate.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::observation::point_cloud::PointCloud;
+///
+/// let mut points_m = [Vec3::new(0.1, 0.0, 2.0), Vec3::new(-0.1, 0.0, 2.0)];
+/// let mut cloud = PointCloud::<4>::new();
+/// assert_eq!(cloud.set(&mut points_m, &Vec3::zeros()).over_capacity, 0);
+/// let block = &cloud.blocks()[0];
+/// assert_eq!(block.count, 2, "the rest of its sixteen places repeats the last point");
+/// // A ball that holds them all: whole blocks are judged by it before single points are.
+/// assert!((0..2).all(|index| (block.point_m(index) - block.centre_m).norm() <= block.radius_m + 1e-6));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointBlock {
     /// First coordinates, metres.
@@ -63,6 +76,18 @@ impl PointBlock {
 }
 
 /// What was left out of a cloud.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::observation::point_cloud::{LeftOut, PointCloud};
+///
+/// // A sensor's holes come as numbers that are none, or as points at the camera.
+/// let mut points_m = [Vec3::new(0.0, 0.0, 2.0), Vec3::zeros(), Vec3::new(0.1, f32::NAN, 2.0)];
+/// let mut cloud = PointCloud::<1>::new();
+/// let left_out = cloud.set(&mut points_m, &Vec3::zeros());
+/// assert_eq!(left_out, LeftOut { not_finite: 1, at_camera: 1, over_capacity: 0 });
+/// assert_eq!(cloud.len(), 1);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeftOut {
     /// Points with a coordinate that is no number.
@@ -74,6 +99,18 @@ pub struct LeftOut {
 }
 
 /// The points of one frame: at most `BLOCKS` times [`BLOCK_POINTS`].
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::observation::point_cloud::{BLOCK_POINTS, PointCloud};
+///
+/// // Forty points on a wall, and room for two blocks of sixteen.
+/// let mut points_m = core::array::from_fn::<Vec3, 40, _>(|i| Vec3::new(0.02 * i as f32, 0.0, 2.0));
+/// let mut cloud = PointCloud::<2>::new();
+/// let left_out = cloud.set(&mut points_m, &Vec3::zeros());
+/// assert_eq!((cloud.len(), left_out.over_capacity), (2 * BLOCK_POINTS, 8), "what has no room is counted");
+/// assert!(cloud.blocks().iter().all(|block| block.radius_m < 0.2), "neighbours share a block");
+/// ```
 #[derive(Debug, Clone)]
 pub struct PointCloud<const BLOCKS: usize> {
     blocks: Vec<PointBlock, BLOCKS>,

@@ -5,6 +5,25 @@ use super::point_cloud::{BLOCK_POINTS, PointBlock};
 use crate::math::{max, min, sqrt_branch_free};
 
 /// The robust metric and its scale.
+///
+/// ```
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::observation::body_surface::BodySurface;
+/// use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// // An arm that hangs two metres before the camera, 4 cm thick at the forearm.
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// let hanging = posture(&arm, &Vec3::new(0.0, 0.0, 2.0), &[0.0; 4]);
+/// let surface = BodySurface::new(&hanging, &[0.05, 0.04], Vec3::zeros());
+/// // One point a standard deviation before the skin costs a half, one far off no more than an outlier.
+/// let likelihood = PointLikelihood { std_m: 0.1, outlier_m: 0.2 };
+/// let mut cloud = PointCloud::<1>::new();
+/// let _ = cloud.set(&mut [Vec3::new(0.0, 0.5, 1.86), Vec3::new(0.9, 0.0, 3.0)], &Vec3::zeros());
+/// assert!((likelihood.log_likelihood(&surface, cloud.blocks()) + 0.5 + 2.0).abs() < 1e-3);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointLikelihood {
     /// sigma of eq. (25), metres.
@@ -82,7 +101,7 @@ pub(super) fn lower_to<const BONES: usize>(
 
 /// A block's points with the capsules whose visible skin is nearest to each.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NearestSkin {
+pub(crate) struct NearestSkin {
     /// Squared distances from it, squared metres; the square of the outlier distance where no skin is nearer.
     pub squared_m: [f32; BLOCK_POINTS],
     /// Places of the capsules in the surface's list; beyond its end where no skin is near.

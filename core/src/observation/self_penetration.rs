@@ -11,6 +11,28 @@ use crate::skeleton::limbs::{Limbs, MAX_GROUPS, TRUNK_GROUP};
 /// log p(theta) = -1/2 sum over pairs of bones (depth / std)^2, with depth what two capsules lie deeper in one another than at rest.
 ///
 /// Bones that meet in a joint are no pair: parent and child, and children of one parent.
+///
+/// ```
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::observation::{body_surface::BodySurface, self_penetration::SelfPenetration};
+/// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, body_radii_m, full_body};
+///
+/// let measures = BodyMeasures::of_height(1.75)?;
+/// let (skeleton, radii_m) = (full_body(&measures)?, body_radii_m(&measures));
+/// let density = SelfPenetration::new(&skeleton, &radii_m, 0.02)?;
+/// let log_density = |pose: &[f32; BODY_ANGLES]| {
+///     density.log_density(&BodySurface::new(&posture(&skeleton, &Vec3::zeros(), pose), &radii_m, -Vec3::z()))
+/// };
+/// // To stand costs nothing, a leg through the other one does.
+/// let mut pose = [0.0; BODY_ANGLES];
+/// assert_eq!(log_density(&pose), 0.0);
+/// let hip = BODY_ANGLE_NAMES.iter().position(|name| *name == "l_hip_abduction").expect("it has this name");
+/// pose[hip] = -0.5;
+/// assert!(log_density(&pose) < -5.0);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfPenetration<const BONES: usize> {
     std_m: f32,

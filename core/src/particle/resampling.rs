@@ -6,6 +6,17 @@ use crate::random::Stream;
 ///
 /// `weights` sum to one; `offset` lies in [0, 1). Invariants: the ancestors are in ascending order; an ancestor of weight
 /// w is taken floor(n w) or ceil(n w) times; over a uniform offset it is taken n w times on average.
+///
+/// ```
+/// use sinew_core::particle::resampling::systematic;
+/// use sinew_core::random::Stream;
+///
+/// // The second of three particles has half of the weight, so it takes half of the places.
+/// let offset = Stream::new(1, 0, u32::MAX).uniform();
+/// let mut ancestors = [0; 8];
+/// systematic(&[0.25, 0.5, 0.25], offset, &mut ancestors);
+/// assert_eq!(ancestors, [0, 0, 1, 1, 1, 1, 2, 2]);
+/// ```
 pub fn systematic(weights: &[f32], offset: f32, ancestors: &mut [u16]) {
     let count = ancestors.len() as f32;
     let last = weights.len().saturating_sub(1);
@@ -23,6 +34,16 @@ pub fn systematic(weights: &[f32], offset: f32, ancestors: &mut [u16]) {
 }
 
 /// Shuffles `items` (Fisher and Yates), so that an order left by resampling does not decide who is sent where.
+///
+/// ```
+/// use sinew_core::particle::resampling::permute;
+/// use sinew_core::random::Stream;
+///
+/// let mut ancestors = [0, 0, 1, 1, 1, 1, 2, 2];
+/// permute(&mut ancestors, &mut Stream::new(1, 0, 0));
+/// assert_ne!(ancestors, [0, 0, 1, 1, 1, 1, 2, 2], "another order");
+/// assert_eq!(ancestors.iter().filter(|&&ancestor| ancestor == 1).count(), 4, "of the same numbers");
+/// ```
 pub fn permute<T>(items: &mut [T], stream: &mut Stream) {
     for i in (1..items.len()).rev() {
         let other = stream.below(i as u32 + 1) as usize;

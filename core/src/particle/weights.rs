@@ -18,12 +18,39 @@ use crate::saved_state::{SavedState, StateVisitor};
 use heapless::Vec;
 
 /// All weights were zero (or not a number). The set was made uniform; nothing was learned from this frame.
+///
+/// ```
+/// use sinew_core::particle::{Degenerate, Weights};
+///
+/// // The hand is where no particle expects it: go on as if nothing had been seen.
+/// let mut weights = Weights::<2>::uniform(2)?;
+/// weights.set_log(0, f32::NEG_INFINITY);
+/// weights.set_log(1, f32::NEG_INFINITY);
+/// let has_learned = !matches!(weights.normalise(), Err(Degenerate));
+/// assert!(!has_learned && weights.effective_sample_size() == 2.0);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Degenerate;
 
 /// Weights of up to `CAPACITY` particles.
 ///
 /// Invariant after [`Weights::normalise`]: the normalised weights are finite, not negative, and sum to one.
+///
+/// ```
+/// use sinew_core::particle::Weights;
+///
+/// // Room for fifty particles, three in use. Only differences of log-weights matter, so nothing underflows.
+/// let mut weights = Weights::<50>::uniform(3)?;
+/// for (index, log_weight) in [-1000.0, -1000.0, -1000.7].into_iter().enumerate() {
+///     weights.set_log(index, log_weight);
+/// }
+/// let log_evidence = weights.normalise().expect("one of them is above zero");
+/// assert!((log_evidence + 1000.18).abs() < 0.01);
+/// assert!((weights.normalised()[2] - 0.2).abs() < 0.01);
+/// assert!(weights.effective_sample_size() > 2.7, "no need to resample");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Weights<const CAPACITY: usize> {
     log: Vec<f32, CAPACITY>,

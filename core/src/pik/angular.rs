@@ -11,6 +11,44 @@ use crate::skeleton::Limit;
 const MAX_TRIES: usize = 8;
 
 /// Independent angles.
+///
+/// ```
+/// use sinew_core::pik::angular::AngularMotion;
+/// use sinew_core::pik::goal::MEMORY;
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
+/// use sinew_core::pik::root::RootProcess;
+/// use sinew_core::random::Stream;
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
+/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
+/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// # let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// # let past = FramePast {
+/// #     scene: &scene,
+/// #     blocks: &[],
+/// #     angle_velocity_per_s: [0.0; 4],
+/// #     root_change: [0.0; 6],
+/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     first_m: &ancestor.ends_m,
+/// #     dt_s: 0.1,
+/// #     is_first: true,
+/// # };
+///
+/// // The elbow bends by two radians a second, and went on for a tenth of a second: 0.2 rad on the mean.
+/// let past = FramePast { angle_velocity_per_s: [0.0, 0.0, 0.0, 2.0], ..past };
+/// let root = RootProcess::FIXED;
+/// let motion = AngularMotion { root, persistence: 1.0, angle_std_rad_per_sqrt_s: [0.3; 4], own_velocity: false };
+/// let mut mean_rad = 0.0;
+/// for particle in 0..400 {
+///     let moved = motion.propose(&past, &ancestor, &mut [0.0; MEMORY], &mut Stream::new(1, 0, particle));
+///     mean_rad += moved.angles_rad[3] / 400.0;
+/// }
+/// assert!((mean_rad - 1.2).abs() < 0.02, "{mean_rad}");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AngularMotion<const ANGLES: usize> {
     /// The root's own process.

@@ -15,6 +15,53 @@ const MAX_LOG_RATIO: f32 = 10.0;
 const LIMIT_MASS_DRAWS: usize = 8;
 
 /// Goals from a process, poses by the Laplace proposal.
+///
+/// ```
+/// use sinew_core::pik::end_effector::EndEffectorMotion;
+/// use sinew_core::pik::goal::{LinearExtrapolation, MEMORY};
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
+/// use sinew_core::pik::processes::extrapolation::LinearGoals;
+/// use sinew_core::pik::root::RootProcess;
+/// use sinew_core::random::Stream;
+/// use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
+/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
+/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// # let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// # let past = FramePast {
+/// #     scene: &scene,
+/// #     blocks: &[],
+/// #     angle_velocity_per_s: [0.0; 4],
+/// #     root_change: [0.0; 6],
+/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     first_m: &ancestor.ends_m,
+/// #     dt_s: 0.1,
+/// #     is_first: true,
+/// # };
+///
+/// // The hand was lifted by half a metre a second: after a tenth of a second poses reach five centimetres higher.
+/// let past = FramePast { velocity_m_per_s: &[Vec3::zeros(), Vec3::new(0.0, -0.5, 0.0)], ..past };
+/// let process = LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s: 0.05 };
+/// let motion = EndEffectorMotion {
+///     process: &LinearGoals::new(&[FOREARM], 2, process, 0.01)?,
+///     root: RootProcess::FIXED,
+///     angle_std_rad_per_sqrt_s: [2.0; 4],
+///     solver_steps: 5,
+///     pays: false,
+///     draw_share: 0.1,
+/// };
+/// let mut lift_m = 0.0;
+/// for particle in 0..200 {
+///     let moved = motion.propose(&past, &ancestor, &mut [0.0; MEMORY], &mut Stream::new(1, 0, particle));
+///     lift_m += (ancestor.ends_m[FOREARM].y - moved.posture.ends[FOREARM].y) / 200.0;
+/// }
+/// assert!((lift_m - 0.05).abs() < 0.01, "{lift_m}");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
     /// Where the end-effectors want to be.
@@ -33,6 +80,30 @@ pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
 }
 
 /// Makes the expansion around a mode `share` times as wide, about the same centre.
+///
+/// ```
+/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::pik::end_effector::narrow;
+/// use sinew_core::pik::proposal::LaplaceProposal;
+/// # use sinew_core::math::{Mat3, Vec3};
+/// # use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
+/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
+/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
+/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
+/// # let density =
+/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
+///
+/// let mut mode = density.mode(10);
+/// let wide = LaplaceProposal::new(&mode).expect("a mode has curvature");
+/// let curvature = mode.hessian[0][0];
+/// narrow(&mut mode, 0.5);
+/// let half = LaplaceProposal::new(&mode).expect("as before");
+/// assert!((mode.hessian[0][0] / curvature - 4.0).abs() < 1e-5, "half as wide");
+/// assert!((half.centre_rad()[0] - wide.centre_rad()[0]).abs() < 1e-4, "about the same centre");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub fn narrow<const ANGLES: usize>(mode: &mut Mode<ANGLES>, share: f32) {
     let sharper = 1.0 / (share * share);
     for i in 0..ANGLES {

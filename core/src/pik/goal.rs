@@ -10,11 +10,71 @@ pub const MAX_GOALS: usize = 8;
 /// Numbers that a process may keep in each particle from frame to frame.
 pub const MEMORY: usize = 32;
 /// What a process keeps in a particle; zeros at first.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals, MEMORY};
+/// use sinew_core::pik::processes::paper_extrapolation::PaperGoals;
+/// use sinew_core::random::Stream;
+///
+/// // The paper's process goes on from the goal before, which each particle keeps: zeros at first.
+/// let mut memory: GoalMemory = [0.0; MEMORY];
+/// let at = [Vec3::new(0.1, 0.2, 2.0)];
+/// # let past = GoalPast {
+/// #     reached_m: &at,
+/// #     velocity_m_per_s: &[Vec3::zeros()],
+/// #     first_m: &at,
+/// #     root_shift_m: Vec3::zeros(),
+/// #     dt_s: 0.1,
+/// #     is_first: true,
+/// # };
+/// let process = PaperGoals { end_effectors: &[0], std_m: 0.05, reach_std_m: 0.02 };
+/// let mut goals = Goals::new();
+/// process.draw(&past, &mut memory, &mut Stream::new(1, 0, 0), &mut goals);
+/// assert_eq!(memory[..3], *goals[0].position_m.as_slice());
+/// ```
 pub type GoalMemory = [f32; MEMORY];
 /// Goals of one frame.
+///
+/// ```
+/// use sinew_core::kinematics::inverse::Goal;
+/// use sinew_core::math::{Mat3, Vec3};
+/// use sinew_core::pik::goal::{Goals, MAX_GOALS};
+///
+/// let goal = Goal { bone: 0, position_m: Vec3::zeros(), precision: Mat3::identity() };
+/// let mut goals = Goals::new();
+/// assert!((0..MAX_GOALS).all(|_| goals.push(goal).is_ok()));
+/// assert!(goals.push(goal).is_err(), "a list without allocation has an end");
+/// ```
 pub type Goals = Vec<Goal, MAX_GOALS>;
 
 /// What goals may follow from.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::goal::{GoalPast, LinearExtrapolation};
+/// use sinew_core::pik::processes::walking::WalkingGoals;
+///
+/// // A step: the left ankle (bone 0) stands, the right one swings.
+/// let ankles_m = [Vec3::new(0.1, 1.0, 3.0), Vec3::new(-0.1, 0.9, 3.0)];
+/// let past = GoalPast {
+///     reached_m: &ankles_m,
+///     velocity_m_per_s: &[Vec3::zeros(), Vec3::new(0.0, 0.5, -1.5)],
+///     first_m: &ankles_m,
+///     root_shift_m: Vec3::zeros(),
+///     dt_s: 0.1,
+///     is_first: false,
+/// };
+/// let walking = WalkingGoals {
+///     ankles: [0, 1],
+///     up: -Vec3::y(),
+///     ankle_height_m: -1.0,
+///     swing: LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s: 0.3 },
+///     planted_std_m_per_sqrt_s: 0.02,
+///     reach_std_m: 0.03,
+/// };
+/// assert_eq!(walking.planted(&past), 0);
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct GoalPast<'a, const BONES: usize> {
     /// Ends of all bones that the particle reached in the frame before, metres.
@@ -38,6 +98,41 @@ struct OwnMotionModel;
 
 /// A stochastic process of the end-effectors' goals, p(g_t | g_1..t-1) (PIK paper, section 4.2). Users may write their own:
 /// docs/own_motion_model.md.
+///
+/// ```
+/// use sinew_core::kinematics::inverse::Goal;
+/// use sinew_core::math::{Mat3, Vec3};
+/// use sinew_core::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals, MEMORY};
+/// use sinew_core::random::Stream;
+///
+/// /// A hand (bone 1 of 2) that is lifted by half a metre a second, y being down.
+/// struct Lift;
+///
+/// impl GoalProcess<2> for Lift {
+///     fn end_effectors(&self) -> &[usize] {
+///         &[1]
+///     }
+///
+///     fn draw(&self, past: &GoalPast<'_, 2>, _memory: &mut GoalMemory, stream: &mut Stream, goals: &mut Goals) {
+///         let position_m = past.reached_m[1] - Vec3::y() * (0.5 * past.dt_s) + stream.normal3() * 0.01;
+///         // One goal always has room.
+///         let _ = goals.push(Goal { bone: 1, position_m, precision: Mat3::identity() / (0.02 * 0.02) });
+///     }
+/// }
+///
+/// # let at = [Vec3::zeros(), Vec3::new(0.0, 0.3, 2.0)];
+/// # let past = GoalPast {
+/// #     reached_m: &at,
+/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     first_m: &at,
+/// #     root_shift_m: Vec3::zeros(),
+/// #     dt_s: 0.2,
+/// #     is_first: true,
+/// # };
+/// let mut goals = Goals::new();
+/// Lift.draw(&past, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0), &mut goals);
+/// assert!((goals[0].position_m - Vec3::new(0.0, 0.2, 2.0)).norm() < 0.05);
+/// ```
 pub trait GoalProcess<const BONES: usize> {
     /// The bones whose ends have goals.
     fn end_effectors(&self) -> &[usize];
@@ -55,6 +150,18 @@ pub trait GoalProcess<const BONES: usize> {
 /// Linear extrapolation (PIK paper, eq. 33) of the reached place, with a velocity that fades and white noise.
 ///
 /// The velocity is that of the filter's estimate, not of the particle: DESIGN.md section 3.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::goal::LinearExtrapolation;
+///
+/// // Half of a metre a second goes on for a tenth of a second: five centimetres.
+/// let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.2 };
+/// let mean_m = process.mean(&Vec3::new(0.0, 0.0, 2.0), &Vec3::new(1.0, 0.0, 0.0), 0.1);
+/// assert!((mean_m - Vec3::new(0.05, 0.0, 2.0)).norm() < 1e-6);
+/// // The spread grows with the root of time.
+/// assert!((process.std_m(0.4) - 2.0 * process.std_m(0.1)).abs() < 1e-6);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearExtrapolation {
     /// Share of the velocity that goes on, in [0, 1]; 1 is the paper's.

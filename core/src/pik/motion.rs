@@ -15,6 +15,19 @@ use crate::skeleton::limbs::{MAX_GROUPS, TRUNK_GROUP};
 use crate::skeleton::tree::FREE_ROOT_COORDINATES;
 
 /// One hypothesis.
+///
+/// ```
+/// use sinew_core::pik::motion::BodyParticle;
+/// use sinew_core::skeleton::arm::{FOREARM, UPPER_ARM};
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// // An elbow does not bend backwards: the particle begins at the nearest legal pose, with the ends of its bones.
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// let particle = BodyParticle::at(&arm, [0.5, 0.1, 0.1, -0.4]);
+/// assert_eq!(particle.angles_rad, [0.5, 0.1, 0.1, 0.0]);
+/// assert!(((particle.ends_m[FOREARM] - particle.ends_m[UPPER_ARM]).norm() - 0.35).abs() < 1e-5);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyParticle<const BONES: usize, const ANGLES: usize> {
     /// Coordinates of the pose: shifts of a free root in metres, angles in radians.
@@ -38,6 +51,32 @@ impl<const BONES: usize, const ANGLES: usize> BodyParticle<BONES, ANGLES> {
 }
 
 /// What does not change from frame to frame.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::observation::point_likelihood::PointLikelihood;
+/// use sinew_core::observation::self_penetration::SelfPenetration;
+/// use sinew_core::pik::motion::BodyScene;
+/// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::{BODY_ANGLES, body_radii_m, full_body};
+///
+/// let measures = BodyMeasures::of_height(1.75)?;
+/// let (skeleton, radii_m) = (full_body(&measures)?, body_radii_m(&measures));
+/// let scene = BodyScene {
+///     self_penetration: Some(SelfPenetration::new(&skeleton, &radii_m, 0.02)?),
+///     skeleton,
+///     radii_m,
+///     camera_m: Vec3::zeros(),
+///     likelihood: PointLikelihood { std_m: 0.15, outlier_m: 0.25 },
+/// };
+/// // Three metres away; the camera sees 16 bones with flesh, the nearest skin of which is the toes'.
+/// let mut pose = [0.0; BODY_ANGLES];
+/// pose[2] = 3.0;
+/// let surface = scene.surface(&scene.posture(&pose));
+/// assert_eq!(surface.capsules.len(), 16);
+/// assert!(surface.skin_distance_m(&scene.camera_m) > 2.5);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyScene<const BONES: usize, const ANGLES: usize> {
     /// The body.
@@ -91,6 +130,33 @@ impl<const BONES: usize, const ANGLES: usize> BodyScene<BONES, ANGLES> {
 }
 
 /// What all particles of a frame share.
+///
+/// ```
+/// use sinew_core::pik::motion::{BodyParticle, BodyScene, FramePast};
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
+/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
+/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+///
+/// let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// let past = FramePast {
+///     scene: &scene,
+///     blocks: &[],
+///     angle_velocity_per_s: [0.0; 4],
+///     root_change: [0.0; 6],
+///     velocity_m_per_s: &[Vec3::zeros(); 2],
+///     first_m: &ancestor.ends_m,
+///     dt_s: 0.1,
+///     is_first: true,
+/// };
+/// // What goals may follow from: the places that this particle reached.
+/// assert_eq!(past.goals_of(&ancestor).reached_m, &ancestor.ends_m);
+/// assert_eq!(past.root_shift_m(), Vec3::zeros(), "this root is not free");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct FramePast<'a, const BONES: usize, const ANGLES: usize> {
     /// The body and its camera.
@@ -139,6 +205,44 @@ impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
 }
 
 /// A particle moved on, not yet weighed by the points.
+///
+/// ```
+/// use sinew_core::pik::angular::AngularMotion;
+/// use sinew_core::pik::goal::MEMORY;
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
+/// use sinew_core::pik::root::RootProcess;
+/// use sinew_core::random::Stream;
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
+/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
+/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// # let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// # let past = FramePast {
+/// #     scene: &scene,
+/// #     blocks: &[],
+/// #     angle_velocity_per_s: [0.0; 4],
+/// #     root_change: [0.0; 6],
+/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     first_m: &ancestor.ends_m,
+/// #     dt_s: 0.1,
+/// #     is_first: true,
+/// # };
+/// # let motion = AngularMotion {
+/// #     root: RootProcess::FIXED,
+/// #     persistence: 1.0,
+/// #     angle_std_rad_per_sqrt_s: [1.0; 4],
+/// #     own_velocity: false,
+/// # };
+///
+/// let proposed = motion.propose(&past, &ancestor, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0));
+/// assert_eq!(scene.skeleton.clamp(proposed.angles_rad), proposed.angles_rad, "inside the limits");
+/// assert_eq!(proposed.posture, scene.posture(&proposed.angles_rad), "where the bones are");
+/// assert_eq!(proposed.log_ratio, 0.0, "drawn from the motion itself: nothing to pay");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Proposed<const BONES: usize, const ANGLES: usize> {
     /// Its pose, inside the limits.
@@ -150,6 +254,58 @@ pub struct Proposed<const BONES: usize, const ANGLES: usize> {
 }
 
 /// A motion model: how a particle moves on.
+///
+/// ```
+/// use sinew_core::pik::goal::{GoalMemory, MEMORY};
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast, Proposed};
+/// use sinew_core::pik::root::RootProcess;
+/// use sinew_core::random::Stream;
+///
+/// /// An arm of which only the elbow moves, by a random walk.
+/// struct ElbowWalk;
+///
+/// impl BodyMotion<2, 4> for ElbowWalk {
+///     fn root(&self) -> &RootProcess {
+///         &RootProcess::FIXED
+///     }
+///
+///     fn propose(
+///         &self,
+///         past: &FramePast<'_, 2, 4>,
+///         ancestor: &BodyParticle<2, 4>,
+///         _memory: &mut GoalMemory,
+///         stream: &mut Stream,
+///     ) -> Proposed<2, 4> {
+///         let [elevation, deviation, rotation, elbow] = ancestor.angles_rad;
+///         let drawn = [elevation, deviation, rotation, elbow + 0.2 * stream.normal()];
+///         let angles_rad = past.scene.skeleton.clamp(drawn);
+///         Proposed { angles_rad, posture: past.scene.posture(&angles_rad), log_ratio: 0.0 }
+///     }
+/// }
+///
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
+/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
+/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// # let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// # let past = FramePast {
+/// #     scene: &scene,
+/// #     blocks: &[],
+/// #     angle_velocity_per_s: [0.0; 4],
+/// #     root_change: [0.0; 6],
+/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     first_m: &ancestor.ends_m,
+/// #     dt_s: 0.1,
+/// #     is_first: true,
+/// # };
+/// let moved = ElbowWalk.propose(&past, &ancestor, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0));
+/// assert_eq!(moved.posture.ends[0], ancestor.ends_m[0], "the elbow stays in its place");
+/// assert_ne!(moved.posture.ends[1], ancestor.ends_m[1]);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub trait BodyMotion<const BONES: usize, const ANGLES: usize> {
     /// The root's own process.
     fn root(&self) -> &RootProcess;

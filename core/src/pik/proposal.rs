@@ -13,6 +13,33 @@ use crate::random::normal::{LOG_SQRT_TAU, log_interval_mass};
 use crate::skeleton::Limit;
 
 /// A normal approximation of a pose's density.
+///
+/// ```
+/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::pik::proposal::LaplaceProposal;
+/// use sinew_core::random::Stream;
+/// # use sinew_core::math::{Mat3, Vec3};
+/// # use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
+/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
+/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
+/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
+/// # let density =
+/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
+///
+/// let mode = density.mode(10);
+/// let proposal = LaplaceProposal::new(&mode).expect("a mode has curvature");
+/// // No limit is near: the normal's centre is the mode, and so is the mean of what is drawn.
+/// let mut mean_rad = 0.0;
+/// for particle in 0..500 {
+///     let draw = proposal.draw(skeleton.limits(), &mut Stream::new(1, 0, particle));
+///     mean_rad += draw.angles_rad[3] / 500.0;
+/// }
+/// assert!((mean_rad - proposal.centre_rad()[3]).abs() < 0.02);
+/// assert!((proposal.centre_rad()[3] - mode.angles_rad[3]).abs() < 0.01);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaplaceProposal<const ANGLES: usize> {
     centre_rad: [f32; ANGLES],
@@ -24,6 +51,31 @@ pub struct LaplaceProposal<const ANGLES: usize> {
 }
 
 /// A pose drawn from a [`LaplaceProposal`].
+///
+/// ```
+/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::pik::proposal::LaplaceProposal;
+/// use sinew_core::random::Stream;
+/// # use sinew_core::math::{Mat3, Vec3};
+/// # use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
+/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
+/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
+/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
+/// # let density =
+/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
+///
+/// let proposal = LaplaceProposal::new(&density.mode(10)).expect("a mode has curvature");
+/// let mut mean_distance = 0.0;
+/// for particle in 0..1000 {
+///     let draw = proposal.draw(skeleton.limits(), &mut Stream::new(1, 0, particle));
+///     assert_eq!(skeleton.clamp(draw.angles_rad), draw.angles_rad, "no draw leaves the limits");
+///     mean_distance += draw.squared_distance / 1000.0;
+/// }
+/// assert!((mean_distance - 4.0).abs() < 0.4, "chi-squared of four angles: {mean_distance}");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseDraw<const ANGLES: usize> {
     /// The pose, inside the limits.
@@ -35,6 +87,31 @@ pub struct PoseDraw<const ANGLES: usize> {
 }
 
 /// Whether the mass that limits cut off is part of an importance ratio.
+///
+/// ```
+/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
+/// use sinew_core::pik::proposal::{LaplaceProposal, LimitMass};
+/// use sinew_core::random::Stream;
+/// # use sinew_core::math::{Mat3, Vec3};
+/// # use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
+/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
+/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
+/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
+/// # let density =
+/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
+///
+/// let proposal = LaplaceProposal::new(&density.mode(10)).expect("a mode has curvature");
+/// let mut stream = Stream::new(1, 0, 0);
+/// let draw = proposal.draw(skeleton.limits(), &mut stream);
+/// let log_density = density.log_density(&draw.angles_rad, &density.posture(&draw.angles_rad));
+/// // Far from all limits nothing is cut off, and counting the mass changes nothing.
+/// let log_box = proposal.log_box(skeleton.limits(), 8, &mut stream);
+/// let ratio = |limits| proposal.log_importance_ratio(&draw, log_density, limits);
+/// assert!((ratio(LimitMass::Counted { log_box }) - ratio(LimitMass::Neglected)).abs() < 1e-3);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LimitMass {
     /// Neither M_box nor the M_i: right where no limit is active. Where one is, poses count as the sequential draw makes them and not as eq. (12)

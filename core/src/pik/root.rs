@@ -16,6 +16,29 @@ use crate::skeleton::Skeleton;
 use crate::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
 
 /// Linear extrapolation of shifts and angles with normal noise, inside the limits.
+///
+/// ```
+/// use sinew_core::pik::root::{NO_PLANES, RootProcess};
+/// use sinew_core::random::Stream;
+/// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::{BODY_ANGLES, full_body};
+///
+/// // Somebody who walks a metre a second to the left of the picture, above a floor that the hips keep 0.9 m away from.
+/// let mut shift_limits_m = NO_PLANES;
+/// shift_limits_m[1][1] = 0.1;
+/// let walk = RootProcess { persistence: 0.5, std_per_sqrt_s: [0.1; 6], shift_limits_m };
+/// let mut velocity = [0.0; BODY_ANGLES];
+/// velocity[0] = -1.0;
+/// let change = walk.expected_change(&velocity, 0.1);
+/// assert!((change[0] + 0.05).abs() < 1e-6, "half of the velocity goes on");
+/// let person = full_body(&BodyMeasures::of_height(1.75)?)?;
+/// for particle in 0..100 {
+///     let mut pose = [0.0; BODY_ANGLES];
+///     walk.draw(&person, &mut pose, &change, 0.1, &mut Stream::new(1, 0, particle));
+///     assert!(pose[0] < 0.1 && pose[1] <= 0.1 && pose[6..] == [0.0; 24], "only the root moves");
+/// }
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RootProcess {
     /// Share of the filter's velocity that goes on, in [0, 1].

@@ -10,6 +10,17 @@ pub const LANES: usize = 32;
 ///
 /// The generator is xoshiro128++ (Blackman and Vigna 2021), whose steps are additions, shifts and exclusive ors of 32 bits:
 /// on arrays of lanes compilers turn them into vector instructions.
+///
+/// ```
+/// use sinew_core::random::lanes::{LANES, StreamLanes};
+/// use sinew_core::random::Stream;
+///
+/// // Particles 64, 65, ... of frame 3 at once; lane 5 is the stream of particle 69.
+/// let mut lanes = StreamLanes::new(1, 3, 64);
+/// assert_eq!(lanes.bits()[5], Stream::new(1, 3, 69).bits());
+/// let draws: [f32; LANES] = lanes.normal();
+/// assert!(draws.iter().all(|draw| draw.abs() < 6.4));
+/// ```
 #[derive(Debug, Clone)]
 pub struct StreamLanes([[u32; LANES]; 4]);
 

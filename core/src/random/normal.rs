@@ -11,6 +11,14 @@ use core::f32::consts::FRAC_1_SQRT_2;
 pub const LOG_SQRT_TAU: f32 = 0.918_938_5;
 
 /// z > 0 with upper tail probability `tail` in (0, 0.5].
+///
+/// ```
+/// use sinew_core::random::normal::{QUANTILE_MAX_TAIL_ERROR, upper_quantile, upper_tail};
+///
+/// let z = upper_quantile(0.025);
+/// assert!((z - 1.959_964).abs() < 1e-3);
+/// assert!((upper_tail(z) / 0.025 - 1.0).abs() < QUANTILE_MAX_TAIL_ERROR);
+/// ```
 #[must_use]
 pub fn upper_quantile(tail: f32) -> f32 {
     let q = 0.5 - tail;
@@ -41,6 +49,13 @@ pub(super) const fn quantile_in_tail(depth: f32) -> f32 {
 }
 
 /// Probability that a standard normal exceeds `x`.
+///
+/// ```
+/// use sinew_core::random::normal::upper_tail;
+///
+/// // One measurement in 741 is more than three standard deviations too great.
+/// assert!((1.0 / upper_tail(3.0) - 741.0).abs() < 1.0);
+/// ```
 #[must_use]
 pub fn upper_tail(x: f32) -> f32 {
     0.5 * erfc(x * FRAC_1_SQRT_2)
@@ -53,11 +68,19 @@ const NO_TAIL: f32 = 6.0;
 /// nothing.
 #[must_use]
 #[inline]
-pub fn tail_beside_one(x: f32) -> f32 {
+pub(super) fn tail_beside_one(x: f32) -> f32 {
     if x > NO_TAIL { 0.0 } else { upper_tail(x) }
 }
 
 /// Natural logarithm of [`upper_tail`], without underflow: for large `x` by Laplace's continued fraction.
+///
+/// ```
+/// use sinew_core::random::normal::{log_upper_tail, upper_tail};
+///
+/// // Twenty standard deviations out the probability is zero in `f32`; its logarithm is not.
+/// assert_eq!(upper_tail(20.0), 0.0);
+/// assert!((log_upper_tail(20.0) + 203.917).abs() < 0.01);
+/// ```
 #[must_use]
 pub fn log_upper_tail(x: f32) -> f32 {
     if x < 4.0 {
@@ -71,6 +94,16 @@ pub fn log_upper_tail(x: f32) -> f32 {
 }
 
 /// ln of the standard normal density at `x`.
+///
+/// ```
+/// use sinew_core::math::ln;
+/// use sinew_core::random::normal::log_density;
+///
+/// // A measurement at 2.3 with mean 2 and standard deviation 0.1.
+/// let std = 0.1;
+/// let log_likelihood = log_density((2.3 - 2.0) / std) - ln(std);
+/// assert!((log_likelihood + 3.116).abs() < 1e-3);
+/// ```
 #[inline]
 #[must_use]
 pub fn log_density(x: f32) -> f32 {
@@ -78,6 +111,16 @@ pub fn log_density(x: f32) -> f32 {
 }
 
 /// ln of the probability that a standard normal lies in `low..=high`; negative infinity where the interval is empty.
+///
+/// ```
+/// use sinew_core::math::exp;
+/// use sinew_core::random::normal::log_interval_mass;
+///
+/// // Two thirds lie within one standard deviation.
+/// assert!((exp(log_interval_mass(-1.0, 1.0)) - 0.6827).abs() < 1e-4);
+/// // What limits of a joint leave, though the mean is thirty standard deviations beyond them.
+/// assert!(log_interval_mass(30.0, 31.0).is_finite());
+/// ```
 #[must_use]
 pub fn log_interval_mass(low: f32, high: f32) -> f32 {
     if !(high > low) {

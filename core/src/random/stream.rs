@@ -35,6 +35,18 @@ pub(super) fn first_state(frame_key: u64, index: u32) -> [u64; 2] {
 }
 
 /// A generator (xoshiro128++) that belongs to one particle in one frame.
+///
+/// ```
+/// use sinew_core::random::Stream;
+///
+/// // Whoever draws for particle 7 in frame 42, and when: the numbers are the same.
+/// let (seed, frame) = (1, 42);
+/// let mut stream = Stream::new(seed, frame, 7);
+/// let (side, noise) = (stream.uniform(), stream.normal());
+/// let mut again = Stream::new(seed, frame, 7);
+/// assert_eq!((again.uniform(), again.normal()), (side, noise));
+/// assert_ne!(Stream::new(seed, frame + 1, 7).uniform(), side);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Stream(Xoshiro128PlusPlus);
 

@@ -19,6 +19,31 @@ pub const EDGES_A_RECORD: usize = 64;
 
 /// Begins the recording of an arm: camera, lengths, seed, and the options that depend on what is known of the person. All others are the
 /// defaults.
+///
+/// ```
+/// use sinew_core::camera::Pixel;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::record::ArmSetup;
+/// use sinew_core::skeleton::Side;
+///
+/// let setup = ArmSetup {
+///     focal_px: [554.0; 2],
+///     centre: Pixel::new(319.5, 239.5),
+///     image_size_px: [640, 480],
+///     side: Side::Left,
+///     lengths_m: [0.30, 0.35],
+///     shoulder_m: Vec3::new(0.2, -0.1, 1.2),
+///     particles: 50,
+///     product_floor: None,
+///     area_cue: None,
+///     seed: 1,
+/// };
+/// // Firmware makes of it the model that the host tracked with.
+/// let model = setup.model()?;
+/// assert_eq!((model.side(), model.options().particles), (Side::Left, 50));
+/// assert!(ArmSetup { lengths_m: [0.30, 0.0], ..setup }.model().is_err(), "a length is above zero");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmSetup {
     /// Focal lengths, pixels.
@@ -119,6 +144,19 @@ impl Payload for ArmSetup {
 }
 
 /// Some of a frame's candidates; their [`ArmInput`] follows.
+///
+/// ```
+/// use sinew_core::observation::candidate::HandCandidate;
+/// use sinew_core::record::{CANDIDATES_A_RECORD, CandidateChunk, decode, encode};
+///
+/// // As many of a frame's candidates as a record holds; more of them take another one.
+/// let mut chunk = CandidateChunk::default();
+/// chunk.0.extend([HandCandidate { likelihood: 0.8, ..HandCandidate::default() }; CANDIDATES_A_RECORD]);
+/// let mut bytes = [0; 256];
+/// encode(&chunk, &mut bytes)?;
+/// assert_eq!(decode(&bytes)?.0.read::<CandidateChunk>()?.0.len(), CANDIDATES_A_RECORD);
+/// # Ok::<(), sinew_core::record::RecordError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CandidateChunk(pub Vec<HandCandidate, CANDIDATES_A_RECORD>);
 
@@ -149,6 +187,17 @@ impl Payload for CandidateChunk {
 }
 
 /// Some of a frame's edge pixels; their [`ArmInput`] follows.
+///
+/// ```
+/// use sinew_core::record::{EdgeChunk, HEADER_BYTES, encode};
+/// use sinew_core::vision::edges::EdgePixel;
+///
+/// let mut chunk = EdgeChunk::default();
+/// chunk.0.extend([EdgePixel { u: 310, v: 200 }, EdgePixel { u: 311, v: 200 }]);
+/// // Four bytes an edge pixel, two for their number.
+/// let mut bytes = [0; 64];
+/// assert_eq!(encode(&chunk, &mut bytes), Ok(HEADER_BYTES + 2 + 2 * 4));
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct EdgeChunk(pub Vec<EdgePixel, EDGES_A_RECORD>);
 
@@ -175,6 +224,31 @@ impl Payload for EdgeChunk {
 }
 
 /// Ends a frame of an arm: what came before it belongs to it.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::record::{ArmInput, CandidateChunk, Kind, RecordStream, encode};
+///
+/// // A frame with one candidate: first the candidate, then the frame that it belongs to.
+/// let input = ArmInput {
+///     frame: 3,
+///     timestamp_us: 200_000,
+///     has_image: true,
+///     shoulder_m: Vec3::new(0.2, -0.1, 1.2),
+///     candidates: 1,
+///     edges: 0,
+/// };
+/// let chunk = CandidateChunk(core::iter::once(Default::default()).collect());
+/// let mut bytes = [0; 256];
+/// let length = encode(&chunk, &mut bytes)?;
+/// let length = length + encode(&input, &mut bytes[length..])?;
+///
+/// let mut stream = RecordStream::<_, 256>::new(&bytes[..length]);
+/// assert!(stream.next_record().is_some_and(|first| first.is_ok_and(|first| first.kind == Kind::CandidateChunk)));
+/// let last = stream.next_record().expect("there is another")?;
+/// assert_eq!(last.read::<ArmInput>()?, input);
+/// # Ok::<(), sinew_core::record::RecordError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmInput {
     /// Number of the frame; rises from record to record.

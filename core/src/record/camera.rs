@@ -9,6 +9,22 @@ use heapless::Vec;
 pub const LINE_PIXELS: usize = 320;
 
 /// Begins the recording of a camera: size of its frames, and which colours are skin.
+///
+/// ```
+/// use sinew_core::record::CameraSetup;
+///
+/// let setup = CameraSetup {
+///     size_px: [320, 240],
+///     skin_mean: [0.42, 0.31],
+///     skin_covariance: [0.001, 0.0, 0.0004],
+///     skin_threshold: 2.5,
+///     skin_min_sum: 90,
+/// };
+/// let skin = setup.skin()?;
+/// assert!(skin.distance([200, 150, 125]).is_some_and(|distance| distance < setup.skin_threshold));
+/// assert_eq!(skin.distance([20, 15, 12]), None, "too dark to tell");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraSetup {
     /// Width and height, pixels.
@@ -58,6 +74,19 @@ impl Payload for CameraSetup {
 }
 
 /// One line of a frame in RGB565.
+///
+/// ```
+/// use sinew_core::record::{CameraLine, LINE_PIXELS, decode, encode};
+///
+/// // A red line of a QVGA picture.
+/// let mut line = CameraLine { row: 17, pixels: Default::default() };
+/// line.pixels.extend([0xF800; LINE_PIXELS]);
+/// let mut bytes = [0; 1024];
+/// encode(&line, &mut bytes)?;
+/// let received = decode(&bytes)?.0.read::<CameraLine>()?;
+/// assert_eq!((received.row, received.pixels.len()), (17, 320));
+/// # Ok::<(), sinew_core::record::RecordError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraLine {
     /// Row from the top.
@@ -87,6 +116,15 @@ impl Payload for CameraLine {
 }
 
 /// What the front end answers to a frame.
+///
+/// ```
+/// use sinew_core::record::VisionResult;
+///
+/// // Firmware's answer has to be the host's: the same blobs and edges bit for bit, and as few of them lost.
+/// let expected = VisionResult { frame: 7, blobs: 2, edges: 310, checksum: 0x1234_5678, losses: [0; 6] };
+/// let answered = VisionResult { edges: 298, losses: [0, 0, 0, 12, 0, 0], ..expected };
+/// assert_ne!(answered, expected);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VisionResult {
     /// Number of the frame.

@@ -7,6 +7,18 @@ use crate::skeleton::stick_figure::HUMAN_ANGLES;
 use crate::tracker::cyclic::FirstPhase;
 
 /// Begins the recording of a motion: which model, and what is known of the first state.
+///
+/// ```
+/// use sinew_core::record::{CyclicSetup, decode, encode};
+/// use sinew_core::tracker::cyclic::FirstPhase;
+///
+/// // The position in the cycle is to be found; the person is said to walk a cycle in 64 frames.
+/// let first = FirstPhase { position: None, velocity_per_frame: Some(1.0 / 64.0) };
+/// let mut bytes = [0; 64];
+/// encode(&CyclicSetup { model_checksum: 0x1234_5678, first }, &mut bytes)?;
+/// assert_eq!(decode(&bytes)?.0.read::<CyclicSetup>()?.first, first);
+/// # Ok::<(), sinew_core::record::RecordError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicSetup {
     /// [`model_checksum`] of the model.
@@ -16,6 +28,20 @@ pub struct CyclicSetup {
 }
 
 /// Checksum of a model's numbers: firmware tells by it whether it holds the model of a recording.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::{ModelParts, MotionModel};
+/// use sinew_core::record::model_checksum;
+///
+/// // Another rate, another model.
+/// let model = WALKING.model()?;
+/// let slower = MotionModel::new(ModelParts { rate_hz: 30.0, ..*model.parts() })?;
+/// assert_ne!(model_checksum(&slower), model_checksum(&model));
+/// # }
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
 #[must_use]
 pub fn model_checksum(model: &MotionModel<'_>) -> u32 {
     let parts = model.parts();
@@ -44,6 +70,22 @@ impl Payload for CyclicSetup {
 }
 
 /// One frame's angles, just as the filter gets them.
+///
+/// ```
+/// use sinew_core::cyclic::AngleMeasurement;
+/// use sinew_core::record::{CyclicInput, decode, encode};
+///
+/// // One of the angles was not seen; that survives, too.
+/// let mut angles_rad = [Some(0.2); 13];
+/// angles_rad[4] = None;
+/// let angles = AngleMeasurement::new(&angles_rad, 0.1).expect("a standard deviation above zero");
+/// let mut bytes = [0; 256];
+/// encode(&CyclicInput { frame: 8, angles }, &mut bytes)?;
+/// let played = decode(&bytes)?.0.read::<CyclicInput>()?;
+/// assert_eq!((played.frame, played.angles.angle_rad(4)), (8, None));
+/// assert_eq!(played.angles, angles);
+/// # Ok::<(), sinew_core::record::RecordError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicInput {
     /// Number of the frame in the recording; rises from record to record.

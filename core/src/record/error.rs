@@ -3,6 +3,18 @@
 use core::fmt;
 
 /// Why a record cannot be used. [`Self::code`] is the number that firmware reports.
+///
+/// ```
+/// use sinew_core::record::{Cost, End, RecordError, decode, encode};
+///
+/// let mut bytes = [0; 64];
+/// let length = encode(&Cost::zero(), &mut bytes)?;
+/// assert_eq!(decode(&bytes[..length - 1]), Err(RecordError::Truncated));
+/// assert_eq!(decode(&bytes)?.0.read::<End>(), Err(RecordError::OutOfOrder), "another kind was wanted");
+/// // What firmware reports in place of words.
+/// assert_eq!(RecordError::Checksum.code(), 6);
+/// # Ok::<(), RecordError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

@@ -6,6 +6,21 @@ use super::RecordError;
 const NAN_BITS: u32 = 0x7fc0_0000;
 
 /// Writes fields into a slice; what finds no room is left out and [`Self::finish`] says so.
+///
+/// ```
+/// use sinew_core::record::FieldWriter;
+///
+/// let mut bytes = [0; 8];
+/// let mut fields = FieldWriter::new(&mut bytes);
+/// fields.u16(0x0102);
+/// fields.optional_f32(None);
+/// assert_eq!(fields.finish(), Some(2 + 1 + 4));
+/// assert_eq!(bytes[..2], [2, 1], "the lowest byte first");
+///
+/// let mut fields = FieldWriter::new(&mut bytes);
+/// fields.f32s(&[0.0; 3]);
+/// assert_eq!(fields.finish(), None, "twelve bytes do not fit eight");
+/// ```
 #[derive(Debug)]
 pub struct FieldWriter<'a> {
     bytes: &'a mut [u8],
@@ -73,6 +88,17 @@ impl<'a> FieldWriter<'a> {
 }
 
 /// Reads fields from a slice.
+///
+/// ```
+/// use sinew_core::record::{FieldReader, RecordError};
+///
+/// let mut fields = FieldReader::new(&[2, 1, 7]);
+/// assert_eq!(fields.u16()?, 0x0102);
+/// assert_eq!(fields.clone().flag("side"), Err(RecordError::Value { field: "side" }), "7 is no flag");
+/// assert_eq!(fields.u8()?, 7);
+/// assert_eq!(fields.u8(), Err(RecordError::WrongLength), "nothing is left");
+/// # Ok::<(), RecordError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct FieldReader<'a> {
     bytes: &'a [u8],

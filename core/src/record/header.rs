@@ -13,6 +13,15 @@ pub(super) const MARK: [u8; 4] = *b"SNWR";
 const COVERED_BYTES: usize = 12;
 
 /// What a record holds. The numbers never change their meaning.
+///
+/// ```
+/// use sinew_core::record::Kind;
+///
+/// // The number stands in the header; those of later versions are unknown.
+/// assert_eq!(Kind::of(17), Some(Kind::CyclicInput));
+/// assert_eq!(Kind::CyclicInput as u16, 17);
+/// assert_eq!(Kind::of(9999), None);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u16)]
@@ -75,6 +84,21 @@ impl Kind {
 }
 
 /// A record whose checksum is right.
+///
+/// ```
+/// use sinew_core::record::{Cost, Failure, Kind, Record, decode, encode};
+///
+/// let mut bytes = [0; 64];
+/// encode(&Failure { frame: 3, code: 6 }, &mut bytes)?;
+/// // A player looks at the kind first, then reads what it is for.
+/// let (record, _) = decode(&bytes)?;
+/// match record {
+///     Record { kind: Kind::Failure, .. } => assert_eq!(record.read::<Failure>()?.frame, 3),
+///     _ => unreachable!("nothing else was written"),
+/// }
+/// assert!(record.read::<Cost>().is_err());
+/// # Ok::<(), sinew_core::record::RecordError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Record<'a> {
     /// What it holds.
@@ -100,6 +124,18 @@ impl Record<'_> {
 }
 
 /// Writes a record with header and checksum to the start of `bytes`; gives its length.
+///
+/// ```
+/// use sinew_core::record::{Cost, End, RecordError, encode};
+///
+/// // Two records one after the other.
+/// let mut bytes = [0; 64];
+/// let first = encode(&Cost::zero(), &mut bytes)?;
+/// let second = encode(&End { records: 1 }, &mut bytes[first..])?;
+/// assert_eq!((first, second), (34, 20));
+/// assert_eq!(encode(&Cost::zero(), &mut bytes[..10]), Err(RecordError::Capacity { list: "bytes" }));
+/// # Ok::<(), RecordError>(())
+/// ```
 ///
 /// # Errors
 /// [`RecordError::Capacity`] where `bytes` is shorter; [`HEADER_BYTES`] and [`Payload::MAX_BYTES`] always suffice.
@@ -147,6 +183,18 @@ pub(super) fn announced_len(bytes: &[u8]) -> Result<usize, RecordError> {
 }
 
 /// Reads the record that `bytes` begin with; gives its length, too, header included.
+///
+/// ```
+/// use sinew_core::record::{End, RecordError, decode, encode};
+///
+/// let mut bytes = [0; 32];
+/// let length = encode(&End { records: 12 }, &mut bytes)?;
+/// let (record, used) = decode(&bytes)?;
+/// assert_eq!((record.read::<End>()?.records, used), (12, length), "what follows is left alone");
+/// bytes[length - 1] ^= 1;
+/// assert_eq!(decode(&bytes), Err(RecordError::Checksum));
+/// # Ok::<(), RecordError>(())
+/// ```
 ///
 /// # Errors
 /// What is wrong with it, checked in this order: whole header, mark, version, whole payload, checksum, kind.

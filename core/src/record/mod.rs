@@ -52,6 +52,17 @@ pub use results::{ArmResult, Cost, CyclicResult, Failure};
 pub use stream::{RecordStream, Source};
 
 /// Something that a record holds.
+///
+/// ```
+/// use sinew_core::record::{Cost, HEADER_BYTES, Payload, VisionResult, encode};
+///
+/// // Room for a record of any kind, known when the program is built.
+/// const fn room<P: Payload>() -> usize {
+///     HEADER_BYTES + P::MAX_BYTES
+/// }
+/// let mut bytes = [0; room::<VisionResult>()];
+/// assert_eq!(encode(&Cost::zero(), &mut bytes), Ok(room::<Cost>()));
+/// ```
 pub trait Payload: Sized {
     /// Kind of its records.
     const KIND: Kind;
@@ -69,6 +80,19 @@ pub trait Payload: Sized {
 }
 
 /// Ends a stream.
+///
+/// ```
+/// use sinew_core::record::{Cost, End, RecordError, RecordStream, encode};
+///
+/// // Two records were written, but only one came through.
+/// let mut bytes = [0; 64];
+/// let length = encode(&Cost::zero(), &mut bytes)?;
+/// encode(&End { records: 2 }, &mut bytes[length..])?;
+/// let mut stream = RecordStream::<_, 64>::new(bytes.as_slice());
+/// assert!(stream.next_record().is_some_and(|record| record.is_ok()));
+/// assert_eq!(stream.next_record(), Some(Err(RecordError::Lost)));
+/// # Ok::<(), RecordError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct End {
     /// Number of records before this one.

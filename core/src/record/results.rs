@@ -9,6 +9,24 @@ use crate::tracker::arm::{ArmEstimate, ArmJoints, Status};
 use crate::tracker::cyclic::CyclicFrame;
 
 /// The cyclic tracker's answer to one frame.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::AngleMeasurement;
+/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::record::{CyclicResult, decode, encode};
+/// use sinew_core::tracker::cyclic::{CyclicTracker, CyclicTrackerOptions, FirstPhase};
+///
+/// let model = WALKING.model()?;
+/// let unseen = AngleMeasurement::nothing().into();
+/// let mut tracker = CyclicTracker::new(&model, CyclicTrackerOptions::default(), &unseen, FirstPhase::default())?;
+/// let result = CyclicResult::new(1, &tracker.step(&model, &unseen));
+/// let mut bytes = [0; 256];
+/// encode(&result, &mut bytes)?;
+/// assert_eq!(decode(&bytes)?.0.read::<CyclicResult>()?, result, "bit for bit what the tracker said");
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicResult {
     /// Number of the frame.
@@ -79,6 +97,25 @@ impl Payload for CyclicResult {
 }
 
 /// The arm tracker's answer to one frame.
+///
+/// ```
+/// use sinew_core::camera::Camera;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::record::{ArmResult, decode, encode};
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+/// use sinew_core::tracker::arm::{ArmFrame, ArmModel, ArmOptions, ArmTracker};
+///
+/// let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// let arm = ArmGeometry::new(Side::Right, 0.30, 0.35)?;
+/// let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// let shoulder_m = Vec3::new(-0.2, -0.1, 1.2);
+/// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
+/// let estimate = tracker.step(&model, &ArmFrame { timestamp_us: 0, image: None, shoulder_m });
+/// let mut bytes = [0; 128];
+/// encode(&ArmResult { frame: 0, estimate }, &mut bytes)?;
+/// assert_eq!(decode(&bytes)?.0.read::<ArmResult>()?.estimate.joints, estimate.joints);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmResult {
     /// Number of the frame.
@@ -150,6 +187,14 @@ impl Payload for ArmResult {
 }
 
 /// A record that could not be used; the tracker goes on with the next one.
+///
+/// ```
+/// use sinew_core::record::{Failure, RecordError};
+///
+/// // Frame 11 was answered, then a record came with a wrong checksum.
+/// let failure = Failure { frame: 11, code: RecordError::Checksum.code() };
+/// assert!(failure.code < Failure::REFUSED, "the record was at fault, not what it said");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Failure {
     /// Number of the last frame that was answered, 0 before the first.
@@ -180,6 +225,17 @@ impl Payload for Failure {
 }
 
 /// What a part of the work cost over all frames.
+///
+/// ```
+/// use sinew_core::record::Cost;
+///
+/// // Instructions of three frames, one of them much dearer.
+/// let mut cost = Cost { part: 1, ..Cost::zero() };
+/// for instructions in [40_000, 41_000, 96_000] {
+///     cost.add(instructions);
+/// }
+/// assert_eq!((cost.total / u64::from(cost.frames), cost.worst), (59_000, 96_000));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Cost {
     /// Which part; firmware and its reader agree on the numbers.

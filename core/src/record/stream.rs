@@ -20,6 +20,27 @@ use super::header::{MARK, announced_len};
 use super::{End, Kind, Record, RecordError, decode};
 
 /// Where bytes come from.
+///
+/// ```
+/// use sinew_core::record::{Cost, RecordStream, Source, encode};
+///
+/// /// A serial port that has a few bytes at a time.
+/// struct Port<'a>(&'a [u8]);
+///
+/// impl Source for Port<'_> {
+///     fn read(&mut self, bytes: &mut [u8]) -> usize {
+///         let few = bytes.len().min(3);
+///         self.0.read(&mut bytes[..few])
+///     }
+/// }
+///
+/// let mut bytes = [0; 64];
+/// let length = encode(&Cost { worst: 70_000, ..Cost::zero() }, &mut bytes)?;
+/// let mut stream = RecordStream::<_, 64>::new(Port(&bytes[..length]));
+/// let record = stream.next_record().expect("there is one")?;
+/// assert_eq!(record.read::<Cost>()?.worst, 70_000);
+/// # Ok::<(), sinew_core::record::RecordError>(())
+/// ```
 pub trait Source {
     /// Fills the start of `bytes` and tells how many bytes it filled; none at the end.
     fn read(&mut self, bytes: &mut [u8]) -> usize;
@@ -46,6 +67,22 @@ impl<S: Source + ?Sized> Source for &mut S {
 /// Reads records from a source with a buffer of `BYTES`, the longest record that it can read.
 ///
 /// Every broken record gives one error or more, then reading goes on at the next sound one.
+///
+/// ```
+/// use sinew_core::record::{Cost, Failure, RecordError, RecordStream, encode};
+///
+/// // The first record is broken, the second is sound.
+/// let mut bytes = [0; 64];
+/// let length = encode(&Failure { frame: 3, code: 1 }, &mut bytes)?;
+/// bytes[length - 1] ^= 1;
+/// let end = length + encode(&Cost::zero(), &mut bytes[length..])?;
+///
+/// let mut stream = RecordStream::<_, 64>::new(&bytes[..end]);
+/// assert_eq!(stream.next_record(), Some(Err(RecordError::Checksum)));
+/// let sound = stream.next_record().expect("it goes on behind the broken one")?;
+/// assert_eq!(sound.read::<Cost>()?, Cost::zero());
+/// # Ok::<(), RecordError>(())
+/// ```
 #[derive(Debug)]
 pub struct RecordStream<S, const BYTES: usize> {
     source: S,

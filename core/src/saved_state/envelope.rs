@@ -22,6 +22,18 @@ pub const VERSION: u16 = 1;
 pub const HEADER_WORDS: usize = 4;
 
 /// Whose state.
+///
+/// ```
+/// use sinew_core::cyclic::events::CycleCounter;
+/// use sinew_core::saved_state::{StateError, StateKind, restore, save};
+///
+/// // Two trackers share a flash memory; neither takes the other's state for its own.
+/// let mut counter = CycleCounter::zero();
+/// let mut bytes = [0; 64];
+/// let length = save(StateKind::Cyclic, 7, &mut counter, &mut bytes)?;
+/// assert_eq!(restore(StateKind::Arm, 7, &mut counter, &bytes[..length]), Err(StateError::Corrupt));
+/// # Ok::<(), StateError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u16)]
@@ -34,9 +46,23 @@ pub enum StateKind {
     ArmPair = 3,
     /// Of the front end: its skin table.
     Vision = 4,
+    /// Of the tracker of a body.
+    Body = 5,
 }
 
 /// Why a state was not saved, or not restored.
+///
+/// ```
+/// use sinew_core::cyclic::events::CycleCounter;
+/// use sinew_core::saved_state::{StateError, StateKind, restore, save};
+///
+/// let mut counter = CycleCounter::new(0.25);
+/// assert_eq!(save(StateKind::Cyclic, 7, &mut counter, &mut [0; 8]), Err(StateError::Room { needed: 32 }));
+/// // An empty flash memory is an ordinary case: start without a state.
+/// let erased = [0xFF; 32];
+/// assert_eq!(restore(StateKind::Cyclic, 7, &mut counter, &erased), Err(StateError::Corrupt));
+/// assert_eq!(counter, CycleCounter::new(0.25), "as before");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum StateError {
@@ -46,8 +72,6 @@ pub enum StateError {
         needed: usize,
     },
     /// The bytes are no state of this kind, were cut, or were changed.
-    /// Of the tracker of a body.
-    Body = 5,
     Corrupt,
     /// Saved by another version.
     Version,
@@ -72,6 +96,18 @@ impl fmt::Display for StateError {
 impl core::error::Error for StateError {}
 
 /// Bytes that saving `state` takes at the moment.
+///
+/// ```
+/// use sinew_core::particle::Weights;
+/// use sinew_core::saved_state::{StateKind, save, saved_bytes};
+///
+/// // A page of flash: does the state fit?
+/// let mut weights = Weights::<50>::uniform(50)?;
+/// let needed = saved_bytes(&mut weights);
+/// assert_eq!(needed, 4 * (4 + 1 + 50 + 1), "header, number of weights, weights, checksum");
+/// assert_eq!(save(StateKind::Arm, 7, &mut weights, &mut [0; 256]), Ok(needed));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub fn saved_bytes(state: &mut impl SavedState) -> usize {
     let mut counter = Counter::default();
     state.visit(&mut counter);
@@ -83,6 +119,22 @@ const fn kind_and_version(kind: StateKind) -> u32 {
 }
 
 /// Saves `state` into the first of `bytes` and gives their number. The state is not changed.
+///
+/// ```
+/// use sinew_core::cyclic::events::CycleCounter;
+/// use sinew_core::saved_state::{StateKind, save};
+///
+/// // 120 cycles were counted; the battery is taken out.
+/// let mut counter = CycleCounter::zero();
+/// for _ in 0..120 {
+///     counter.advance(0.0, 0.1, 10.0);
+/// }
+/// let mut page = [0xFF; 64];
+/// let length = save(StateKind::Cyclic, 7, &mut counter, &mut page)?;
+/// assert_eq!(&page[..4], b"SNWS");
+/// assert_eq!((length, counter.completed()), (32, 120), "the counter is as before");
+/// # Ok::<(), sinew_core::saved_state::StateError>(())
+/// ```
 ///
 /// # Errors
 /// [`StateError::Room`].
@@ -106,6 +158,21 @@ pub fn save(
 }
 
 /// Restores `state` from `bytes`, all of them.
+///
+/// ```
+/// use sinew_core::cyclic::events::CycleCounter;
+/// use sinew_core::saved_state::{StateError, StateKind, restore, save};
+///
+/// let mut page = [0; 64];
+/// let length = save(StateKind::Cyclic, 7, &mut CycleCounter::new(0.25), &mut page)?;
+/// let mut counter = CycleCounter::zero();
+/// restore(StateKind::Cyclic, 7, &mut counter, &page[..length])?;
+/// assert_eq!(counter, CycleCounter::new(0.25));
+/// // Flash lost a bit.
+/// page[20] ^= 1;
+/// assert_eq!(restore(StateKind::Cyclic, 7, &mut counter, &page[..length]), Err(StateError::Corrupt));
+/// # Ok::<(), StateError>(())
+/// ```
 ///
 /// # Errors
 /// All but [`StateError::Room`]; the state is as before unless it is [`StateError::Illegal`].

@@ -28,7 +28,6 @@ mod envelope;
 mod visitors;
 
 pub use envelope::{HEADER_WORDS, StateError, StateKind, VERSION, restore, save, saved_bytes};
-pub use visitors::{Counter, Reader, Writer};
 
 use core::ops::RangeInclusive;
 use heapless::Vec;
@@ -39,6 +38,31 @@ pub const FINITE: RangeInclusive<f32> = f32::MIN..=f32::MAX;
 pub const NOT_NEGATIVE: RangeInclusive<f32> = 0.0..=f32::MAX;
 
 /// What has a state to save.
+///
+/// ```
+/// use sinew_core::saved_state::{NOT_NEGATIVE, SavedState, StateKind, StateVisitor, restore, save};
+///
+/// /// What an application keeps beside a tracker.
+/// #[derive(Debug, PartialEq)]
+/// struct Exercise {
+///     repetitions: u64,
+///     reach_m: f32,
+/// }
+///
+/// impl SavedState for Exercise {
+///     fn visit(&mut self, visitor: &mut impl StateVisitor) {
+///         visitor.long(&mut self.repetitions);
+///         visitor.real(&mut self.reach_m, &NOT_NEGATIVE);
+///     }
+/// }
+///
+/// let mut bytes = [0; 64];
+/// let length = save(StateKind::Arm, 7, &mut Exercise { repetitions: 12, reach_m: 0.4 }, &mut bytes)?;
+/// let mut again = Exercise { repetitions: 0, reach_m: 0.0 };
+/// restore(StateKind::Arm, 7, &mut again, &bytes[..length])?;
+/// assert_eq!(again, Exercise { repetitions: 12, reach_m: 0.4 });
+/// # Ok::<(), sinew_core::saved_state::StateError>(())
+/// ```
 pub trait SavedState {
     /// Shows all numbers of the state, always in the same order.
     ///
@@ -47,6 +71,31 @@ pub trait SavedState {
 }
 
 /// Goes through the numbers of a state.
+///
+/// ```
+/// use sinew_core::checksum::Crc32;
+/// use sinew_core::cyclic::events::CycleCounter;
+/// use sinew_core::saved_state::{SavedState, StateVisitor};
+///
+/// /// Sums up a state: two machines compare theirs by one number.
+/// struct Sum(Crc32);
+///
+/// impl StateVisitor for Sum {
+///     fn word(&mut self, word: &mut u32) {
+///         self.0 = self.0.and_word(*word);
+///     }
+///
+///     fn refuse(&mut self) {}
+/// }
+///
+/// let sum = |mut counter: CycleCounter| {
+///     let mut sum = Sum(Crc32::new());
+///     counter.visit(&mut sum);
+///     sum.0.value()
+/// };
+/// assert_eq!(sum(CycleCounter::new(0.25)), sum(CycleCounter::new(1.25)));
+/// assert_ne!(sum(CycleCounter::new(0.25)), sum(CycleCounter::new(0.26)));
+/// ```
 pub trait StateVisitor {
     /// One word; a reader replaces it.
     fn word(&mut self, word: &mut u32);

@@ -5,9 +5,9 @@ use crate::checksum::Crc32;
 
 /// Counts the words of a state.
 #[derive(Debug, Default)]
-pub struct Counter {
+pub(super) struct Counter {
     /// Words so far.
-    pub words: usize,
+    pub(super) words: usize,
 }
 
 impl StateVisitor for Counter {
@@ -20,18 +20,18 @@ impl StateVisitor for Counter {
 
 /// Writes the words of a state, and sums them up.
 #[derive(Debug)]
-pub struct Writer<'a> {
+pub(super) struct Writer<'a> {
     free: &'a mut [[u8; 4]],
     /// Checksum of what was written.
-    pub sum: Crc32,
+    pub(super) sum: Crc32,
     /// Whether a word found no room.
-    pub is_full: bool,
+    pub(super) is_full: bool,
 }
 
 impl<'a> Writer<'a> {
     /// Writes into `free`.
     #[must_use]
-    pub const fn new(free: &'a mut [[u8; 4]]) -> Self {
+    pub(super) const fn new(free: &'a mut [[u8; 4]]) -> Self {
         Self { free, sum: Crc32::new(), is_full: false }
     }
 }
@@ -52,7 +52,7 @@ impl StateVisitor for Writer<'_> {
 
 /// Reads the words of a state.
 #[derive(Debug)]
-pub struct Reader<'a> {
+pub(super) struct Reader<'a> {
     left: &'a [[u8; 4]],
     is_refused: bool,
 }
@@ -60,13 +60,13 @@ pub struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// Reads `left`.
     #[must_use]
-    pub const fn new(left: &'a [[u8; 4]]) -> Self {
+    pub(super) const fn new(left: &'a [[u8; 4]]) -> Self {
         Self { left, is_refused: false }
     }
 
     /// Whether all words were read, none was missing and no number refused.
     #[must_use]
-    pub const fn is_sound(&self) -> bool {
+    pub(super) const fn is_sound(&self) -> bool {
         self.left.is_empty() && !self.is_refused
     }
 }

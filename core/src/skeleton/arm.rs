@@ -31,6 +31,21 @@ use crate::math::{Mat3, Vec3, abs, acos, asin, atan2, axis_rotation, clamp, unit
 use core::f32::consts::{FRAC_1_SQRT_2, PI};
 
 /// Whose side: the person's own left or right, not the image's.
+///
+/// ```
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::arm::FOREARM;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// // A person who faces the camera raises an arm: the left one goes to the image's right.
+/// let hand_x_m = |side| {
+///     let arm = ArmGeometry::new(side, 0.30, 0.35)?.skeleton()?;
+///     Ok(posture(&arm, &Vec3::zeros(), &[1.2, -0.6, 0.0, 0.0]).ends[FOREARM].x)
+/// };
+/// assert!(hand_x_m(Side::Left)? > 0.4 && hand_x_m(Side::Right)? < -0.4);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Side {
@@ -50,6 +65,19 @@ pub const UPPER_ARM: usize = 0;
 pub const FOREARM: usize = 1;
 
 /// Angles of an arm: elevation, deviation, axial rotation, elbow flexion; radians.
+///
+/// ```
+/// use sinew_core::skeleton::arm::{ARM_LIMITS, ArmAngles};
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// // Upper arm hanging, forearm straight to the front: a right angle at the elbow.
+/// let bent: ArmAngles = [0.0, 0.0, 0.0, 90.0_f32.to_radians()];
+/// assert!(bent.iter().zip(&ARM_LIMITS).all(|(angle, limit)| limit.clamp(*angle) == *angle));
+/// // An elbow does not bend backwards.
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// assert_eq!(arm.clamp([0.0, 0.0, 0.0, -0.3])[3], 0.0);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub type ArmAngles = [f32; ARM_ANGLES];
 
 /// The default limits: active range of motion of a healthy adult, rounded outwards to five degrees.
@@ -69,6 +97,23 @@ pub const WIDE_ARM_LIMITS: [Limit; ARM_ANGLES] = [
 ];
 
 /// Lengths, place and limits of one arm.
+///
+/// ```
+/// use sinew_core::math::{Vec3, axis_rotation};
+/// use sinew_core::skeleton::arm::facing_camera;
+/// use sinew_core::skeleton::{ArmGeometry, Limit, Side};
+///
+/// let mut arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// assert!((arm.up() + Vec3::y()).norm() < 1e-6, "y points down");
+/// // A person who leans over by a quarter turn, and an elbow that does not stretch.
+/// arm.torso = axis_rotation(&Vec3::z(), 90.0_f32.to_radians()) * facing_camera();
+/// arm.limits[3] = Limit::from_degrees(20.0, 150.0);
+/// assert!((arm.up() - Vec3::x()).norm() < 1e-6);
+/// assert!(arm.skeleton()?.clamp([0.0; 4])[3] > 0.3);
+/// // What cannot be is refused by its name.
+/// assert_eq!(ArmGeometry::new(Side::Left, 0.0, 0.35).map_err(|error| error.parameter), Err("upper_arm_m"));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmGeometry {
     /// The person's own side.
@@ -84,6 +129,16 @@ pub struct ArmGeometry {
 }
 
 /// The torso's rotation when the person faces the camera upright: left = +x, up = -y, front = -z.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::arm::facing_camera;
+///
+/// let torso = facing_camera();
+/// let front = torso * Vec3::z();
+/// assert_eq!(front, -Vec3::z(), "towards the camera");
+/// assert!((torso.determinant() - 1.0).abs() < 1e-6, "a rotation, no mirror");
+/// ```
 #[must_use]
 pub fn facing_camera() -> Mat3 {
     Mat3::from_columns(&[Vec3::x(), -Vec3::y(), -Vec3::z()])

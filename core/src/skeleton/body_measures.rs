@@ -17,6 +17,19 @@ use crate::math::Vec3;
 /// Lengths of a body that is the same on both sides, metres.
 ///
 /// Offsets are in body axes, (outward, up, front), of the left as of the right side.
+///
+/// ```
+/// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::{FOREARMS, full_body};
+///
+/// // All by stature, and one length that was measured.
+/// let person = BodyMeasures { forearm_m: 0.28, ..BodyMeasures::of_height(1.75)? };
+/// let skeleton = full_body(&person)?;
+/// assert!((skeleton.bones()[FOREARMS[0]].offset_m.norm() - 0.28).abs() < 1e-6);
+/// // From the middle of the hips to the neck it is three tenths of the stature.
+/// assert!((person.trunk_m - 0.525).abs() < 1e-6);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyMeasures {
     /// Middle of the hips to the base of the neck.

@@ -41,6 +41,18 @@ pub const BODY_BONES: usize = 17;
 /// Coordinates of a body: three shifts and 27 angles.
 pub const BODY_ANGLES: usize = 30;
 /// A whole body.
+///
+/// ```
+/// use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BodySkeleton, FEET, FOREARMS, full_body};
+/// use sinew_core::skeleton::BodyMeasures;
+///
+/// let person: BodySkeleton = full_body(&BodyMeasures::of_height(1.75)?)?;
+/// // Coordinates are found by name; this one moves the left foot and no hand.
+/// let knee = BODY_ANGLE_NAMES.iter().position(|name| *name == "l_knee_flexion").expect("it has this name");
+/// assert!(person.angle_moves(knee, FEET[0]) && !person.angle_moves(knee, FOREARMS[0]));
+/// assert_eq!(person.limits()[knee].low_rad, 0.0, "a knee does not bend forwards");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub type BodySkeleton = Skeleton<BODY_BONES, BODY_ANGLES>;
 
 /// Middle of the hips: has no length.
@@ -197,6 +209,22 @@ const LIMITS: [Limit; BODY_ANGLES] = {
 
 /// A body with the given measures.
 ///
+/// ```
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::{BODY_ANGLES, FEET, HEAD, full_body};
+///
+/// let person = full_body(&BodyMeasures::of_height(1.75)?)?;
+/// // Standing, three metres before the camera.
+/// let mut pose = [0.0; BODY_ANGLES];
+/// pose[2] = 3.0;
+/// let standing = posture(&person, &Vec3::zeros(), &pose).ends;
+/// let from_toe_to_head_m = standing[FEET[0]].y - standing[HEAD].y;
+/// assert!((1.55..1.75).contains(&from_toe_to_head_m), "a head ends above its middle: {from_toe_to_head_m}");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
+///
 /// # Errors
 /// As [`BodyMeasures::checked`].
 pub fn full_body(measures: &BodyMeasures) -> Result<BodySkeleton, ParameterError> {
@@ -226,6 +254,17 @@ pub fn full_body(measures: &BodyMeasures) -> Result<BodySkeleton, ParameterError
 }
 
 /// Radii of the capsules of a body with the given measures, metres; zero for a bone without flesh.
+///
+/// ```
+/// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::{BODY_RADII, PELVIS, THIGHS, body_radii_m};
+///
+/// let slim = BodyMeasures { girth: 0.9, ..BodyMeasures::of_height(1.75)? };
+/// let radii_m = body_radii_m(&slim);
+/// assert!((radii_m[THIGHS[0]] - 0.9 * BODY_RADII[THIGHS[0]]).abs() < 1e-6);
+/// assert_eq!(radii_m[PELVIS], 0.0, "no flesh of its own");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[must_use]
 pub fn body_radii_m(measures: &BodyMeasures) -> [f32; BODY_BONES] {
     BODY_RADII.map(|radius| radius * measures.girth)

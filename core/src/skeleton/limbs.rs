@@ -9,6 +9,19 @@ pub const TRUNK_GROUP: usize = 0;
 
 /// The group of each bone: 0 for the trunk (the root and every bone from which chains branch off), then one for each chain that ends without
 /// branching: arms, legs, a head.
+///
+/// ```
+/// use sinew_core::skeleton::full_body::{FEET, FOREARMS, HEAD, THIGHS, TRUNK, full_body};
+/// use sinew_core::skeleton::limbs::TRUNK_GROUP;
+/// use sinew_core::skeleton::{BodyMeasures, Limbs};
+///
+/// let limbs = Limbs::of(&full_body(&BodyMeasures::of_height(1.75)?)?);
+/// assert_eq!(limbs.count(), 6, "the trunk, a head, two arms, two legs");
+/// assert_eq!(limbs.group(THIGHS[0]), limbs.group(FEET[0]), "a leg from hip to toe");
+/// assert_ne!(limbs.group(FOREARMS[0]), limbs.group(HEAD));
+/// assert_eq!(limbs.group(TRUNK), TRUNK_GROUP);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limbs<const BONES: usize> {
     group_of: [u8; BONES],

@@ -32,9 +32,34 @@ pub const HUMAN_JOINTS: usize = 14;
 pub const HUMAN_ANGLES: usize = HUMAN_JOINTS - 1;
 
 /// A point of the image, pixels: x right, y down.
+///
+/// ```
+/// use sinew_core::skeleton::stick_figure::{HUMAN, HUMAN_JOINTS, ImagePoint};
+///
+/// // A recording that saw hips and neck only.
+/// let mut joints_px: [Option<ImagePoint>; HUMAN_JOINTS] = [None; HUMAN_JOINTS];
+/// joints_px[0] = Some([320.0, 240.0]);
+/// joints_px[1] = Some([320.0, 140.0]);
+/// assert_eq!(HUMAN.segment(&joints_px, 0).map(|trunk| trunk.length_px), Some(100.0));
+/// assert_eq!(HUMAN.segment(&joints_px, 1), None, "no shoulder was seen");
+/// ```
 pub type ImagePoint = [f32; 2];
 
 /// A joint of a stick figure.
+///
+/// ```
+/// use sinew_core::skeleton::{StickFigure, StickJoint};
+///
+/// let joint = |name, parent, mirror| StickJoint { name, parent, mirror };
+/// // Left and right name each other; what lies in the middle names itself.
+/// let shoulders = [joint("neck", None, 0), joint("l_shoulder", Some(0), 2), joint("r_shoulder", Some(0), 1)];
+/// let figure = StickFigure::new(&shoulders)?;
+/// let mut angles_rad = [Some(0.2), None];
+/// figure.mirror(&mut angles_rad);
+/// assert_eq!(angles_rad[0], None, "the right one was not seen");
+/// assert!((angles_rad[1].expect("it was the left one") - (core::f32::consts::PI - 0.2)).abs() < 1e-6);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StickJoint<'a> {
     /// Name, such as `l_elbow`.
@@ -49,6 +74,21 @@ pub struct StickJoint<'a> {
 ///
 /// Invariants: joint 0 is the root and the only one; parents stand before their children; `mirror` is its own inverse
 /// and maps parents to parents.
+///
+/// ```
+/// use sinew_core::skeleton::{StickFigure, StickJoint};
+///
+/// // A finger: three joints in a row, all on the midline.
+/// let joint = |name, parent, mirror| StickJoint { name, parent, mirror };
+/// let joints = [joint("knuckle", None, 0), joint("middle", Some(0), 1), joint("tip", Some(1), 2)];
+/// let finger = StickFigure::new(&joints)?;
+/// assert_eq!(finger.angle_index("tip"), Some(1));
+/// let mut places_px = [[0.0; 2]; 3];
+/// finger.joint_positions([100.0, 100.0], &[30.0, 20.0], &[0.0, core::f32::consts::FRAC_PI_2], &mut places_px);
+/// assert_eq!(places_px[1], [130.0, 100.0]);
+/// assert!((places_px[2][1] - 120.0).abs() < 1e-4, "angles are the image's, and y points down");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StickFigure<'a> {
     joints: &'a [StickJoint<'a>],
@@ -208,6 +248,20 @@ impl<'a> StickFigure<'a> {
 }
 
 /// A segment as the image shows it.
+///
+/// ```
+/// use sinew_core::skeleton::stick_figure::HUMAN;
+///
+/// let mut joints_px = [None; 14];
+/// joints_px[0] = Some([100.0, 200.0]);
+/// joints_px[1] = Some([130.0, 160.0]);
+/// let trunk = HUMAN.segment(&joints_px, 0).expect("both of its ends were seen");
+/// assert_eq!(trunk.length_px, 50.0);
+/// assert!((trunk.angle_rad.expect("it has a length") + 0.9273).abs() < 1e-4, "up and to the right");
+/// // Where both ends fall together there is a length, zero, and no angle.
+/// joints_px[1] = joints_px[0];
+/// assert_eq!(HUMAN.segment(&joints_px, 0).and_then(|trunk| trunk.angle_rad), None);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
     /// Length, pixels.

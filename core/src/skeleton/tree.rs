@@ -4,6 +4,17 @@ use crate::error::{ParameterError, Rule};
 use crate::math::{Vec3, abs, clamp, length};
 
 /// How a bone turns about its joint.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::Joint;
+///
+/// let knee = Joint::Hinge(Vec3::x());
+/// let hip = Joint::Ball([Vec3::x(), Vec3::z(), Vec3::y()]);
+/// let pelvis = Joint::Free([Vec3::x(), Vec3::y(), Vec3::z(), Vec3::y(), Vec3::z(), Vec3::x()]);
+/// assert_eq!([knee, hip, pelvis].map(|joint| joint.angle_count()), [1, 3, 6]);
+/// assert_eq!([hip, pelvis].map(|joint| joint.shift_count()), [0, 3], "only the root goes anywhere");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Joint {
     /// Does not turn.
@@ -57,6 +68,21 @@ impl Joint {
 }
 
 /// A rigid bone from its joint to its end.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::{Bone, Joint, Limit, Skeleton};
+///
+/// // A leg that stands still at the hip and bends at the knee; y points down.
+/// let thigh = Bone { parent: None, joint: Joint::Fixed, offset_m: Vec3::new(0.0, 0.43, 0.0) };
+/// let shank = Bone { parent: Some(0), joint: Joint::Hinge(Vec3::x()), offset_m: Vec3::new(0.0, 0.42, 0.0) };
+/// let leg = Skeleton::new([thigh, shank], [Limit::from_degrees(0.0, 150.0)])?;
+/// assert!(leg.angle_moves(0, 1) && !leg.angle_moves(0, 0));
+/// // Parents come first.
+/// let wrong = Skeleton::new([shank, thigh], [Limit::from_degrees(0.0, 150.0)]);
+/// assert_eq!(wrong.map_err(|error| error.parameter), Err("bone.parent"));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bone {
     /// Index of the bone at whose end this one's joint sits; `None` at the root.
@@ -68,6 +94,15 @@ pub struct Bone {
 }
 
 /// Closed interval of an angle.
+///
+/// ```
+/// use sinew_core::skeleton::Limit;
+///
+/// let elbow = Limit::from_degrees(0.0, 150.0);
+/// assert_eq!(elbow.clamp(-0.2), 0.0);
+/// assert_eq!(elbow.clamp(1.2), 1.2, "inside nothing changes");
+/// assert_eq!(elbow.clamp(3.0), elbow.high_rad);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
     /// Lowest angle, radians.
@@ -95,6 +130,20 @@ impl Limit {
 /// A tree of `BONES` bones with `ANGLES` angles.
 ///
 /// Invariants: a parent stands before its children; the angles of the bones follow one another in the bones' order.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::{Bone, Joint, Limit, Skeleton};
+///
+/// // A head on a neck: one bone of three angles, one of none.
+/// let neck = Bone { parent: None, joint: Joint::Ball([Vec3::x(), Vec3::z(), Vec3::y()]), offset_m: -Vec3::y() * 0.1 };
+/// let head = Bone { parent: Some(0), joint: Joint::Fixed, offset_m: -Vec3::y() * 0.2 };
+/// let skeleton = Skeleton::new([neck, head], [Limit::from_degrees(-60.0, 60.0); 3])?;
+/// assert_eq!(skeleton.root_coordinates(), 0, "this root does not move");
+/// assert!((0..3).all(|angle| skeleton.angle_moves(angle, 1)));
+/// assert_eq!(skeleton.clamp([0.0, 2.0, 0.0]), [0.0, 60.0_f32.to_radians(), 0.0]);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Skeleton<const BONES: usize, const ANGLES: usize> {
     bones: [Bone; BONES],

@@ -26,24 +26,73 @@ pub const UPPER_BONES: usize = 9;
 /// Coordinates of an upper body: three shifts and 14 angles.
 pub const UPPER_ANGLES: usize = 17;
 /// An upper body.
+///
+/// ```
+/// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::{FOREARMS, HEAD};
+/// use sinew_core::skeleton::upper_body::{UpperSkeleton, upper_body};
+///
+/// let desk: UpperSkeleton = upper_body(&BodyMeasures::of_height(1.75)?)?;
+/// // A whole body's indices hold: those of arms and head come first.
+/// let forearm = desk.bones()[FOREARMS[1]];
+/// assert!((forearm.offset_m.norm() - 0.146 * 1.75).abs() < 1e-5);
+/// assert!(!desk.angle_moves(desk.limits().len() - 1, HEAD), "the last angle is an elbow's");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub type UpperSkeleton = Skeleton<UPPER_BONES, UPPER_ANGLES>;
 
 /// Where each coordinate stands among those of a whole body: the root's, the head's and the arms'.
 pub const UPPER_COORDINATES: [usize; UPPER_ANGLES] = [0, 1, 2, 3, 4, 5, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
 
 /// Entries of a whole body's coordinates that an upper body has, too.
+///
+/// ```
+/// use sinew_core::skeleton::full_body::BODY_ANGLE_NAMES;
+/// use sinew_core::skeleton::upper_body::upper_coordinates;
+///
+/// let names = upper_coordinates(&BODY_ANGLE_NAMES);
+/// assert_eq!(names[6], "head_pitch", "the trunk's angles are left out");
+/// assert!(names.iter().all(|name| !name.contains("knee")));
+/// ```
 #[must_use]
 pub fn upper_coordinates<T: Copy>(whole: &[T; BODY_ANGLES]) -> [T; UPPER_ANGLES] {
     UPPER_COORDINATES.map(|index| whole[index % BODY_ANGLES])
 }
 
 /// Entries of a whole body's bones that an upper body has, too.
+///
+/// ```
+/// use sinew_core::skeleton::full_body::BODY_JOINT_NAMES;
+/// use sinew_core::skeleton::upper_body::upper_bones;
+///
+/// let names = upper_bones(&BODY_JOINT_NAMES);
+/// assert_eq!(names[..3], ["pelvis", "neck", "head"]);
+/// assert_eq!(names[8], "r_wrist", "legs come after the arms");
+/// ```
 #[must_use]
 pub fn upper_bones<T: Copy>(whole: &[T; BODY_BONES]) -> [T; UPPER_BONES] {
     core::array::from_fn(|bone| whole[bone % BODY_BONES])
 }
 
 /// An upper body with the given measures; those of the legs are not read, but have to be lengths.
+///
+/// ```
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::HEAD;
+/// use sinew_core::skeleton::upper_body::{UPPER_ANGLES, upper_body};
+///
+/// let desk = upper_body(&BodyMeasures::of_height(1.75)?)?;
+/// // Somebody at a desk, 0.8 m before the camera, leans to the front: the head comes nearer.
+/// let mut pose = [0.0; UPPER_ANGLES];
+/// pose[2] = 0.8;
+/// let upright = posture(&desk, &Vec3::zeros(), &pose).ends;
+/// pose[5] = 0.3;
+/// let leaning = posture(&desk, &Vec3::zeros(), &pose).ends;
+/// assert!(leaning[HEAD].z < upright[HEAD].z - 0.1);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 ///
 /// # Errors
 /// As [`BodyMeasures::checked`].
@@ -55,6 +104,18 @@ pub fn upper_body(measures: &BodyMeasures) -> Result<UpperSkeleton, ParameterErr
 }
 
 /// Radii of the capsules of an upper body with the given measures, metres; zero for a bone without flesh.
+///
+/// ```
+/// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::{BODY_RADII, TRUNK};
+/// use sinew_core::skeleton::upper_body::upper_radii_m;
+///
+/// // Of a body as tall as the reference the radii are those of the table.
+/// let radii_m = upper_radii_m(&BodyMeasures::of_height(1.75)?);
+/// assert_eq!(radii_m[TRUNK], BODY_RADII[TRUNK]);
+/// assert_eq!(radii_m.iter().filter(|radius| **radius > 0.0).count(), 8, "all but the pelvis");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[must_use]
 pub fn upper_radii_m(measures: &BodyMeasures) -> [f32; UPPER_BONES] {
     upper_bones(&BODY_RADII).map(|radius| radius * measures.girth)

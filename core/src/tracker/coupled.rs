@@ -8,6 +8,47 @@ use crate::error::ParameterError;
 use crate::saved_state::{SavedState, StateVisitor};
 
 /// State of a tracker for models of up to `N` angles.
+///
+/// ```
+/// use sinew_core::cyclic::AngleMeasurement;
+/// use sinew_core::tracker::{coupled::CoupledTracker, cyclic::FirstPhase};
+/// # use core::f32::consts::TAU;
+/// # use sinew_core::cyclic::ModelTable;
+/// # use sinew_core::math::sin_cos;
+/// # let pose = |position: f32| [0.5 * sin_cos(TAU * position).0, 0.3 * sin_cos(TAU * position).1];
+/// # let mut table = ModelTable::<100, 2, 3> {
+/// #     mean_acceleration: [[0.0; 2]; 100],
+/// #     acceleration_covariance: [[1e-8, 0.0, 1e-8]; 100],
+/// #     mean_pose_rad: core::array::from_fn(|i| pose(i as f32 / 100.0)),
+/// #     mean_velocity: [[0.0; 2]; 100],
+/// #     offset_std_rad: [0.08; 2],
+/// #     swing_std_rad: [0.05; 2],
+/// #     rest_std_rad: [0.03; 2],
+/// #     rest_rate_per_cycle: [6.0; 2],
+/// #     turns_per_cycle: [0; 2],
+/// #     mean_duration_frames: 60.0,
+/// #     rate_hz: 60.0,
+/// # };
+/// # for i in 0..100 {
+/// #     let [before, after] = [99, 1].map(|step| table.mean_pose_rad[(i + step) % 100]);
+/// #     for j in 0..2 {
+/// #         table.mean_velocity[i][j] = 0.5 * (after[j] - before[j]);
+/// #         table.mean_acceleration[i][j] = after[j] - 2.0 * table.mean_pose_rad[i][j] + before[j];
+/// #     }
+/// # }
+/// # let model = table.model().expect("the numbers agree");
+///
+/// // Two joints that swing once in 60 frames, seen with 0.05 rad of noise.
+/// let seen = |frame: usize| AngleMeasurement::new(&pose(frame as f32 / 60.0).map(Some), 0.05);
+/// let mut tracker = CoupledTracker::<2>::new(&model, &seen(0)?, FirstPhase::default())?;
+/// let mut last = tracker.first_frame(&model, &seen(0)?);
+/// for frame in 1..=210 {
+///     last = tracker.step(&model, &seen(frame)?);
+/// }
+/// assert_eq!(last.cycles_completed, 3, "three and a half cycles");
+/// assert!((last.cadence_per_min - 60.0).abs() < 1.0, "at 60 frames a second");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoupledTracker<const N: usize> {
     filter: CoupledFilter<N>,

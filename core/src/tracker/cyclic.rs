@@ -38,6 +38,21 @@ use crate::skeleton::stick_figure::{ImagePoint, StickFigure};
 use core::f32::consts::{PI, SQRT_2};
 
 /// What may be chosen.
+///
+/// ```
+/// use sinew_core::cyclic::PlaceOptions;
+/// use sinew_core::cyclic::filter::FilterChoice;
+/// use sinew_core::tracker::cyclic::CyclicTrackerOptions;
+///
+/// // A person in a picture, with a trunk of 100 pixels, half a centimetre each: hips and segments are followed, too.
+/// let options = CyclicTrackerOptions {
+///     place: Some(PlaceOptions::of_person(100.0, 0.005, 0.1, 60.0)?),
+///     ..CyclicTrackerOptions::default()
+/// };
+/// assert_eq!(options.filter, FilterChoice::Coupled, "the default");
+/// assert!(options.place.is_some_and(|place| place.keypoint_std_px > 5.0));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CyclicTrackerOptions {
     /// Filter.
@@ -47,6 +62,43 @@ pub struct CyclicTrackerOptions {
 }
 
 /// First position and velocity in the cycle; where absent the position fits best and the velocity is the model's mean.
+///
+/// ```
+/// use sinew_core::cyclic::AngleMeasurement;
+/// use sinew_core::tracker::cyclic::{CyclicTracker, CyclicTrackerOptions, FirstPhase};
+/// # use core::f32::consts::TAU;
+/// # use sinew_core::cyclic::ModelTable;
+/// # use sinew_core::math::sin_cos;
+/// # let pose = |position: f32| [0.5 * sin_cos(TAU * position).0, 0.3 * sin_cos(TAU * position).1];
+/// # let mut table = ModelTable::<100, 2, 3> {
+/// #     mean_acceleration: [[0.0; 2]; 100],
+/// #     acceleration_covariance: [[1e-8, 0.0, 1e-8]; 100],
+/// #     mean_pose_rad: core::array::from_fn(|i| pose(i as f32 / 100.0)),
+/// #     mean_velocity: [[0.0; 2]; 100],
+/// #     offset_std_rad: [0.08; 2],
+/// #     swing_std_rad: [0.05; 2],
+/// #     rest_std_rad: [0.03; 2],
+/// #     rest_rate_per_cycle: [6.0; 2],
+/// #     turns_per_cycle: [0; 2],
+/// #     mean_duration_frames: 60.0,
+/// #     rate_hz: 60.0,
+/// # };
+/// # for i in 0..100 {
+/// #     let [before, after] = [99, 1].map(|step| table.mean_pose_rad[(i + step) % 100]);
+/// #     for j in 0..2 {
+/// #         table.mean_velocity[i][j] = 0.5 * (after[j] - before[j]);
+/// #         table.mean_acceleration[i][j] = after[j] - 2.0 * table.mean_pose_rad[i][j] + before[j];
+/// #     }
+/// # }
+/// # let model = table.model().expect("the numbers agree");
+///
+/// // The first frame shows one joint only, and where in the cycle it stands is known: by a switch on the treadmill.
+/// let first = AngleMeasurement::new(&[Some(pose(0.3)[0]), None], 0.05)?.into();
+/// let phase = FirstPhase { position: Some(0.3), velocity_per_frame: None };
+/// let tracker = CyclicTracker::<2>::new(&model, CyclicTrackerOptions::default(), &first, phase)?;
+/// assert_eq!(tracker.filter().cycle_position(), 0.3);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FirstPhase {
     /// Position in the cycle, [0, 1).
@@ -56,6 +108,22 @@ pub struct FirstPhase {
 }
 
 /// What a frame shows.
+///
+/// ```
+/// use sinew_core::skeleton::stick_figure::{HUMAN, HUMAN_ANGLES, HUMAN_JOINTS};
+/// use sinew_core::tracker::cyclic::CyclicFrameInput;
+///
+/// // A keypoint detector saw hips and neck, each within two pixels.
+/// let mut joints_px = [None; HUMAN_JOINTS];
+/// joints_px[0] = Some([320.0, 240.0]);
+/// joints_px[1] = Some([320.0, 140.0]);
+/// let input = CyclicFrameInput::<HUMAN_ANGLES>::from_joints(&HUMAN, &joints_px, 2.0)?;
+/// assert_eq!((input.root_px, input.lengths_px[0]), (Some([320.0, 240.0]), Some(100.0)));
+/// assert_eq!(input.angles.present(HUMAN_ANGLES), 1, "the trunk's angle, and no other");
+/// // The frames before it were dropped: two and a half frames of the model's rate have passed.
+/// assert_eq!(input.after(2.5)?.angles.step_frames(), 2.5);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicFrameInput<const N: usize> {
     /// Angles with their noise, and the time since the last frame.
@@ -111,6 +179,51 @@ impl<const N: usize> CyclicFrameInput<N> {
 }
 
 /// State of a tracker for models of up to `N` angles.
+///
+/// ```
+/// use sinew_core::cyclic::AngleMeasurement;
+/// use sinew_core::tracker::cyclic::{CyclicTracker, CyclicTrackerOptions, FirstPhase};
+/// # use core::f32::consts::TAU;
+/// # use sinew_core::cyclic::ModelTable;
+/// # use sinew_core::math::sin_cos;
+/// # let pose = |position: f32| [0.5 * sin_cos(TAU * position).0, 0.3 * sin_cos(TAU * position).1];
+/// # let mut table = ModelTable::<100, 2, 3> {
+/// #     mean_acceleration: [[0.0; 2]; 100],
+/// #     acceleration_covariance: [[1e-8, 0.0, 1e-8]; 100],
+/// #     mean_pose_rad: core::array::from_fn(|i| pose(i as f32 / 100.0)),
+/// #     mean_velocity: [[0.0; 2]; 100],
+/// #     offset_std_rad: [0.08; 2],
+/// #     swing_std_rad: [0.05; 2],
+/// #     rest_std_rad: [0.03; 2],
+/// #     rest_rate_per_cycle: [6.0; 2],
+/// #     turns_per_cycle: [0; 2],
+/// #     mean_duration_frames: 60.0,
+/// #     rate_hz: 60.0,
+/// # };
+/// # for i in 0..100 {
+/// #     let [before, after] = [99, 1].map(|step| table.mean_pose_rad[(i + step) % 100]);
+/// #     for j in 0..2 {
+/// #         table.mean_velocity[i][j] = 0.5 * (after[j] - before[j]);
+/// #         table.mean_acceleration[i][j] = after[j] - 2.0 * table.mean_pose_rad[i][j] + before[j];
+/// #     }
+/// # }
+/// # let model = table.model().expect("the numbers agree");
+///
+/// // Somebody who moves a tenth faster than the model; every fifth frame shows nothing.
+/// let seen = |frame: usize| match frame % 5 {
+///     4 => Ok(AngleMeasurement::nothing().into()),
+///     _ => AngleMeasurement::new(&pose(frame as f32 / 54.0).map(Some), 0.05).map(Into::into),
+/// };
+/// let options = CyclicTrackerOptions::default();
+/// let mut tracker = CyclicTracker::<2>::new(&model, options, &seen(0)?, FirstPhase::default())?;
+/// let mut last = tracker.step(&model, &seen(1)?);
+/// for frame in 2..300 {
+///     last = tracker.step(&model, &seen(frame)?);
+/// }
+/// assert!((last.estimate.angles_rad[0] - pose(299.0 / 54.0)[0]).abs() < 0.05);
+/// assert!((last.cadence_per_min - 3600.0 / 54.0).abs() < 3.0);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicTracker<const N: usize> {
     options: CyclicTrackerOptions,
@@ -122,6 +235,51 @@ pub struct CyclicTracker<const N: usize> {
 const _: () = assert!(size_of::<CyclicTracker<13>>() <= 4096, "the tracker has to fit 4 KiB");
 
 /// What the tracker says after a frame.
+///
+/// ```
+/// use sinew_core::cyclic::AngleMeasurement;
+/// use sinew_core::tracker::{coupled::CoupledTracker, cyclic::FirstPhase};
+/// # use core::f32::consts::TAU;
+/// # use sinew_core::cyclic::ModelTable;
+/// # use sinew_core::math::sin_cos;
+/// # let pose = |position: f32| [0.5 * sin_cos(TAU * position).0, 0.3 * sin_cos(TAU * position).1];
+/// # let mut table = ModelTable::<100, 2, 3> {
+/// #     mean_acceleration: [[0.0; 2]; 100],
+/// #     acceleration_covariance: [[1e-8, 0.0, 1e-8]; 100],
+/// #     mean_pose_rad: core::array::from_fn(|i| pose(i as f32 / 100.0)),
+/// #     mean_velocity: [[0.0; 2]; 100],
+/// #     offset_std_rad: [0.08; 2],
+/// #     swing_std_rad: [0.05; 2],
+/// #     rest_std_rad: [0.03; 2],
+/// #     rest_rate_per_cycle: [6.0; 2],
+/// #     turns_per_cycle: [0; 2],
+/// #     mean_duration_frames: 60.0,
+/// #     rate_hz: 60.0,
+/// # };
+/// # for i in 0..100 {
+/// #     let [before, after] = [99, 1].map(|step| table.mean_pose_rad[(i + step) % 100]);
+/// #     for j in 0..2 {
+/// #         table.mean_velocity[i][j] = 0.5 * (after[j] - before[j]);
+/// #         table.mean_acceleration[i][j] = after[j] - 2.0 * table.mean_pose_rad[i][j] + before[j];
+/// #     }
+/// # }
+/// # let model = table.model().expect("the numbers agree");
+///
+/// // A beep at the middle of every cycle: the frame says whether it was passed, and how long after the frame before.
+/// let seen = |frame: usize| AngleMeasurement::new(&pose(frame as f32 / 60.0).map(Some), 0.05);
+/// let mut tracker = CoupledTracker::<2>::new(&model, &seen(0)?, FirstPhase::default())?;
+/// let (mut beeps, mut at_frame) = (0, 0.0);
+/// for frame in 1..=120 {
+///     let answer = tracker.step(&model, &seen(frame)?);
+///     if let Some(after_frames) = answer.cycle_step.passed(0.5) {
+///         beeps += 1;
+///         at_frame = (frame - 1) as f32 + after_frames;
+///     }
+/// }
+/// assert_eq!(beeps, 2);
+/// assert!((at_frame - 90.0).abs() < 1.0, "in the middle of the second cycle: {at_frame}");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicFrame<const N: usize> {
     /// Pose, phase and how sure they are; likelihood and outlier.

@@ -13,6 +13,26 @@ use heapless::Vec;
 pub const DEFAULT_MIN_AREA_FRACTION: f32 = 8.0e-5;
 
 /// A blob and its likelihood of being a hand.
+///
+/// ```
+/// use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION, Ranked};
+/// use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
+/// use sinew_core::vision::hand_likelihood::HandLikelihood;
+/// # use sinew_core::vision::{mask::Mask, runs::Run};
+///
+/// # let mut rows = [0; 64];
+/// # rows[20..36].fill(0x00ff_ff00);
+/// # let mask = Mask::new(&rows, 32, 64)?;
+/// let meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
+/// let mut finder = BlobFinder::<16, 16>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
+/// let mut list = BlobList::<4>::new();
+/// finder.find(&mask, &mut [Run::default(); 64], &mut list);
+/// // What the tracker gets of a blob: its place, its extent and how likely it is a hand.
+/// let entry = &list.as_slice()[0];
+/// let candidate = entry.candidate();
+/// assert_eq!((candidate.centre, candidate.likelihood), (entry.blob.centroid, entry.likelihood));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LikelyBlob {
@@ -23,6 +43,30 @@ pub struct LikelyBlob {
 }
 
 /// A blob that can be put in order and shown to a tracker.
+///
+/// ```
+/// use sinew_core::observation::candidate::HandCandidate;
+/// use sinew_core::vision::blobs::{BlobList, Ranked};
+///
+/// // What another detector found: a place and a score.
+/// struct Detection(HandCandidate);
+///
+/// impl Ranked for Detection {
+///     fn likelihood(&self) -> f32 {
+///         self.0.likelihood
+///     }
+///
+///     fn candidate(&self) -> HandCandidate {
+///         self.0
+///     }
+/// }
+///
+/// let mut best = BlobList::<1, Detection>::new();
+/// for likelihood in [0.3, 0.9, 0.5] {
+///     best.insert(Detection(HandCandidate { likelihood, ..HandCandidate::default() }));
+/// }
+/// assert_eq!(best.candidates().next().map(|hand| hand.likelihood), Some(0.9));
+/// ```
 pub trait Ranked {
     /// Likelihood of being a hand, 0 to 1.
     fn likelihood(&self) -> f32;
@@ -42,6 +86,26 @@ impl Ranked for LikelyBlob {
 }
 
 /// The most likely blobs of a frame, most likely first, and what found no room.
+///
+/// ```
+/// use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION};
+/// # use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
+/// # use sinew_core::vision::{hand_likelihood::HandLikelihood, mask::Mask, runs::Run};
+///
+/// # let mut rows = [0; 96];
+/// # rows[10..30].fill(0x00ff_ff00);
+/// # rows[40..50].fill(0x0000_ff00);
+/// # rows[60..64].fill(0x0000_0f00);
+/// # let mask = Mask::new(&rows, 32, 96)?;
+/// # let meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
+/// # let mut finder = BlobFinder::<16, 16>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
+/// // A mask with three squares, and room for two.
+/// let mut list = BlobList::<2>::new();
+/// finder.find(&mask, &mut [Run::default(); 64], &mut list);
+/// assert!(list.as_slice()[0].likelihood >= list.as_slice()[1].likelihood, "the most likely comes first");
+/// assert_eq!((list.as_slice().len(), list.dropped_blobs), (2, 1), "what found no room is counted");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct BlobList<const N: usize, B = LikelyBlob> {
     blobs: Vec<B, N>,
@@ -107,6 +171,26 @@ impl<const N: usize, B: Ranked> BlobList<N, B> {
 }
 
 /// Finds the blobs of masks; owns the working memory.
+///
+/// ```
+/// use sinew_core::vision::blobs::{BlobFinder, BlobList};
+/// use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
+/// use sinew_core::vision::hand_likelihood::HandLikelihood;
+/// use sinew_core::vision::mask::Mask;
+/// use sinew_core::vision::runs::Run;
+///
+/// // A square of 256 pixels and a speck of one, in an image of 32 x 64.
+/// let mut rows = [0; 64];
+/// rows[20..36].fill(0x00ff_ff00);
+/// rows[50] = 1;
+/// let meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
+/// let mut finder = BlobFinder::<16, 16>::new(meter, HandLikelihood::default(), 0.01);
+/// let mut list = BlobList::<4>::new();
+/// finder.find(&Mask::new(&rows, 32, 64)?, &mut [Run::default(); 64], &mut list);
+/// assert_eq!((list.as_slice().len(), list.specks), (1, 1), "less than a hundredth of the image is no blob");
+/// assert_eq!(list.as_slice()[0].blob.area_px, 256);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct BlobFinder<const RUNS: usize, const OPEN: usize> {
     scanner: ComponentScanner<RUNS, OPEN>,

@@ -24,6 +24,24 @@ enum Slot {
 ///
 /// Invariant between lines: every run of the last line points at a root, or at nothing when it was dropped, and every
 /// root is pointed at.
+///
+/// ```
+/// use sinew_core::vision::component_scanner::ComponentScanner;
+/// use sinew_core::vision::mask::Mask;
+/// use sinew_core::vision::runs::RunPool;
+///
+/// // Two fingers that meet in the third line are one component; what touches nothing is another.
+/// let mask = Mask::new(&[0b0_1001, 0b0_1001, 0b0_1111, 0, 0b1_1000], 32, 5)?;
+/// let mut scanner = ComponentScanner::<16, 16>::new();
+/// let (mut areas_px, mut count) = ([0; 4], 0);
+/// scanner.scan(&mask, &mut RunPool::new(&mut []), &mut |component, _| {
+///     areas_px[count] = component.area_px();
+///     count += 1;
+/// });
+/// assert_eq!(areas_px[..count], [8, 2]);
+/// assert_eq!(scanner.dropped_components(), 0, "all had room");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ComponentScanner<const RUNS: usize, const OPEN: usize> {
     lines: [[LineRun; RUNS]; 2],

@@ -5,6 +5,13 @@ use crate::camera::Pixel;
 use core::f32::consts::{FRAC_1_SQRT_2, PI};
 
 /// Smallest upright rectangle of whole pixels around a component; both corners belong to it.
+///
+/// ```
+/// use sinew_core::vision::components::BoundingBox;
+///
+/// let hand = BoundingBox { min_u: 100, min_v: 40, max_u: 139, max_v: 99 };
+/// assert_eq!((hand.width_px(), hand.height_px()), (40, 60), "both corners belong to it");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BoundingBox {
@@ -35,6 +42,22 @@ impl BoundingBox {
 /// What is known of a component after its last line: exact integer sums, from which the features follow.
 ///
 /// Sums hold for masks of up to [`super::mask::MAX_SIDE_PX`] squared.
+///
+/// ```
+/// use sinew_core::camera::Pixel;
+/// use sinew_core::vision::component_scanner::ComponentScanner;
+/// use sinew_core::vision::mask::Mask;
+/// use sinew_core::vision::runs::RunPool;
+///
+/// // A bar of eight by two pixels; without a pool there are sums, and no shape.
+/// let mask = Mask::new(&[0, 0xff00, 0xff00, 0], 32, 4)?;
+/// ComponentScanner::<8, 8>::new().scan(&mask, &mut RunPool::new(&mut []), &mut |bar, _| {
+///     assert_eq!((bar.area_px(), bar.centroid()), (16, Pixel::new(11.5, 1.5)));
+///     let [uu, uv, vv] = bar.moments_px2();
+///     assert!(uu > 5.0 && uv == 0.0 && vv < 0.3, "it lies along u");
+/// });
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Component {
     area_px: u32,
@@ -197,6 +220,14 @@ pub(super) fn overlaps(above: (u16, u16), below: (u16, u16)) -> [u32; 3] {
 /// from the area and the `pairs` (u, v), (u + d, v + 1), d = -1, 0, 1, of set pixels. With diagonals 1/sqrt 2 apart,
 /// P = pi/8 (rows + columns + (both diagonals) / sqrt 2). Unbiased over directions: a straight edge reads from 5.2 % too
 /// short (upright and at 45 degrees) to 2.7 % too long (between), a disc right.
+///
+/// ```
+/// use sinew_core::vision::components::crofton_perimeter;
+///
+/// // A square of ten pixels: 90 of them have one below, 81 one to the left or right below.
+/// let perimeter_px = crofton_perimeter(100, 10, [81, 90, 81]);
+/// assert!((perimeter_px - 36.8).abs() < 0.1, "upright edges read 5 % short, and corners are cut");
+/// ```
 #[must_use]
 pub fn crofton_perimeter(area_px: u32, run_count: u32, pairs: [u32; 3]) -> f32 {
     let crossings = |pairs: u32| 2.0 * area_px.saturating_sub(pairs) as f32;

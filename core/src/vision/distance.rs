@@ -15,9 +15,28 @@ const BORDER: usize = 2;
 const FAR: i16 = 16_000;
 
 /// A row of cells, cell 0 in the lowest bit.
+///
+/// ```
+/// use sinew_core::vision::distance::{CellRow, EMPTY_ROW, at, transform};
+///
+/// // A plus of five cells; cell 0 is the lowest bit.
+/// let plus: [CellRow; 3] = [0b010, 0b111, 0b010];
+/// let mut distances = [EMPTY_ROW; 3];
+/// transform(&plus, 3, true, &mut distances);
+/// assert_eq!(at(&distances, 1, 1), 7, "from the middle to a corner: one diagonal, in fifths of a cell");
+/// ```
 pub type CellRow = u128;
 
 /// Distances of one row of cells, with a border on both sides.
+///
+/// ```
+/// use sinew_core::vision::distance::{DistanceRow, EMPTY_ROW, MAX_COLUMNS, UNIT, at, transform};
+///
+/// // Working memory for a grid of twenty rows: as many rows of distances, each with room for all columns and a border.
+/// let mut distances: [DistanceRow; 20] = [EMPTY_ROW; 20];
+/// transform(&[1; 20], MAX_COLUMNS, false, &mut distances);
+/// assert_eq!(at(&distances, 100, 19), 100 * UNIT, "from column 0 to column 100");
+/// ```
 pub type DistanceRow = [i16; MAX_COLUMNS + 2 * BORDER];
 
 /// A row of distances before anything is known.
@@ -28,6 +47,16 @@ pub const EMPTY_ROW: DistanceRow = [0; MAX_COLUMNS + 2 * BORDER];
 /// With `inside` the set cells get their distance to the nearest unset cell, all outside of the grid counts as unset. Without, the unset
 /// cells get their distance to the nearest set cell, all outside counts as unset too. Cells of the colour that is
 /// measured to get 0. The unit is a fifth of a cell. Rows beyond the shorter of both slices are left out.
+///
+/// ```
+/// use sinew_core::vision::distance::{EMPTY_ROW, UNIT, at, transform};
+///
+/// // A square of five by five cells; what lies outside of the grid is not set.
+/// let mut distances = [EMPTY_ROW; 5];
+/// transform(&[0b11111; 5], 5, true, &mut distances);
+/// assert_eq!(at(&distances, 2, 2), 3 * UNIT);
+/// assert_eq!(at(&distances, 0, 2), UNIT);
+/// ```
 pub fn transform(cells: &[CellRow], columns: usize, inside: bool, distances: &mut [DistanceRow]) {
     let columns = columns.min(MAX_COLUMNS);
     let outside = if inside { 0 } else { FAR };
@@ -86,6 +115,15 @@ fn relax_from_rows(line: &mut DistanceRow, near: &DistanceRow, far: &DistanceRow
 }
 
 /// Distance at a cell; 0 beyond the grid.
+///
+/// ```
+/// use sinew_core::vision::distance::{EMPTY_ROW, UNIT, at, transform};
+///
+/// let mut distances = [EMPTY_ROW; 3];
+/// transform(&[0b111; 3], 3, true, &mut distances);
+/// assert_eq!(at(&distances, 1, 1), 2 * UNIT);
+/// assert_eq!(at(&distances, 500, 1), 0, "beyond the grid");
+/// ```
 #[must_use]
 pub fn at(distances: &[DistanceRow], u: usize, v: usize) -> i16 {
     if u >= MAX_COLUMNS {
@@ -96,12 +134,21 @@ pub fn at(distances: &[DistanceRow], u: usize, v: usize) -> i16 {
 
 /// The distances of one row's cells, without the border.
 #[must_use]
-pub fn interior(line: &DistanceRow) -> &[i16; MAX_COLUMNS] {
+pub(super) fn interior(line: &DistanceRow) -> &[i16; MAX_COLUMNS] {
     const EMPTY: &[i16; MAX_COLUMNS] = &[0; MAX_COLUMNS];
     line[BORDER..].first_chunk().unwrap_or(EMPTY)
 }
 
 /// The greatest distance and its cell (column, row); of several the one nearest to the point (`u`, `v`).
+///
+/// ```
+/// use sinew_core::vision::distance::{EMPTY_ROW, UNIT, greatest, transform};
+///
+/// // All of the middle row of a bar is as far from the outside; the cell nearest to (5.2, 0) is taken.
+/// let mut distances = [EMPTY_ROW; 3];
+/// transform(&[0x1ff; 3], 9, true, &mut distances);
+/// assert_eq!(greatest(&distances, 9, 5.2, 0.0), (2 * UNIT, (5, 1)));
+/// ```
 #[must_use]
 pub fn greatest(distances: &[DistanceRow], columns: usize, u: f32, v: f32) -> (i16, (usize, usize)) {
     let columns = columns.min(MAX_COLUMNS);

@@ -28,6 +28,15 @@ const BLOCK: usize = 32;
 const WINDOW: usize = BLOCK + 2;
 
 /// A pixel that is an edge and moving.
+///
+/// ```
+/// use sinew_core::vision::edges::{EdgeList, EdgePixel};
+///
+/// // The list gives places, row by row.
+/// let mut list = EdgeList::<8>::new();
+/// list.take_mask(&[0, 1 << 5, 1 << 3], 32);
+/// assert_eq!(list.as_slice(), [EdgePixel { u: 5, v: 1 }, EdgePixel { u: 3, v: 2 }]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
@@ -39,6 +48,17 @@ pub struct EdgePixel {
 }
 
 /// Temporal edge pixels in the order of rows, thinned where there were more than fit.
+///
+/// ```
+/// use sinew_core::vision::edges::EdgeList;
+///
+/// // A whole row of edges and room for eight: every fourth stays, and the rest is counted.
+/// let mut list = EdgeList::<8>::new();
+/// list.take_mask(&[u32::MAX], 32);
+/// assert_eq!((list.as_slice().len(), list.dropped), (8, 24));
+/// let [first, second, ..] = list.as_slice() else { panic!("there are eight") };
+/// assert_eq!(second.u - first.u, 4);
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct EdgeList<const N: usize> {
     pixels: Vec<EdgePixel, N>,
@@ -92,6 +112,19 @@ impl<const N: usize> EdgeList<N> {
 /// Thins edge pixels that come one by one, their number not known beforehand: every 2^k-th is kept, in the order in which they come.
 ///
 /// Invariant: the list holds the pixels number 0, `stride`, 2 `stride` ... of those offered so far. A full list is thus at least half full again.
+///
+/// ```
+/// use sinew_core::vision::edges::{EdgeList, EdgePixel, EdgeThinning};
+///
+/// // Ten pixels come, nobody knows how many more, and there is room for four.
+/// let (mut thinning, mut list) = (EdgeThinning::new(), EdgeList::<4>::new());
+/// for u in 0..10 {
+///     thinning.offer(EdgePixel { u, v: 0 }, &mut list);
+/// }
+/// let sum: u16 = list.as_slice().iter().map(|pixel| pixel.u).sum();
+/// assert_eq!((list.as_slice().len(), sum), (3, 12), "0, 4 and 8: every fourth is kept by now");
+/// assert_eq!(list.dropped, 7);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EdgeThinning {
     stride: u32,
@@ -158,6 +191,15 @@ fn keep_every_second<const N: usize>(list: &mut Vec<EdgePixel, N>) {
 }
 
 /// Luminance 0 to 255 of a line of interleaved RGB, (77 R + 150 G + 29 B) / 256 (Rec. 601).
+///
+/// ```
+/// use sinew_core::vision::edges::luminance_line;
+///
+/// // White, red, black.
+/// let mut luminance = [0; 3];
+/// luminance_line(&[255, 255, 255, 255, 0, 0, 0, 0, 0], &mut luminance);
+/// assert_eq!(luminance, [255, 76, 0]);
+/// ```
 pub fn luminance_line(rgb: &[u8], luminance: &mut [u8]) {
     for (pixel, out) in rgb.as_chunks::<3>().0.iter().zip(luminance) {
         let [r, g, b] = pixel.map(u16::from);
@@ -169,6 +211,20 @@ pub fn luminance_line(rgb: &[u8], luminance: &mut [u8]) {
 ///
 /// The gradient is Sobel's, divided by 8 so that a step of one grey level a pixel has length 1; the change between frames is weighted over
 /// 3x3 pixels by 1-2-1 in both directions, which takes most of a webcam's or JPEG's noise away.
+///
+/// ```
+/// use sinew_core::vision::edges::{DEFAULT_MIN_GRADIENT, DEFAULT_MIN_MOTION, EdgeDetector};
+///
+/// // Bright from column `left` on, in 16 x 16 pixels.
+/// let frame = |left: usize| core::array::from_fn::<u8, 256, _>(|i| if i % 16 >= left { 200 } else { 40 });
+/// let detector = EdgeDetector::new(DEFAULT_MIN_GRADIENT, DEFAULT_MIN_MOTION)?;
+/// let mut bits = [0; 16];
+/// detector.find(&frame(10), &frame(7), 16, 16, &mut bits)?;
+/// assert_eq!((bits[0], bits[8]), (0, 0b11 << 9), "the edge has moved to columns 9 and 10; the border has none");
+/// detector.find(&frame(10), &frame(10), 16, 16, &mut bits)?;
+/// assert_eq!(bits, [0; 16], "what stands still is no temporal edge");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EdgeDetector {

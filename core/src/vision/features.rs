@@ -17,6 +17,15 @@ use crate::observation::candidate::HandCandidate;
 pub const DEFAULT_FILL_RATIO: f32 = 0.75;
 
 /// Shape features of a set of pixels.
+///
+/// ```
+/// use sinew_core::vision::features::ShapeFeatures;
+///
+/// // An arm with a hand at its end: the mass lies where it is thin, which speaks against a hand.
+/// let arm = ShapeFeatures { dt_max_px: 20.0, dt_at_centroid_px: 8.0, ..ShapeFeatures::default() };
+/// let fist = ShapeFeatures { dt_at_centroid_px: 19.0, ..arm };
+/// assert!(fist.centrality() > 0.9 && (arm.centrality() - 0.4).abs() < 1e-6);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ShapeFeatures {
@@ -45,6 +54,27 @@ impl ShapeFeatures {
 }
 
 /// A connected component's features.
+///
+/// ```
+/// use sinew_core::vision::component_scanner::ComponentScanner;
+/// use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
+/// use sinew_core::vision::mask::Mask;
+/// use sinew_core::vision::runs::{Run, RunPool};
+///
+/// // A palm of twelve pixels with two fingers.
+/// let mut rows = [0xfff0; 20];
+/// rows[..8].fill(0xc0c0);
+/// let mut meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
+/// let mut storage = [Run::default(); 64];
+/// # let mask = Mask::new(&rows, 32, 20)?;
+/// ComponentScanner::<8, 8>::new().scan(&mask, &mut RunPool::new(&mut storage), &mut |component, pool| {
+///     let blob = meter.measure(component, pool);
+///     assert_eq!((blob.area_px, blob.shape_complete), (12 * 12 + 8 * 4, true));
+///     assert!(blob.filled.area_px > blob.plain.area_px, "the gap between the fingers counts");
+///     assert!(blob.palm_centre().v_px > 8.0, "the palm is where there is most room");
+/// });
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Blob {
@@ -88,6 +118,29 @@ impl Blob {
 ///
 /// Large components are measured on a grid of at most 80 x 80 cells, so the work for a blob is bounded: four distance
 /// transforms and 28 ellipses on at most 128 x 128 cells, and its runs.
+///
+/// ```
+/// use sinew_core::vision::component_scanner::ComponentScanner;
+/// use sinew_core::vision::features::BlobMeter;
+/// use sinew_core::vision::mask::Mask;
+/// use sinew_core::vision::runs::{Run, RunPool};
+///
+/// // Filling by nothing leaves a blob as it is.
+/// let mut meter = BlobMeter::new(0.0)?;
+/// let mut storage = [Run::default(); 32];
+/// ComponentScanner::<8, 8>::new().scan(
+///     &Mask::new(&[0x00ff_ff00; 16], 32, 16)?,
+///     &mut RunPool::new(&mut storage),
+///     &mut |component, pool| {
+///         let square = meter.measure(component, pool);
+///         assert_eq!(square.filled.area_px, square.plain.area_px);
+///         assert_eq!(square.plain.dt_max_px, 8.0, "from the middle to the outside");
+///     },
+/// );
+/// // The disc that fills gaps is at most twice as wide as the blob.
+/// assert_eq!(BlobMeter::new(2.5).map_err(|error| error.parameter).err(), Some("fill_ratio"));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct BlobMeter {
     plain: CellGrid,

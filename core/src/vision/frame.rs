@@ -9,6 +9,35 @@ use super::skin::SkinClassifier;
 use crate::error::{ParameterError, Rule, within};
 
 /// Working memory for frames of one size; what a frame leaves behind stays here for the next one.
+///
+/// ```
+/// use sinew_core::vision::frame::{FrameBuffers, mask_words, runs_that_suffice};
+/// use sinew_core::vision::morphology::scratch_words;
+/// # use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION};
+/// # use sinew_core::vision::edges::{EdgeDetector, EdgeList};
+/// # use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
+/// # use sinew_core::vision::{frame::FrameAnalyser, hand_likelihood::HandLikelihood, runs::Run, skin::GaussianSkin};
+///
+/// const WIDTH: usize = 64;
+/// const HEIGHT: usize = 48;
+/// let mut buffers = FrameBuffers {
+///     mask: &mut [0; mask_words(WIDTH, HEIGHT)],
+///     edges: &mut [0; mask_words(WIDTH, HEIGHT)],
+///     scratch: &mut [0; scratch_words(WIDTH)],
+///     runs: &mut [Run::default(); runs_that_suffice(WIDTH, HEIGHT)],
+///     luminance: [&mut [0; WIDTH * HEIGHT], &mut [0; WIDTH * HEIGHT]],
+/// };
+/// # let meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
+/// # let finder = BlobFinder::<32, 32>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
+/// # let mut analyser = FrameAnalyser::new(finder, EdgeDetector::default());
+/// # let skin = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?;
+/// # let (mut blobs, mut edges) = (BlobList::<4>::new(), EdgeList::<64>::new());
+/// // A frame of twice the width does not fit: the first buffer that is too short is named.
+/// let wide = [0; 3 * 2 * WIDTH * HEIGHT];
+/// let refused = analyser.analyse(&wide, (2 * WIDTH, HEIGHT), &skin, &mut buffers, &mut blobs, &mut edges);
+/// assert_eq!(refused.map_err(|error| error.parameter), Err("buffers.mask"));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug)]
 pub struct FrameBuffers<'a> {
     /// Skin mask, [`mask_words`] words; holds the last frame's mask, after morphology.
@@ -27,18 +56,42 @@ pub struct FrameBuffers<'a> {
 pub const DEFAULT_CLOSING_FRACTION: f32 = 1.0 / 320.0;
 
 /// Steps of closing for an image of `width` pixels, from 1 to 8.
+///
+/// ```
+/// use sinew_core::vision::frame::{DEFAULT_CLOSING_FRACTION, closing_steps};
+///
+/// assert_eq!(closing_steps(640, DEFAULT_CLOSING_FRACTION), 2);
+/// assert_eq!(closing_steps(160, DEFAULT_CLOSING_FRACTION), 1, "at least one");
+/// ```
 #[must_use]
 pub fn closing_steps(width: usize, closing_fraction: f32) -> u8 {
     crate::math::clamp(crate::math::round(width as f32 * closing_fraction), 1.0, 8.0) as u8
 }
 
 /// Words of a mask of this size.
+///
+/// ```
+/// use sinew_core::vision::frame::mask_words;
+///
+/// static MASK: [u32; mask_words(320, 240)] = [0; mask_words(320, 240)];
+/// assert_eq!(MASK.len(), 10 * 240);
+/// ```
 #[must_use]
 pub const fn mask_words(width: usize, height: usize) -> usize {
     words_per_row(width) * height
 }
 
 /// Runs that always suffice for the components of a closed mask of this size: gaps between runs are at least three pixels wide.
+///
+/// ```
+/// use sinew_core::vision::frame::runs_that_suffice;
+/// use sinew_core::vision::runs::Run;
+///
+/// // The worst that 320 x 240 pixels can hold, known when the program is compiled.
+/// let mut runs = [Run::default(); runs_that_suffice(320, 240)];
+/// assert_eq!(runs.len(), 81 * 240, "a run and a gap take four pixels at least");
+/// # runs[0] = Run::default();
+/// ```
 #[must_use]
 pub const fn runs_that_suffice(width: usize, height: usize) -> usize {
     (width + 3).div_ceil(4) * height
@@ -47,6 +100,43 @@ pub const fn runs_that_suffice(width: usize, height: usize) -> usize {
 /// Finds what a tracker needs to know of each frame.
 ///
 /// `RUNS` and `OPEN` bound the scan for components, see [`super::component_scanner::ComponentScanner`].
+///
+/// ```
+/// # use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION};
+/// # use sinew_core::vision::edges::{EdgeDetector, EdgeList};
+/// # use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
+/// # use sinew_core::vision::frame::{FrameAnalyser, FrameBuffers, mask_words, runs_that_suffice};
+/// # use sinew_core::vision::{hand_likelihood::HandLikelihood, morphology::scratch_words, runs::Run};
+/// # use sinew_core::vision::skin::GaussianSkin;
+/// # let skin = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?;
+/// # let meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
+/// # let finder = BlobFinder::<32, 32>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
+/// # let mut buffers = FrameBuffers {
+/// #     mask: &mut [0; mask_words(64, 48)],
+/// #     edges: &mut [0; mask_words(64, 48)],
+/// #     scratch: &mut [0; scratch_words(64)],
+/// #     runs: &mut [Run::default(); runs_that_suffice(64, 48)],
+/// #     luminance: [&mut [0; 64 * 48], &mut [0; 64 * 48]],
+/// # };
+/// # let frame = |left: usize| {
+/// #     core::array::from_fn::<[u8; 3], { 64 * 48 }, _>(|i| {
+/// #         let is_skin = (left..left + 16).contains(&(i % 64)) && (16..32).contains(&(i / 64));
+/// #         if is_skin { [200, 140, 110] } else { [20, 40, 90] }
+/// #     })
+/// # };
+/// // Frames of 64 x 48 pixels with a square of skin, which moves to the right and then stands still.
+/// let mut analyser = FrameAnalyser::new(finder, EdgeDetector::default());
+/// let (mut blobs, mut edges) = (BlobList::<4>::new(), EdgeList::<200>::new());
+/// let mut counts = [(0, 0); 3];
+/// for (count, left) in counts.iter_mut().zip([20, 26, 26]) {
+///     analyser.analyse(frame(left).as_flattened(), (64, 48), &skin, &mut buffers, &mut blobs, &mut edges)?;
+///     *count = (blobs.as_slice().len(), edges.as_slice().len());
+/// }
+/// assert!(counts.iter().all(|(blobs, _)| *blobs == 1));
+/// assert!(counts[1].1 > 20, "the second frame has temporal edges");
+/// assert_eq!((counts[0].1, counts[2].1), (0, 0), "the first and a still one have none");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct FrameAnalyser<const RUNS: usize, const OPEN: usize> {
     finder: BlobFinder<RUNS, OPEN>,
@@ -117,12 +207,40 @@ impl<const RUNS: usize, const OPEN: usize> FrameAnalyser<RUNS, OPEN> {
 }
 
 /// Classifies each line of a frame into a row of `mask`; lines that `rgb` does not hold become zero.
+///
+/// ```
+/// use sinew_core::vision::frame::segment;
+/// use sinew_core::vision::mask::MaskMut;
+/// use sinew_core::vision::skin::GaussianSkin;
+///
+/// let skin = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?;
+/// // Two lines of two pixels: skin on the left, a wall on the right.
+/// let (hand, wall) = ([200, 140, 110], [20, 40, 90]);
+/// let mut words = [0; 2];
+/// segment([hand, wall, hand, wall].as_flattened(), &skin, &mut MaskMut::new(&mut words, 2, 2)?);
+/// assert_eq!(words, [0b01, 0b01]);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub fn segment(rgb: &[u8], skin: &impl SkinClassifier, mask: &mut MaskMut<'_>) {
     let stride = 3 * mask.width();
     mask.write_rows(|v, row| skin.classify_line(rgb.get(v * stride..(v + 1) * stride).unwrap_or(&[]), row));
 }
 
 /// The last frame's mask in the buffers.
+///
+/// ```
+/// use sinew_core::vision::frame::{FrameBuffers, last_mask, mask_words};
+///
+/// // Words as `FrameAnalyser::analyse` leaves them: here one row of skin.
+/// let mut mask = [0; mask_words(32, 4)];
+/// mask[2] = 0xff;
+/// let luminance: [&mut [u8]; 2] = [&mut [], &mut []];
+/// let buffers = FrameBuffers { mask: &mut mask, edges: &mut [], scratch: &mut [], runs: &mut [], luminance };
+/// let skin = last_mask(&buffers, 32, 4)?;
+/// assert_eq!(skin.count(), 8);
+/// assert!(last_mask(&buffers, 640, 480).is_err(), "that was no frame of this size");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 ///
 /// # Errors
 /// If the buffers were used with another size.

@@ -16,6 +16,17 @@ use crate::error::{ParameterError, Rule, not_negative, positive};
 use crate::math::{clamp, exp, ln, max};
 
 /// Which features are used, and how.
+///
+/// ```
+/// use sinew_core::vision::hand_likelihood::{HandLikelihood, LikelihoodForm};
+///
+/// // A good shape, a little smaller than the smallest hand: the paper's gate shuts, the default only doubts.
+/// let filled = HandLikelihood::default();
+/// let paper = filled.with_form(LikelihoodForm::Paper);
+/// let [paper, filled] = [paper, filled].map(|form| form.of_features(300.0, 640.0 * 480.0, 0.9, 0.8));
+/// assert_eq!(paper, 0.0);
+/// assert!((0.1..0.5).contains(&filled), "{filled}");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum LikelihoodForm {
@@ -28,6 +39,20 @@ pub enum LikelihoodForm {
 }
 
 /// Turns a blob's features into p(hand | blob).
+///
+/// ```
+/// use sinew_core::vision::hand_likelihood::{DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE, HandLikelihood, LikelihoodForm};
+///
+/// // Gloves change the outline: leave the ellipse out, by a weight of zero.
+/// let weights = [1.0, 1.0, 0.0];
+/// let gloved = HandLikelihood::new(LikelihoodForm::Filled, weights, DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE)?;
+/// let of = |likelihood: &HandLikelihood| likelihood.of_features(5000.0, 640.0 * 480.0, 0.9, 0.1);
+/// assert!(of(&gloved) > 0.9 && of(&gloved) > of(&HandLikelihood::default()));
+/// // A wrong parameter is refused by its name.
+/// let wrong = HandLikelihood::new(LikelihoodForm::Filled, [-1.0; 3], DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE);
+/// assert_eq!(wrong.map_err(|error| error.parameter), Err("weights"));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HandLikelihood {

@@ -95,6 +95,23 @@ impl<const ERODE: bool, const WORDS: usize> LineSweep<ERODE, WORDS> {
 /// Opening and then closing by the 3x3 square for lines of up to 32 `WORDS` pixels; keeps eight lines.
 ///
 /// As [`super::morphology::open`] and [`super::morphology::close`], with the same rule for the border. Lines without pixels cost next to nothing.
+///
+/// ```
+/// use sinew_core::vision::line_morphology::LineMorphology;
+///
+/// // A square of three by three pixels and a speck, line by line.
+/// let mut morphology = LineMorphology::<1>::new();
+/// let (mut lines, mut pixels) = (0, 0);
+/// for line in [0, 0, 0x700, 0x10_0700, 0x700, 0, 0] {
+///     morphology.line(&[line], 32, |done| {
+///         lines += 1;
+///         pixels += done[0].count_ones();
+///     });
+/// }
+/// assert_eq!(lines, 3, "a line is finished when four more were read");
+/// morphology.finish(32, |done| pixels += done[0].count_ones());
+/// assert_eq!(pixels, 9, "the speck is gone");
+/// ```
 #[derive(Debug, Clone)]
 pub struct LineMorphology<const WORDS: usize> {
     erosion: LineSweep<true, WORDS>,

@@ -21,6 +21,13 @@ use crate::error::{ParameterError, Rule, positive};
 pub const MAX_SIDE_PX: usize = 8192;
 
 /// Words that one row of `width` pixels takes.
+///
+/// ```
+/// use sinew_core::vision::mask::words_per_row;
+///
+/// assert_eq!(words_per_row(640), 20);
+/// assert_eq!(words_per_row(641), 21, "a row begins with a new word");
+/// ```
 #[must_use]
 pub const fn words_per_row(width: usize) -> usize {
     width.div_ceil(32)
@@ -28,7 +35,7 @@ pub const fn words_per_row(width: usize) -> usize {
 
 /// The bits of a row's last word that hold pixels.
 #[must_use]
-pub const fn last_word_bits(width: usize) -> u32 {
+pub(super) const fn last_word_bits(width: usize) -> u32 {
     match width % 32 {
         0 => u32::MAX,
         rest => (1 << rest) - 1,
@@ -49,6 +56,20 @@ fn checked_len(len: usize, width: usize, height: usize) -> Result<usize, Paramet
 }
 
 /// A one-bit image that is read.
+///
+/// ```
+/// use sinew_core::vision::mask::Mask;
+///
+/// // 24 rows of 32 pixels, one word each: a band of eight pixels across row 5.
+/// let mut words = [0; 24];
+/// words[5] = 0x0000_ff00;
+/// let mask = Mask::new(&words, 32, 24)?;
+/// assert!(mask.get(8, 5) && mask.get(15, 5) && !mask.get(16, 5));
+/// assert_eq!(mask.count(), 8);
+/// // A view as narrow as 12 pixels would hide some of them.
+/// assert_eq!(Mask::new(&words, 12, 24).map_err(|error| error.parameter).err(), Some("bits beyond the width"));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Mask<'a> {
     words: &'a [u32],
@@ -57,6 +78,18 @@ pub struct Mask<'a> {
 }
 
 /// A one-bit image that is written.
+///
+/// ```
+/// use sinew_core::vision::mask::{MaskMut, words_per_row};
+///
+/// // What lies beyond the width is cleared.
+/// let mut words = [u32::MAX; 2 * words_per_row(40)];
+/// let mut mask = MaskMut::new(&mut words, 40, 2)?;
+/// assert_eq!(mask.view().count(), 80);
+/// mask.set(39, 1, false);
+/// assert_eq!(words, [u32::MAX, 0xff, u32::MAX, 0x7f]);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug)]
 pub struct MaskMut<'a> {
     words: &'a mut [u32],

@@ -60,5 +60,5 @@ pub mod line_morphology;
 pub mod mask;
 pub mod morphology;
 pub mod runs;
-pub mod shape;
+pub(crate) mod shape;
 pub mod skin;

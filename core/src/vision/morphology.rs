@@ -26,12 +26,32 @@ use super::mask::{MaskMut, last_word_bits, words_per_row};
 use crate::error::{ParameterError, Rule};
 
 /// Words of scratch for a mask of `width` pixels: three rows.
+///
+/// ```
+/// use sinew_core::vision::mask::words_per_row;
+/// use sinew_core::vision::morphology::scratch_words;
+///
+/// // Known when the program is compiled, so that it can be a static array.
+/// static SCRATCH: [u32; scratch_words(320)] = [0; scratch_words(320)];
+/// assert_eq!(SCRATCH.len(), 3 * words_per_row(320));
+/// ```
 #[must_use]
 pub const fn scratch_words(width: usize) -> usize {
     3 * words_per_row(width)
 }
 
 /// Keeps a pixel where it and all of its up to eight neighbours are set.
+///
+/// ```
+/// use sinew_core::vision::mask::MaskMut;
+/// use sinew_core::vision::morphology::{erode, scratch_words};
+///
+/// // Of a square of three by three pixels its middle stays.
+/// let mut rows = [0, 0x700, 0x700, 0x700, 0];
+/// erode(&mut MaskMut::new(&mut rows, 32, 5)?, &mut [0; scratch_words(32)])?;
+/// assert_eq!(rows, [0, 0, 0x200, 0, 0]);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 ///
 /// # Errors
 /// `scratch` needs [`scratch_words`].
@@ -41,6 +61,17 @@ pub fn erode(mask: &mut MaskMut<'_>, scratch: &mut [u32]) -> Result<(), Paramete
 
 /// Sets a pixel where it or one of its up to eight neighbours is set.
 ///
+/// ```
+/// use sinew_core::vision::mask::MaskMut;
+/// use sinew_core::vision::morphology::{dilate, scratch_words};
+///
+/// // A pixel becomes a square of three by three.
+/// let mut rows = [0, 0, 0x200, 0, 0];
+/// dilate(&mut MaskMut::new(&mut rows, 32, 5)?, &mut [0; scratch_words(32)])?;
+/// assert_eq!(rows, [0, 0x700, 0x700, 0x700, 0]);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
+///
 /// # Errors
 /// `scratch` needs [`scratch_words`].
 pub fn dilate(mask: &mut MaskMut<'_>, scratch: &mut [u32]) -> Result<(), ParameterError> {
@@ -48,6 +79,17 @@ pub fn dilate(mask: &mut MaskMut<'_>, scratch: &mut [u32]) -> Result<(), Paramet
 }
 
 /// Erosion, then dilation: removes what a 3x3 square does not fit into.
+///
+/// ```
+/// use sinew_core::vision::mask::MaskMut;
+/// use sinew_core::vision::morphology::{open, scratch_words};
+///
+/// // A speck goes, a square of three by three stays as it is.
+/// let mut rows = [0, 0x700, 0x10_0700, 0x700, 0];
+/// open(&mut MaskMut::new(&mut rows, 32, 5)?, &mut [0; scratch_words(32)])?;
+/// assert_eq!(rows, [0, 0x700, 0x700, 0x700, 0]);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 ///
 /// # Errors
 /// `scratch` needs [`scratch_words`].
@@ -58,6 +100,17 @@ pub fn open(mask: &mut MaskMut<'_>, scratch: &mut [u32]) -> Result<(), Parameter
 
 /// Dilation, then erosion: fills background that a 3x3 square does not fit into.
 ///
+/// ```
+/// use sinew_core::vision::mask::MaskMut;
+/// use sinew_core::vision::morphology::{close, scratch_words};
+///
+/// // A hole is filled, the outline stays as it is.
+/// let mut rows = [0, 0, 0x700, 0x500, 0x700, 0, 0];
+/// close(&mut MaskMut::new(&mut rows, 32, 7)?, &mut [0; scratch_words(32)])?;
+/// assert_eq!(rows, [0, 0, 0x700, 0x700, 0x700, 0, 0]);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
+///
 /// # Errors
 /// `scratch` needs [`scratch_words`].
 pub fn close(mask: &mut MaskMut<'_>, scratch: &mut [u32]) -> Result<(), ParameterError> {
@@ -66,6 +119,20 @@ pub fn close(mask: &mut MaskMut<'_>, scratch: &mut [u32]) -> Result<(), Paramete
 }
 
 /// `steps` dilations, then as many erosions: closing by a square of 2 `steps` + 1 pixels.
+///
+/// ```
+/// use sinew_core::vision::mask::MaskMut;
+/// use sinew_core::vision::morphology::{close_by, scratch_words};
+///
+/// // Two bars, three pixels apart: a closing by five pixels joins them, one by three does not.
+/// let bars = [0b111_1000_1111 << 8; 7];
+/// for (steps, joined) in [(1, bars[3]), (2, 0b111_1111_1111 << 8)] {
+///     let mut rows = bars;
+///     close_by(&mut MaskMut::new(&mut rows, 32, 7)?, steps, &mut [0; scratch_words(32)])?;
+///     assert_eq!(rows[3], joined);
+/// }
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 ///
 /// # Errors
 /// `scratch` needs [`scratch_words`].

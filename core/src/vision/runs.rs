@@ -66,6 +66,22 @@ fn push(runs: &mut [LineRun], count: usize, start: u16, end: u16, shortest: u16)
 }
 
 /// A run of one component, kept in a [`RunPool`].
+///
+/// ```
+/// use sinew_core::vision::component_scanner::ComponentScanner;
+/// use sinew_core::vision::mask::Mask;
+/// use sinew_core::vision::runs::{Run, RunPool};
+///
+/// // Pixels 4 to 7 of a row, and where the row is.
+/// let (mut storage, mut found) = ([Run::default(); 8], Run::default());
+/// ComponentScanner::<8, 8>::new().scan(
+///     &Mask::new(&[0, 0xf0, 0], 32, 3)?,
+///     &mut RunPool::new(&mut storage),
+///     &mut |component, pool| found = component.runs(pool).next().expect("it has pixels"),
+/// );
+/// assert_eq!((found.start, found.end, found.row), (4, 8, 1), "the end is not part of it");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Run {
     /// First column, pixels.
@@ -80,6 +96,23 @@ pub struct Run {
 /// Storage for the runs of all components that are still growing: linked lists in a slice.
 ///
 /// Invariant: every run is in exactly one list, that of the free ones or that of one component.
+///
+/// ```
+/// use sinew_core::vision::component_scanner::ComponentScanner;
+/// use sinew_core::vision::mask::Mask;
+/// use sinew_core::vision::runs::{Run, RunPool};
+///
+/// // Room for two runs, and a component of three: its sums are whole, its shape lacks four pixels and says so.
+/// let mut storage = [Run::default(); 2];
+/// let mut seen = (0, 0);
+/// ComponentScanner::<8, 8>::new().scan(
+///     &Mask::new(&[0xf0; 3], 32, 3)?,
+///     &mut RunPool::new(&mut storage),
+///     &mut |component, _| seen = (component.area_px(), component.unrecorded_px()),
+/// );
+/// assert_eq!(seen, (12, 4));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug)]
 pub struct RunPool<'a> {
     runs: &'a mut [Run],

@@ -27,6 +27,29 @@ pub const CUBE_SIDE: usize = 32;
 pub const CUBE_WORDS: usize = CUBE_SIDE * CUBE_SIDE;
 
 /// Decides for each pixel of a line whether it shows skin.
+///
+/// ```
+/// use sinew_core::vision::skin::SkinClassifier;
+///
+/// // A hand in a red glove: a classifier of your own.
+/// struct RedGlove;
+///
+/// impl SkinClassifier for RedGlove {
+///     fn classify_line(&self, rgb: &[u8], bits: &mut [u32]) {
+///         bits.fill(0);
+///         for (u, pixel) in rgb.chunks_exact(3).enumerate() {
+///             let is_red = pixel[0] > 120 && pixel[0] / 2 > pixel[1] && pixel[0] / 2 > pixel[2];
+///             if let Some(word) = bits.get_mut(u / 32) {
+///                 *word |= u32::from(is_red) << (u % 32);
+///             }
+///         }
+///     }
+/// }
+///
+/// let mut bits = [0];
+/// RedGlove.classify_line(&[200, 20, 30, 90, 90, 90, 180, 40, 10], &mut bits);
+/// assert_eq!(bits, [0b101]);
+/// ```
 pub trait SkinClassifier {
     /// Writes one bit a pixel of `rgb` (three bytes a pixel) into `bits`, lowest bit first, 1 = skin.
     ///
@@ -35,6 +58,19 @@ pub trait SkinClassifier {
 }
 
 /// Skin as a normal distribution of chromaticity r = R/(R+G+B), g = G/(R+G+B), the arm paper's section 3.1.
+///
+/// ```
+/// use sinew_core::vision::skin::{GaussianSkin, SkinClassifier};
+///
+/// let skin = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?;
+/// // Skin, a blue wall, the same skin in half of the light.
+/// let mut bits = [0];
+/// skin.classify_line(&[200, 140, 110, 20, 40, 90, 100, 70, 55], &mut bits);
+/// assert_eq!(bits, [0b101]);
+/// // A covariance that is none is refused.
+/// assert_eq!(GaussianSkin::new(0.44, 0.31, [-1.0, 0.0, 1.0], 2.0, 60).map_err(|e| e.parameter), Err("covariance"));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GaussianSkin {
@@ -165,6 +201,19 @@ impl SkinClassifier for GaussianSkin {
 /// Skin as a table over 32 x 32 x 32 colours, a decision bit each.
 ///
 /// The bit of a colour is bit `B >> 3` of word `(R >> 3) * 32 + (G >> 3)`: see [`HistogramSkin::bit_of`].
+///
+/// ```
+/// use sinew_core::vision::skin::{CUBE_WORDS, HistogramSkin, SkinClassifier};
+///
+/// // A table with one cell of colours; a trained one lies in flash.
+/// let mut table = [0; CUBE_WORDS];
+/// let (word, bit) = HistogramSkin::bit_of([200, 140, 110]);
+/// table[word] |= 1 << bit;
+/// let skin = HistogramSkin::new(&table);
+/// let mut bits = [0];
+/// skin.classify_line(&[200, 140, 110, 20, 40, 90, 203, 143, 111], &mut bits);
+/// assert_eq!(bits, [0b101], "the last colour falls into the same cell");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HistogramSkin<'a> {
     table: &'a [u32; CUBE_WORDS],

@@ -56,7 +56,23 @@ fn header() -> String {
     }
     let mut text = Vec::new();
     builder.generate().expect("the interface can be said in C").write(&mut text);
-    String::from_utf8(text).expect("the header is text").replace("# Safety\n", "Caller's duty:\n")
+    without_examples(&String::from_utf8(text).expect("the header is text")).replace("# Safety\n", "Caller's duty:\n")
+}
+
+/// The header without the examples of its types, which are in Rust, and the empty line before each.
+fn without_examples(header: &str) -> String {
+    let (mut kept, mut is_example) = (Vec::new(), false);
+    for line in header.lines() {
+        if line.trim_start() == "* ```" {
+            if !is_example && kept.last().is_some_and(|last: &&str| last.trim() == "*") {
+                kept.pop();
+            }
+            is_example = !is_example;
+        } else if !is_example {
+            kept.push(line);
+        }
+    }
+    kept.join("\n") + "\n"
 }
 
 #[test]

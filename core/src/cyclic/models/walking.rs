@@ -6,6 +6,16 @@ use crate::cyclic::model_table::HumanModelTable;
 static BYTES: &[u8] = include_bytes!("walking.sinewmodel");
 
 /// The walking model.
+///
+/// ```
+/// use sinew_core::cyclic::models::walking::WALKING;
+///
+/// // It lies in flash; the model only borrows it. A cycle, two steps, takes a little over a second.
+/// let model = WALKING.model()?;
+/// let cycle_s = 1.0 / (model.mean_cycle_velocity() * model.rate_hz());
+/// assert!((0.9..1.3).contains(&cycle_s));
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
 pub static WALKING: HumanModelTable = match HumanModelTable::from_bytes(BYTES) {
     Ok(table) => table,
     Err(_) => {

@@ -9,6 +9,32 @@ use heapless::Vec;
 
 /// Each end-effector goes on from the place that it *reached*, with a share of the filter's velocity: those that the root carries
 /// (head, hands) relative to it, the others (feet, which stand) in space.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, LinearExtrapolation, MEMORY};
+/// use sinew_core::pik::processes::extrapolation::LinearGoals;
+/// use sinew_core::random::Stream;
+///
+/// // A root (bone 0) that stands and a hand (bone 1) that goes a metre a second to the right.
+/// let places_m = [Vec3::zeros(), Vec3::new(0.3, 0.0, 2.0)];
+/// # let past = GoalPast {
+/// #     reached_m: &places_m,
+/// #     velocity_m_per_s: &[Vec3::zeros(), Vec3::x()],
+/// #     first_m: &places_m,
+/// #     root_shift_m: Vec3::zeros(),
+/// #     dt_s: 0.1,
+/// #     is_first: true,
+/// # };
+/// let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.2 };
+/// let hand = LinearGoals::new(&[1], 2, process, 0.05)?.carrying(1);
+/// let mut goals = Goals::new();
+/// hand.expect(&past, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0), &mut goals);
+/// assert!((goals[0].position_m - Vec3::new(0.35, 0.0, 2.0)).norm() < 1e-6, "half of that for a tenth of a second");
+/// // A bone that is not there is refused.
+/// assert!(LinearGoals::new(&[2], 2, process, 0.05).is_err());
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearGoals {
     end_effectors: Vec<usize, MAX_GOALS>,

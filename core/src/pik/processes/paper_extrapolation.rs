@@ -9,6 +9,32 @@ use crate::random::Stream;
 const MOST: usize = MEMORY / 6;
 
 /// g_t+1 ~ N(g_t + (g_t - g_t-1), sigma^2 I). The goal of the frame before the first is the place reached there.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, MEMORY};
+/// use sinew_core::pik::processes::paper_extrapolation::PaperGoals;
+/// use sinew_core::random::Stream;
+///
+/// // Goals go on by their own last step, whether the hand follows or not; it stays at the origin here.
+/// let hand_m = [Vec3::zeros()];
+/// # let past = GoalPast {
+/// #     reached_m: &hand_m,
+/// #     velocity_m_per_s: &hand_m,
+/// #     first_m: &hand_m,
+/// #     root_shift_m: Vec3::zeros(),
+/// #     dt_s: 0.1,
+/// #     is_first: true,
+/// # };
+/// let process = PaperGoals { end_effectors: &[0], std_m: 0.01, reach_std_m: 0.02 };
+/// let (mut memory, mut stream, mut steps_m) = ([0.0; MEMORY], Stream::new(1, 0, 0), [Vec3::zeros(); 20]);
+/// for (frame, step_m) in steps_m.iter_mut().enumerate() {
+///     let mut goals = Goals::new();
+///     process.draw(&GoalPast { is_first: frame == 0, ..past }, &mut memory, &mut stream, &mut goals);
+///     *step_m = goals[0].position_m;
+/// }
+/// assert!(steps_m[19].norm() > 0.1, "twenty steps of a centimetre each have drifted away: {:?}", steps_m[19]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PaperGoals<'a> {
     /// Bones whose ends have goals; those beyond the fifth have none.

@@ -6,6 +6,33 @@ use crate::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals};
 use crate::random::Stream;
 
 /// A hand that goes to `target_m` at a speed, and stays there.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, MEMORY};
+/// use sinew_core::pik::processes::reach::StraightReach;
+/// use sinew_core::random::Stream;
+///
+/// // To a cup, by half a metre a second; the hand is 13 cm away.
+/// let cup_m = Vec3::new(0.05, 0.12, 2.0);
+/// let reach =
+///     StraightReach { hand: [0], target_m: cup_m, speed_m_per_s: 0.5, std_m_per_sqrt_s: 0.0, reach_std_m: 0.02 };
+/// let mut at_m = [Vec3::new(0.0, 0.0, 2.0)];
+/// for wanted_m in [0.08, 0.03, 0.0] {
+/// #     let past = GoalPast {
+/// #         reached_m: &at_m,
+/// #         velocity_m_per_s: &[Vec3::zeros()],
+/// #         first_m: &at_m,
+/// #         root_shift_m: Vec3::zeros(),
+/// #         dt_s: 0.1,
+/// #         is_first: true,
+/// #     };
+///     let mut goals = Goals::new();
+///     reach.draw(&past, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0), &mut goals);
+///     at_m[0] = goals[0].position_m;
+///     assert!(((cup_m - at_m[0]).norm() - wanted_m).abs() < 1e-4, "it ends at the cup");
+/// }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StraightReach {
     /// The bone whose end reaches.

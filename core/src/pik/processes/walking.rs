@@ -6,6 +6,36 @@ use crate::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals, LinearExtrapola
 use crate::random::Stream;
 
 /// Goals of both ankles; the floor is a plane.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, LinearExtrapolation, MEMORY};
+/// use sinew_core::pik::processes::walking::WalkingGoals;
+/// use sinew_core::random::Stream;
+///
+/// // The floor is a metre below the camera; y is down. The first ankle stands on it, the other comes down upon it.
+/// let walking = WalkingGoals {
+///     ankles: [0, 1],
+///     up: -Vec3::y(),
+///     ankle_height_m: -1.0,
+///     swing: LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s: 0.0 },
+///     planted_std_m_per_sqrt_s: 0.01,
+///     reach_std_m: 0.03,
+/// };
+/// # let ankles_m = [Vec3::new(0.1, 1.0, 3.0), Vec3::new(-0.1, 0.95, 3.0)];
+/// # let past = GoalPast {
+/// #     reached_m: &ankles_m,
+/// #     velocity_m_per_s: &[Vec3::zeros(), Vec3::new(0.0, 1.0, -2.0)],
+/// #     first_m: &ankles_m,
+/// #     root_shift_m: Vec3::zeros(),
+/// #     dt_s: 0.1,
+/// #     is_first: true,
+/// # };
+/// let mut goals = Goals::new();
+/// walking.draw(&past, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0), &mut goals);
+/// assert!((goals[0].position_m - ankles_m[0]).norm() < 0.02, "planted");
+/// assert!((goals[1].position_m - Vec3::new(-0.1, 1.0, 2.8)).norm() < 1e-6, "it would have gone through the floor");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WalkingGoals {
     /// Bones that end at the ankles.

@@ -15,6 +15,31 @@ use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 const CLEARLY_MORE: f32 = 1.0 + 1.0e-6;
 
 /// How the estimate came about.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, Status};
+/// # use sinew_core::camera::{Camera, Pixel};
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
+/// # let centre = Pixel::new(400.0, 250.0);
+/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+///
+/// // A hand is seen once, then the camera is covered.
+/// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
+/// let mut at = |timestamp_us, image| tracker.step(&model, &ArmFrame { timestamp_us, image, shoulder_m }).status;
+/// let image = ArmImage { candidates: &[hand], edges: &[] };
+/// assert_eq!(at(0, Some(image)), Status::Tracking);
+/// assert_eq!(at(66_667, None), Status::Predicted);
+/// // Longer than `ArmOptions::lost_after_s` later the prediction means nothing.
+/// assert_eq!(at(1_000_000, None), Status::Predicted);
+/// assert_eq!(at(1_100_000, None), Status::Lost);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Status {
@@ -28,6 +53,25 @@ pub enum Status {
 }
 
 /// Places of an arm's joints, metres in camera axes.
+///
+/// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+/// use sinew_core::tracker::arm::ArmJoints;
+///
+/// // From the joints of an estimate to the angle that a physiotherapist reads off, and to the arm's own angles.
+/// let joints = ArmJoints {
+///     shoulder_m: Vec3::new(0.2, -0.1, 1.2),
+///     elbow_m: Vec3::new(0.2, 0.2, 1.2),
+///     hand_m: Vec3::new(0.2, 0.2, 0.85),
+/// };
+/// let (upper, fore) = (joints.elbow_m - joints.shoulder_m, joints.hand_m - joints.elbow_m);
+/// assert!(upper.dot(&fore).abs() < 1e-6, "a right angle at the elbow");
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// let angles_rad = arm.angles_from_joints(&upper, &(upper + fore), &[0.0; 4]);
+/// assert!((angles_rad[3] - 90.0_f32.to_radians()).abs() < 1e-3);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmJoints {
     /// Shoulder.
@@ -39,6 +83,32 @@ pub struct ArmJoints {
 }
 
 /// What a step answers.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker};
+/// # use sinew_core::camera::{Camera, Pixel};
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
+/// # let centre = Pixel::new(400.0, 250.0);
+/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+///
+/// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
+/// // A speck comes first in the list, the hand second.
+/// let speck = HandCandidate { centre: Pixel::new(50.0, 50.0), likelihood: 0.06, ..hand };
+/// let image = Some(ArmImage { candidates: &[speck, hand], edges: &[] });
+/// let estimate = tracker.step(&model, &ArmFrame { timestamp_us: 0, image, shoulder_m });
+/// assert_eq!((estimate.candidate, estimate.hand_likelihood), (Some(1), 0.8), "the hand carries the estimate");
+/// assert!(estimate.hand_std_m < 0.5 && estimate.effective_sample_size > 1.0);
+/// // Without an image the estimate is a prediction, which knows less.
+/// let later = tracker.step(&model, &ArmFrame { timestamp_us: 200_000, image: None, shoulder_m });
+/// assert_eq!((later.candidate, later.log_evidence), (None, 0.0));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmEstimate {
     /// The person's own side.

@@ -12,6 +12,28 @@ pub const MAX_CANDIDATES: usize = 8;
 pub const LEAST_LIKELIHOOD: f32 = 0.05;
 
 /// What was found in one image.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, MAX_CANDIDATES};
+/// # use sinew_core::camera::{Camera, Pixel};
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
+/// # let centre = Pixel::new(400.0, 250.0);
+/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+///
+/// // More blobs than a step considers: the most likely are kept, the others counted.
+/// let candidates = [hand; MAX_CANDIDATES + 2];
+/// let image = ArmImage { candidates: &candidates, edges: &[] };
+/// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
+/// let estimate = tracker.step(&model, &ArmFrame { timestamp_us: 0, image: Some(image), shoulder_m });
+/// assert_eq!(estimate.dropped_candidates, 2);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArmImage<'a> {
     /// Blobs that may be a hand; over [`MAX_CANDIDATES`] the most likely are kept.
@@ -21,6 +43,34 @@ pub struct ArmImage<'a> {
 }
 
 /// One frame of one arm.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker};
+/// # use sinew_core::camera::{Camera, Pixel};
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
+/// # let centre = Pixel::new(400.0, 250.0);
+/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+///
+/// // Frames of a camera that drops every other one: what is dropped is not given, the timestamp tells.
+/// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
+/// for frame in 0..10 {
+///     let image = Some(ArmImage { candidates: &[hand], edges: &[] });
+///     let estimate = tracker.step(&model, &ArmFrame { timestamp_us: frame * 133_333, image, shoulder_m });
+///     let seen = model.camera().project(&estimate.joints.hand_m).expect("in front of the camera");
+///     assert!(seen.distance_px(hand.centre) < 25.0);
+/// }
+/// // The shoulder belongs to each frame: the arm moves along with the person.
+/// let shoulder_m = shoulder_m + Vec3::new(0.05, 0.0, 0.0);
+/// let estimate = tracker.step(&model, &ArmFrame { timestamp_us: 1_333_330, image: None, shoulder_m });
+/// assert_eq!(estimate.joints.shoulder_m, shoulder_m);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct ArmFrame<'a> {
     /// When the frame was taken, microseconds since any start. Dropped frames are simply not given.

@@ -12,6 +12,26 @@ use crate::skeleton::arm::{ARM_ANGLES, ARM_BONES, ArmAngles, ArmGeometry, FOREAR
 use crate::skeleton::{Side, Skeleton};
 
 /// Camera, arm and options of one arm tracker; immutable.
+///
+/// ```
+/// use sinew_core::camera::Camera;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+/// use sinew_core::tracker::arm::{ArmModel, ArmOptions};
+///
+/// let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// // What the model tells: how far the hand can be from the shoulder, and where an elbow and a hand are in a pose.
+/// let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
+/// assert!((model.reachable(&shoulder_m).outer_m - 0.65).abs() < 1e-5);
+/// let (elbow_m, hand_m) = model.elbow_and_hand(&shoulder_m, &[0.0; 4]);
+/// assert!(((hand_m - elbow_m) - Vec3::new(0.0, 0.35, 0.0)).norm() < 1e-5, "it hangs");
+/// // A wrong option is refused here, by its name, not in the middle of a recording.
+/// let none = ArmOptions { particles: 0, ..ArmOptions::default() };
+/// assert_eq!(ArmModel::new(camera, (640, 480), arm, none).map_err(|error| error.parameter).err(), Some("particles"));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArmModel {
     camera: Camera,

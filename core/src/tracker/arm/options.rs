@@ -6,6 +6,16 @@ use crate::observation::hough::HoughSettings;
 use crate::skeleton::arm::ARM_ANGLES;
 
 /// Which tracker: the rows of the table in DESIGN.md section 4.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmOptions, Variant};
+///
+/// // The arm paper's own tracker, and its baseline that does not look at blobs.
+/// let paper = ArmOptions { variant: Variant::Corrected, ..ArmOptions::default() };
+/// assert!(paper.check().is_ok());
+/// assert!(paper.variant.is_blob_driven() && !paper.variant.uses_inverse_kinematics());
+/// assert!(!Variant::Standard.is_blob_driven() && Variant::default().uses_inverse_kinematics());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Variant {
@@ -43,6 +53,17 @@ impl Variant {
 }
 
 /// How the orientation densities of both limbs become one weight.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmOptions, options::LimbCombination};
+///
+/// // As in the arm paper: half of the sum.
+/// let paper = ArmOptions { combination: LimbCombination::Mean, ..ArmOptions::default() };
+/// assert!(paper.check().is_ok());
+/// // A product without a floor would let one empty bin decide alone.
+/// let wrong = ArmOptions { combination: LimbCombination::Product { floor: 0.0 }, ..paper };
+/// assert_eq!(wrong.check().map_err(|error| error.parameter), Err("combination.floor"));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LimbCombination {
     /// Half of the sum, eq. (3) of the arm paper.
@@ -55,6 +76,17 @@ pub enum LimbCombination {
 }
 
 /// Continuity gate: exp(-d^2 / 2 s^2) + floor, d from the corrected hand to the particle's own prediction.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmOptions, options::{DEFAULT_GATE, Gate}};
+///
+/// // A camera of five pictures a second: hands go farther from one to the next.
+/// let slow_camera = ArmOptions { gate: Some(Gate { std_m: 0.8, ..DEFAULT_GATE }), ..ArmOptions::default() };
+/// assert!(slow_camera.check().is_ok());
+/// // What a jump of any length keeps cannot be nothing.
+/// let wrong = ArmOptions { gate: Some(Gate { floor: 0.0, ..DEFAULT_GATE }), ..ArmOptions::default() };
+/// assert_eq!(wrong.check().map_err(|error| error.parameter), Err("gate.floor"));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gate {
     /// s while the hand is seen, metres.
@@ -71,6 +103,16 @@ pub struct Gate {
 }
 
 /// Area cue: the blob's area tells the hand's distance, since area times squared depth is about constant.
+///
+/// ```
+/// use sinew_core::tracker::arm::options::AreaCue;
+///
+/// // A hand of 194 square centimetres beside the forearm; it shows e^-0.85 of that when it points at the camera.
+/// let cue = AreaCue { hand_area_m2: 0.0194, length_share: 0.65, foreshortening: 0.85, log_std: 0.3 };
+/// assert_eq!(cue.expected_area_m2(0.0), 0.0194);
+/// assert!((cue.expected_area_m2(1.0) / 0.0194 - 0.427).abs() < 1e-3);
+/// assert_eq!(cue.expected_area_m2(-1.0), cue.expected_area_m2(1.0), "away from it is the same");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AreaCue {
     /// Length-weighted area of the image of a hand seen from the side of its forearm (see
@@ -94,6 +136,18 @@ impl AreaCue {
 }
 
 /// Memory of blobs that were there and were not the hand.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmOptions, options::{BlobMemoryOptions, DEFAULT_BLOB_MEMORY}};
+///
+/// // A wooden door in the picture that looks like skin: what rests for long keeps a tenth of its likelihood only.
+/// let memory = BlobMemoryOptions { rest_share: 0.1, ..DEFAULT_BLOB_MEMORY };
+/// let options = ArmOptions { blob_memory: Some(memory), ..ArmOptions::default() };
+/// assert!(options.check().is_ok());
+/// // More than all of it cannot be kept.
+/// let wrong = ArmOptions { blob_memory: Some(BlobMemoryOptions { rest_share: 1.5, ..memory }), ..options };
+/// assert_eq!(wrong.check().map_err(|error| error.parameter), Err("blob_memory.rest_share"));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BlobMemoryOptions {
     /// Time in which belief in a blob falls by 1/e while the hand is at another, seconds.
@@ -111,6 +165,28 @@ pub struct BlobMemoryOptions {
 }
 
 /// What is reported as the estimate.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmModel, ArmOptions, options::EstimateRule};
+/// # use sinew_core::camera::{Camera, Pixel};
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
+/// # let centre = Pixel::new(400.0, 250.0);
+/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+///
+/// // Particles count to a blob within this many pixels of it; a large blob has its own radius.
+/// assert!((model.least_cluster_radius_px() - 0.045 * model.camera().focal_px()).abs() < 1e-3);
+/// assert!(model.cluster_radius_px(&hand) > model.least_cluster_radius_px());
+/// // The plain mean of all particles lies between two hands where both are likely: this rule is for comparisons.
+/// let plain = ArmOptions { estimate: EstimateRule::MeanOfAll, ..ArmOptions::default() };
+/// assert!(plain.check().is_ok());
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EstimateRule {
     /// Weighted mean of all particles.
@@ -138,6 +214,17 @@ pub const DEFAULT_BLOB_MEMORY: BlobMemoryOptions = BlobMemoryOptions {
 pub const DEFAULT_RADIUS_PER_FOCAL: f32 = 0.045;
 
 /// All options of one arm tracker.
+///
+/// ```
+/// use sinew_core::tracker::arm::ArmOptions;
+///
+/// // A slow processor: fewer particles and steps, and no orientation of the limbs beyond 200 pairs of pixels.
+/// let mut small = ArmOptions { particles: 20, solver_steps: 2, ..ArmOptions::default() };
+/// small.hough.max_pairs = 200;
+/// assert!(small.check().is_ok());
+/// small.velocity_gain = 2.0;
+/// assert_eq!(small.check().map_err(|error| error.parameter), Err("velocity_gain"));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmOptions {
     /// Which tracker.

@@ -59,6 +59,34 @@ const LEAST_STD_M: f32 = 0.15;
 const SPLIT_REACH: f32 = 3.0;
 
 /// One frame of both arms.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmImage, ArmModel, ArmOptions, ArmPair, PairFrame, Status};
+/// # use sinew_core::camera::{Camera, Pixel};
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
+/// # let centre = Pixel::new(400.0, 250.0);
+/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+///
+/// # let right = ArmGeometry::new(Side::Right, 0.30, 0.35)?;
+/// # let right = ArmModel::new(camera, (640, 480), right, ArmOptions::default())?;
+/// # let shoulders_m = [shoulder_m, Vec3::new(-0.2, -0.1, 1.2)];
+/// // One list of blobs for both arms; this one holds the left hand only.
+/// let mut pair = ArmPair::<50>::new([&model, &right], shoulders_m, 1)?;
+/// let mut statuses = [Status::Lost; 2];
+/// for frame in 0..5 {
+///     let image = Some(ArmImage { candidates: &[hand], edges: &[] });
+///     let frame = PairFrame { timestamp_us: frame * 66_667, image, shoulders_m };
+///     statuses = pair.step([&model, &right], &frame).map(|estimate| estimate.status);
+/// }
+/// assert_eq!(statuses, [Status::Tracking, Status::Lost], "one blob serves one hand");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct PairFrame<'a> {
     /// When the frame was taken, microseconds since any start.
@@ -70,6 +98,37 @@ pub struct PairFrame<'a> {
 }
 
 /// State of both arms' trackers, left and right.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmImage, ArmModel, ArmOptions, ArmPair, PairFrame};
+/// # use sinew_core::camera::{Camera, Pixel};
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
+/// # let centre = Pixel::new(400.0, 250.0);
+/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+///
+/// # let right = ArmGeometry::new(Side::Right, 0.30, 0.35)?;
+/// # let right = ArmModel::new(camera, (640, 480), right, ArmOptions::default())?;
+/// # let models = [&model, &right];
+/// # let shoulders_m = [shoulder_m, Vec3::new(-0.2, -0.1, 1.2)];
+/// // Two hands, the right one on the left of the picture; each side finds its own.
+/// let mut pair = ArmPair::<50>::new(models, shoulders_m, 1)?;
+/// let candidates = [HandCandidate { centre: Pixel::new(240.0, 250.0), ..hand }, hand];
+/// let image = Some(ArmImage { candidates: &candidates, edges: &[] });
+/// let mut carriers = [None; 2];
+/// for frame in 0..5 {
+///     let estimates = pair.step(models, &PairFrame { timestamp_us: frame * 66_667, image, shoulders_m });
+///     carriers = estimates.map(|estimate| estimate.candidate);
+/// }
+/// assert_eq!(carriers, [Some(1), Some(0)]);
+/// assert!(pair.trackers().iter().all(|tracker| tracker.has_seen_the_hand()));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ArmPair<const CAPACITY: usize> {
     pub(super) trackers: [ArmTracker<CAPACITY>; 2],

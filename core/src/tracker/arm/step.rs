@@ -40,6 +40,32 @@ const FRAME_STREAM: u32 = u32::MAX;
 const LIMB_STREAMS: u32 = u32::MAX - 64;
 
 /// One weighted arm.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker};
+/// # use sinew_core::camera::{Camera, Pixel};
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
+/// # let centre = Pixel::new(400.0, 250.0);
+/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+///
+/// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
+/// let image = Some(ArmImage { candidates: &[hand], edges: &[] });
+/// let _ = tracker.step(&model, &ArmFrame { timestamp_us: 0, image, shoulder_m });
+/// // The only blob drove most particles; the free share went on as if there were none.
+/// let driven = tracker.particles().iter().filter(|particle| particle.driver == Some(0)).count();
+/// assert!((25..50).contains(&driven), "{driven} of 50");
+/// // Every particle is a whole pose, with the lengths of the arm.
+/// let particle = &tracker.particles()[0];
+/// assert!(((particle.hand_m - particle.elbow_m).norm() - 0.35).abs() < 1e-4);
+/// assert!((particle.forearm().norm() - 1.0).abs() < 1e-5);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Particle {
     /// Pose, inside the limits.
@@ -61,6 +87,35 @@ impl Particle {
 }
 
 /// State of one arm's tracker with room for `CAPACITY` particles.
+///
+/// ```
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, Status};
+/// # use sinew_core::camera::{Camera, Pixel};
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
+/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
+/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
+/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
+/// # let centre = Pixel::new(400.0, 250.0);
+/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+///
+/// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
+/// for frame in 0..10 {
+///     let image = Some(ArmImage { candidates: &[hand], edges: &[] });
+///     let estimate = tracker.step(&model, &ArmFrame { timestamp_us: frame * 66_667, image, shoulder_m });
+///     assert_eq!(estimate.status, Status::Tracking);
+/// }
+/// // Where to look for the hand in the next picture, and how far around.
+/// let (hand_m, std_m) = tracker.predicted_hand(&model, 666_670);
+/// let expected = model.camera().project(&hand_m).expect("in front of the camera");
+/// assert!(expected.distance_px(hand.centre) < 25.0 && std_m < 0.1);
+/// // The state fits a small device, and a capacity that is too small is refused.
+/// const { assert!(size_of::<ArmTracker<50>>() <= 16 * 1024) };
+/// assert!(ArmTracker::<20>::new(&model, shoulder_m, 1).is_err());
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct ArmTracker<const CAPACITY: usize> {
     pub(super) seed: u64,

@@ -9,6 +9,16 @@ const LEAST_DETERMINANT: f32 = 1.0e-4;
 
 /// The rotation nearest to `sum`, the weighted sum of rotation matrices: the mean that makes the sum of squared chords least.
 /// `None` where the rotations point all ways.
+///
+/// ```
+/// use sinew_core::math::{Mat3, Vec3, axis_rotation};
+/// use sinew_core::tracker::body::mean_rotation;
+///
+/// let turn = |angle_rad| axis_rotation(&Vec3::z(), angle_rad);
+/// let mean = mean_rotation(&(turn(0.2) * 0.5 + turn(0.6) * 0.5)).expect("they point one way");
+/// assert!((mean - turn(0.4)).norm() < 1e-4);
+/// assert_eq!(mean_rotation(&Mat3::zeros()), None, "no way at all");
+/// ```
 #[must_use]
 pub fn mean_rotation(sum: &Mat3) -> Option<Mat3> {
     let mut x = *sum;
@@ -28,6 +38,16 @@ fn inverse_transpose(m: &Mat3) -> Option<Mat3> {
 }
 
 /// Angles with R = R(axis 0) R(axis 1) R(axis 2); the axes are square to one another. The middle one lies in [-pi/2, pi/2].
+///
+/// ```
+/// use sinew_core::math::{Vec3, axis_rotation};
+/// use sinew_core::tracker::body::angles_of_rotation;
+///
+/// let axes = [Vec3::y(), Vec3::z(), Vec3::x()];
+/// let rotation = axis_rotation(&axes[0], 2.0) * axis_rotation(&axes[1], -0.5) * axis_rotation(&axes[2], 0.3);
+/// let found = angles_of_rotation(&rotation, &axes);
+/// assert!(found.iter().zip([2.0, -0.5, 0.3]).all(|(angle, wanted)| (angle - wanted).abs() < 1e-4), "{found:?}");
+/// ```
 #[must_use]
 pub fn angles_of_rotation(rotation: &Mat3, axes: &[Vec3; 3]) -> [f32; 3] {
     let hand = if axes[0].dot(&axes[1].cross(&axes[2])) < 0.0 { -1.0 } else { 1.0 };

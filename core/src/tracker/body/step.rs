@@ -26,6 +26,49 @@ const EXPECTED_PERSISTENCE: f32 = 0.5;
 const LONGEST_STRIDE_S: f32 = 0.2;
 
 /// Options of the filter itself.
+///
+/// ```
+/// use sinew_core::tracker::body::{BodyFrame, BodyOptions, BodyTracker, DEFAULT_BODY_OPTIONS};
+/// # use sinew_core::pik::guided::GuidedMotion;
+/// # use sinew_core::pik::motion::{BodyParticle, BodyScene};
+/// # use sinew_core::pik::{goal::LinearExtrapolation, processes::extrapolation::LinearGoals, root::RootProcess};
+/// # use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
+/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
+/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// # let points_of = |pose: &[f32; 4]| {
+/// #     let surface = scene.surface(&scene.posture(pose));
+/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
+/// #         let bone = &surface.capsules[i % 2].capsule;
+/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
+/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
+/// #     });
+/// #     let mut cloud = PointCloud::<2>::new();
+/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
+/// #     cloud
+/// # };
+/// # let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.3 };
+/// # let goals = LinearGoals::new(&[FOREARM], 2, process, 0.05)?;
+/// # let (process, root, angle_std_rad_per_sqrt_s) = (&goals, RootProcess::FIXED, [1.0; 4]);
+/// # let motion = GuidedMotion { process, root, angle_std_rad_per_sqrt_s, solver_steps: 3, pulling_blocks: 2 };
+/// # let truth = |frame: usize| [0.5, 0.1, 0.1, 1.0 + 0.05 * frame as f32];
+/// # let first = BodyParticle::at(&scene.skeleton, truth(0));
+///
+/// // Each limb is weighed and resampled by itself, so that all particles weigh the same after a step.
+/// let options = BodyOptions { limb_by_limb: true, ..DEFAULT_BODY_OPTIONS };
+/// let new = |options| BodyTracker::<2, 4, 30, _>::new(&first, ([first; 30], [first; 30]), options, 1);
+/// let mut tracker = new(options)?;
+/// let _ = tracker.step(&scene, &motion, &BodyFrame { dt_s: 1.0 / 15.0, blocks: points_of(&truth(1)).blocks() });
+/// assert!(tracker.weights().iter().all(|weight| *weight == tracker.weights()[0]));
+/// // A wrong option is refused by its name.
+/// let wrong = new(BodyOptions { least_effective_share: 1.5, ..options });
+/// assert_eq!(wrong.map_err(|error| error.parameter).err(), Some("least_effective_share"));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyOptions {
     /// Weights are flattened until at least this share of the particles is effective; zero never flattens.
@@ -41,6 +84,48 @@ pub const DEFAULT_BODY_OPTIONS: BodyOptions =
     BodyOptions { least_effective_share: 0.0, limb_by_limb: false, alignment: None };
 
 /// One frame.
+///
+/// ```
+/// use sinew_core::tracker::body::{BodyFrame, BodyTracker, DEFAULT_BODY_OPTIONS};
+/// # use sinew_core::pik::guided::GuidedMotion;
+/// # use sinew_core::pik::motion::{BodyParticle, BodyScene};
+/// # use sinew_core::pik::{goal::LinearExtrapolation, processes::extrapolation::LinearGoals, root::RootProcess};
+/// # use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
+/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
+/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// # let points_of = |pose: &[f32; 4]| {
+/// #     let surface = scene.surface(&scene.posture(pose));
+/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
+/// #         let bone = &surface.capsules[i % 2].capsule;
+/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
+/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
+/// #     });
+/// #     let mut cloud = PointCloud::<2>::new();
+/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
+/// #     cloud
+/// # };
+/// # let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.3 };
+/// # let goals = LinearGoals::new(&[FOREARM], 2, process, 0.05)?;
+/// # let (process, root, angle_std_rad_per_sqrt_s) = (&goals, RootProcess::FIXED, [1.0; 4]);
+/// # let motion = GuidedMotion { process, root, angle_std_rad_per_sqrt_s, solver_steps: 3, pulling_blocks: 2 };
+/// # let truth = |frame: usize| [0.5, 0.1, 0.1, 1.0 + 0.05 * frame as f32];
+/// # let first = BodyParticle::at(&scene.skeleton, truth(0));
+///
+/// # let sets = ([first; 30], [first; 30]);
+/// # let mut tracker = BodyTracker::<2, 4, 30, _>::new(&first, sets, DEFAULT_BODY_OPTIONS, 1)?;
+/// let cloud = points_of(&truth(1));
+/// let seen = tracker.step(&scene, &motion, &BodyFrame { dt_s: 1.0 / 15.0, blocks: cloud.blocks() });
+/// // No points for a third of a second: an ordinary frame, of which nobody learns anything.
+/// let unseen = tracker.step(&scene, &motion, &BodyFrame { dt_s: 1.0 / 3.0, blocks: &[] });
+/// assert_eq!(unseen.observed, [false; 2]);
+/// assert!(unseen.spread_m[FOREARM] > seen.spread_m[FOREARM], "and the particles know less");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct BodyFrame<'a> {
     /// Time since the frame before, seconds; frames that were dropped are simply not given.
@@ -50,6 +135,51 @@ pub struct BodyFrame<'a> {
 }
 
 /// What is needed to move and weigh any particle of a frame, in any order, on any thread.
+///
+/// ```
+/// use sinew_core::tracker::body::{BodyFrame, BodyTracker, DEFAULT_BODY_OPTIONS};
+/// # use sinew_core::pik::guided::GuidedMotion;
+/// # use sinew_core::pik::motion::{BodyParticle, BodyScene};
+/// # use sinew_core::pik::{goal::LinearExtrapolation, processes::extrapolation::LinearGoals, root::RootProcess};
+/// # use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
+/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
+/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// # let points_of = |pose: &[f32; 4]| {
+/// #     let surface = scene.surface(&scene.posture(pose));
+/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
+/// #         let bone = &surface.capsules[i % 2].capsule;
+/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
+/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
+/// #     });
+/// #     let mut cloud = PointCloud::<2>::new();
+/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
+/// #     cloud
+/// # };
+/// # let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.3 };
+/// # let goals = LinearGoals::new(&[FOREARM], 2, process, 0.05)?;
+/// # let (process, root, angle_std_rad_per_sqrt_s) = (&goals, RootProcess::FIXED, [1.0; 4]);
+/// # let motion = GuidedMotion { process, root, angle_std_rad_per_sqrt_s, solver_steps: 3, pulling_blocks: 2 };
+/// # let truth = |frame: usize| [0.5, 0.1, 0.1, 1.0 + 0.05 * frame as f32];
+/// # let first = BodyParticle::at(&scene.skeleton, truth(0));
+///
+/// # let new =
+/// #     || BodyTracker::<2, 4, 30, _>::new(&first, ([first; 30], [first; 30]), DEFAULT_BODY_OPTIONS, 1);
+/// // Particles in any order, or on any thread: each has its own random numbers, so the answer is the same to the bit.
+/// let cloud = points_of(&truth(1));
+/// let frame = BodyFrame { dt_s: 1.0 / 15.0, blocks: cloud.blocks() };
+/// let backwards = new()?.step_with(&scene, &motion, &frame, |advance, particles| {
+///     for (index, slot) in particles.iter_mut().enumerate().rev() {
+///         advance.particle(index, slot);
+///     }
+/// });
+/// assert_eq!(backwards, new()?.step(&scene, &motion, &frame));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug)]
 pub struct Advance<'a, M, const BONES: usize, const ANGLES: usize> {
     motion: &'a M,
@@ -77,6 +207,50 @@ impl<M: BodyMotion<BONES, ANGLES>, const BONES: usize, const ANGLES: usize> Adva
 }
 
 /// State of the tracker: up to `N` particles, kept in two sets `S` (arrays in firmware, vectors on a host).
+///
+/// ```
+/// use sinew_core::tracker::body::{BodyFrame, BodyTracker, DEFAULT_BODY_OPTIONS};
+/// # use sinew_core::pik::guided::GuidedMotion;
+/// # use sinew_core::pik::motion::{BodyParticle, BodyScene};
+/// # use sinew_core::pik::{goal::LinearExtrapolation, processes::extrapolation::LinearGoals, root::RootProcess};
+/// # use sinew_core::skeleton::arm::FOREARM;
+/// # use sinew_core::math::Vec3;
+/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
+/// # use sinew_core::skeleton::{ArmGeometry, Side};
+/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
+/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
+/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// # let points_of = |pose: &[f32; 4]| {
+/// #     let surface = scene.surface(&scene.posture(pose));
+/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
+/// #         let bone = &surface.capsules[i % 2].capsule;
+/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
+/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
+/// #     });
+/// #     let mut cloud = PointCloud::<2>::new();
+/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
+/// #     cloud
+/// # };
+/// # let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.3 };
+/// # let goals = LinearGoals::new(&[FOREARM], 2, process, 0.05)?;
+/// # let (process, root, angle_std_rad_per_sqrt_s) = (&goals, RootProcess::FIXED, [1.0; 4]);
+/// # let motion = GuidedMotion { process, root, angle_std_rad_per_sqrt_s, solver_steps: 3, pulling_blocks: 2 };
+/// # let truth = |frame: usize| [0.5, 0.1, 0.1, 1.0 + 0.05 * frame as f32];
+/// # let first = BodyParticle::at(&scene.skeleton, truth(0));
+///
+/// // A body of two bones, an arm whose elbow bends; thirty particles in arrays, without an allocator.
+/// let sets = ([first; 30], [first; 30]);
+/// let mut tracker = BodyTracker::<2, 4, 30, _>::new(&first, sets, DEFAULT_BODY_OPTIONS, 1)?;
+/// for frame in 1..=10 {
+///     let cloud = points_of(&truth(frame));
+///     let estimate = tracker.step(&scene, &motion, &BodyFrame { dt_s: 1.0 / 15.0, blocks: cloud.blocks() });
+///     let hand_m = scene.posture(&truth(frame)).ends[FOREARM];
+///     assert!((estimate.ends_m[FOREARM] - hand_m).norm() < 0.1, "it goes 17 cm in all");
+/// }
+/// assert!((tracker.weights().iter().sum::<f32>() - 1.0).abs() < 1e-5);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct BodyTracker<const BONES: usize, const ANGLES: usize, const N: usize, S> {
     pub(super) particles: S,
@@ -259,6 +433,7 @@ where
         }
         let posture = scene.posture(&angles_rad);
         let mean = BodyParticle { angles_rad, ends_m: posture.ends, ..self.before };
+        let observed = observed(&scene.surface(&posture), &Limbs::of(&scene.skeleton), frame.blocks);
         for i in 0..ANGLES {
             self.angle_velocity_per_s[i] = (mean.angles_rad[i] - self.before.angles_rad[i]) / dt_s;
         }
@@ -295,4 +470,3 @@ where
         exponent
     }
 }
-        let observed = observed(&scene.surface(&posture), &Limbs::of(&scene.skeleton), frame.blocks);

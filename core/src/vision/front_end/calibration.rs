@@ -44,6 +44,23 @@ const CELL_VARIANCE: f32 = 1.0e-5;
 ///
 /// The same steps as the host's `--calibrate`: mean and covariance of the chromaticities, trimmed of what is not skin (rings, glare,
 /// background), are blended with the trained ones.
+///
+/// ```
+/// use sinew_core::vision::components::BoundingBox;
+/// use sinew_core::vision::front_end::{calibration::SkinSample, pixel_format::Rgb565};
+/// use sinew_core::vision::skin::GaussianSkin;
+///
+/// let trained = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?;
+/// let mut sample = SkinSample::<Rgb565, 50>::new(BoundingBox { min_u: 0, min_v: 0, max_u: 15, max_v: 7 });
+/// // Before the frame came there is nothing to learn from.
+/// assert_eq!(sample.adapted(&trained).map_err(|error| error.parameter), Err("skin sample"));
+/// for v in 0..8 {
+///     sample.line(v, &[150 >> 3 << 11 | 120 >> 2 << 5 | 110 >> 3; 40]);
+/// }
+/// assert_eq!(sample.len(), 43, "every third of 128 pixels: 50 have room");
+/// assert!(sample.adapted(&trained)?.mean_r() < trained.mean_r(), "this skin is paler");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct SkinSample<F, const N: usize> {
     bounds: BoundingBox,

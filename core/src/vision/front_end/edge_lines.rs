@@ -19,6 +19,15 @@ const TOPS: u32 = 0x8080_8080;
 type Cells<const WORDS: usize> = [[u32; BLOCK_WORDS]; WORDS];
 
 /// How steep an edge has to be; grey levels are those of a camera from 0 to 255.
+///
+/// ```
+/// use sinew_core::vision::front_end::edge_lines::{DEFAULT_KNOWN_STEP, DEFAULT_NEW_STEP, EdgeSteps};
+///
+/// assert_eq!(EdgeSteps::new(DEFAULT_NEW_STEP, DEFAULT_KNOWN_STEP)?, EdgeSteps::default());
+/// // The map has to remember what is as steep as a new edge, else one that stands still would be new for ever.
+/// assert_eq!(EdgeSteps::new(14.0, 28.0).map_err(|error| error.parameter), Err("known_step"));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EdgeSteps {
@@ -84,6 +93,26 @@ struct EdgeMap<const WORDS: usize, const ROWS: usize> {
 /// Finds the temporal edge pixels of lines; keeps three lines of luminances and the map of the frame before.
 ///
 /// Lines have up to 32 `WORDS` pixels, frames up to 2 `ROWS` lines; what lies beyond has no edges.
+///
+/// ```
+/// use sinew_core::vision::edges::EdgeList;
+/// use sinew_core::vision::front_end::edge_lines::{EdgeLines, EdgeSteps};
+/// use sinew_core::vision::front_end::pixel_format::Rgb565;
+///
+/// // Frames of 32 x 32 pixels, white from a column on.
+/// let mut lines = EdgeLines::<1, 16>::new(EdgeSteps::default());
+/// let mut edges = EdgeList::<64>::new();
+/// for left in [10, 16] {
+///     lines.begin_frame(&mut edges);
+///     for v in 0..32 {
+///         let line = core::array::from_fn::<u16, 32, _>(|u| if u >= left { 0xffff } else { 0 });
+///         lines.line::<Rgb565, 64>(v, &line, 32, &mut edges);
+///     }
+///     lines.end_frame();
+/// }
+/// assert!(!edges.as_slice().is_empty());
+/// assert!(edges.as_slice().iter().all(|pixel| (14..=16).contains(&pixel.u)), "where the edge is now");
+/// ```
 #[derive(Debug, Clone)]
 pub struct EdgeLines<const WORDS: usize, const ROWS: usize> {
     cells: [Cells<WORDS>; 3],

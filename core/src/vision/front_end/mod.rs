@@ -50,6 +50,23 @@ use pixel_format::PixelFormat;
 use skin_table::SkinTable;
 
 /// What found no room in a frame, or did not come; all zero means that the frame's results are exact.
+///
+/// ```
+/// use sinew_core::vision::front_end::{FrameLosses, QvgaFrontEnd, edge_lines::EdgeSteps};
+/// use sinew_core::vision::front_end::{pixel_format::Rgb565, skin_table::SkinTable};
+/// use sinew_core::vision::hand_likelihood::HandLikelihood;
+///
+/// // A camera that drops its last ten lines and repeats one.
+/// let mut front_end = QvgaFrontEnd::new((320, 240), HandLikelihood::default(), EdgeSteps::default())?;
+/// let table = SkinTable::<Rgb565>::new();
+/// front_end.begin_frame();
+/// for v in (0..230).chain([229]) {
+///     front_end.line(v, &[0; 320], &table);
+/// }
+/// let losses = front_end.end_frame().losses;
+/// assert_eq!(losses, FrameLosses { missing_lines: 10, ignored_lines: 1, ..FrameLosses::default() });
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FrameLosses {
@@ -68,6 +85,33 @@ pub struct FrameLosses {
 }
 
 /// What a frame showed.
+///
+/// ```
+/// use sinew_core::vision::front_end::{LineFrontEnd, edge_lines::EdgeSteps};
+/// use sinew_core::vision::front_end::{pixel_format::Rgb565, skin_table::SkinTable};
+/// # use sinew_core::vision::{hand_likelihood::HandLikelihood, skin::GaussianSkin};
+/// # let mut table = SkinTable::<Rgb565>::new();
+/// # table.learn(&GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?);
+/// # const SKIN: u16 = 200 >> 3 << 11 | 140 >> 2 << 5 | 110 >> 3;
+///
+/// let mut front_end =
+///     LineFrontEnd::<2, 16, 16, 4, 64, 24>::new((64, 48), HandLikelihood::default(), EdgeSteps::default())?;
+/// // Two squares of skin before black.
+/// front_end.begin_frame();
+/// for v in 0..48 {
+///     let line = core::array::from_fn::<u16, 64, _>(|u| match (u, v) {
+///         (10..26, 10..26) | (40..46, 20..26) => SKIN,
+///         _ => 0,
+///     });
+///     front_end.line(v, &line, &table);
+/// }
+/// let seen = front_end.end_frame();
+/// let [first, second] = seen.blobs else { panic!("two squares are two blobs") };
+/// assert!(first.moment_likelihood > second.moment_likelihood, "the most likely comes first");
+/// assert_eq!(seen.candidates[0].centre, first.centroid, "what a tracker takes, in the same order");
+/// assert!(seen.edges.is_empty(), "the first frame has no temporal edges");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct FrameLines<'a> {
     /// Blobs, the most likely first.
@@ -90,6 +134,18 @@ pub struct FrameLines<'a> {
 /// | `BLOBS` | blobs of a frame |
 /// | `EDGES` | temporal edge pixels of a frame |
 /// | `MAP_ROWS` | height: 2 `MAP_ROWS` lines have edges |
+///
+/// ```
+/// use sinew_core::vision::front_end::{LineFrontEnd, edge_lines::EdgeSteps};
+/// use sinew_core::vision::hand_likelihood::HandLikelihood;
+///
+/// // A camera of 160 x 120 pixels, of which four blobs and 128 edges are wanted, in less than 7 KiB.
+/// type QqvgaFrontEnd = LineFrontEnd<5, 28, 12, 4, 128, 60>;
+/// const { assert!(size_of::<QqvgaFrontEnd>() < 7 * 1024) };
+/// let new = |size| QqvgaFrontEnd::new(size, HandLikelihood::default(), EdgeSteps::default());
+/// assert!(new((160, 120)).is_ok());
+/// assert_eq!(new((320, 240)).map_err(|error| error.parameter).err(), Some("width"), "it has no room for more");
+/// ```
 #[derive(Debug, Clone)]
 pub struct LineFrontEnd<
     const WORDS: usize,
@@ -117,6 +173,32 @@ pub struct LineFrontEnd<
 }
 
 /// A front end for 320 x 240 pixels.
+///
+/// ```
+/// use sinew_core::vision::front_end::{QvgaFrontEnd, edge_lines::EdgeSteps};
+/// use sinew_core::vision::front_end::{pixel_format::Rgb565, skin_table::SkinTable};
+/// use sinew_core::vision::hand_likelihood::HandLikelihood;
+/// # use sinew_core::vision::skin::GaussianSkin;
+/// # let mut table = SkinTable::<Rgb565>::new();
+/// # table.learn(&GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?);
+/// # let line = |u0: usize| core::array::from_fn::<u16, 320, _>(|u| {
+/// #     if (u0..u0 + 50).contains(&u) { 200 >> 3 << 11 | 140 >> 2 << 5 | 110 >> 3 } else { 0 }
+/// # });
+///
+/// // A hand that moves by eight pixels from frame to frame has temporal edges, and is where the last frame shows it.
+/// let mut front_end = QvgaFrontEnd::new((320, 240), HandLikelihood::default(), EdgeSteps::default())?;
+/// for (frame, left) in [100, 108, 116].into_iter().enumerate() {
+///     let (across_hand, wall) = (line(left), [0; 320]);
+///     front_end.begin_frame();
+///     for v in 0..240 {
+///         front_end.line(v, if (80..130).contains(&v) { &across_hand } else { &wall }, &table);
+///     }
+///     let seen = front_end.end_frame();
+///     assert_eq!(seen.edges.is_empty(), frame == 0);
+///     assert!((seen.candidates[0].centre.u_px - (left as f32 + 24.5)).abs() < 0.1);
+/// }
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub type QvgaFrontEnd = LineFrontEnd<10, 32, 24, 8, 512, 120>;
 
 /// Bytes that vision may take for 320 x 240 pixels, the table included, the edge map not.

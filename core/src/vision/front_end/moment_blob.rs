@@ -9,6 +9,25 @@ use crate::vision::hand_likelihood::HandLikelihood;
 use core::f32::consts::PI;
 
 /// A connected component's sums, made into features; the same numbers as [`crate::vision::features::Blob`] has of the same pixels.
+///
+/// ```
+/// use sinew_core::vision::component_scanner::ComponentScanner;
+/// use sinew_core::vision::front_end::moment_blob::MomentBlob;
+/// use sinew_core::vision::hand_likelihood::HandLikelihood;
+/// use sinew_core::vision::mask::Mask;
+/// use sinew_core::vision::runs::RunPool;
+///
+/// // A bracket: one arm up, one arm across.
+/// let mut rows = [0x0f; 32];
+/// rows[28..].fill(u32::MAX);
+/// let mask = Mask::new(&rows, 32, 32)?;
+/// ComponentScanner::<8, 8>::new().scan(&mask, &mut RunPool::new(&mut []), &mut |component, _| {
+///     let bracket = MomentBlob::of(component, &HandLikelihood::default(), 32.0 * 32.0);
+///     assert_eq!(bracket.area_px, 28 * 4 + 4 * 32);
+///     assert!(bracket.ellipse_fill() < 0.6 && bracket.roundness() < 0.5, "neither an ellipse nor round");
+/// });
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct MomentBlob {
@@ -67,6 +86,27 @@ impl MomentBlob {
 /// [`MomentBlob::ellipse_fill`] stands in for both: what fills the ellipse of its own moments has its mass about its centre, and is covered by an
 /// ellipse. The perimeter does not count: the host's shape features are those of a blob with its fingers filled, and an
 /// open hand's outline before that is long.
+///
+/// ```
+/// use core::f32::consts::PI;
+/// use sinew_core::camera::Pixel;
+/// use sinew_core::vision::components::BoundingBox;
+/// use sinew_core::vision::front_end::moment_blob::{MomentBlob, moment_likelihood};
+/// use sinew_core::vision::hand_likelihood::HandLikelihood;
+///
+/// // A disc of radius 30, and a ring as heavy as it that reaches from 40 to 50.
+/// let disc = MomentBlob {
+///     area_px: 2827,
+///     centroid: Pixel::new(160.0, 120.0),
+///     moments_px2: [225.0, 0.0, 225.0],
+///     perimeter_px: 2.0 * PI * 30.0,
+///     bounding_box: BoundingBox { min_u: 130, min_v: 90, max_u: 190, max_v: 150 },
+///     moment_likelihood: 0.0,
+/// };
+/// let ring = MomentBlob { moments_px2: [1025.0, 0.0, 1025.0], ..disc };
+/// let of = |blob| moment_likelihood(blob, &HandLikelihood::default(), 320.0 * 240.0);
+/// assert!(of(&disc) > 0.9 && of(&ring) < of(&disc) - 0.2, "{} {}", of(&disc), of(&ring));
+/// ```
 #[must_use]
 pub fn moment_likelihood(blob: &MomentBlob, likelihood: &HandLikelihood, image_area_px: f32) -> f32 {
     let fill = blob.ellipse_fill();

@@ -3,6 +3,29 @@
 /// A coding of pixels in 16 bits, read in pairs of neighbours.
 ///
 /// A colour's *key* is its place among the 65536 bits of a [`super::skin_table::SkinTable`].
+///
+/// ```
+/// use sinew_core::vision::front_end::pixel_format::PixelFormat;
+///
+/// // A camera of your own: grey levels in the low byte.
+/// struct Grey;
+///
+/// impl PixelFormat for Grey {
+///     fn keys(pair: [u16; 2]) -> [u16; 2] {
+///         pair.map(|pixel| pixel & 0xff)
+///     }
+///
+///     fn luminances(pixels: &[u16; 8]) -> u32 {
+///         u32::from_le_bytes([0, 2, 4, 6].map(|place| (pixels[place] & 0xff) as u8 / 2))
+///     }
+///
+///     fn rgb(key: u16) -> [u8; 3] {
+///         [key as u8; 3]
+///     }
+/// }
+///
+/// assert_eq!(Grey::luminances(&[0, 9, 100, 9, 254, 9, 20, 9]).to_le_bytes(), [0, 50, 127, 10]);
+/// ```
 pub trait PixelFormat {
     /// The keys of two neighbours, the left one at an even column.
     fn keys(pair: [u16; 2]) -> [u16; 2];
@@ -18,16 +41,46 @@ pub trait PixelFormat {
 const HALVES: u32 = 0x7f7f_7f7f;
 
 /// 5 bits of red (the highest), 6 of green, 5 of blue; the key is the pixel.
+///
+/// ```
+/// use sinew_core::vision::front_end::pixel_format::{PixelFormat, Rgb565};
+///
+/// assert_eq!(Rgb565::rgb(0b11111_000000_00000), [255, 0, 0]);
+/// assert_eq!(Rgb565::rgb(0b00000_111111_11111), [0, 255, 255]);
+/// // Of eight white pixels every second one counts: 109 of 127.
+/// assert_eq!(Rgb565::luminances(&[0xffff; 8]).to_le_bytes(), [109; 4]);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rgb565;
 
 /// RGB565 with both bytes swapped, as cameras with an 8-bit port and a little-endian processor have it.
+///
+/// ```
+/// use sinew_core::vision::front_end::pixel_format::{PixelFormat, Rgb565, SwappedRgb565};
+///
+/// // Red, as the bytes f8 00 arrive and a little-endian processor reads them.
+/// let red = u16::from_le_bytes([0xf8, 0x00]);
+/// let [key, _] = SwappedRgb565::keys([red, red]);
+/// assert_eq!(SwappedRgb565::rgb(key), [255, 0, 0]);
+/// assert_ne!(Rgb565::rgb(red), [255, 0, 0], "the wrong format finds another colour");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SwappedRgb565;
 
 /// Y in the low byte; in the high byte U of the pair in the left pixel, V in the right one (Rec. 601).
 ///
 /// The key holds 6 bits of V (the highest), 6 of U, 4 of Y.
+///
+/// ```
+/// use sinew_core::vision::front_end::pixel_format::{PixelFormat, Yuyv};
+///
+/// // Grey: Y 128 in the low byte of both pixels, U and V 128 in the high bytes.
+/// let pair = [u16::from_le_bytes([128, 128]); 2];
+/// let [left, right] = Yuyv::keys(pair);
+/// assert_eq!(left, right, "both have the pair's chrominance");
+/// assert!(Yuyv::rgb(left).iter().all(|channel| channel.abs_diff(128) < 14), "the middle of a cell");
+/// assert_eq!(Yuyv::luminances(&[pair[0]; 8]).to_le_bytes(), [64; 4], "half of Y");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Yuyv;
 

@@ -11,6 +11,22 @@ pub const TABLE_WORDS: usize = 1 << 11;
 /// One decision bit for each of the 65536 keys of a [`PixelFormat`]: bit `key % 32` of word `key / 32`.
 ///
 /// Made from a skin model when the program starts, and again whenever the model changes; or by a program and put in flash.
+///
+/// ```
+/// use sinew_core::vision::front_end::{pixel_format::Rgb565, skin_table::SkinTable};
+/// use sinew_core::vision::skin::GaussianSkin;
+///
+/// let mut table = SkinTable::<Rgb565>::new();
+/// table.learn(&GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?);
+/// let (hand, wall) = (200 >> 3 << 11 | 140 >> 2 << 5 | 110 >> 3, 20 >> 3 << 11 | 40 >> 2 << 5 | 90 >> 3);
+/// let mut bits = [0];
+/// table.classify_line(&[wall, hand, hand, wall], &mut bits);
+/// assert_eq!(bits, [0b0110]);
+/// // Its words can be written into a program and used from flash.
+/// let stored = SkinTable::<Rgb565>::from_words(*table.words());
+/// assert!(stored.is_skin(hand) && !stored.is_skin(wall));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct SkinTable<F> {
     words: [u32; TABLE_WORDS],
