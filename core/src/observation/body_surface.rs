@@ -81,8 +81,8 @@ struct CapsuleLanes<const BONES: usize> {
 pub(crate) struct DistanceBounds<const BONES: usize> {
     /// No point of the ball is nearer.
     pub least: [f32; BONES],
-    /// No point of the ball is farther.
-    pub most: [f32; BONES],
+    /// No point of the ball is farther than its root.
+    pub most_squared: [f32; BONES],
 }
 
 impl<const BONES: usize> BodySurface<BONES> {
@@ -120,8 +120,10 @@ impl<const BONES: usize> BodySurface<BONES> {
     #[must_use]
     pub(crate) fn distance_bounds(&self, centre_m: &Vec3, radius_m: f32) -> DistanceBounds<BONES> {
         let lanes = &self.lanes;
-        let mut bounds = DistanceBounds { least: [0.0; BONES], most: [0.0; BONES] };
-        for i in 0..BONES {
+        let mut bounds = DistanceBounds { least: [0.0; BONES], most_squared: [0.0; BONES] };
+        // Whole vectors, where the list ends with one.
+        let lanes_used = self.capsules.len().next_multiple_of(4).min(BONES);
+        for i in 0..lanes_used {
             let (x, y, z) =
                 (centre_m.x - lanes.start[0][i], centre_m.y - lanes.start[1][i], centre_m.z - lanes.start[2][i]);
             let (u, v, w) = (lanes.along[0][i], lanes.along[1][i], lanes.along[2][i]);
@@ -131,7 +133,7 @@ impl<const BONES: usize> BodySurface<BONES> {
             let r = lanes.radius[i];
             let (inner, outer) = (distance - radius_m, distance + radius_m);
             bounds.least[i] = max(inner - r, r - outer);
-            bounds.most[i] = sqrt_branch_free(outer * outer + r * r);
+            bounds.most_squared[i] = outer * outer + r * r;
         }
         bounds
     }

@@ -68,7 +68,8 @@ impl PointLikelihood {
 /// Lowers each entry of `least` to the squared distance of the block's points from one capsule's visible skin, squared metres.
 ///
 /// A point that is seen from p: (|x-p| - r)^2. A hidden one: |x-p|^2 - 2 r rho + r^2, with rho the part of x - p along v, or
-/// across the line of sight on the round ends; both are one formula in rho. Branch-free, so that it runs on vectors.
+/// across the line of sight on the round ends; both are one formula in rho. Most points are seen: the hidden case is computed only for blocks
+/// that have a point to which it matters. Loops are branch-free, so that they run on vectors.
 #[inline(always)]
 pub(super) fn lower_to<const BONES: usize>(
     least: &mut [f32; BLOCK_POINTS],
@@ -76,26 +77,72 @@ pub(super) fn lower_to<const BONES: usize>(
     surface: &BodySurface<BONES>,
     block: &PointBlock,
 ) {
-    let (a, u, c, v) = (&seen.capsule.start_m, &seen.along_m, &surface.camera_m, &seen.across);
-    let r = seen.capsule.radius_m;
+    let mut is_any_hidden = 0;
+    for i in 0..BLOCK_POINTS {
+        let at = NearAxis::of(seen, surface, block, i);
+        let distance = at.squared_to_skin(seen.capsule.radius_m, at.squared);
+        let is_seen = at.towards >= 0.0;
+        // No part of a capsule's skin is nearer than all of it.
+        is_any_hidden |= u32::from(!is_seen & (distance < least[i]));
+        least[i] = if is_seen { min(least[i], distance) } else { least[i] };
+    }
+    if is_any_hidden != 0 {
+        lower_hidden_to(least, seen, surface, block);
+    }
+}
+
+/// As [`lower_to`], of the points that are behind the capsule alone.
+#[inline(always)]
+fn lower_hidden_to<const BONES: usize>(
+    least: &mut [f32; BLOCK_POINTS],
+    seen: &SeenCapsule,
+    surface: &BodySurface<BONES>,
+    block: &PointBlock,
+) {
+    let v = &seen.across;
     let line_has_side = v.x != 0.0 || v.y != 0.0 || v.z != 0.0;
     for i in 0..BLOCK_POINTS {
+        let at = NearAxis::of(seen, surface, block, i);
+        let side = at.off[0] * v.x + at.off[1] * v.y + at.off[2] * v.z;
+        let per_sight = if at.t > 0.5 { seen.per_squared_sight[1] } else { seen.per_squared_sight[0] };
+        let beside = max(at.squared - at.towards * at.towards * per_sight, 0.0);
+        let inner = (at.share > 0.0) & (at.share < 1.0) & line_has_side;
+        let distance = at.squared_to_skin(seen.capsule.radius_m, if inner { side * side } else { beside });
+        least[i] = if at.towards < 0.0 { min(least[i], distance) } else { least[i] };
+    }
+}
+
+/// A point beside the axis of a capsule.
+struct NearAxis {
+    /// Where the nearest point of the axis' line lies: 0 at the start, 1 at the end; then inside the two.
+    share: f32,
+    t: f32,
+    /// From there to the point, metres.
+    off: [f32; 3],
+    /// Its square, square metres.
+    squared: f32,
+    /// Its product with the way to the camera: negative on the hidden side.
+    towards: f32,
+}
+
+impl NearAxis {
+    #[inline(always)]
+    fn of<const BONES: usize>(seen: &SeenCapsule, surface: &BodySurface<BONES>, block: &PointBlock, i: usize) -> Self {
+        let (a, u, c) = (&seen.capsule.start_m, &seen.along_m, &surface.camera_m);
         let (x, y, z) = (block.x[i], block.y[i], block.z[i]);
         let share = ((x - a.x) * u.x + (y - a.y) * u.y + (z - a.z) * u.z) * seen.per_squared_length;
         let t = min(max(share, 0.0), 1.0);
         let (px, py, pz) = (a.x + t * u.x, a.y + t * u.y, a.z + t * u.z);
-        let (wx, wy, wz) = (x - px, y - py, z - pz);
-        let (sx, sy, sz) = (c.x - px, c.y - py, c.z - pz);
-        let squared = wx * wx + wy * wy + wz * wz;
-        let towards = wx * sx + wy * sy + wz * sz;
-        let side = wx * v.x + wy * v.y + wz * v.z;
-        let per_sight = if t > 0.5 { seen.per_squared_sight[1] } else { seen.per_squared_sight[0] };
-        let beside = max(squared - towards * towards * per_sight, 0.0);
-        let inner = (share > 0.0) & (share < 1.0) & line_has_side;
-        let hidden = if inner { side * side } else { beside };
-        let rho = sqrt_branch_free(if towards >= 0.0 { squared } else { hidden });
-        let distance = max(squared - 2.0 * r * rho + r * r, 0.0);
-        least[i] = min(least[i], distance);
+        let off = [x - px, y - py, z - pz];
+        let squared = off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
+        let towards = off[0] * (c.x - px) + off[1] * (c.y - py) + off[2] * (c.z - pz);
+        Self { share, t, off, squared, towards }
+    }
+
+    /// |x-p|^2 - 2 r rho + r^2, where rho squared is given.
+    #[inline(always)]
+    fn squared_to_skin(&self, radius_m: f32, squared_rho: f32) -> f32 {
+        max(self.squared - 2.0 * radius_m * sqrt_branch_free(squared_rho) + radius_m * radius_m, 0.0)
     }
 }
 
@@ -162,10 +209,11 @@ impl NearCapsules {
     ) {
         let bounds = surface.distance_bounds(&block.centre_m, block.radius_m);
         let count = surface.capsules.len();
-        let mut bound = outlier_m;
-        for &most in bounds.most.iter().take(count) {
+        let mut bound = outlier_m * outlier_m;
+        for &most in bounds.most_squared.iter().take(count) {
             bound = min(bound, most);
         }
+        let bound = sqrt_branch_free(bound);
         self.count = 0;
         for (index, (&least, seen)) in bounds.least.iter().zip(&surface.capsules).enumerate() {
             // A hair wider, for rounding.

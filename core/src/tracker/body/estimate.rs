@@ -51,7 +51,7 @@ use crate::skeleton::{Joint, Limbs, Skeleton};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyEstimate<const BONES: usize, const ANGLES: usize> {
-    /// Coordinates of the mean pose, inside the limits.
+    /// Coordinates of the mean pose, inside the limits; held still where it trembles by less than the tracker's `tremble_m`.
     pub angles_rad: [f32; ANGLES],
     /// Ends of all bones in that pose, metres.
     pub ends_m: [Vec3; BONES],

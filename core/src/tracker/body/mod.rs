@@ -72,6 +72,7 @@ mod limb_by_limb;
 mod mean_rotation;
 mod observed;
 mod saved;
+mod steady;
 mod step;
 mod tempering;
 #[cfg(test)]

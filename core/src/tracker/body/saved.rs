@@ -45,6 +45,8 @@ where
         }
         places(&mut self.first_m, visitor);
         self.before.visit(visitor);
+        self.steady.told.visit(visitor);
+        places(&mut self.steady.off_m, visitor);
         visitor.reals(&mut self.angle_velocity_per_s, &FINITE);
         places(&mut self.velocity_m_per_s, visitor);
     }

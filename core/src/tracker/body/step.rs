@@ -3,6 +3,7 @@
 use super::alignment::RootAlignment;
 use super::estimate::{BodyEstimate, mean_of_group, spread_of_group};
 use super::observed::observed;
+use super::steady::SteadyPose;
 use super::tempering::temper;
 use crate::error::{ParameterError, Rule};
 use crate::math::{Vec3, clamp, min};
@@ -77,11 +78,13 @@ pub struct BodyOptions {
     pub limb_by_limb: bool,
     /// How the root is laid onto the points before particles are drawn; `None` leaves it to its process.
     pub alignment: Option<RootAlignment>,
+    /// How far estimates of a limb at rest tremble, metres: the pose that is told stays still within it. Zero tells each frame's mean.
+    pub tremble_m: f32,
 }
 
 /// What is used unless told otherwise.
 pub const DEFAULT_BODY_OPTIONS: BodyOptions =
-    BodyOptions { least_effective_share: 0.0, limb_by_limb: false, alignment: None };
+    BodyOptions { least_effective_share: 0.0, limb_by_limb: false, alignment: None, tremble_m: 0.0 };
 
 /// One frame.
 ///
@@ -261,6 +264,7 @@ pub struct BodyTracker<const BONES: usize, const ANGLES: usize, const N: usize, 
     options: BodyOptions,
     pub(super) first_m: [Vec3; BONES],
     pub(super) before: BodyParticle<BONES, ANGLES>,
+    pub(super) steady: SteadyPose<BONES, ANGLES>,
     pub(super) angle_velocity_per_s: [f32; ANGLES],
     pub(super) velocity_m_per_s: [Vec3; BONES],
     pub(super) seed: u64,
@@ -288,6 +292,9 @@ where
         if !(options.least_effective_share >= 0.0 && options.least_effective_share <= 1.0) {
             return Err(ParameterError::new("least_effective_share", Rule::Within { low: 0.0, high: 1.0 }));
         }
+        if !(options.tremble_m >= 0.0 && options.tremble_m.is_finite()) {
+            return Err(ParameterError::new("tremble_m", Rule::NotNegative));
+        }
         particles.as_mut().fill(*first);
         let mut ancestors = heapless::Vec::new();
         let weights = Weights::uniform(count)?;
@@ -302,6 +309,7 @@ where
             options,
             first_m: first.ends_m,
             before: *first,
+            steady: SteadyPose::new(*first),
             angle_velocity_per_s: [0.0; ANGLES],
             velocity_m_per_s: [Vec3::zeros(); BONES],
             seed,
@@ -440,10 +448,11 @@ where
         for bone in 0..BONES {
             self.velocity_m_per_s[bone] = (mean.ends_m[bone] - self.before.ends_m[bone]) / dt_s;
         }
+        let told = *self.steady.tell(scene, &mean, self.options.tremble_m, dt_s);
         self.before = mean;
         BodyEstimate {
-            angles_rad: mean.angles_rad,
-            ends_m: mean.ends_m,
+            angles_rad: told.angles_rad,
+            ends_m: told.ends_m,
             spread_m,
             observed,
             effective_sample_size,

@@ -99,6 +99,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             least_effective_share: if is_printed { PAPER_EFFECTIVE_SHARE } else { points.least_effective_share },
             limb_by_limb: points.limb_by_limb && !is_printed,
             alignment: tuning.root.alignment().filter(|_| is_aligned),
+            tremble_m: if is_printed { 0.0 } else { points.tremble_m },
         };
         let set = vec![first; particles];
         let tracker = Tracker::new(&first, (set.clone(), set), options, seed)?;

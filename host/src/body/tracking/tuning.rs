@@ -154,6 +154,8 @@ pub struct PointTuning {
     pub least_effective_share: f32,
     /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
     pub limb_by_limb: bool,
+    /// How far estimates of a limb at rest tremble, metres; the result stays still within it, zero tells each frame's mean.
+    pub tremble_m: f32,
 }
 
 /// Everything that a body tracker's results depend on, but the number of particles and the seed.
@@ -208,7 +210,13 @@ impl Default for BodyTuning {
             pays: false,
             draw_share: 0.44,
         };
-        let points = PointTuning { std_m: 0.15, outlier_m: 0.14, least_effective_share: 0.2, limb_by_limb: true };
+        let points = PointTuning {
+            std_m: 0.15,
+            outlier_m: 0.14,
+            least_effective_share: 0.2,
+            limb_by_limb: true,
+            tremble_m: 0.04,
+        };
         Self {
             root: RootTuning {
                 persistence: 0.5,
@@ -232,7 +240,13 @@ impl Default for BodyTuning {
             pulling_blocks: 32,
             angular: AngularTuning { persistence: 0.46, joint_std: ANGULAR_JOINTS },
             points,
-            guided_points: PointTuning { least_effective_share: 0.3, limb_by_limb: false, std_m: 0.1, outlier_m: 0.16 },
+            guided_points: PointTuning {
+                least_effective_share: 0.3,
+                limb_by_limb: false,
+                std_m: 0.1,
+                outlier_m: 0.16,
+                tremble_m: 0.04,
+            },
             self_penetration_std_m: 0.0,
             stick_gamma_std: 0.2,
             stick_reach_std_m: 0.02,

@@ -1,0 +1,197 @@
+//! The pose that is told: still where the body rests, and where the particles say as soon as it moves.
+//!
+//! The mean of a hundred particles trembles by a centimetre or two about a limb at rest. An ordinary low pass that takes this away is late
+//! whenever the limb moves. Two frames in a row tell the two apart: trembling is to the one side of what was told and then to the other, and a
+//! limb on its way is found ahead of it twice.
+
+use super::estimate::mean_of_group;
+use crate::kinematics::inverse::{Goal, PoseDensity, Solve};
+use crate::math::{Mat3, Vec3, max, min, sqrt};
+use crate::pik::motion::{BodyParticle, BodyScene};
+use crate::skeleton::Limbs;
+
+/// What lies within the trembling is followed too, in this time, seconds.
+const REST_S: f32 = 2.0;
+/// A way counts this much of itself if the frame before was not off to the same side: a limb that starts at once is not waited for.
+const ALONE: f32 = 0.5;
+/// Of the place of a bone's end: known to a centimetre, inverse square metres.
+const PRECISION: f32 = 1.0e4;
+/// Of an angle: known to 0.3 rad, inverse square radians.
+const STIFFNESS: f32 = 11.0;
+/// Steps of the solver.
+const SOLVER_STEPS: usize = 3;
+
+/// What is told of a body, frame after frame.
+#[derive(Debug, Clone)]
+pub(super) struct SteadyPose<const BONES: usize, const ANGLES: usize> {
+    /// The pose that was told last.
+    pub(super) told: BodyParticle<BONES, ANGLES>,
+    /// How far from the pose told before it the particles found the ends of all bones, metres.
+    pub(super) off_m: [Vec3; BONES],
+}
+
+impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
+    /// Nothing was told yet of a body at `first`.
+    pub(super) const fn new(first: BodyParticle<BONES, ANGLES>) -> Self {
+        Self { told: first, off_m: [Vec3::new(0.0, 0.0, 0.0); BONES] }
+    }
+
+    /// The pose to tell where the particles' mean is `now`: the ends of each limb's bones go from where they were told to where they are now,
+    /// the whole way if the limb moves by much more than `tremble_m`. The pose is the one between the two that has its ends there: were angles
+    /// alone mixed, a hand would tremble with the trunk's angles, for which the arm's no longer make up.
+    pub(super) fn tell(
+        &mut self,
+        scene: &BodyScene<BONES, ANGLES>,
+        now: &BodyParticle<BONES, ANGLES>,
+        tremble_m: f32,
+        dt_s: f32,
+    ) -> &BodyParticle<BONES, ANGLES> {
+        if !(tremble_m > 0.0) {
+            self.told = *now;
+            return &self.told;
+        }
+        let limbs = Limbs::of(&scene.skeleton);
+        let off_m: [Vec3; BONES] = core::array::from_fn(|bone| now.ends_m[bone] - self.told.ends_m[bone]);
+        let mut between_rad = self.told.angles_rad;
+        let mut goals = self.told.ends_m.map(|position_m| Goal {
+            bone: 0,
+            position_m,
+            precision: Mat3::from_diagonal_element(PRECISION),
+        });
+        for group in 0..limbs.count() {
+            let share = share(self.moved_m((&limbs, group), &off_m) / tremble_m, dt_s);
+            let (poses, weights) = ([self.told, *now], [1.0 - share, share]);
+            mean_of_group(&scene.skeleton, (&poses, &weights), (&limbs, group), &mut between_rad);
+            for (bone, goal) in goals.iter_mut().enumerate().filter(|(bone, _)| limbs.group(*bone) == group) {
+                goal.bone = bone;
+                goal.position_m += off_m[bone] * share;
+            }
+        }
+        let nearest = PoseDensity {
+            skeleton: &scene.skeleton,
+            root_m: Vec3::zeros(),
+            goals: &goals,
+            previous_rad: between_rad,
+            stiffness: [STIFFNESS; ANGLES],
+            held: 0,
+        };
+        let angles_rad = nearest.mode(SOLVER_STEPS).angles_rad;
+        self.off_m = off_m;
+        self.told = BodyParticle { angles_rad, ends_m: scene.posture(&angles_rad).ends, ..*now };
+        &self.told
+    }
+
+    /// How far the ends of a group's bones went, metres: root mean of the products of how far they are off with how far they were in the frame
+    /// before.
+    fn moved_m(&self, (limbs, group): (&Limbs<BONES>, usize), off_m: &[Vec3; BONES]) -> f32 {
+        let (mut twice, mut once, mut count) = (0.0, 0.0, 0.0);
+        for bone in (0..BONES).filter(|&bone| limbs.group(bone) == group) {
+            twice += off_m[bone].dot(&self.off_m[bone]);
+            once += off_m[bone].dot(&off_m[bone]);
+            count += 1.0;
+        }
+        if count > 0.0 { sqrt(max(twice, ALONE * ALONE * once) / count) } else { 0.0 }
+    }
+}
+
+/// The part of the way that is gone by a limb that moved by so many times its trembling.
+fn share(moved: f32, dt_s: f32) -> f32 {
+    let rest = min(1.0, dt_s / REST_S);
+    // Beyond it the other term is one to the last digit, and its square is an ordinary number.
+    let squared = min(moved * moved, 1.0e6);
+    rest + (1.0 - rest) * (squared * squared / (1.0 + squared * squared))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observation::point_likelihood::PointLikelihood;
+    use crate::random::Stream;
+    use crate::skeleton::BodyMeasures;
+    use crate::skeleton::full_body::{BODY_ANGLES, BODY_BONES, FOREARMS, body_radii_m, full_body};
+    use proptest::prelude::*;
+
+    type Scene = BodyScene<BODY_BONES, BODY_ANGLES>;
+    type Pose = BodyParticle<BODY_BONES, BODY_ANGLES>;
+    const TREMBLE_M: f32 = 0.03;
+    const DT_S: f32 = 1.0 / 15.0;
+    const FRAMES: usize = 10;
+
+    fn scene() -> Scene {
+        let measures = BodyMeasures::of_height(1.75).unwrap();
+        let likelihood = PointLikelihood { std_m: 0.15, outlier_m: 0.14 };
+        let (skeleton, radii_m) = (full_body(&measures).unwrap(), body_radii_m(&measures));
+        BodyScene { skeleton, radii_m, camera_m: Vec3::zeros(), likelihood, self_penetration: None }
+    }
+
+    /// Somebody 3 m away whose right elbow is bent, with noise on all angles.
+    fn seen(scene: &Scene, elbow_rad: f32, noise_rad: f32, stream: &mut Stream) -> Pose {
+        let mut angles_rad = [0.0; BODY_ANGLES];
+        (angles_rad[2], angles_rad[16], angles_rad[19]) = (3.0, 0.5, elbow_rad);
+        for angle in &mut angles_rad[6..] {
+            *angle += noise_rad * stream.normal();
+        }
+        BodyParticle::at(&scene.skeleton, scene.skeleton.clamp(angles_rad))
+    }
+
+    /// How far the right wrist goes from frame to frame on the mean: as estimated and as told; and how far behind it is told at last.
+    fn followed(speed_rad_per_s: f32, noise_rad: f32) -> (f32, f32, f32) {
+        let (scene, mut stream) = (scene(), Stream::new(5, 0, 0));
+        let mut before = seen(&scene, 0.5, 0.0, &mut stream);
+        let mut steady = SteadyPose::new(before);
+        let (mut way_m, mut told_way_m, mut behind_m) = (0.0, 0.0, 0.0);
+        let wrist = FOREARMS[1];
+        for frame in 1..=FRAMES {
+            let now = seen(&scene, 0.5 + speed_rad_per_s * DT_S * frame as f32, noise_rad, &mut stream);
+            let told = steady.told.ends_m[wrist];
+            let next = steady.tell(&scene, &now, TREMBLE_M, DT_S).ends_m[wrist];
+            way_m += (now.ends_m[wrist] - before.ends_m[wrist]).norm() / FRAMES as f32;
+            told_way_m += (next - told).norm() / FRAMES as f32;
+            behind_m = (next - now.ends_m[wrist]).norm();
+            before = now;
+        }
+        (way_m, told_way_m, behind_m)
+    }
+
+    #[test]
+    fn an_arm_at_rest_hardly_trembles() {
+        let (way_m, told_way_m, _) = followed(0.0, 0.03);
+        assert!(way_m > 0.015 && told_way_m < 0.25 * way_m, "{way_m} {told_way_m}");
+    }
+
+    #[test]
+    fn an_arm_that_moves_is_not_left_behind() {
+        // The wrist goes 5 cm in a frame.
+        let (way_m, told_way_m, behind_m) = followed(3.0, 0.0);
+        assert!((0.9..1.05).contains(&(told_way_m / way_m)), "{way_m} {told_way_m}");
+        assert!(behind_m < 0.5 * way_m, "{way_m} {behind_m}");
+        // Half as fast, within the trembling: a frame behind.
+        let (way_m, told_way_m, behind_m) = followed(1.5, 0.0);
+        assert!((0.75..1.05).contains(&(told_way_m / way_m)), "{way_m} {told_way_m}");
+        assert!(behind_m < 1.3 * way_m, "{way_m} {behind_m}");
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_told_keeps_the_limits_and_lies_between(
+            seed in 0_u64..1000, noise_rad in 0.0_f32..0.1, tremble_m in 0.0_f32..0.2,
+        ) {
+            let (scene, mut stream) = (scene(), Stream::new(seed, 0, 0));
+            let [first, second, third] = core::array::from_fn(|_| seen(&scene, 0.8, noise_rad, &mut stream));
+            let mut steady = SteadyPose::new(first);
+            steady.tell(&scene, &second, tremble_m, DT_S);
+            let before = steady.told;
+            let next = *steady.tell(&scene, &third, tremble_m, DT_S);
+            prop_assert_eq!(next.angles_rad, scene.skeleton.clamp(next.angles_rad));
+            prop_assert_eq!(next.ends_m, scene.posture(&next.angles_rad).ends);
+            for bone in 0..BODY_BONES {
+                let [from, to, at] = [before, third, next].map(|pose| pose.ends_m[bone]);
+                // Where an angle has no room the ends need not be on the line between the two.
+                prop_assert!((at - from).norm() + (to - at).norm() < (to - from).norm() + 0.04, "bone {}", bone);
+            }
+            if tremble_m == 0.0 {
+                prop_assert_eq!(next.angles_rad, third.angles_rad);
+            }
+        }
+    }
+}
