@@ -77,16 +77,17 @@ pub(super) fn lower_to<const BONES: usize>(
     surface: &BodySurface<BONES>,
     block: &PointBlock,
 ) {
-    let mut is_any_hidden = 0;
+    // A word and no flag, so that the loop stays one over vectors.
+    let mut hidden_nearer = 0;
     for i in 0..BLOCK_POINTS {
         let at = NearAxis::of(seen, surface, block, i);
         let distance = at.squared_to_skin(seen.capsule.radius_m, at.squared);
         let is_seen = at.towards >= 0.0;
         // No part of a capsule's skin is nearer than all of it.
-        is_any_hidden |= u32::from(!is_seen & (distance < least[i]));
+        hidden_nearer |= u32::from(!is_seen & (distance < least[i]));
         least[i] = if is_seen { min(least[i], distance) } else { least[i] };
     }
-    if is_any_hidden != 0 {
+    if hidden_nearer != 0 {
         lower_hidden_to(least, seen, surface, block);
     }
 }
@@ -106,7 +107,7 @@ fn lower_hidden_to<const BONES: usize>(
         let side = at.off[0] * v.x + at.off[1] * v.y + at.off[2] * v.z;
         let per_sight = if at.t > 0.5 { seen.per_squared_sight[1] } else { seen.per_squared_sight[0] };
         let beside = max(at.squared - at.towards * at.towards * per_sight, 0.0);
-        let inner = (at.share > 0.0) & (at.share < 1.0) & line_has_side;
+        let inner = (at.t > 0.0) & (at.t < 1.0) & line_has_side;
         let distance = at.squared_to_skin(seen.capsule.radius_m, if inner { side * side } else { beside });
         least[i] = if at.towards < 0.0 { min(least[i], distance) } else { least[i] };
     }
@@ -114,8 +115,7 @@ fn lower_hidden_to<const BONES: usize>(
 
 /// A point beside the axis of a capsule.
 struct NearAxis {
-    /// Where the nearest point of the axis' line lies: 0 at the start, 1 at the end; then inside the two.
-    share: f32,
+    /// Where the nearest point of the axis lies: 0 at the start, 1 at the end.
     t: f32,
     /// From there to the point, metres.
     off: [f32; 3],
@@ -136,7 +136,7 @@ impl NearAxis {
         let off = [x - px, y - py, z - pz];
         let squared = off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
         let towards = off[0] * (c.x - px) + off[1] * (c.y - py) + off[2] * (c.z - pz);
-        Self { share, t, off, squared, towards }
+        Self { t, off, squared, towards }
     }
 
     /// |x-p|^2 - 2 r rho + r^2, where rho squared is given.

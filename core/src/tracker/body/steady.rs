@@ -41,7 +41,7 @@ impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
     /// alone mixed, a hand would tremble with the trunk's angles, for which the arm's no longer make up.
     pub(super) fn tell(
         &mut self,
-        scene: &BodyScene<BONES, ANGLES>,
+        (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
         now: &BodyParticle<BONES, ANGLES>,
         tremble_m: f32,
         dt_s: f32,
@@ -50,7 +50,6 @@ impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
             self.told = *now;
             return &self.told;
         }
-        let limbs = Limbs::of(&scene.skeleton);
         let off_m: [Vec3; BONES] = core::array::from_fn(|bone| now.ends_m[bone] - self.told.ends_m[bone]);
         let mut between_rad = self.told.angles_rad;
         let mut goals = self.told.ends_m.map(|position_m| Goal {
@@ -59,9 +58,9 @@ impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
             precision: Mat3::from_diagonal_element(PRECISION),
         });
         for group in 0..limbs.count() {
-            let share = share(self.moved_m((&limbs, group), &off_m) / tremble_m, dt_s);
+            let share = share(self.moved_m((limbs, group), &off_m) / tremble_m, dt_s);
             let (poses, weights) = ([self.told, *now], [1.0 - share, share]);
-            mean_of_group(&scene.skeleton, (&poses, &weights), (&limbs, group), &mut between_rad);
+            mean_of_group(&scene.skeleton, (&poses, &weights), (limbs, group), &mut between_rad);
             for (bone, goal) in goals.iter_mut().enumerate().filter(|(bone, _)| limbs.group(*bone) == group) {
                 goal.bone = bone;
                 goal.position_m += off_m[bone] * share;
@@ -144,7 +143,7 @@ mod tests {
         for frame in 1..=FRAMES {
             let now = seen(&scene, 0.5 + speed_rad_per_s * DT_S * frame as f32, noise_rad, &mut stream);
             let told = steady.told.ends_m[wrist];
-            let next = steady.tell(&scene, &now, TREMBLE_M, DT_S).ends_m[wrist];
+            let next = steady.tell((&scene, &Limbs::of(&scene.skeleton)), &now, TREMBLE_M, DT_S).ends_m[wrist];
             way_m += (now.ends_m[wrist] - before.ends_m[wrist]).norm() / FRAMES as f32;
             told_way_m += (next - told).norm() / FRAMES as f32;
             behind_m = (next - now.ends_m[wrist]).norm();
@@ -179,9 +178,9 @@ mod tests {
             let (scene, mut stream) = (scene(), Stream::new(seed, 0, 0));
             let [first, second, third] = core::array::from_fn(|_| seen(&scene, 0.8, noise_rad, &mut stream));
             let mut steady = SteadyPose::new(first);
-            steady.tell(&scene, &second, tremble_m, DT_S);
+            steady.tell((&scene, &Limbs::of(&scene.skeleton)), &second, tremble_m, DT_S);
             let before = steady.told;
-            let next = *steady.tell(&scene, &third, tremble_m, DT_S);
+            let next = *steady.tell((&scene, &Limbs::of(&scene.skeleton)), &third, tremble_m, DT_S);
             prop_assert_eq!(next.angles_rad, scene.skeleton.clamp(next.angles_rad));
             prop_assert_eq!(next.ends_m, scene.posture(&next.angles_rad).ends);
             for bone in 0..BODY_BONES {

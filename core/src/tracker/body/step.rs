@@ -441,14 +441,16 @@ where
         }
         let posture = scene.posture(&angles_rad);
         let mean = BodyParticle { angles_rad, ends_m: posture.ends, ..self.before };
-        let observed = observed(&scene.surface(&posture), &Limbs::of(&scene.skeleton), frame.blocks);
+        // Told and observed limb by limb, also where whole poses are weighed.
+        let limbs = Limbs::of(&scene.skeleton);
+        let observed = observed(&scene.surface(&posture), &limbs, frame.blocks);
         for i in 0..ANGLES {
             self.angle_velocity_per_s[i] = (mean.angles_rad[i] - self.before.angles_rad[i]) / dt_s;
         }
         for bone in 0..BONES {
             self.velocity_m_per_s[bone] = (mean.ends_m[bone] - self.before.ends_m[bone]) / dt_s;
         }
-        let told = *self.steady.tell(scene, &mean, self.options.tremble_m, dt_s);
+        let told = *self.steady.tell((scene, &limbs), &mean, self.options.tremble_m, dt_s);
         self.before = mean;
         BodyEstimate {
             angles_rad: told.angles_rad,
