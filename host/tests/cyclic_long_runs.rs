@@ -2,16 +2,15 @@
 //! phase-coupled filter. Runs in release where `../shared/data` is at hand, and says so where not.
 
 mod shared_data;
+#[path = "shared_data/walks.rs"]
+mod walks;
 
-use sinew::cyclic::cuts::{self, Cut};
-use sinew::cyclic::cutting::{CuttingOptions, cycles};
-use sinew::cyclic::recording::{RecordingOptions, angles};
+use sinew::cyclic::CyclicModel;
 use sinew::cyclic::tracking::FilterName;
-use sinew::cyclic::{CutList, CyclicModel};
 use sinew::evaluate::cyclic::experiments::SIGMAS_DEG;
-use sinew::evaluate::cyclic::{Cell, Protocol, Setting, long_runs, test_cycles};
+use sinew::evaluate::cyclic::{Cell, LONG_RUN_SIGMA_DEG, Protocol, Setting, long_runs, test_cycles};
 use sinew::resume::Cells;
-use std::path::Path;
+use walks::{WALKS, list};
 
 /// Greatest relative error of the mean cadence from the third cycle on.
 const CADENCE: f64 = 0.02;
@@ -24,27 +23,13 @@ const SHORT_PHASE: [f64; 2] = [0.08, 0.15];
 /// Seeds of the noise (6 degrees).
 const SEEDS: [u64; 3] = [1, 2, 3];
 
-/// A cut list of the recordings in `data` whose cycles `sinew cut` finds, at least three in each.
-fn list(data: &Path, folder: &Path, files: &[&str]) -> CutList {
-    let options = RecordingOptions { rate_hz: Some(60.0), ..RecordingOptions::default() };
-    let mut all: Vec<Cut> = Vec::new();
-    for file in files {
-        let table = angles(&data.join(file), &options).unwrap().table;
-        let name = file.replace('/', "_").replace(".bvh", ".csv");
-        table.write(&folder.join(&name)).unwrap();
-        all.extend(cycles(&table, &name, CuttingOptions::default()).unwrap());
-    }
-    cuts::write(&folder.join("cuts.csv"), &all).unwrap();
-    CutList::read(&folder.join("cuts.csv")).unwrap()
-}
-
 fn holds(model: &str, files: &[&str]) {
     let Some(data) = shared_data::in_release("mocap") else { return };
     let folder = tempfile::tempdir().unwrap();
     let list = list(&data, folder.path(), files);
     let model = CyclicModel::from_option(model).unwrap();
     for seed in SEEDS {
-        let runs = long_runs(&list, &model, 60.0, &[FilterName::Coupled], seed).unwrap();
+        let runs = long_runs(&list, &model, 60.0, &[FilterName::Coupled], (LONG_RUN_SIGMA_DEG, seed)).unwrap();
         assert_eq!(runs.len(), files.len());
         for run in runs {
             let (name, counted) = (&run.name, run.counted_cycles - run.cycles);
@@ -64,18 +49,6 @@ fn holds(model: &str, files: &[&str]) {
         }
     }
 }
-
-/// Walks of two sources that no model was trained on.
-const WALKS: [&str; 8] = [
-    "bandai/dataset-1_walk_feminine_001.bvh",
-    "bandai/dataset-1_walk_happy_001.bvh",
-    "bandai/dataset-1_walk_tired_001.bvh",
-    "bandai/dataset-2_walk_elderly_001.bvh",
-    "bandai/dataset-2_walk_elderly_002.bvh",
-    "bandai/dataset-2_walk_normal_001.bvh",
-    "bandai/dataset-2_walk_normal_002.bvh",
-    "pymo/AV_8Walk_Meredith_HVHA_Rep1.bvh",
-];
 
 /// Share of the truth inside `coupled`'s 90 % band, over all angles and sigmas, and for each angle.
 const BAND: [f64; 2] = [0.85, 0.95];

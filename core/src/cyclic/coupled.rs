@@ -5,10 +5,9 @@
 
 use super::coupled_block::{AngleBlock, Basis, Outlook, PARTS, Spread};
 use super::coupled_search::{LOST_STD, Watch};
-use super::cycle_pair::{CyclePair, Information};
-use super::gate::{DEFAULT_GATE_SIGMAS, is_outlier};
-use super::log_product::LogProduct;
+use super::cycle_pair::CyclePair;
 use super::phase::wrap_position;
+use super::phase_evidence::{Judgement, PhaseEvidence};
 use super::phase_grid::PhaseGrid;
 use super::substeps::Substeps;
 use super::{AngleMeasurement, CyclicEstimate, MotionModel};
@@ -28,8 +27,6 @@ const SMALL_FIRST_STD_RAD: f32 = 0.025;
 const SPEED_SPREAD: f32 = 0.1;
 /// Rate per cycle at which constant and swing are forgotten.
 const FORGETTING: f32 = 0.02;
-/// Angles deviate together, so that thirteen of them say less about the phase than thirteen independent ones would.
-const PHASE_TEMPERING: f32 = 2.5;
 /// Share of the computed variance of an angle that is reported. The spread between people is taken wider and the evidence on the
 /// phase weaker than measured, for the gains' sake; without this share the bands hold more than they say.
 pub const BAND_CALIBRATION: f32 = 0.9;
@@ -230,8 +227,9 @@ impl<const N: usize> CoupledFilter<N> {
         if self.watch.searching {
             return self.estimate_of_all_places(model, measurement, mode);
         }
-        let (log_likelihood, outlier) = self.correct_phase(model, measurement);
-        self.estimate(model, log_likelihood, outlier)
+        let judgement = self.correct_phase(model, measurement);
+        self.watch.fit.see(&judgement, measurement.step_frames());
+        self.estimate(model, judgement.log_likelihood, judgement.outlier)
     }
 
     /// The estimate after `measurement` was taken in, without its likelihood.
@@ -242,12 +240,12 @@ impl<const N: usize> CoupledFilter<N> {
         self.estimate(model, 0.0, false)
     }
 
-    /// The extended Kalman correction about the present position; gives the log-likelihood and whether the gate was passed.
-    fn correct_phase(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> (f32, bool) {
+    /// The extended Kalman correction about the present position; gives how the measurement fitted the prediction.
+    fn correct_phase(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> Judgement {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), model.mean_pose_slope::<N>(point));
         let basis = Basis::at(self.position);
-        let mut evidence = Evidence::none();
+        let mut evidence = PhaseEvidence::none();
         let mut seen: [Option<(Outlook, f32, f32)>; N] = [None; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
@@ -264,7 +262,7 @@ impl<const N: usize> CoupledFilter<N> {
             }
             seen[i] = Some((outlook, noise, residual));
         }
-        let answer = evidence.judge(&self.pair);
+        let judgement = evidence.judge(&self.pair);
         let shift = self.pair.correct(&evidence.trusted);
         for (block, seen) in self.blocks.iter_mut().zip(&seen) {
             block.follow(shift);
@@ -276,7 +274,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.velocity = clamp(self.velocity + shift[1], -0.5, 0.5);
         self.move_by(clamp(shift[0], -0.5, 0.5));
         self.update_angles(model);
-        answer
+        judgement
     }
 
     /// Angles from the state.
@@ -321,43 +319,6 @@ impl<const N: usize> CoupledFilter<N> {
     #[must_use]
     pub const fn cycles(&self) -> i32 {
         self.cycles
-    }
-}
-
-/// What the angles of a frame say about (c, v), and how likely they are.
-struct Evidence {
-    /// Of all angles, as it is: for the likelihood.
-    all: Information,
-    /// Of the angles within the gate, tempered: for the correction.
-    trusted: Information,
-    /// Sum of squared residuals over their variance given (c, v).
-    squares: f32,
-    /// Product of those variances times 2 pi.
-    volume: LogProduct,
-    count: usize,
-}
-
-impl Evidence {
-    const fn none() -> Self {
-        Self { all: Information::NONE, trusted: Information::NONE, squares: 0.0, volume: LogProduct::one(), count: 0 }
-    }
-
-    fn add(&mut self, gradient: &[f32; 2], variance: f32, residual: f32) {
-        self.all.add(gradient, 1.0 / variance, residual);
-        self.squares += residual * residual / variance;
-        self.volume.multiply(TAU * variance);
-        self.count += 1;
-    }
-
-    fn trust(&mut self, gradient: &[f32; 2], variance: f32, residual: f32) {
-        self.trusted.add(gradient, 1.0 / (PHASE_TEMPERING * variance), residual);
-    }
-
-    /// Log-density of all angles together, and whether they lie beyond the gate.
-    fn judge(&self, pair: &CyclePair) -> (f32, bool) {
-        let (explained, log_growth) = pair.explained(&self.all);
-        let squares = max(self.squares - explained, 0.0);
-        (-0.5 * (squares + self.volume.ln() + log_growth), is_outlier(squares, self.count, DEFAULT_GATE_SIGMAS))
     }
 }
 

@@ -7,6 +7,7 @@ use super::gate::{DEFAULT_GATE_SIGMAS, is_outlier};
 use super::log_product::LogProduct;
 use super::phase::position_difference;
 use super::phase_grid::{POSITIONS, PhaseMode};
+use super::prediction_fit::PredictionFit;
 use super::{AngleMeasurement, CyclicEstimate, MotionModel};
 use crate::math::{abs, clamp, max, wrap_angle};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
@@ -18,6 +19,8 @@ pub(super) const LOST_STD: f32 = 0.15;
 const WATCH_FRAMES: f32 = 3.0;
 /// Weight of a place of which the grid is sure.
 const SURE: f32 = 0.9;
+/// Cycles at the mean speed in which a person is learned: after them a filter that predicts well is not sent elsewhere.
+const LEARNING_CYCLES: f32 = 0.6;
 /// Way beyond the usual one between the filter's position and the grid's that is strange, cycles.
 const STRANGE_WAY: f32 = 0.12;
 /// Frames in a row of a strange way after which the filter takes the grid's place: a tenth of a second at 60 Hz.
@@ -40,6 +43,8 @@ pub(super) struct Watch {
     strange_frames: f32,
     /// Whether the position is unknown, so that the pose is that of all places together.
     pub(super) searching: bool,
+    /// How well measurements are predicted.
+    pub(super) fit: PredictionFit,
 }
 
 impl SavedState for Watch {
@@ -48,13 +53,15 @@ impl SavedState for Watch {
         visitor.real(&mut self.usual_way, &(-USUAL_LIMIT..=USUAL_LIMIT));
         visitor.real(&mut self.strange_frames, &NOT_NEGATIVE);
         visitor.flag(&mut self.searching);
+        self.fit.visit(visitor);
     }
 }
 
 impl Watch {
     /// As if the position had been known for ever.
     pub(super) const fn new() -> Self {
-        Self { unwatched_frames: 0.0, usual_way: 0.0, strange_frames: 0.0, searching: false }
+        let fit = PredictionFit::new();
+        Self { unwatched_frames: 0.0, usual_way: 0.0, strange_frames: 0.0, searching: false, fit }
     }
 
     /// Compares the place `mode` with the filter's `position`, `frames` after the last time.
@@ -94,12 +101,9 @@ impl<const N: usize> CoupledFilter<N> {
             }
             return Some(mode);
         }
-        if self.velocity < 0.0 {
-            // The grid knows forward motion only.
-            return Some(mode);
-        }
         self.watch.compare(&mode, self.position, frames);
-        if self.watch.strange_frames > STRANGE_FRAMES {
+        let knows_better = self.watch.fit.is_good(LEARNING_CYCLES / model.mean_cycle_velocity());
+        if self.watch.strange_frames > STRANGE_FRAMES && !knows_better {
             // What was learned of the person since was learned at the wrong place.
             self.blocks = core::array::from_fn(|i| AngleBlock::unknown(&spread(model, i)));
             let position = mode.position - self.watch.usual_way;
@@ -120,6 +124,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.watch.searching = false;
         self.relocks = self.relocks.wrapping_add(1);
         self.watch.strange_frames = 0.0;
+        self.watch.fit.restart();
     }
 
     /// The pose over all places of the grid, each with its weight, corrected angle by angle. `mode` is the grid's place if it is known.

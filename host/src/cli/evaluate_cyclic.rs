@@ -6,7 +6,9 @@ use crate::cyclic::model::MODEL_VALUE;
 use crate::cyclic::training::{TrainingOptions, train};
 use crate::cyclic::{CutList, CyclicModel};
 use crate::evaluate::cyclic::experiments::FILTERS;
-use crate::evaluate::cyclic::{CyclicReport, Setting, figures::figures, long_runs, synthetic, test_cycles};
+use crate::evaluate::cyclic::{
+    CyclicReport, LONG_RUN_SIGMA_DEG, Setting, figures::figures, long_runs, synthetic, test_cycles,
+};
 use crate::output::OutputDir;
 use crate::resume::{Begun, Cells, Stop, text_crc32};
 use anyhow::{Result, ensure};
@@ -100,7 +102,7 @@ pub fn run_until(args: &EvaluateCyclicArgs, console: &Console, stop: Stop<'_>) -
             sparse_particles: setting.sparse_particles(&sparse_particles)?,
             starts: setting.starts(&particles)?,
             long_runs: match &args.long {
-                Some(path) => long_runs(&CutList::read(path)?, &model, args.rate, &FILTERS, 1)?,
+                Some(path) => long_runs(&CutList::read(path)?, &model, args.rate, &FILTERS, (LONG_RUN_SIGMA_DEG, 1))?,
                 None => Vec::new(),
             },
         })

@@ -10,8 +10,8 @@ use anyhow::{Result, ensure};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Measurement noise, degrees.
-const SIGMA_DEG: f64 = 6.0;
+/// Measurement noise of the evaluation's own runs, degrees.
+pub const LONG_RUN_SIGMA_DEG: f64 = 6.0;
 
 /// One recording with one filter.
 #[derive(Debug, Clone, Serialize)]
@@ -78,7 +78,7 @@ fn recordings(list: &CutList) -> Result<Vec<Recording>> {
     Ok(all)
 }
 
-/// Tracks every recording of `list` with every filter, with measurements whose noise is drawn from `seed`.
+/// Tracks every recording of `list` with every filter, with measurements whose noise of `sigma_deg` degrees is drawn from `seed`.
 ///
 /// # Errors
 /// A table that cannot be read, no three cycles in a row, a filter that cannot start.
@@ -87,12 +87,14 @@ pub fn long_runs(
     model: &CyclicModel,
     rate_hz: f64,
     filters: &[FilterName],
-    seed: u64,
+    (sigma_deg, seed): (f64, u64),
 ) -> Result<Vec<LongRun>> {
     let recordings = recordings(list)?;
     let jobs: Vec<(&Recording, FilterName)> =
         recordings.iter().flat_map(|recording| filters.iter().map(move |&filter| (recording, filter))).collect();
-    jobs.into_par_iter().map(|(recording, filter)| long_run(recording, model, rate_hz, filter, seed)).collect()
+    jobs.into_par_iter()
+        .map(|(recording, filter)| long_run(recording, model, rate_hz, filter, (sigma_deg, seed)))
+        .collect()
 }
 
 fn long_run(
@@ -100,11 +102,11 @@ fn long_run(
     model: &CyclicModel,
     rate_hz: f64,
     filter: FilterName,
-    seed: u64,
+    (sigma_deg, seed): (f64, u64),
 ) -> Result<LongRun> {
     let options = TrackingOptions {
         filter,
-        sigma_rad: SIGMA_DEG.to_radians(),
+        sigma_rad: sigma_deg.to_radians(),
         initial_cycle_position: Some(0.0),
         rate_hz: Some(rate_hz),
         ..TrackingOptions::default()

@@ -8,6 +8,6 @@ pub mod report;
 pub mod synthetic;
 
 pub use experiments::{Cell, Setting};
-pub use long_runs::{LongRun, long_runs};
+pub use long_runs::{LONG_RUN_SIGMA_DEG, LongRun, long_runs};
 pub use protocol::{Errors, Protocol, TestCycle, test_cycles};
 pub use report::CyclicReport;

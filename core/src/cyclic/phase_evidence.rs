@@ -1,0 +1,69 @@
+//! What the angles of a frame say about the cycle's state in the phase-coupled filter, and how well they fit its prediction.
+
+use super::cycle_pair::{CyclePair, Information};
+use super::gate::{DEFAULT_GATE_SIGMAS, is_outlier};
+use super::log_product::LogProduct;
+use core::f32::consts::TAU;
+
+/// Angles deviate together, so that thirteen of them say less about the phase than thirteen independent ones would.
+const TEMPERING: f32 = 2.5;
+/// No angle tells the phase better than this, rad: between people the shape of the mean cycle is not the same to the last degree,
+/// and an exact measurement of somebody else's shape would drag position and speed along.
+const SHAPE_STD_RAD: f32 = 0.08;
+
+/// Residuals of the angles seen, with their derivatives by (c, v).
+pub(super) struct PhaseEvidence {
+    /// Of all angles, as it is: for the likelihood.
+    all: Information,
+    /// Of the angles within the gate, tempered: for the correction.
+    pub(super) trusted: Information,
+    /// Sum of squared residuals over their variance given (c, v).
+    squares: f32,
+    /// Product of those variances times 2 pi.
+    volume: LogProduct,
+    count: usize,
+}
+
+/// How a measurement fitted its prediction.
+pub(super) struct Judgement {
+    /// ln of the density of all angles together.
+    pub(super) log_likelihood: f32,
+    /// Normalised innovation squared.
+    pub(super) squared: f32,
+    /// Angles seen.
+    pub(super) present: usize,
+    /// Whether the innovation lies beyond the gate.
+    pub(super) outlier: bool,
+}
+
+impl PhaseEvidence {
+    pub(super) const fn none() -> Self {
+        Self { all: Information::NONE, trusted: Information::NONE, squares: 0.0, volume: LogProduct::one(), count: 0 }
+    }
+
+    /// Counts an angle for the likelihood; `variance` is that of the residual given (c, v).
+    pub(super) fn add(&mut self, gradient: &[f32; 2], variance: f32, residual: f32) {
+        self.all.add(gradient, 1.0 / variance, residual);
+        self.squares += residual * residual / variance;
+        self.volume.multiply(TAU * variance);
+        self.count += 1;
+    }
+
+    /// Lets an angle correct the phase.
+    pub(super) fn trust(&mut self, gradient: &[f32; 2], variance: f32, residual: f32) {
+        let weight = 1.0 / (TEMPERING * variance + SHAPE_STD_RAD * SHAPE_STD_RAD);
+        self.trusted.add(gradient, weight, residual);
+    }
+
+    /// Judges all angles together; `pair` is what was known of (c, v) before.
+    pub(super) fn judge(&self, pair: &CyclePair) -> Judgement {
+        let (explained, log_growth) = pair.explained(&self.all);
+        let squared = crate::math::max(self.squares - explained, 0.0);
+        Judgement {
+            log_likelihood: -0.5 * (squared + self.volume.ln() + log_growth),
+            squared,
+            present: self.count,
+            outlier: is_outlier(squared, self.count, DEFAULT_GATE_SIGMAS),
+        }
+    }
+}
