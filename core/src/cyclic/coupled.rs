@@ -245,11 +245,12 @@ impl<const N: usize> CoupledFilter<N> {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), model.mean_pose_slope::<N>(point));
         let basis = Basis::at(self.position);
+        let scale = self.watch.fit.noise_scale();
         let mut evidence = PhaseEvidence::none();
         let mut seen: [Option<(Outlook, f32, f32)>; N] = [None; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
-            let noise = measurement.std_rad()[i] * measurement.std_rad()[i];
+            let noise = scale * measurement.std_rad()[i] * measurement.std_rad()[i];
             let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
             let mut outlook = self.blocks[i].outlook(&basis, slope[i]);
             let given = outlook.variance + noise;

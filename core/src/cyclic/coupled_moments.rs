@@ -122,10 +122,11 @@ impl<const N: usize> CoupledFilter<N> {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), model.mean_pose_slope::<N>(point));
         let basis = Basis::at(self.position);
+        let scale = self.watch.fit.noise_scale();
         let mut opened = [0.0; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
-            let noise = measurement.std_rad()[i] * measurement.std_rad()[i];
+            let noise = scale * measurement.std_rad()[i] * measurement.std_rad()[i];
             let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
             let outlook = self.blocks[i].outlook(&basis, slope[i]);
             let total = outlook.variance + noise + self.pair.along(&outlook.gradient);

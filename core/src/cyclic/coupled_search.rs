@@ -19,9 +19,13 @@ pub(super) const LOST_STD: f32 = 0.15;
 const WATCH_FRAMES: f32 = 3.0;
 /// Weight of a place of which the grid is sure.
 const SURE: f32 = 0.9;
+/// Weight of a place that is likelier than all others together.
+const PROBABLE: f32 = 0.5;
 /// Cycles at the mean speed in which a person is learned: after them a filter that predicts well is not sent elsewhere.
 const LEARNING_CYCLES: f32 = 0.6;
-/// Way beyond the usual one between the filter's position and the grid's that is strange, cycles.
+/// Way beyond the usual one between the filter's position and the grid's up to which they agree, cycles.
+const AGREED_WAY: f32 = 0.06;
+/// Way beyond the usual one that is strange, cycles.
 const STRANGE_WAY: f32 = 0.12;
 /// Frames in a row of a strange way after which the filter takes the grid's place: a tenth of a second at 60 Hz.
 const STRANGE_FRAMES: f32 = 6.0;
@@ -68,6 +72,9 @@ impl Watch {
     fn compare(&mut self, mode: &PhaseMode, position: f32, frames: f32) {
         let strange = position_difference(position_difference(mode.position, position), self.usual_way);
         self.usual_way = clamp(self.usual_way + frames / USUAL_FRAMES * strange, -USUAL_LIMIT, USUAL_LIMIT);
+        if mode.weight > PROBABLE && abs(strange) < AGREED_WAY {
+            self.fit.agree(frames);
+        }
         let is_strange = mode.weight > SURE && abs(strange) > STRANGE_WAY;
         self.strange_frames = if is_strange { self.strange_frames + frames } else { 0.0 };
     }

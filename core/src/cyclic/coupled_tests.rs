@@ -163,6 +163,30 @@ fn it_follows_a_person_who_hurries_dawdles_or_stops_and_goes_on() {
     }
 }
 
+/// Somebody says 3 degrees, and it is 6: the filter finds that out, and its bands hold.
+#[test]
+fn noise_that_is_larger_than_told_is_noticed() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    for told in [0.05, 0.1] {
+        let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
+        let mut stream = Stream::new(7, 0, 0);
+        let (mut inside, mut all) = (0_u32, 0_u32);
+        for (frame, position) in walked(600, |_| 1.0).into_iter().enumerate() {
+            let seen = core::array::from_fn(|i| Some(person(i, position) + 0.1 * stream.normal()));
+            let estimate = filter.step(&model, &AngleMeasurement::new(&seen, told).unwrap());
+            for i in (0..N).filter(|_| frame > 200) {
+                let off = wrap_angle(estimate.angles_rad[i] - person(i, position)).abs();
+                inside += u32::from(off <= 1.645 * estimate.angle_variance_rad2[i].sqrt());
+                all += 1;
+            }
+        }
+        let share = f64::from(inside) / f64::from(all);
+        assert!((0.8..0.97).contains(&share), "told {told} rad: {share} inside the 90 % band");
+    }
+}
+
 #[test]
 fn a_steady_motion_is_never_searched_for_anew() {
     let table = table(0.001, 9);

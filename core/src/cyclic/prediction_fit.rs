@@ -1,7 +1,8 @@
-//! How well a filter predicts what it sees, beside how well it once did: a filter that has lost its place predicts worse.
+//! How well a filter predicts what it sees, beside how well it once did: a filter that has lost its place predicts worse, and one
+//! that knows it and still predicts badly was told of too little noise.
 
 use super::phase_evidence::Judgement;
-use crate::math::min;
+use crate::math::{clamp, min};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 
 /// Share of the newest frame in the recent misfit: about the last twenty frames.
@@ -14,7 +15,12 @@ const RISE: f32 = 0.002;
 /// frames of such a filter have a misfit below 1.1; when it had to be sent elsewhere the median was 1.4.
 const GOOD: f32 = 1.3;
 
-/// Normalised innovation squared per angle over the last frames and at its best.
+/// The same in a frame of which the filter's place is known to be right: about the last fifty frames.
+const AGREED_RISE: f32 = 0.02;
+/// Greatest factor by which noise may be larger than told, variances.
+const MOST_NOISE: f32 = 16.0;
+
+/// Normalised innovation squared per angle, by the noise that was told, over the last frames and at its best.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PredictionFit {
     recent: f32,
@@ -37,14 +43,27 @@ impl PredictionFit {
         Self { recent: 1.0, least: 1.0, frames: 0.0 }
     }
 
-    /// Takes in a frame, `step_frames` after the last one.
+    /// Factor of the noise variances with which the filter predicts as well as its covariances say: at least one.
+    pub(super) fn noise_scale(&self) -> f32 {
+        clamp(self.least, 1.0, MOST_NOISE)
+    }
+
+    /// Takes in a frame, `step_frames` after the last one, that was judged by the noise that [`Self::noise_scale`] makes of what was
+    /// told.
     pub(super) fn see(&mut self, judgement: &Judgement, step_frames: f32) {
         self.frames += step_frames;
         if judgement.present > 0 {
-            let misfit = min(judgement.squared / judgement.present as f32, MOST);
+            let misfit = self.noise_scale() * min(judgement.squared / judgement.present as f32, MOST);
             self.recent += NEWEST * (misfit - self.recent);
             let share = if self.recent < self.least { NEWEST } else { RISE };
             self.least += share * (self.recent - self.least);
+        }
+    }
+
+    /// Somebody else, who looks every `frames`, finds the filter's place right: what is left of the misfit is noise.
+    pub(super) fn agree(&mut self, frames: f32) {
+        if self.recent > self.least {
+            self.least += min(AGREED_RISE * frames, 1.0) * (self.recent - self.least);
         }
     }
 
@@ -63,10 +82,26 @@ impl PredictionFit {
 mod tests {
     use super::*;
 
+    /// Frames whose misfit by the noise told is `misfit`.
     fn seen(fit: &mut PredictionFit, misfit: f32, frames: usize) {
         for _ in 0..frames {
-            fit.see(&Judgement { log_likelihood: 0.0, squared: 13.0 * misfit, present: 13, outlier: false }, 1.0);
+            let squared = 13.0 * misfit / fit.noise_scale();
+            fit.see(&Judgement { log_likelihood: 0.0, squared, present: 13, outlier: false }, 1.0);
         }
+    }
+
+    #[test]
+    fn noise_is_larger_than_told_where_a_right_place_predicts_badly() {
+        let mut fit = PredictionFit::new();
+        seen(&mut fit, 4.0, 60);
+        assert!(fit.noise_scale() < 1.5, "it may be the place that is wrong");
+        for _ in 0..60 {
+            seen(&mut fit, 4.0, 3);
+            fit.agree(3.0);
+        }
+        assert!((3.8..4.01).contains(&fit.noise_scale()), "{fit:?}");
+        seen(&mut fit, 0.5, 200);
+        assert!(fit.noise_scale() == 1.0, "never smaller than told");
     }
 
     #[test]
