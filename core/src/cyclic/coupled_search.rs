@@ -108,6 +108,10 @@ impl<const N: usize> CoupledFilter<N> {
             }
             return Some(mode);
         }
+        if self.velocity < 0.0 && !self.watch.fit.is_bad() {
+            // The grid knows forward motion only.
+            return Some(mode);
+        }
         self.watch.compare(&mode, self.position, frames);
         let knows_better = self.watch.fit.is_good(LEARNING_CYCLES / model.mean_cycle_velocity());
         if self.watch.strange_frames > STRANGE_FRAMES && !knows_better {

@@ -188,6 +188,20 @@ fn noise_that_is_larger_than_told_is_noticed() {
 }
 
 #[test]
+fn somebody_who_walks_backwards_is_not_turned_round() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    for seed in 1..=5 {
+        let velocity = Some(-1.0 / 65.0);
+        let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), velocity).unwrap();
+        let ways = ways(&mut filter, &model, seed, &walked(400, |_| -1.0));
+        assert!(ways.iter().all(|way| way.abs() < 0.1), "seed {seed}");
+        assert!((-7..=-5).contains(&filter.cycles()), "seed {seed}: {} cycles", filter.cycles());
+    }
+}
+
+#[test]
 fn a_steady_motion_is_never_searched_for_anew() {
     let table = table(0.001, 9);
     let model = table.model().unwrap();

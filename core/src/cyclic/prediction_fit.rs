@@ -11,12 +11,13 @@ const NEWEST: f32 = 0.05;
 const MOST: f32 = 9.0;
 /// Share by which the least misfit follows the recent one upwards: about ten seconds at 60 Hz.
 const RISE: f32 = 0.002;
+/// The same for each frame of which the filter's place is known to be right: about the last fifty frames.
+const AGREED_RISE: f32 = 0.02;
 /// Times its least up to which the recent misfit is that of a filter that knows its place. On walks at nine tempos three in four
 /// frames of such a filter have a misfit below 1.1; when it had to be sent elsewhere the median was 1.4.
 const GOOD: f32 = 1.3;
-
-/// The same in a frame of which the filter's place is known to be right: about the last fifty frames.
-const AGREED_RISE: f32 = 0.02;
+/// Times its least from which the recent misfit is bad, whatever was said before.
+const BAD: f32 = 1.6;
 /// Greatest factor by which noise may be larger than told, variances.
 const MOST_NOISE: f32 = 16.0;
 
@@ -70,6 +71,11 @@ impl PredictionFit {
     /// The place was found anew: predictions are yet to be judged.
     pub(super) const fn restart(&mut self) {
         self.frames = 0.0;
+    }
+
+    /// Whether the filter predicts far worse than it once did.
+    pub(super) fn is_bad(&self) -> bool {
+        self.recent > BAD * self.least
     }
 
     /// Whether the filter, for `least_frames` at one place, predicts about as well as it ever did.
