@@ -51,8 +51,7 @@ pub fn split_turns(angle_rad: f32) -> (f32, i32) {
 #[inline]
 #[must_use]
 pub fn angle_difference(to_rad: f32, from_rad: f32) -> f32 {
-    let difference = to_rad - from_rad;
-    if difference > -PI && difference <= PI { difference } else { wrap_angle(difference) }
+    wrap_angle(to_rad - from_rad)
 }
 
 /// Sums of cosines and sines of weighted angles.

@@ -430,6 +430,9 @@ pub fn sin_cos(x_rad: f32) -> (f32, f32) {
 #[inline]
 #[must_use]
 pub fn wrap_angle(angle_rad: f32) -> f32 {
+    if angle_rad > -PI && angle_rad <= PI {
+        return angle_rad;
+    }
     let wrapped = angle_rad - TAU * floor((angle_rad + PI) / TAU);
     if wrapped <= -PI { PI } else { min(wrapped, PI) }
 }

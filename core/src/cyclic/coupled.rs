@@ -11,6 +11,7 @@ use super::phase_evidence::{Judgement, PhaseEvidence};
 use super::phase_grid::PhaseGrid;
 use super::substeps::Substeps;
 use super::{AngleMeasurement, CyclicEstimate, MotionModel};
+use crate::angle::split_turns;
 use crate::error::{ParameterError, Rule, finite, within};
 use crate::math::{abs, clamp, exp, max, min, round, sqrt, wrap_angle};
 use core::f32::consts::TAU;
@@ -289,9 +290,8 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Sets an angle; its turns follow from the shorter way since the last one.
     pub(super) fn turn_to(&mut self, index: usize, angle_rad: f32) {
-        let before = self.angles_rad[index];
-        let turned = round((before + wrap_angle(angle_rad - before) - angle_rad) / TAU) as i32;
-        self.turns[index] = self.turns[index].saturating_add(turned);
+        let (_, turns_less) = split_turns(angle_rad - self.angles_rad[index]);
+        self.turns[index] = self.turns[index].saturating_sub(turns_less);
         self.angles_rad[index] = angle_rad;
     }
 

@@ -183,45 +183,62 @@ impl AngleBlock {
                 rest_map[1][0] * v[REST] + rest_map[1][1] * v[SLOPE],
             ]
         };
-        let b = &self.regression;
-        let mut rows = self.covariance_matrix();
-        for i in 0..PARTS {
-            let left = [b[i][0] * z_rest[0] + b[i][1] * z_rest[1], b[i][0] * z_rest[1] + b[i][1] * z_rest[2]];
-            for j in 0..PARTS {
-                rows[i][j] += left[0] * b[j][0] + left[1] * b[j][1];
-            }
-        }
-        // Phi C Phi': rows, then columns by symmetry.
-        let half = rows.map(apply);
-        let mut moved = [[0.0; PARTS]; PARTS];
-        for j in 0..PARTS {
-            let column = apply([half[0][j], half[1][j], half[2][j], half[3][j], half[4][j]]);
-            for i in 0..PARTS {
-                moved[i][j] = column[i];
-            }
-        }
-        let stationary = spread.diagonal();
-        let forget = 1.0 - memory * memory;
-        for i in 0..REST {
-            moved[i][i] += forget * stationary[i];
-        }
-        let (p, r) = (stationary[REST], stationary[SLOPE]);
-        let m = &rest_map;
-        moved[REST][REST] += max(p - (m[0][0] * m[0][0] * p + m[0][1] * m[0][1] * r), 0.0);
-        let cross = -(m[0][0] * m[1][0] * p + m[0][1] * m[1][1] * r);
-        moved[REST][SLOPE] += cross;
-        moved[SLOPE][SLOPE] += max(r - (m[1][0] * m[1][0] * p + m[1][1] * m[1][1] * r), 0.0);
-        for i in 0..PARTS {
-            for j in 0..=i {
-                self.covariance[packed_index(i, j)] = moved[j][i];
-            }
-            self.covariance[packed_index(i, i)] *= 1.0 + ROUNDING;
-        }
+        self.spread_by(z_rest);
+        self.move_covariance(memory, &rest_map);
+        self.renew(spread, memory, &rest_map);
         self.mean = apply(self.mean);
+        let b = &self.regression;
         let column = |k: usize| -> [f32; PARTS] { core::array::from_fn(|i| b[i][k]) };
         let moved = [apply(column(0)), apply(column(1))];
         self.regression =
             core::array::from_fn(|i| core::array::from_fn(|k| moved[0][i] * z_map[0][k] + moved[1][i] * z_map[1][k]));
+    }
+
+    /// Adds what the parts owe to that in the old z which the new one leaves unexplained, (cc, cv, vv) in `z_rest`.
+    fn spread_by(&mut self, z_rest: &[f32; 3]) {
+        let b = &self.regression;
+        for i in 0..PARTS {
+            let left = [b[i][0] * z_rest[0] + b[i][1] * z_rest[1], b[i][0] * z_rest[1] + b[i][1] * z_rest[2]];
+            for j in 0..=i {
+                self.covariance[packed_index(i, j)] += left[0] * b[j][0] + left[1] * b[j][1];
+            }
+        }
+    }
+
+    /// Phi C Phi' for the lower triangle: the first three parts are scaled, the rest and its slope mixed.
+    fn move_covariance(&mut self, memory: f32, rest_map: &[[f32; 2]; 2]) {
+        let [[a, b], [c, d]] = *rest_map;
+        for i in 0..REST {
+            for j in 0..=i {
+                self.covariance[packed_index(i, j)] *= memory * memory;
+            }
+            let (rest, slope) = (memory * self.covariance(REST, i), memory * self.covariance(SLOPE, i));
+            self.covariance[packed_index(REST, i)] = a * rest + b * slope;
+            self.covariance[packed_index(SLOPE, i)] = c * rest + d * slope;
+        }
+        let (rr, rs, ss) = (self.covariance(REST, REST), self.covariance(SLOPE, REST), self.covariance(SLOPE, SLOPE));
+        let (rest, slope) = ([a * rr + b * rs, a * rs + b * ss], [c * rr + d * rs, c * rs + d * ss]);
+        self.covariance[packed_index(REST, REST)] = a * rest[0] + b * rest[1];
+        self.covariance[packed_index(SLOPE, REST)] = c * rest[0] + d * rest[1];
+        self.covariance[packed_index(SLOPE, SLOPE)] = c * slope[0] + d * slope[1];
+    }
+
+    /// Adds the variance that keeps the parts' spread stationary.
+    fn renew(&mut self, spread: &Spread, memory: f32, rest_map: &[[f32; 2]; 2]) {
+        let stationary = spread.diagonal();
+        let forget = 1.0 - memory * memory;
+        for i in 0..REST {
+            self.covariance[packed_index(i, i)] += forget * stationary[i];
+        }
+        let (p, r) = (stationary[REST], stationary[SLOPE]);
+        let m = rest_map;
+        let kept = |i: usize, j: usize| m[i][0] * m[j][0] * p + m[i][1] * m[j][1] * r;
+        self.covariance[packed_index(REST, REST)] += max(p - kept(0, 0), 0.0);
+        self.covariance[packed_index(SLOPE, REST)] -= kept(0, 1);
+        self.covariance[packed_index(SLOPE, SLOPE)] += max(r - kept(1, 1), 0.0);
+        for i in 0..PARTS {
+            self.covariance[packed_index(i, i)] *= 1.0 + ROUNDING;
+        }
     }
 
     /// Deviation at a basis, radians.

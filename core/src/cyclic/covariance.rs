@@ -8,6 +8,7 @@
 //! full rank ([`DIAGONAL_EXCESS`]), so that no direction's variance sinks below what `f32` resolves. A test runs ten
 //! million frames with gaps and finds no eigenvalue below zero.
 
+use super::joint_update::half;
 use super::semi_definite::{DIAGONAL_EXCESS, packed_index};
 use crate::math::sqrt;
 
@@ -131,30 +132,40 @@ impl<const N: usize> KinematicCovariance<N> {
 #[inline]
 fn interpolated<const N: usize>(before: &[f32], after: &[f32], fraction: f32, scale: f32) -> [[f32; N]; N] {
     let mut matrix = [[0.0; N]; N];
-    for i in 0..N {
-        let (from, row) = (packed_index(i, 0), &mut matrix[i]);
-        // Where the triangles have N rows, N numbers are at hand from there; those beyond the diagonal are written over.
-        if let (Some(before), Some(after)) = (numbers_from::<N>(before, from), numbers_from::<N>(after, from)) {
-            for j in 0..N {
-                row[j] = scale * (before[j] + fraction * (after[j] - before[j]));
-            }
-        } else {
-            let to = packed_index(i, i) + 1;
-            let (Some(before), Some(after)) = (before.get(from..to), after.get(from..to)) else { break };
-            for ((value, a), b) in row.iter_mut().zip(before).zip(after) {
-                *value = scale * (a + fraction * (b - a));
-            }
-        }
-        row[i] *= 1.0 + DIAGONAL_EXCESS;
+    let between = |(a, b): (&f32, &f32)| scale * (a + fraction * (b - a));
+    let (first, last) = matrix.split_at_mut(half::<N>());
+    for (i, row) in first.iter_mut().enumerate() {
+        fill_row::<N>(&mut row[..half::<N>()], i, before, after, between);
+    }
+    for (i, row) in last.iter_mut().enumerate() {
+        fill_row::<N>(row, half::<N>() + i, before, after, between);
     }
     mirror(&mut matrix);
     matrix
 }
 
-/// The N numbers from place `from` on.
-#[inline]
-fn numbers_from<const N: usize>(values: &[f32], from: usize) -> Option<&[f32; N]> {
-    values.get(from..)?.first_chunk()
+/// Row `i` of a lower triangle, of `between` two packed ones.
+#[inline(always)]
+fn fill_row<const N: usize>(
+    row: &mut [f32],
+    i: usize,
+    before: &[f32],
+    after: &[f32],
+    between: impl Fn((&f32, &f32)) -> f32,
+) {
+    let from = packed_index(i, 0);
+    let numbers = |values| <[f32]>::get(values, from..).and_then(<[f32]>::first_chunk::<N>);
+    // Where the triangles have N rows, N numbers are at hand from there; those beyond the diagonal are written over.
+    if let (Some(before), Some(after)) = (numbers(before), numbers(after)) {
+        for (j, value) in row.iter_mut().enumerate() {
+            *value = between((&before[j], &after[j]));
+        }
+    } else if let (Some(before), Some(after)) = (before.get(from..=from + i), after.get(from..=from + i)) {
+        for (value, pair) in row.iter_mut().zip(before.iter().zip(after)) {
+            *value = between(pair);
+        }
+    }
+    row[i] *= 1.0 + DIAGONAL_EXCESS;
 }
 
 /// Copies what stands below the diagonal to above it.
@@ -169,13 +180,7 @@ pub(super) fn mirror<const N: usize>(matrix: &mut [[f32; N]; N]) {
 
 #[inline]
 fn transpose<const N: usize>(matrix: &[[f32; N]; N]) -> [[f32; N]; N] {
-    let mut transposed = [[0.0; N]; N];
-    for i in 0..N {
-        for j in 0..N {
-            transposed[i][j] = matrix[j][i];
-        }
-    }
-    transposed
+    core::array::from_fn(|i| core::array::from_fn(|j| matrix[j][i]))
 }
 
 /// Scales row and column `index`; the entry on the diagonal is the caller's.

@@ -129,22 +129,30 @@ impl MotionModel<'_> {
 
     #[inline]
     fn row<const N: usize>(&self, table: &[f32], point: CyclePoint) -> [f32; N] {
-        let columns = self.angle_count();
-        let mut values = [0.0; N];
-        let neighbours = row_of(table, point.before, columns).iter().zip(row_of(table, point.after, columns));
-        for (value, (&a, &b)) in values.iter_mut().zip(neighbours) {
-            *value = a + point.fraction * (b - a);
-        }
-        values
+        self.between_neighbours(table, point, |a, b| a + point.fraction * (b - a))
     }
 
     #[inline]
     fn slope<const N: usize>(&self, table: &[f32], point: CyclePoint) -> [f32; N] {
+        self.between_neighbours(table, point, |a, b| (b - a) * self.position_count() as f32)
+    }
+
+    /// What `between` makes of each angle's numbers on both sides of a point; zero beyond the model's angles.
+    #[inline]
+    fn between_neighbours<const N: usize>(
+        &self,
+        table: &[f32],
+        point: CyclePoint,
+        between: impl Fn(f32, f32) -> f32,
+    ) -> [f32; N] {
         let columns = self.angle_count();
+        let (before, after) = (row_of(table, point.before, columns), row_of(table, point.after, columns));
+        if let (Ok(before), Ok(after)) = (<&[f32; N]>::try_from(before), <&[f32; N]>::try_from(after)) {
+            return core::array::from_fn(|i| between(before[i], after[i]));
+        }
         let mut values = [0.0; N];
-        let neighbours = row_of(table, point.before, columns).iter().zip(row_of(table, point.after, columns));
-        for (value, (&a, &b)) in values.iter_mut().zip(neighbours) {
-            *value = (b - a) * self.position_count() as f32;
+        for (value, (&a, &b)) in values.iter_mut().zip(before.iter().zip(after)) {
+            *value = between(a, b);
         }
         values
     }

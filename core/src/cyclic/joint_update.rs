@@ -1,8 +1,9 @@
 //! The measurement update by all angles seen in a frame, for independent noise.
 //!
-//! It is the update by one angle after the other, P <- P - w w' with w the measured column over the root of the innovation
-//! variance, in another order of the same sums: first all columns w, which are a Cholesky factor of the innovation's
-//! covariance continued to the rest of the state, then each entry of P at once. The angles seen come first, in `order`.
+//! It is the update by one angle after the other, P <- P - w w' / s with w the measured column and s the innovation's
+//! variance, in another order of the same sums: first all columns w, which continue the factor L of the innovation's
+//! covariance L D L' to the rest of the state, then each entry of P at once. No root stands between one angle and the next.
+//! The angles seen come first, in `order`.
 //!
 //! Once an angle is measured with variance r, row and column become r / s of what they were before that measurement; later
 //! columns are taken off that. So a precise measurement after a long gap leaves no difference of large numbers.
@@ -11,7 +12,6 @@ use super::AngleMeasurement;
 use super::covariance::{KinematicCovariance, MARGIN, SEVERE, mirror};
 use super::log_product::LogProduct;
 use crate::angle::angle_difference;
-use crate::math::sqrt;
 
 /// Rows and columns of the squares that the velocities' covariance is worked on in: sixteen sums stay in registers.
 const SQUARE: usize = 4;
@@ -81,18 +81,21 @@ pub(super) struct MeanShift<const N: usize> {
     pub(super) determinant: LogProduct,
 }
 
-/// Columns of the covariance that the angles seen call for, scaled by the roots of their innovation variances. A row here is
-/// a column there; angles in the order of [`SeenAngles`].
+/// Columns of the covariance that the angles seen call for. A row here is a column there; angles in the order of
+/// [`SeenAngles`].
 struct Columns<const N: usize> {
     /// Covariances with this angle and those after it when the measurement is taken in; what stands before has no meaning.
     ahead: [[f32; N]; N],
-    /// Those with the angles measured before, minus [`Self::left`] at the angle itself, and those with the angles never seen.
+    /// Those with the angles measured before, less the measurement's variance at the angle itself, and those with the angles
+    /// never seen.
     settled: [[f32; N]; N],
     /// Covariances with the velocities.
     velocity: [[f32; N]; N],
-    /// Covariance of each angle with itself.
-    own: [f32; N],
-    /// Part of it that is left after the measurement, times the root of the innovation variance.
+    /// Those divided by the innovation's variance.
+    weighed_velocity: [[f32; N]; N],
+    /// One over the variance of each innovation.
+    inverse_variance: [f32; N],
+    /// Part of the angle's covariances that the measurement leaves.
     left: [f32; N],
     /// Whether the measurement takes nearly all of the angle's variance away.
     is_severe: [bool; N],
@@ -109,7 +112,8 @@ impl<const N: usize> KinematicCovariance<N> {
             ahead: self.angle,
             settled: [[0.0; N]; N],
             velocity: self.cross,
-            own: [0.0; N],
+            weighed_velocity: [[0.0; N]; N],
+            inverse_variance: [0.0; N],
             left: [0.0; N],
             is_severe: [false; N],
         };
@@ -117,24 +121,31 @@ impl<const N: usize> KinematicCovariance<N> {
             columns.ahead = seen.order.map(|i| seen.order.map(|j| self.entry(i, j)));
             columns.velocity = seen.order.map(|i| self.cross.get(i).copied().unwrap_or([0.0; N]));
         }
-        let mut shift =
-            MeanShift { angles_rad: [0.0; N], velocities: [0.0; N], squared: 0.0, determinant: LogProduct::one() };
-        let mut ahead_rad = [0.0; N];
+        let (mut weighed, mut ahead_rad) = ([0.0; N], [0.0; N]);
+        let (mut squared, mut determinant) = (0.0, LogProduct::one());
         for place in 0..count {
-            let (variance, inverse_std) = columns.find(place, count, seen.noise_variance[place]);
-            let scaled = (seen.innovation_rad[place] - ahead_rad[place]) * inverse_std;
-            add_scaled(&mut ahead_rad, scaled, &columns.ahead[place]);
-            add_scaled(&mut shift.angles_rad, scaled, &columns.settled[place]);
-            shift.angles_rad[place] = ahead_rad[place];
-            add_scaled(&mut shift.velocities, scaled, &columns.velocity[place]);
-            shift.squared += scaled * scaled;
-            shift.determinant.multiply(variance);
+            let variance = columns.find(place, count, seen.noise_variance[place]);
+            let innovation_rad = seen.innovation_rad[place] - ahead_rad[place];
+            weighed[place] = innovation_rad * columns.inverse_variance[place];
+            add_scaled(&mut ahead_rad, weighed[place], &columns.ahead[place]);
+            squared += innovation_rad * weighed[place];
+            determinant.multiply(variance);
         }
-        shift.angles_rad = in_place(seen, &shift.angles_rad);
+        // A measured angle ends at its measurement less R times the weighed innovations, which the settled columns hold.
+        let mut shift = MeanShift {
+            angles_rad: combined(&weighed[..count], &columns.settled),
+            velocities: combined(&weighed[..count], &columns.velocity),
+            squared,
+            determinant,
+        };
+        add_scaled(&mut shift.angles_rad, 1.0, &seen.innovation_rad);
+        if count < N {
+            shift.angles_rad = in_place(seen, &shift.angles_rad);
+        }
         if keeps_velocities {
             shift.velocities = [0.0; N];
         } else {
-            self.reduce_velocities(&columns.velocity[..count]);
+            self.reduce_velocities(&columns, count);
         }
         self.reduce_angles(&columns, seen, count);
         self.loosen(&columns, seen, count);
@@ -151,13 +162,13 @@ impl<const N: usize> KinematicCovariance<N> {
             let first = if place < count { place + 1 } else { 0 };
             if place < half::<N>() {
                 for later in first..count {
-                    let factor = columns.settled[later][place];
+                    let factor = columns.inverse_variance[later] * columns.settled[later][place];
                     subtract_first_half(&mut angle, factor, &columns.settled[later]);
                     subtract_scaled(&mut cross, factor, &columns.velocity[later]);
                 }
             } else {
                 for later in first..count {
-                    let factor = columns.settled[later][place];
+                    let factor = columns.inverse_variance[later] * columns.settled[later][place];
                     subtract_scaled(&mut angle, factor, &columns.settled[later]);
                     subtract_scaled(&mut cross, factor, &columns.velocity[later]);
                 }
@@ -191,25 +202,27 @@ impl<const N: usize> KinematicCovariance<N> {
             }
             let (settled, ahead) = (&columns.settled[place], &columns.ahead[place]);
             let angle = in_place(seen, &core::array::from_fn(|j| if j < place { settled[j] } else { ahead[j] }));
+            let margin = MARGIN * columns.inverse_variance[place];
             for i in 0..N {
                 let velocity = columns.velocity[place][i];
-                self.angle[i][i] += MARGIN * angle[i] * angle[i];
-                self.velocity[i][i] += MARGIN * velocity * velocity;
+                self.angle[i][i] += margin * angle[i] * angle[i];
+                self.velocity[i][i] += margin * velocity * velocity;
             }
         }
     }
 
-    /// The velocities' covariance less the sum of w w', in squares of four rows and columns.
+    /// The velocities' covariance less the sum of w w' / s, in squares of four rows and columns.
     #[inline]
-    fn reduce_velocities(&mut self, columns: &[[f32; N]]) {
+    fn reduce_velocities(&mut self, columns: &Columns<N>, count: usize) {
+        let (velocity, weighed_velocity) = (&columns.velocity[..count], &columns.weighed_velocity[..count]);
         let (row_blocks, last_rows) = self.velocity.as_chunks_mut::<SQUARE>();
         let first_of_last = SQUARE * row_blocks.len();
         for (block, rows) in row_blocks.iter_mut().enumerate() {
             for part in 0..=block {
                 let mut square = [[0.0; SQUARE]; SQUARE];
-                for column in columns {
-                    let blocks = column.as_chunks::<SQUARE>().0;
-                    let (Some(w), Some(v)) = (blocks.get(block), blocks.get(part)) else { break };
+                for (column, weighed) in velocity.iter().zip(weighed_velocity) {
+                    let (w, v) = (weighed.as_chunks::<SQUARE>().0.get(block), column.as_chunks::<SQUARE>().0.get(part));
+                    let (Some(w), Some(v)) = (w, v) else { break };
                     for i in 0..SQUARE {
                         for j in 0..SQUARE {
                             square[i][j] += w[i] * v[j];
@@ -227,8 +240,8 @@ impl<const N: usize> KinematicCovariance<N> {
         }
         for (i, row) in last_rows.iter_mut().enumerate() {
             let mut sums = *row;
-            for column in columns {
-                subtract_scaled(&mut sums, column[first_of_last + i], column);
+            for (column, weighed) in velocity.iter().zip(weighed_velocity) {
+                subtract_scaled(&mut sums, weighed[first_of_last + i], column);
             }
             *row = sums;
         }
@@ -237,48 +250,43 @@ impl<const N: usize> KinematicCovariance<N> {
 }
 
 impl<const N: usize> Columns<N> {
-    /// Finds the columns of the measurement at `place` from those before; returns variance and inverse standard deviation of
-    /// its innovation.
+    /// Finds the columns of the measurement at `place` from those before; returns the variance of its innovation.
     #[inline]
-    fn find(&mut self, place: usize, count: usize, noise_variance: f32) -> (f32, f32) {
+    fn find(&mut self, place: usize, count: usize, noise_variance: f32) -> f32 {
         let (mut ahead, mut settled, mut velocity) = (self.ahead[place], [0.0; N], self.velocity[place]);
         if place < half::<N>() {
             for earlier in 0..place {
-                let factor = self.ahead[earlier][place];
+                let factor = self.inverse_variance[earlier] * self.ahead[earlier][place];
                 subtract_scaled(&mut ahead, factor, &self.ahead[earlier]);
                 subtract_first_half(&mut settled, factor, &self.settled[earlier]);
                 subtract_scaled(&mut velocity, factor, &self.velocity[earlier]);
             }
         } else {
             for earlier in 0..half::<N>() {
-                let factor = self.ahead[earlier][place];
+                let factor = self.inverse_variance[earlier] * self.ahead[earlier][place];
                 subtract_second_half(&mut ahead, factor, &self.ahead[earlier]);
                 subtract_first_half(&mut settled, factor, &self.settled[earlier]);
                 subtract_scaled(&mut velocity, factor, &self.velocity[earlier]);
             }
             for earlier in half::<N>()..place {
-                let factor = self.ahead[earlier][place];
+                let factor = self.inverse_variance[earlier] * self.ahead[earlier][place];
                 subtract_second_half(&mut ahead, factor, &self.ahead[earlier]);
                 subtract_scaled(&mut settled, factor, &self.settled[earlier]);
                 subtract_scaled(&mut velocity, factor, &self.velocity[earlier]);
             }
         }
         let variance = ahead[place] + noise_variance;
-        let inverse_std = 1.0 / sqrt(variance);
-        self.own[place] = inverse_std * ahead[place];
-        self.left[place] = noise_variance * inverse_std;
+        let inverse_variance = 1.0 / variance;
+        self.inverse_variance[place] = inverse_variance;
+        self.left[place] = noise_variance * inverse_variance;
         self.is_severe[place] = noise_variance < SEVERE * variance;
-        for j in 0..N {
-            ahead[j] *= inverse_std;
-            settled[j] *= inverse_std;
-            velocity[j] *= inverse_std;
-        }
         (self.ahead[place], self.settled[place], self.velocity[place]) = (ahead, settled, velocity);
-        self.settled[place][place] = -self.left[place];
+        self.weighed_velocity[place] = velocity.map(|covariance| inverse_variance * covariance);
+        self.settled[place][place] = -noise_variance;
         for j in count..N {
             self.settled[place][j] = self.ahead[place][j];
         }
-        (variance, inverse_std)
+        variance
     }
 
     /// Covariances of the angle at `place` with angles and velocities right after its own measurement, where later
@@ -292,7 +300,7 @@ impl<const N: usize> Columns<N> {
                 angle[j] *= left;
                 velocity[j] *= left;
             }
-            angle[place] = left * self.own[place];
+            angle[place] = left * self.ahead[place][place];
             (angle, velocity)
         } else {
             let mut angle = self.ahead[place];
@@ -303,7 +311,7 @@ impl<const N: usize> Columns<N> {
 }
 
 /// Numbers of a row that come first, whole blocks: the rows of a triangle that begin or end there need the other half alone.
-const fn half<const N: usize>() -> usize {
+pub(super) const fn half<const N: usize>() -> usize {
     let half = (N / 2).div_ceil(SQUARE) * SQUARE;
     if half < N { half } else { N }
 }
@@ -318,6 +326,16 @@ fn in_place<const N: usize>(seen: &SeenAngles<N>, ordered: &[f32; N]) -> [f32; N
         }
     }
     values
+}
+
+/// The sum of `rows`, each with its factor.
+#[inline]
+fn combined<const N: usize>(factors: &[f32], rows: &[[f32; N]; N]) -> [f32; N] {
+    let mut sum = [0.0; N];
+    for (&factor, row) in factors.iter().zip(rows) {
+        add_scaled(&mut sum, factor, row);
+    }
+    sum
 }
 
 /// `target` += `factor` `direction`.

@@ -230,11 +230,8 @@ impl PhaseGrid {
     #[must_use]
     pub fn mode(&self, model: &MotionModel<'_>) -> PhaseMode {
         let sums = self.by_position();
-        let reach = (MODE_REACH * POSITIONS as f32) as usize;
-        let near = |cell: usize| (0..=2 * reach).map(|k| sums[(cell + POSITIONS + k - reach) % POSITIONS]).sum::<f32>();
         let mut best = (0, 0.0);
-        for cell in 0..POSITIONS {
-            let weight = near(cell);
+        for (cell, weight) in sums_around(&sums).into_iter().enumerate() {
             if weight > best.1 {
                 best = (cell, weight);
             }
@@ -261,6 +258,20 @@ impl PhaseGrid {
         let covariance = [cc + cell * cell / 12.0, cv, vv + step * step];
         PhaseMode { weight, position: wrap_position(centre + way), velocity, covariance }
     }
+}
+
+/// Sum of the cells within [`MODE_REACH`] of each, around the circle.
+fn sums_around(cells: &[f32; POSITIONS]) -> [f32; POSITIONS] {
+    const REACH: usize = (MODE_REACH * POSITIONS as f32) as usize;
+    let mut sums = [0.0; POSITIONS];
+    for shift in 0..=2 * REACH {
+        let mut shifted = *cells;
+        shifted.rotate_left((POSITIONS + shift - REACH) % POSITIONS);
+        for (sum, value) in sums.iter_mut().zip(shifted) {
+            *sum += value;
+        }
+    }
+    sums
 }
 
 /// Likelihood of a measurement at each position of the table, the greatest being one.
