@@ -6,10 +6,12 @@
 use super::coupled_block::{AngleBlock, Basis, Outlook, PARTS, Spread};
 use super::coupled_search::{LOST_STD, Watch};
 use super::cycle_pair::CyclePair;
+use super::measured_path::MeasuredPath;
 use super::phase::wrap_position;
 use super::phase_evidence::{Judgement, PhaseEvidence};
 use super::phase_grid::PhaseGrid;
 use super::substeps::Substeps;
+use super::winding::Winding;
 use super::{AngleMeasurement, CyclicEstimate, MotionModel};
 use crate::angle::split_turns;
 use crate::error::{ParameterError, Rule, finite, within};
@@ -33,6 +35,8 @@ const FORGETTING: f32 = 0.02;
 pub const BAND_CALIBRATION: f32 = 0.9;
 /// Parts of a step over frames that were left out: what a step costs does not grow with the gap before it.
 pub const MOST_SUBSTEPS: u8 = 6;
+/// Least part of the cycle, to either side, over which the mean pose's slope is taken: half a stored position of a hundred.
+const LEAST_REACH: f32 = 0.005;
 /// An angle this many standard deviations off says nothing about the phase, and its own constant is learned anew.
 pub(super) const GATE_SIGMAS: f32 = 4.0;
 
@@ -70,6 +74,8 @@ pub struct CoupledFilter<const N: usize> {
     pub(super) cycles: i32,
     pub(super) grid: PhaseGrid,
     pub(super) watch: Watch,
+    pub(super) winding: Winding<N>,
+    pub(super) path: MeasuredPath<N>,
     /// Times that the position was taken from the grid.
     pub(super) relocks: u16,
 }
@@ -106,6 +112,8 @@ impl<const N: usize> CoupledFilter<N> {
             cycles: 0,
             grid: PhaseGrid::uniform(),
             watch: Watch::new(),
+            winding: Winding::new(),
+            path: MeasuredPath::new(),
             relocks: 0,
         }
     }
@@ -170,6 +178,8 @@ impl<const N: usize> CoupledFilter<N> {
         self.cycles = 0;
         self.grid.begin_uniform();
         self.watch = Watch::new();
+        self.winding = Winding::new();
+        self.path = MeasuredPath::new();
         self.relocks = 0;
         Ok(())
     }
@@ -184,6 +194,7 @@ impl<const N: usize> CoupledFilter<N> {
         });
         self.cycles = 0;
         self.relocks = 0;
+        self.winding = Winding::new();
     }
 
     /// One frame: predict over the measurement's step, then correct by the angles seen.
@@ -244,7 +255,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// The extended Kalman correction about the present position; gives how the measurement fitted the prediction.
     fn correct_phase(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> Judgement {
         let point = model.point(self.position);
-        let (pose, slope) = (model.mean_pose_rad::<N>(point), model.mean_pose_slope::<N>(point));
+        let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);
         let scale = self.watch.fit.noise_scale();
         let mut evidence = PhaseEvidence::none();
@@ -255,11 +266,16 @@ impl<const N: usize> CoupledFilter<N> {
             let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
             let mut outlook = self.blocks[i].outlook(&basis, slope[i]);
             let given = outlook.variance + noise;
-            evidence.add(&outlook.gradient, given, residual);
-            if residual * residual > GATE_SIGMAS * GATE_SIGMAS * (given + self.pair.along(&outlook.gradient)) {
+            let (total, is_believed) = (given + self.pair.along(&outlook.gradient), self.winding.is_believed(i));
+            if is_believed {
+                evidence.add(&outlook.gradient, given, residual);
+            } else {
+                evidence.add_apart(total, residual);
+            }
+            if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total {
                 self.blocks[i].loosen_offset(residual * residual);
                 outlook = self.blocks[i].outlook(&basis, slope[i]);
-            } else {
+            } else if is_believed {
                 evidence.trust(&outlook.gradient, given, residual);
             }
             seen[i] = Some((outlook, noise, residual));
@@ -275,17 +291,35 @@ impl<const N: usize> CoupledFilter<N> {
         }
         self.velocity = clamp(self.velocity + shift[1], -0.5, 0.5);
         self.move_by(clamp(shift[0], -0.5, 0.5));
-        self.update_angles(model);
+        self.update_angles(model, measurement);
         judgement
     }
 
+    /// Change of the mean pose with the position, rad per cycle, over as much of the cycle as the position is uncertain by (statistical
+    /// linearisation): where the mean pose jumps its tangent would hold the position there.
+    pub(super) fn pose_slope(&self, model: &MotionModel<'_>) -> [f32; N] {
+        model.mean_pose_secant(self.position, max(sqrt(self.pair.cc), LEAST_REACH))
+    }
+
     /// Angles from the state.
-    fn update_angles(&mut self, model: &MotionModel<'_>) {
+    fn update_angles(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
         let pose = model.mean_pose_rad::<N>(model.point(self.position));
         let basis = Basis::at(self.position);
+        self.winding.complete(self.cycles);
         for i in 0..model.angle_count().min(N) {
-            self.turn_to(i, wrap_angle(pose[i] + self.blocks[i].deviation(&basis)));
+            let (before, angle) = (self.angles_rad[i], wrap_angle(pose[i] + self.blocks[i].deviation(&basis)));
+            self.turn_to(i, angle);
+            let measured = measurement.angle_rad(i).map(|angle_rad| (angle_rad, measurement.std_rad()[i]));
+            let beyond = self.path.turns(i, [before, angle], measured);
+            self.turns[i] = self.turns[i].saturating_add(beyond);
+            let turns_a_cycle = model.parts().turns_per_cycle.get(i).map_or(0, |turns| i32::from(*turns));
+            self.winding.see(
+                i,
+                self.turns[i].wrapping_sub(turns_a_cycle.wrapping_mul(self.cycles)),
+                self.angles_rad[i] - pose[i],
+            );
         }
+        self.winding.begin();
     }
 
     /// Sets an angle; its turns follow from the shorter way since the last one.
@@ -296,7 +330,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     fn estimate(&self, model: &MotionModel<'_>, log_likelihood: f32, outlier: bool) -> CyclicEstimate<N> {
-        let slope = model.mean_pose_slope::<N>(model.point(self.position));
+        let slope = self.pose_slope(model);
         let basis = Basis::at(self.position);
         let mut angle_variance_rad2 = [0.0; N];
         for i in 0..model.angle_count().min(N) {

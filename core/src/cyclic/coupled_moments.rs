@@ -120,7 +120,7 @@ impl<const N: usize> CoupledFilter<N> {
     #[must_use]
     pub fn gated_variance_rad2(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> [f32; N] {
         let point = model.point(self.position);
-        let (pose, slope) = (model.mean_pose_rad::<N>(point), model.mean_pose_slope::<N>(point));
+        let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);
         let scale = self.watch.fit.noise_scale();
         let mut opened = [0.0; N];

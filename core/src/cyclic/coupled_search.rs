@@ -8,6 +8,7 @@ use super::log_product::LogProduct;
 use super::phase::position_difference;
 use super::phase_grid::{POSITIONS, PhaseMode};
 use super::prediction_fit::PredictionFit;
+use super::winding::Winding;
 use super::{AngleMeasurement, CyclicEstimate, MotionModel};
 use crate::math::{abs, clamp, max, wrap_angle};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
@@ -136,6 +137,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.relocks = self.relocks.wrapping_add(1);
         self.watch.strange_frames = 0.0;
         self.watch.fit.restart();
+        self.winding = Winding::new();
     }
 
     /// The pose over all places of the grid, each with its weight, corrected angle by angle. `mode` is the grid's place if it is known.

@@ -21,6 +21,8 @@ impl<const N: usize> SavedState for CoupledFilter<N> {
         visitor.integer(&mut self.cycles);
         self.grid.visit(visitor);
         self.watch.visit(visitor);
+        self.winding.visit(visitor);
+        self.path.visit(visitor);
         let mut relocks = u32::from(self.relocks);
         visitor.word(&mut relocks);
         self.relocks = relocks as u16;

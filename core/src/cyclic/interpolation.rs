@@ -3,7 +3,7 @@
 use super::MotionModel;
 use super::phase::wrap_position;
 use super::semi_definite::packed_len;
-use crate::math::{min, sqrt};
+use crate::math::{floor, min, sqrt};
 use core::f32::consts::TAU;
 
 /// A cycle position as two neighbouring stored positions and the part of the way between them.
@@ -109,6 +109,21 @@ impl MotionModel<'_> {
         slope
     }
 
+    /// Change of the mean pose from `reach` before `position` to `reach` behind it, rad per cycle.
+    pub(super) fn mean_pose_secant<const N: usize>(&self, position: f32, reach: f32) -> [f32; N] {
+        let (from, to) = (position - reach, position + reach);
+        let before = self.mean_pose_rad::<N>(self.point(from));
+        let mut slope = self.mean_pose_rad::<N>(self.point(to));
+        let (seams, inverse) = (floor(to) - floor(from), 0.5 / reach);
+        for (value, start) in slope.iter_mut().zip(before) {
+            *value -= start;
+        }
+        for (value, &turns) in slope.iter_mut().zip(self.parts().turns_per_cycle) {
+            *value += seams * f32::from(turns) * TAU;
+        }
+        slope.map(|way| inverse * way)
+    }
+
     /// Writes the covariance of the acceleration, rad^2 per reference frame^4, as a packed lower triangle.
     #[inline]
     pub fn acceleration_covariance(&self, point: CyclePoint, packed: &mut [f32]) {
@@ -212,6 +227,16 @@ mod tests {
             let [swing_slope, wind_slope] = model.mean_pose_slope::<2>(point);
             prop_assert!((swing_slope - TAU * (TAU * c).cos()).abs() < 0.6);
             prop_assert!((wind_slope - TAU).abs() < 1.0e-3);
+        }
+
+        /// Over a part of the cycle, the seam in it or not.
+        #[test]
+        fn a_secant_has_the_mean_of_the_slopes_under_it(position in -3.0_f32..3.0, reach in 0.005_f32..0.2) {
+            let (pose, covariance) = tables();
+            let [swing, wind] = model(&pose, &covariance).mean_pose_secant::<2>(position, reach);
+            let mean = TAU * (TAU * position).cos() * (TAU * reach).sin() / (TAU * reach);
+            prop_assert!((swing - mean).abs() < 0.6, "{swing} {mean}");
+            prop_assert!((wind - TAU).abs() < 5.0e-3, "{wind}");
         }
     }
 

@@ -79,6 +79,7 @@ mod kalman_state;
 #[cfg(test)]
 mod kalman_tests;
 mod log_product;
+mod measured_path;
 pub mod measurement;
 pub mod model;
 pub mod model_bytes;
@@ -100,6 +101,7 @@ pub mod start;
 pub mod substeps;
 #[cfg(test)]
 pub mod synthetic;
+mod winding;
 
 pub use coupled::CoupledFilter;
 pub use coupled_moments::{BlockTransition, CoupledTransition};

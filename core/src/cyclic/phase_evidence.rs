@@ -22,15 +22,17 @@ pub(super) struct PhaseEvidence {
     /// Product of those variances times 2 pi.
     volume: LogProduct,
     count: usize,
+    /// Squared residuals over their whole variance, and number, of the angles that are judged each by itself.
+    apart: (f32, usize),
 }
 
 /// How a measurement fitted its prediction.
 pub(super) struct Judgement {
     /// ln of the density of all angles together.
     pub(super) log_likelihood: f32,
-    /// Normalised innovation squared.
+    /// Normalised innovation squared of the angles that wind as the mean cycle does.
     pub(super) squared: f32,
-    /// Angles seen.
+    /// Number of them.
     pub(super) present: usize,
     /// Whether the innovation lies beyond the gate.
     pub(super) outlier: bool,
@@ -38,7 +40,14 @@ pub(super) struct Judgement {
 
 impl PhaseEvidence {
     pub(super) const fn none() -> Self {
-        Self { all: Information::NONE, trusted: Information::NONE, squares: 0.0, volume: LogProduct::one(), count: 0 }
+        Self {
+            all: Information::NONE,
+            trusted: Information::NONE,
+            squares: 0.0,
+            volume: LogProduct::one(),
+            count: 0,
+            apart: (0.0, 0),
+        }
     }
 
     /// Counts an angle for the likelihood; `variance` is that of the residual given (c, v).
@@ -47,6 +56,15 @@ impl PhaseEvidence {
         self.squares += residual * residual / variance;
         self.volume.multiply(TAU * variance);
         self.count += 1;
+    }
+
+    /// Counts an angle that winds otherwise than the mean cycle: by itself, for the likelihood and as an outlier only; `variance` is
+    /// that of the residual.
+    pub(super) fn add_apart(&mut self, variance: f32, residual: f32) {
+        let (squares, count) = &mut self.apart;
+        *squares += residual * residual / variance;
+        *count += 1;
+        self.volume.multiply(TAU * variance);
     }
 
     /// Lets an angle correct the phase.
@@ -60,10 +78,10 @@ impl PhaseEvidence {
         let (explained, log_growth) = pair.explained(&self.all);
         let squared = crate::math::max(self.squares - explained, 0.0);
         Judgement {
-            log_likelihood: -0.5 * (squared + self.volume.ln() + log_growth),
+            log_likelihood: -0.5 * (squared + self.apart.0 + self.volume.ln() + log_growth),
             squared,
             present: self.count,
-            outlier: is_outlier(squared, self.count, DEFAULT_GATE_SIGMAS),
+            outlier: is_outlier(squared + self.apart.0, self.count + self.apart.1, DEFAULT_GATE_SIGMAS),
         }
     }
 }
