@@ -309,8 +309,7 @@ impl<const N: usize> CoupledFilter<N> {
         for i in 0..model.angle_count().min(N) {
             let (before, angle) = (self.angles_rad[i], wrap_angle(pose[i] + self.blocks[i].deviation(&basis)));
             self.turn_to(i, angle);
-            let measured = measurement.angle_rad(i).map(|angle_rad| (angle_rad, measurement.std_rad()[i]));
-            let beyond = self.path.turns(i, [before, angle], measured);
+            let beyond = self.path.turns(i, [before, angle], measurement);
             self.turns[i] = self.turns[i].saturating_add(beyond);
             let turns_a_cycle = model.parts().turns_per_cycle.get(i).map_or(0, |turns| i32::from(*turns));
             self.winding.see(

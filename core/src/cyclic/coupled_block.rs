@@ -199,8 +199,9 @@ impl AngleBlock {
         let b = &self.regression;
         for i in 0..PARTS {
             let left = [b[i][0] * z_rest[0] + b[i][1] * z_rest[1], b[i][0] * z_rest[1] + b[i][1] * z_rest[2]];
-            for j in 0..=i {
-                self.covariance[packed_index(i, j)] += left[0] * b[j][0] + left[1] * b[j][1];
+            let row = self.covariance.iter_mut().skip(packed_index(i, 0));
+            for (entry, right) in row.zip(b.iter().take(i + 1)) {
+                *entry += left[0] * right[0] + left[1] * right[1];
             }
         }
     }
@@ -208,10 +209,8 @@ impl AngleBlock {
     /// Phi C Phi' for the lower triangle: the first three parts are scaled, the rest and its slope mixed.
     fn move_covariance(&mut self, memory: f32, rest_map: &[[f32; 2]; 2]) {
         let [[a, b], [c, d]] = *rest_map;
+        self.covariance.iter_mut().take(packed_len(REST)).for_each(|entry| *entry *= memory * memory);
         for i in 0..REST {
-            for j in 0..=i {
-                self.covariance[packed_index(i, j)] *= memory * memory;
-            }
             let (rest, slope) = (memory * self.covariance(REST, i), memory * self.covariance(SLOPE, i));
             self.covariance[packed_index(REST, i)] = a * rest + b * slope;
             self.covariance[packed_index(SLOPE, i)] = c * rest + d * slope;

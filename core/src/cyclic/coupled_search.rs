@@ -5,6 +5,7 @@ use super::coupled_block::{AngleBlock, Basis, PARTS};
 use super::cycle_pair::CyclePair;
 use super::gate::{DEFAULT_GATE_SIGMAS, is_outlier};
 use super::log_product::LogProduct;
+use super::measured_path::MeasuredPath;
 use super::phase::position_difference;
 use super::phase_grid::{POSITIONS, PhaseMode};
 use super::prediction_fit::PredictionFit;
@@ -150,6 +151,7 @@ impl<const N: usize> CoupledFilter<N> {
         let mode = mode.unwrap_or_else(|| self.grid.mode(model));
         self.move_by(position_difference(mode.position, self.position));
         self.velocity = mode.velocity;
+        self.path = MeasuredPath::new();
         let (mean, mut variance) = self.pose_of_all_places(model);
         let (mut squares, mut volume, mut count) = (0.0, LogProduct::one(), 0);
         for i in 0..model.angle_count().min(N) {

@@ -133,8 +133,8 @@ impl<const N: usize> KinematicCovariance<N> {
         }
         // A measured angle ends at its measurement less R times the weighed innovations, which the settled columns hold.
         let mut shift = MeanShift {
-            angles_rad: combined(&weighed[..count], &columns.settled),
-            velocities: combined(&weighed[..count], &columns.velocity),
+            angles_rad: combined(&weighed, &columns.settled, count),
+            velocities: combined(&weighed, &columns.velocity, count),
             squared,
             determinant,
         };
@@ -214,7 +214,8 @@ impl<const N: usize> KinematicCovariance<N> {
     /// The velocities' covariance less the sum of w w' / s, in squares of four rows and columns.
     #[inline]
     fn reduce_velocities(&mut self, columns: &Columns<N>, count: usize) {
-        let (velocity, weighed_velocity) = (&columns.velocity[..count], &columns.weighed_velocity[..count]);
+        let first = |rows| <[[f32; N]]>::get(rows, ..count).unwrap_or_default();
+        let (velocity, weighed_velocity) = (first(&columns.velocity), first(&columns.weighed_velocity));
         let (row_blocks, last_rows) = self.velocity.as_chunks_mut::<SQUARE>();
         let first_of_last = SQUARE * row_blocks.len();
         for (block, rows) in row_blocks.iter_mut().enumerate() {
@@ -328,11 +329,11 @@ fn in_place<const N: usize>(seen: &SeenAngles<N>, ordered: &[f32; N]) -> [f32; N
     values
 }
 
-/// The sum of `rows`, each with its factor.
+/// The sum of the first `count` of `rows`, each with its factor.
 #[inline]
-fn combined<const N: usize>(factors: &[f32], rows: &[[f32; N]; N]) -> [f32; N] {
+fn combined<const N: usize>(factors: &[f32; N], rows: &[[f32; N]; N], count: usize) -> [f32; N] {
     let mut sum = [0.0; N];
-    for (&factor, row) in factors.iter().zip(rows) {
+    for (&factor, row) in factors.iter().zip(rows).take(count) {
         add_scaled(&mut sum, factor, row);
     }
     sum

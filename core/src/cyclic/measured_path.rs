@@ -1,6 +1,7 @@
 //! Turns by the measured angles: where an angle moves fast an estimate that lags may take the shorter way round, which is the wrong
 //! one. From one measurement to the next the way is short, unless the noise is wide.
 
+use super::AngleMeasurement;
 use crate::math::{round_small, wrap_angle};
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::TAU;
@@ -9,6 +10,8 @@ use core::f32::consts::TAU;
 const STEPS: f32 = 256.0;
 /// Largest standard deviation of a measurement that tells the way, rad: the difference of two goes wrong beyond 4.3 of its own.
 const WIDEST_STD_RAD: f32 = 0.52;
+/// Frames from one measurement to the next beyond which the way may be long.
+const LONGEST_STEP_FRAMES: f32 = 4.0;
 
 /// Where each angle was measured in the last frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,15 +39,25 @@ impl<const N: usize> MeasuredPath<N> {
         Self { last: [0; N], known: 0 }
     }
 
-    /// Whole turns that an estimate went beyond the shorter way `from_rad` `to_rad`, so that it stays within half a turn of the path of
-    /// the measurements; `measured_rad` with its standard deviation is this frame's.
+    /// Whole turns that the estimate of an angle went beyond the shorter way from `from_rad` to `to_rad`, so that it stays within half
+    /// a turn of the path of the measurements.
     #[inline]
-    pub(super) fn turns(&mut self, index: usize, [from_rad, to_rad]: [f32; 2], measured: Option<(f32, f32)>) -> i32 {
+    pub(super) fn turns(
+        &mut self,
+        index: usize,
+        [from_rad, to_rad]: [f32; 2],
+        measurement: &AngleMeasurement<N>,
+    ) -> i32 {
         let bit = 1_u32.checked_shl(index as u32).unwrap_or(0);
         let was_known = self.known & bit != 0;
         self.known &= !bit;
-        let Some((measured_rad, _)) = measured.filter(|(_, std_rad)| *std_rad < WIDEST_STD_RAD) else { return 0 };
-        let Some(last) = self.last.get_mut(index) else { return 0 };
+        let (Some(measured_rad), Some(last)) = (measurement.angle_rad(index), self.last.get_mut(index)) else {
+            return 0;
+        };
+        let is_wide = measurement.std_rad().get(index).is_none_or(|std_rad| *std_rad > WIDEST_STD_RAD);
+        if is_wide || measurement.step_frames() > LONGEST_STEP_FRAMES {
+            return 0;
+        }
         self.known |= bit;
         let now = round_small(wrap_angle(measured_rad) * (STEPS / TAU)) as i32 as i8;
         let before = core::mem::replace(last, now);
@@ -61,19 +74,24 @@ impl<const N: usize> MeasuredPath<N> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::AngleMeasurement;
     use super::MeasuredPath;
     use crate::angle::split_turns;
     use core::f32::consts::{PI, TAU};
 
+    fn seen(angle_rad: f32, std_rad: f32) -> AngleMeasurement<1> {
+        AngleMeasurement::new(&[Some(angle_rad)], std_rad).unwrap()
+    }
+
     /// An angle goes round forwards in three steps; an estimate that lags goes back instead, and meets it on the other side.
     #[test]
     fn a_lagging_estimate_keeps_the_turns_of_what_is_measured() {
-        let mut path = MeasuredPath::<1>::new();
+        let mut path = MeasuredPath::new();
         let (mut before_rad, mut turns, mut shorter_turns) = (0.0, 0, 0);
         for (gone_rad, estimate_rad) in [(0.0, 0.0), (2.0, -0.2), (4.0, -1.5), (6.0, -0.4), (8.0, 1.6), (10.0, -2.6)] {
             let shorter = -split_turns(estimate_rad - before_rad).1;
             shorter_turns += shorter;
-            turns += shorter + path.turns(0, [before_rad, estimate_rad], Some((gone_rad, 0.1)));
+            turns += shorter + path.turns(0, [before_rad, estimate_rad], &seen(gone_rad, 0.1));
             let off_rad = estimate_rad + TAU * turns as f32 - gone_rad;
             assert!(off_rad.abs() < PI, "{off_rad} off at {gone_rad}");
             before_rad = estimate_rad;
@@ -81,13 +99,19 @@ mod tests {
         assert_eq!([turns, shorter_turns], [2, 1]);
     }
 
+    /// The measurements go round in three steps, the estimate does not, and what lies between says nothing.
     #[test]
-    fn wide_noise_and_gaps_leave_the_shorter_way() {
-        let mut path = MeasuredPath::<2>::new();
-        assert_eq!(path.turns(0, [0.0, 3.0], Some((0.0, 0.1))), 0, "nothing to compare with");
-        assert_eq!(path.turns(0, [3.0, -3.0], None), 0);
-        assert_eq!(path.turns(0, [-3.0, 0.0], Some((0.0, 0.1))), 0, "a gap before");
-        assert_eq!(path.turns(1, [0.0, 3.0], Some((0.0, 0.6))), 0);
-        assert_eq!(path.turns(1, [3.0, -3.0], Some((2.0, 0.6))), 0);
+    fn wide_noise_gaps_and_long_steps_leave_the_shorter_way() {
+        let round = |second: &AngleMeasurement<1>| {
+            let mut path = MeasuredPath::new();
+            path.turns(0, [0.0, 0.0], &seen(0.0, 0.1))
+                + path.turns(0, [0.0, -0.2], second)
+                + path.turns(0, [-0.2, -1.5], &seen(4.0, 0.1))
+                + path.turns(0, [-1.5, 0.0], &seen(TAU, 0.1))
+        };
+        assert_eq!(round(&seen(2.0, 0.1)), 1);
+        assert_eq!(round(&seen(2.0, 0.6)), 0);
+        assert_eq!(round(&AngleMeasurement::nothing()), 0);
+        assert_eq!(round(&seen(2.0, 0.1).after(5.0).unwrap()), 0);
     }
 }

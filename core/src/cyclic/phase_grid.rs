@@ -263,11 +263,10 @@ impl PhaseGrid {
 /// Sum of the cells within [`MODE_REACH`] of each, around the circle.
 fn sums_around(cells: &[f32; POSITIONS]) -> [f32; POSITIONS] {
     const REACH: usize = (MODE_REACH * POSITIONS as f32) as usize;
+    let around: [f32; POSITIONS + 2 * REACH] = core::array::from_fn(|i| cells[(i + POSITIONS - REACH) % POSITIONS]);
     let mut sums = [0.0; POSITIONS];
     for shift in 0..=2 * REACH {
-        let mut shifted = *cells;
-        shifted.rotate_left((POSITIONS + shift - REACH) % POSITIONS);
-        for (sum, value) in sums.iter_mut().zip(shifted) {
+        for (sum, value) in sums.iter_mut().zip(around.iter().skip(shift)) {
             *sum += value;
         }
     }
