@@ -35,8 +35,6 @@ const FORGETTING: f32 = 0.02;
 pub const BAND_CALIBRATION: f32 = 0.9;
 /// Parts of a step over frames that were left out: what a step costs does not grow with the gap before it.
 pub const MOST_SUBSTEPS: u8 = 6;
-/// Least part of the cycle, to either side, over which the mean pose's slope is taken: half a stored position of a hundred.
-const LEAST_REACH: f32 = 0.005;
 /// An angle this many standard deviations off says nothing about the phase, and its own constant is learned anew.
 pub(super) const GATE_SIGMAS: f32 = 4.0;
 
@@ -298,7 +296,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// Change of the mean pose with the position, rad per cycle, over as much of the cycle as the position is uncertain by (statistical
     /// linearisation): where the mean pose jumps its tangent would hold the position there.
     pub(super) fn pose_slope(&self, model: &MotionModel<'_>) -> [f32; N] {
-        model.mean_pose_secant(self.position, max(sqrt(self.pair.cc), LEAST_REACH))
+        model.mean_pose_secant(self.position, sqrt(self.pair.cc))
     }
 
     /// Angles from the state.

@@ -109,8 +109,8 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
     fn told(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N> {
         let mean = &moments.mean;
         let position = mean[0].rem_euclid(1.0);
-        let point = model.point(position as f32);
-        let (pose, slope) = (model.mean_pose_rad::<N>(point), model.mean_pose_slope::<N>(point));
+        let pose = model.mean_pose_rad::<N>(model.point(position as f32));
+        let slope = model.mean_pose_secant::<N>(position as f32, moments.covariance[(0, 0)].max(0.0).sqrt() as f32);
         let basis = Basis::at(position as f32);
         let (mut angles_rad, mut angle_variance_rad2) = ([0.0; N], [0.0; N]);
         for angle in 0..model.angle_count().min(N) {
@@ -133,13 +133,16 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
             }
             angle_variance_rad2[angle] = f64::from(BAND_CALIBRATION) * variance.max(0.0);
         }
+        // An angle that is judged by itself moves its own parts but not (c, v): what looks back adds that up as if it knew less of them.
+        let filtered = self.0.cycle();
+        let variance = |index: usize, filtered: f32| moments.covariance[(index, index)].clamp(0.0, f64::from(filtered));
         Smoothed {
             angles_rad,
             angle_variance_rad2,
             cycle_position: position,
-            cycle_position_variance: moments.covariance[(0, 0)].max(0.0),
+            cycle_position_variance: variance(0, filtered.position_variance),
             cycle_velocity: mean[1],
-            cycle_velocity_variance: moments.covariance[(1, 1)].max(0.0),
+            cycle_velocity_variance: variance(1, filtered.velocity_variance),
         }
     }
 }
