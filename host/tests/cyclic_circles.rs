@@ -1,10 +1,13 @@
 //! Arms that circle steadily, by the shipped model: their cadence, and how many circles they did. People drawn from the model at seven
 //! tempos, and the five recorded circles that the model knows, each closed and repeated.
 
+#[path = "shared_data/circles.rs"]
+mod circles;
 mod shared_data;
 
+use circles::{FORWARDS, table};
+use sinew::cyclic::angle_table::ANGLES;
 use sinew::cyclic::cuts::{self, Cut};
-use sinew::cyclic::recording::{RecordingOptions, angles};
 use sinew::cyclic::synthetic_person::SyntheticPerson;
 use sinew::cyclic::tracking::FilterName;
 use sinew::cyclic::{AngleTable, CutList, CyclicModel};
@@ -28,7 +31,7 @@ const RECORDED_CADENCE: [f64; 2] = [0.04, 0.01];
 const COUNT: [f64; 2] = [0.25, 0.35];
 
 /// Writes the poses of `cycle_frames` a cycle and gives their cuts.
-fn write(folder: &Path, file: &str, cycle_frames: u64, pose_rad: impl Fn(u64) -> [f64; 13]) -> Vec<Cut> {
+fn write(folder: &Path, file: &str, cycle_frames: u64, pose_rad: impl Fn(u64) -> [f64; ANGLES]) -> Vec<Cut> {
     let rows: Vec<_> = (0..=CYCLES * cycle_frames).map(|frame| pose_rad(frame).map(Some)).collect();
     AngleTable::from_angles(0, &rows).unwrap().write(&folder.join(file)).unwrap();
     let border = |cycle| cycle * cycle_frames;
@@ -84,7 +87,7 @@ fn people_who_circle_as_the_model_says_have_their_cadence_at_any_tempo() {
 }
 
 /// The person's pose with the whole turns of the cycles before.
-fn unwound(model: &CyclicModel, person: &SyntheticPerson<'_>, frame: u64) -> [f64; 13] {
+fn unwound(model: &CyclicModel, person: &SyntheticPerson<'_>, frame: u64) -> [f64; ANGLES] {
     let cycles = (frame as f64 / person.cycle_frames()).floor();
     let (pose, turns) = (person.pose_rad(frame as f64), model.view().parts().turns_per_cycle);
     std::array::from_fn(|i| pose[i] + TAU * cycles * f64::from(turns[i]))
@@ -94,13 +97,9 @@ fn unwound(model: &CyclicModel, person: &SyntheticPerson<'_>, frame: u64) -> [f6
 fn recorded_circles_that_go_on_have_their_cadence() {
     let Some(data) = shared_data::in_release("mocap") else { return };
     let folder = tempfile::tempdir().unwrap();
-    let skeleton = Some(data.join("cmu-walk/35/35.asf"));
-    let options = RecordingOptions { skeleton, rate_hz: Some(60.0), ..RecordingOptions::default() };
     let mut cuts = Vec::new();
-    for (trial, circles) in
-        [("13_29", &[(639, 694), (694, 752), (752, 821)][..]), ("13_31", &[(1031, 1074), (1074, 1124)])]
-    {
-        let table = angles(&data.join(format!("cmu-exercise/{trial}.amc")), &options).unwrap().table;
+    for (trial, circles) in FORWARDS {
+        let table = table(&data, trial);
         for &(first, end) in circles {
             cuts.extend(write(folder.path(), &format!("{trial}_{first}.csv"), end - first, |frame| {
                 closed(&table, first, end, frame)
@@ -124,7 +123,7 @@ fn recorded_circles_that_go_on_have_their_cadence() {
 }
 
 /// The circle from frame `first` to `end`, closed by a drift and repeated: whole turns remain.
-fn closed(table: &AngleTable, first: u64, end: u64, frame: u64) -> [f64; 13] {
+fn closed(table: &AngleTable, first: u64, end: u64, frame: u64) -> [f64; ANGLES] {
     let (cycle, within) = (frame / (end - first), frame % (end - first));
     std::array::from_fn(|angle| {
         let at = |frame| table.angle_rad(frame, angle).unwrap();

@@ -1,9 +1,11 @@
 //! Arms that go round: real arm circles of one person in two recordings, forwards and backwards. Runs in release where
 //! `../shared/data` is at hand, and says so where not.
 
+#[path = "shared_data/circles.rs"]
+mod circles;
 mod shared_data;
 
-use sinew::cyclic::recording::{RecordingOptions, angles};
+use circles::{Circles, FORWARDS};
 use sinew::cyclic::tracking::{FilterName, TrackingOptions, track};
 use sinew::cyclic::training::{TrainingOptions, train};
 use sinew::cyclic::{AngleRow, AngleTable, CutList, CyclicModel};
@@ -13,22 +15,21 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 use std::path::Path;
 
-/// Cycles, found by `sinew cut` in the frames of each direction, of the trials 13_29 and 13_31 at 60 frames a second.
-const FORWARDS: [&str; 2] =
-    ["13_29.csv,639,694\n13_29.csv,694,752\n13_29.csv,752,821\n", "13_31.csv,1031,1074\n13_31.csv,1074,1124\n"];
-const BACKWARDS: &str = "13_29.csv,844,914\n13_31.csv,1186,1252\n";
+/// Cycles backwards in the same recordings.
+const BACKWARDS: [(&str, Circles); 2] = [("13_29", &[(844, 914)]), ("13_31", &[(1186, 1252)])];
 
 /// Both trials as angle tables in `folder`.
 fn write_tables(data: &Path, folder: &Path) {
-    let skeleton = Some(data.join("cmu-walk/35/35.asf"));
-    let options = RecordingOptions { skeleton, rate_hz: Some(60.0), ..RecordingOptions::default() };
-    for trial in ["13_29", "13_31"] {
-        let motion = data.join(format!("cmu-exercise/{trial}.amc"));
-        angles(&motion, &options).unwrap().table.write(&folder.join(format!("{trial}.csv"))).unwrap();
+    for (trial, _) in FORWARDS {
+        circles::table(data, trial).write(&folder.join(format!("{trial}.csv"))).unwrap();
     }
 }
 
-fn trained(folder: &Path, cuts: &str) -> CyclicModel {
+fn trained(folder: &Path, recordings: &[(&str, Circles)]) -> CyclicModel {
+    let lines = recordings
+        .iter()
+        .flat_map(|(trial, circles)| circles.iter().map(move |(first, end)| format!("{trial}.csv,{first},{end}\n")));
+    let cuts: String = lines.collect();
     let list = CutList::parse(&format!("file,start_frame,end_frame\n{cuts}"), &folder.join("cuts.csv")).unwrap();
     train(&list, TrainingOptions::default()).unwrap()
 }
@@ -64,9 +65,9 @@ fn turns_of_circling_arms_are_counted_both_ways() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     write_tables(&data, folder);
-    let backwards = trained(folder, BACKWARDS);
+    let backwards = trained(folder, &BACKWARDS);
     assert_eq!(backwards.view().parts().turns_per_cycle[6], -1, "the right forearm goes round once");
-    let [first, second] = FORWARDS.map(|cuts| trained(folder, cuts));
+    let [first, second] = FORWARDS.map(|recording| trained(folder, &[recording]));
     assert_eq!([&first, &second].map(|model| model.view().parts().turns_per_cycle[6]), [1, 1]);
     // Each recording by the model of the other one; of the way backwards there are two cycles in all.
     let cases = [

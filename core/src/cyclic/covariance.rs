@@ -8,7 +8,6 @@
 //! full rank ([`DIAGONAL_EXCESS`]), so that no direction's variance sinks below what `f32` resolves. A test runs ten
 //! million frames with gaps and finds no eigenvalue below zero.
 
-use super::joint_update::half;
 use super::semi_definite::{DIAGONAL_EXCESS, packed_index};
 use crate::math::sqrt;
 
@@ -20,6 +19,9 @@ pub(super) const SEVERE: f32 = 1.0e-3;
 pub(super) const MAX_ANGLE_VARIANCE: f32 = 158.0;
 /// Greatest variance of an angular velocity, (rad per frame)^2: pi^2, half a turn between two frames.
 pub(super) const MAX_VELOCITY_VARIANCE: f32 = 9.87;
+
+/// Rows and columns of the squares that the velocities' covariance is worked on in: sixteen sums stay in registers.
+pub(super) const SQUARE: usize = 4;
 
 /// Symmetric covariance of N angles and N velocities.
 ///
@@ -142,6 +144,12 @@ fn interpolated<const N: usize>(before: &[f32], after: &[f32], fraction: f32, sc
     }
     mirror(&mut matrix);
     matrix
+}
+
+/// Numbers of a row that come first, whole blocks: the rows of a triangle that begin or end there need the other half alone.
+pub(super) const fn half<const N: usize>() -> usize {
+    let half = (N / 2).div_ceil(SQUARE) * SQUARE;
+    if half < N { half } else { N }
 }
 
 /// Row `i` of a lower triangle, of `between` two packed ones.

@@ -85,18 +85,6 @@ impl MotionModel<'_> {
         std
     }
 
-    /// d mu / dc: slope of the mean acceleration by cycle position, rad per reference frame^2 and cycle.
-    #[must_use]
-    pub fn mean_acceleration_slope<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
-        self.slope(self.parts().mean_acceleration, point)
-    }
-
-    /// Slope of the mean velocity by cycle position, rad per reference frame and cycle.
-    #[must_use]
-    pub fn mean_velocity_slope<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
-        self.slope(self.parts().mean_velocity, point)
-    }
-
     /// Change of the mean pose from `reach` cycles before `position` to `reach` behind it, rad per cycle; `reach` is at least half the
     /// way between two stored positions.
     ///
@@ -145,24 +133,10 @@ impl MotionModel<'_> {
         (row_of(all, point.before, packed), row_of(all, point.after, packed))
     }
 
+    /// The rows of `table` on both sides of a point, interpolated; zero beyond the model's angles.
     #[inline]
     fn row<const N: usize>(&self, table: &[f32], point: CyclePoint) -> [f32; N] {
-        self.between_neighbours(table, point, |a, b| a + point.fraction * (b - a))
-    }
-
-    #[inline]
-    fn slope<const N: usize>(&self, table: &[f32], point: CyclePoint) -> [f32; N] {
-        self.between_neighbours(table, point, |a, b| (b - a) * self.position_count() as f32)
-    }
-
-    /// What `between` makes of each angle's numbers on both sides of a point; zero beyond the model's angles.
-    #[inline]
-    fn between_neighbours<const N: usize>(
-        &self,
-        table: &[f32],
-        point: CyclePoint,
-        between: impl Fn(f32, f32) -> f32,
-    ) -> [f32; N] {
+        let between = |a: f32, b: f32| a + point.fraction * (b - a);
         let columns = self.angle_count();
         let (before, after) = (row_of(table, point.before, columns), row_of(table, point.after, columns));
         if let (Ok(before), Ok(after)) = (<&[f32; N]>::try_from(before), <&[f32; N]>::try_from(after)) {

@@ -9,12 +9,9 @@
 //! columns are taken off that. So a precise measurement after a long gap leaves no difference of large numbers.
 
 use super::AngleMeasurement;
-use super::covariance::{KinematicCovariance, MARGIN, SEVERE, mirror};
+use super::covariance::{KinematicCovariance, MARGIN, SEVERE, SQUARE, half, mirror};
 use super::log_product::LogProduct;
 use crate::angle::angle_difference;
-
-/// Rows and columns of the squares that the velocities' covariance is worked on in: sixteen sums stay in registers.
-const SQUARE: usize = 4;
 
 /// The angles that a frame shows, in front, and what it says about them.
 ///
@@ -309,12 +306,6 @@ impl<const N: usize> Columns<N> {
             (angle, self.velocity[place])
         }
     }
-}
-
-/// Numbers of a row that come first, whole blocks: the rows of a triangle that begin or end there need the other half alone.
-pub(super) const fn half<const N: usize>() -> usize {
-    let half = (N / 2).div_ceil(SQUARE) * SQUARE;
-    if half < N { half } else { N }
 }
 
 /// Values in the order of the angles seen, put at the angles' own places.
