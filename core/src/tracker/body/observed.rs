@@ -6,12 +6,17 @@ use crate::observation::limb_likelihood::squared_by_group;
 use crate::observation::point_cloud::PointBlock;
 use crate::observation::point_likelihood::NearestSkin;
 use crate::skeleton::Limbs;
-use crate::skeleton::limbs::TRUNK_GROUP;
+use crate::skeleton::limbs::{MAX_GROUPS, TRUNK_GROUP};
 
 /// A point nearer to a bone's skin than this belongs to it, metres.
 const NEAR_M: f32 = 0.06;
-/// A point speaks for a limb if the skin of every other limb and of the trunk is farther by this, metres.
+/// A point speaks for a limb if the skin of every other limb and of the trunk is farther by this at least, metres,
 const CLEARER_M: f32 = 0.03;
+/// and by this many times the points' mean distance from the skin: those of a body far away are scattered in depth. A limb of one bone, a
+/// head, cannot reach in front of other skin and needs no more than the least.
+const CLEARER_SCATTERS: f32 = 2.5;
+/// A point farther from all skin than this says nothing about the scatter, metres.
+const SCATTERED_M: f32 = 0.2;
 /// A bone with less than this share of the points that its size lets expect is not observed.
 const LEAST_SHARE: f32 = 0.25;
 
@@ -27,6 +32,11 @@ pub fn observed<const BONES: usize>(
     blocks: &[PointBlock],
 ) -> [bool; BONES] {
     let (mut counts, mut found) = ([0.0_f32; BONES], 0.0);
+    let scattered_m = max(CLEARER_M, CLEARER_SCATTERS * scatter_m(surface, blocks));
+    let clearer_m: [f32; MAX_GROUPS] = core::array::from_fn(|group| {
+        let bones = surface.capsules.iter().filter(|seen| limbs.group(seen.bone) == group).count();
+        if bones == 1 { CLEARER_M } else { scattered_m }
+    });
     for block in blocks {
         let nearest = NearestSkin::find(surface, block, NEAR_M);
         let squared_m = squared_by_group(surface, limbs, block, f32::INFINITY);
@@ -38,7 +48,8 @@ pub fn observed<const BONES: usize>(
             for (_, squared_m) in squared_m.iter().enumerate().filter(|(another, _)| *another != group) {
                 other = min(other, squared_m[i]);
             }
-            let is_clear = group == TRUNK_GROUP || sqrt(other) > sqrt(nearest.squared_m[i]) + CLEARER_M;
+            let clearer_m = clearer_m.get(group).copied().unwrap_or(CLEARER_M);
+            let is_clear = group == TRUNK_GROUP || sqrt(other) > sqrt(nearest.squared_m[i]) + clearer_m;
             if let (true, Some(count)) = (is_clear, counts.get_mut(seen.bone)) {
                 *count += 1.0;
             }
@@ -58,6 +69,21 @@ pub fn observed<const BONES: usize>(
         result[bone] = counts[bone] > 0.0 && counts[bone] >= LEAST_SHARE * found * sizes[bone] / size;
     }
     result
+}
+
+/// Mean distance of the points from the nearest skin, metres, without those that belong to none.
+fn scatter_m<const BONES: usize>(surface: &BodySurface<BONES>, blocks: &[PointBlock]) -> f32 {
+    let (mut sum_m, mut count) = (0.0, 0.0);
+    for block in blocks {
+        let nearest = NearestSkin::find(surface, block, SCATTERED_M);
+        for (&index, &squared_m) in nearest.capsule.iter().zip(&nearest.squared_m).take(usize::from(block.count)) {
+            if surface.capsules.get(usize::from(index)).is_some() {
+                sum_m += sqrt(squared_m);
+                count += 1.0;
+            }
+        }
+    }
+    if count > 0.0 { sum_m / count } else { 0.0 }
 }
 
 #[cfg(test)]
