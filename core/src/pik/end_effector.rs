@@ -50,6 +50,7 @@ const LIMIT_MASS_DRAWS: usize = 8;
 ///     process: &LinearGoals::new(&[FOREARM], 2, process, 0.01)?,
 ///     root: RootProcess::FIXED,
 ///     angle_std_rad_per_sqrt_s: [2.0; 4],
+///     angle_persistence: 0.0,
 ///     solver_steps: 5,
 ///     pays: false,
 ///     draw_share: 0.1,
@@ -70,6 +71,8 @@ pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
     pub root: RootProcess,
     /// Standard deviation of each angle's change after one second, radians: lambda = 1 / (std^2 dt) of eq. (12), a diagonal.
     pub angle_std_rad_per_sqrt_s: [f32; ANGLES],
+    /// Share of the angles' velocities that goes on in what the stiffness holds on to: zero is eq. (12), the pose of the frame before.
+    pub angle_persistence: f32,
     /// Most steps of the solver.
     pub solver_steps: usize,
     /// Whether the weight takes the importance ratio (18).
@@ -136,6 +139,10 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         let skeleton = &past.scene.skeleton;
         let mut previous_rad = ancestor.angles_rad;
         self.root.draw(skeleton, &mut previous_rad, &past.root_change, past.dt_s, stream);
+        for i in skeleton.root_coordinates()..ANGLES {
+            previous_rad[i] += self.angle_persistence * past.angle_velocity_per_s[i] * past.dt_s;
+        }
+        let previous_rad = skeleton.clamp(previous_rad);
         let mut goals = Goals::new();
         self.process.draw(&past.goals_of(ancestor), memory, stream, &mut goals);
         let density = PoseDensity {

@@ -182,6 +182,38 @@ impl LinearExtrapolation {
         reached_m + velocity_m_per_s * (self.persistence * dt_s)
     }
 
+    /// Mean of the draw of a place that swings about a joint, which was at `joint_m` and moved with `joint_velocity_m_per_s`: about it the
+    /// place goes on along an arc. A hand at speed would leave the arm's reach along a straight line.
+    ///
+    /// ```
+    /// use sinew_core::math::Vec3;
+    /// use sinew_core::pik::goal::LinearExtrapolation;
+    ///
+    /// // An arm of half a metre that swings by four radians a second is as long a tenth of a second later.
+    /// let process = LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s: 0.2 };
+    /// let shoulder = (Vec3::new(0.0, 0.0, 2.0), Vec3::zeros());
+    /// let hand = (Vec3::new(0.5, 0.0, 2.0), Vec3::new(0.0, 2.0, 0.0));
+    /// let mean_m = process.mean_about(hand, shoulder, 0.1);
+    /// assert!(((mean_m - shoulder.0).norm() - 0.5).abs() < 1e-6 && mean_m.y > 0.18, "{mean_m:?}");
+    /// ```
+    #[must_use]
+    pub fn mean_about(
+        &self,
+        (reached_m, velocity_m_per_s): (Vec3, Vec3),
+        (joint_m, joint_velocity_m_per_s): (Vec3, Vec3),
+        dt_s: f32,
+    ) -> Vec3 {
+        let (limb_m, velocity) = (reached_m - joint_m, velocity_m_per_s - joint_velocity_m_per_s);
+        let (length_m, straight_m) = (limb_m.norm(), self.mean(&limb_m, &velocity, dt_s));
+        let joint_m = self.mean(&joint_m, &joint_velocity_m_per_s, dt_s);
+        let straight_length_m = straight_m.norm();
+        if !(length_m > 0.0 && straight_length_m > 0.0) {
+            return joint_m + straight_m;
+        }
+        let next_length_m = length_m + self.persistence * dt_s * velocity.dot(&limb_m) / length_m;
+        joint_m + straight_m * (next_length_m / straight_length_m)
+    }
+
     /// Standard deviation of the draw along each axis, metres.
     #[must_use]
     pub fn std_m(&self, dt_s: f32) -> f32 {

@@ -88,7 +88,8 @@ pub struct GuidedMotion<'a, P, const ANGLES: usize> {
     pub angle_std_rad_per_sqrt_s: [f32; ANGLES],
     /// Most steps of the solver.
     pub solver_steps: usize,
-    /// Most blocks of points that pull; of a larger cloud every n-th one does, n times as strongly.
+    /// Most blocks of points that pull; of a larger cloud every n-th one does, n times as strongly. With which one it begins each particle
+    /// draws for itself: were it the same for all, what the others show would be missing from every particle's mode alike.
     pub pulling_blocks: usize,
 }
 
@@ -216,7 +217,9 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         }
         let prior = PoseDensity { skeleton, root_m: Vec3::zeros(), goals: &goals, previous_rad, stiffness, held: 0 };
         let stride = past.blocks.len().div_ceil(self.pulling_blocks.max(1)).max(1);
-        let density = GuidedDensity { prior, scene: past.scene, blocks: past.blocks, stride };
+        let first = stream.below(stride as u32) as usize;
+        let pulling = past.blocks.get(first..).unwrap_or_default();
+        let density = GuidedDensity { prior, scene: past.scene, blocks: pulling, stride };
         let mode = density.mode(self.solver_steps);
         let Some(proposal) = LaplaceProposal::new(&mode) else {
             let posture = density.posture(&mode.angles_rad);

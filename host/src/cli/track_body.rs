@@ -31,7 +31,7 @@ pub struct TrackBodyArgs {
     /// How particles move.
     #[arg(long, value_enum, default_value_t = BodyModelKind::Guided)]
     pub model: BodyModelKind,
-    /// Number of particles [default: 100 of guided, 500 of the others].
+    /// Number of particles [default: 50 of guided, 500 of the others].
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub particles: Option<usize>,
     /// The person: a body.json, or a motion or skeleton to measure (.bvh, .amc, .asf, .trc, .c3d) [default: DIR/body.json].

@@ -8,7 +8,8 @@ use crate::random::Stream;
 use heapless::Vec;
 
 /// Each end-effector goes on from the place that it *reached*, with a share of the filter's velocity: those that the root carries
-/// (head, hands) relative to it, the others (feet, which stand) in space.
+/// (head, hands) relative to it, the others (feet, which stand) in space. Carried ones may go on along an arc about the joint that their limb
+/// hangs on.
 ///
 /// ```
 /// use sinew_core::math::Vec3;
@@ -40,6 +41,8 @@ pub struct LinearGoals {
     end_effectors: Vec<usize, MAX_GOALS>,
     /// How many of the first end-effectors the root carries.
     pub carried: usize,
+    /// The bones about whose ends the first of the carried end-effectors swing.
+    joints: Vec<usize, MAX_GOALS>,
     /// How each goal moves.
     pub process: LinearExtrapolation,
     /// How closely a goal is reached along each axis: W = 1 / std^2, metres.
@@ -57,16 +60,13 @@ impl LinearGoals {
         process: LinearExtrapolation,
         reach_std_m: f32,
     ) -> Result<Self, ParameterError> {
-        let mut list = Vec::new();
-        for &bone in end_effectors {
-            if bone >= bones {
-                let rule = Rule::Within { low: 0.0, high: bones as f32 - 1.0 };
-                return Err(ParameterError::new("end_effectors", rule));
-            }
-            let full = ParameterError::new("end_effectors", Rule::Capacity { capacity: MAX_GOALS });
-            list.push(bone).map_err(|_| full)?;
-        }
-        Ok(Self { end_effectors: list, carried: 0, process, reach_std_m: positive("reach_std_m", reach_std_m)? })
+        Ok(Self {
+            end_effectors: list_of("end_effectors", end_effectors, bones)?,
+            carried: 0,
+            joints: Vec::new(),
+            process,
+            reach_std_m: positive("reach_std_m", reach_std_m)?,
+        })
     }
 
     /// The first `count` end-effectors are carried by the root, whose place is the first bone's end.
@@ -76,18 +76,33 @@ impl LinearGoals {
         self
     }
 
+    /// The first end-effectors, as far as they are carried, swing about the ends of the bones `joints`, one each, of a skeleton with `bones`
+    /// bones: they go on along arcs about them ([`LinearExtrapolation::mean_about`]).
+    ///
+    /// # Errors
+    /// At most [`MAX_GOALS`] bones, each in the skeleton.
+    pub fn swinging_about(mut self, joints: &[usize], bones: usize) -> Result<Self, ParameterError> {
+        self.joints = list_of("joints", joints, bones)?;
+        Ok(self)
+    }
+
     /// Where each end-effector goes on the mean, metres, with its bone.
     fn means<'p, const BONES: usize>(
         &'p self,
         past: &'p GoalPast<'_, BONES>,
     ) -> impl Iterator<Item = (usize, Vec3)> + 'p {
         let root_velocity = past.velocity_m_per_s.first().copied().unwrap_or_default();
+        let place = move |bone: usize| Some((*past.reached_m.get(bone)?, *past.velocity_m_per_s.get(bone)?));
         self.end_effectors.iter().enumerate().filter_map(move |(index, &bone)| {
-            let (reached_m, velocity) = (past.reached_m.get(bone)?, past.velocity_m_per_s.get(bone)?);
-            let mean_m = if index < self.carried {
-                self.process.mean(&(reached_m + past.root_shift_m), &(velocity - root_velocity), past.dt_s)
-            } else {
-                self.process.mean(reached_m, velocity, past.dt_s)
+            let (reached_m, velocity) = place(bone)?;
+            if index >= self.carried {
+                return Some((bone, self.process.mean(&reached_m, &velocity, past.dt_s)));
+            }
+            let with_root = |(place_m, velocity)| (place_m + past.root_shift_m, velocity - root_velocity);
+            let (reached_m, velocity) = with_root((reached_m, velocity));
+            let mean_m = match self.joints.get(index).and_then(|&joint| place(joint)).map(with_root) {
+                Some(joint) => self.process.mean_about((reached_m, velocity), joint, past.dt_s),
+                None => self.process.mean(&reached_m, &velocity, past.dt_s),
             };
             Some((bone, mean_m))
         })
@@ -96,6 +111,19 @@ impl LinearGoals {
     fn goal(&self, bone: usize, position_m: Vec3, std_m: f32) -> Goal {
         Goal { bone, position_m, precision: Mat3::identity() / (self.reach_std_m * self.reach_std_m + std_m * std_m) }
     }
+}
+
+/// A list of bones of a skeleton with `bones` bones.
+fn list_of(name: &'static str, members: &[usize], bones: usize) -> Result<Vec<usize, MAX_GOALS>, ParameterError> {
+    let mut list = Vec::new();
+    for &bone in members {
+        if bone >= bones {
+            let rule = Rule::Within { low: 0.0, high: bones as f32 - 1.0 };
+            return Err(ParameterError::new(name, rule));
+        }
+        list.push(bone).map_err(|_| ParameterError::new(name, Rule::Capacity { capacity: MAX_GOALS }))?;
+    }
+    Ok(list)
 }
 
 impl<const BONES: usize> GoalProcess<BONES> for LinearGoals {
@@ -121,6 +149,7 @@ impl<const BONES: usize> GoalProcess<BONES> for LinearGoals {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn an_end_effector_that_is_not_in_the_skeleton_is_refused() {
@@ -128,6 +157,8 @@ mod tests {
         let error = LinearGoals::new(&[2, 17], 17, process, 0.05).unwrap_err();
         assert_eq!((error.parameter, error.rule), ("end_effectors", Rule::Within { low: 0.0, high: 16.0 }));
         assert!(LinearGoals::new(&[1; 9], 17, process, 0.05).is_err());
+        let swinging = LinearGoals::new(&[2], 17, process, 0.05).unwrap().swinging_about(&[17], 17);
+        assert_eq!(swinging.unwrap_err().parameter, "joints");
         assert_eq!(LinearGoals::new(&[1], 17, process, 0.0).unwrap_err().parameter, "reach_std_m");
     }
 
@@ -180,5 +211,30 @@ mod tests {
         // Half of the two metres a second that it is faster than the root.
         assert!((goals[0].position_m - (Vec3::z() + root_shift_m + Vec3::x() * 0.1)).norm() < 1.0e-6);
         assert_eq!(goals[1].position_m, Vec3::y());
+    }
+
+    proptest! {
+        /// About its joint a place keeps its distance but for what it goes out or in, and goes the way that it went.
+        #[test]
+        fn what_swings_goes_along_an_arc(x in -1.0_f32..1.0, y in -1.0_f32..1.0, z in -3.0_f32..3.0, out in -0.5_f32..0.5) {
+            let process = LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s: 0.0 };
+            let goals_of = LinearGoals::new(&[2], 3, process, 0.03).unwrap().carrying(1);
+            let goals_of = goals_of.swinging_about(&[1], 3).unwrap();
+            // A limb of half a metre along the third axis, on a joint that goes with the root.
+            let root_velocity = Vec3::new(x, y, z);
+            let turning = Vec3::new(z, x, 0.0);
+            let reached = [Vec3::zeros(), Vec3::x(), Vec3::x() + Vec3::z() * 0.5];
+            let velocity = [root_velocity, root_velocity, root_velocity + turning + Vec3::z() * out];
+            let past = GoalPast {
+                reached_m: &reached, velocity_m_per_s: &velocity, first_m: &reached, root_shift_m: root_velocity * 0.1, dt_s: 0.1,
+                is_first: false,
+            };
+            let mut goals = Goals::new();
+            goals_of.draw(&past, &mut [0.0; 32], &mut Stream::new(1, 0, 0), &mut goals);
+            let limb_m = goals[0].position_m - (reached[1] + past.root_shift_m);
+            prop_assert!((limb_m.norm() - (0.5 + 0.1 * out)).abs() < 1.0e-5);
+            let straight_m = Vec3::z() * (0.5 + 0.1 * out) + turning * 0.1;
+            prop_assert!(limb_m.normalize().dot(&straight_m.normalize()) > 1.0 - 1.0e-5);
+        }
     }
 }

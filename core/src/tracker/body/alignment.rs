@@ -1,4 +1,4 @@
-//! Where the root goes, by the points: the mean pose is laid onto them before any particle is drawn.
+//! Where the body is, by the points: the expected pose is laid onto them before any particle is drawn.
 //!
 //! The PIK paper's subjects stand still. A root that moves has six coordinates that move everything, and particles that guess them
 //! one by one are lost on it; so every motion model may begin with the same look at the points.
@@ -8,9 +8,9 @@ use crate::math::Vec3;
 use crate::observation::point_cloud::PointBlock;
 use crate::pik::guided::GuidedDensity;
 use crate::pik::motion::BodyScene;
-use crate::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
+use crate::skeleton::tree::SHIFTS;
 
-/// How the mean pose is laid onto a frame's points.
+/// How the expected pose is laid onto a frame's points.
 ///
 /// ```
 /// use sinew_core::tracker::body::RootAlignment;
@@ -48,8 +48,8 @@ use crate::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
 /// // A body of one bone, three metres away, whose points show it ten centimetres farther to the right.
 /// let before = [0.0, 0.0, 3.0, 0.0, 0.0, 0.0];
 /// let cloud = points_of(&[0.1, 0.0, 3.0, 0.0, 0.0, 0.0]);
-/// let change = alignment.root_change(&scene, cloud.blocks(), &before, &[0.0; 6], 1.0 / 15.0);
-/// assert!((change[0] - 0.1).abs() < 0.02 && change[2].abs() < 0.02, "{change:?}");
+/// let laid = alignment.laid(&scene, cloud.blocks(), &before, 1.0 / 15.0);
+/// assert!((laid[0] - 0.1).abs() < 0.02 && (laid[2] - 3.0).abs() < 0.02, "{laid:?}");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,46 +61,37 @@ pub struct RootAlignment {
     /// How far it is believed to turn, radians by root second.
     pub turn_std_rad_per_sqrt_s: f32,
     /// How far the other angles are believed to change, radians by root second: they give way, so that a moving arm does not
-    /// carry the root along, and are then forgotten.
+    /// carry the root along. Particles take over the root alone; how far a limb explains points is asked beside the whole pose.
     pub angle_std_rad_per_sqrt_s: f32,
     /// Most blocks of points that pull.
     pub pulling_blocks: usize,
 }
 
 impl RootAlignment {
-    /// What the root's coordinates change by, from the pose `before_rad`, if `expected` is what its process expects.
+    /// The pose `expected_rad` laid onto the points `blocks`, `dt_s` seconds after the last one.
     #[must_use]
-    pub fn root_change<const BONES: usize, const ANGLES: usize>(
+    pub fn laid<const BONES: usize, const ANGLES: usize>(
         &self,
         scene: &BodyScene<BONES, ANGLES>,
         blocks: &[PointBlock],
-        before_rad: &[f32; ANGLES],
-        expected: &[f32; FREE_ROOT_COORDINATES],
+        expected_rad: &[f32; ANGLES],
         dt_s: f32,
-    ) -> [f32; FREE_ROOT_COORDINATES] {
+    ) -> [f32; ANGLES] {
         let inverse_variance = |std: f32| 1.0 / (std * std * dt_s);
         let mut stiffness = [inverse_variance(self.angle_std_rad_per_sqrt_s); ANGLES];
-        let mut previous_rad = *before_rad;
-        for i in 0..scene.skeleton.root_coordinates() {
+        for (i, held) in stiffness.iter_mut().enumerate().take(scene.skeleton.root_coordinates()) {
             let is_shift = i < SHIFTS;
-            let std = if is_shift { self.shift_std_m_per_sqrt_s } else { self.turn_std_rad_per_sqrt_s };
-            stiffness[i] = inverse_variance(std);
-            previous_rad[i] += expected.get(i).copied().unwrap_or(0.0);
+            *held = inverse_variance(if is_shift { self.shift_std_m_per_sqrt_s } else { self.turn_std_rad_per_sqrt_s });
         }
         let prior = PoseDensity {
             skeleton: &scene.skeleton,
             root_m: Vec3::zeros(),
             goals: &[],
-            previous_rad,
+            previous_rad: *expected_rad,
             stiffness,
             held: 0,
         };
         let stride = blocks.len().div_ceil(self.pulling_blocks.max(1)).max(1);
-        let mode = GuidedDensity { prior, scene, blocks, stride }.mode(self.steps);
-        let mut change = [0.0; FREE_ROOT_COORDINATES];
-        for i in 0..scene.skeleton.root_coordinates() {
-            change[i] = mode.angles_rad[i] - before_rad[i];
-        }
-        change
+        GuidedDensity { prior, scene, blocks, stride }.mode(self.steps).angles_rad
     }
 }

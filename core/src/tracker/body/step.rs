@@ -6,12 +6,13 @@ use super::observed::observed;
 use super::steady::SteadyPose;
 use super::tempering::temper;
 use crate::error::{ParameterError, Rule};
-use crate::math::{Vec3, clamp, min};
+use crate::math::{Vec3, clamp, min, sqrt};
 use crate::observation::limb_likelihood::ExpectedBody;
 use crate::observation::point_cloud::PointBlock;
 use crate::particle::Weights;
 use crate::particle::resampling::systematic;
 use crate::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
+use crate::pik::root::RootProcess;
 use crate::random::Stream;
 use crate::skeleton::Limbs;
 use crate::skeleton::limbs::TRUNK_GROUP;
@@ -23,6 +24,8 @@ const RESAMPLING_STREAM: u32 = u32::MAX;
 const LIMB_STREAM: u32 = u32::MAX - 1;
 /// Share of the estimate's velocity with which the body is expected to go on: between staying and going on.
 const EXPECTED_PERSISTENCE: f32 = 0.5;
+/// Particles that the least effective share is meant for.
+const SHARE_PARTICLES: f32 = 100.0;
 /// Velocities are not followed for longer than this across a gap, seconds; the noise grows all the same.
 const LONGEST_STRIDE_S: f32 = 0.2;
 
@@ -72,11 +75,12 @@ const LONGEST_STRIDE_S: f32 = 0.2;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyOptions {
-    /// Weights are flattened until at least this share of the particles is effective; zero never flattens.
+    /// Weights are flattened until at least this share of a hundred particles is effective, and of others a number that grows with the
+    /// root of theirs: many particles tell a sharper likelihood from chance. Zero never flattens.
     pub least_effective_share: f32,
     /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
     pub limb_by_limb: bool,
-    /// How the root is laid onto the points before particles are drawn; `None` leaves it to its process.
+    /// How the expected pose is laid onto the points before particles are drawn, so that their root sets out from there; `None` leaves it to its process.
     pub alignment: Option<RootAlignment>,
     /// How far estimates of a limb at rest tremble, metres: the pose that is told stays still within it. Zero tells each frame's mean.
     pub tremble_m: f32,
@@ -359,11 +363,15 @@ where
         let dt_s = clamp(frame.dt_s, 1.0e-4, 10.0);
         let fades = min(1.0, LONGEST_STRIDE_S / dt_s);
         let angle_velocity_per_s = self.angle_velocity_per_s.map(|velocity| velocity * fades);
-        let mut root_change = motion.root().expected_change(&angle_velocity_per_s, dt_s);
-        if let Some(alignment) = self.options.alignment {
-            root_change = alignment.root_change(scene, frame.blocks, &self.before.angles_rad, &root_change, dt_s);
+        let expected_rad = self.expected_pose(scene, motion.root(), frame.blocks, &angle_velocity_per_s, dt_s);
+        let mut root_change = [0.0; FREE_ROOT_COORDINATES];
+        for (i, change) in root_change.iter_mut().enumerate().take(scene.skeleton.root_coordinates()) {
+            *change = expected_rad[i] - self.before.angles_rad[i];
         }
-        self.expect(scene, frame, &angle_velocity_per_s, &root_change, dt_s);
+        if self.options.limb_by_limb {
+            self.expected.set_limbs(Limbs::of(&scene.skeleton));
+            self.expected.expect(&scene.likelihood, &scene.surface(&scene.posture(&expected_rad)), frame.blocks);
+        }
         let advance = Advance {
             motion,
             past: FramePast {
@@ -387,18 +395,17 @@ where
         self.conclude(scene, frame, dt_s)
     }
 
-    /// Where the body is expected, for limbs that are weighed by what they explain beside it.
-    fn expect(
-        &mut self,
+    /// Where the body is expected: it goes on as it moved, and where the root is aligned that pose is laid onto the points. The root of every
+    /// particle sets out from there; limbs are weighed by what they explain beside it.
+    fn expected_pose(
+        &self,
         scene: &BodyScene<BONES, ANGLES>,
-        frame: &BodyFrame<'_>,
+        root: &RootProcess,
+        blocks: &[PointBlock],
         angle_velocity_per_s: &[f32; ANGLES],
-        root_change: &[f32; FREE_ROOT_COORDINATES],
         dt_s: f32,
-    ) {
-        if !self.options.limb_by_limb {
-            return;
-        }
+    ) -> [f32; ANGLES] {
+        let root_change = root.expected_change(angle_velocity_per_s, dt_s);
         let mut expected_rad = self.before.angles_rad;
         for (index, angle) in expected_rad.iter_mut().enumerate() {
             *angle += if index < scene.skeleton.root_coordinates() {
@@ -407,9 +414,8 @@ where
                 EXPECTED_PERSISTENCE * angle_velocity_per_s[index] * dt_s
             };
         }
-        let surface = scene.surface(&scene.posture(&scene.skeleton.clamp(expected_rad)));
-        self.expected.set_limbs(Limbs::of(&scene.skeleton));
-        self.expected.expect(&scene.likelihood, &surface, frame.blocks);
+        let expected_rad = scene.skeleton.clamp(expected_rad);
+        self.options.alignment.map_or(expected_rad, |alignment| alignment.laid(scene, blocks, &expected_rad, dt_s))
     }
 
     /// Weights, mean pose, spread and velocities of the new set.
@@ -476,7 +482,9 @@ where
         if !(self.options.least_effective_share > 0.0) {
             return 1.0;
         }
-        let exponent = temper(&self.weights, self.options.least_effective_share * self.weights.len() as f32);
+        let count = self.weights.len() as f32;
+        let least = self.options.least_effective_share * sqrt(SHARE_PARTICLES * count);
+        let exponent = temper(&self.weights, min(least, count));
         set(&mut self.weights, &self.particles, exponent);
         exponent
     }

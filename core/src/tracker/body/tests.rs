@@ -82,6 +82,7 @@ fn end_effector(process: &LinearGoals) -> EndEffectorMotion<'_, LinearGoals, BOD
         process,
         root: ROOT,
         angle_std_rad_per_sqrt_s: ANGLE_STD,
+        angle_persistence: 0.0,
         solver_steps: 2,
         pays: false,
         draw_share: 1.0,
@@ -96,7 +97,7 @@ const ANGULAR: AngularMotion<BODY_ANGLES> =
     AngularMotion { root: ROOT, persistence: 0.5, angle_std_rad_per_sqrt_s: [0.6; BODY_ANGLES], own_velocity: false };
 
 const OPTIONS: BodyOptions = BodyOptions {
-    least_effective_share: 0.1,
+    least_effective_share: 0.14,
     limb_by_limb: false,
     alignment: Some(RootAlignment {
         steps: 2,
@@ -219,7 +220,7 @@ fn limb_by_limb_no_group_has_fewer_effective_particles_than_asked_and_all_go_on_
 fn a_hidden_arm_grows_uncertain_is_said_to_be_unseen_and_comes_back() {
     let goals = goals();
     let last_error = hide_an_arm(&guided(&goals), 60, OPTIONS);
-    assert!(last_error < 0.06, "{last_error}");
+    assert!(last_error < 0.08, "{last_error}");
     let last_error = hide_an_arm(&end_effector(&goals), 200, LIMB_BY_LIMB);
     assert!(last_error < 0.15, "{last_error}");
 }

@@ -50,7 +50,7 @@ impl BodyTrackOptions {
     /// Particles of `model` where nobody says another number.
     #[must_use]
     pub fn default_particles(model: BodyModelKind) -> usize {
-        if model == BodyModelKind::Guided { 100 } else { 500 }
+        if model == BodyModelKind::Guided { 50 } else { 500 }
     }
 
     /// Checks what can be checked without files.

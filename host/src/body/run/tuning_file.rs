@@ -106,7 +106,7 @@ fn check(prefix: &str, table: &Table) -> Result<()> {
 }
 
 fn check_number(key: &str, full: &str, number: f64) -> Result<(), String> {
-    let is_share = key == "persistence" || key == "least_effective_share";
+    let is_share = key.ends_with("persistence") || key == "least_effective_share";
     if is_share {
         return if (0.0..=1.0).contains(&number) {
             Ok(())

@@ -14,7 +14,7 @@ use sinew_core::pik::motion::{BodyParticle, BodyScene};
 use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::saved_state::StateKind;
 use sinew_core::skeleton::full_body::{
-    BODY_ANGLES, BODY_BONES, BodySkeleton, FOREARMS, HEAD, PELVIS, SHANKS, TRUNK, body_radii_m, full_body,
+    BODY_ANGLES, BODY_BONES, BodySkeleton, COLLARS, FOREARMS, HEAD, PELVIS, SHANKS, TRUNK, body_radii_m, full_body,
 };
 use sinew_core::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
 use sinew_core::skeleton::upper_body::{
@@ -31,6 +31,8 @@ pub const MAX_BODY_PARTICLES: usize = 16_384;
 pub const END_EFFECTORS: [usize; 5] = [HEAD, FOREARMS[0], FOREARMS[1], SHANKS[0], SHANKS[1]];
 /// Of these head and hands go with the root; feet stand.
 pub(super) const CARRIED: usize = 3;
+/// About whose ends they swing: the neck and the shoulders.
+pub(super) const JOINTS: [usize; CARRIED] = [TRUNK, COLLARS[0], COLLARS[1]];
 
 /// A whole body's estimate. Of an upper body the legs hang, are not observed and have no spread.
 pub type WholeBodyEstimate = BodyEstimate<BODY_BONES, BODY_ANGLES>;

@@ -2,7 +2,7 @@
 //!
 //! Every particle draws from its own stream and results are stored by index, so the bits do not depend on the threads.
 
-use super::filter::{CARRIED, END_EFFECTORS, MAX_BODY_PARTICLES};
+use super::filter::{CARRIED, END_EFFECTORS, JOINTS, MAX_BODY_PARTICLES};
 use super::model_kind::BodyModelKind;
 use super::tuning::{BodyTuning, JointStd};
 use rayon::prelude::*;
@@ -103,7 +103,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         };
         let set = vec![first; particles];
         let tracker = Tracker::new(&first, (set.clone(), set), options, seed)?;
-        let goals = goals.carrying(CARRIED);
+        let goals = goals.carrying(CARRIED).swinging_about(&JOINTS, BONES)?;
         Ok(Self { kind, tuning, scene, coordinates: body.coordinates, goals, tracker })
     }
 
@@ -168,7 +168,11 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             BodyModelKind::EndEffectorPaper => {
                 let process = PaperGoals { end_effectors: &PAPER_END_EFFECTORS, std_m: PAPER_GOAL_STD_M, reach_std_m };
                 let angle_std = paper_angle_std(frame.dt_s);
-                let motion = EndEffectorMotion { pays: true, ..with_goals(&tuning, angle_std, &process, root) };
+                let motion = EndEffectorMotion {
+                    pays: true,
+                    angle_persistence: 0.0,
+                    ..with_goals(&tuning, angle_std, &process, root)
+                };
                 self.advance(&motion, &frame)
             }
             BodyModelKind::AngularPaper => {
@@ -213,6 +217,7 @@ fn with_goals<'a, P, const ANGLES: usize>(
         process,
         root,
         angle_std_rad_per_sqrt_s,
+        angle_persistence: tuning.end_effector.angle_persistence,
         solver_steps: tuning.end_effector.solver_steps,
         pays: tuning.end_effector.pays,
         draw_share: tuning.end_effector.draw_share,

@@ -116,6 +116,8 @@ pub struct GoalTuning {
     pub reach_std_m: f32,
     /// Stiffness of the pose: standard deviations of the angles' changes.
     pub joint_std: JointStd,
+    /// Share of the angles' velocities that goes on in what the stiffness holds on to.
+    pub angle_persistence: f32,
     /// Most steps of the solver.
     pub solver_steps: usize,
     /// Whether the weights take the importance ratio.
@@ -150,7 +152,8 @@ pub struct PointTuning {
     pub std_m: f32,
     /// Root of tau of eq. (29), metres.
     pub outlier_m: f32,
-    /// Least share of effective particles; zero never flattens the weights.
+    /// Least share of effective particles of a hundred; of others their least number grows with the root of theirs. Zero never flattens the
+    /// weights.
     pub least_effective_share: f32,
     /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
     pub limb_by_limb: bool,
@@ -191,29 +194,30 @@ pub struct BodyTuning {
 /// Found by a random search for the least error (34) with 150 particles on six clips that no result is reported on
 /// (docs/body_tracker.md); so was [`ANGULAR_JOINTS`].
 const GOAL_JOINTS: JointStd =
-    JointStd { trunk: 0.333, head: 0.63, shoulder: 1.45, elbow: 0.64, hip: 0.50, knee: 0.75, ankle: 0.31 };
+    JointStd { trunk: 0.268, head: 0.63, shoulder: 1.05, elbow: 1.06, hip: 0.62, knee: 0.75, ankle: 0.25 };
 /// The angular model's noise.
 const ANGULAR_JOINTS: JointStd =
-    JointStd { trunk: 0.25, head: 0.20, shoulder: 1.0, elbow: 1.17, hip: 0.195, knee: 0.80, ankle: 0.126 };
+    JointStd { trunk: 0.25, head: 0.20, shoulder: 0.64, elbow: 1.17, hip: 0.194, knee: 0.615, ankle: 0.126 };
 /// The guided model draws where the points pull, so that its stiffness may be looser.
 const GUIDED_JOINTS: JointStd =
-    JointStd { trunk: 0.35, head: 0.5, shoulder: 2.0, elbow: 2.0, hip: 1.2, knee: 1.5, ankle: 1.0 };
+    JointStd { trunk: 0.35, head: 0.6, shoulder: 2.0, elbow: 2.0, hip: 2.0, knee: 1.5, ankle: 1.0 };
 
 impl Default for BodyTuning {
     fn default() -> Self {
         let goals = GoalTuning {
-            persistence: 0.69,
-            std_m: 0.25,
+            persistence: 0.87,
+            std_m: 0.22,
             reach_std_m: 0.054,
             joint_std: GOAL_JOINTS,
+            angle_persistence: 0.26,
             solver_steps: 2,
             pays: false,
-            draw_share: 0.44,
+            draw_share: 0.71,
         };
         let points = PointTuning {
             std_m: 0.15,
             outlier_m: 0.14,
-            least_effective_share: 0.2,
+            least_effective_share: 0.12,
             limb_by_limb: true,
             tremble_m: 0.04,
         };
@@ -224,27 +228,28 @@ impl Default for BodyTuning {
                 turn_std_rad: 0.018,
                 aligned: true,
                 aligned_shift_std_m: 0.3,
-                aligned_turn_std_rad: 0.6,
+                aligned_turn_std_rad: 0.7,
                 aligned_angle_std_rad: 0.5,
             },
             end_effector: goals,
             guided: GoalTuning {
                 persistence: 0.5,
                 std_m: 0.3,
-                reach_std_m: 0.05,
+                reach_std_m: 0.03,
                 joint_std: GUIDED_JOINTS,
+                angle_persistence: 0.0,
                 pays: true,
                 draw_share: 1.0,
                 ..goals
             },
-            pulling_blocks: 32,
-            angular: AngularTuning { persistence: 0.46, joint_std: ANGULAR_JOINTS },
+            pulling_blocks: 64,
+            angular: AngularTuning { persistence: 0.48, joint_std: ANGULAR_JOINTS },
             points,
             guided_points: PointTuning {
                 least_effective_share: 0.3,
                 limb_by_limb: false,
-                std_m: 0.1,
-                outlier_m: 0.16,
+                std_m: 0.08,
+                outlier_m: 0.13,
                 tremble_m: 0.04,
             },
             self_penetration_std_m: 0.0,

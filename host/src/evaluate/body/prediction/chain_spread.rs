@@ -84,6 +84,7 @@ pub fn draw(measures: &BodyMeasures, first_rad: [f32; BODY_ANGLES], seed: u64) -
         process: &goals,
         root,
         angle_std_rad_per_sqrt_s,
+        angle_persistence: 0.0,
         solver_steps: SOLVER_STEPS,
         pays: false,
         draw_share: 1.0,
