@@ -231,3 +231,60 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         Proposed { angles_rad: draw.angles_rad, posture, log_ratio }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observation::point_cloud::PointCloud;
+    use crate::observation::point_likelihood::PointLikelihood;
+    use crate::pik::goal::{LinearExtrapolation, MEMORY};
+    use crate::pik::processes::extrapolation::LinearGoals;
+    use crate::skeleton::arm::FOREARM;
+    use crate::skeleton::{ArmGeometry, Side};
+
+    /// Of two blocks, one shows the elbow more bent than it was and the other one less; particles that look at one each go either way.
+    #[test]
+    fn particles_look_at_points_of_their_own() {
+        let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35).unwrap().skeleton().unwrap();
+        let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.25 };
+        let camera_m = Vec3::new(0.0, 0.0, -2.0);
+        let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+        let mut points_m: [Vec3; 32] = core::array::from_fn(|i| {
+            let elbow_rad = if i < 16 { 0.6 } else { 1.4 };
+            let surface = scene.surface(&scene.posture(&[0.5, 0.1, 0.1, elbow_rad]));
+            let forearm = surface.capsules[FOREARM].capsule;
+            let place_m = forearm.start_m + (forearm.end_m - forearm.start_m) * (0.5 + (i % 16) as f32 / 32.0);
+            forearm.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
+        });
+        let mut cloud = PointCloud::<2>::new();
+        let _ = cloud.set(&mut points_m, &camera_m);
+        let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+        let past = FramePast {
+            scene: &scene,
+            blocks: cloud.blocks(),
+            angle_velocity_per_s: [0.0; 4],
+            root_change: [0.0; 6],
+            velocity_m_per_s: &[Vec3::zeros(); 2],
+            first_m: &ancestor.ends_m,
+            dt_s: 0.1,
+            is_first: true,
+        };
+        let process = LinearExtrapolation { persistence: 0.0, std_m_per_sqrt_s: 0.5 };
+        let motion = GuidedMotion {
+            process: &LinearGoals::new(&[FOREARM], 2, process, 0.05).unwrap(),
+            root: RootProcess::FIXED,
+            angle_std_rad_per_sqrt_s: [1.0; 4],
+            solver_steps: 4,
+            pulling_blocks: 1,
+        };
+        // Along the way from one place of the hand to the other, from the middle between them.
+        let hand_m = |elbow_rad| scene.posture(&[0.5, 0.1, 0.1, elbow_rad]).ends[FOREARM];
+        let (bent_m, straight_m) = (hand_m(1.4), hand_m(0.6));
+        let along = (0..60_u32).map(|index| {
+            let moved = motion.propose(&past, &ancestor, &mut [0.0; MEMORY], &mut Stream::new(1, 0, index));
+            (moved.posture.ends[FOREARM] - (bent_m + straight_m) * 0.5).dot(&(bent_m - straight_m))
+        });
+        let bent = along.filter(|along| *along > 0.0).count();
+        assert!((15..=45).contains(&bent), "{bent} of 60 go where the elbow is more bent");
+    }
+}

@@ -216,6 +216,26 @@ fn limb_by_limb_no_group_has_fewer_effective_particles_than_asked_and_all_go_on_
     }
 }
 
+/// Twice as many particles are flattened to 1.4 times as many effective ones.
+#[test]
+fn the_number_of_effective_particles_grows_with_the_root_of_theirs() {
+    let (scene, goals) = (scene(), goals());
+    let mean_of = |count: usize| {
+        let mut tracker = tracker_of(&scene, count, 2, OPTIONS);
+        let mut sum = 0.0;
+        for frame in 1..6 {
+            let cloud = cloud(&scene, frame, &[]);
+            let frame = BodyFrame { dt_s: DT_S, blocks: cloud.blocks() };
+            sum += tracker.step(&scene, &end_effector(&goals), &frame).effective_sample_size / 5.0;
+        }
+        sum
+    };
+    for (count, effective) in [(50, 9.9), (100, 14.0), (200, 19.8)] {
+        let mean = mean_of(count);
+        assert!((mean / effective - 1.0).abs() < 0.02, "{mean} of {count}");
+    }
+}
+
 #[test]
 fn a_hidden_arm_grows_uncertain_is_said_to_be_unseen_and_comes_back() {
     let goals = goals();
