@@ -90,7 +90,7 @@ fn draw(scene: &BodyScene<2, 2>, motion: &impl BodyMotion<2, 2>, blocks: &[Point
         scene,
         blocks,
         angle_velocity_per_s: [0.0; 2],
-        root_change: [0.0; 6],
+        shared_change: [None; 2],
         velocity_m_per_s: &[Vec3::zeros(); 2],
         first_m: &ancestor.ends_m,
         dt_s: DT_S,
@@ -261,6 +261,7 @@ fn guided_poses_are_those_of_prior_and_points_with_and_without_active_limits() {
                 process: &process,
                 root: RootProcess::FIXED,
                 angle_std_rad_per_sqrt_s: [ANGLE_STD_RAD / DT_S.sqrt(); 2],
+                angle_persistence: 0.0,
                 solver_steps: 20,
                 pulling_blocks: 100,
             };

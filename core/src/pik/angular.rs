@@ -30,7 +30,7 @@ const MAX_TRIES: usize = 8;
 /// #     scene: &scene,
 /// #     blocks: &[],
 /// #     angle_velocity_per_s: [0.0; 4],
-/// #     root_change: [0.0; 6],
+/// #     shared_change: [None; 4],
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
 /// #     first_m: &ancestor.ends_m,
 /// #     dt_s: 0.1,
@@ -75,16 +75,16 @@ impl<const BONES: usize, const ANGLES: usize> BodyMotion<BONES, ANGLES> for Angu
     ) -> Proposed<BONES, ANGLES> {
         let skeleton = &past.scene.skeleton;
         let mut angles_rad = ancestor.angles_rad;
-        self.root.draw(skeleton, &mut angles_rad, &past.root_change, past.dt_s, stream);
+        self.root.draw(skeleton, &mut angles_rad, &past.shared_change, past.dt_s, stream);
         for i in skeleton.root_coordinates()..ANGLES {
             let before = ancestor.angles_rad[i];
-            let mut change = past.angle_velocity_per_s[i] * past.dt_s;
+            let mut change = past.change(i, self.persistence);
             if self.own_velocity {
                 let own = memory.get(i).filter(|_| !past.is_first).map_or(before, |&before_that| before_that);
-                change = before - own;
+                change = self.persistence * (before - own);
             }
             let std_rad = self.angle_std_rad_per_sqrt_s[i] * sqrt(past.dt_s);
-            angles_rad[i] = draw_inside(before + self.persistence * change, std_rad, &skeleton.limits()[i], stream);
+            angles_rad[i] = draw_inside(before + change, std_rad, &skeleton.limits()[i], stream);
         }
         if self.own_velocity {
             for (kept, angle) in memory.iter_mut().zip(&ancestor.angles_rad) {

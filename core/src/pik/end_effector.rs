@@ -36,7 +36,7 @@ const LIMIT_MASS_DRAWS: usize = 8;
 /// #     scene: &scene,
 /// #     blocks: &[],
 /// #     angle_velocity_per_s: [0.0; 4],
-/// #     root_change: [0.0; 6],
+/// #     shared_change: [None; 4],
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
 /// #     first_m: &ancestor.ends_m,
 /// #     dt_s: 0.1,
@@ -138,9 +138,9 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
     ) -> Proposed<BONES, ANGLES> {
         let skeleton = &past.scene.skeleton;
         let mut previous_rad = ancestor.angles_rad;
-        self.root.draw(skeleton, &mut previous_rad, &past.root_change, past.dt_s, stream);
+        self.root.draw(skeleton, &mut previous_rad, &past.shared_change, past.dt_s, stream);
         for i in skeleton.root_coordinates()..ANGLES {
-            previous_rad[i] += self.angle_persistence * past.angle_velocity_per_s[i] * past.dt_s;
+            previous_rad[i] += past.change(i, self.angle_persistence);
         }
         let previous_rad = skeleton.clamp(previous_rad);
         let mut goals = Goals::new();

@@ -52,7 +52,7 @@ const HELD_STIFFNESS: f32 = 1.0e6;
 /// #     scene: &scene,
 /// #     blocks: cloud.blocks(),
 /// #     angle_velocity_per_s: [0.0; 4],
-/// #     root_change: [0.0; 6],
+/// #     shared_change: [None; 4],
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
 /// #     first_m: &ancestor.ends_m,
 /// #     dt_s: 0.1,
@@ -65,6 +65,7 @@ const HELD_STIFFNESS: f32 = 1.0e6;
 ///     process: &LinearGoals::new(&[FOREARM], 2, process, 0.05)?,
 ///     root: RootProcess::FIXED,
 ///     angle_std_rad_per_sqrt_s: [1.0; 4],
+///     angle_persistence: 0.0,
 ///     solver_steps: 5,
 ///     pulling_blocks: 2,
 /// };
@@ -86,6 +87,8 @@ pub struct GuidedMotion<'a, P, const ANGLES: usize> {
     pub root: RootProcess,
     /// Standard deviation of each angle's change after one second, radians.
     pub angle_std_rad_per_sqrt_s: [f32; ANGLES],
+    /// Share of the angles' velocities that goes on in what the stiffness holds on to.
+    pub angle_persistence: f32,
     /// Most steps of the solver.
     pub solver_steps: usize,
     /// Most blocks of points that pull; of a larger cloud every n-th one does, n times as strongly. With which one it begins each particle
@@ -209,9 +212,12 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         let mut goals = Goals::new();
         self.process.expect(&past.goals_of(ancestor), memory, stream, &mut goals);
         let mut previous_rad = ancestor.angles_rad;
+        for (i, angle) in previous_rad.iter_mut().enumerate() {
+            *angle += past.change(i, self.angle_persistence);
+        }
+        let previous_rad = skeleton.clamp(previous_rad);
         let mut stiffness = stiffness(&self.angle_std_rad_per_sqrt_s, past.dt_s);
         for i in 0..skeleton.root_coordinates() {
-            previous_rad[i] += past.root_change.get(i).copied().unwrap_or(0.0);
             let std = self.root.std(i, past.dt_s);
             stiffness[i] = if std > 0.0 { 1.0 / (std * std) } else { HELD_STIFFNESS };
         }
@@ -263,7 +269,7 @@ mod tests {
             scene: &scene,
             blocks: cloud.blocks(),
             angle_velocity_per_s: [0.0; 4],
-            root_change: [0.0; 6],
+            shared_change: [None; 4],
             velocity_m_per_s: &[Vec3::zeros(); 2],
             first_m: &ancestor.ends_m,
             dt_s: 0.1,
@@ -274,6 +280,7 @@ mod tests {
             process: &LinearGoals::new(&[FOREARM], 2, process, 0.05).unwrap(),
             root: RootProcess::FIXED,
             angle_std_rad_per_sqrt_s: [1.0; 4],
+            angle_persistence: 0.0,
             solver_steps: 4,
             pulling_blocks: 1,
         };

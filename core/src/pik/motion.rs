@@ -12,7 +12,6 @@ use crate::observation::self_penetration::SelfPenetration;
 use crate::random::Stream;
 use crate::skeleton::Skeleton;
 use crate::skeleton::limbs::{MAX_GROUPS, TRUNK_GROUP};
-use crate::skeleton::tree::FREE_ROOT_COORDINATES;
 
 /// One hypothesis.
 ///
@@ -146,7 +145,7 @@ impl<const BONES: usize, const ANGLES: usize> BodyScene<BONES, ANGLES> {
 ///     scene: &scene,
 ///     blocks: &[],
 ///     angle_velocity_per_s: [0.0; 4],
-///     root_change: [0.0; 6],
+///     shared_change: [None; 4],
 ///     velocity_m_per_s: &[Vec3::zeros(); 2],
 ///     first_m: &ancestor.ends_m,
 ///     dt_s: 0.1,
@@ -165,8 +164,9 @@ pub struct FramePast<'a, const BONES: usize, const ANGLES: usize> {
     pub blocks: &'a [PointBlock],
     /// Velocities of the coordinates by the filter's estimates, a second.
     pub angle_velocity_per_s: [f32; ANGLES],
-    /// What the coordinates of a free root are expected to change by, for every particle alike.
-    pub root_change: [f32; FREE_ROOT_COORDINATES],
+    /// What a coordinate changes by for every particle alike, before its noise: those of a free root, and of the trunk where it is laid onto
+    /// the points. `None` leaves it to the motion model.
+    pub shared_change: [Option<f32>; ANGLES],
     /// Velocities of the bones' ends by the filter's estimates, metres a second.
     pub velocity_m_per_s: &'a [Vec3; BONES],
     /// Ends of all bones in the first pose, metres.
@@ -178,13 +178,21 @@ pub struct FramePast<'a, const BONES: usize, const ANGLES: usize> {
 }
 
 impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
+    /// What coordinate `index` changes by on the mean: what all particles share, else `persistence` of the filter's velocity.
+    #[must_use]
+    pub fn change(&self, index: usize, persistence: f32) -> f32 {
+        let own = |velocity_per_s: &f32| persistence * velocity_per_s * self.dt_s;
+        let shared = self.shared_change.get(index).copied().flatten();
+        shared.unwrap_or_else(|| self.angle_velocity_per_s.get(index).map_or(0.0, own))
+    }
+
     /// How far a free root is expected to go, metres.
     #[must_use]
     pub fn root_shift_m(&self) -> Vec3 {
         let mut shift_m = Vec3::zeros();
         if let Some(root) = self.scene.skeleton.bones().first() {
-            for (axis, change) in root.joint.axes().iter().zip(&self.root_change).take(root.joint.shift_count()) {
-                shift_m += axis * *change;
+            for (axis, change) in root.joint.axes().iter().zip(&self.shared_change).take(root.joint.shift_count()) {
+                shift_m += axis * change.unwrap_or(0.0);
             }
         }
         shift_m
@@ -224,7 +232,7 @@ impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
 /// #     scene: &scene,
 /// #     blocks: &[],
 /// #     angle_velocity_per_s: [0.0; 4],
-/// #     root_change: [0.0; 6],
+/// #     shared_change: [None; 4],
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
 /// #     first_m: &ancestor.ends_m,
 /// #     dt_s: 0.1,
@@ -295,7 +303,7 @@ pub struct Proposed<const BONES: usize, const ANGLES: usize> {
 /// #     scene: &scene,
 /// #     blocks: &[],
 /// #     angle_velocity_per_s: [0.0; 4],
-/// #     root_change: [0.0; 6],
+/// #     shared_change: [None; 4],
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
 /// #     first_m: &ancestor.ends_m,
 /// #     dt_s: 0.1,

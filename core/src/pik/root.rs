@@ -32,9 +32,10 @@ use crate::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
 /// let change = walk.expected_change(&velocity, 0.1);
 /// assert!((change[0] + 0.05).abs() < 1e-6, "half of the velocity goes on");
 /// let person = full_body(&BodyMeasures::of_height(1.75)?)?;
+/// let shared = core::array::from_fn(|index| change.get(index).copied());
 /// for particle in 0..100 {
 ///     let mut pose = [0.0; BODY_ANGLES];
-///     walk.draw(&person, &mut pose, &change, 0.1, &mut Stream::new(1, 0, particle));
+///     walk.draw(&person, &mut pose, &shared, 0.1, &mut Stream::new(1, 0, particle));
 ///     assert!(pose[0] < 0.1 && pose[1] <= 0.1 && pose[6..] == [0.0; 24], "only the root moves");
 /// }
 /// # Ok::<(), sinew_core::error::ParameterError>(())
@@ -90,18 +91,18 @@ impl RootProcess {
         self.std_per_sqrt_s.get(index).map_or(0.0, |std| std * sqrt(max(dt_s, 0.0)))
     }
 
-    /// Draws the root's coordinates, the first of `angles_rad`, in place; `change` is what they are expected to change by.
+    /// Draws the root's coordinates, the first of `angles_rad`, in place; `change` is what coordinates are expected to change by.
     pub fn draw<const BONES: usize, const ANGLES: usize>(
         &self,
         skeleton: &Skeleton<BONES, ANGLES>,
         angles_rad: &mut [f32; ANGLES],
-        change: &[f32; FREE_ROOT_COORDINATES],
+        change: &[Option<f32>; ANGLES],
         dt_s: f32,
         stream: &mut Stream,
     ) {
         for index in 0..skeleton.root_coordinates() {
             let std = self.std(index, dt_s);
-            let mean = angles_rad[index] + change.get(index).copied().unwrap_or(0.0);
+            let mean = angles_rad[index] + change.get(index).copied().flatten().unwrap_or(0.0);
             let (low, high) = self.limits(skeleton, index);
             let drawn = if std > 0.0 {
                 mean + std * stream.truncated_normal((low - mean) / std, (high - mean) / std)

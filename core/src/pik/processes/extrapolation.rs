@@ -45,6 +45,8 @@ pub struct LinearGoals {
     joints: Vec<usize, MAX_GOALS>,
     /// How each goal moves.
     pub process: LinearExtrapolation,
+    /// Standard deviations of the first end-effectors after one second, metres, in place of the process's.
+    std_m_per_sqrt_s: Vec<f32, MAX_GOALS>,
     /// How closely a goal is reached along each axis: W = 1 / std^2, metres.
     pub reach_std_m: f32,
 }
@@ -65,6 +67,7 @@ impl LinearGoals {
             carried: 0,
             joints: Vec::new(),
             process,
+            std_m_per_sqrt_s: Vec::new(),
             reach_std_m: positive("reach_std_m", reach_std_m)?,
         })
     }
@@ -86,17 +89,38 @@ impl LinearGoals {
         Ok(self)
     }
 
-    /// Where each end-effector goes on the mean, metres, with its bone.
+    /// The first end-effectors spread by standard deviations of their own: hands are quicker than a head.
+    ///
+    /// # Errors
+    /// At most [`MAX_GOALS`] numbers, metres by root second, none below zero.
+    pub fn spreading_by(mut self, std_m_per_sqrt_s: &[f32]) -> Result<Self, ParameterError> {
+        const NAME: &str = "std_m_per_sqrt_s";
+        if !std_m_per_sqrt_s.iter().all(|std| std.is_finite() && *std >= 0.0) {
+            return Err(ParameterError::new(NAME, Rule::NotNegative));
+        }
+        let too_many = |_| ParameterError::new(NAME, Rule::Capacity { capacity: MAX_GOALS });
+        self.std_m_per_sqrt_s = Vec::from_slice(std_m_per_sqrt_s).map_err(too_many)?;
+        Ok(self)
+    }
+
+    /// How the end-effector at `index` of the list moves.
+    fn process_of(&self, index: usize) -> LinearExtrapolation {
+        let std_m_per_sqrt_s = self.std_m_per_sqrt_s.get(index).copied().unwrap_or(self.process.std_m_per_sqrt_s);
+        LinearExtrapolation { std_m_per_sqrt_s, ..self.process }
+    }
+
+    /// Where each end-effector goes on the mean and how far it spreads, metres, with its bone.
     fn means<'p, const BONES: usize>(
         &'p self,
         past: &'p GoalPast<'_, BONES>,
-    ) -> impl Iterator<Item = (usize, Vec3)> + 'p {
+    ) -> impl Iterator<Item = (usize, Vec3, f32)> + 'p {
         let root_velocity = past.velocity_m_per_s.first().copied().unwrap_or_default();
         let place = move |bone: usize| Some((*past.reached_m.get(bone)?, *past.velocity_m_per_s.get(bone)?));
         self.end_effectors.iter().enumerate().filter_map(move |(index, &bone)| {
             let (reached_m, velocity) = place(bone)?;
+            let std_m = self.process_of(index).std_m(past.dt_s);
             if index >= self.carried {
-                return Some((bone, self.process.mean(&reached_m, &velocity, past.dt_s)));
+                return Some((bone, self.process.mean(&reached_m, &velocity, past.dt_s), std_m));
             }
             let with_root = |(place_m, velocity)| (place_m + past.root_shift_m, velocity - root_velocity);
             let (reached_m, velocity) = with_root((reached_m, velocity));
@@ -104,7 +128,7 @@ impl LinearGoals {
                 Some(joint) => self.process.mean_about((reached_m, velocity), joint, past.dt_s),
                 None => self.process.mean(&reached_m, &velocity, past.dt_s),
             };
-            Some((bone, mean_m))
+            Some((bone, mean_m, std_m))
         })
     }
 
@@ -132,16 +156,16 @@ impl<const BONES: usize> GoalProcess<BONES> for LinearGoals {
     }
 
     fn draw(&self, past: &GoalPast<'_, BONES>, _memory: &mut GoalMemory, stream: &mut Stream, goals: &mut Goals) {
-        for (bone, mean_m) in self.means(past) {
-            let position_m = mean_m + stream.normal3() * self.process.std_m(past.dt_s);
+        for (bone, mean_m, std_m) in self.means(past) {
+            let position_m = mean_m + stream.normal3() * std_m;
             // As many goals as end-effectors fit.
             let _ = goals.push(self.goal(bone, position_m, 0.0));
         }
     }
 
     fn expect(&self, past: &GoalPast<'_, BONES>, _memory: &mut GoalMemory, _stream: &mut Stream, goals: &mut Goals) {
-        for (bone, mean_m) in self.means(past) {
-            let _ = goals.push(self.goal(bone, mean_m, self.process.std_m(past.dt_s)));
+        for (bone, mean_m, std_m) in self.means(past) {
+            let _ = goals.push(self.goal(bone, mean_m, std_m));
         }
     }
 }
@@ -160,12 +184,16 @@ mod tests {
         let swinging = LinearGoals::new(&[2], 17, process, 0.05).unwrap().swinging_about(&[17], 17);
         assert_eq!(swinging.unwrap_err().parameter, "joints");
         assert_eq!(LinearGoals::new(&[1], 17, process, 0.0).unwrap_err().parameter, "reach_std_m");
+        let spreading = LinearGoals::new(&[2], 17, process, 0.05).unwrap().spreading_by(&[-0.1]);
+        assert_eq!(spreading.unwrap_err().parameter, "std_m_per_sqrt_s");
     }
 
     #[test]
     fn what_is_expected_is_the_mean_of_what_is_drawn_and_its_whole_spread() {
         let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.2 };
-        let goals_of = LinearGoals::new(&[1], 2, process, 0.03).unwrap();
+        // The process's own spread is not read where the end-effector has one.
+        let unread = LinearExtrapolation { std_m_per_sqrt_s: 9.0, ..process };
+        let goals_of = LinearGoals::new(&[1], 2, unread, 0.03).unwrap().spreading_by(&[0.2]).unwrap();
         let (reached, velocity) = ([Vec3::zeros(), Vec3::z()], [Vec3::zeros(), Vec3::x()]);
         let past = GoalPast {
             reached_m: &reached,

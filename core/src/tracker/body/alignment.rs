@@ -44,6 +44,7 @@ use crate::skeleton::tree::SHIFTS;
 ///     turn_std_rad_per_sqrt_s: 1.0,
 ///     angle_std_rad_per_sqrt_s: 1.0,
 ///     pulling_blocks: 32,
+///     lays_trunk: true,
 /// };
 /// // A body of one bone, three metres away, whose points show it ten centimetres farther to the right.
 /// let before = [0.0, 0.0, 3.0, 0.0, 0.0, 0.0];
@@ -61,10 +62,12 @@ pub struct RootAlignment {
     /// How far it is believed to turn, radians by root second.
     pub turn_std_rad_per_sqrt_s: f32,
     /// How far the other angles are believed to change, radians by root second: they give way, so that a moving arm does not
-    /// carry the root along. Particles take over the root alone; how far a limb explains points is asked beside the whole pose.
+    /// carry the root along. How far a limb explains points is asked beside the whole pose.
     pub angle_std_rad_per_sqrt_s: f32,
     /// Most blocks of points that pull.
     pub pulling_blocks: usize,
+    /// Whether particles take over the trunk as it was laid, and not the root alone: limbs then hang where the points show the trunk.
+    pub lays_trunk: bool,
 }
 
 impl RootAlignment {

@@ -35,7 +35,9 @@ use crate::skeleton::{Joint, Limbs, Skeleton};
 /// # let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.3 };
 /// # let goals = LinearGoals::new(&[FOREARM], 2, process, 0.05)?;
 /// # let (process, root, angle_std_rad_per_sqrt_s) = (&goals, RootProcess::FIXED, [1.0; 4]);
-/// # let motion = GuidedMotion { process, root, angle_std_rad_per_sqrt_s, solver_steps: 3, pulling_blocks: 2 };
+/// # let (solver_steps, pulling_blocks, angle_persistence) = (3, 2, 0.0);
+/// # let motion =
+/// #     GuidedMotion { process, root, angle_std_rad_per_sqrt_s, angle_persistence, solver_steps, pulling_blocks };
 /// # let truth = |frame: usize| [0.5, 0.1, 0.1, 1.0 + 0.05 * frame as f32];
 /// # let first = BodyParticle::at(&scene.skeleton, truth(0));
 ///

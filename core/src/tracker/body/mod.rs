@@ -51,6 +51,7 @@
 //!     process: &goals,
 //!     root: RootProcess::FIXED,
 //!     angle_std_rad_per_sqrt_s: [1.0; BODY_ANGLES],
+//!     angle_persistence: 0.0,
 //!     solver_steps: 2,
 //!     pulling_blocks: 32,
 //! };

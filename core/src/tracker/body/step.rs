@@ -16,7 +16,6 @@ use crate::pik::root::RootProcess;
 use crate::random::Stream;
 use crate::skeleton::Limbs;
 use crate::skeleton::limbs::TRUNK_GROUP;
-use crate::skeleton::tree::FREE_ROOT_COORDINATES;
 
 /// Stream of the resampling; particles have their own index.
 const RESAMPLING_STREAM: u32 = u32::MAX;
@@ -58,7 +57,9 @@ const LONGEST_STRIDE_S: f32 = 0.2;
 /// # let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.3 };
 /// # let goals = LinearGoals::new(&[FOREARM], 2, process, 0.05)?;
 /// # let (process, root, angle_std_rad_per_sqrt_s) = (&goals, RootProcess::FIXED, [1.0; 4]);
-/// # let motion = GuidedMotion { process, root, angle_std_rad_per_sqrt_s, solver_steps: 3, pulling_blocks: 2 };
+/// # let (solver_steps, pulling_blocks, angle_persistence) = (3, 2, 0.0);
+/// # let motion =
+/// #     GuidedMotion { process, root, angle_std_rad_per_sqrt_s, angle_persistence, solver_steps, pulling_blocks };
 /// # let truth = |frame: usize| [0.5, 0.1, 0.1, 1.0 + 0.05 * frame as f32];
 /// # let first = BodyParticle::at(&scene.skeleton, truth(0));
 ///
@@ -80,7 +81,8 @@ pub struct BodyOptions {
     pub least_effective_share: f32,
     /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
     pub limb_by_limb: bool,
-    /// How the expected pose is laid onto the points before particles are drawn, so that their root sets out from there; `None` leaves it to its process.
+    /// How the expected pose is laid onto the points before particles are drawn, so that their root, and trunk if asked for, set out from
+    /// there; `None` leaves them to their process.
     pub alignment: Option<RootAlignment>,
     /// How far estimates of a limb at rest tremble, metres: the pose that is told stays still within it. Zero tells each frame's mean.
     pub tremble_m: f32,
@@ -119,7 +121,9 @@ pub const DEFAULT_BODY_OPTIONS: BodyOptions =
 /// # let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.3 };
 /// # let goals = LinearGoals::new(&[FOREARM], 2, process, 0.05)?;
 /// # let (process, root, angle_std_rad_per_sqrt_s) = (&goals, RootProcess::FIXED, [1.0; 4]);
-/// # let motion = GuidedMotion { process, root, angle_std_rad_per_sqrt_s, solver_steps: 3, pulling_blocks: 2 };
+/// # let (solver_steps, pulling_blocks, angle_persistence) = (3, 2, 0.0);
+/// # let motion =
+/// #     GuidedMotion { process, root, angle_std_rad_per_sqrt_s, angle_persistence, solver_steps, pulling_blocks };
 /// # let truth = |frame: usize| [0.5, 0.1, 0.1, 1.0 + 0.05 * frame as f32];
 /// # let first = BodyParticle::at(&scene.skeleton, truth(0));
 ///
@@ -170,7 +174,9 @@ pub struct BodyFrame<'a> {
 /// # let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.3 };
 /// # let goals = LinearGoals::new(&[FOREARM], 2, process, 0.05)?;
 /// # let (process, root, angle_std_rad_per_sqrt_s) = (&goals, RootProcess::FIXED, [1.0; 4]);
-/// # let motion = GuidedMotion { process, root, angle_std_rad_per_sqrt_s, solver_steps: 3, pulling_blocks: 2 };
+/// # let (solver_steps, pulling_blocks, angle_persistence) = (3, 2, 0.0);
+/// # let motion =
+/// #     GuidedMotion { process, root, angle_std_rad_per_sqrt_s, angle_persistence, solver_steps, pulling_blocks };
 /// # let truth = |frame: usize| [0.5, 0.1, 0.1, 1.0 + 0.05 * frame as f32];
 /// # let first = BodyParticle::at(&scene.skeleton, truth(0));
 ///
@@ -242,7 +248,9 @@ impl<M: BodyMotion<BONES, ANGLES>, const BONES: usize, const ANGLES: usize> Adva
 /// # let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.3 };
 /// # let goals = LinearGoals::new(&[FOREARM], 2, process, 0.05)?;
 /// # let (process, root, angle_std_rad_per_sqrt_s) = (&goals, RootProcess::FIXED, [1.0; 4]);
-/// # let motion = GuidedMotion { process, root, angle_std_rad_per_sqrt_s, solver_steps: 3, pulling_blocks: 2 };
+/// # let (solver_steps, pulling_blocks, angle_persistence) = (3, 2, 0.0);
+/// # let motion =
+/// #     GuidedMotion { process, root, angle_std_rad_per_sqrt_s, angle_persistence, solver_steps, pulling_blocks };
 /// # let truth = |frame: usize| [0.5, 0.1, 0.1, 1.0 + 0.05 * frame as f32];
 /// # let first = BodyParticle::at(&scene.skeleton, truth(0));
 ///
@@ -364,10 +372,6 @@ where
         let fades = min(1.0, LONGEST_STRIDE_S / dt_s);
         let angle_velocity_per_s = self.angle_velocity_per_s.map(|velocity| velocity * fades);
         let expected_rad = self.expected_pose(scene, motion.root(), frame.blocks, &angle_velocity_per_s, dt_s);
-        let mut root_change = [0.0; FREE_ROOT_COORDINATES];
-        for (i, change) in root_change.iter_mut().enumerate().take(scene.skeleton.root_coordinates()) {
-            *change = expected_rad[i] - self.before.angles_rad[i];
-        }
         if self.options.limb_by_limb {
             self.expected.set_limbs(Limbs::of(&scene.skeleton));
             self.expected.expect(&scene.likelihood, &scene.surface(&scene.posture(&expected_rad)), frame.blocks);
@@ -378,7 +382,7 @@ where
                 scene,
                 blocks: frame.blocks,
                 angle_velocity_per_s,
-                root_change,
+                shared_change: self.shared_change(scene, &expected_rad),
                 velocity_m_per_s: &self.velocity_m_per_s.map(|velocity| velocity * fades),
                 first_m: &self.first_m,
                 dt_s,
@@ -416,6 +420,17 @@ where
         }
         let expected_rad = scene.skeleton.clamp(expected_rad);
         self.options.alignment.map_or(expected_rad, |alignment| alignment.laid(scene, blocks, &expected_rad, dt_s))
+    }
+
+    /// What every particle's root changes by, and its trunk where that is laid onto the points.
+    fn shared_change(&self, scene: &BodyScene<BONES, ANGLES>, expected_rad: &[f32; ANGLES]) -> [Option<f32>; ANGLES] {
+        let (skeleton, limbs) = (&scene.skeleton, Limbs::of(&scene.skeleton));
+        let lays_trunk = self.options.alignment.is_some_and(|alignment| alignment.lays_trunk);
+        core::array::from_fn(|index| {
+            let is_trunk = limbs.group(skeleton.bone_of_angle(index)) == TRUNK_GROUP;
+            let is_shared = index < skeleton.root_coordinates() || (lays_trunk && is_trunk);
+            is_shared.then(|| expected_rad[index] - self.before.angles_rad[index])
+        })
     }
 
     /// Weights, mean pose, spread and velocities of the new set.

@@ -17,7 +17,7 @@ use crate::random::Stream;
 use crate::saved_state::{StateError, StateKind, restore, save, saved_bytes};
 use crate::skeleton::BodyMeasures;
 use crate::skeleton::full_body::{
-    BODY_ANGLES, BODY_BONES, FOREARMS, HEAD, SHANKS, TRUNK, UPPER_ARMS, body_radii_m, full_body,
+    BODY_ANGLES, BODY_BONES, COLLARS, FOREARMS, HEAD, SHANKS, TRUNK, UPPER_ARMS, body_radii_m, full_body,
 };
 
 type Scene = BodyScene<BODY_BONES, BODY_ANGLES>;
@@ -25,6 +25,8 @@ type Particle = BodyParticle<BODY_BONES, BODY_ANGLES>;
 type Cloud = PointCloud<128>;
 type Tracker = BodyTracker<BODY_BONES, BODY_ANGLES, 256, Vec<Particle>>;
 
+/// Index of the trunk's tilt to the side.
+const TRUNK_TILT: usize = 7;
 const DT_S: f32 = 1.0 / 15.0;
 const ROOT: RootProcess =
     RootProcess { persistence: 0.5, std_per_sqrt_s: [0.1, 0.1, 0.1, 0.2, 0.2, 0.2], shift_limits_m: NO_PLANES };
@@ -53,7 +55,11 @@ fn truth(frame: usize) -> [f32; BODY_ANGLES] {
 
 /// Points on the visible skin; none on bones that `hides` names.
 fn cloud(scene: &Scene, frame: usize, hides: &[usize]) -> Cloud {
-    let surface = scene.surface(&scene.posture(&truth(frame)));
+    cloud_of(scene, &truth(frame), frame, hides)
+}
+
+fn cloud_of(scene: &Scene, pose_rad: &[f32; BODY_ANGLES], frame: usize, hides: &[usize]) -> Cloud {
+    let surface = scene.surface(&scene.posture(pose_rad));
     let mut stream = Stream::new(50, frame as u64, 0);
     let mut points = Vec::new();
     for seen in &surface.capsules {
@@ -90,7 +96,14 @@ fn end_effector(process: &LinearGoals) -> EndEffectorMotion<'_, LinearGoals, BOD
 }
 
 fn guided(process: &LinearGoals) -> GuidedMotion<'_, LinearGoals, BODY_ANGLES> {
-    GuidedMotion { process, root: ROOT, angle_std_rad_per_sqrt_s: ANGLE_STD, solver_steps: 2, pulling_blocks: 32 }
+    GuidedMotion {
+        process,
+        root: ROOT,
+        angle_std_rad_per_sqrt_s: ANGLE_STD,
+        angle_persistence: 0.0,
+        solver_steps: 2,
+        pulling_blocks: 32,
+    }
 }
 
 const ANGULAR: AngularMotion<BODY_ANGLES> =
@@ -105,6 +118,7 @@ const OPTIONS: BodyOptions = BodyOptions {
         turn_std_rad_per_sqrt_s: 0.6,
         angle_std_rad_per_sqrt_s: 1.0,
         pulling_blocks: 64,
+        lays_trunk: true,
     }),
     tremble_m: 0.0,
 };
@@ -187,6 +201,32 @@ fn the_order_of_the_particles_does_not_matter() {
         ),
         tracker(&scene, 60, 9).step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: cloud(&scene, 1, &[]).blocks() })
     );
+}
+
+/// A person who leans to the side, by an angular model that holds the trunk: particles lean where it is laid onto the points.
+#[test]
+fn particles_take_over_the_trunk_as_it_was_laid() {
+    let scene = scene();
+    let lean_rad = |frame: u8| {
+        let mut pose_rad = truth(0);
+        pose_rad[TRUNK_TILT] = 0.05 * f32::from(frame);
+        pose_rad
+    };
+    let mut angle_std_rad_per_sqrt_s = [0.6; BODY_ANGLES];
+    angle_std_rad_per_sqrt_s[TRUNK_TILT] = 1.0e-3;
+    let motion = AngularMotion { angle_std_rad_per_sqrt_s, ..ANGULAR };
+    let [laid_m, held_m] = [true, false].map(|lays_trunk| {
+        let alignment = OPTIONS.alignment.map(|alignment| RootAlignment { lays_trunk, ..alignment });
+        let mut tracker = tracker_of(&scene, 60, 3, BodyOptions { alignment, ..LIMB_BY_LIMB });
+        let mut off_m = 0.0;
+        for frame in 1..=10 {
+            let cloud = cloud_of(&scene, &lean_rad(frame), usize::from(frame), &[]);
+            let estimate = tracker.step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: cloud.blocks() });
+            off_m = (estimate.ends_m[COLLARS[0]] - scene.posture(&lean_rad(frame)).ends[COLLARS[0]]).norm();
+        }
+        off_m
+    });
+    assert!(laid_m < 0.06 && held_m > 1.5 * laid_m, "{laid_m} {held_m}");
 }
 
 #[test]

@@ -133,9 +133,9 @@ mod tests {
 
     #[test]
     fn some_numbers_replace_the_defaults_and_the_others_stay() {
-        let found = parse("pulling_blocks = 12\n[guided]\nstd_m = 1\n[guided.joint_std]\nelbow = 3.5\n").unwrap();
+        let found = parse("pulling_blocks = 12\n[guided]\nreach_std_m = 1\n[guided.joint_std]\nelbow = 3.5\n").unwrap();
         let mut wanted = BodyTuning::default();
-        (wanted.pulling_blocks, wanted.guided.std_m, wanted.guided.joint_std.elbow) = (12, 1.0, 3.5);
+        (wanted.pulling_blocks, wanted.guided.reach_std_m, wanted.guided.joint_std.elbow) = (12, 1.0, 3.5);
         assert_eq!(found, wanted);
         assert_eq!(parse("").unwrap(), BodyTuning::default());
     }
@@ -147,11 +147,11 @@ mod tests {
                 "[guided.joint_std]\nelbwo = 1.0\n",
                 "no key `guided.joint_std.elbwo`; the nearest one is `guided.joint_std.elbow`",
             ),
-            ("[gided]\nstd_m = 1.0\n", "no key `gided`; the nearest one is `guided`"),
-            ("[guided]\nstd_m = -1.0\n", "`guided.std_m` has to be from"),
+            ("[gided]\nreach_std_m = 1.0\n", "no key `gided`; the nearest one is `guided`"),
+            ("[guided]\nreach_std_m = -1.0\n", "`guided.reach_std_m` has to be from"),
             ("self_penetration_std_m = -0.01\n", "`self_penetration_std_m` has to be from 0 to"),
             ("self_penetration = 0.01\n", "the nearest one is `self_penetration_std_m`"),
-            ("[guided]\nstd_m = nan\n", "`guided.std_m` has to be from"),
+            ("[guided]\nreach_std_m = nan\n", "`guided.reach_std_m` has to be from"),
             ("[root]\npersistence = 1.5\n", "`root.persistence` has to be from 0 to 1"),
             ("[guided]\nsolver_steps = 0\n", "`guided.solver_steps` has to be from 1"),
             ("[guided]\nsolver_steps = 2.5\n", "`guided.solver_steps` has to be of the type integer"),

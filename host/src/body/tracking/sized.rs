@@ -61,6 +61,7 @@ pub(super) struct SizedFilter<const BONES: usize, const ANGLES: usize> {
     scene: BodyScene<BONES, ANGLES>,
     coordinates: [usize; ANGLES],
     goals: LinearGoals,
+    lays_trunk: bool,
     tracker: Tracker<BONES, ANGLES>,
 }
 
@@ -91,20 +92,23 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             likelihood: PointLikelihood { std_m: points.std_m, outlier_m: points.outlier_m },
             self_penetration,
         };
-        let goals = LinearGoals::new(end_effectors(BONES), BONES, goals.extrapolation(), goals.reach_std_m)?;
+        let goals = LinearGoals::new(end_effectors(BONES), BONES, goals.extrapolation(), goals.reach_std_m)?
+            .spreading_by(&goals.goal_std.per_end_effector())?
+            .carrying(CARRIED)
+            .swinging_about(&JOINTS, BONES)?;
         let first = BodyParticle::at(&scene.skeleton, first_rad);
         let is_printed = matches!(kind, BodyModelKind::EndEffectorPaper | BodyModelKind::AngularPaper);
         let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::PelvicLift);
         let options = BodyOptions {
             least_effective_share: if is_printed { PAPER_EFFECTIVE_SHARE } else { points.least_effective_share },
             limb_by_limb: points.limb_by_limb && !is_printed,
-            alignment: tuning.root.alignment().filter(|_| is_aligned),
+            alignment: tuning.root.alignment(!is_printed).filter(|_| is_aligned),
             tremble_m: if is_printed { 0.0 } else { points.tremble_m },
         };
+        let lays_trunk = options.alignment.is_some_and(|alignment| alignment.lays_trunk);
         let set = vec![first; particles];
         let tracker = Tracker::new(&first, (set.clone(), set), options, seed)?;
-        let goals = goals.carrying(CARRIED).swinging_about(&JOINTS, BONES)?;
-        Ok(Self { kind, tuning, scene, coordinates: body.coordinates, goals, tracker })
+        Ok(Self { kind, tuning, scene, coordinates: body.coordinates, goals, lays_trunk, tracker })
     }
 
     /// The particles after the last step.
@@ -124,10 +128,9 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
 
     /// One frame.
     pub fn step(&mut self, seen: &SeenFrame<'_>) -> BodyEstimate<BONES, ANGLES> {
-        let (tuning, goals, coordinates) = (self.tuning, self.goals.clone(), self.coordinates);
+        let (tuning, goals) = (self.tuning, self.goals.clone());
         let (frame, root) = (seen.frame, tuning.root.process());
-        let angle_std = |joints: &JointStd| coordinates.map(|index| joints.per_angle()[index]);
-        let goal_std = angle_std(&tuning.end_effector.joint_std);
+        let goal_std = self.angle_std(&tuning.end_effector.joint_std);
         let reach_std_m = tuning.end_effector.reach_std_m;
         match self.kind {
             BodyModelKind::EndEffector => self.advance(&with_goals(&tuning, goal_std, &goals, root), &frame),
@@ -135,14 +138,15 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
                 let motion = GuidedMotion {
                     process: &goals,
                     root: tuning.root.guided_process(),
-                    angle_std_rad_per_sqrt_s: angle_std(&tuning.guided.joint_std),
+                    angle_std_rad_per_sqrt_s: self.angle_std(&tuning.guided.joint_std),
+                    angle_persistence: tuning.guided.angle_persistence,
                     solver_steps: tuning.guided.solver_steps,
                     pulling_blocks: tuning.pulling_blocks,
                 };
                 self.advance(&motion, &frame)
             }
             BodyModelKind::Angular => {
-                let angle_std_rad_per_sqrt_s = angle_std(&tuning.angular.joint_std);
+                let angle_std_rad_per_sqrt_s = self.angle_std(&tuning.angular.joint_std);
                 let persistence = tuning.angular.persistence;
                 self.advance(
                     &AngularMotion { root, persistence, angle_std_rad_per_sqrt_s, own_velocity: false },
@@ -181,6 +185,13 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
                 self.advance(&motion, &frame)
             }
         }
+    }
+
+    /// The noise of each coordinate; the trunk's own where it is laid onto the points.
+    fn angle_std(&self, joints: &JointStd) -> [f32; ANGLES] {
+        let trunk = if self.lays_trunk { self.tuning.root.trunk_std_rad } else { joints.trunk };
+        let per_angle = JointStd { trunk, ..*joints }.per_angle();
+        self.coordinates.map(|index| per_angle[index])
     }
 
     /// The core's step, its particles shared out over the threads of the current pool.

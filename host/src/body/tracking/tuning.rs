@@ -1,5 +1,6 @@
 //! Numbers of the motion models, tuned on motions that no result is reported on (docs/body_tracker.md).
 
+use super::filter::END_EFFECTORS;
 use serde::{Deserialize, Serialize};
 use sinew_core::pik::goal::LinearExtrapolation;
 use sinew_core::pik::root::{NO_PLANES, RootProcess};
@@ -74,18 +75,23 @@ pub struct RootTuning {
     pub aligned_turn_std_rad: f32,
     /// How far other angles may change while the root is aligned, radians by root second.
     pub aligned_angle_std_rad: f32,
+    /// Whether the trunk is laid onto the points with the root.
+    pub aligned_trunk: bool,
+    /// How far the trunk gets off where it was laid, radians by root second; in the place of its `joint_std`.
+    pub trunk_std_rad: f32,
 }
 
 impl RootTuning {
-    /// How the root is laid onto the points.
+    /// How the root is laid onto the points, and the trunk where the model `may_lay_trunk`.
     #[must_use]
-    pub fn alignment(&self) -> Option<RootAlignment> {
+    pub fn alignment(&self, may_lay_trunk: bool) -> Option<RootAlignment> {
         self.aligned.then_some(RootAlignment {
             steps: ALIGNMENT_STEPS,
             shift_std_m_per_sqrt_s: self.aligned_shift_std_m,
             turn_std_rad_per_sqrt_s: self.aligned_turn_std_rad,
             angle_std_rad_per_sqrt_s: self.aligned_angle_std_rad,
             pulling_blocks: usize::MAX,
+            lays_trunk: self.aligned_trunk && may_lay_trunk,
         })
     }
 
@@ -104,16 +110,36 @@ impl RootTuning {
     }
 }
 
+/// Standard deviations of goals after one second, by the end-effector; metres by root second.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GoalStd {
+    /// The head.
+    pub head: f32,
+    /// Hands.
+    pub hand: f32,
+    /// Feet.
+    pub foot: f32,
+}
+
+impl GoalStd {
+    /// One value an end-effector: head, hands, feet.
+    #[must_use]
+    pub fn per_end_effector(&self) -> [f32; END_EFFECTORS.len()] {
+        [self.head, self.hand, self.hand, self.foot, self.foot]
+    }
+}
+
 /// Numbers of the models with goals.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GoalTuning {
     /// Share of an end-effector's velocity that goes on.
     pub persistence: f32,
-    /// Spread of a goal, metres by root second.
-    pub std_m: f32,
     /// How closely a goal is reached, metres.
     pub reach_std_m: f32,
+    /// Spread of the goals.
+    pub goal_std: GoalStd,
     /// Stiffness of the pose: standard deviations of the angles' changes.
     pub joint_std: JointStd,
     /// Share of the angles' velocities that goes on in what the stiffness holds on to.
@@ -127,10 +153,10 @@ pub struct GoalTuning {
 }
 
 impl GoalTuning {
-    /// How one end-effector's goal moves.
+    /// How one end-effector's goal moves, but for its spread.
     #[must_use]
     pub fn extrapolation(&self) -> LinearExtrapolation {
-        LinearExtrapolation { persistence: self.persistence, std_m_per_sqrt_s: self.std_m }
+        LinearExtrapolation { persistence: self.persistence, std_m_per_sqrt_s: 0.0 }
     }
 }
 
@@ -194,20 +220,20 @@ pub struct BodyTuning {
 /// Found by a random search for the least error (34) with 150 particles on six clips that no result is reported on
 /// (docs/body_tracker.md); so was [`ANGULAR_JOINTS`].
 const GOAL_JOINTS: JointStd =
-    JointStd { trunk: 0.268, head: 0.63, shoulder: 1.05, elbow: 1.06, hip: 0.62, knee: 0.75, ankle: 0.25 };
+    JointStd { trunk: 0.268, head: 0.63, shoulder: 1.2, elbow: 1.06, hip: 0.62, knee: 0.75, ankle: 0.25 };
 /// The angular model's noise.
 const ANGULAR_JOINTS: JointStd =
-    JointStd { trunk: 0.25, head: 0.20, shoulder: 0.64, elbow: 1.17, hip: 0.194, knee: 0.615, ankle: 0.126 };
+    JointStd { trunk: 0.25, head: 0.20, shoulder: 0.75, elbow: 1.17, hip: 0.22, knee: 0.615, ankle: 0.126 };
 /// The guided model draws where the points pull, so that its stiffness may be looser.
 const GUIDED_JOINTS: JointStd =
-    JointStd { trunk: 0.35, head: 0.6, shoulder: 2.0, elbow: 2.0, hip: 2.0, knee: 1.5, ankle: 1.0 };
+    JointStd { trunk: 0.2, head: 0.6, shoulder: 2.0, elbow: 2.0, hip: 2.0, knee: 1.5, ankle: 1.0 };
 
 impl Default for BodyTuning {
     fn default() -> Self {
         let goals = GoalTuning {
             persistence: 0.87,
-            std_m: 0.22,
             reach_std_m: 0.054,
+            goal_std: GoalStd { head: 0.1, hand: 0.35, foot: 0.22 },
             joint_std: GOAL_JOINTS,
             angle_persistence: 0.26,
             solver_steps: 2,
@@ -224,26 +250,28 @@ impl Default for BodyTuning {
         Self {
             root: RootTuning {
                 persistence: 0.5,
-                shift_std_m: 0.006,
-                turn_std_rad: 0.018,
+                shift_std_m: 0.003,
+                turn_std_rad: 0.01,
                 aligned: true,
                 aligned_shift_std_m: 0.3,
                 aligned_turn_std_rad: 0.7,
                 aligned_angle_std_rad: 0.5,
+                aligned_trunk: true,
+                trunk_std_rad: 0.04,
             },
             end_effector: goals,
             guided: GoalTuning {
                 persistence: 0.5,
-                std_m: 0.3,
                 reach_std_m: 0.03,
+                goal_std: GoalStd { head: 0.3, hand: 0.3, foot: 0.3 },
                 joint_std: GUIDED_JOINTS,
-                angle_persistence: 0.0,
+                angle_persistence: 0.5,
+                solver_steps: 3,
                 pays: true,
                 draw_share: 1.0,
-                ..goals
             },
             pulling_blocks: 64,
-            angular: AngularTuning { persistence: 0.48, joint_std: ANGULAR_JOINTS },
+            angular: AngularTuning { persistence: 0.6, joint_std: ANGULAR_JOINTS },
             points,
             guided_points: PointTuning {
                 least_effective_share: 0.3,

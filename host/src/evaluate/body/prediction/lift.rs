@@ -21,7 +21,6 @@ use sinew_core::random::Stream;
 use sinew_core::skeleton::full_body::{
     BODY_ANGLES, BODY_BONES, BODY_JOINT_NAMES, FOREARMS, HEAD, PELVIS, SHANKS, THIGHS,
 };
-use sinew_core::skeleton::tree::FREE_ROOT_COORDINATES;
 use std::ops::Range;
 
 /// Samples that are drawn.
@@ -159,7 +158,7 @@ fn sample(
     let (skeleton, dt_s) = (&filter.scene().skeleton, 1.0 / DEFAULT_RATE_HZ);
     let mut previous_rad = ancestor.angles_rad;
     let root = RootProcess::pelvic_lift(tuning.lift_std_m, tuning.lift_turn_std_rad, floor_y_m);
-    root.draw(skeleton, &mut previous_rad, &[0.0; FREE_ROOT_COORDINATES], dt_s, stream);
+    root.draw(skeleton, &mut previous_rad, &[None; BODY_ANGLES], dt_s, stream);
     let past = GoalPast {
         reached_m: &ancestor.ends_m,
         velocity_m_per_s: &[Vec3::zeros(); BODY_BONES],
