@@ -217,7 +217,7 @@ pub struct BodyTuning {
     pub lift_turn_std_rad: f32,
 }
 
-/// Found by a random search for the least error (34) with 150 particles on six clips that no result is reported on
+/// Found by a random search for the least error (34) with 100 particles on 14 clips that no result is reported on
 /// (docs/body_tracker.md); so was [`ANGULAR_JOINTS`].
 const GOAL_JOINTS: JointStd =
     JointStd { trunk: 0.268, head: 0.63, shoulder: 1.2, elbow: 1.06, hip: 0.62, knee: 0.75, ankle: 0.25 };
