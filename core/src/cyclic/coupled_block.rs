@@ -44,6 +44,12 @@ impl Basis {
         let (sine, cosine) = sin_cos(TAU * position);
         Self { value: [1.0, cosine, sine, 1.0, 0.0], slope: [0.0, -TAU * sine, TAU * cosine, 0.0, 0.0] }
     }
+
+    /// `first` and the parts' sum in this direction, of which two are taken whole and the last one not at all.
+    #[inline(always)]
+    fn along(&self, first: f32, part: impl Fn(usize) -> f32) -> f32 {
+        first + part(0) + self.value[1] * part(1) + self.value[2] * part(2) + part(REST)
+    }
 }
 
 /// Stationary spread of a block.
@@ -241,23 +247,20 @@ impl AngleBlock {
     }
 
     /// Deviation at a basis, radians.
+    #[inline]
     #[must_use]
     pub fn deviation(&self, basis: &Basis) -> f32 {
-        dot(&basis.value, &self.mean)
+        basis.along(0.0, |i| self.mean[i])
     }
 
     /// What the angle depends on; `mean_slope` is that of the mean cycle, rad per cycle.
+    #[inline]
     #[must_use]
     pub(super) fn outlook(&self, basis: &Basis, mean_slope: f32) -> Outlook {
-        let h = &basis.value;
-        let mut gradient = [mean_slope + dot(&basis.slope, &self.mean), 0.0];
-        let mut column = [0.0; PARTS];
-        for i in 0..PARTS {
-            gradient[0] += h[i] * self.regression[i][0];
-            gradient[1] += h[i] * self.regression[i][1];
-            column[i] = (0..PARTS).map(|j| self.covariance(i, j) * h[j]).sum();
-        }
-        Outlook { gradient, column, variance: max(dot(&column, h), 0.0) }
+        let own_slope = mean_slope + (basis.slope[1] * self.mean[1] + basis.slope[2] * self.mean[2]);
+        let gradient = [(own_slope, 0), (0.0, 1)].map(|(own, k)| basis.along(own, |i| self.regression[i][k]));
+        let column = core::array::from_fn(|i| basis.along(0.0, |j| self.covariance(i, j)));
+        Outlook { gradient, column, variance: max(basis.along(0.0, |i| column[i]), 0.0) }
     }
 
     /// Takes in a measured angle that lies `residual` off; z has moved by `shift` at the same time.
@@ -286,8 +289,4 @@ impl AngleBlock {
             self.mean[i] += self.regression[i][0] * shift[0] + self.regression[i][1] * shift[1];
         }
     }
-}
-
-fn dot(a: &[f32; PARTS], b: &[f32; PARTS]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
