@@ -11,14 +11,14 @@ use sinew::evaluate::body::trial::{SeenMotion, TrialResult, trial};
 use sinew::resume::Cells;
 
 /// Largest mean error (34) of the end-effector and the angular model with 100 particles, metres.
-const LARGEST_UNGUIDED_M: f64 = 0.019;
+const LARGEST_UNGUIDED_M: f64 = 0.0095;
 /// Largest mean error (34) of the guided model with 50 particles, metres.
-const LARGEST_GUIDED_M: f64 = 0.014;
+const LARGEST_GUIDED_M: f64 = 0.0055;
 /// Largest error (34) of the pelvic lift model with 100 particles, metres.
 const LARGEST_LIFT_M: f64 = 0.03;
 
 /// Largest mean errors (34) of an upper body, metres: end-effector with 100 particles, guided with 25.
-const LARGEST_UPPER_M: [f64; 2] = [0.0135, 0.012];
+const LARGEST_UPPER_M: [f64; 2] = [0.0105, 0.0045];
 
 /// Arms over fixed legs, a walk, jumping jacks: none of them was tuned on.
 const MOTIONS: [&str; 3] =
@@ -60,9 +60,9 @@ fn fifty_guided_particles_do_what_a_hundred_do_by_goals_or_angles() {
     println!("end-effector {end_effector:.4}, angular {angular:.4}, guided with 50 {guided:.4} m");
     // Which of both is better depends on the motions (docs/measurements.md); neither is lost on any.
     for (model, error_m) in [("end-effector", end_effector), ("angular", angular)] {
-        assert!((0.01..=LARGEST_UNGUIDED_M).contains(&error_m), "{model} {error_m} m");
+        assert!((0.006..=LARGEST_UNGUIDED_M).contains(&error_m), "{model} {error_m} m");
     }
-    assert!((0.01..=LARGEST_GUIDED_M).contains(&guided), "guided {guided} m");
+    assert!((0.0035..=LARGEST_GUIDED_M).contains(&guided), "guided {guided} m");
 }
 
 /// A camera that sees no legs: arms that wave and direct traffic.
@@ -81,7 +81,7 @@ fn an_upper_body_is_followed_without_legs() {
     }
     println!("upper body: {means:.4?} m");
     for (error, largest) in means.into_iter().zip(LARGEST_UPPER_M) {
-        assert!((0.008..=largest).contains(&error), "{means:?} m");
+        assert!((0.7 * largest..=largest).contains(&error), "{means:?} m");
     }
 }
 
@@ -94,7 +94,7 @@ fn hidden_arms_are_found_again() {
     for motion in HIDING_MOTIONS {
         let motion: MotionChoice = format!("{}/{motion}", folder.display()).parse().unwrap();
         let read = motion.read(Some(&skeleton)).unwrap();
-        let frames = read.seen(BodyPart::Whole, 1).unwrap().clouds.len();
+        let frames = read.seen(BodyPart::Whole, 1).unwrap().clouds_m.len();
         for seed in 1..=3 {
             let hidden = windows(frames, 15, seed);
             let seen = read.seen_hiding(BodyPart::Whole, seed, &hidden).unwrap();

@@ -223,7 +223,7 @@ fn hide_arms(
     progress: &ProgressBar,
 ) -> Result<Vec<HiddenArm>> {
     let mut arms = Vec::new();
-    let frames = motion.seen(args.body, 1)?.clouds.len();
+    let frames = motion.seen(args.body, 1)?.clouds_m.len();
     for seed in 1..=args.trials {
         let windows = hidden_arm::windows(frames, length, seed);
         let seen = motion.seen_hiding(args.body, seed, &windows)?;

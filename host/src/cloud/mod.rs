@@ -17,6 +17,7 @@ pub use ply::write_ply;
 
 use sinew_core::math::Vec3;
 use sinew_core::observation::point_cloud::{self, BLOCK_POINTS, PointBlock};
+use sinew_core::observation::range_smoothing::{RangeSmoothing, SightLine};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -63,9 +64,13 @@ impl PointCloud {
     }
 }
 
-/// The points, brought in place into the order and the blocks in which the core weighs them; those beyond [`MAX_POINTS`] are left out.
+/// The points, brought in place into the order and the blocks in which the core weighs them, after their distances were averaged where
+/// `smoothing` says how; those beyond [`MAX_POINTS`] are left out.
 #[must_use]
-pub fn blocks_of(points_m: &mut [Vec3]) -> Vec<PointBlock> {
+pub fn blocks_of(points_m: &mut [Vec3], smoothing: Option<&RangeSmoothing>) -> Vec<PointBlock> {
+    if let Some(smoothing) = smoothing {
+        smoothing.smooth(points_m, &Vec3::zeros(), &mut vec![SightLine::default(); points_m.len()]);
+    }
     let mut weighed = Box::new(point_cloud::PointCloud::<{ MAX_POINTS / BLOCK_POINTS }>::new());
     // What it leaves out, the reader's rules have left out already.
     let _ = weighed.set(points_m, &Vec3::zeros());

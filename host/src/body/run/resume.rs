@@ -129,7 +129,7 @@ impl BodyTrackRun {
         for (index, answer) in answers.entries.into_iter().enumerate() {
             let wants = run.pictures.as_ref().is_some_and(|pictures| pictures.wants(index));
             let cloud = run.inputs.clouds.frames.get(index).filter(|_| wants);
-            let points_m = cloud.and_then(|cloud| Some(read_cloud(cloud, run.report.seed).ok()?.points_m));
+            let points_m = cloud.and_then(|cloud| Some(read_cloud(cloud, run.report.seed, None).ok()?.points_m));
             run.take(index, answer, &points_m.unwrap_or_default());
         }
         if let Some(last) = run.last_cloud() {

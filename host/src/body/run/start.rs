@@ -100,6 +100,7 @@ fn upright(pelvis_m: Vec3) -> [f32; BODY_ANGLES] {
 mod tests {
     use super::*;
     use crate::body::tracking::BodyTuning;
+    use crate::cloud::blocks_of;
     use crate::evaluate::body::trial::SeenMotion;
     use crate::stereo::{StereoOptions, StereoScene, stick_wave};
     use sinew_core::kinematics::forward::posture;
@@ -111,8 +112,8 @@ mod tests {
         let scene = StereoScene::new(recording, StereoOptions::default()).unwrap();
         let seen = SeenMotion::of_scene(&scene).unwrap();
         let tuning = BodyTuning::default().guided_points;
-        let pose =
-            pose_from_points(BodyPart::Whole, &seen.measures, &tuning, &scene.points_m(0), &seen.clouds[0]).unwrap();
+        let blocks = blocks_of(&mut scene.points_m(0), None);
+        let pose = pose_from_points(BodyPart::Whole, &seen.measures, &tuning, &scene.points_m(0), &blocks).unwrap();
         let skeleton = full_body(&seen.measures).unwrap();
         assert_eq!(skeleton.clamp(pose), pose);
         let ends = posture(&skeleton, &Vec3::zeros(), &pose).ends;

@@ -9,8 +9,8 @@ use super::score::{BodyScore, RunningMean};
 use super::start::pose_from_points;
 use super::{particles, table};
 use crate::body::export::{body_layout, bvh_frame, upwards};
-use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
+use crate::body::tracking::{BodyFilter, BodyModelKind};
 use crate::cloud::{self, CloudFrame, MAX_POINTS, blocks_of};
 use crate::motion::export::{BvhFrame, TrcFrame, TrcHeading, TrcUnit, to_trc, write_bvh};
 use crate::output::{OutputDir, PendingFile};
@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sinew_core::math::Vec3;
 use sinew_core::observation::point_cloud::PointBlock;
+use sinew_core::observation::range_smoothing::RangeSmoothing;
 use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_JOINT_NAMES};
 use std::path::Path;
@@ -177,8 +178,9 @@ impl BodyTrackRun {
         let (begin, seed) = (self.report.frames_finished, self.report.seed);
         let frames = self.inputs.clouds.frames[begin..].to_vec();
         for chunk in frames.chunks(CHUNK) {
+            let smoothing = self.filter.smoothing();
             let clouds: Vec<Result<ReadCloud, SkippedCloud>> =
-                self.threads.install(|| chunk.par_iter().map(|frame| read_cloud(frame, seed)).collect());
+                self.threads.install(|| chunk.par_iter().map(|frame| read_cloud(frame, seed, smoothing)).collect());
             for (frame, cloud) in chunk.iter().zip(clouds) {
                 if stop.load(Ordering::Relaxed) {
                     return Ok(());
@@ -321,22 +323,28 @@ fn first_look(filter: &BodyFilter, blocks: &[PointBlock], stick: StickSight) -> 
     estimate
 }
 
-/// Reads one cloud, at most [`MAX_POINTS`] of it, in the order in which it is weighed.
-pub(super) fn read_cloud(frame: &CloudFrame, seed: u64) -> Result<ReadCloud, SkippedCloud> {
+/// Reads one cloud, at most [`MAX_POINTS`] of it: as it is, and in the blocks in which it is weighed.
+pub(super) fn read_cloud(
+    frame: &CloudFrame,
+    seed: u64,
+    smoothing: Option<&RangeSmoothing>,
+) -> Result<ReadCloud, SkippedCloud> {
     let mut read = cloud::read(&frame.path).map_err(|error| SkippedCloud {
         frame: frame.frame,
         file: frame.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         reason: error.to_string(),
     })?;
     let before_cap = read.limit(MAX_POINTS, seed, frame.frame);
-    let blocks = blocks_of(&mut read.points_m);
+    let blocks = blocks_of(&mut read.points_m.clone(), smoothing);
     Ok(ReadCloud { points_m: read.points_m, blocks, skipped: read.skipped, before_cap })
 }
 
 /// A start from the first cloud that has points, and a note of it.
 fn found_start(inputs: &mut BodyInputs, options: &BodyTrackOptions) -> Result<[f32; BODY_ANGLES]> {
     let clouds = inputs.clouds.frames.iter().take(START_CLOUDS);
-    let mut readable = clouds.filter_map(|frame| Some((frame.frame, read_cloud(frame, options.seed).ok()?)));
+    let smoothing = options.tuning.range_smoothing(BodyModelKind::Guided)?;
+    let mut readable =
+        clouds.filter_map(|frame| Some((frame.frame, read_cloud(frame, options.seed, smoothing.as_ref()).ok()?)));
     let found = readable.find(|(_, cloud)| !cloud.points_m.is_empty());
     let (points_m, blocks) = found.as_ref().map_or((&[][..], &[][..]), |(_, cloud)| (&cloud.points_m, &cloud.blocks));
     let pose = pose_from_points(inputs.part, &inputs.measures, &options.tuning.guided_points, points_m, blocks)?;

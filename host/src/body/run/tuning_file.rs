@@ -10,8 +10,15 @@ const MAX_SOLVER_STEPS: i64 = 100;
 /// Most blocks of points that a file may ask for.
 const MAX_PULLING_BLOCKS: i64 = 1_000_000;
 /// Numbers that may be zero; all others have to be greater.
-const MAY_BE_ZERO: [&str; 5] =
-    ["root.shift_std_m", "root.turn_std_rad", "self_penetration_std_m", "points.tremble_m", "guided_points.tremble_m"];
+const MAY_BE_ZERO: [&str; 7] = [
+    "root.shift_std_m",
+    "root.turn_std_rad",
+    "self_penetration_std_m",
+    "smoothing.radius_m",
+    "stick_tremble_m",
+    "points.tremble_m",
+    "guided_points.tremble_m",
+];
 
 /// Reads a configuration.
 ///

@@ -4,12 +4,14 @@ use super::model_kind::BodyModelKind;
 use super::sized::{SeenFrame, SizedBody, SizedFilter};
 use super::tuning::BodyTuning;
 use crate::body::BodyPart;
+use crate::cloud::blocks_of;
 use crate::resume::{from_text, to_text};
 use anyhow::Result;
 use sinew_core::error::ParameterError;
 use sinew_core::math::{Vec3, axis_rotation, wrap_angle};
 use sinew_core::observation::point_cloud::PointBlock;
 use sinew_core::observation::point_likelihood::PointLikelihood;
+use sinew_core::observation::range_smoothing::RangeSmoothing;
 use sinew_core::pik::motion::{BodyParticle, BodyScene};
 use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::saved_state::StateKind;
@@ -53,6 +55,7 @@ pub struct BodyFilter {
     /// The whole body, with flesh where it is tracked.
     scene: BodyScene<BODY_BONES, BODY_ANGLES>,
     floor_y_m: f32,
+    smoothing: Option<RangeSmoothing>,
     /// Particles of an upper body as those of a whole one, once somebody asks for them.
     completed: OnceLock<Vec<WholeBodyParticle>>,
 }
@@ -106,7 +109,8 @@ impl BodyFilter {
                 Sizes::Upper(Box::new(SizedFilter::new(kind, tuning, body, first_rad, particles, seed)?))
             }
         };
-        Ok(Self { tracked, scene, floor_y_m: f32::INFINITY, completed: OnceLock::new() })
+        let smoothing = tuning.range_smoothing(kind)?;
+        Ok(Self { tracked, scene, floor_y_m: f32::INFINITY, smoothing, completed: OnceLock::new() })
     }
 
     /// Puts the floor of the pelvic lift: the pelvis stays above (camera axes, y down), metres.
@@ -168,6 +172,18 @@ impl BodyFilter {
             Sizes::Whole(filter) => from_text(StateKind::Body, saved, filter.tracker_mut()),
             Sizes::Upper(filter) => from_text(StateKind::Body, saved, filter.tracker_mut()),
         }
+    }
+
+    /// How the points of a frame are smoothed before they are weighed; `None` where they are taken as they are.
+    #[must_use]
+    pub fn smoothing(&self) -> Option<&RangeSmoothing> {
+        self.smoothing.as_ref()
+    }
+
+    /// A frame's points as this model weighs them: smoothed, in place, and in blocks.
+    #[must_use]
+    pub fn blocks(&self, points_m: &mut [Vec3]) -> Vec<PointBlock> {
+        blocks_of(points_m, self.smoothing())
     }
 
     /// One frame, `dt_s` seconds after the one before; `stick` is what is known of the stick, which only the stick model asks.

@@ -82,8 +82,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             BodyModelKind::Guided => (tuning.guided_points, tuning.guided),
             _ => (tuning.points, tuning.end_effector),
         };
-        let std_m = tuning.self_penetration_std_m;
-        let apart = (std_m > 0.0).then(|| SelfPenetration::new(&body.skeleton, &body.radii_m, std_m));
+        let apart = tuning.apart_std_m(kind).map(|std_m| SelfPenetration::new(&body.skeleton, &body.radii_m, std_m));
         let self_penetration = apart.transpose()?;
         let scene = BodyScene {
             skeleton: body.skeleton,
@@ -97,13 +96,13 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             .carrying(CARRIED)
             .swinging_about(&JOINTS, BONES)?;
         let first = BodyParticle::at(&scene.skeleton, first_rad);
-        let is_printed = matches!(kind, BodyModelKind::EndEffectorPaper | BodyModelKind::AngularPaper);
+        let is_printed = kind.is_printed();
         let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::PelvicLift);
         let options = BodyOptions {
             least_effective_share: if is_printed { PAPER_EFFECTIVE_SHARE } else { points.least_effective_share },
             limb_by_limb: points.limb_by_limb && !is_printed,
             alignment: tuning.root.alignment(!is_printed).filter(|_| is_aligned),
-            tremble_m: if is_printed { 0.0 } else { points.tremble_m },
+            tremble_m: tuning.tremble_m(kind),
         };
         let lays_trunk = options.alignment.is_some_and(|alignment| alignment.lays_trunk);
         let set = vec![first; particles];

@@ -1,7 +1,10 @@
 //! Numbers of the motion models, tuned on motions that no result is reported on (docs/body_tracker.md).
 
 use super::filter::END_EFFECTORS;
+use super::model_kind::BodyModelKind;
 use serde::{Deserialize, Serialize};
+use sinew_core::error::ParameterError;
+use sinew_core::observation::range_smoothing::RangeSmoothing;
 use sinew_core::pik::goal::LinearExtrapolation;
 use sinew_core::pik::root::{NO_PLANES, RootProcess};
 use sinew_core::skeleton::full_body::BODY_ANGLES;
@@ -187,6 +190,16 @@ pub struct PointTuning {
     pub tremble_m: f32,
 }
 
+/// How points' distances from the camera are averaged over their neighbours.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SmoothingTuning {
+    /// How far neighbours may be to each side, metres; zero takes every point as it is.
+    pub radius_m: f32,
+    /// Where distances scatter by this much, metres, points go half of the way to their mean.
+    pub skin_std_m: f32,
+}
+
 /// Everything that a body tracker's results depend on, but the number of particles and the seed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -201,6 +214,8 @@ pub struct BodyTuning {
     pub pulling_blocks: usize,
     /// Angular.
     pub angular: AngularTuning,
+    /// Points of all models but the printed ones, before they are weighed.
+    pub smoothing: SmoothingTuning,
     /// Points of the models that draw from the motion alone.
     pub points: PointTuning,
     /// Points of the guided model.
@@ -211,10 +226,41 @@ pub struct BodyTuning {
     pub stick_gamma_std: f32,
     /// How closely a hand is on the stick, metres.
     pub stick_reach_std_m: f32,
+    /// As `tremble_m`, for the stick: hands that are known tremble less.
+    pub stick_tremble_m: f32,
     /// Pelvic lift: the root's sideways standard deviation, metres by root second; four times as much up and down.
     pub lift_std_m: f32,
     /// Pelvic lift: the pelvis' turning, radians by root second.
     pub lift_turn_std_rad: f32,
+}
+
+impl BodyTuning {
+    /// How the points of a model are smoothed; `None` where they are taken as they are.
+    ///
+    /// # Errors
+    /// Names the number that broke a rule.
+    pub fn range_smoothing(&self, kind: BodyModelKind) -> Result<Option<RangeSmoothing>, ParameterError> {
+        let SmoothingTuning { radius_m, skin_std_m } = self.smoothing;
+        let is_asked = radius_m > 0.0 && !kind.is_printed();
+        is_asked.then(|| RangeSmoothing::new(radius_m, skin_std_m)).transpose()
+    }
+
+    /// How far estimates of a limb at rest tremble in a model, metres.
+    #[must_use]
+    pub fn tremble_m(&self, kind: BodyModelKind) -> f32 {
+        match kind {
+            BodyModelKind::EndEffectorPaper | BodyModelKind::AngularPaper => 0.0,
+            BodyModelKind::Guided => self.guided_points.tremble_m,
+            BodyModelKind::Stick => self.stick_tremble_m,
+            BodyModelKind::EndEffector | BodyModelKind::Angular | BodyModelKind::PelvicLift => self.points.tremble_m,
+        }
+    }
+
+    /// What limbs cost that lie in limbs, metres of [`Self::self_penetration_std_m`]; `None` where nothing.
+    #[must_use]
+    pub fn apart_std_m(&self, kind: BodyModelKind) -> Option<f32> {
+        Some(self.self_penetration_std_m).filter(|std_m| *std_m > 0.0 && !kind.is_printed())
+    }
 }
 
 /// Found by a random search for the least error (34) with 100 particles on 14 clips that no result is reported on
@@ -241,11 +287,11 @@ impl Default for BodyTuning {
             draw_share: 0.71,
         };
         let points = PointTuning {
-            std_m: 0.15,
-            outlier_m: 0.14,
-            least_effective_share: 0.12,
+            std_m: 0.07,
+            outlier_m: 0.10,
+            least_effective_share: 0.06,
             limb_by_limb: true,
-            tremble_m: 0.04,
+            tremble_m: 0.035,
         };
         Self {
             root: RootTuning {
@@ -272,17 +318,19 @@ impl Default for BodyTuning {
             },
             pulling_blocks: 64,
             angular: AngularTuning { persistence: 0.6, joint_std: ANGULAR_JOINTS },
+            smoothing: SmoothingTuning { radius_m: 0.04, skin_std_m: 0.015 },
             points,
             guided_points: PointTuning {
                 least_effective_share: 0.3,
                 limb_by_limb: false,
-                std_m: 0.08,
-                outlier_m: 0.13,
-                tremble_m: 0.04,
+                std_m: 0.05,
+                outlier_m: 0.08,
+                tremble_m: 0.02,
             },
-            self_penetration_std_m: 0.0,
+            self_penetration_std_m: 0.015,
             stick_gamma_std: 0.2,
             stick_reach_std_m: 0.02,
+            stick_tremble_m: 0.025,
             lift_std_m: 0.08,
             lift_turn_std_rad: 0.3,
         }

@@ -130,8 +130,9 @@ fn tracked(tuning: &BodyTuning, seed: u64) -> Result<(BodyFilter, [Vec3; BODY_BO
     let mut filter =
         BodyFilter::new(kind, *tuning, &seen.measures, seen.first_rad, PARTICLES, seed)?.above_floor(floor_y_m);
     let first_m = filter.scene().posture(&seen.first_rad).ends;
-    for blocks in seen.clouds.iter().skip(1) {
-        let _ = filter.step(blocks, 1.0 / seen.rate_hz, StickSight::Unseen);
+    for points_m in seen.clouds_m.iter().skip(1) {
+        let blocks = filter.blocks(&mut points_m.clone());
+        let _ = filter.step(&blocks, 1.0 / seen.rate_hz, StickSight::Unseen);
     }
     Ok((filter, first_m, floor_y_m))
 }
