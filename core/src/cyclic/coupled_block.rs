@@ -47,8 +47,8 @@ impl Basis {
 
     /// `first` and the parts' sum in this direction, of which two are taken whole and the last one not at all.
     #[inline(always)]
-    fn along(&self, first: f32, part: impl Fn(usize) -> f32) -> f32 {
-        first + part(0) + self.value[1] * part(1) + self.value[2] * part(2) + part(REST)
+    fn along(&self, first: f32, parts: &[f32; PARTS]) -> f32 {
+        first + parts[0] + self.value[1] * parts[1] + self.value[2] * parts[2] + parts[REST]
     }
 }
 
@@ -250,7 +250,7 @@ impl AngleBlock {
     #[inline]
     #[must_use]
     pub fn deviation(&self, basis: &Basis) -> f32 {
-        basis.along(0.0, |i| self.mean[i])
+        basis.along(0.0, &self.mean)
     }
 
     /// What the angle depends on; `mean_slope` is that of the mean cycle, rad per cycle.
@@ -258,9 +258,11 @@ impl AngleBlock {
     #[must_use]
     pub(super) fn outlook(&self, basis: &Basis, mean_slope: f32) -> Outlook {
         let own_slope = mean_slope + (basis.slope[1] * self.mean[1] + basis.slope[2] * self.mean[2]);
-        let gradient = [(own_slope, 0), (0.0, 1)].map(|(own, k)| basis.along(own, |i| self.regression[i][k]));
-        let column = core::array::from_fn(|i| basis.along(0.0, |j| self.covariance(i, j)));
-        Outlook { gradient, column, variance: max(basis.along(0.0, |i| column[i]), 0.0) }
+        let own = self.regression.map(|[own, _]| own);
+        let other = self.regression.map(|[_, other]| other);
+        let gradient = [basis.along(own_slope, &own), basis.along(0.0, &other)];
+        let column = core::array::from_fn(|i| basis.along(0.0, &core::array::from_fn(|j| self.covariance(i, j))));
+        Outlook { gradient, column, variance: max(basis.along(0.0, &column), 0.0) }
     }
 
     /// Takes in a measured angle that lies `residual` off; z has moved by `shift` at the same time.
