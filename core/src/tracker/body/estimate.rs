@@ -53,7 +53,7 @@ use crate::skeleton::{Joint, Limbs, Skeleton};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyEstimate<const BONES: usize, const ANGLES: usize> {
-    /// Coordinates of the mean pose, inside the limits; held still where it trembles by less than the tracker's `tremble_m`.
+    /// Coordinates of the mean pose, inside the limits; held still where it moves no farther than the tracker's options say that it trembles.
     pub angles_rad: [f32; ANGLES],
     /// Ends of all bones in that pose, metres.
     pub ends_m: [Vec3; BONES],
@@ -151,11 +151,12 @@ fn mean_ball<const BONES: usize, const ANGLES: usize>(
     }
 }
 
-/// Puts the standard deviation of the ends of one group's bones into `spread_m`, metres.
+/// Puts the standard deviation of the ends of one group's bones into `spread_m`, and that of their means into `standard_error_m`, metres:
+/// particles of so many weights scatter their mean by the root of the summed squares of weight times distance.
 pub(super) fn spread_of_group<const BONES: usize, const ANGLES: usize>(
     (particles, weights): (&[BodyParticle<BONES, ANGLES>], &[f32]),
     (limbs, group): (&Limbs<BONES>, usize),
-    spread_m: &mut [f32; BONES],
+    (spread_m, standard_error_m): (&mut [f32; BONES], &mut [f32; BONES]),
 ) {
     for bone in 0..BONES {
         if limbs.group(bone) != group {
@@ -165,11 +166,48 @@ pub(super) fn spread_of_group<const BONES: usize, const ANGLES: usize>(
         for (particle, &weight) in particles.iter().zip(weights) {
             mean += particle.ends_m[bone] * weight;
         }
-        let mut variance = 0.0;
+        let (mut variance, mut error_variance) = (0.0, 0.0);
         for (particle, weight) in particles.iter().zip(weights) {
             let off = particle.ends_m[bone] - mean;
-            variance += weight * off.dot(&off);
+            let weighed = weight * off.dot(&off);
+            variance += weighed;
+            error_variance += weight * weighed;
         }
         spread_m[bone] = sqrt(variance);
+        standard_error_m[bone] = sqrt(error_variance);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Stream;
+    use crate::skeleton::arm::FOREARM;
+    use crate::skeleton::{ArmGeometry, Side};
+
+    /// Sets of particles of unlike weights: how far their means are from the place that they were drawn about, root mean square, beside the
+    /// standard error that each set tells.
+    #[test]
+    fn means_are_off_by_their_standard_error() {
+        let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35).unwrap().skeleton().unwrap();
+        let (mut stream, mut off, mut told) = (Stream::new(3, 0, 0), 0.0, 0.0);
+        for _ in 0..400 {
+            let mut particles = [BodyParticle::at(&skeleton, [0.5, 0.1, 0.1, 1.0]); 40];
+            let mut weights = [0.0; 40];
+            for (particle, weight) in particles.iter_mut().zip(&mut weights) {
+                (particle.ends_m[FOREARM], *weight) = (stream.normal3() * 0.05, stream.uniform() * stream.uniform());
+            }
+            let sum: f32 = weights.iter().sum();
+            weights = weights.map(|weight| weight / sum);
+            let (mut spread_m, mut standard_error_m) = ([0.0; 2], [0.0; 2]);
+            let kept = (&mut spread_m, &mut standard_error_m);
+            spread_of_group((&particles, &weights), (&Limbs::none(), 0), kept);
+            let mean_m: Vec3 = particles.iter().zip(&weights).map(|(p, &weight)| p.ends_m[FOREARM] * weight).sum();
+            off += mean_m.norm_squared();
+            told += standard_error_m[FOREARM] * standard_error_m[FOREARM];
+            assert!((0.05..0.12).contains(&spread_m[FOREARM]), "{spread_m:?}");
+        }
+        // The mean that distances are taken from is the set's own, so that the error told is a little small.
+        assert!((0.85..1.05).contains(&(told / off)), "{}", told / off);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! The mean of a hundred particles trembles by a centimetre or two about a limb at rest. An ordinary low pass that takes this away is late
 //! whenever the limb moves. Two frames in a row tell the two apart: trembling is to the one side of what was told and then to the other, and a
-//! limb on its way is found ahead of it twice.
+//! limb on its way is found ahead of it twice. How far a limb trembles its particles tell, by the standard error of their mean.
 
 use super::estimate::mean_of_group;
 use crate::kinematics::inverse::{Goal, PoseDensity, Solve};
@@ -13,7 +13,9 @@ use crate::skeleton::Limbs;
 /// What lies within the trembling is followed too, in this time, seconds.
 const REST_S: f32 = 2.0;
 /// A way counts this much of itself if the frame before was not off to the same side: a limb that starts at once is not waited for.
-const ALONE: f32 = 0.5;
+const ALONE: f32 = 0.7;
+/// Particles that all are in one place still have some trembling, metres.
+const LEAST_TREMBLE_M: f32 = 1.0e-6;
 /// Of the place of a bone's end: known to a centimetre, inverse square metres.
 const PRECISION: f32 = 1.0e4;
 /// Of an angle: known to 0.3 rad, inverse square radians.
@@ -37,16 +39,16 @@ impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
     }
 
     /// The pose to tell where the particles' mean is `now`: the ends of each limb's bones go from where they were told to where they are now,
-    /// the whole way if the limb moves by much more than `tremble_m`. The pose is the one between the two that has its ends there: were angles
+    /// the whole way if the limb moves by much more than its ends tremble, `tremble_m`. The pose is the one between the two that has its ends there: were angles
     /// alone mixed, a hand would tremble with the trunk's angles, for which the arm's no longer make up.
     pub(super) fn tell(
         &mut self,
         (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
         now: &BodyParticle<BONES, ANGLES>,
-        tremble_m: f32,
+        tremble_m: &[f32; BONES],
         dt_s: f32,
     ) -> &BodyParticle<BONES, ANGLES> {
-        if !(tremble_m > 0.0) {
+        if !tremble_m.iter().any(|&end_m| end_m > 0.0) {
             self.told = *now;
             return &self.told;
         }
@@ -58,7 +60,8 @@ impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
             precision: Mat3::from_diagonal_element(PRECISION),
         });
         for group in 0..limbs.count() {
-            let share = share(self.moved_m((limbs, group), &off_m) / tremble_m, dt_s);
+            let trembles_m = root_mean((limbs, group), |bone| tremble_m[bone] * tremble_m[bone]);
+            let share = share(self.moved_m((limbs, group), &off_m) / max(trembles_m, LEAST_TREMBLE_M), dt_s);
             let (poses, weights) = ([self.told, *now], [1.0 - share, share]);
             mean_of_group(&scene.skeleton, (&poses, &weights), (limbs, group), &mut between_rad);
             for (bone, goal) in goals.iter_mut().enumerate().filter(|(bone, _)| limbs.group(*bone) == group) {
@@ -83,22 +86,29 @@ impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
     /// How far the ends of a group's bones went, metres: root mean of the products of how far they are off with how far they were in the frame
     /// before.
     fn moved_m(&self, (limbs, group): (&Limbs<BONES>, usize), off_m: &[Vec3; BONES]) -> f32 {
-        let (mut twice, mut once, mut count) = (0.0, 0.0, 0.0);
-        for bone in (0..BONES).filter(|&bone| limbs.group(bone) == group) {
-            twice += off_m[bone].dot(&self.off_m[bone]);
-            once += off_m[bone].dot(&off_m[bone]);
-            count += 1.0;
-        }
-        if count > 0.0 { sqrt(max(twice, ALONE * ALONE * once) / count) } else { 0.0 }
+        let twice_m = root_mean((limbs, group), |bone| off_m[bone].dot(&self.off_m[bone]));
+        let once_m = root_mean((limbs, group), |bone| off_m[bone].dot(&off_m[bone]));
+        max(twice_m, ALONE * once_m)
     }
+}
+
+/// Root of the mean over a group's bones; zero of a negative mean.
+fn root_mean<const BONES: usize>((limbs, group): (&Limbs<BONES>, usize), of: impl Fn(usize) -> f32) -> f32 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for bone in (0..BONES).filter(|&bone| limbs.group(bone) == group) {
+        sum += of(bone);
+        count += 1.0;
+    }
+    sqrt(max(sum, 0.0) / max(count, 1.0))
 }
 
 /// The part of the way that is gone by a limb that moved by so many times its trembling.
 fn share(moved: f32, dt_s: f32) -> f32 {
     let rest = min(1.0, dt_s / REST_S);
     // Beyond it the other term is one to the last digit, and its square is an ordinary number.
-    let squared = min(moved * moved, 1.0e6);
-    rest + (1.0 - rest) * (squared * squared / (1.0 + squared * squared))
+    let squared = min(moved * moved, 1.0e4);
+    let sixth = squared * squared * squared;
+    rest + (1.0 - rest) * (sixth / (1.0 + sixth))
 }
 
 #[cfg(test)]
@@ -143,7 +153,8 @@ mod tests {
         for frame in 1..=FRAMES {
             let now = seen(&scene, 0.5 + speed_rad_per_s * DT_S * frame as f32, noise_rad, &mut stream);
             let told = steady.told.ends_m[wrist];
-            let next = steady.tell((&scene, &Limbs::of(&scene.skeleton)), &now, TREMBLE_M, DT_S).ends_m[wrist];
+            let next =
+                steady.tell((&scene, &Limbs::of(&scene.skeleton)), &now, &[TREMBLE_M; BODY_BONES], DT_S).ends_m[wrist];
             way_m += (now.ends_m[wrist] - before.ends_m[wrist]).norm() / FRAMES as f32;
             told_way_m += (next - told).norm() / FRAMES as f32;
             behind_m = (next - now.ends_m[wrist]).norm();
@@ -178,9 +189,9 @@ mod tests {
             let (scene, mut stream) = (scene(), Stream::new(seed, 0, 0));
             let [first, second, third] = core::array::from_fn(|_| seen(&scene, 0.8, noise_rad, &mut stream));
             let mut steady = SteadyPose::new(first);
-            steady.tell((&scene, &Limbs::of(&scene.skeleton)), &second, tremble_m, DT_S);
+            steady.tell((&scene, &Limbs::of(&scene.skeleton)), &second, &[tremble_m; BODY_BONES], DT_S);
             let before = steady.told;
-            let next = *steady.tell((&scene, &Limbs::of(&scene.skeleton)), &third, tremble_m, DT_S);
+            let next = *steady.tell((&scene, &Limbs::of(&scene.skeleton)), &third, &[tremble_m; BODY_BONES], DT_S);
             prop_assert_eq!(next.angles_rad, scene.skeleton.clamp(next.angles_rad));
             prop_assert_eq!(next.ends_m, scene.posture(&next.angles_rad).ends);
             for bone in 0..BODY_BONES {

@@ -84,13 +84,20 @@ pub struct BodyOptions {
     /// How the expected pose is laid onto the points before particles are drawn, so that their root, and trunk if asked for, set out from
     /// there; `None` leaves them to their process.
     pub alignment: Option<RootAlignment>,
-    /// How far estimates of a limb at rest tremble, metres: the pose that is told stays still within it. Zero tells each frame's mean.
+    /// How far the mean of the particles trembles about a limb at rest, in its standard errors: the pose that is told stays still within it.
+    pub tremble_errors: f32,
+    /// How far it trembles beyond that, however many particles there are, metres. Both zero tell each frame's mean.
     pub tremble_m: f32,
 }
 
 /// What is used unless told otherwise.
-pub const DEFAULT_BODY_OPTIONS: BodyOptions =
-    BodyOptions { least_effective_share: 0.0, limb_by_limb: false, alignment: None, tremble_m: 0.0 };
+pub const DEFAULT_BODY_OPTIONS: BodyOptions = BodyOptions {
+    least_effective_share: 0.0,
+    limb_by_limb: false,
+    alignment: None,
+    tremble_errors: 0.0,
+    tremble_m: 0.0,
+};
 
 /// One frame.
 ///
@@ -304,8 +311,10 @@ where
         if !(options.least_effective_share >= 0.0 && options.least_effective_share <= 1.0) {
             return Err(ParameterError::new("least_effective_share", Rule::Within { low: 0.0, high: 1.0 }));
         }
-        if !(options.tremble_m >= 0.0 && options.tremble_m.is_finite()) {
-            return Err(ParameterError::new("tremble_m", Rule::NotNegative));
+        for (name, value) in [("tremble_errors", options.tremble_errors), ("tremble_m", options.tremble_m)] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(ParameterError::new(name, Rule::NotNegative));
+            }
         }
         particles.as_mut().fill(*first);
         let mut ancestors = heapless::Vec::new();
@@ -442,7 +451,8 @@ where
     ) -> BodyEstimate<BONES, ANGLES> {
         let limbs = *self.expected.limbs();
         let mut stream = Stream::new(self.seed, self.frame, LIMB_STREAM);
-        let (mut angles_rad, mut spread_m) = ([0.0; ANGLES], [0.0; BONES]);
+        let mut angles_rad = [0.0; ANGLES];
+        let (mut spread_m, mut standard_error_m) = ([0.0; BONES], [0.0; BONES]);
         let (mut whole, mut effective_sample_size) = (Ok(0.0), f32::INFINITY);
         let mut tempering = 1.0;
         // The trunk comes last: what belongs to the whole pose stays as it was weighed.
@@ -452,7 +462,7 @@ where
             effective_sample_size = min(effective_sample_size, self.weights.effective_sample_size());
             let weighed = (self.particles.as_ref(), self.weights.normalised());
             mean_of_group(&scene.skeleton, weighed, (&limbs, group), &mut angles_rad);
-            spread_of_group(weighed, (&limbs, group), &mut spread_m);
+            spread_of_group(weighed, (&limbs, group), (&mut spread_m, &mut standard_error_m));
             if limbs.count() > 1 {
                 self.resample_group(&scene.skeleton, (&limbs, group), &mut stream);
             }
@@ -471,7 +481,8 @@ where
         for bone in 0..BONES {
             self.velocity_m_per_s[bone] = (mean.ends_m[bone] - self.before.ends_m[bone]) / dt_s;
         }
-        let told = *self.steady.tell((scene, &limbs), &mean, self.options.tremble_m, dt_s);
+        let tremble_m = standard_error_m.map(|error_m| self.options.tremble_m + self.options.tremble_errors * error_m);
+        let told = *self.steady.tell((scene, &limbs), &mean, &tremble_m, dt_s);
         self.before = mean;
         BodyEstimate {
             angles_rad: told.angles_rad,

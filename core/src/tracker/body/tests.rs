@@ -120,6 +120,7 @@ const OPTIONS: BodyOptions = BodyOptions {
         pulling_blocks: 64,
         lays_trunk: true,
     }),
+    tremble_errors: 0.0,
     tremble_m: 0.0,
 };
 
@@ -417,7 +418,7 @@ fn spread_grows_down_the_chain_under_angular_noise_and_not_under_goals() {
 fn a_tracker_goes_on_from_its_saved_state_as_if_nothing_had_been() {
     let (scene, goals) = (scene(), goals());
     let motion = guided(&goals);
-    for options in [OPTIONS, BodyOptions { tremble_m: 0.03, ..LIMB_BY_LIMB }] {
+    for options in [OPTIONS, BodyOptions { tremble_errors: 4.0, tremble_m: 0.004, ..LIMB_BY_LIMB }] {
         let mut tracker = tracker_of(&scene, 20, 5, options);
         for frame in 1..=4 {
             tracker.step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: cloud(&scene, frame, &[]).blocks() });

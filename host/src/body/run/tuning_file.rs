@@ -10,14 +10,13 @@ const MAX_SOLVER_STEPS: i64 = 100;
 /// Most blocks of points that a file may ask for.
 const MAX_PULLING_BLOCKS: i64 = 1_000_000;
 /// Numbers that may be zero; all others have to be greater.
-const MAY_BE_ZERO: [&str; 7] = [
+const MAY_BE_ZERO: [&str; 6] = [
     "root.shift_std_m",
     "root.turn_std_rad",
     "self_penetration_std_m",
     "smoothing.radius_m",
-    "stick_tremble_m",
-    "points.tremble_m",
-    "guided_points.tremble_m",
+    "steady.tremble_errors",
+    "steady.tremble_m",
 ];
 
 /// Reads a configuration.

@@ -98,11 +98,13 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         let first = BodyParticle::at(&scene.skeleton, first_rad);
         let is_printed = kind.is_printed();
         let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::PelvicLift);
+        let steady = tuning.steady(kind);
         let options = BodyOptions {
             least_effective_share: if is_printed { PAPER_EFFECTIVE_SHARE } else { points.least_effective_share },
             limb_by_limb: points.limb_by_limb && !is_printed,
             alignment: tuning.root.alignment(!is_printed).filter(|_| is_aligned),
-            tremble_m: tuning.tremble_m(kind),
+            tremble_errors: steady.tremble_errors,
+            tremble_m: steady.tremble_m,
         };
         let lays_trunk = options.alignment.is_some_and(|alignment| alignment.lays_trunk);
         let set = vec![first; particles];

@@ -186,8 +186,6 @@ pub struct PointTuning {
     pub least_effective_share: f32,
     /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
     pub limb_by_limb: bool,
-    /// How far estimates of a limb at rest tremble, metres; the result stays still within it, zero tells each frame's mean.
-    pub tremble_m: f32,
 }
 
 /// How points' distances from the camera are averaged over their neighbours.
@@ -198,6 +196,17 @@ pub struct SmoothingTuning {
     pub radius_m: f32,
     /// Where distances scatter by this much, metres, points go half of the way to their mean.
     pub skin_std_m: f32,
+}
+
+/// How far estimates of a limb at rest tremble, in all models but the printed ones: the result stays still within it. Both zero tell each
+/// frame's mean.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SteadyTuning {
+    /// In standard errors of the particles' mean.
+    pub tremble_errors: f32,
+    /// Beyond that, metres.
+    pub tremble_m: f32,
 }
 
 /// Everything that a body tracker's results depend on, but the number of particles and the seed.
@@ -216,6 +225,8 @@ pub struct BodyTuning {
     pub angular: AngularTuning,
     /// Points of all models but the printed ones, before they are weighed.
     pub smoothing: SmoothingTuning,
+    /// What is told of the particles' mean.
+    pub steady: SteadyTuning,
     /// Points of the models that draw from the motion alone.
     pub points: PointTuning,
     /// Points of the guided model.
@@ -226,8 +237,6 @@ pub struct BodyTuning {
     pub stick_gamma_std: f32,
     /// How closely a hand is on the stick, metres.
     pub stick_reach_std_m: f32,
-    /// As `tremble_m`, for the stick: hands that are known tremble less.
-    pub stick_tremble_m: f32,
     /// Pelvic lift: the root's sideways standard deviation, metres by root second; four times as much up and down.
     pub lift_std_m: f32,
     /// Pelvic lift: the pelvis' turning, radians by root second.
@@ -245,15 +254,10 @@ impl BodyTuning {
         is_asked.then(|| RangeSmoothing::new(radius_m, skin_std_m)).transpose()
     }
 
-    /// How far estimates of a limb at rest tremble in a model, metres.
+    /// How far estimates of a limb at rest tremble in a model.
     #[must_use]
-    pub fn tremble_m(&self, kind: BodyModelKind) -> f32 {
-        match kind {
-            BodyModelKind::EndEffectorPaper | BodyModelKind::AngularPaper => 0.0,
-            BodyModelKind::Guided => self.guided_points.tremble_m,
-            BodyModelKind::Stick => self.stick_tremble_m,
-            BodyModelKind::EndEffector | BodyModelKind::Angular | BodyModelKind::PelvicLift => self.points.tremble_m,
-        }
+    pub fn steady(&self, kind: BodyModelKind) -> SteadyTuning {
+        if kind.is_printed() { SteadyTuning { tremble_errors: 0.0, tremble_m: 0.0 } } else { self.steady }
     }
 
     /// What limbs cost that lie in limbs, metres of [`Self::self_penetration_std_m`]; `None` where nothing.
@@ -286,13 +290,7 @@ impl Default for BodyTuning {
             pays: false,
             draw_share: 0.71,
         };
-        let points = PointTuning {
-            std_m: 0.07,
-            outlier_m: 0.10,
-            least_effective_share: 0.06,
-            limb_by_limb: true,
-            tremble_m: 0.035,
-        };
+        let points = PointTuning { std_m: 0.07, outlier_m: 0.10, least_effective_share: 0.06, limb_by_limb: true };
         Self {
             root: RootTuning {
                 persistence: 0.5,
@@ -318,6 +316,7 @@ impl Default for BodyTuning {
             },
             pulling_blocks: 64,
             angular: AngularTuning { persistence: 0.6, joint_std: ANGULAR_JOINTS },
+            steady: SteadyTuning { tremble_errors: 4.0, tremble_m: 0.004 },
             smoothing: SmoothingTuning { radius_m: 0.04, skin_std_m: 0.015 },
             points,
             guided_points: PointTuning {
@@ -325,12 +324,10 @@ impl Default for BodyTuning {
                 limb_by_limb: false,
                 std_m: 0.05,
                 outlier_m: 0.08,
-                tremble_m: 0.02,
             },
             self_penetration_std_m: 0.015,
-            stick_gamma_std: 0.2,
-            stick_reach_std_m: 0.02,
-            stick_tremble_m: 0.025,
+            stick_gamma_std: 0.1,
+            stick_reach_std_m: 0.01,
             lift_std_m: 0.08,
             lift_turn_std_rad: 0.3,
         }
