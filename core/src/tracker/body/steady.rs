@@ -39,8 +39,8 @@ impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
     }
 
     /// The pose to tell where the particles' mean is `now`: the ends of each limb's bones go from where they were told to where they are now,
-    /// the whole way if the limb moves by much more than its ends tremble, `tremble_m`. The pose is the one between the two that has its ends there: were angles
-    /// alone mixed, a hand would tremble with the trunk's angles, for which the arm's no longer make up.
+    /// the whole way if the limb moves by much more than its ends tremble, `tremble_m`. The pose is the one between the two that has its ends
+    /// there: were angles alone mixed, a hand would tremble with the trunk's angles, for which the arm's no longer make up.
     pub(super) fn tell(
         &mut self,
         (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
