@@ -9,8 +9,8 @@ use super::score::{BodyScore, RunningMean};
 use super::start::pose_from_points;
 use super::{particles, table};
 use crate::body::export::{body_layout, bvh_frame, upwards};
+use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
-use crate::body::tracking::{BodyFilter, BodyModelKind};
 use crate::cloud::{self, CloudFrame, MAX_POINTS, blocks_of};
 use crate::motion::export::{BvhFrame, TrcFrame, TrcHeading, TrcUnit, to_trc, write_bvh};
 use crate::output::{OutputDir, PendingFile};
@@ -342,7 +342,7 @@ pub(super) fn read_cloud(
 /// A start from the first cloud that has points, and a note of it.
 fn found_start(inputs: &mut BodyInputs, options: &BodyTrackOptions) -> Result<[f32; BODY_ANGLES]> {
     let clouds = inputs.clouds.frames.iter().take(START_CLOUDS);
-    let smoothing = options.tuning.range_smoothing(BodyModelKind::Guided)?;
+    let smoothing = options.tuning.range_smoothing()?;
     let mut readable =
         clouds.filter_map(|frame| Some((frame.frame, read_cloud(frame, options.seed, smoothing.as_ref()).ok()?)));
     let found = readable.find(|(_, cloud)| !cloud.points_m.is_empty());

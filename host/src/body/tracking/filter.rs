@@ -88,6 +88,7 @@ impl BodyFilter {
         particles: usize,
         seed: u64,
     ) -> Result<Self, ParameterError> {
+        let tuning = tuning.of_kind(kind);
         let points = if kind == BodyModelKind::Guided { tuning.guided_points } else { tuning.points };
         let scene = BodyScene {
             skeleton: full_body(measures)?,
@@ -109,7 +110,7 @@ impl BodyFilter {
                 Sizes::Upper(Box::new(SizedFilter::new(kind, tuning, body, first_rad, particles, seed)?))
             }
         };
-        let smoothing = tuning.range_smoothing(kind)?;
+        let smoothing = tuning.range_smoothing()?;
         Ok(Self { tracked, scene, floor_y_m: f32::INFINITY, smoothing, completed: OnceLock::new() })
     }
 

@@ -29,8 +29,6 @@ const PAPER_END_EFFECTORS: [usize; 3] = [HEAD, FOREARMS[0], FOREARMS[1]];
 const PAPER_ANGLE_STD_RAD: f32 = 0.044_721_36;
 /// sigma of eq. (33), metres a frame: the paper does not print it.
 const PAPER_GOAL_STD_M: f32 = 0.05;
-/// Least effective share of whole poses with the settings that the paper prints.
-const PAPER_EFFECTIVE_SHARE: f32 = 0.05;
 
 type Particle<const BONES: usize, const ANGLES: usize> = BodyParticle<BONES, ANGLES>;
 pub(super) type Tracker<const BONES: usize, const ANGLES: usize> =
@@ -82,7 +80,8 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             BodyModelKind::Guided => (tuning.guided_points, tuning.guided),
             _ => (tuning.points, tuning.end_effector),
         };
-        let apart = tuning.apart_std_m(kind).map(|std_m| SelfPenetration::new(&body.skeleton, &body.radii_m, std_m));
+        let std_m = tuning.self_penetration_std_m;
+        let apart = (std_m > 0.0).then(|| SelfPenetration::new(&body.skeleton, &body.radii_m, std_m));
         let self_penetration = apart.transpose()?;
         let scene = BodyScene {
             skeleton: body.skeleton,
@@ -96,15 +95,13 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             .carrying(CARRIED)
             .swinging_about(&JOINTS, BONES)?;
         let first = BodyParticle::at(&scene.skeleton, first_rad);
-        let is_printed = kind.is_printed();
         let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::PelvicLift);
-        let steady = tuning.steady(kind);
         let options = BodyOptions {
-            least_effective_share: if is_printed { PAPER_EFFECTIVE_SHARE } else { points.least_effective_share },
-            limb_by_limb: points.limb_by_limb && !is_printed,
-            alignment: tuning.root.alignment(!is_printed).filter(|_| is_aligned),
-            tremble_errors: steady.tremble_errors,
-            tremble_m: steady.tremble_m,
+            least_effective_share: points.least_effective_share,
+            limb_by_limb: points.limb_by_limb,
+            alignment: tuning.root.alignment().filter(|_| is_aligned),
+            tremble_errors: tuning.steady.tremble_errors,
+            tremble_m: tuning.steady.tremble_m,
         };
         let lays_trunk = options.alignment.is_some_and(|alignment| alignment.lays_trunk);
         let set = vec![first; particles];

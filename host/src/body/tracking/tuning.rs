@@ -85,16 +85,16 @@ pub struct RootTuning {
 }
 
 impl RootTuning {
-    /// How the root is laid onto the points, and the trunk where the model `may_lay_trunk`.
+    /// How the root is laid onto the points, and the trunk with it if asked for.
     #[must_use]
-    pub fn alignment(&self, may_lay_trunk: bool) -> Option<RootAlignment> {
+    pub fn alignment(&self) -> Option<RootAlignment> {
         self.aligned.then_some(RootAlignment {
             steps: ALIGNMENT_STEPS,
             shift_std_m_per_sqrt_s: self.aligned_shift_std_m,
             turn_std_rad_per_sqrt_s: self.aligned_turn_std_rad,
             angle_std_rad_per_sqrt_s: self.aligned_angle_std_rad,
             pulling_blocks: usize::MAX,
-            lays_trunk: self.aligned_trunk && may_lay_trunk,
+            lays_trunk: self.aligned_trunk,
         })
     }
 
@@ -243,27 +243,32 @@ pub struct BodyTuning {
     pub lift_turn_std_rad: f32,
 }
 
+/// Least effective share of whole poses with the settings that the paper prints.
+const PAPER_EFFECTIVE_SHARE: f32 = 0.05;
+
 impl BodyTuning {
-    /// How the points of a model are smoothed; `None` where they are taken as they are.
+    /// The numbers that a model goes by: one with the settings that the paper prints sees the points as they are, weighs whole poses that may
+    /// pass through themselves, guesses its trunk and tells each frame's mean.
+    #[must_use]
+    pub fn of_kind(mut self, kind: BodyModelKind) -> Self {
+        if kind.is_printed() {
+            self.smoothing.radius_m = 0.0;
+            self.steady = SteadyTuning { tremble_errors: 0.0, tremble_m: 0.0 };
+            self.self_penetration_std_m = 0.0;
+            self.root.aligned_trunk = false;
+            self.points.limb_by_limb = false;
+            self.points.least_effective_share = PAPER_EFFECTIVE_SHARE;
+        }
+        self
+    }
+
+    /// How points are smoothed; `None` where they are taken as they are.
     ///
     /// # Errors
     /// Names the number that broke a rule.
-    pub fn range_smoothing(&self, kind: BodyModelKind) -> Result<Option<RangeSmoothing>, ParameterError> {
+    pub fn range_smoothing(&self) -> Result<Option<RangeSmoothing>, ParameterError> {
         let SmoothingTuning { radius_m, skin_std_m } = self.smoothing;
-        let is_asked = radius_m > 0.0 && !kind.is_printed();
-        is_asked.then(|| RangeSmoothing::new(radius_m, skin_std_m)).transpose()
-    }
-
-    /// How far estimates of a limb at rest tremble in a model.
-    #[must_use]
-    pub fn steady(&self, kind: BodyModelKind) -> SteadyTuning {
-        if kind.is_printed() { SteadyTuning { tremble_errors: 0.0, tremble_m: 0.0 } } else { self.steady }
-    }
-
-    /// What limbs cost that lie in limbs, metres of [`Self::self_penetration_std_m`]; `None` where nothing.
-    #[must_use]
-    pub fn apart_std_m(&self, kind: BodyModelKind) -> Option<f32> {
-        Some(self.self_penetration_std_m).filter(|std_m| *std_m > 0.0 && !kind.is_printed())
+        (radius_m > 0.0).then(|| RangeSmoothing::new(radius_m, skin_std_m)).transpose()
     }
 }
 
