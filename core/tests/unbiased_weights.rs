@@ -92,6 +92,7 @@ fn draw(scene: &BodyScene<2, 2>, motion: &impl BodyMotion<2, 2>, blocks: &[Point
         angle_velocity_per_s: [0.0; 2],
         shared_change: [None; 2],
         velocity_m_per_s: &[Vec3::zeros(); 2],
+        noise_share: &[1.0; 2],
         first_m: &ancestor.ends_m,
         dt_s: DT_S,
         is_first: true,

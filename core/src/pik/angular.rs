@@ -3,7 +3,6 @@
 use super::goal::GoalMemory;
 use super::motion::{BodyMotion, BodyParticle, FramePast, Proposed};
 use super::root::RootProcess;
-use crate::math::sqrt;
 use crate::random::Stream;
 use crate::skeleton::Limit;
 
@@ -32,6 +31,7 @@ const MAX_TRIES: usize = 8;
 /// #     angle_velocity_per_s: [0.0; 4],
 /// #     shared_change: [None; 4],
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     noise_share: &[1.0; 2],
 /// #     first_m: &ancestor.ends_m,
 /// #     dt_s: 0.1,
 /// #     is_first: true,
@@ -75,6 +75,7 @@ impl<const BONES: usize, const ANGLES: usize> BodyMotion<BONES, ANGLES> for Angu
     ) -> Proposed<BONES, ANGLES> {
         let skeleton = &past.scene.skeleton;
         let mut angles_rad = ancestor.angles_rad;
+        let std_rad = past.angle_std_rad(&self.angle_std_rad_per_sqrt_s);
         self.root.draw(skeleton, &mut angles_rad, &past.shared_change, past.dt_s, stream);
         for i in skeleton.root_coordinates()..ANGLES {
             let before = ancestor.angles_rad[i];
@@ -83,8 +84,7 @@ impl<const BONES: usize, const ANGLES: usize> BodyMotion<BONES, ANGLES> for Angu
                 let own = memory.get(i).filter(|_| !past.is_first).map_or(before, |&before_that| before_that);
                 change = self.persistence * (before - own);
             }
-            let std_rad = self.angle_std_rad_per_sqrt_s[i] * sqrt(past.dt_s);
-            angles_rad[i] = draw_inside(before + change, std_rad, &skeleton.limits()[i], stream);
+            angles_rad[i] = draw_inside(before + change, std_rad[i], &skeleton.limits()[i], stream);
         }
         if self.own_velocity {
             for (kept, angle) in memory.iter_mut().zip(&ancestor.angles_rad) {

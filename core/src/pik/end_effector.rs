@@ -38,6 +38,7 @@ const LIMIT_MASS_DRAWS: usize = 8;
 /// #     angle_velocity_per_s: [0.0; 4],
 /// #     shared_change: [None; 4],
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     noise_share: &[1.0; 2],
 /// #     first_m: &ancestor.ends_m,
 /// #     dt_s: 0.1,
 /// #     is_first: true,
@@ -118,8 +119,8 @@ pub fn narrow<const ANGLES: usize>(mode: &mut Mode<ANGLES>, share: f32) {
 }
 
 /// lambda of eq. (12), one an angle.
-pub(super) fn stiffness<const ANGLES: usize>(std_rad_per_sqrt_s: &[f32; ANGLES], dt_s: f32) -> [f32; ANGLES] {
-    std_rad_per_sqrt_s.map(|std| 1.0 / (std * std * dt_s))
+pub(super) fn stiffness<const ANGLES: usize>(std_rad: &[f32; ANGLES]) -> [f32; ANGLES] {
+    std_rad.map(|std| 1.0 / (std * std))
 }
 
 impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<BONES, ANGLES>
@@ -150,7 +151,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
             root_m: Vec3::zeros(),
             goals: &goals,
             previous_rad,
-            stiffness: stiffness(&self.angle_std_rad_per_sqrt_s, past.dt_s),
+            stiffness: stiffness(&past.angle_std_rad(&self.angle_std_rad_per_sqrt_s)),
             held: skeleton.root_coordinates(),
         };
         let mut mode = density.mode(self.solver_steps);

@@ -23,6 +23,7 @@ pub const MEMORY: usize = 32;
 /// # let past = GoalPast {
 /// #     reached_m: &at,
 /// #     velocity_m_per_s: &[Vec3::zeros()],
+/// #     noise_share: &[1.0; 1],
 /// #     first_m: &at,
 /// #     root_shift_m: Vec3::zeros(),
 /// #     dt_s: 0.1,
@@ -60,6 +61,7 @@ pub type Goals = Vec<Goal, MAX_GOALS>;
 /// let past = GoalPast {
 ///     reached_m: &ankles_m,
 ///     velocity_m_per_s: &[Vec3::zeros(), Vec3::new(0.0, 0.5, -1.5)],
+///     noise_share: &[1.0; 2],
 ///     first_m: &ankles_m,
 ///     root_shift_m: Vec3::zeros(),
 ///     dt_s: 0.1,
@@ -81,6 +83,9 @@ pub struct GoalPast<'a, const BONES: usize> {
     pub reached_m: &'a [Vec3; BONES],
     /// Their velocities by the filter's estimates, not the particle's own: DESIGN.md section 3; metres a second.
     pub velocity_m_per_s: &'a [Vec3; BONES],
+    /// Share of its noise that a goal of each bone's end has in this frame: one is all of it, a limb at rest may have less and one that nobody
+    /// sees more. [`LinearGoals`](super::processes::extrapolation::LinearGoals) keeps to it; other processes may.
+    pub noise_share: &'a [f32; BONES],
     /// Ends of all bones in the pose that the tracking began with, metres.
     pub first_m: &'a [Vec3; BONES],
     /// How far the root goes in this frame, as far as its process or the points tell; metres.
@@ -124,6 +129,7 @@ struct OwnMotionModel;
 /// # let past = GoalPast {
 /// #     reached_m: &at,
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     noise_share: &[1.0; 2],
 /// #     first_m: &at,
 /// #     root_shift_m: Vec3::zeros(),
 /// #     dt_s: 0.2,

@@ -54,6 +54,7 @@ const HELD_STIFFNESS: f32 = 1.0e6;
 /// #     angle_velocity_per_s: [0.0; 4],
 /// #     shared_change: [None; 4],
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     noise_share: &[1.0; 2],
 /// #     first_m: &ancestor.ends_m,
 /// #     dt_s: 0.1,
 /// #     is_first: true,
@@ -216,7 +217,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
             *angle += past.change(i, self.angle_persistence);
         }
         let previous_rad = skeleton.clamp(previous_rad);
-        let mut stiffness = stiffness(&self.angle_std_rad_per_sqrt_s, past.dt_s);
+        let mut stiffness = stiffness(&past.angle_std_rad(&self.angle_std_rad_per_sqrt_s));
         for i in 0..skeleton.root_coordinates() {
             let std = self.root.std(i, past.dt_s);
             stiffness[i] = if std > 0.0 { 1.0 / (std * std) } else { HELD_STIFFNESS };
@@ -271,6 +272,7 @@ mod tests {
             angle_velocity_per_s: [0.0; 4],
             shared_change: [None; 4],
             velocity_m_per_s: &[Vec3::zeros(); 2],
+            noise_share: &[1.0; 2],
             first_m: &ancestor.ends_m,
             dt_s: 0.1,
             is_first: true,

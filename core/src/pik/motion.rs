@@ -3,7 +3,7 @@
 use super::goal::{GoalMemory, GoalPast, MEMORY};
 use super::root::RootProcess;
 use crate::kinematics::forward::{Posture, posture};
-use crate::math::Vec3;
+use crate::math::{Vec3, sqrt};
 use crate::observation::body_surface::BodySurface;
 use crate::observation::limb_likelihood::{ExpectedBody, GroupLogs};
 use crate::observation::point_cloud::PointBlock;
@@ -147,6 +147,7 @@ impl<const BONES: usize, const ANGLES: usize> BodyScene<BONES, ANGLES> {
 ///     angle_velocity_per_s: [0.0; 4],
 ///     shared_change: [None; 4],
 ///     velocity_m_per_s: &[Vec3::zeros(); 2],
+///     noise_share: &[1.0; 2],
 ///     first_m: &ancestor.ends_m,
 ///     dt_s: 0.1,
 ///     is_first: true,
@@ -169,6 +170,9 @@ pub struct FramePast<'a, const BONES: usize, const ANGLES: usize> {
     pub shared_change: [Option<f32>; ANGLES],
     /// Velocities of the bones' ends by the filter's estimates, metres a second.
     pub velocity_m_per_s: &'a [Vec3; BONES],
+    /// Share of the motion model's noise that each bone has in this frame: its joint's angles, and a goal of its end. One is all of it; a limb at
+    /// rest may have less, one that nobody sees more.
+    pub noise_share: &'a [f32; BONES],
     /// Ends of all bones in the first pose, metres.
     pub first_m: &'a [Vec3; BONES],
     /// Time since the frame before, seconds.
@@ -184,6 +188,16 @@ impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
         let own = |velocity_per_s: &f32| persistence * velocity_per_s * self.dt_s;
         let shared = self.shared_change.get(index).copied().flatten();
         shared.unwrap_or_else(|| self.angle_velocity_per_s.get(index).map_or(0.0, own))
+    }
+
+    /// Standard deviations of all angles over this frame, radians, of a model with these after one second.
+    #[must_use]
+    pub fn angle_std_rad(&self, std_rad_per_sqrt_s: &[f32; ANGLES]) -> [f32; ANGLES] {
+        let root_of_time = sqrt(self.dt_s);
+        core::array::from_fn(|index| {
+            let bone = self.scene.skeleton.bone_of_angle(index);
+            std_rad_per_sqrt_s[index] * self.noise_share.get(bone).copied().unwrap_or(1.0) * root_of_time
+        })
     }
 
     /// How far a free root is expected to go, metres.
@@ -204,6 +218,7 @@ impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
         GoalPast {
             reached_m: &ancestor.ends_m,
             velocity_m_per_s: self.velocity_m_per_s,
+            noise_share: self.noise_share,
             first_m: self.first_m,
             root_shift_m: self.root_shift_m(),
             dt_s: self.dt_s,
@@ -234,6 +249,7 @@ impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
 /// #     angle_velocity_per_s: [0.0; 4],
 /// #     shared_change: [None; 4],
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     noise_share: &[1.0; 2],
 /// #     first_m: &ancestor.ends_m,
 /// #     dt_s: 0.1,
 /// #     is_first: true,
@@ -305,6 +321,7 @@ pub struct Proposed<const BONES: usize, const ANGLES: usize> {
 /// #     angle_velocity_per_s: [0.0; 4],
 /// #     shared_change: [None; 4],
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     noise_share: &[1.0; 2],
 /// #     first_m: &ancestor.ends_m,
 /// #     dt_s: 0.1,
 /// #     is_first: true,

@@ -22,6 +22,7 @@ use heapless::Vec;
 /// # let past = GoalPast {
 /// #     reached_m: &places_m,
 /// #     velocity_m_per_s: &[Vec3::zeros(), Vec3::x()],
+/// #     noise_share: &[1.0; 2],
 /// #     first_m: &places_m,
 /// #     root_shift_m: Vec3::zeros(),
 /// #     dt_s: 0.1,
@@ -118,7 +119,8 @@ impl LinearGoals {
         let place = move |bone: usize| Some((*past.reached_m.get(bone)?, *past.velocity_m_per_s.get(bone)?));
         self.end_effectors.iter().enumerate().filter_map(move |(index, &bone)| {
             let (reached_m, velocity) = place(bone)?;
-            let std_m = self.process_of(index).std_m(past.dt_s);
+            let share = past.noise_share.get(bone).copied().unwrap_or(1.0);
+            let std_m = self.process_of(index).std_m(past.dt_s) * share;
             if index >= self.carried {
                 return Some((bone, self.process.mean(&reached_m, &velocity, past.dt_s), std_m));
             }
@@ -193,11 +195,13 @@ mod tests {
         let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.2 };
         // The process's own spread is not read where the end-effector has one.
         let unread = LinearExtrapolation { std_m_per_sqrt_s: 9.0, ..process };
-        let goals_of = LinearGoals::new(&[1], 2, unread, 0.03).unwrap().spreading_by(&[0.2]).unwrap();
+        // Half of its own: a limb that hardly moves.
+        let goals_of = LinearGoals::new(&[1], 2, unread, 0.03).unwrap().spreading_by(&[0.4]).unwrap();
         let (reached, velocity) = ([Vec3::zeros(), Vec3::z()], [Vec3::zeros(), Vec3::x()]);
         let past = GoalPast {
             reached_m: &reached,
             velocity_m_per_s: &velocity,
+            noise_share: &[1.0, 0.5],
             first_m: &reached,
             root_shift_m: Vec3::zeros(),
             dt_s: 0.25,
@@ -229,6 +233,7 @@ mod tests {
         let past = GoalPast {
             reached_m: &reached,
             velocity_m_per_s: &velocity,
+            noise_share: &[1.0; 3],
             first_m: &reached,
             root_shift_m,
             dt_s: 0.1,
@@ -254,8 +259,8 @@ mod tests {
             let reached = [Vec3::zeros(), Vec3::x(), Vec3::x() + Vec3::z() * 0.5];
             let velocity = [root_velocity, root_velocity, root_velocity + turning + Vec3::z() * out];
             let past = GoalPast {
-                reached_m: &reached, velocity_m_per_s: &velocity, first_m: &reached, root_shift_m: root_velocity * 0.1, dt_s: 0.1,
-                is_first: false,
+                reached_m: &reached, velocity_m_per_s: &velocity, noise_share: &[1.0; 3], first_m: &reached,
+                root_shift_m: root_velocity * 0.1, dt_s: 0.1, is_first: false,
             };
             let mut goals = Goals::new();
             goals_of.draw(&past, &mut [0.0; 32], &mut Stream::new(1, 0, 0), &mut goals);

@@ -21,6 +21,7 @@ const MOST: usize = MEMORY / 6;
 /// # let past = GoalPast {
 /// #     reached_m: &hand_m,
 /// #     velocity_m_per_s: &hand_m,
+/// #     noise_share: &[1.0; 1],
 /// #     first_m: &hand_m,
 /// #     root_shift_m: Vec3::zeros(),
 /// #     dt_s: 0.1,

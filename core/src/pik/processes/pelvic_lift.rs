@@ -19,6 +19,7 @@ use crate::random::Stream;
 /// # let past = GoalPast {
 /// #     reached_m: &slipped_m,
 /// #     velocity_m_per_s: &[Vec3::zeros()],
+/// #     noise_share: &[1.0; 1],
 /// #     first_m: &first_m,
 /// #     root_shift_m: Vec3::zeros(),
 /// #     dt_s: 0.1,

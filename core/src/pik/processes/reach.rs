@@ -22,6 +22,7 @@ use crate::random::Stream;
 /// #     let past = GoalPast {
 /// #         reached_m: &at_m,
 /// #         velocity_m_per_s: &[Vec3::zeros()],
+/// #         noise_share: &[1.0; 1],
 /// #         first_m: &at_m,
 /// #         root_shift_m: Vec3::zeros(),
 /// #         dt_s: 0.1,
@@ -84,6 +85,7 @@ mod tests {
             let past = GoalPast {
                 reached_m: &at,
                 velocity_m_per_s: &first,
+                noise_share: &[1.0; 1],
                 first_m: &first,
                 root_shift_m: Vec3::zeros(),
                 dt_s: 0.1,

@@ -24,6 +24,7 @@ const UNKNOWN: f32 = 0.0;
 /// # let past = GoalPast {
 /// #     reached_m: &hands_m,
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     noise_share: &[1.0; 2],
 /// #     first_m: &hands_m,
 /// #     root_shift_m: Vec3::zeros(),
 /// #     dt_s: 0.1,
@@ -75,6 +76,7 @@ pub enum StickSight {
 /// # let past = GoalPast {
 /// #     reached_m: &hands_m,
 /// #     velocity_m_per_s: &[Vec3::zeros(); 2],
+/// #     noise_share: &[1.0; 2],
 /// #     first_m: &hands_m,
 /// #     root_shift_m: Vec3::zeros(),
 /// #     dt_s: 0.1,
@@ -211,6 +213,7 @@ mod tests {
         let past = GoalPast {
             reached_m: &reached_m,
             velocity_m_per_s: &[Vec3::zeros(); 3],
+            noise_share: &[1.0; 3],
             first_m: &reached_m,
             root_shift_m: Vec3::zeros(),
             dt_s: 1.0 / 15.0,

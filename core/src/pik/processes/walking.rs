@@ -26,6 +26,7 @@ use crate::random::Stream;
 /// # let past = GoalPast {
 /// #     reached_m: &ankles_m,
 /// #     velocity_m_per_s: &[Vec3::zeros(), Vec3::new(0.0, 1.0, -2.0)],
+/// #     noise_share: &[1.0; 2],
 /// #     first_m: &ankles_m,
 /// #     root_shift_m: Vec3::zeros(),
 /// #     dt_s: 0.1,
@@ -110,6 +111,7 @@ mod tests {
         let past = GoalPast {
             reached_m: &reached_m,
             velocity_m_per_s: &velocity_m_per_s,
+            noise_share: &[1.0; 2],
             first_m: &reached_m,
             root_shift_m: Vec3::zeros(),
             dt_s: 0.1,

@@ -49,5 +49,6 @@ where
         places(&mut self.steady.off_m, visitor);
         visitor.reals(&mut self.angle_velocity_per_s, &FINITE);
         places(&mut self.velocity_m_per_s, visitor);
+        visitor.reals(&mut self.noise.shares, &FINITE);
     }
 }

@@ -8,7 +8,7 @@ use super::estimate::mean_of_group;
 use crate::kinematics::inverse::{Goal, PoseDensity, Solve};
 use crate::math::{Mat3, Vec3, max, min, sqrt};
 use crate::pik::motion::{BodyParticle, BodyScene};
-use crate::skeleton::Limbs;
+use crate::skeleton::{Joint, Limbs, Skeleton};
 
 /// What lies within the trembling is followed too, in this time, seconds.
 const REST_S: f32 = 2.0;
@@ -52,6 +52,7 @@ impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
             self.told = *now;
             return &self.told;
         }
+        let groups: [usize; BONES] = core::array::from_fn(|bone| group_of_end((&scene.skeleton, limbs), bone));
         let off_m: [Vec3; BONES] = core::array::from_fn(|bone| now.ends_m[bone] - self.told.ends_m[bone]);
         let mut between_rad = self.told.angles_rad;
         let mut goals = self.told.ends_m.map(|position_m| Goal {
@@ -60,11 +61,11 @@ impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
             precision: Mat3::from_diagonal_element(PRECISION),
         });
         for group in 0..limbs.count() {
-            let trembles_m = root_mean((limbs, group), |bone| tremble_m[bone] * tremble_m[bone]);
-            let share = share(self.moved_m((limbs, group), &off_m) / max(trembles_m, LEAST_TREMBLE_M), dt_s);
+            let trembles_m = root_mean((&groups, group), |bone| tremble_m[bone] * tremble_m[bone]);
+            let share = share(self.moved_m((&groups, group), &off_m) / max(trembles_m, LEAST_TREMBLE_M), dt_s);
             let (poses, weights) = ([self.told, *now], [1.0 - share, share]);
             mean_of_group(&scene.skeleton, (&poses, &weights), (limbs, group), &mut between_rad);
-            for (bone, goal) in goals.iter_mut().enumerate().filter(|(bone, _)| limbs.group(*bone) == group) {
+            for (bone, goal) in goals.iter_mut().enumerate().filter(|(bone, _)| groups[*bone] == group) {
                 goal.bone = bone;
                 goal.position_m += off_m[bone] * share;
             }
@@ -85,21 +86,35 @@ impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
 
     /// How far the ends of a group's bones went, metres: root mean of the products of how far they are off with how far they were in the frame
     /// before.
-    fn moved_m(&self, (limbs, group): (&Limbs<BONES>, usize), off_m: &[Vec3; BONES]) -> f32 {
-        let twice_m = root_mean((limbs, group), |bone| off_m[bone].dot(&self.off_m[bone]));
-        let once_m = root_mean((limbs, group), |bone| off_m[bone].dot(&off_m[bone]));
+    fn moved_m(&self, (groups, group): (&[usize; BONES], usize), off_m: &[Vec3; BONES]) -> f32 {
+        let twice_m = root_mean((groups, group), |bone| off_m[bone].dot(&self.off_m[bone]));
+        let once_m = root_mean((groups, group), |bone| off_m[bone].dot(&off_m[bone]));
         max(twice_m, ALONE * once_m)
     }
 }
 
-/// Root of the mean over a group's bones; zero of a negative mean.
-fn root_mean<const BONES: usize>((limbs, group): (&Limbs<BONES>, usize), of: impl Fn(usize) -> f32) -> f32 {
+/// Root of the mean over the ends that go with a group; zero of a negative mean.
+fn root_mean<const BONES: usize>((groups, group): (&[usize; BONES], usize), of: impl Fn(usize) -> f32) -> f32 {
     let (mut sum, mut count) = (0.0, 0.0);
-    for bone in (0..BONES).filter(|&bone| limbs.group(bone) == group) {
+    for bone in (0..BONES).filter(|&bone| groups[bone] == group) {
         sum += of(bone);
         count += 1.0;
     }
     sqrt(max(sum, 0.0) / max(count, 1.0))
+}
+
+/// The group that a bone's end goes with: a bone without a joint of its own is carried by its parent. Shoulders go with the trunk, and an arm that
+/// waves does not take the trunk along.
+fn group_of_end<const BONES: usize, const ANGLES: usize>(
+    (skeleton, limbs): (&Skeleton<BONES, ANGLES>, &Limbs<BONES>),
+    mut bone: usize,
+) -> usize {
+    while let Some(parent) =
+        skeleton.bones().get(bone).filter(|held| held.joint == Joint::Fixed).and_then(|held| held.parent)
+    {
+        bone = usize::from(parent);
+    }
+    limbs.group(bone)
 }
 
 /// The part of the way that is gone by a limb that moved by so many times its trembling.

@@ -3,6 +3,7 @@
 use super::alignment::RootAlignment;
 use super::estimate::{BodyEstimate, mean_of_group, spread_of_group};
 use super::observed::observed;
+use super::pace::{LimbNoise, PaceNoise};
 use super::steady::SteadyPose;
 use super::tempering::temper;
 use crate::error::{ParameterError, Rule};
@@ -88,6 +89,8 @@ pub struct BodyOptions {
     pub tremble_errors: f32,
     /// How far it trembles beyond that, however many particles there are, metres. Both zero tell each frame's mean.
     pub tremble_m: f32,
+    /// How the noise of a limb follows its pace; `None` leaves every limb the motion model's own.
+    pub pace: Option<PaceNoise>,
 }
 
 /// What is used unless told otherwise.
@@ -97,6 +100,7 @@ pub const DEFAULT_BODY_OPTIONS: BodyOptions = BodyOptions {
     alignment: None,
     tremble_errors: 0.0,
     tremble_m: 0.0,
+    pace: None,
 };
 
 /// One frame.
@@ -284,6 +288,7 @@ pub struct BodyTracker<const BONES: usize, const ANGLES: usize, const N: usize, 
     pub(super) first_m: [Vec3; BONES],
     pub(super) before: BodyParticle<BONES, ANGLES>,
     pub(super) steady: SteadyPose<BONES, ANGLES>,
+    pub(super) noise: LimbNoise,
     pub(super) angle_velocity_per_s: [f32; ANGLES],
     pub(super) velocity_m_per_s: [Vec3; BONES],
     pub(super) seed: u64,
@@ -316,6 +321,7 @@ where
                 return Err(ParameterError::new(name, Rule::NotNegative));
             }
         }
+        options.pace.map(PaceNoise::checked).transpose()?;
         particles.as_mut().fill(*first);
         let mut ancestors = heapless::Vec::new();
         let weights = Weights::uniform(count)?;
@@ -331,6 +337,7 @@ where
             first_m: first.ends_m,
             before: *first,
             steady: SteadyPose::new(*first),
+            noise: LimbNoise::FULL,
             angle_velocity_per_s: [0.0; ANGLES],
             velocity_m_per_s: [Vec3::zeros(); BONES],
             seed,
@@ -393,6 +400,7 @@ where
                 angle_velocity_per_s,
                 shared_change: self.shared_change(scene, &expected_rad),
                 velocity_m_per_s: &self.velocity_m_per_s.map(|velocity| velocity * fades),
+                noise_share: &self.noise.per_bone(&Limbs::of(&scene.skeleton)),
                 first_m: &self.first_m,
                 dt_s,
                 is_first,
@@ -480,6 +488,9 @@ where
         }
         for bone in 0..BONES {
             self.velocity_m_per_s[bone] = (mean.ends_m[bone] - self.before.ends_m[bone]) / dt_s;
+        }
+        if let Some(pace) = &self.options.pace {
+            self.noise.follow((pace, &limbs), &self.velocity_m_per_s, (&observed, &scene.radii_m), dt_s);
         }
         let tremble_m = standard_error_m.map(|error_m| self.options.tremble_m + self.options.tremble_errors * error_m);
         let told = *self.steady.tell((scene, &limbs), &mean, &tremble_m, dt_s);

@@ -109,6 +109,9 @@ fn guided(process: &LinearGoals) -> GuidedMotion<'_, LinearGoals, BODY_ANGLES> {
 const ANGULAR: AngularMotion<BODY_ANGLES> =
     AngularMotion { root: ROOT, persistence: 0.5, angle_std_rad_per_sqrt_s: [0.6; BODY_ANGLES], own_velocity: false };
 
+const PACE: PaceNoise =
+    PaceNoise { rest_share: 0.4, full_speed_m_per_s: 1.3, fade_s: 0.3, unseen_growth_s: 0.5, unseen_most: 2.0 };
+
 const OPTIONS: BodyOptions = BodyOptions {
     least_effective_share: 0.14,
     limb_by_limb: false,
@@ -122,6 +125,7 @@ const OPTIONS: BodyOptions = BodyOptions {
     }),
     tremble_errors: 0.0,
     tremble_m: 0.0,
+    pace: None,
 };
 
 const LIMB_BY_LIMB: BodyOptions = BodyOptions { least_effective_share: 0.2, limb_by_limb: true, ..OPTIONS };
@@ -277,37 +281,41 @@ fn the_number_of_effective_particles_grows_with_the_root_of_theirs() {
     }
 }
 
+/// Chance decides whether an arm that went on unseen is found again: most are, with either model.
 #[test]
 fn a_hidden_arm_grows_uncertain_is_said_to_be_unseen_and_comes_back() {
     let goals = goals();
-    let last_error = hide_an_arm(&guided(&goals), 60, OPTIONS);
-    assert!(last_error < 0.08, "{last_error}");
-    let last_error = hide_an_arm(&end_effector(&goals), 200, LIMB_BY_LIMB);
-    assert!(last_error < 0.15, "{last_error}");
+    let guided = hidden_arms_found(&guided(&goals), 60, BodyOptions { pace: Some(PACE), ..OPTIONS });
+    assert!(guided >= 4, "{guided} of 6");
+    let by_goals = hidden_arms_found(&end_effector(&goals), 200, BodyOptions { pace: Some(PACE), ..LIMB_BY_LIMB });
+    assert!(by_goals >= 5, "{by_goals} of 6");
 }
 
-/// Error of a hand 15 frames after its arm was hidden for 15 frames, metres.
-fn hide_an_arm(motion: &impl BodyMotion<BODY_BONES, BODY_ANGLES>, count: usize, options: BodyOptions) -> f32 {
-    let scene = scene();
-    let mut tracker = tracker_of(&scene, count, 4, options);
-    let (hand, arm) = (FOREARMS[0], [UPPER_ARMS[0], FOREARMS[0]]);
-    let (mut seen_spread, mut hidden_spread, mut last_error) = (0.0, 0.0, 0.0);
-    for frame in 1..50 {
-        let hides: &[usize] = if (20..35).contains(&frame) { &arm } else { &[] };
-        let cloud = cloud(&scene, frame, hides);
-        let estimate = tracker.step(&scene, motion, &BodyFrame { dt_s: DT_S, blocks: cloud.blocks() });
-        // Back in sight it has to be found first.
-        let is_found = !(35..45).contains(&frame);
-        assert!(!is_found || estimate.observed[hand] == hides.is_empty(), "frame {frame}");
-        match frame {
-            19 => seen_spread = estimate.spread_m[hand],
-            34 => hidden_spread = estimate.spread_m[hand],
-            _ => {}
+/// Of six runs those in which a hand is where it is 15 frames after its arm was hidden for 15 frames. In all of them its spread grows
+/// meanwhile, and it is said to be unseen but for a frame or two.
+fn hidden_arms_found(motion: &impl BodyMotion<BODY_BONES, BODY_ANGLES>, count: usize, options: BodyOptions) -> usize {
+    let (scene, hand, arm) = (scene(), FOREARMS[0], [UPPER_ARMS[0], FOREARMS[0]]);
+    let mut found = 0;
+    for seed in 4..10 {
+        let mut tracker = tracker_of(&scene, count, seed, options);
+        let (mut seen_spread, mut hidden_spread, mut said_seen, mut last_error) = (0.0, 0.0, 0, 0.0);
+        for frame in 1..50 {
+            let is_hidden = (20..35).contains(&frame);
+            let cloud = cloud(&scene, frame, if is_hidden { &arm } else { &[] });
+            let estimate = tracker.step(&scene, motion, &BodyFrame { dt_s: DT_S, blocks: cloud.blocks() });
+            said_seen += usize::from(is_hidden && estimate.observed[hand]);
+            match frame {
+                19 => seen_spread = estimate.spread_m[hand],
+                34 => hidden_spread = estimate.spread_m[hand],
+                _ => {}
+            }
+            last_error = (estimate.ends_m[hand] - scene.posture(&truth(frame)).ends[hand]).norm();
         }
-        last_error = (estimate.ends_m[hand] - scene.posture(&truth(frame)).ends[hand]).norm();
+        assert!(hidden_spread > 1.7 * seen_spread, "{seen_spread} {hidden_spread}");
+        assert!(said_seen <= 3, "{said_seen} of 15 frames");
+        found += usize::from(last_error < 0.15);
     }
-    assert!(hidden_spread > 2.0 * seen_spread, "{seen_spread} {hidden_spread}");
-    last_error
+    found
 }
 
 #[test]

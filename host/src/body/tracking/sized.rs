@@ -102,6 +102,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             alignment: tuning.root.alignment().filter(|_| is_aligned),
             tremble_errors: tuning.steady.tremble_errors,
             tremble_m: tuning.steady.tremble_m,
+            pace: Some(tuning.pace.noise()),
         };
         let lays_trunk = options.alignment.is_some_and(|alignment| alignment.lays_trunk);
         let set = vec![first; particles];

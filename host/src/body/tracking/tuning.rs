@@ -8,7 +8,7 @@ use sinew_core::observation::range_smoothing::RangeSmoothing;
 use sinew_core::pik::goal::LinearExtrapolation;
 use sinew_core::pik::root::{NO_PLANES, RootProcess};
 use sinew_core::skeleton::full_body::BODY_ANGLES;
-use sinew_core::tracker::body::RootAlignment;
+use sinew_core::tracker::body::{PaceNoise, RootAlignment};
 
 /// Standard deviations of angles after one second, by the joint they belong to; radians by root second.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -209,6 +209,32 @@ pub struct SteadyTuning {
     pub tremble_m: f32,
 }
 
+/// How the noise of a limb follows its pace, in all models but the printed ones. A `rest_share` and an `unseen_most` of one leave every limb
+/// the model's own.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PaceTuning {
+    /// Noise of a limb at rest, as a share of the model's.
+    pub rest_share: f32,
+    /// Speed against the root that would alone make all of the noise, metres a second.
+    pub full_speed_m_per_s: f32,
+    /// Time in which the noise of a limb that comes to rest falls to its e-th part, seconds.
+    pub fade_s: f32,
+    /// Time in which the noise of a limb that nobody sees grows by the model's own, seconds.
+    pub unseen_growth_s: f32,
+    /// Up to so many times the model's.
+    pub unseen_most: f32,
+}
+
+impl PaceTuning {
+    /// For the core.
+    #[must_use]
+    pub fn noise(&self) -> PaceNoise {
+        let Self { rest_share, full_speed_m_per_s, fade_s, unseen_growth_s, unseen_most } = *self;
+        PaceNoise { rest_share, full_speed_m_per_s, fade_s, unseen_growth_s, unseen_most }
+    }
+}
+
 /// Everything that a body tracker's results depend on, but the number of particles and the seed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -225,6 +251,8 @@ pub struct BodyTuning {
     pub angular: AngularTuning,
     /// Points of all models but the printed ones, before they are weighed.
     pub smoothing: SmoothingTuning,
+    /// How far limbs may stray from where their motion takes them.
+    pub pace: PaceTuning,
     /// What is told of the particles' mean.
     pub steady: SteadyTuning,
     /// Points of the models that draw from the motion alone.
@@ -253,6 +281,7 @@ impl BodyTuning {
     pub fn of_kind(mut self, kind: BodyModelKind) -> Self {
         if kind.is_printed() {
             self.smoothing.radius_m = 0.0;
+            (self.pace.rest_share, self.pace.unseen_most) = (1.0, 1.0);
             self.steady = SteadyTuning { tremble_errors: 0.0, tremble_m: 0.0 };
             self.self_penetration_std_m = 0.0;
             self.root.aligned_trunk = false;
@@ -275,10 +304,10 @@ impl BodyTuning {
 /// Found by a random search for the least error (34) with 100 particles on 14 clips that no result is reported on
 /// (docs/body_tracker.md); so was [`ANGULAR_JOINTS`].
 const GOAL_JOINTS: JointStd =
-    JointStd { trunk: 0.268, head: 0.63, shoulder: 1.2, elbow: 1.06, hip: 0.62, knee: 0.75, ankle: 0.25 };
+    JointStd { trunk: 0.268, head: 0.63, shoulder: 1.15, elbow: 1.31, hip: 0.75, knee: 1.12, ankle: 0.06 };
 /// The angular model's noise.
 const ANGULAR_JOINTS: JointStd =
-    JointStd { trunk: 0.25, head: 0.20, shoulder: 0.75, elbow: 1.17, hip: 0.22, knee: 0.615, ankle: 0.126 };
+    JointStd { trunk: 0.255, head: 0.24, shoulder: 0.625, elbow: 1.04, hip: 0.294, knee: 0.58, ankle: 0.127 };
 /// The guided model draws where the points pull, so that its stiffness may be looser.
 const GUIDED_JOINTS: JointStd =
     JointStd { trunk: 0.2, head: 0.6, shoulder: 2.0, elbow: 2.0, hip: 2.0, knee: 1.5, ankle: 1.0 };
@@ -286,14 +315,14 @@ const GUIDED_JOINTS: JointStd =
 impl Default for BodyTuning {
     fn default() -> Self {
         let goals = GoalTuning {
-            persistence: 0.87,
+            persistence: 0.90,
             reach_std_m: 0.054,
-            goal_std: GoalStd { head: 0.1, hand: 0.35, foot: 0.22 },
+            goal_std: GoalStd { head: 0.1, hand: 0.29, foot: 0.176 },
             joint_std: GOAL_JOINTS,
-            angle_persistence: 0.26,
+            angle_persistence: 0.22,
             solver_steps: 2,
             pays: false,
-            draw_share: 0.71,
+            draw_share: 0.62,
         };
         let points = PointTuning { std_m: 0.07, outlier_m: 0.10, least_effective_share: 0.06, limb_by_limb: true };
         Self {
@@ -321,7 +350,14 @@ impl Default for BodyTuning {
             },
             pulling_blocks: 64,
             angular: AngularTuning { persistence: 0.6, joint_std: ANGULAR_JOINTS },
-            steady: SteadyTuning { tremble_errors: 4.0, tremble_m: 0.004 },
+            pace: PaceTuning {
+                rest_share: 0.4,
+                full_speed_m_per_s: 1.3,
+                fade_s: 0.3,
+                unseen_growth_s: 0.5,
+                unseen_most: 2.0,
+            },
+            steady: SteadyTuning { tremble_errors: 3.0, tremble_m: 0.006 },
             smoothing: SmoothingTuning { radius_m: 0.04, skin_std_m: 0.015 },
             points,
             guided_points: PointTuning {

@@ -163,6 +163,7 @@ fn sample(
     let past = GoalPast {
         reached_m: &ancestor.ends_m,
         velocity_m_per_s: &[Vec3::zeros(); BODY_BONES],
+        noise_share: &[1.0; BODY_BONES],
         first_m,
         root_shift_m: Vec3::zeros(),
         dt_s,
