@@ -51,7 +51,7 @@ impl PaceNoise {
     /// # Errors
     /// Names the number that broke its rule.
     pub fn checked(self) -> Result<Self, ParameterError> {
-        if !(self.rest_share > 0.0 && self.rest_share <= 1.0) {
+        if positive("rest_share", self.rest_share)? > 1.0 {
             return Err(ParameterError::new("rest_share", Rule::Within { low: 0.0, high: 1.0 }));
         }
         positive("full_speed_m_per_s", self.full_speed_m_per_s)?;

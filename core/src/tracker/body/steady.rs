@@ -132,7 +132,11 @@ mod tests {
     use crate::observation::point_likelihood::PointLikelihood;
     use crate::random::Stream;
     use crate::skeleton::BodyMeasures;
-    use crate::skeleton::full_body::{BODY_ANGLES, BODY_BONES, FOREARMS, body_radii_m, full_body};
+    use crate::skeleton::full_body::{
+        BODY_ANGLES, BODY_BONES, COLLARS, FEET, FOREARMS, HEAD, HIPS, PELVIS, THIGHS, TRUNK, UPPER_ARMS, body_radii_m,
+        full_body,
+    };
+    use crate::skeleton::limbs::TRUNK_GROUP;
     use proptest::prelude::*;
 
     type Scene = BodyScene<BODY_BONES, BODY_ANGLES>;
@@ -182,6 +186,37 @@ mod tests {
     fn an_arm_at_rest_hardly_trembles() {
         let (way_m, told_way_m, _) = followed(0.0, 0.03);
         assert!(way_m > 0.015 && told_way_m < 0.25 * way_m, "{way_m} {told_way_m}");
+    }
+
+    #[test]
+    fn shoulders_and_hips_go_with_the_trunk() {
+        let scene = scene();
+        let limbs = Limbs::of(&scene.skeleton);
+        let group = |bone| group_of_end((&scene.skeleton, &limbs), bone);
+        assert_eq!([COLLARS[0], COLLARS[1], HIPS[0], HIPS[1], TRUNK, PELVIS].map(group), [TRUNK_GROUP; 6]);
+        for bone in [UPPER_ARMS, FOREARMS, THIGHS, FEET].into_iter().flatten().chain([HEAD]) {
+            assert_eq!(group(bone), limbs.group(bone), "a limb of its own");
+            assert_ne!(group(bone), TRUNK_GROUP);
+        }
+    }
+
+    #[test]
+    fn a_waving_arm_does_not_take_the_trunk_along() {
+        let (scene, mut stream) = (scene(), Stream::new(6, 0, 0));
+        let mut steady = SteadyPose::new(seen(&scene, 0.5, 0.0, &mut stream));
+        let (mut neck_m, mut told_neck_m) = (0.0, 0.0);
+        let mut before = steady.told;
+        for frame in 1..=FRAMES {
+            let bend_rad = if frame % 2 == 0 { 0.5 } else { 1.5 };
+            let now = seen(&scene, bend_rad, 0.01, &mut stream);
+            let told = steady.told.ends_m[TRUNK];
+            let next = steady.tell((&scene, &Limbs::of(&scene.skeleton)), &now, &[TREMBLE_M; BODY_BONES], DT_S);
+            told_neck_m += (next.ends_m[TRUNK] - told).norm();
+            assert!((next.ends_m[FOREARMS[1]] - now.ends_m[FOREARMS[1]]).norm() < 0.03, "the wrist is where it is");
+            neck_m += (now.ends_m[TRUNK] - before.ends_m[TRUNK]).norm();
+            before = now;
+        }
+        assert!(told_neck_m < 0.3 * neck_m, "{told_neck_m} {neck_m}");
     }
 
     #[test]
