@@ -276,7 +276,7 @@ const PAPER_EFFECTIVE_SHARE: f32 = 0.05;
 
 impl BodyTuning {
     /// The numbers that a model goes by: one with the settings that the paper prints sees the points as they are, weighs whole poses that may
-    /// pass through themselves, guesses its trunk and tells each frame's mean.
+    /// pass through themselves, guesses its trunk, has the same noise at any pace and tells each frame's mean.
     #[must_use]
     pub fn of_kind(mut self, kind: BodyModelKind) -> Self {
         if kind.is_printed() {
