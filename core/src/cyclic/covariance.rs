@@ -91,7 +91,8 @@ impl<const N: usize> KinematicCovariance<N> {
     #[inline]
     pub(super) fn advance(&mut self, step: f32, before: &[f32], after: &[f32], fraction: f32, scale: f32) {
         // Half of what the velocities gain, of which the other blocks are made up.
-        let half: [[f32; N]; N] = interpolated(before, after, fraction, 0.5 * scale * step * step);
+        let mut half = [[0.0; N]; N];
+        interpolate(&mut half, before, after, fraction, 0.5 * scale * step * step);
         let transposed = transpose(&self.cross);
         let angle_excess = 0.5 * step * step;
         for i in 0..N {
@@ -129,11 +130,10 @@ impl<const N: usize> KinematicCovariance<N> {
     }
 }
 
-/// The symmetric matrix whose packed lower triangle is `scale` times what lies between `before` and `after`, its diagonal
-/// raised by [`DIAGONAL_EXCESS`]; zeros where the triangles end.
+/// Makes `matrix`, all zeros, the symmetric one whose packed lower triangle is `scale` times what lies between `before` and `after`,
+/// its diagonal raised by [`DIAGONAL_EXCESS`]; zeros stay where the triangles end.
 #[inline]
-fn interpolated<const N: usize>(before: &[f32], after: &[f32], fraction: f32, scale: f32) -> [[f32; N]; N] {
-    let mut matrix = [[0.0; N]; N];
+fn interpolate<const N: usize>(matrix: &mut [[f32; N]; N], before: &[f32], after: &[f32], fraction: f32, scale: f32) {
     let between = |(a, b): (&f32, &f32)| scale * (a + fraction * (b - a));
     let (first, last) = matrix.split_at_mut(half::<N>());
     for (i, row) in first.iter_mut().enumerate() {
@@ -142,8 +142,7 @@ fn interpolated<const N: usize>(before: &[f32], after: &[f32], fraction: f32, sc
     for (i, row) in last.iter_mut().enumerate() {
         fill_row::<N>(row, half::<N>() + i, before, after, between);
     }
-    mirror(&mut matrix);
-    matrix
+    mirror(matrix);
 }
 
 /// Numbers of a row that come first, whole blocks: the rows of a triangle that begin or end there need the other half alone.

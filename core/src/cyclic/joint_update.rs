@@ -78,23 +78,20 @@ pub(super) struct MeanShift<const N: usize> {
     pub(super) determinant: LogProduct,
 }
 
-/// Columns of the covariance that the angles seen call for. A row here is a column there; angles in the order of
-/// [`SeenAngles`].
+/// What the columns of the covariance that the angles seen call for need beside its own place. A row is a column there; angles are in
+/// the order of [`SeenAngles`].
+///
+/// The covariance's own blocks hold, as `aheads`, each angle's covariances with itself and those after it when its measurement is taken
+/// in (what stands before has no meaning), and as `velocities` those with the velocities; its new entries are made from them there.
 struct Columns<const N: usize> {
-    /// Covariances with this angle and those after it when the measurement is taken in; what stands before has no meaning.
-    ahead: [[f32; N]; N],
-    /// Those with the angles measured before, less the measurement's variance at the angle itself, and those with the angles
+    /// Covariances with the angles measured before, less the measurement's variance at the angle itself, and those with the angles
     /// never seen.
     settled: [[f32; N]; N],
-    /// Covariances with the velocities.
-    velocity: [[f32; N]; N],
-    /// Those divided by the innovation's variance.
-    weighed_velocity: [[f32; N]; N],
     /// One over the variance of each innovation.
     inverse_variance: [f32; N],
     /// Part of the angle's covariances that the measurement leaves.
     left: [f32; N],
-    /// Whether the measurement takes nearly all of the angle's variance away.
+    /// Whether a measurement takes nearly all of an angle's variance away.
     is_severe: [bool; N],
 }
 
@@ -105,172 +102,101 @@ impl<const N: usize> KinematicCovariance<N> {
     #[inline]
     pub(super) fn correct(&mut self, seen: &SeenAngles<N>, keeps_velocities: bool) -> MeanShift<N> {
         let count = seen.count.min(N);
-        let mut columns = Columns {
-            ahead: self.angle,
-            settled: [[0.0; N]; N],
-            velocity: self.cross,
-            weighed_velocity: [[0.0; N]; N],
-            inverse_variance: [0.0; N],
-            left: [0.0; N],
-            is_severe: [false; N],
-        };
         if count < N {
-            columns.ahead = seen.order.map(|i| seen.order.map(|j| self.entry(i, j)));
-            columns.velocity = seen.order.map(|i| self.cross.get(i).copied().unwrap_or([0.0; N]));
+            self.order_angles(seen);
+        }
+        let Self { angle: aheads, cross: velocities, velocity: covariance } = self;
+        let mut columns =
+            Columns { settled: [[0.0; N]; N], inverse_variance: [0.0; N], left: [0.0; N], is_severe: [false; N] };
+        for place in 0..count {
+            columns.settled[place][place] = -seen.noise_variance[place];
         }
         let (mut weighed, mut ahead_rad) = ([0.0; N], [0.0; N]);
         let (mut squared, mut determinant) = (0.0, LogProduct::one());
         for place in 0..count {
-            let variance = columns.find(place, count, seen.noise_variance[place]);
+            let variance = columns.find((aheads, velocities), place, count, seen.noise_variance[place]);
             let innovation_rad = seen.innovation_rad[place] - ahead_rad[place];
             weighed[place] = innovation_rad * columns.inverse_variance[place];
-            add_scaled(&mut ahead_rad, weighed[place], &columns.ahead[place]);
+            add_scaled(&mut ahead_rad, weighed[place], &aheads[place]);
             squared += innovation_rad * weighed[place];
             determinant.multiply(variance);
         }
         // A measured angle ends at its measurement less R times the weighed innovations, which the settled columns hold.
         let mut shift = MeanShift {
             angles_rad: combined(&weighed, &columns.settled, count),
-            velocities: combined(&weighed, &columns.velocity, count),
+            velocities: combined(&weighed, velocities, count),
             squared,
             determinant,
         };
         add_scaled(&mut shift.angles_rad, 1.0, &seen.innovation_rad);
-        if count < N {
-            shift.angles_rad = in_place(seen, &shift.angles_rad);
-        }
+        let is_any_severe = columns.is_severe.contains(&true);
+        let margins = is_any_severe.then(|| columns.margins(aheads, velocities, count));
         if keeps_velocities {
             shift.velocities = [0.0; N];
         } else {
-            self.reduce_velocities(&columns, count);
+            columns.reduce_velocities(velocities, covariance, count);
         }
-        self.reduce_angles(&columns, seen, count);
-        self.loosen(&columns, seen, count);
-        shift
-    }
-
-    /// Rows of the angles after all measurements: up to the diagonal at least, the rest from the rows below.
-    #[inline]
-    fn reduce_angles(&mut self, columns: &Columns<N>, seen: &SeenAngles<N>, count: usize) {
-        // It is no more; said here, it lets no index be checked.
-        let count = count.min(N);
-        for place in 0..N {
-            let (mut angle, mut cross) = columns.start(place, count);
-            let first = if place < count { place + 1 } else { 0 };
-            if place < half::<N>() {
-                for later in first..count {
-                    let factor = columns.inverse_variance[later] * columns.settled[later][place];
-                    subtract_first_half(&mut angle, factor, &columns.settled[later]);
-                    subtract_scaled(&mut cross, factor, &columns.velocity[later]);
-                }
-            } else {
-                for later in first..count {
-                    let factor = columns.inverse_variance[later] * columns.settled[later][place];
-                    subtract_scaled(&mut angle, factor, &columns.settled[later]);
-                    subtract_scaled(&mut cross, factor, &columns.velocity[later]);
-                }
-            }
-            self.angle[place] = angle;
-            if let Some(row) = self.cross.get_mut(seen.order[place]) {
-                *row = cross;
-            }
-        }
-        for i in 0..half::<N>() {
-            for j in half::<N>()..N {
-                self.angle[i][j] = self.angle[j][i];
+        columns.reduce_angles(aheads, velocities, count);
+        if let Some((of_angles, of_velocities)) = margins {
+            for i in 0..N {
+                aheads[i][i] += of_angles[i];
+                covariance[i][i] += of_velocities[i];
             }
         }
         if count < N {
-            let ordered = self.angle;
-            for (&index, row) in seen.order.iter().zip(&ordered) {
-                if let Some(slot) = self.angle.get_mut(index) {
-                    *slot = in_place(seen, row);
-                }
-            }
+            shift.angles_rad = in_place(seen, &shift.angles_rad);
+            self.put_angles_back(seen);
         }
+        shift
     }
 
-    /// Raises the diagonal by what rounding may have taken where a measurement took nearly all of an angle's variance away.
-    #[inline]
-    fn loosen(&mut self, columns: &Columns<N>, seen: &SeenAngles<N>, count: usize) {
-        for place in 0..count.min(N) {
-            if !columns.is_severe[place] {
-                continue;
-            }
-            let (settled, ahead) = (&columns.settled[place], &columns.ahead[place]);
-            let angle = in_place(seen, &core::array::from_fn(|j| if j < place { settled[j] } else { ahead[j] }));
-            let margin = MARGIN * columns.inverse_variance[place];
-            for i in 0..N {
-                let velocity = columns.velocity[place][i];
-                self.angle[i][i] += margin * angle[i] * angle[i];
-                self.velocity[i][i] += margin * velocity * velocity;
-            }
-        }
+    /// Brings the angles into the order of `seen`.
+    fn order_angles(&mut self, seen: &SeenAngles<N>) {
+        self.angle = seen.order.map(|i| seen.order.map(|j| self.entry(i, j)));
+        self.cross = seen.order.map(|i| self.cross.get(i).copied().unwrap_or([0.0; N]));
     }
 
-    /// The velocities' covariance less the sum of w w' / s, in squares of four rows and columns.
-    #[inline]
-    fn reduce_velocities(&mut self, columns: &Columns<N>, count: usize) {
-        let first = |rows| <[[f32; N]]>::get(rows, ..count).unwrap_or_default();
-        let (velocity, weighed_velocity) = (first(&columns.velocity), first(&columns.weighed_velocity));
-        let (row_blocks, last_rows) = self.velocity.as_chunks_mut::<SQUARE>();
-        let first_of_last = SQUARE * row_blocks.len();
-        for (block, rows) in row_blocks.iter_mut().enumerate() {
-            for part in 0..=block {
-                let mut square = [[0.0; SQUARE]; SQUARE];
-                for (column, weighed) in velocity.iter().zip(weighed_velocity) {
-                    let (w, v) = (weighed.as_chunks::<SQUARE>().0.get(block), column.as_chunks::<SQUARE>().0.get(part));
-                    let (Some(w), Some(v)) = (w, v) else { break };
-                    for i in 0..SQUARE {
-                        for j in 0..SQUARE {
-                            square[i][j] += w[i] * v[j];
-                        }
-                    }
-                }
-                for (row, sums) in rows.iter_mut().zip(&square) {
-                    if let Some(row) = row.as_chunks_mut::<SQUARE>().0.get_mut(part) {
-                        for j in 0..SQUARE {
-                            row[j] -= sums[j];
-                        }
-                    }
-                }
+    /// Takes [`Self::order_angles`] back.
+    fn put_angles_back(&mut self, seen: &SeenAngles<N>) {
+        let (angle, cross) = (self.angle, self.cross);
+        for (&index, (angle, cross)) in seen.order.iter().zip(angle.iter().zip(&cross)) {
+            if let (Some(angle_row), Some(cross_row)) = (self.angle.get_mut(index), self.cross.get_mut(index)) {
+                (*angle_row, *cross_row) = (in_place(seen, angle), *cross);
             }
         }
-        for (i, row) in last_rows.iter_mut().enumerate() {
-            let mut sums = *row;
-            for (column, weighed) in velocity.iter().zip(weighed_velocity) {
-                subtract_scaled(&mut sums, weighed[first_of_last + i], column);
-            }
-            *row = sums;
-        }
-        mirror(&mut self.velocity);
     }
 }
 
 impl<const N: usize> Columns<N> {
     /// Finds the columns of the measurement at `place` from those before; returns the variance of its innovation.
     #[inline]
-    fn find(&mut self, place: usize, count: usize, noise_variance: f32) -> f32 {
-        let (mut ahead, mut settled, mut velocity) = (self.ahead[place], [0.0; N], self.velocity[place]);
+    fn find(
+        &mut self,
+        (aheads, velocities): (&mut [[f32; N]; N], &mut [[f32; N]; N]),
+        place: usize,
+        count: usize,
+        noise_variance: f32,
+    ) -> f32 {
+        let (mut ahead, mut settled, mut velocity) = (aheads[place], self.settled[place], velocities[place]);
         if place < half::<N>() {
             for earlier in 0..place {
-                let factor = self.inverse_variance[earlier] * self.ahead[earlier][place];
-                subtract_scaled(&mut ahead, factor, &self.ahead[earlier]);
+                let factor = self.inverse_variance[earlier] * aheads[earlier][place];
+                subtract_scaled(&mut ahead, factor, &aheads[earlier]);
                 subtract_first_half(&mut settled, factor, &self.settled[earlier]);
-                subtract_scaled(&mut velocity, factor, &self.velocity[earlier]);
+                subtract_scaled(&mut velocity, factor, &velocities[earlier]);
             }
         } else {
             for earlier in 0..half::<N>() {
-                let factor = self.inverse_variance[earlier] * self.ahead[earlier][place];
-                subtract_second_half(&mut ahead, factor, &self.ahead[earlier]);
+                let factor = self.inverse_variance[earlier] * aheads[earlier][place];
+                subtract_second_half(&mut ahead, factor, &aheads[earlier]);
                 subtract_first_half(&mut settled, factor, &self.settled[earlier]);
-                subtract_scaled(&mut velocity, factor, &self.velocity[earlier]);
+                subtract_scaled(&mut velocity, factor, &velocities[earlier]);
             }
             for earlier in half::<N>()..place {
-                let factor = self.inverse_variance[earlier] * self.ahead[earlier][place];
-                subtract_second_half(&mut ahead, factor, &self.ahead[earlier]);
+                let factor = self.inverse_variance[earlier] * aheads[earlier][place];
+                subtract_second_half(&mut ahead, factor, &aheads[earlier]);
                 subtract_scaled(&mut settled, factor, &self.settled[earlier]);
-                subtract_scaled(&mut velocity, factor, &self.velocity[earlier]);
+                subtract_scaled(&mut velocity, factor, &velocities[earlier]);
             }
         }
         let variance = ahead[place] + noise_variance;
@@ -278,32 +204,145 @@ impl<const N: usize> Columns<N> {
         self.inverse_variance[place] = inverse_variance;
         self.left[place] = noise_variance * inverse_variance;
         self.is_severe[place] = noise_variance < SEVERE * variance;
-        (self.ahead[place], self.settled[place], self.velocity[place]) = (ahead, settled, velocity);
-        self.weighed_velocity[place] = velocity.map(|covariance| inverse_variance * covariance);
-        self.settled[place][place] = -noise_variance;
+        (aheads[place], self.settled[place], velocities[place]) = (ahead, settled, velocity);
         for j in count..N {
-            self.settled[place][j] = self.ahead[place][j];
+            self.settled[place][j] = aheads[place][j];
         }
         variance
     }
 
-    /// Covariances of the angle at `place` with angles and velocities right after its own measurement, where later
-    /// measurements have not been taken in; before all of them where the angle is not seen.
+    /// Rows of the angles after all measurements: up to the diagonal at least, the rest from the rows below. A row begins as it is
+    /// right after its own measurement, or as it was where its angle is not seen.
     #[inline]
-    fn start(&self, place: usize, count: usize) -> ([f32; N], [f32; N]) {
-        if place < count {
-            let left = self.left[place];
-            let (mut angle, mut velocity) = (self.settled[place], self.velocity[place]);
-            for j in 0..N {
-                angle[j] *= left;
-                velocity[j] *= left;
-            }
-            angle[place] = left * self.ahead[place][place];
-            (angle, velocity)
-        } else {
-            let mut angle = self.ahead[place];
+    fn reduce_angles(&self, aheads: &mut [[f32; N]; N], velocities: &mut [[f32; N]; N], count: usize) {
+        // It is no more; said here, it lets no index be checked.
+        let count = count.min(N);
+        // The angles not seen call for all columns, of which each angle seen then takes away its own.
+        for place in count..N {
+            let (mut angle, mut velocity) = (aheads[place], velocities[place]);
             angle.iter_mut().take(count).for_each(|covariance| *covariance = 0.0);
-            (angle, self.velocity[place])
+            self.take_off::<false>(place, 0..count, (&mut angle, &mut velocity), velocities);
+            (aheads[place], velocities[place]) = (angle, velocity);
+        }
+        for place in 0..count {
+            let left = self.left[place];
+            let mut angle = self.settled[place].map(|covariance| left * covariance);
+            let mut velocity = velocities[place].map(|covariance| left * covariance);
+            let (rows, later) = ((&mut angle, &mut velocity), place + 1..count);
+            let taken = if place < half::<N>() {
+                self.take_off::<true>(place, later, rows, velocities)
+            } else {
+                self.take_off::<false>(place, later, rows, velocities)
+            };
+            let variance = left * aheads[place][place] - taken;
+            (aheads[place], velocities[place]) = (angle, velocity);
+            aheads[place][place] = variance;
+        }
+        for i in 0..half::<N>() {
+            for j in half::<N>()..N {
+                aheads[i][j] = aheads[j][i];
+            }
+        }
+    }
+
+    /// Takes what measurements at `later` places say off the covariances of the angle at `place` with angles and velocities; returns
+    /// what they take off its variance. Of the angles those of the first half alone, if asked.
+    #[inline(always)]
+    fn take_off<const FIRST_HALF: bool>(
+        &self,
+        place: usize,
+        later: core::ops::Range<usize>,
+        (angle, velocity): (&mut [f32; N], &mut [f32; N]),
+        velocities: &[[f32; N]; N],
+    ) -> f32 {
+        let mut taken = 0.0;
+        for later in later {
+            let covariance = self.settled[later][place];
+            let factor = self.inverse_variance[later] * covariance;
+            taken += factor * covariance;
+            if FIRST_HALF {
+                subtract_first_half(angle, factor, &self.settled[later]);
+            } else {
+                subtract_scaled(angle, factor, &self.settled[later]);
+            }
+            subtract_scaled(velocity, factor, &velocities[later]);
+        }
+        taken
+    }
+
+    /// What rounding may take off the variances of angles and velocities where a measurement takes nearly all of an angle's variance
+    /// away.
+    #[cold]
+    fn margins(&self, aheads: &[[f32; N]; N], velocities: &[[f32; N]; N], count: usize) -> ([f32; N], [f32; N]) {
+        let mut margins = ([0.0; N], [0.0; N]);
+        for place in 0..count.min(N) {
+            if !self.is_severe[place] {
+                continue;
+            }
+            let margin = MARGIN * self.inverse_variance[place];
+            for j in 0..N {
+                let angle = if j < place { self.settled[place][j] } else { aheads[place][j] };
+                let velocity = velocities[place][j];
+                margins.0[j] += margin * angle * angle;
+                margins.1[j] += margin * velocity * velocity;
+            }
+        }
+        margins
+    }
+
+    /// Takes the sum of w w' / s off the velocities' covariance, in squares of four rows and columns.
+    #[inline]
+    fn reduce_velocities(&self, velocities: &[[f32; N]; N], covariance: &mut [[f32; N]; N], count: usize) {
+        // It is no more; said here, it lets no index be checked.
+        let count = count.min(N);
+        let (row_blocks, last_rows) = covariance.as_chunks_mut::<SQUARE>();
+        let first_of_last = SQUARE * row_blocks.len();
+        for (block, rows) in row_blocks.iter_mut().enumerate() {
+            for part in (0..=block).step_by(2) {
+                if part < block {
+                    self.reduce_squares::<2>(velocities, rows, (block, part), count);
+                } else {
+                    self.reduce_squares::<1>(velocities, rows, (block, part), count);
+                }
+            }
+        }
+        for (i, row) in last_rows.iter_mut().enumerate() {
+            let mut weighed = self.inverse_variance;
+            for place in 0..count {
+                weighed[place] *= velocities[place][first_of_last + i];
+            }
+            add_scaled(row, -1.0, &combined(&weighed, velocities, count));
+        }
+        mirror(covariance);
+    }
+
+    /// [`Self::reduce_velocities`] for `WIDE` squares side by side, the first at row `block` and column `part`.
+    #[inline(always)]
+    fn reduce_squares<const WIDE: usize>(
+        &self,
+        velocities: &[[f32; N]; N],
+        rows: &mut [[f32; N]; SQUARE],
+        (block, part): (usize, usize),
+        count: usize,
+    ) {
+        let mut sums = [[[0.0; SQUARE]; WIDE]; SQUARE];
+        for place in 0..count {
+            let column = velocities[place].as_chunks::<SQUARE>().0;
+            let Some(squares) = column.get(part..).and_then(<[_]>::first_chunk::<WIDE>) else { break };
+            let Some(weighed) = column.get(block) else { break };
+            let weighed = weighed.map(|covariance| self.inverse_variance[place] * covariance);
+            for i in 0..SQUARE {
+                for wide in 0..WIDE {
+                    for j in 0..SQUARE {
+                        sums[i][wide][j] += weighed[i] * squares[wide][j];
+                    }
+                }
+            }
+        }
+        for (row, sums) in rows.iter_mut().zip(&sums) {
+            for (value, sum) in row.iter_mut().skip(SQUARE * part).zip(sums.as_flattened()) {
+                *value -= sum;
+            }
         }
     }
 }
@@ -324,8 +363,8 @@ fn in_place<const N: usize>(seen: &SeenAngles<N>, ordered: &[f32; N]) -> [f32; N
 #[inline]
 fn combined<const N: usize>(factors: &[f32; N], rows: &[[f32; N]; N], count: usize) -> [f32; N] {
     let mut sum = [0.0; N];
-    for (&factor, row) in factors.iter().zip(rows).take(count) {
-        add_scaled(&mut sum, factor, row);
+    for place in 0..count.min(N) {
+        add_scaled(&mut sum, factors[place], &rows[place]);
     }
     sum
 }

@@ -12,6 +12,8 @@ use crate::saved_state::{SavedState, StateVisitor};
 pub const POSITIONS: usize = 32;
 /// Positions at which a measurement's likelihood is computed; between them it is linear.
 const TABLE: usize = 64;
+/// Positions of the table that are computed side by side.
+const LANES: usize = 8;
 /// Speeds of the grid, as parts of the model's mean speed.
 pub const SPEED_RATIOS: [f32; 6] = [0.0, 0.5, 0.7, 1.0, 1.4, 2.0];
 const SPEEDS: usize = SPEED_RATIOS.len();
@@ -90,7 +92,8 @@ pub struct PhaseMode {
 pub const MODE_REACH: f32 = 0.15;
 /// Cells of one speed that may lie within it.
 const NEAR_CELLS: usize = 12;
-const _: () = assert!(MODE_REACH * (POSITIONS as f32) < 5.0 && TABLE.is_multiple_of(POSITIONS));
+const _: () =
+    assert!(MODE_REACH * (POSITIONS as f32) < 5.0 && TABLE.is_multiple_of(POSITIONS) && TABLE.is_multiple_of(LANES));
 
 impl SavedState for PhaseGrid {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
@@ -282,7 +285,6 @@ fn likelihood_table<const N: usize>(
     let repeated = max(REPEATED_FRAMES / frames, 1.0);
     let spread = model.deviation_std_rad::<N>();
     let count = model.angle_count().min(N);
-    let mut scores = [0.0_f32; TABLE];
     let tempering = max(TEMPERING * measurement.present(count) as f32 / TEMPERED_ANGLES, TEMPERING);
     let seen = |i: usize| if i < count { measurement.angle_rad(i) } else { None };
     let measured: [f32; N] = core::array::from_fn(|i| seen(i).unwrap_or(0.0));
@@ -292,18 +294,39 @@ fn likelihood_table<const N: usize>(
         if seen(i).is_some() { 0.5 / (tempering * (repeated * spread[i] * spread[i] + std * std)) } else { 0.0 }
     });
     let limit = 0.5 * LIMIT_SIGMAS * LIMIT_SIGMAS / tempering;
-    for (index, score) in scores.iter_mut().enumerate() {
-        let pose = model.mean_pose_rad::<N>(model.point(index as f32 / TABLE as f32));
-        let term = |i: usize| {
-            let off = least_angle(measured[i] - pose[i]);
-            min(precision[i] * off * off, limit)
-        };
-        let terms: [f32; N] = core::array::from_fn(term);
-        *score = -terms.iter().sum::<f32>();
+    let mut scores = [0.0_f32; TABLE];
+    let mut greatest = [f32::NEG_INFINITY; LANES];
+    for (block, scores) in scores.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
+        let poses_rad = lanes_of_poses::<N>(model, block);
+        let mut sums = [0.0; LANES];
+        for i in 0..N {
+            for (sum, pose_rad) in sums.iter_mut().zip(&poses_rad[i]) {
+                let off = least_angle(measured[i] - pose_rad);
+                *sum += min(precision[i] * off * off, limit);
+            }
+        }
+        for lane in 0..LANES {
+            scores[lane] = -sums[lane];
+            greatest[lane] = max(greatest[lane], scores[lane]);
+        }
     }
-    let greatest = scores.iter().fold(f32::NEG_INFINITY, |best, &score| max(best, score));
+    let greatest = greatest.into_iter().fold(f32::NEG_INFINITY, max);
     // All angles at their limits are exp(-42) for 13 of them.
     scores.map(|score| exp_small(max(score - greatest, -80.0)))
+}
+
+/// Mean poses at [`LANES`] positions of the table, by angle.
+#[inline]
+fn lanes_of_poses<const N: usize>(model: &MotionModel<'_>, block: usize) -> [[f32; LANES]; N] {
+    let mut poses_rad = [[0.0; LANES]; N];
+    for lane in 0..LANES {
+        let position = (LANES * block + lane) as f32 / TABLE as f32;
+        let pose_rad = model.mean_pose_rad::<N>(model.point(position));
+        for (lanes, angle_rad) in poses_rad.iter_mut().zip(pose_rad) {
+            lanes[lane] = angle_rad;
+        }
+    }
+    poses_rad
 }
 
 /// A way in [0, 1) as whole cells of `cells` to a cycle, and the rest as a part of a cell.
