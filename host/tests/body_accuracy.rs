@@ -18,7 +18,16 @@ const LARGEST_GUIDED_M: f64 = 0.0050;
 const LARGEST_LIFT_M: f64 = 0.03;
 
 /// Largest mean errors (34) of an upper body, metres: end-effector with 100 particles, guided with 25.
-const LARGEST_UPPER_M: [f64; 2] = [0.0095, 0.0035];
+const LARGEST_UPPER_M: [f64; 2] = [0.0085, 0.0035];
+
+/// Runners and a jogger, whose feet go farther between two frames than points reach: largest mean error (34) of the guided model with 50
+/// particles and of the end-effector model with 100, metres. Without a look from afar the former loses feet: 0.028 m.
+const RUNNERS: [&str; 3] = [
+    "bandai/dataset-2_run_active_001.bvh@0-3",
+    "cmu-expmap/train_running_3.txt@0-2",
+    "cmu-exercise/13_30.amc@16.5-19.5",
+];
+const LARGEST_RUNNING_M: [f64; 2] = [0.016, 0.030];
 
 /// Arms over fixed legs, a walk, jumping jacks: none of them was tuned on.
 const MOTIONS: [&str; 3] =
@@ -60,9 +69,32 @@ fn fifty_guided_particles_do_what_a_hundred_do_by_goals_or_angles() {
     println!("end-effector {end_effector:.4}, angular {angular:.4}, guided with 50 {guided:.4} m");
     // Which of both is better depends on the motions (docs/measurements.md); neither is lost on any.
     for (model, error_m) in [("end-effector", end_effector), ("angular", angular)] {
-        assert!((0.006..=LARGEST_UNGUIDED_M).contains(&error_m), "{model} {error_m} m");
+        assert!((0.0045..=LARGEST_UNGUIDED_M).contains(&error_m), "{model} {error_m} m");
     }
     assert!((0.0035..=LARGEST_GUIDED_M).contains(&guided), "guided {guided} m");
+}
+
+/// Two seeds: what a stride loses differs from run to run.
+#[test]
+fn the_feet_of_runners_are_found_from_afar() {
+    let Some(folder) = shared_data::in_release("mocap") else { return };
+    let skeleton = folder.join("cmu-walk/35/35.asf");
+    let mut means = [0.0; 2];
+    for motion in RUNNERS {
+        let motion: MotionChoice = format!("{}/{motion}", folder.display()).parse().unwrap();
+        for seed in 1..=2 {
+            let seen = motion.seen(Some(&skeleton), seed).unwrap();
+            let cells = [(BodyModelKind::Guided, 50), (BodyModelKind::EndEffector, 100)];
+            for (mean, (model, particles)) in means.iter_mut().zip(cells) {
+                let (result, _) = trial(&seen, model, &BodyTuning::default(), particles, seed).unwrap();
+                *mean += result.error_m / (2 * RUNNERS.len()) as f64;
+            }
+        }
+    }
+    println!("runners: guided with 50, end-effector with 100: {means:.4?} m");
+    for (error_m, largest_m) in means.into_iter().zip(LARGEST_RUNNING_M) {
+        assert!((0.4 * largest_m..=largest_m).contains(&error_m), "{means:?} m");
+    }
 }
 
 /// A camera that sees no legs: arms that wave and direct traffic.

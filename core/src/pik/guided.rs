@@ -10,12 +10,20 @@ use crate::kinematics::forward::Posture;
 use crate::kinematics::inverse::{PoseDensity, PoseObjective, Solve};
 use crate::math::Vec3;
 use crate::observation::point_cloud::PointBlock;
+use crate::observation::point_likelihood::PointLikelihood;
 use crate::observation::point_pull::add_pull;
 use crate::random::Stream;
 use crate::skeleton::Skeleton;
 
-/// Inverse variance of a root coordinate that its process holds.
-const HELD_STIFFNESS: f32 = 1.0e6;
+/// Inverse variance of a coordinate that is held.
+pub(crate) const HELD_STIFFNESS: f32 = 1.0e6;
+
+/// How many times as far points reach in a look from afar.
+const FAR_REACH: f32 = 2.0;
+/// Steps of a look from afar.
+const FAR_STEPS: usize = 2;
+/// Noise, as a share of the motion model's, from which on a limb may be farther off than points reach.
+pub(crate) const LOOSE_SHARE: f32 = 0.8;
 
 /// As [`super::end_effector::EndEffectorMotion`], but goals, stiffness, root *and* points make the density whose mode and Laplace
 /// expansion the pose is drawn from, so that the draw knows the frame's data.
@@ -134,7 +142,7 @@ pub struct GuidedMotion<'a, P, const ANGLES: usize> {
 ///     stiffness: [1.0; 4],
 ///     held: 0,
 /// };
-/// let mode = GuidedDensity { prior, scene: &scene, blocks: cloud.blocks(), stride: 1 }.mode(10);
+/// let mode = GuidedDensity { prior, scene: &scene, blocks: cloud.blocks(), stride: 1, reach: 1.0 }.mode(10);
 /// let hand_m = |pose| scene.posture(&pose).ends[FOREARM];
 /// let [before_m, after_m] =
 ///     [prior.previous_rad, mode.angles_rad].map(|pose| (hand_m(pose) - hand_m(truth_rad)).norm());
@@ -151,6 +159,25 @@ pub struct GuidedDensity<'a, const BONES: usize, const ANGLES: usize> {
     pub blocks: &'a [PointBlock],
     /// Every how many blocks pull, at least one; each that does pulls as often.
     pub stride: usize,
+    /// How many times as far as the scene's likelihood has it a point speaks to skin; 1 is the likelihood itself.
+    pub reach: f32,
+}
+
+impl<const BONES: usize, const ANGLES: usize> GuidedDensity<'_, BONES, ANGLES> {
+    /// Where a look from afar finds the pose: `steps` steps with points that reach twice as far. What moved farther than points reach is
+    /// pulled by none of them otherwise. Without steps the start.
+    #[must_use]
+    pub fn far_mode(&self, steps: usize) -> [f32; ANGLES] {
+        if steps == 0 {
+            return self.start_rad();
+        }
+        Self { reach: FAR_REACH * self.reach, ..*self }.mode(steps).angles_rad
+    }
+
+    fn likelihood(&self) -> PointLikelihood {
+        let likelihood = self.scene.likelihood;
+        PointLikelihood { outlier_m: self.reach * likelihood.outlier_m, ..likelihood }
+    }
 }
 
 impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for GuidedDensity<'_, BONES, ANGLES> {
@@ -172,7 +199,7 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
 
     fn log_density(&self, angles_rad: &[f32; ANGLES], posture: &Posture<BONES, ANGLES>) -> f32 {
         let surface = self.scene.surface(posture);
-        let points = self.scene.likelihood.log_likelihood_of(&surface, self.blocks.iter().step_by(self.stride));
+        let points = self.likelihood().log_likelihood_of(&surface, self.blocks.iter().step_by(self.stride));
         self.prior.log_density(angles_rad, posture) + points * self.stride as f32
     }
 
@@ -185,13 +212,24 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
         let surface = self.scene.surface(posture);
         let mut information = BodyInformation::none(posture);
         let pulling = self.blocks.iter().step_by(self.stride);
-        add_pull(&self.scene.likelihood, &surface, pulling, self.stride as f32, &mut information);
+        add_pull(&self.likelihood(), &surface, pulling, self.stride as f32, &mut information);
         information.add_to(self.prior.skeleton, posture, &mut gradient, &mut hessian);
         (gradient, hessian)
     }
 
     fn residual_m(&self, posture: &Posture<BONES, ANGLES>) -> f32 {
         self.prior.residual_m(posture)
+    }
+}
+
+impl<P, const ANGLES: usize> GuidedMotion<'_, P, ANGLES> {
+    /// Whether the limb of an end-effector is fast or unseen, so that it may be farther from where it is expected than points reach.
+    fn is_any_loose<const BONES: usize>(&self, past: &FramePast<'_, BONES, ANGLES>) -> bool
+    where
+        P: GoalProcess<BONES>,
+    {
+        let share = |&bone: &usize| past.noise_share.get(bone).copied().unwrap_or(1.0);
+        self.process.end_effectors().iter().map(share).any(|share| share >= LOOSE_SHARE)
     }
 }
 
@@ -226,8 +264,12 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         let stride = past.blocks.len().div_ceil(self.pulling_blocks.max(1)).max(1);
         let first = stream.below(stride as u32) as usize;
         let pulling = past.blocks.get(first..).unwrap_or_default();
-        let density = GuidedDensity { prior, scene: past.scene, blocks: pulling, stride };
-        let mode = density.mode(self.solver_steps);
+        let density = GuidedDensity { prior, scene: past.scene, blocks: pulling, stride, reach: 1.0 };
+        let mode = if self.is_any_loose(past) {
+            density.mode_from(&[density.start_rad(), density.far_mode(FAR_STEPS)], self.solver_steps)
+        } else {
+            density.mode(self.solver_steps)
+        };
         let Some(proposal) = LaplaceProposal::new(&mode) else {
             let posture = density.posture(&mode.angles_rad);
             return Proposed { angles_rad: mode.angles_rad, posture, log_ratio: 0.0 };
@@ -243,11 +285,54 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
 mod tests {
     use super::*;
     use crate::observation::point_cloud::PointCloud;
-    use crate::observation::point_likelihood::PointLikelihood;
     use crate::pik::goal::{LinearExtrapolation, MEMORY};
     use crate::pik::processes::extrapolation::LinearGoals;
     use crate::skeleton::arm::FOREARM;
     use crate::skeleton::{ArmGeometry, Side};
+
+    /// Points along the arm of a pose, as the camera sees them.
+    fn cloud_of(scene: &BodyScene<2, 4>, pose_rad: &[f32; 4]) -> PointCloud<3> {
+        let surface = scene.surface(&scene.posture(pose_rad));
+        let mut points_m: [Vec3; 48] = core::array::from_fn(|i| {
+            let bone = surface.capsules[i % 2].capsule;
+            let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 48.0);
+            bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
+        });
+        let mut cloud = PointCloud::new();
+        let _ = cloud.set(&mut points_m, &scene.camera_m);
+        cloud
+    }
+
+    /// A forearm that swung farther than its points reach: it stays where it was, unless they are first looked at from afar. One that has
+    /// hardly moved ends at the same place either way.
+    #[test]
+    fn what_swung_out_of_reach_is_found_from_afar() {
+        let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35).unwrap().skeleton().unwrap();
+        let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.08 };
+        let camera_m = Vec3::new(0.0, 0.0, -2.0);
+        let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+        let off_m = |truth_rad: [f32; 4], far_steps: usize| {
+            let cloud = cloud_of(&scene, &truth_rad);
+            let prior = PoseDensity {
+                skeleton: &scene.skeleton,
+                root_m: Vec3::zeros(),
+                goals: &[],
+                previous_rad: [0.5, 0.1, 0.1, 0.9],
+                stiffness: [4.0; 4],
+                held: 0,
+            };
+            let density = GuidedDensity { prior, scene: &scene, blocks: cloud.blocks(), stride: 1, reach: 1.0 };
+            let hand_m = |pose_rad| scene.posture(&pose_rad).ends[FOREARM];
+            let mode = density.mode_from(&[density.start_rad(), density.far_mode(far_steps)], 4);
+            (hand_m(mode.angles_rad) - hand_m(truth_rad)).norm()
+        };
+        let swung_rad = [0.5, 0.1, 0.1, 1.4];
+        let (near_m, far_m) = (off_m(swung_rad, 0), off_m(swung_rad, FAR_STEPS));
+        assert!(near_m > 0.15 && far_m < 0.07, "{near_m} {far_m}");
+        let bent_rad = [0.5, 0.1, 0.1, 1.0];
+        let (near_m, far_m) = (off_m(bent_rad, 0), off_m(bent_rad, FAR_STEPS));
+        assert!(near_m < 0.03 && (far_m - near_m).abs() < 5.0e-3, "{near_m} {far_m}");
+    }
 
     /// Of two blocks, one shows the elbow more bent than it was and the other one less; particles that look at one each go either way.
     #[test]

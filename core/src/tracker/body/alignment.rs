@@ -6,7 +6,7 @@
 use crate::kinematics::inverse::{PoseDensity, Solve};
 use crate::math::Vec3;
 use crate::observation::point_cloud::PointBlock;
-use crate::pik::guided::GuidedDensity;
+use crate::pik::guided::{GuidedDensity, HELD_STIFFNESS};
 use crate::pik::motion::BodyScene;
 use crate::skeleton::tree::SHIFTS;
 
@@ -40,6 +40,7 @@ use crate::skeleton::tree::SHIFTS;
 ///
 /// let alignment = RootAlignment {
 ///     steps: 10,
+///     far_steps: 0,
 ///     shift_std_m_per_sqrt_s: 1.0,
 ///     turn_std_rad_per_sqrt_s: 1.0,
 ///     angle_std_rad_per_sqrt_s: 1.0,
@@ -49,7 +50,7 @@ use crate::skeleton::tree::SHIFTS;
 /// // A body of one bone, three metres away, whose points show it ten centimetres farther to the right.
 /// let before = [0.0, 0.0, 3.0, 0.0, 0.0, 0.0];
 /// let cloud = points_of(&[0.1, 0.0, 3.0, 0.0, 0.0, 0.0]);
-/// let laid = alignment.laid(&scene, cloud.blocks(), &before, 1.0 / 15.0);
+/// let laid = alignment.laid(&scene, cloud.blocks(), (&before, &[false; 6]), 1.0 / 15.0);
 /// assert!((laid[0] - 0.1).abs() < 0.02 && (laid[2] - 3.0).abs() < 0.02, "{laid:?}");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
@@ -57,6 +58,8 @@ use crate::skeleton::tree::SHIFTS;
 pub struct RootAlignment {
     /// Most steps of the solver.
     pub steps: usize,
+    /// Steps before those in which points reach twice as far ([`GuidedDensity::far_mode`]); none if zero.
+    pub far_steps: usize,
     /// How far the root is believed to get off its expected place, metres by root second.
     pub shift_std_m_per_sqrt_s: f32,
     /// How far it is believed to turn, radians by root second.
@@ -71,13 +74,14 @@ pub struct RootAlignment {
 }
 
 impl RootAlignment {
-    /// The pose `expected_rad` laid onto the points `blocks`, `dt_s` seconds after the last one.
+    /// The pose `expected_rad` laid onto the points `blocks`, `dt_s` seconds after the last one. In a look from afar the angles of limbs that
+    /// are `unseen` hold still: points of whatever hides a limb are not its own.
     #[must_use]
     pub fn laid<const BONES: usize, const ANGLES: usize>(
         &self,
         scene: &BodyScene<BONES, ANGLES>,
         blocks: &[PointBlock],
-        expected_rad: &[f32; ANGLES],
+        (expected_rad, unseen): (&[f32; ANGLES], &[bool; ANGLES]),
         dt_s: f32,
     ) -> [f32; ANGLES] {
         let inverse_variance = |std: f32| 1.0 / (std * std * dt_s);
@@ -95,6 +99,12 @@ impl RootAlignment {
             held: 0,
         };
         let stride = blocks.len().div_ceil(self.pulling_blocks.max(1)).max(1);
-        GuidedDensity { prior, scene, blocks, stride }.mode(self.steps).angles_rad
+        let mut far_prior = prior;
+        for (held, _) in far_prior.stiffness.iter_mut().zip(unseen).filter(|(_, unseen)| **unseen) {
+            *held = HELD_STIFFNESS;
+        }
+        let density = GuidedDensity { prior, scene, blocks, stride, reach: 1.0 };
+        let far = GuidedDensity { prior: far_prior, ..density }.far_mode(self.far_steps);
+        density.mode_from(&[*expected_rad, far], self.steps).angles_rad
     }
 }

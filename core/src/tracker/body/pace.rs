@@ -5,6 +5,7 @@
 
 use crate::error::{ParameterError, Rule, positive};
 use crate::math::{Vec3, exp, max, min, sqrt};
+use crate::pik::guided::LOOSE_SHARE;
 use crate::skeleton::Limbs;
 use crate::skeleton::limbs::{MAX_GROUPS, TRUNK_GROUP};
 
@@ -90,6 +91,17 @@ impl LimbNoise {
     /// As the motion model has it.
     pub(super) const FULL: Self = Self { shares: [1.0; MAX_GROUPS] };
 
+    /// Whether a limb is fast: it may have got farther than points reach.
+    pub(super) fn is_any_fast(&self, limbs: usize) -> bool {
+        let limbs = self.shares.iter().enumerate().take(limbs).filter(|&(group, _)| group != TRUNK_GROUP);
+        limbs.map(|(_, &share)| share).any(|share| (LOOSE_SHARE..=1.0).contains(&share))
+    }
+
+    /// Whether the limb has been unseen for a while.
+    pub(super) fn is_unseen(&self, group: usize) -> bool {
+        self.shares.get(group).is_some_and(|share| *share > 1.0)
+    }
+
     /// The shares by bone.
     pub(super) fn per_bone<const BONES: usize>(&self, limbs: &Limbs<BONES>) -> [f32; BONES] {
         core::array::from_fn(|bone| self.shares.get(limbs.group(bone)).copied().unwrap_or(1.0))
@@ -173,6 +185,24 @@ mod tests {
         assert!((unseen(3) - (0.4 + 3.0 * DT_S / 0.5)).abs() < 1.0e-4, "{}", unseen(3));
         assert_eq!(unseen(40), 2.0);
         assert!((NOISE.follow(2.0, Some(0.0), DT_S) - (0.4 + 1.6 * libm::expf(-DT_S / 0.3))).abs() < 1.0e-4);
+    }
+
+    #[test]
+    fn a_fast_limb_is_told_from_an_unseen_one() {
+        let measures = BodyMeasures::of_height(1.75).unwrap();
+        let limbs = Limbs::of(&full_body(&measures).unwrap());
+        let of = |left: f32, right: f32| {
+            let mut noise = LimbNoise { shares: [0.4; MAX_GROUPS] };
+            noise.shares[TRUNK_GROUP] = 1.0;
+            noise.shares[limbs.group(FOREARMS[0])] = left;
+            noise.shares[limbs.group(FOREARMS[1])] = right;
+            let is_unseen = FOREARMS.map(|bone| noise.is_unseen(limbs.group(bone)));
+            (noise.is_any_fast(limbs.count()), is_unseen)
+        };
+        assert_eq!(of(0.4, 0.7), (false, [false; 2]), "the trunk's own noise is nobody's pace");
+        assert_eq!(of(0.9, 0.4), (true, [false; 2]));
+        assert_eq!(of(0.4, 1.5), (false, [false, true]));
+        assert_eq!(of(1.0, 1.5), (true, [false, true]));
     }
 
     #[test]

@@ -436,7 +436,13 @@ where
             };
         }
         let expected_rad = scene.skeleton.clamp(expected_rad);
-        self.options.alignment.map_or(expected_rad, |alignment| alignment.laid(scene, blocks, &expected_rad, dt_s))
+        let Some(mut alignment) = self.options.alignment else { return expected_rad };
+        let limbs = Limbs::of(&scene.skeleton);
+        if !self.noise.is_any_fast(limbs.count()) {
+            alignment.far_steps = 0;
+        }
+        let unseen = core::array::from_fn(|i| self.noise.is_unseen(limbs.group(scene.skeleton.bone_of_angle(i))));
+        alignment.laid(scene, blocks, (&expected_rad, &unseen), dt_s)
     }
 
     /// What every particle's root changes by, and its trunk where that is laid onto the points.

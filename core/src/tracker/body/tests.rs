@@ -117,6 +117,7 @@ const OPTIONS: BodyOptions = BodyOptions {
     limb_by_limb: false,
     alignment: Some(RootAlignment {
         steps: 2,
+        far_steps: 0,
         shift_std_m_per_sqrt_s: 0.3,
         turn_std_rad_per_sqrt_s: 0.6,
         angle_std_rad_per_sqrt_s: 1.0,

@@ -68,7 +68,7 @@ pub fn pose_from_points(
             stiffness,
             held: 0,
         };
-        pose = GuidedDensity { prior, scene: &scene, blocks, stride: 1 }.mode(STEPS).angles_rad;
+        pose = GuidedDensity { prior, scene: &scene, blocks, stride: 1, reach: 1.0 }.mode(STEPS).angles_rad;
     }
     Ok(scene.skeleton.clamp(pose))
 }

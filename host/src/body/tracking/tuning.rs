@@ -57,8 +57,9 @@ impl JointStd {
     }
 }
 
-/// Steps of the alignment of the root.
+/// Steps of the alignment of the root, and those before them in which points reach farther.
 const ALIGNMENT_STEPS: usize = 3;
+const ALIGNMENT_FAR_STEPS: usize = 2;
 
 /// The root's process, the same in all models but the pelvic lift.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -78,6 +79,8 @@ pub struct RootTuning {
     pub aligned_turn_std_rad: f32,
     /// How far other angles may change while the root is aligned, radians by root second.
     pub aligned_angle_std_rad: f32,
+    /// Whether points reach twice as far in the first steps, so that a limb farther off than they reach is found.
+    pub aligned_from_afar: bool,
     /// Whether the trunk is laid onto the points with the root.
     pub aligned_trunk: bool,
     /// How far the trunk gets off where it was laid, radians by root second; in the place of its `joint_std`.
@@ -90,6 +93,7 @@ impl RootTuning {
     pub fn alignment(&self) -> Option<RootAlignment> {
         self.aligned.then_some(RootAlignment {
             steps: ALIGNMENT_STEPS,
+            far_steps: if self.aligned_from_afar { ALIGNMENT_FAR_STEPS } else { 0 },
             shift_std_m_per_sqrt_s: self.aligned_shift_std_m,
             turn_std_rad_per_sqrt_s: self.aligned_turn_std_rad,
             angle_std_rad_per_sqrt_s: self.aligned_angle_std_rad,
@@ -284,7 +288,7 @@ impl BodyTuning {
             (self.pace.rest_share, self.pace.unseen_most) = (1.0, 1.0);
             self.steady = SteadyTuning { tremble_errors: 0.0, tremble_m: 0.0 };
             self.self_penetration_std_m = 0.0;
-            self.root.aligned_trunk = false;
+            (self.root.aligned_trunk, self.root.aligned_from_afar) = (false, false);
             self.points.limb_by_limb = false;
             self.points.least_effective_share = PAPER_EFFECTIVE_SHARE;
         }
@@ -334,6 +338,7 @@ impl Default for BodyTuning {
                 aligned_shift_std_m: 0.3,
                 aligned_turn_std_rad: 0.7,
                 aligned_angle_std_rad: 0.5,
+                aligned_from_afar: true,
                 aligned_trunk: true,
                 trunk_std_rad: 0.04,
             },
@@ -357,7 +362,7 @@ impl Default for BodyTuning {
                 unseen_growth_s: 0.5,
                 unseen_most: 2.0,
             },
-            steady: SteadyTuning { tremble_errors: 3.0, tremble_m: 0.006 },
+            steady: SteadyTuning { tremble_errors: 3.0, tremble_m: 0.0075 },
             smoothing: SmoothingTuning { radius_m: 0.04, skin_std_m: 0.015 },
             points,
             guided_points: PointTuning {
