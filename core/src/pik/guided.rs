@@ -7,7 +7,7 @@ use super::proposal::LaplaceProposal;
 use super::root::RootProcess;
 use crate::kinematics::body_information::BodyInformation;
 use crate::kinematics::forward::Posture;
-use crate::kinematics::inverse::{PoseDensity, PoseObjective, Solve};
+use crate::kinematics::inverse::{Mode, PoseDensity, PoseObjective, Solve};
 use crate::math::Vec3;
 use crate::observation::point_cloud::PointBlock;
 use crate::observation::point_likelihood::PointLikelihood;
@@ -164,14 +164,12 @@ pub struct GuidedDensity<'a, const BONES: usize, const ANGLES: usize> {
 }
 
 impl<const BONES: usize, const ANGLES: usize> GuidedDensity<'_, BONES, ANGLES> {
-    /// Where a look from afar finds the pose: `steps` steps with points that reach twice as far. What moved farther than points reach is
-    /// pulled by none of them otherwise. Without steps the start.
+    /// The mode from the start, or from where a look from afar finds the pose, whichever is likelier: two steps about `far_prior` with points
+    /// that reach twice as far. What moved farther than points reach is pulled by none of them otherwise.
     #[must_use]
-    pub fn far_mode(&self, steps: usize) -> [f32; ANGLES] {
-        if steps == 0 {
-            return self.start_rad();
-        }
-        Self { reach: FAR_REACH * self.reach, ..*self }.mode(steps).angles_rad
+    pub fn mode_from_afar(&self, far_prior: &PoseDensity<'_, BONES, ANGLES>, max_steps: usize) -> Mode<ANGLES> {
+        let far = GuidedDensity { prior: *far_prior, reach: FAR_REACH * self.reach, ..*self };
+        self.mode_from(&[self.start_rad(), far.mode(FAR_STEPS).angles_rad], max_steps)
     }
 
     fn likelihood(&self) -> PointLikelihood {
@@ -266,7 +264,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         let pulling = past.blocks.get(first..).unwrap_or_default();
         let density = GuidedDensity { prior, scene: past.scene, blocks: pulling, stride, reach: 1.0 };
         let mode = if self.is_any_loose(past) {
-            density.mode_from(&[density.start_rad(), density.far_mode(FAR_STEPS)], self.solver_steps)
+            density.mode_from_afar(&prior, self.solver_steps)
         } else {
             density.mode(self.solver_steps)
         };
@@ -290,6 +288,14 @@ mod tests {
     use crate::skeleton::arm::FOREARM;
     use crate::skeleton::{ArmGeometry, Side};
 
+    /// A left arm two metres before the camera.
+    fn scene_of(outlier_m: f32) -> BodyScene<2, 4> {
+        let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35).unwrap().skeleton().unwrap();
+        let likelihood = PointLikelihood { std_m: 0.05, outlier_m };
+        let camera_m = Vec3::new(0.0, 0.0, -2.0);
+        BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None }
+    }
+
     /// Points along the arm of a pose, as the camera sees them.
     fn cloud_of(scene: &BodyScene<2, 4>, pose_rad: &[f32; 4]) -> PointCloud<3> {
         let surface = scene.surface(&scene.posture(pose_rad));
@@ -307,11 +313,8 @@ mod tests {
     /// hardly moved ends at the same place either way.
     #[test]
     fn what_swung_out_of_reach_is_found_from_afar() {
-        let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35).unwrap().skeleton().unwrap();
-        let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.08 };
-        let camera_m = Vec3::new(0.0, 0.0, -2.0);
-        let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-        let off_m = |truth_rad: [f32; 4], far_steps: usize| {
+        let scene = scene_of(0.08);
+        let off_m = |truth_rad: [f32; 4], looks_afar: bool| {
             let cloud = cloud_of(&scene, &truth_rad);
             let prior = PoseDensity {
                 skeleton: &scene.skeleton,
@@ -323,24 +326,21 @@ mod tests {
             };
             let density = GuidedDensity { prior, scene: &scene, blocks: cloud.blocks(), stride: 1, reach: 1.0 };
             let hand_m = |pose_rad| scene.posture(&pose_rad).ends[FOREARM];
-            let mode = density.mode_from(&[density.start_rad(), density.far_mode(far_steps)], 4);
+            let mode = if looks_afar { density.mode_from_afar(&prior, 4) } else { density.mode(4) };
             (hand_m(mode.angles_rad) - hand_m(truth_rad)).norm()
         };
         let swung_rad = [0.5, 0.1, 0.1, 1.4];
-        let (near_m, far_m) = (off_m(swung_rad, 0), off_m(swung_rad, FAR_STEPS));
+        let (near_m, far_m) = (off_m(swung_rad, false), off_m(swung_rad, true));
         assert!(near_m > 0.15 && far_m < 0.07, "{near_m} {far_m}");
         let bent_rad = [0.5, 0.1, 0.1, 1.0];
-        let (near_m, far_m) = (off_m(bent_rad, 0), off_m(bent_rad, FAR_STEPS));
+        let (near_m, far_m) = (off_m(bent_rad, false), off_m(bent_rad, true));
         assert!(near_m < 0.03 && (far_m - near_m).abs() < 5.0e-3, "{near_m} {far_m}");
     }
 
     /// Of two blocks, one shows the elbow more bent than it was and the other one less; particles that look at one each go either way.
     #[test]
     fn particles_look_at_points_of_their_own() {
-        let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35).unwrap().skeleton().unwrap();
-        let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.25 };
-        let camera_m = Vec3::new(0.0, 0.0, -2.0);
-        let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+        let scene = scene_of(0.25);
         let mut points_m: [Vec3; 32] = core::array::from_fn(|i| {
             let elbow_rad = if i < 16 { 0.6 } else { 1.4 };
             let surface = scene.surface(&scene.posture(&[0.5, 0.1, 0.1, elbow_rad]));
@@ -349,7 +349,7 @@ mod tests {
             forearm.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
         });
         let mut cloud = PointCloud::<2>::new();
-        let _ = cloud.set(&mut points_m, &camera_m);
+        let _ = cloud.set(&mut points_m, &scene.camera_m);
         let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
         let past = FramePast {
             scene: &scene,

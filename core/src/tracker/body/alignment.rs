@@ -40,7 +40,7 @@ use crate::skeleton::tree::SHIFTS;
 ///
 /// let alignment = RootAlignment {
 ///     steps: 10,
-///     far_steps: 0,
+///     looks_afar: false,
 ///     shift_std_m_per_sqrt_s: 1.0,
 ///     turn_std_rad_per_sqrt_s: 1.0,
 ///     angle_std_rad_per_sqrt_s: 1.0,
@@ -58,8 +58,8 @@ use crate::skeleton::tree::SHIFTS;
 pub struct RootAlignment {
     /// Most steps of the solver.
     pub steps: usize,
-    /// Steps before those in which points reach twice as far ([`GuidedDensity::far_mode`]); none if zero.
-    pub far_steps: usize,
+    /// Whether the pose is looked for from afar too, for limbs that are farther off than points reach ([`GuidedDensity::mode_from_afar`]).
+    pub looks_afar: bool,
     /// How far the root is believed to get off its expected place, metres by root second.
     pub shift_std_m_per_sqrt_s: f32,
     /// How far it is believed to turn, radians by root second.
@@ -99,12 +99,14 @@ impl RootAlignment {
             held: 0,
         };
         let stride = blocks.len().div_ceil(self.pulling_blocks.max(1)).max(1);
+        let density = GuidedDensity { prior, scene, blocks, stride, reach: 1.0 };
+        if !self.looks_afar {
+            return density.mode(self.steps).angles_rad;
+        }
         let mut far_prior = prior;
         for (held, _) in far_prior.stiffness.iter_mut().zip(unseen).filter(|(_, unseen)| **unseen) {
             *held = HELD_STIFFNESS;
         }
-        let density = GuidedDensity { prior, scene, blocks, stride, reach: 1.0 };
-        let far = GuidedDensity { prior: far_prior, ..density }.far_mode(self.far_steps);
-        density.mode_from(&[*expected_rad, far], self.steps).angles_rad
+        density.mode_from_afar(&far_prior, self.steps).angles_rad
     }
 }

@@ -79,6 +79,7 @@ mod step;
 mod tempering;
 #[cfg(test)]
 mod tests;
+mod velocity;
 
 pub use alignment::RootAlignment;
 pub use estimate::BodyEstimate;

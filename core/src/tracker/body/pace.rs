@@ -22,15 +22,17 @@ const MOST_NOISE: f32 = 100.0;
 /// let noise = PaceNoise {
 ///     rest_share: 0.4,
 ///     full_speed_m_per_s: 1.3,
+///     swing_most: 2.5,
 ///     fade_s: 0.3,
 ///     unseen_growth_s: 0.5,
 ///     unseen_most: 2.0,
 /// };
 /// assert!(noise.checked().is_ok());
-/// // At rest two fifths of the model's noise, in full swing all of it, and never more.
+/// // At rest two fifths of the model's noise, in full swing all of it, and two and a half times that of a runner's foot.
 /// assert_eq!(noise.share(0.0), 0.4);
 /// assert!(noise.share(0.6) > 0.55 && noise.share(0.6) < 0.65);
-/// assert_eq!(noise.share(5.0), 1.0);
+/// assert!(noise.share(1.3) > 1.0 && noise.share(1.3) < 1.1);
+/// assert_eq!(noise.share(5.0), 2.5);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PaceNoise {
@@ -38,6 +40,8 @@ pub struct PaceNoise {
     pub rest_share: f32,
     /// Speed that would alone make all of the noise, metres a second: root mean square over the ends of a limb's bones, against the root.
     pub full_speed_m_per_s: f32,
+    /// The noise of a limb that is seen is no more than this many times the model's; 1 to 100.
+    pub swing_most: f32,
     /// Time in which the noise of a limb that comes to rest falls to its e-th part, seconds.
     pub fade_s: f32,
     /// Time in which the noise of a limb that is not seen grows by the model's own, seconds.
@@ -58,8 +62,10 @@ impl PaceNoise {
         positive("full_speed_m_per_s", self.full_speed_m_per_s)?;
         positive("fade_s", self.fade_s)?;
         positive("unseen_growth_s", self.unseen_growth_s)?;
-        if !(self.unseen_most >= 1.0 && self.unseen_most <= MOST_NOISE) {
-            return Err(ParameterError::new("unseen_most", Rule::Within { low: 1.0, high: MOST_NOISE }));
+        for (name, most) in [("swing_most", self.swing_most), ("unseen_most", self.unseen_most)] {
+            if !(1.0..=MOST_NOISE).contains(&most) {
+                return Err(ParameterError::new(name, Rule::Within { low: 1.0, high: MOST_NOISE }));
+            }
         }
         Ok(self)
     }
@@ -68,7 +74,7 @@ impl PaceNoise {
     #[must_use]
     pub fn share(&self, speed_m_per_s: f32) -> f32 {
         let swing = speed_m_per_s / self.full_speed_m_per_s;
-        min(1.0, sqrt(self.rest_share * self.rest_share + swing * swing))
+        min(self.swing_most, sqrt(self.rest_share * self.rest_share + swing * swing))
     }
 
     /// The share one frame on: at once what a faster limb asks for, by and by what a slower one does; of an unseen limb, more.
@@ -85,21 +91,23 @@ impl PaceNoise {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LimbNoise {
     pub(super) shares: [f32; MAX_GROUPS],
+    /// Which of them the last frame did not show.
+    pub(super) is_unseen: [bool; MAX_GROUPS],
 }
 
 impl LimbNoise {
     /// As the motion model has it.
-    pub(super) const FULL: Self = Self { shares: [1.0; MAX_GROUPS] };
+    pub(super) const FULL: Self = Self { shares: [1.0; MAX_GROUPS], is_unseen: [false; MAX_GROUPS] };
 
     /// Whether a limb is fast: it may have got farther than points reach.
     pub(super) fn is_any_fast(&self, limbs: usize) -> bool {
-        let limbs = self.shares.iter().enumerate().take(limbs).filter(|&(group, _)| group != TRUNK_GROUP);
-        limbs.map(|(_, &share)| share).any(|share| (LOOSE_SHARE..=1.0).contains(&share))
+        let limbs = (0..limbs.min(MAX_GROUPS)).filter(|&group| group != TRUNK_GROUP && !self.is_let_loose(group));
+        limbs.map(|group| self.shares[group]).any(|share| share >= LOOSE_SHARE)
     }
 
-    /// Whether the limb has been unseen for a while.
-    pub(super) fn is_unseen(&self, group: usize) -> bool {
-        self.shares.get(group).is_some_and(|share| *share > 1.0)
+    /// Whether the limb has been unseen for so long that it has more than the model's noise.
+    pub(super) fn is_let_loose(&self, group: usize) -> bool {
+        self.is_unseen.get(group).is_some_and(|is_unseen| *is_unseen) && self.shares[group] > 1.0
     }
 
     /// The shares by bone.
@@ -116,10 +124,8 @@ impl LimbNoise {
         dt_s: f32,
     ) {
         let root = velocity_m_per_s.first().copied().unwrap_or_default();
-        for (group, share) in self.shares.iter_mut().enumerate().take(limbs.count()) {
-            if group == TRUNK_GROUP {
-                continue;
-            }
+        let of_limbs = self.shares.iter_mut().zip(&mut self.is_unseen).enumerate().take(limbs.count());
+        for (group, (share, is_unseen)) in of_limbs.filter(|&(group, _)| group != TRUNK_GROUP) {
             let (mut squared, mut bones, mut fleshed, mut seen) = (0.0, 0.0, 0.0, 0.0);
             for bone in (0..BONES).filter(|&bone| limbs.group(bone) == group) {
                 let against_root = velocity_m_per_s[bone] - root;
@@ -130,7 +136,8 @@ impl LimbNoise {
                     seen += if observed[bone] { 1.0 } else { 0.0 };
                 }
             }
-            let speed_m_per_s = (seen >= LEAST_OBSERVED * fleshed).then(|| sqrt(squared / max(bones, 1.0)));
+            *is_unseen = seen < LEAST_OBSERVED * fleshed;
+            let speed_m_per_s = (!*is_unseen).then(|| sqrt(squared / max(bones, 1.0)));
             *share = noise.follow(*share, speed_m_per_s, dt_s);
         }
     }
@@ -143,8 +150,14 @@ mod tests {
     use crate::skeleton::full_body::{BODY_BONES, FEET, FOREARMS, PELVIS, TRUNK, UPPER_ARMS, body_radii_m, full_body};
     use proptest::prelude::*;
 
-    const NOISE: PaceNoise =
-        PaceNoise { rest_share: 0.4, full_speed_m_per_s: 1.3, fade_s: 0.3, unseen_growth_s: 0.5, unseen_most: 2.0 };
+    const NOISE: PaceNoise = PaceNoise {
+        rest_share: 0.4,
+        full_speed_m_per_s: 1.3,
+        swing_most: 1.5,
+        fade_s: 0.3,
+        unseen_growth_s: 0.5,
+        unseen_most: 2.0,
+    };
     const DT_S: f32 = 1.0 / 15.0;
 
     /// Shares by bone after `frames` of a body whose left forearm's end goes at `speed_m_per_s`, and of whose right arm nothing is seen.
@@ -165,22 +178,22 @@ mod tests {
 
     #[test]
     fn a_limb_at_rest_has_its_share_and_one_that_is_swung_all() {
-        let (swung, shares) = followed(60, 3.0, LimbNoise::FULL);
-        assert_eq!([shares[FOREARMS[0]], shares[UPPER_ARMS[0]]], [1.0; 2], "the whole limb");
+        let (swung, shares) = followed(60, 5.0, LimbNoise::FULL);
+        assert_eq!([shares[FOREARMS[0]], shares[UPPER_ARMS[0]]], [1.5; 2], "the whole limb");
         assert_eq!([shares[PELVIS], shares[TRUNK]], [1.0; 2]);
         assert!((shares[FEET[0]] - 0.4).abs() < 1.0e-3, "{shares:?}");
         // Comes to rest: not at once.
         let share = |frames| followed(frames, 0.0, swung).1[FOREARMS[0]];
-        let fading = 0.4 + 0.6 * libm::expf(-3.0 * DT_S / 0.3);
+        let fading = 0.4 + 1.1 * libm::expf(-3.0 * DT_S / 0.3);
         assert!((share(3) - fading).abs() < 1.0e-4 && (share(60) - 0.4).abs() < 1.0e-3, "{} {fading}", share(3));
         // Starts: at once.
         let rested = followed(60, 0.0, swung).0;
-        assert_eq!(followed(1, 3.0, rested).1[FOREARMS[0]], 1.0);
+        assert_eq!(followed(1, 5.0, rested).1[FOREARMS[0]], 1.5);
     }
 
     #[test]
     fn an_unseen_limb_is_let_loose_and_taken_back() {
-        let (rested, _) = followed(0, 0.0, LimbNoise { shares: [0.4; MAX_GROUPS] });
+        let (rested, _) = followed(0, 0.0, LimbNoise { shares: [0.4; MAX_GROUPS], ..LimbNoise::FULL });
         let unseen = |frames| followed(frames, 0.0, rested).1[FOREARMS[1]];
         assert!((unseen(3) - (0.4 + 3.0 * DT_S / 0.5)).abs() < 1.0e-4, "{}", unseen(3));
         assert_eq!(unseen(40), 2.0);
@@ -191,18 +204,21 @@ mod tests {
     fn a_fast_limb_is_told_from_an_unseen_one() {
         let measures = BodyMeasures::of_height(1.75).unwrap();
         let limbs = Limbs::of(&full_body(&measures).unwrap());
-        let of = |left: f32, right: f32| {
-            let mut noise = LimbNoise { shares: [0.4; MAX_GROUPS] };
+        let of = |left: f32, (right, is_right_unseen): (f32, bool)| {
+            let mut noise = LimbNoise { shares: [0.4; MAX_GROUPS], ..LimbNoise::FULL };
             noise.shares[TRUNK_GROUP] = 1.0;
             noise.shares[limbs.group(FOREARMS[0])] = left;
             noise.shares[limbs.group(FOREARMS[1])] = right;
-            let is_unseen = FOREARMS.map(|bone| noise.is_unseen(limbs.group(bone)));
-            (noise.is_any_fast(limbs.count()), is_unseen)
+            noise.is_unseen[limbs.group(FOREARMS[1])] = is_right_unseen;
+            let is_let_loose = FOREARMS.map(|bone| noise.is_let_loose(limbs.group(bone)));
+            (noise.is_any_fast(limbs.count()), is_let_loose)
         };
-        assert_eq!(of(0.4, 0.7), (false, [false; 2]), "the trunk's own noise is nobody's pace");
-        assert_eq!(of(0.9, 0.4), (true, [false; 2]));
-        assert_eq!(of(0.4, 1.5), (false, [false, true]));
-        assert_eq!(of(1.0, 1.5), (true, [false, true]));
+        assert_eq!(of(0.4, (0.7, false)), (false, [false; 2]), "the trunk's own noise is nobody's pace");
+        assert_eq!(of(0.9, (0.4, false)), (true, [false; 2]));
+        assert_eq!(of(0.4, (1.4, false)), (true, [false; 2]), "fast, and seen");
+        assert_eq!(of(0.4, (1.4, true)), (false, [false, true]));
+        assert_eq!(of(1.0, (1.4, true)), (true, [false, true]));
+        assert_eq!(of(0.4, (0.9, true)), (true, [false; 2]), "swung when it was last seen");
     }
 
     #[test]
@@ -210,6 +226,7 @@ mod tests {
         let broken = |noise: PaceNoise| noise.checked().unwrap_err().parameter;
         assert_eq!(broken(PaceNoise { rest_share: 0.0, ..NOISE }), "rest_share");
         assert_eq!(broken(PaceNoise { full_speed_m_per_s: f32::NAN, ..NOISE }), "full_speed_m_per_s");
+        assert_eq!(broken(PaceNoise { swing_most: 0.9, ..NOISE }), "swing_most");
         assert_eq!(broken(PaceNoise { fade_s: 0.0, ..NOISE }), "fade_s");
         assert_eq!(broken(PaceNoise { unseen_growth_s: -1.0, ..NOISE }), "unseen_growth_s");
         assert_eq!(broken(PaceNoise { unseen_most: 0.5, ..NOISE }), "unseen_most");

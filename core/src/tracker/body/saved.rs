@@ -1,6 +1,7 @@
 //! A body tracker's state as it is saved.
 
 use super::step::BodyTracker;
+use super::velocity::Velocity;
 use crate::math::Vec3;
 use crate::pik::motion::BodyParticle;
 use crate::saved_state::{FINITE, SavedState, StateVisitor};
@@ -17,6 +18,13 @@ impl<const BONES: usize, const ANGLES: usize> SavedState for BodyParticle<BONES,
         visitor.reals(&mut self.angles_rad, &FINITE);
         places(&mut self.ends_m, visitor);
         visitor.reals(&mut self.memory, &FINITE);
+    }
+}
+
+impl<const BONES: usize, const ANGLES: usize> SavedState for Velocity<BONES, ANGLES> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.reals(&mut self.angles_per_s, &FINITE);
+        places(&mut self.ends_m_per_s, visitor);
     }
 }
 
@@ -47,8 +55,12 @@ where
         self.before.visit(visitor);
         self.steady.told.visit(visitor);
         places(&mut self.steady.off_m, visitor);
-        visitor.reals(&mut self.angle_velocity_per_s, &FINITE);
-        places(&mut self.velocity_m_per_s, visitor);
+        self.velocity.last.visit(visitor);
+        self.velocity.change.visit(visitor);
+        visitor.flag(&mut self.velocity.is_known);
         visitor.reals(&mut self.noise.shares, &FINITE);
+        for is_unseen in &mut self.noise.is_unseen {
+            visitor.flag(is_unseen);
+        }
     }
 }

@@ -6,6 +6,7 @@ use super::observed::observed;
 use super::pace::{LimbNoise, PaceNoise};
 use super::steady::SteadyPose;
 use super::tempering::temper;
+use super::velocity::EstimateVelocity;
 use crate::error::{ParameterError, Rule};
 use crate::math::{Vec3, clamp, min, sqrt};
 use crate::observation::limb_likelihood::ExpectedBody;
@@ -26,8 +27,6 @@ const LIMB_STREAM: u32 = u32::MAX - 1;
 const EXPECTED_PERSISTENCE: f32 = 0.5;
 /// Particles that the least effective share is meant for.
 const SHARE_PARTICLES: f32 = 100.0;
-/// Velocities are not followed for longer than this across a gap, seconds; the noise grows all the same.
-const LONGEST_STRIDE_S: f32 = 0.2;
 
 /// Options of the filter itself.
 ///
@@ -91,6 +90,9 @@ pub struct BodyOptions {
     pub tremble_m: f32,
     /// How the noise of a limb follows its pace; `None` leaves every limb the motion model's own.
     pub pace: Option<PaceNoise>,
+    /// Share of the velocity's last change that goes on, in [0, 1]: motion models are given a velocity that changes on as it did. Zero is the
+    /// velocity of the last two frames.
+    pub acceleration_share: f32,
 }
 
 /// What is used unless told otherwise.
@@ -101,6 +103,7 @@ pub const DEFAULT_BODY_OPTIONS: BodyOptions = BodyOptions {
     tremble_errors: 0.0,
     tremble_m: 0.0,
     pace: None,
+    acceleration_share: 0.0,
 };
 
 /// One frame.
@@ -289,8 +292,7 @@ pub struct BodyTracker<const BONES: usize, const ANGLES: usize, const N: usize, 
     pub(super) before: BodyParticle<BONES, ANGLES>,
     pub(super) steady: SteadyPose<BONES, ANGLES>,
     pub(super) noise: LimbNoise,
-    pub(super) angle_velocity_per_s: [f32; ANGLES],
-    pub(super) velocity_m_per_s: [Vec3; BONES],
+    pub(super) velocity: EstimateVelocity<BONES, ANGLES>,
     pub(super) seed: u64,
     pub(super) frame: u64,
 }
@@ -313,8 +315,14 @@ where
         if next.as_ref().len() != count {
             return Err(ParameterError::new("next", Rule::SameLength { expected: count }));
         }
-        if !(options.least_effective_share >= 0.0 && options.least_effective_share <= 1.0) {
-            return Err(ParameterError::new("least_effective_share", Rule::Within { low: 0.0, high: 1.0 }));
+        let shares = [
+            ("least_effective_share", options.least_effective_share),
+            ("acceleration_share", options.acceleration_share),
+        ];
+        for (name, share) in shares {
+            if !(0.0..=1.0).contains(&share) {
+                return Err(ParameterError::new(name, Rule::Within { low: 0.0, high: 1.0 }));
+            }
         }
         for (name, value) in [("tremble_errors", options.tremble_errors), ("tremble_m", options.tremble_m)] {
             if !(value >= 0.0 && value.is_finite()) {
@@ -338,8 +346,7 @@ where
             before: *first,
             steady: SteadyPose::new(*first),
             noise: LimbNoise::FULL,
-            angle_velocity_per_s: [0.0; ANGLES],
-            velocity_m_per_s: [Vec3::zeros(); BONES],
+            velocity: EstimateVelocity::REST,
             seed,
             frame: 0,
         })
@@ -385,11 +392,11 @@ where
         systematic(self.weights.normalised(), offset, &mut self.ancestors);
         // No time, or time that runs back, is the shortest time that still lets particles differ.
         let dt_s = clamp(frame.dt_s, 1.0e-4, 10.0);
-        let fades = min(1.0, LONGEST_STRIDE_S / dt_s);
-        let angle_velocity_per_s = self.angle_velocity_per_s.map(|velocity| velocity * fades);
-        let expected_rad = self.expected_pose(scene, motion.root(), frame.blocks, &angle_velocity_per_s, dt_s);
+        let limbs = Limbs::of(&scene.skeleton);
+        let velocity = self.velocity.expected(self.options.acceleration_share, dt_s);
+        let expected_rad = self.expected_pose((scene, &limbs), motion.root(), frame.blocks, dt_s);
         if self.options.limb_by_limb {
-            self.expected.set_limbs(Limbs::of(&scene.skeleton));
+            self.expected.set_limbs(limbs);
             self.expected.expect(&scene.likelihood, &scene.surface(&scene.posture(&expected_rad)), frame.blocks);
         }
         let advance = Advance {
@@ -397,10 +404,10 @@ where
             past: FramePast {
                 scene,
                 blocks: frame.blocks,
-                angle_velocity_per_s,
-                shared_change: self.shared_change(scene, &expected_rad),
-                velocity_m_per_s: &self.velocity_m_per_s.map(|velocity| velocity * fades),
-                noise_share: &self.noise.per_bone(&Limbs::of(&scene.skeleton)),
+                angle_velocity_per_s: velocity.angles_per_s,
+                shared_change: self.shared_change((scene, &limbs), &expected_rad),
+                velocity_m_per_s: &velocity.ends_m_per_s,
+                noise_share: &self.noise.per_bone(&limbs),
                 first_m: &self.first_m,
                 dt_s,
                 is_first,
@@ -413,41 +420,42 @@ where
         };
         advance_all(&advance, self.next.as_mut());
         core::mem::swap(&mut self.particles, &mut self.next);
-        self.conclude(scene, frame, dt_s)
+        self.conclude((scene, &limbs), frame, dt_s)
     }
 
     /// Where the body is expected: it goes on as it moved, and where the root is aligned that pose is laid onto the points. The root of every
     /// particle sets out from there; limbs are weighed by what they explain beside it.
     fn expected_pose(
         &self,
-        scene: &BodyScene<BONES, ANGLES>,
+        (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
         root: &RootProcess,
         blocks: &[PointBlock],
-        angle_velocity_per_s: &[f32; ANGLES],
         dt_s: f32,
     ) -> [f32; ANGLES] {
-        let root_change = root.expected_change(angle_velocity_per_s, dt_s);
+        let velocity_per_s = self.velocity.expected(0.0, dt_s).angles_per_s;
+        let root_change = root.expected_change(&velocity_per_s, dt_s);
         let mut expected_rad = self.before.angles_rad;
         for (index, angle) in expected_rad.iter_mut().enumerate() {
             *angle += if index < scene.skeleton.root_coordinates() {
                 root_change.get(index).copied().unwrap_or(0.0)
             } else {
-                EXPECTED_PERSISTENCE * angle_velocity_per_s[index] * dt_s
+                EXPECTED_PERSISTENCE * velocity_per_s[index] * dt_s
             };
         }
         let expected_rad = scene.skeleton.clamp(expected_rad);
         let Some(mut alignment) = self.options.alignment else { return expected_rad };
-        let limbs = Limbs::of(&scene.skeleton);
-        if !self.noise.is_any_fast(limbs.count()) {
-            alignment.far_steps = 0;
-        }
-        let unseen = core::array::from_fn(|i| self.noise.is_unseen(limbs.group(scene.skeleton.bone_of_angle(i))));
+        alignment.looks_afar &= self.noise.is_any_fast(limbs.count());
+        let unseen = core::array::from_fn(|i| self.noise.is_let_loose(limbs.group(scene.skeleton.bone_of_angle(i))));
         alignment.laid(scene, blocks, (&expected_rad, &unseen), dt_s)
     }
 
     /// What every particle's root changes by, and its trunk where that is laid onto the points.
-    fn shared_change(&self, scene: &BodyScene<BONES, ANGLES>, expected_rad: &[f32; ANGLES]) -> [Option<f32>; ANGLES] {
-        let (skeleton, limbs) = (&scene.skeleton, Limbs::of(&scene.skeleton));
+    fn shared_change(
+        &self,
+        (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
+        expected_rad: &[f32; ANGLES],
+    ) -> [Option<f32>; ANGLES] {
+        let skeleton = &scene.skeleton;
         let lays_trunk = self.options.alignment.is_some_and(|alignment| alignment.lays_trunk);
         core::array::from_fn(|index| {
             let is_trunk = limbs.group(skeleton.bone_of_angle(index)) == TRUNK_GROUP;
@@ -459,47 +467,41 @@ where
     /// Weights, mean pose, spread and velocities of the new set.
     fn conclude(
         &mut self,
-        scene: &BodyScene<BONES, ANGLES>,
+        (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
         frame: &BodyFrame<'_>,
         dt_s: f32,
     ) -> BodyEstimate<BONES, ANGLES> {
-        let limbs = *self.expected.limbs();
+        // One group of all bones where whole poses are weighed.
+        let weighed_limbs = *self.expected.limbs();
         let mut stream = Stream::new(self.seed, self.frame, LIMB_STREAM);
         let mut angles_rad = [0.0; ANGLES];
         let (mut spread_m, mut standard_error_m) = ([0.0; BONES], [0.0; BONES]);
         let (mut whole, mut effective_sample_size) = (Ok(0.0), f32::INFINITY);
         let mut tempering = 1.0;
         // The trunk comes last: what belongs to the whole pose stays as it was weighed.
-        for group in (0..limbs.count()).rev() {
+        for group in (0..weighed_limbs.count()).rev() {
             tempering = self.weigh(group);
             whole = self.weights.normalise();
             effective_sample_size = min(effective_sample_size, self.weights.effective_sample_size());
             let weighed = (self.particles.as_ref(), self.weights.normalised());
-            mean_of_group(&scene.skeleton, weighed, (&limbs, group), &mut angles_rad);
-            spread_of_group(weighed, (&limbs, group), (&mut spread_m, &mut standard_error_m));
-            if limbs.count() > 1 {
-                self.resample_group(&scene.skeleton, (&limbs, group), &mut stream);
+            mean_of_group(&scene.skeleton, weighed, (&weighed_limbs, group), &mut angles_rad);
+            spread_of_group(weighed, (&weighed_limbs, group), (&mut spread_m, &mut standard_error_m));
+            if weighed_limbs.count() > 1 {
+                self.resample_group(&scene.skeleton, (&weighed_limbs, group), &mut stream);
             }
         }
-        if limbs.count() > 1 {
+        if weighed_limbs.count() > 1 {
             self.join_groups(scene);
         }
         let posture = scene.posture(&angles_rad);
         let mean = BodyParticle { angles_rad, ends_m: posture.ends, ..self.before };
-        // Told and observed limb by limb, also where whole poses are weighed.
-        let limbs = Limbs::of(&scene.skeleton);
-        let observed = observed(&scene.surface(&posture), &limbs, frame.blocks);
-        for i in 0..ANGLES {
-            self.angle_velocity_per_s[i] = (mean.angles_rad[i] - self.before.angles_rad[i]) / dt_s;
-        }
-        for bone in 0..BONES {
-            self.velocity_m_per_s[bone] = (mean.ends_m[bone] - self.before.ends_m[bone]) / dt_s;
-        }
+        let observed = observed(&scene.surface(&posture), limbs, frame.blocks);
+        self.velocity.follow(&self.before, &mean, dt_s);
         if let Some(pace) = &self.options.pace {
-            self.noise.follow((pace, &limbs), &self.velocity_m_per_s, (&observed, &scene.radii_m), dt_s);
+            self.noise.follow((pace, limbs), &self.velocity.last.ends_m_per_s, (&observed, &scene.radii_m), dt_s);
         }
         let tremble_m = standard_error_m.map(|error_m| self.options.tremble_m + self.options.tremble_errors * error_m);
-        let told = *self.steady.tell((scene, &limbs), &mean, &tremble_m, dt_s);
+        let told = *self.steady.tell((scene, limbs), &mean, &tremble_m, dt_s);
         self.before = mean;
         BodyEstimate {
             angles_rad: told.angles_rad,

@@ -109,15 +109,21 @@ fn guided(process: &LinearGoals) -> GuidedMotion<'_, LinearGoals, BODY_ANGLES> {
 const ANGULAR: AngularMotion<BODY_ANGLES> =
     AngularMotion { root: ROOT, persistence: 0.5, angle_std_rad_per_sqrt_s: [0.6; BODY_ANGLES], own_velocity: false };
 
-const PACE: PaceNoise =
-    PaceNoise { rest_share: 0.4, full_speed_m_per_s: 1.3, fade_s: 0.3, unseen_growth_s: 0.5, unseen_most: 2.0 };
+const PACE: PaceNoise = PaceNoise {
+    rest_share: 0.4,
+    full_speed_m_per_s: 1.3,
+    swing_most: 1.0,
+    fade_s: 0.3,
+    unseen_growth_s: 0.5,
+    unseen_most: 2.0,
+};
 
 const OPTIONS: BodyOptions = BodyOptions {
     least_effective_share: 0.14,
     limb_by_limb: false,
     alignment: Some(RootAlignment {
         steps: 2,
-        far_steps: 0,
+        looks_afar: false,
         shift_std_m_per_sqrt_s: 0.3,
         turn_std_rad_per_sqrt_s: 0.6,
         angle_std_rad_per_sqrt_s: 1.0,
@@ -127,6 +133,7 @@ const OPTIONS: BodyOptions = BodyOptions {
     tremble_errors: 0.0,
     tremble_m: 0.0,
     pace: None,
+    acceleration_share: 0.0,
 };
 
 const LIMB_BY_LIMB: BodyOptions = BodyOptions { least_effective_share: 0.2, limb_by_limb: true, ..OPTIONS };
@@ -393,6 +400,8 @@ fn sets_and_options_that_do_not_fit_are_refused() {
     assert_eq!(Tracker::new(&first, sets(257, 257), OPTIONS, 1).unwrap_err().parameter, "particles");
     let options = BodyOptions { least_effective_share: f32::NAN, ..OPTIONS };
     assert_eq!(Tracker::new(&first, sets(4, 4), options, 1).unwrap_err().parameter, "least_effective_share");
+    let options = BodyOptions { acceleration_share: -0.1, ..OPTIONS };
+    assert_eq!(Tracker::new(&first, sets(4, 4), options, 1).unwrap_err().parameter, "acceleration_share");
 }
 
 /// Standard deviation of the places of a bone's end over draws from one pose with `motion`, metres.

@@ -112,7 +112,7 @@ fn check(prefix: &str, table: &Table) -> Result<()> {
 }
 
 fn check_number(key: &str, full: &str, number: f64) -> Result<(), String> {
-    let is_share = key.ends_with("persistence") || key == "least_effective_share";
+    let is_share = key.ends_with("persistence") || ["least_effective_share", "acceleration_share"].contains(&key);
     if is_share {
         return if (0.0..=1.0).contains(&number) {
             Ok(())
@@ -159,6 +159,7 @@ mod tests {
             ("self_penetration = 0.01\n", "the nearest one is `self_penetration_std_m`"),
             ("[guided]\nreach_std_m = nan\n", "`guided.reach_std_m` has to be from"),
             ("[root]\npersistence = 1.5\n", "`root.persistence` has to be from 0 to 1"),
+            ("[angular]\nacceleration_share = 1.5\n", "`angular.acceleration_share` has to be from 0 to 1, not 1.5"),
             ("[guided]\nsolver_steps = 0\n", "`guided.solver_steps` has to be from 1"),
             ("[guided]\nsolver_steps = 2.5\n", "`guided.solver_steps` has to be of the type integer"),
             ("guided = 1\n", "`guided` is a section"),

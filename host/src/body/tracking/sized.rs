@@ -80,6 +80,10 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             BodyModelKind::Guided => (tuning.guided_points, tuning.guided),
             _ => (tuning.points, tuning.end_effector),
         };
+        let acceleration_share = match kind {
+            BodyModelKind::Angular | BodyModelKind::AngularPaper => tuning.angular.acceleration_share,
+            _ => goals.acceleration_share,
+        };
         let std_m = tuning.self_penetration_std_m;
         let apart = (std_m > 0.0).then(|| SelfPenetration::new(&body.skeleton, &body.radii_m, std_m));
         let self_penetration = apart.transpose()?;
@@ -103,6 +107,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             tremble_errors: tuning.steady.tremble_errors,
             tremble_m: tuning.steady.tremble_m,
             pace: Some(tuning.pace.noise()),
+            acceleration_share,
         };
         let lays_trunk = options.alignment.is_some_and(|alignment| alignment.lays_trunk);
         let set = vec![first; particles];

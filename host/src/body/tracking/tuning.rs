@@ -57,9 +57,8 @@ impl JointStd {
     }
 }
 
-/// Steps of the alignment of the root, and those before them in which points reach farther.
+/// Steps of the alignment of the root.
 const ALIGNMENT_STEPS: usize = 3;
-const ALIGNMENT_FAR_STEPS: usize = 2;
 
 /// The root's process, the same in all models but the pelvic lift.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -79,7 +78,7 @@ pub struct RootTuning {
     pub aligned_turn_std_rad: f32,
     /// How far other angles may change while the root is aligned, radians by root second.
     pub aligned_angle_std_rad: f32,
-    /// Whether points reach twice as far in the first steps, so that a limb farther off than they reach is found.
+    /// Whether a limb farther off than points reach is looked for from afar.
     pub aligned_from_afar: bool,
     /// Whether the trunk is laid onto the points with the root.
     pub aligned_trunk: bool,
@@ -93,7 +92,7 @@ impl RootTuning {
     pub fn alignment(&self) -> Option<RootAlignment> {
         self.aligned.then_some(RootAlignment {
             steps: ALIGNMENT_STEPS,
-            far_steps: if self.aligned_from_afar { ALIGNMENT_FAR_STEPS } else { 0 },
+            looks_afar: self.aligned_from_afar,
             shift_std_m_per_sqrt_s: self.aligned_shift_std_m,
             turn_std_rad_per_sqrt_s: self.aligned_turn_std_rad,
             angle_std_rad_per_sqrt_s: self.aligned_angle_std_rad,
@@ -143,6 +142,8 @@ impl GoalStd {
 pub struct GoalTuning {
     /// Share of an end-effector's velocity that goes on.
     pub persistence: f32,
+    /// Share of the velocities' last change that goes on.
+    pub acceleration_share: f32,
     /// How closely a goal is reached, metres.
     pub reach_std_m: f32,
     /// Spread of the goals.
@@ -173,6 +174,8 @@ impl GoalTuning {
 pub struct AngularTuning {
     /// Share of an angle's velocity that goes on.
     pub persistence: f32,
+    /// Share of the velocities' last change that goes on.
+    pub acceleration_share: f32,
     /// Noise of the angles.
     pub joint_std: JointStd,
 }
@@ -213,8 +216,8 @@ pub struct SteadyTuning {
     pub tremble_m: f32,
 }
 
-/// How the noise of a limb follows its pace, in all models but the printed ones. A `rest_share` and an `unseen_most` of one leave every limb
-/// the model's own.
+/// How the noise of a limb follows its pace, in all models but the printed ones. A `rest_share`, a `swing_most` and an `unseen_most` of one
+/// leave every limb the model's own.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PaceTuning {
@@ -222,6 +225,8 @@ pub struct PaceTuning {
     pub rest_share: f32,
     /// Speed against the root that would alone make all of the noise, metres a second.
     pub full_speed_m_per_s: f32,
+    /// The noise of a limb that is seen is no more than this many times the model's.
+    pub swing_most: f32,
     /// Time in which the noise of a limb that comes to rest falls to its e-th part, seconds.
     pub fade_s: f32,
     /// Time in which the noise of a limb that nobody sees grows by the model's own, seconds.
@@ -234,8 +239,8 @@ impl PaceTuning {
     /// For the core.
     #[must_use]
     pub fn noise(&self) -> PaceNoise {
-        let Self { rest_share, full_speed_m_per_s, fade_s, unseen_growth_s, unseen_most } = *self;
-        PaceNoise { rest_share, full_speed_m_per_s, fade_s, unseen_growth_s, unseen_most }
+        let Self { rest_share, full_speed_m_per_s, swing_most, fade_s, unseen_growth_s, unseen_most } = *self;
+        PaceNoise { rest_share, full_speed_m_per_s, swing_most, fade_s, unseen_growth_s, unseen_most }
     }
 }
 
@@ -285,7 +290,8 @@ impl BodyTuning {
     pub fn of_kind(mut self, kind: BodyModelKind) -> Self {
         if kind.is_printed() {
             self.smoothing.radius_m = 0.0;
-            (self.pace.rest_share, self.pace.unseen_most) = (1.0, 1.0);
+            (self.pace.rest_share, self.pace.swing_most, self.pace.unseen_most) = (1.0, 1.0, 1.0);
+            (self.end_effector.acceleration_share, self.angular.acceleration_share) = (0.0, 0.0);
             self.steady = SteadyTuning { tremble_errors: 0.0, tremble_m: 0.0 };
             self.self_penetration_std_m = 0.0;
             (self.root.aligned_trunk, self.root.aligned_from_afar) = (false, false);
@@ -311,23 +317,38 @@ const GOAL_JOINTS: JointStd =
     JointStd { trunk: 0.268, head: 0.63, shoulder: 1.15, elbow: 1.31, hip: 0.75, knee: 1.12, ankle: 0.06 };
 /// The angular model's noise.
 const ANGULAR_JOINTS: JointStd =
-    JointStd { trunk: 0.255, head: 0.24, shoulder: 0.625, elbow: 1.04, hip: 0.294, knee: 0.58, ankle: 0.127 };
+    JointStd { trunk: 0.255, head: 0.3, shoulder: 0.64, elbow: 0.92, hip: 0.27, knee: 0.62, ankle: 0.13 };
 /// The guided model draws where the points pull, so that its stiffness may be looser.
 const GUIDED_JOINTS: JointStd =
     JointStd { trunk: 0.2, head: 0.6, shoulder: 2.0, elbow: 2.0, hip: 2.0, knee: 1.5, ankle: 1.0 };
 
+/// The models with goals.
+const GOALS: GoalTuning = GoalTuning {
+    persistence: 0.90,
+    acceleration_share: 0.5,
+    reach_std_m: 0.054,
+    goal_std: GoalStd { head: 0.1, hand: 0.24, foot: 0.15 },
+    joint_std: GOAL_JOINTS,
+    angle_persistence: 0.4,
+    solver_steps: 2,
+    pays: false,
+    draw_share: 0.62,
+};
+/// The guided model.
+const GUIDED_GOALS: GoalTuning = GoalTuning {
+    persistence: 0.5,
+    acceleration_share: 0.0,
+    reach_std_m: 0.03,
+    goal_std: GoalStd { head: 0.3, hand: 0.3, foot: 0.3 },
+    joint_std: GUIDED_JOINTS,
+    angle_persistence: 0.5,
+    solver_steps: 3,
+    pays: true,
+    draw_share: 1.0,
+};
+
 impl Default for BodyTuning {
     fn default() -> Self {
-        let goals = GoalTuning {
-            persistence: 0.90,
-            reach_std_m: 0.054,
-            goal_std: GoalStd { head: 0.1, hand: 0.29, foot: 0.176 },
-            joint_std: GOAL_JOINTS,
-            angle_persistence: 0.22,
-            solver_steps: 2,
-            pays: false,
-            draw_share: 0.62,
-        };
         let points = PointTuning { std_m: 0.07, outlier_m: 0.10, least_effective_share: 0.06, limb_by_limb: true };
         Self {
             root: RootTuning {
@@ -342,25 +363,17 @@ impl Default for BodyTuning {
                 aligned_trunk: true,
                 trunk_std_rad: 0.04,
             },
-            end_effector: goals,
-            guided: GoalTuning {
-                persistence: 0.5,
-                reach_std_m: 0.03,
-                goal_std: GoalStd { head: 0.3, hand: 0.3, foot: 0.3 },
-                joint_std: GUIDED_JOINTS,
-                angle_persistence: 0.5,
-                solver_steps: 3,
-                pays: true,
-                draw_share: 1.0,
-            },
+            end_effector: GOALS,
+            guided: GUIDED_GOALS,
             pulling_blocks: 64,
-            angular: AngularTuning { persistence: 0.6, joint_std: ANGULAR_JOINTS },
+            angular: AngularTuning { persistence: 0.55, acceleration_share: 0.4, joint_std: ANGULAR_JOINTS },
             pace: PaceTuning {
                 rest_share: 0.4,
                 full_speed_m_per_s: 1.3,
+                swing_most: 2.5,
                 fade_s: 0.3,
                 unseen_growth_s: 0.5,
-                unseen_most: 2.0,
+                unseen_most: 2.5,
             },
             steady: SteadyTuning { tremble_errors: 3.0, tremble_m: 0.0075 },
             smoothing: SmoothingTuning { radius_m: 0.04, skin_std_m: 0.015 },
