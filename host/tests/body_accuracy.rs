@@ -35,9 +35,10 @@ const LARGEST_RUNNING_M: [f64; 2] = [0.016, 0.024];
 const MOTIONS: [&str; 3] =
     ["bandai/dataset-2_wave-both-hands_normal_001.bvh@0-4", "cmu-walk/02/02_01.amc", "cmu-exercise/13_29.amc@0-3.9"];
 
-/// Least share of hidden arms whose error is below twice its level within ten frames of their return, and whose spread grew; guided, 50
-/// particles.
-const LEAST_FOUND_AGAIN: f64 = 0.9;
+/// Least share of hidden arms whose error is below twice its level within ten frames of their return, and whose spread grew. Two dozen arms
+/// tell a share of nine tenths to 6 %, so that models that have little more (docs/measurements.md) are held to eight.
+const LEAST_FOUND_AGAIN: [(BodyModelKind, usize, f64); 3] =
+    [(BodyModelKind::Guided, 50, 0.9), (BodyModelKind::EndEffector, 100, 0.8), (BodyModelKind::Angular, 100, 0.8)];
 /// Least share of them that are said to be unobserved in all 15 hidden frames.
 const LEAST_SAID_UNOBSERVED: f64 = 0.9;
 /// Fast and slow arms, walks, exercises.
@@ -123,18 +124,22 @@ fn hidden_arms_are_found_again() {
         for seed in 1..=3 {
             let hidden = windows(frames, 15, seed);
             let seen = read.seen_hiding(BodyPart::Whole, seed, &hidden).unwrap();
-            let cell = (BodyModelKind::Guided, 50);
-            let how = (&BodyTuning::default(), &Cells::not_kept());
-            arms.extend(follow(&motion.name(), (&seen, &hidden), cell, how, seed).unwrap());
+            for (model, particles, _) in LEAST_FOUND_AGAIN {
+                let how = (&BodyTuning::default(), &Cells::not_kept());
+                arms.extend(follow(&motion.name(), (&seen, &hidden), (model, particles), how, seed).unwrap());
+            }
         }
     }
-    let [summary] = summaries(&arms)[..] else { panic!("one model, one count") };
-    println!("{summary:?}");
-    let HiddenArmSummary { arms, spread_grew, said_unobserved, came_back, .. } = summary;
-    assert!(arms >= 20, "{arms} arms");
-    assert!(came_back >= LEAST_FOUND_AGAIN, "{came_back} came back");
-    assert!(spread_grew >= LEAST_FOUND_AGAIN, "the spread of {spread_grew} grew");
-    assert!(said_unobserved >= LEAST_SAID_UNOBSERVED, "{said_unobserved} were said to be unobserved");
+    let summaries = summaries(&arms);
+    assert_eq!(summaries.len(), LEAST_FOUND_AGAIN.len());
+    for HiddenArmSummary { model, arms, spread_grew, said_unobserved, came_back, .. } in summaries {
+        let (_, _, least) = LEAST_FOUND_AGAIN.into_iter().find(|(kind, ..)| *kind == model).unwrap();
+        println!("{model:?}: {arms} arms, {spread_grew:.2} {said_unobserved:.2} {came_back:.2}");
+        assert!(arms >= 20, "{model:?}: {arms} arms");
+        assert!(came_back >= least, "{model:?}: {came_back} came back");
+        assert!(spread_grew >= least, "{model:?}: the spread of {spread_grew} grew");
+        assert!(said_unobserved >= LEAST_SAID_UNOBSERVED, "{model:?}: {said_unobserved} were said to be unobserved");
+    }
 }
 
 /// The paper's own experiment: 100 particles follow six repetitions without loss.
