@@ -122,7 +122,9 @@ fn check_number(key: &str, full: &str, number: f64) -> Result<(), String> {
     }
     // Inverse squares have to be ordinary numbers.
     let low = if MAY_BE_ZERO.contains(&full) { 0.0 } else { 1.0e-6 };
-    if (low..=1.0e6).contains(&number) { Ok(()) } else { Err(format!("has to be from {low} to 1000000, not {number}")) }
+    // A draw is not wider than its expansion.
+    let high = if full == "draw.share" { 1.0 } else { 1.0e6 };
+    if (low..=high).contains(&number) { Ok(()) } else { Err(format!("has to be from {low} to {high}, not {number}")) }
 }
 
 #[cfg(test)]
@@ -160,6 +162,8 @@ mod tests {
             ("[guided]\nreach_std_m = nan\n", "`guided.reach_std_m` has to be from"),
             ("[root]\npersistence = 1.5\n", "`root.persistence` has to be from 0 to 1"),
             ("[angular]\nacceleration_share = 1.5\n", "`angular.acceleration_share` has to be from 0 to 1, not 1.5"),
+            ("[draw]\nshare = 1.5\n", "`draw.share` has to be from 0.000001 to 1, not 1.5"),
+            ("[guided]\npays = false\n", "no key `guided.pays`"),
             ("[guided]\nsolver_steps = 0\n", "`guided.solver_steps` has to be from 1"),
             ("[guided]\nsolver_steps = 2.5\n", "`guided.solver_steps` has to be of the type integer"),
             ("guided = 1\n", "`guided` is a section"),

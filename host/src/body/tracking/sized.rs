@@ -234,7 +234,7 @@ fn with_goals<'a, P, const ANGLES: usize>(
         angle_std_rad_per_sqrt_s,
         angle_persistence: tuning.end_effector.angle_persistence,
         solver_steps: tuning.end_effector.solver_steps,
-        pays: tuning.end_effector.pays,
-        draw_share: tuning.end_effector.draw_share,
+        pays: tuning.draw.pays,
+        draw_share: tuning.draw.share,
     }
 }

@@ -154,10 +154,16 @@ pub struct GoalTuning {
     pub angle_persistence: f32,
     /// Most steps of the solver.
     pub solver_steps: usize,
+}
+
+/// How poses are drawn about their mode in the models with goals, but for the guided one, which always draws all of its expansion and pays.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DrawTuning {
     /// Whether the weights take the importance ratio.
     pub pays: bool,
-    /// Width of the draw relative to the Laplace expansion's; 1 where the weights pay.
-    pub draw_share: f32,
+    /// Width of the draw relative to the Laplace expansion's, in (0, 1]; read where the weights do not pay.
+    pub share: f32,
 }
 
 impl GoalTuning {
@@ -252,6 +258,8 @@ pub struct BodyTuning {
     pub root: RootTuning,
     /// End-effector, stick and pelvic lift.
     pub end_effector: GoalTuning,
+    /// How those three draw.
+    pub draw: DrawTuning,
     /// Guided.
     pub guided: GoalTuning,
     /// Blocks of points that pull in the guided model.
@@ -314,10 +322,10 @@ impl BodyTuning {
 /// Found by a random search for the least error (34) with 100 particles on 14 clips that no result is reported on
 /// (docs/body_tracker.md); so was [`ANGULAR_JOINTS`].
 const GOAL_JOINTS: JointStd =
-    JointStd { trunk: 0.268, head: 0.63, shoulder: 1.15, elbow: 1.31, hip: 0.75, knee: 1.12, ankle: 0.06 };
+    JointStd { trunk: 0.268, head: 0.6, shoulder: 1.02, elbow: 1.31, hip: 0.65, knee: 1.2, ankle: 0.062 };
 /// The angular model's noise.
 const ANGULAR_JOINTS: JointStd =
-    JointStd { trunk: 0.255, head: 0.3, shoulder: 0.64, elbow: 0.92, hip: 0.27, knee: 0.62, ankle: 0.13 };
+    JointStd { trunk: 0.255, head: 0.28, shoulder: 0.64, elbow: 0.89, hip: 0.3, knee: 0.66, ankle: 0.13 };
 /// The guided model draws where the points pull, so that its stiffness may be looser.
 const GUIDED_JOINTS: JointStd =
     JointStd { trunk: 0.2, head: 0.6, shoulder: 2.0, elbow: 2.0, hip: 2.0, knee: 1.5, ankle: 1.0 };
@@ -327,12 +335,10 @@ const GOALS: GoalTuning = GoalTuning {
     persistence: 0.90,
     acceleration_share: 0.5,
     reach_std_m: 0.054,
-    goal_std: GoalStd { head: 0.1, hand: 0.24, foot: 0.15 },
+    goal_std: GoalStd { head: 0.105, hand: 0.21, foot: 0.18 },
     joint_std: GOAL_JOINTS,
     angle_persistence: 0.4,
     solver_steps: 2,
-    pays: false,
-    draw_share: 0.62,
 };
 /// The guided model.
 const GUIDED_GOALS: GoalTuning = GoalTuning {
@@ -343,8 +349,6 @@ const GUIDED_GOALS: GoalTuning = GoalTuning {
     joint_std: GUIDED_JOINTS,
     angle_persistence: 0.5,
     solver_steps: 3,
-    pays: true,
-    draw_share: 1.0,
 };
 
 impl Default for BodyTuning {
@@ -352,7 +356,7 @@ impl Default for BodyTuning {
         let points = PointTuning { std_m: 0.07, outlier_m: 0.10, least_effective_share: 0.06, limb_by_limb: true };
         Self {
             root: RootTuning {
-                persistence: 0.5,
+                persistence: 0.85,
                 shift_std_m: 0.003,
                 turn_std_rad: 0.01,
                 aligned: true,
@@ -364,13 +368,14 @@ impl Default for BodyTuning {
                 trunk_std_rad: 0.04,
             },
             end_effector: GOALS,
+            draw: DrawTuning { pays: false, share: 0.62 },
             guided: GUIDED_GOALS,
             pulling_blocks: 64,
-            angular: AngularTuning { persistence: 0.55, acceleration_share: 0.4, joint_std: ANGULAR_JOINTS },
+            angular: AngularTuning { persistence: 0.55, acceleration_share: 0.35, joint_std: ANGULAR_JOINTS },
             pace: PaceTuning {
                 rest_share: 0.4,
-                full_speed_m_per_s: 1.3,
-                swing_most: 2.5,
+                full_speed_m_per_s: 1.6,
+                swing_most: 5.0,
                 fade_s: 0.3,
                 unseen_growth_s: 0.5,
                 unseen_most: 2.5,

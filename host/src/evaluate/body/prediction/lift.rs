@@ -92,7 +92,7 @@ pub struct LiftSamples {
 
 /// Tracks the built-in lift to its ninth frame with the model of the pelvic lift and draws ten samples of the next by eqs. (22), (38) and
 /// (39): an ancestor by its weight, the root, the goals, the mode of eq. (12), a pose from the
-/// Laplace expansion, as wide as the model's `draw_share` says.
+/// Laplace expansion, as wide as the models' `[draw]` says.
 ///
 /// # Errors
 /// Numbers of the model that break a rule.
@@ -176,8 +176,8 @@ fn sample(
     let stiffness = tuning.end_effector.joint_std.per_angle().map(|std| 1.0 / (std * std * dt_s));
     let density = PoseDensity { skeleton, root_m: Vec3::zeros(), goals: &goals, previous_rad, stiffness, held };
     let mut mode = density.mode(tuning.end_effector.solver_steps);
-    if !tuning.end_effector.pays {
-        narrow(&mut mode, tuning.end_effector.draw_share);
+    if !tuning.draw.pays {
+        narrow(&mut mode, tuning.draw.share);
     }
     let drawn = LaplaceProposal::new(&mode)?.draw(skeleton.limits(), stream);
     let row = |i: usize| mode.hessian[i][held..].iter().map(|&entry| f64::from(entry)).collect();
