@@ -156,6 +156,14 @@ pub struct GoalTuning {
     pub solver_steps: usize,
 }
 
+impl GoalTuning {
+    /// How one end-effector's goal moves, but for its spread.
+    #[must_use]
+    pub fn extrapolation(&self) -> LinearExtrapolation {
+        LinearExtrapolation { persistence: self.persistence, std_m_per_sqrt_s: 0.0 }
+    }
+}
+
 /// How poses are drawn about their mode in the models with goals, but for the guided one, which always draws all of its expansion and pays.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -164,14 +172,6 @@ pub struct DrawTuning {
     pub pays: bool,
     /// Width of the draw relative to the Laplace expansion's, in (0, 1]; read where the weights do not pay.
     pub share: f32,
-}
-
-impl GoalTuning {
-    /// How one end-effector's goal moves, but for its spread.
-    #[must_use]
-    pub fn extrapolation(&self) -> LinearExtrapolation {
-        LinearExtrapolation { persistence: self.persistence, std_m_per_sqrt_s: 0.0 }
-    }
 }
 
 /// Numbers of the angular model.
@@ -319,7 +319,7 @@ impl BodyTuning {
     }
 }
 
-/// Found by a random search for the least error (34) with 100 particles on 14 clips that no result is reported on
+/// Found by a random search for the least error (34) with 100 particles on 18 clips that no result is reported on
 /// (docs/body_tracker.md); so was [`ANGULAR_JOINTS`].
 const GOAL_JOINTS: JointStd =
     JointStd { trunk: 0.268, head: 0.6, shoulder: 1.02, elbow: 1.31, hip: 0.65, knee: 1.2, ankle: 0.062 };
