@@ -2,6 +2,8 @@
 //! phase-coupled filter. Runs in release where `../shared/data` is at hand, and says so where not.
 
 mod shared_data;
+#[path = "shared_data/walk_cuts.rs"]
+mod walk_cuts;
 #[path = "shared_data/walks.rs"]
 mod walks;
 
@@ -10,7 +12,8 @@ use sinew::cyclic::tracking::FilterName;
 use sinew::evaluate::cyclic::experiments::SIGMAS_DEG;
 use sinew::evaluate::cyclic::{Cell, LONG_RUN_SIGMA_DEG, Protocol, Setting, long_runs, test_cycles};
 use sinew::resume::Cells;
-use walks::{WALKS, list};
+use walk_cuts::list;
+use walks::WALKS;
 
 /// Greatest relative error of the mean cadence from the third cycle on.
 const CADENCE: f64 = 0.02;

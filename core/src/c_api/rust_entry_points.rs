@@ -1,7 +1,7 @@
 //! What firmware in Rust calls and no C function does, so that the link-time proof of `prove-no-panic` covers it too. In no other library, and in no header.
 #![allow(missing_docs, improper_ctypes_definitions, reason = "called by nobody, only linked")]
 
-use crate::cyclic::motion_bank::{MotionBank, MotionEvidence};
+use crate::cyclic::motion_bank::MotionBank;
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::error::ParameterError;
 use crate::record::{ArmInput, ArmSetup, CameraLine, CyclicInput, CyclicResult, Record, RecordError, decode, encode};
@@ -56,11 +56,11 @@ pub extern "C" fn sinew_proof_joints(
 #[unsafe(no_mangle)]
 pub extern "C" fn sinew_proof_motion_bank(
     bank: &mut MotionBank<4, 13>,
+    models: &[MotionModel<'_>; 4],
     measurement: &AngleMeasurement<13>,
-    step_s: f32,
-    evidence: &[MotionEvidence; 4],
+    cycle_positions: &[f32; 4],
 ) -> usize {
-    bank.add(measurement, step_s, evidence);
+    bank.add(models, measurement, cycle_positions);
     bank.likeliest().unwrap_or(bank.best())
 }
 

@@ -6,10 +6,12 @@
 use super::coupled_block::{AngleBlock, Basis, Outlook, PARTS, Spread};
 use super::coupled_search::{LOST_STD, Watch};
 use super::cycle_pair::CyclePair;
+use super::explained_swing::ExplainedSwing;
 use super::measured_path::MeasuredPath;
 use super::phase::wrap_position;
 use super::phase_evidence::{Judgement, PhaseEvidence};
 use super::phase_grid::PhaseGrid;
+use super::stored_grid::StoredGrid;
 use super::substeps::Substeps;
 use super::winding::Winding;
 use super::{AngleMeasurement, CyclicEstimate, MotionModel};
@@ -70,10 +72,12 @@ pub struct CoupledFilter<const N: usize> {
     /// Covariance of position and velocity.
     pub(super) pair: CyclePair,
     pub(super) cycles: i32,
-    pub(super) grid: PhaseGrid,
+    pub(super) grid: StoredGrid,
     pub(super) watch: Watch,
     pub(super) winding: Winding<N>,
     pub(super) path: MeasuredPath<N>,
+    /// What the mean cycle, at the filter's position, tells of the swing that is seen.
+    pub(super) swing: ExplainedSwing<N>,
     /// Times that the position was taken from the grid.
     pub(super) relocks: u16,
 }
@@ -108,11 +112,12 @@ impl<const N: usize> CoupledFilter<N> {
             velocity: 0.0,
             pair: CyclePair { cc: 0.0, cv: 0.0, vv: 0.0 },
             cycles: 0,
-            grid: PhaseGrid::uniform(),
+            grid: StoredGrid::uniform(),
             watch: Watch::new(),
             winding: Winding::new(),
             path: MeasuredPath::new(),
             relocks: 0,
+            swing: ExplainedSwing::new(),
         }
     }
 
@@ -136,7 +141,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.forget(model)?;
         self.position = position;
         self.velocity = velocity;
-        self.grid.begin_near(position);
+        self.grid.keep(&PhaseGrid::near(position));
         self.correct_phase(model, &looks);
         self.start_counting(model, first);
         Ok(())
@@ -174,11 +179,12 @@ impl<const N: usize> CoupledFilter<N> {
         self.pair =
             CyclePair { cc: 1.0e-5, cv: 0.0, vv: max(1.0e-6, SPEED_SPREAD * SPEED_SPREAD * velocity * velocity) };
         self.cycles = 0;
-        self.grid.begin_uniform();
+        self.grid = StoredGrid::uniform();
         self.watch = Watch::new();
         self.winding = Winding::new();
         self.path = MeasuredPath::new();
         self.relocks = 0;
+        self.swing = ExplainedSwing::new();
         Ok(())
     }
 
@@ -251,7 +257,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     /// The extended Kalman correction about the present position; gives how the measurement fitted the prediction.
-    fn correct_phase(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> Judgement {
+    pub(super) fn correct_phase(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> Judgement {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);

@@ -2,7 +2,8 @@
 
 use super::coupled::{CoupledFilter, spread};
 use super::coupled_block::{AngleBlock, Basis, PARTS};
-use super::cycle_pair::CyclePair;
+use super::cycle_pair::{CyclePair, Information};
+use super::explained_swing::{ExplainedSwing, cycle_variances_rad2};
 use super::gate::{DEFAULT_GATE_SIGMAS, is_outlier};
 use super::log_product::LogProduct;
 use super::measured_path::MeasuredPath;
@@ -25,6 +26,11 @@ const SURE: f32 = 0.9;
 const PROBABLE: f32 = 0.5;
 /// Cycles at the mean speed in which a person is learned: after them a filter that predicts well is not sent elsewhere.
 const LEARNING_CYCLES: f32 = 0.6;
+/// Cycles at the mean speed, from a place found anew on, for which the filter leans on the grid. Somebody who swings little would otherwise
+/// be taken for one who moves slowly, before either is known.
+const LEANING_CYCLES: f32 = 1.2;
+/// Times that the grid's variances count: it sees the same measurements.
+const LEANING: f32 = 3.0;
 /// Way beyond the usual one between the filter's position and the grid's up to which they agree, cycles.
 const AGREED_WAY: f32 = 0.06;
 /// Way beyond the usual one that is strange, cycles.
@@ -35,6 +41,15 @@ const STRANGE_FRAMES: f32 = 6.0;
 const USUAL_FRAMES: f32 = 120.0;
 /// Greatest usual way, cycles: people who move a little earlier or later than the mean are known by it.
 const USUAL_LIMIT: f32 = 0.1;
+/// Share of the swing seen that is left over by a mean cycle that tells nothing of it. A filter at its right place leaves two thirds at most,
+/// one at a wrong place or that runs backwards nine tenths and more.
+const NOTHING_TOLD: f32 = 0.9;
+/// Least swing of which that is said, as a share of the cycle's: who stands does not swing.
+const LEAST_SWING: f32 = 0.3;
+/// Least part of the swing's memory that has to be filled: a third of a cycle since the place was found.
+const LEAST_FILLED: f32 = 0.28;
+/// Positions by which the cycle's own swing is taken.
+const CYCLE_POSITIONS: u8 = 8;
 /// Most frames for which one measurement stands in the grid.
 const MOST_FRAMES: f32 = 4.0;
 
@@ -100,29 +115,88 @@ impl<const N: usize> CoupledFilter<N> {
             return None;
         }
         self.watch.unwatched_frames = 0.0;
-        self.grid.advance(model, frames);
+        self.see_swing(model, measurement, frames);
+        let mode = self.look_at_grid(model, measurement, frames);
         let frames = clamp(frames, 1.0, MOST_FRAMES);
-        self.grid.weigh(model, measurement, frames);
-        let mode = self.grid.mode(model);
         if self.watch.searching {
             if mode.weight > SURE {
                 self.settle(&mode);
             }
             return Some(mode);
         }
-        if self.velocity < 0.0 && !self.watch.fit.is_bad() {
+        if self.velocity < 0.0 && !self.watch.fit.is_bad() && !self.follows_nothing(model, measurement) {
             // The grid knows forward motion only.
             return Some(mode);
         }
         self.watch.compare(&mode, self.position, frames);
-        let knows_better = self.watch.fit.is_good(LEARNING_CYCLES / model.mean_cycle_velocity());
-        if self.watch.strange_frames > STRANGE_FRAMES && !knows_better {
+        if self.watch.strange_frames > STRANGE_FRAMES && !self.knows_better(model, measurement) {
             // What was learned of the person since was learned at the wrong place.
             self.blocks = core::array::from_fn(|i| AngleBlock::unknown(&spread(model, i)));
             let position = mode.position - self.watch.usual_way;
             self.settle(&PhaseMode { position, ..mode });
+            self.meet(model, measurement);
+        } else if mode.weight > SURE && self.was_found_lately(model) {
+            self.lean_on(&mode);
         }
         Some(mode)
+    }
+
+    /// Moves the grid on by `frames`, shows it the measurement, and gives its place.
+    fn look_at_grid(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) -> PhaseMode {
+        let mut grid = self.grid.open();
+        grid.advance(model, frames);
+        grid.weigh(model, measurement, clamp(frames, 1.0, MOST_FRAMES));
+        self.grid.keep(&grid);
+        grid.mode(model)
+    }
+
+    /// Keeps what the mean cycle tells, at the filter's place, of what is seen.
+    fn see_swing(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) {
+        let told_rad = model.mean_pose_rad::<N>(model.point(self.position));
+        self.swing.add(frames * model.mean_cycle_velocity(), measurement, &told_rad);
+    }
+
+    /// Whether the filter knows the person, and predicts well by that; the grid knows nobody.
+    fn knows_better(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
+        self.watch.fit.is_good(LEARNING_CYCLES / model.mean_cycle_velocity())
+            && !self.follows_nothing(model, measurement)
+    }
+
+    /// Whether somebody swings and the mean cycle, at the filter's place, tells nothing of it: however well that is predicted then, it
+    /// is by deviations that follow anything.
+    fn follows_nothing(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
+        if self.swing.filled() < LEAST_FILLED {
+            return false;
+        }
+        let cycle_rad2 = cycle_variances_rad2(model, CYCLE_POSITIONS);
+        let left_over = self.swing.left_over(&cycle_rad2, measurement.std_rad());
+        left_over.is_some_and(|left_over| left_over > NOTHING_TOLD)
+            && self.swing.seen(&cycle_rad2, measurement.std_rad()) > LEAST_SWING
+    }
+
+    /// Whether the place was taken from the grid less than [`LEANING_CYCLES`] ago.
+    fn was_found_lately(&self, model: &MotionModel<'_>) -> bool {
+        self.relocks > 0 && self.watch.fit.is_new(LEANING_CYCLES / model.mean_cycle_velocity())
+    }
+
+    /// Lets the grid's place correct position and velocity.
+    fn lean_on(&mut self, mode: &PhaseMode) {
+        let way = position_difference(position_difference(mode.position, self.position), self.watch.usual_way);
+        let mut said = Information::NONE;
+        said.add(&[1.0, 0.0], 1.0 / (LEANING * mode.covariance[0]), way);
+        said.add(&[0.0, 1.0], 1.0 / (LEANING * mode.covariance[2]), mode.velocity - self.velocity);
+        let shift = self.pair.correct(&said);
+        self.blocks.iter_mut().for_each(|block| block.follow(shift));
+        self.velocity = clamp(self.velocity + shift[1], -0.5, 0.5);
+        self.move_by(clamp(shift[0], -0.5, 0.5));
+    }
+
+    /// Learns from one measurement how the person differs from the mean cycle at the present place, which that does not move.
+    fn meet(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
+        let (velocity, pair) = (self.velocity, self.pair);
+        self.pair = CyclePair { cc: 1.0e-8, cv: 0.0, vv: 1.0e-12 };
+        self.correct_phase(model, measurement);
+        (self.velocity, self.pair) = (velocity, pair);
     }
 
     /// Goes on from the place `mode`, on which nothing learned so far depends.
@@ -138,6 +212,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.relocks = self.relocks.wrapping_add(1);
         self.watch.strange_frames = 0.0;
         self.watch.fit.restart();
+        self.swing = ExplainedSwing::new();
         self.winding = Winding::new();
     }
 
@@ -148,7 +223,7 @@ impl<const N: usize> CoupledFilter<N> {
         measurement: &AngleMeasurement<N>,
         mode: Option<PhaseMode>,
     ) -> CyclicEstimate<N> {
-        let mode = mode.unwrap_or_else(|| self.grid.mode(model));
+        let mode = mode.unwrap_or_else(|| self.grid.open().mode(model));
         self.move_by(position_difference(mode.position, self.position));
         self.velocity = mode.velocity;
         self.path = MeasuredPath::new();
@@ -186,7 +261,7 @@ impl<const N: usize> CoupledFilter<N> {
     fn pose_of_all_places(&self, model: &MotionModel<'_>) -> ([f32; N], [f32; N]) {
         let reference = model.mean_pose_rad::<N>(model.point(self.position));
         let (mut mean, mut square) = ([0.0; N], [0.0; N]);
-        for (cell, weight) in self.grid.by_position().into_iter().enumerate() {
+        for (cell, weight) in self.grid.open().by_position().into_iter().enumerate() {
             let pose = model.mean_pose_rad::<N>(model.point(cell as f32 / POSITIONS as f32));
             for i in 0..model.angle_count().min(N) {
                 let off = wrap_angle(pose[i] - reference[i]);

@@ -23,6 +23,7 @@ impl<const N: usize> SavedState for CoupledFilter<N> {
         self.watch.visit(visitor);
         self.winding.visit(visitor);
         self.path.visit(visitor);
+        self.swing.visit(visitor);
         let mut relocks = u32::from(self.relocks);
         visitor.word(&mut relocks);
         self.relocks = relocks as u16;

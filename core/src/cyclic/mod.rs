@@ -53,7 +53,6 @@
 //! ```
 
 mod angle_blocks;
-mod angle_walk;
 pub mod coupled;
 pub mod coupled_block;
 pub mod coupled_moments;
@@ -67,6 +66,7 @@ pub mod cycle_state;
 pub mod deviation;
 pub mod estimate;
 pub mod events;
+mod explained_swing;
 pub mod figure_place;
 pub mod filter;
 pub mod gate;
@@ -97,7 +97,9 @@ mod phase_evidence;
 pub mod phase_grid;
 mod prediction_fit;
 pub mod semi_definite;
+mod short_real;
 pub mod start;
+mod stored_grid;
 pub mod substeps;
 #[cfg(test)]
 pub mod synthetic;

@@ -3,199 +3,178 @@
 //! ```
 //! # #[cfg(feature = "walking-model")] {
 //! use sinew_core::cyclic::models::walking::WALKING;
-//! use sinew_core::cyclic::motion_bank::{DEFAULT_MEMORY_S, MotionBank, MotionEvidence};
+//! use sinew_core::cyclic::motion_bank::MotionBank;
 //! use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
 //!
 //! // One motion to choose from: is it walking, or none?
-//! let model = WALKING.model().expect("the shipped model is sound");
+//! let models = [WALKING.model().expect("the shipped model is sound")];
+//! let [model] = &models;
 //! let seen = |frame: usize| {
 //!     let pose = model.mean_pose_rad::<13>(model.point(frame as f32 * model.mean_cycle_velocity()));
 //!     AngleMeasurement::new(&pose.map(Some), 0.1).expect("a standard deviation above zero")
 //! };
-//! let mut filter = CoupledFilter::<13>::new(&model, &seen(0), None, None).expect("13 angles");
-//! let mut bank = MotionBank::<1, 13>::new(1, &seen(0), DEFAULT_MEMORY_S);
+//! let mut filter = CoupledFilter::<13>::new(model, &seen(0), None, None).expect("13 angles");
+//! let mut bank = MotionBank::<1, 13>::new(&models);
 //! for frame in 1..120 {
-//!     let estimate = filter.step(&model, &seen(frame));
-//!     let evidence = MotionEvidence::new(&model, &seen(frame), estimate.cycle_position, estimate.log_likelihood);
-//!     bank.add(&seen(frame), 1.0 / 60.0, &[evidence]);
+//!     let estimate = filter.step(model, &seen(frame));
+//!     bank.add(&models, &seen(frame), &[estimate.cycle_position]);
 //! }
 //! assert_eq!(bank.likeliest(), Some(0));
 //! # }
 //! ```
 
-use super::angle_walk::AngleWalk;
+use super::explained_swing::{ExplainedSwing, cycle_variances_rad2};
 use super::{AngleMeasurement, MotionModel};
-use crate::math::{clamp, exp, ln, max, min, wrap_angle};
-use core::f32::consts::{LN_2, TAU};
+use crate::math::{exp, max, min, wrap_angle};
 
-/// Seconds after which a frame's evidence counts 1/e.
-pub const DEFAULT_MEMORY_S: f32 = 1.0;
 /// Spread of people's poses about the mean cycle, rad (25 degrees): the same for every motion and angle.
 const POSE_SPREAD_RAD: f32 = 0.44;
 /// Beyond so many standard deviations an angle counts no more: short links that wind in a side view would decide alone.
 const POSE_LIMIT_SIGMAS: f32 = 1.5;
+/// A motion whose mean cycle leaves over more of the swing that is seen is not the one. Of 77 walks and runs one frame in a hundred has
+/// more, of 18 recordings of other exercises and gestures one in sixteen less.
+const GREATEST_LEFT_OVER: f32 = 0.67;
+/// Change of what is left over by which the odds of a motion change by e; by logistic regression on the same recordings.
+const LEFT_OVER_SPREAD: f32 = 0.05;
 
-/// What a frame says of one motion.
+/// Positions of the cycle by which its variances are taken.
+const CYCLE_POSITIONS: u8 = 100;
+
+/// What was seen of one motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct WatchedMotion<const N: usize> {
+    swing: ExplainedSwing<N>,
+    /// Variance of each angle over the motion's cycle, rad^2.
+    cycle_rad2: [f32; N],
+    /// Share of the swing seen that the mean cycle leaves over.
+    left_over: Option<f32>,
+}
+
+impl<const N: usize> WatchedMotion<N> {
+    fn new(model: &MotionModel<'_>) -> Self {
+        let cycle_rad2 = cycle_variances_rad2(model, CYCLE_POSITIONS);
+        Self { swing: ExplainedSwing::new(), cycle_rad2, left_over: None }
+    }
+
+    fn add(&mut self, cycles: f32, measurement: &AngleMeasurement<N>, pose_rad: &[f32; N]) {
+        self.swing.add(cycles, measurement, pose_rad);
+        if !measurement.is_empty(N) {
+            self.left_over = self.swing.left_over(&self.cycle_rad2, measurement.std_rad());
+        }
+    }
+}
+
+/// Half the squared distance of the angles seen from a motion's mean pose, relative to their spread.
+fn pose_distance<const N: usize>(measurement: &AngleMeasurement<N>, pose_rad: &[f32]) -> f32 {
+    let limit = POSE_LIMIT_SIGMAS * POSE_LIMIT_SIGMAS;
+    let distance = |(i, &pose_rad): (usize, &f32)| {
+        let apart = wrap_angle(measurement.angle_rad(i)? - pose_rad);
+        let std = measurement.std_rad()[i];
+        Some(0.5 * min(apart * apart / (POSE_SPREAD_RAD * POSE_SPREAD_RAD + std * std), limit))
+    };
+    pose_rad.iter().enumerate().filter_map(distance).sum()
+}
+
+/// Recursive comparison of up to `MOTIONS` motions of up to `N` angles with each other and with "none of these".
+///
+/// Among the motions the one whose mean cycle the pose lies nearest to is the likeliest, by one spread for all: after a few
+/// cycles a filter has learned the person's deviations, whatever the motion, and predicts almost as well with a wrong model as with the right
+/// one. For the same reason it is not the filter's likelihood that tells whether that motion is seen at all: it is named if its mean cycle,
+/// at the position that the filter has found, tells a third or more of the swing that is seen. What was seen fades with
+/// the duration of a cycle, so that a change of motion is noticed.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
 /// use sinew_core::cyclic::AngleMeasurement;
 /// use sinew_core::cyclic::models::walking::WALKING;
-/// use sinew_core::cyclic::motion_bank::MotionEvidence;
+/// use sinew_core::cyclic::motion_bank::MotionBank;
 ///
-/// // The pose of position 0.2 lies nearer to itself than to the opposite one.
-/// let model = WALKING.model()?;
-/// let seen = AngleMeasurement::new(&model.mean_pose_rad::<13>(model.point(0.2)).map(Some), 0.1)?;
-/// let near = MotionEvidence::new(&model, &seen, 0.2, 0.0);
-/// let far = MotionEvidence::new(&model, &seen, 0.7, 0.0);
-/// assert!(near.pose_distance < 1e-6 && far.pose_distance > 0.5);
-/// # }
-/// # Ok::<(), Box<dyn core::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct MotionEvidence {
-    /// Log-likelihood that the motion's filter gave the frame.
-    pub log_likelihood: f32,
-    /// Half the squared distance of the angles seen from the motion's mean pose, relative to their spread.
-    pub pose_distance: f32,
-}
-
-impl MotionEvidence {
-    /// From a measurement and what the filter of `model` answered to it.
-    #[must_use]
-    pub fn new<const N: usize>(
-        model: &MotionModel<'_>,
-        measurement: &AngleMeasurement<N>,
-        cycle_position: f32,
-        log_likelihood: f32,
-    ) -> Self {
-        let pose = model.mean_pose_rad::<N>(model.point(cycle_position));
-        let limit = POSE_LIMIT_SIGMAS * POSE_LIMIT_SIGMAS;
-        let distance = |i: usize| {
-            let apart = wrap_angle(measurement.angle_rad(i)? - pose[i]);
-            let std = measurement.std_rad()[i];
-            Some(0.5 * min(apart * apart / (POSE_SPREAD_RAD * POSE_SPREAD_RAD + std * std), limit))
-        };
-        Self { log_likelihood, pose_distance: (0..model.angle_count().min(N)).filter_map(distance).sum() }
-    }
-}
-
-/// Recursive comparison of `MOTIONS` motions of up to `N` angles with each other and with "none of these".
-///
-/// Among the motions the one whose mean cycle the pose lies nearest to is the likeliest, by one spread for all: after a few
-/// cycles a filter has learned the person's deviations, whatever the motion, and predicts almost as well with a wrong model as with the right one.
-/// It is named if its filter predicts better than "none", which is one half a walk at random from where each angle was,
-/// as any motion may be taken, and one half an angle anywhere on the circle. Older evidence fades, so that the
-/// scores stay bounded and a change of motion is noticed.
-///
-/// ```
-/// use sinew_core::cyclic::AngleMeasurement;
-/// use sinew_core::cyclic::motion_bank::{DEFAULT_MEMORY_S, MotionBank, MotionEvidence};
-///
-/// // Two motions of one angle. For a second the filter of the second one predicts well, that of the first badly.
-/// let seen = AngleMeasurement::new(&[Some(0.2)], 0.1)?;
-/// let mut bank = MotionBank::<2, 1>::new(2, &seen, DEFAULT_MEMORY_S);
-/// let bad = MotionEvidence { log_likelihood: -8.0, pose_distance: 1.0 };
-/// let good = MotionEvidence { log_likelihood: 1.3, pose_distance: 0.1 };
-/// for _ in 0..60 {
-///     bank.add(&seen, 1.0 / 60.0, &[bad, good]);
+/// // Two seconds of somebody who walks, then two of the same person standing.
+/// let models = [WALKING.model().expect("the shipped model is sound")];
+/// let mut bank = MotionBank::<1, 13>::new(&models);
+/// assert_eq!(bank.likeliest(), None);
+/// for frame in 0..240_u8 {
+///     let position = f32::from(frame.min(120)) / 66.0;
+///     let pose = models[0].mean_pose_rad::<13>(models[0].point(position));
+///     let seen = AngleMeasurement::new(&pose.map(Some), 0.1).expect("a standard deviation above zero");
+///     bank.add(&models, &seen, &[position]);
+///     if frame == 120 {
+///         assert_eq!(bank.likeliest(), Some(0));
+///         assert!(bank.probabilities()[0] > 0.9);
+///     }
 /// }
-/// assert_eq!(bank.likeliest(), Some(1));
-/// let [first, second] = bank.probabilities();
-/// assert!(first < 0.01 && second > 0.9);
-/// assert!((first + second + bank.none_probability() - 1.0).abs() < 1e-5);
-/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// assert_eq!(bank.likeliest(), None);
+/// assert!((bank.probabilities()[0] + bank.none_probability() - 1.0).abs() < 1e-5);
+/// # }
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionBank<const MOTIONS: usize, const N: usize> {
-    /// Log-likelihood of each motion above that of uniform angles.
-    scores: [f32; MOTIONS],
+    motions: [Option<WatchedMotion<N>>; MOTIONS],
     /// Sum of each motion's pose distances.
     distances: [f32; MOTIONS],
-    /// Log-likelihood of the walk above that of uniform angles.
-    walk_score: f32,
-    walk: AngleWalk<N>,
-    motions: usize,
-    memory_s: f32,
+    /// Mean cycle velocity of the slowest motion, cycles a frame.
+    least_velocity: f32,
 }
 
-/// Greatest size of a score: beyond it there is no doubt.
-const SCORE_LIMIT: f32 = 1.0e4;
-/// Most that one frame speaks against a motion and for none, nats: frames far off a model whose normal density has no tails would
-/// outweigh many good ones.
-const SURPRISE_LIMIT: f32 = 1.5;
-/// Least memory, seconds.
-const LEAST_MEMORY_S: f32 = 0.01;
-
 impl<const MOTIONS: usize, const N: usize> MotionBank<MOTIONS, N> {
-    /// No evidence yet: `first` is the measurement from which the filters of the first `motions` (at most `MOTIONS`) began.
-    /// A memory of less than a hundredth of a second counts as that.
+    /// Nothing seen yet, for the first `MOTIONS` of the `models`.
     #[must_use]
-    pub fn new(motions: usize, first: &AngleMeasurement<N>, memory_s: f32) -> Self {
-        let mut walk = AngleWalk::default();
-        walk.step(first, 0.0);
+    pub fn new(models: &[MotionModel<'_>]) -> Self {
+        let velocities = models.iter().take(MOTIONS).map(MotionModel::mean_cycle_velocity);
         Self {
-            scores: [0.0; MOTIONS],
+            motions: core::array::from_fn(|motion| models.get(motion).map(WatchedMotion::new)),
             distances: [0.0; MOTIONS],
-            walk_score: 0.0,
-            walk,
-            motions: motions.min(MOTIONS),
-            memory_s: max(memory_s, LEAST_MEMORY_S),
+            least_velocity: velocities.fold(1.0, min),
         }
     }
 
-    /// Takes in a frame that came `step_s` seconds after the last, with what it says of each motion.
-    pub fn add(&mut self, measurement: &AngleMeasurement<N>, step_s: f32, evidence: &[MotionEvidence]) {
-        let keep = exp(-max(step_s, 0.0) / self.memory_s);
-        let uniform = -(measurement.present(N) as f32) * ln(TAU);
-        let faded = |score: f32, log_likelihood: f32| {
-            let gain = if log_likelihood.is_finite() { log_likelihood - uniform } else { -SCORE_LIMIT };
-            clamp(keep * score + gain, -SCORE_LIMIT, SCORE_LIMIT)
-        };
-        let walked = self.walk.step(measurement, max(step_s, 0.0));
-        for ((score, distance), evidence) in self.scores.iter_mut().zip(&mut self.distances).zip(evidence) {
-            let told = evidence.log_likelihood;
-            let bounded = if told.is_finite() { max(told, walked - SURPRISE_LIMIT) } else { told };
-            *score = faded(*score, bounded);
-            *distance = keep * *distance + min(evidence.pose_distance, SCORE_LIMIT);
+    /// Takes in a frame, with the cycle position that the filter of each of the `models` (those of [`MotionBank::new`]) gives it.
+    pub fn add(&mut self, models: &[MotionModel<'_>], measurement: &AngleMeasurement<N>, cycle_positions: &[f32]) {
+        let keep = exp(-measurement.step_frames() * self.least_velocity);
+        let filters = models.iter().zip(cycle_positions);
+        for ((motion, distance), (model, &position)) in self.motions.iter_mut().zip(&mut self.distances).zip(filters) {
+            let pose_rad = model.mean_pose_rad::<N>(model.point(position));
+            *distance = keep * *distance + pose_distance(measurement, &pose_rad[..model.angle_count().min(N)]);
+            if let Some(motion) = motion {
+                motion.add(measurement.step_frames() * model.mean_cycle_velocity(), measurement, &pose_rad);
+            }
         }
-        self.walk_score = faded(self.walk_score, walked);
-    }
-
-    /// Log-likelihood of "none of these" above that of uniform angles.
-    fn none_score(&self) -> f32 {
-        let greater = max(self.walk_score, 0.0);
-        greater + ln(exp(-greater) + exp(self.walk_score - greater)) - LN_2
     }
 
     /// Index of the motion that is likeliest among them, whether or not it is likelier than none; 0 where there is no evidence.
     #[must_use]
     pub fn best(&self) -> usize {
         let mut best = (f32::INFINITY, 0);
-        for (index, &distance) in self.distances.iter().take(self.motions).enumerate() {
-            if distance < best.0 {
+        for (index, (&distance, motion)) in self.distances.iter().zip(&self.motions).enumerate() {
+            if motion.is_some() && distance < best.0 {
                 best = (distance, index);
             }
         }
         best.1
     }
 
+    /// By how much the best motion leaves over less of the swing than it may, in units of the odds' slope: above zero if it is the one.
+    fn log_odds(&self) -> f32 {
+        let Some(motion) = self.motions.get(self.best()).and_then(Option::as_ref) else { return 0.0 };
+        let spare = motion.left_over.map_or(0.0, |left_over| GREATEST_LEFT_OVER - left_over);
+        motion.swing.knowledge() * spare / LEFT_OVER_SPREAD
+    }
+
     /// Index of the likeliest motion; `None` where none of these is likelier.
     #[must_use]
     pub fn likeliest(&self) -> Option<usize> {
-        let best = self.best();
-        self.scores.get(best).is_some_and(|score| *score > self.none_score()).then_some(best)
+        (self.log_odds() > 0.0).then(|| self.best())
     }
 
     /// Probability of each motion, 0 beyond the motions there are: that the likeliest is one at all, times its share among them.
     #[must_use]
     pub fn probabilities(&self) -> [f32; MOTIONS] {
-        let (best, mut weights) = (self.best(), [0.0; MOTIONS]);
-        let (Some(&score), Some(&least)) = (self.scores.get(best), self.distances.get(best)) else { return weights };
-        for (weight, &distance) in weights.iter_mut().zip(&self.distances).take(self.motions) {
-            *weight = exp(least - distance);
+        let mut weights = [0.0; MOTIONS];
+        let Some(&least) = self.distances.get(self.best()) else { return weights };
+        for ((weight, &distance), motion) in weights.iter_mut().zip(&self.distances).zip(&self.motions) {
+            *weight = if motion.is_some() { exp(least - distance) } else { 0.0 };
         }
-        let sum = (1.0 + exp(min(self.none_score() - score, 80.0))) * max(weights.iter().sum::<f32>(), 1.0);
+        let sum = (1.0 + exp(-self.log_odds())) * max(weights.iter().sum::<f32>(), 1.0);
         weights.map(|weight| weight / sum)
     }
 
@@ -212,6 +191,7 @@ mod tests {
     use super::super::{CycleStart, KalmanOptions, synthetic};
     use super::*;
     use crate::random::Stream;
+    use core::f32::consts::TAU;
 
     /// Three seconds of the motion, of another one, and of nonsense, watched by both models.
     #[test]
@@ -228,19 +208,16 @@ mod tests {
             let start = CycleStart::standard(&model, &first, Some(0.0), None).unwrap();
             KalmanFilter::<13>::new(&model, &options, &start).unwrap()
         });
-        let first = AngleMeasurement::new(&first, 0.05).unwrap();
-        let mut bank = MotionBank::<4, 13>::new(2, &first, 1.0);
+        let mut bank = MotionBank::<4, 13>::new(&models);
         let mut stream = Stream::new(4, 0, 0);
         assert_eq!((bank.likeliest(), bank.best()), (None, 0));
         let mut watch = |angle: &dyn Fn(usize, f32, &mut Stream) -> f32| {
             for frame in 1..=180_u8 {
                 let seen = core::array::from_fn(|i| Some(angle(i, f32::from(frame), &mut stream)));
                 let seen = AngleMeasurement::new(&seen, 0.05).unwrap();
-                let all: [_; 2] = core::array::from_fn(|m| {
-                    let estimate = filters[m].step(&models[m], &options, &seen);
-                    MotionEvidence::new(&models[m], &seen, estimate.cycle_position, estimate.log_likelihood)
-                });
-                bank.add(&seen, 1.0 / 60.0, &all);
+                let positions: [_; 2] =
+                    core::array::from_fn(|m| filters[m].step(&models[m], &options, &seen).cycle_position);
+                bank.add(&models, &seen, &positions);
             }
             let sum = bank.probabilities().iter().sum::<f32>() + bank.none_probability();
             assert!((sum - 1.0).abs() < 1.0e-5, "{sum}");
@@ -257,16 +234,21 @@ mod tests {
 
     #[test]
     fn without_measurements_nothing_changes_its_place() {
-        let mut bank = MotionBank::<2, 13>::new(2, &AngleMeasurement::nothing(), 1.0);
-        let seen = AngleMeasurement::new(&[Some(0.3); 13], 0.1).unwrap();
-        let evidence = |log_likelihood, pose_distance| MotionEvidence { log_likelihood, pose_distance };
-        bank.add(&seen, 0.1, &[evidence(10.0, 9.0), evidence(10.0, 3.0)]);
+        let table = synthetic::table(4.0e-3, 9);
+        let models = [table.model().unwrap(); 2];
+        let mut bank = MotionBank::<3, 13>::new(&models);
+        let seen = |frame: u8| core::array::from_fn(|i| Some(synthetic::mean_angle(i, f32::from(frame) / 65.0)));
+        for frame in 0..130 {
+            let position = f32::from(frame) / 65.0;
+            bank.add(&models, &AngleMeasurement::new(&seen(frame), 0.1).unwrap(), &[position + 0.5, position]);
+        }
         assert_eq!(bank.likeliest(), Some(1));
-        bank.add(&AngleMeasurement::nothing(), 2.0, &[MotionEvidence::default(); 2]);
+        let before = bank.probabilities();
+        assert!(before[1] > 0.9 && before[2] == 0.0, "{before:?}");
+        bank.add(&models, &AngleMeasurement::nothing().after(130.0).unwrap(), &[0.0; 2]);
         assert_eq!(bank.likeliest(), Some(1));
         let probabilities = bank.probabilities();
-        assert!(probabilities[1] > 0.5 && probabilities[0] > 0.2, "little is known any more: {probabilities:?}");
-        bank.add(&seen, 0.1, &[evidence(0.0, 9.0), evidence(f32::NAN, 3.0)]);
-        assert_eq!((bank.best(), bank.likeliest()), (1, None));
+        assert!(probabilities[1] < before[1] && probabilities[0] > before[0], "less is known: {probabilities:?}");
+        assert_eq!(MotionBank::<3, 13>::new(&[]).probabilities(), [0.0; 3]);
     }
 }

@@ -6,7 +6,6 @@
 use super::phase::{position_difference, wrap_position};
 use super::{AngleMeasurement, MotionModel};
 use crate::math::{abs, exp, exp_small, least_angle, max, min, round};
-use crate::saved_state::{SavedState, StateVisitor};
 
 /// Positions of the grid.
 pub const POSITIONS: usize = 32;
@@ -16,7 +15,7 @@ const TABLE: usize = 64;
 const LANES: usize = 8;
 /// Speeds of the grid, as parts of the model's mean speed.
 pub const SPEED_RATIOS: [f32; 6] = [0.0, 0.5, 0.7, 1.0, 1.4, 2.0];
-const SPEEDS: usize = SPEED_RATIOS.len();
+pub(super) const SPEEDS: usize = SPEED_RATIOS.len();
 /// Part of the weight that goes to each neighbouring speed in a frame at the mean speed.
 const SPEED_CHANGE: f32 = 0.01;
 /// Part of the weight that goes to each neighbouring position in a frame: speeds lie between those of the grid.
@@ -54,9 +53,9 @@ const LIMIT_SIGMAS: f32 = 4.0;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhaseGrid {
-    weights: [[f32; POSITIONS]; SPEEDS],
+    pub(super) weights: [[f32; POSITIONS]; SPEEDS],
     /// Way of each speed's grid since the start, cycles, [0, 1).
-    travelled: [f32; SPEEDS],
+    pub(super) travelled: [f32; SPEEDS],
 }
 
 /// A place of the cycle: means and covariance of position and velocity.
@@ -92,19 +91,7 @@ pub struct PhaseMode {
 pub const MODE_REACH: f32 = 0.15;
 /// Cells of one speed that may lie within it.
 const NEAR_CELLS: usize = 12;
-const _: () =
-    assert!(MODE_REACH * (POSITIONS as f32) < 5.0 && TABLE.is_multiple_of(POSITIONS) && TABLE.is_multiple_of(LANES));
-
-impl SavedState for PhaseGrid {
-    fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        visitor.reals(self.weights.as_flattened_mut(), &(0.0..=1.001));
-        visitor.reals(&mut self.travelled, &super::phase::POSITIONS_IN_CYCLE);
-        let sum: f32 = self.weights.iter().flatten().sum();
-        if !(0.99..=1.01).contains(&sum) {
-            visitor.refuse();
-        }
-    }
-}
+const _: () = assert!(MODE_REACH * (POSITIONS as f32) < 5.0 && TABLE == 2 * POSITIONS && TABLE.is_multiple_of(LANES));
 
 impl PhaseGrid {
     /// Nothing known.
@@ -118,26 +105,14 @@ impl PhaseGrid {
     #[must_use]
     pub fn near(position: f32) -> Self {
         let mut grid = Self::uniform();
-        grid.begin_near(position);
-        grid
-    }
-
-    /// Makes it [`Self::uniform`].
-    pub fn begin_uniform(&mut self) {
-        self.weights.as_flattened_mut().fill(1.0 / (POSITIONS * SPEEDS) as f32);
-        self.travelled = [0.0; SPEEDS];
-    }
-
-    /// Makes it [`Self::near`] the position.
-    pub fn begin_near(&mut self, position: f32) {
-        self.begin_uniform();
-        for row in &mut self.weights {
+        for row in &mut grid.weights {
             for (cell, weight) in row.iter_mut().enumerate() {
                 let scaled = 20.0 * position_difference(cell as f32 / POSITIONS as f32, position);
                 *weight *= exp(-0.5 * scaled * scaled);
             }
         }
-        self.normalise();
+        grid.normalise();
+        grid
     }
 
     /// Scales all weights to a sum of one; nothing is known where they have none.
@@ -167,13 +142,14 @@ impl PhaseGrid {
                 let (Some(from), Some(travelled)) = (old.get(other), self.travelled.get(other)) else { continue };
                 let shift = round((self.travelled[speed] - travelled) * POSITIONS as f32) as i32;
                 let shift = shift.rem_euclid(POSITIONS as i32) as usize;
-                for (cell, weight) in row.iter_mut().enumerate() {
-                    *weight += change * from[(cell + shift) % POSITIONS];
+                let twice: [f32; 2 * POSITIONS] = core::array::from_fn(|i| from[i % POSITIONS]);
+                for (weight, from) in row.iter_mut().zip(twice.iter().skip(shift)) {
+                    *weight += change * from;
                 }
             }
-            for (cell, weight) in self.weights[speed].iter_mut().enumerate() {
-                let neighbours = row[(cell + 1) % POSITIONS] + row[(cell + POSITIONS - 1) % POSITIONS];
-                *weight = row[cell] + blur * (neighbours - 2.0 * row[cell]);
+            let around: [f32; POSITIONS + 2] = core::array::from_fn(|i| row[(i + POSITIONS - 1) % POSITIONS]);
+            for (weight, [before, here, after]) in self.weights[speed].iter_mut().zip(around.array_windows()) {
+                *weight = here + blur * (after + before - 2.0 * here);
             }
         }
     }
@@ -181,11 +157,14 @@ impl PhaseGrid {
     /// Takes in a measurement of a person about whom nothing but the spread between people is known.
     pub fn weigh<const N: usize>(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) {
         let likelihood = likelihood_table(model, measurement, frames);
+        // Of the table's positions a speed's cells lie behind all even or all odd ones.
+        let every_second = |first: usize| core::array::from_fn(|i| likelihood[(2 * i + first) % TABLE]);
+        let [even, odd]: [[f32; TABLE]; 2] = [every_second(0), every_second(1)];
         for (row, &travelled) in self.weights.iter_mut().zip(&self.travelled) {
             let (shift, part) = cells_and_rest(travelled, TABLE);
-            for (cell, weight) in row.iter_mut().enumerate() {
-                let before = (TABLE / POSITIONS * cell + shift) % TABLE;
-                let (a, b) = (likelihood[before], likelihood[(before + 1) % TABLE]);
+            let [before, after] = if shift.is_multiple_of(2) { [&even, &odd] } else { [&odd, &even] };
+            let pairs = before.iter().skip(shift / 2).zip(after.iter().skip(shift.div_ceil(2)));
+            for (weight, (a, b)) in row.iter_mut().zip(pairs) {
                 *weight *= a + part * (b - a);
             }
         }

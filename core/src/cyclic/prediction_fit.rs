@@ -73,6 +73,11 @@ impl PredictionFit {
         self.frames = 0.0;
     }
 
+    /// Whether the place was found less than so many frames ago.
+    pub(super) fn is_new(&self, frames: f32) -> bool {
+        self.frames < frames
+    }
+
     /// Whether the filter predicts far worse than it once did.
     pub(super) fn is_bad(&self) -> bool {
         self.recent > BAD * self.least

@@ -1,13 +1,14 @@
 //! Several motions at once: every model's filter over the same table, and which motion each frame shows.
 
+use super::measurements::Measurements;
 use super::options::TrackingOptions;
-use super::run::{Tracked, TrackedFrame, cycles, first_seen, measured, step_of};
+use super::run::{Tracked, TrackedFrame, cycles};
 use crate::cyclic::turns::nearest_turn;
 use crate::cyclic::{AngleTable, CyclicModel};
 use anyhow::Result;
+use sinew_core::cyclic::MotionModel;
 use sinew_core::cyclic::events::CycleCounter;
-use sinew_core::cyclic::motion_bank::{DEFAULT_MEMORY_S, MotionBank, MotionEvidence};
-use sinew_core::cyclic::{AngleMeasurement, MotionModel};
+use sinew_core::cyclic::motion_bank::MotionBank;
 
 /// Most motions of a bank.
 pub const MOST_MOTIONS: usize = 32;
@@ -35,33 +36,21 @@ pub(super) fn named<const N: usize>(
     options: &TrackingOptions,
 ) -> Result<Vec<NamedMotion>> {
     let views: Vec<MotionModel<'_>> = models.iter().map(CyclicModel::view).collect();
-    let (first, rows) = (first_seen(table)?, &table.rows()[..runs[0].frames.len()]);
-    let sigma_rad = options.sigma_rad as f32;
-    let angles = measured::<N>(table, first);
-    let mut bank =
-        MotionBank::<MOST_MOTIONS, N>::new(runs.len(), &AngleMeasurement::new(&angles, sigma_rad)?, DEFAULT_MEMORY_S);
+    let measurements = Measurements::<N>::new(table, &views[0], options)?;
+    let mut bank = MotionBank::<MOST_MOTIONS, N>::new(&views);
     let mut shown = bank.best();
-    let mut motions: Vec<NamedMotion> = Vec::with_capacity(rows.len());
-    motions.resize(first + 1, name(&bank, shown));
-    for (index, pair) in rows.windows(2).enumerate().skip(first) {
-        let [before, row] = pair else { continue };
-        let used = options.updates.uses(table.first_frame(), row.frame);
-        let angles = if used { measured(table, index + 1) } else { [None; N] };
-        let step_s = step_of(before, row, runs[0].step_frames) / (runs[0].rate_hz * runs[0].step_frames);
-        let measurement = AngleMeasurement::new(&angles, sigma_rad)?;
-        let evidence = |(view, run): (&MotionModel<'_>, &Tracked)| {
-            let estimate = &run.frames[index + 1].estimate;
-            MotionEvidence::new(view, &measurement, estimate.cycle_position, estimate.log_likelihood)
-        };
-        let evidence: Vec<MotionEvidence> = views.iter().zip(runs).map(evidence).collect();
-        bank.add(&measurement, step_s as f32, &evidence);
+    let mut motions: Vec<NamedMotion> = Vec::with_capacity(runs[0].frames.len());
+    motions.resize(measurements.first() + 1, name(&bank, shown));
+    for index in motions.len()..runs[0].frames.len() {
+        let positions: Vec<f32> = runs.iter().map(|run| run.frames[index].estimate.cycle_position).collect();
+        bank.add(&views, &measurements.at(index)?, &positions);
         shown = bank.likeliest().unwrap_or(shown);
         motions.push(name(&bank, shown));
     }
     // Before a motion was named, the one that will be; the likeliest at the end if none ever is.
     let named = motions.iter().position(|named| named.motion.is_some());
     let first_shown = named.map_or(bank.best(), |index| motions[index].shown);
-    motions[..named.unwrap_or(rows.len())].iter_mut().for_each(|named| named.shown = first_shown);
+    motions[..named.unwrap_or(runs[0].frames.len())].iter_mut().for_each(|named| named.shown = first_shown);
     Ok(motions)
 }
 
