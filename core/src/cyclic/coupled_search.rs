@@ -45,7 +45,7 @@ const USUAL_LIMIT: f32 = 0.1;
 /// one at a wrong place or that runs backwards nine tenths and more.
 const NOTHING_TOLD: f32 = 0.9;
 /// Least swing of which that is said, as a share of the cycle's: who stands does not swing.
-const LEAST_SWING: f32 = 0.3;
+const LEAST_SWING: f32 = 0.15;
 /// Least part of the swing's memory that has to be filled: a third of a cycle since the place was found.
 const LEAST_FILLED: f32 = 0.28;
 /// Positions by which the cycle's own swing is taken.
