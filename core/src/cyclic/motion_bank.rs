@@ -81,7 +81,7 @@ fn pose_distance<const N: usize>(measurement: &AngleMeasurement<N>, pose_rad: &[
 /// cycles a filter has learned the person's deviations, whatever the motion, and predicts almost as well with a wrong model as with the right
 /// one. For the same reason it is not the filter's likelihood that tells whether that motion is seen at all: it is named if its mean cycle,
 /// at the position that the filter has found, tells a third or more of the swing that is seen. What was seen fades with
-/// the duration of a cycle, so that a change of motion is noticed.
+/// the duration of a cycle, so that a change of motion is noticed; who stops is named for some two cycles more.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -89,11 +89,11 @@ fn pose_distance<const N: usize>(measurement: &AngleMeasurement<N>, pose_rad: &[
 /// use sinew_core::cyclic::models::walking::WALKING;
 /// use sinew_core::cyclic::motion_bank::MotionBank;
 ///
-/// // Two seconds of somebody who walks, then two of the same person standing.
+/// // Two seconds of somebody who walks, then three of the same person standing.
 /// let models = [WALKING.model().expect("the shipped model is sound")];
 /// let mut bank = MotionBank::<1, 13>::new(&models);
 /// assert_eq!(bank.likeliest(), None);
-/// for frame in 0..240_u8 {
+/// for frame in 0..300_u16 {
 ///     let position = f32::from(frame.min(120)) / 66.0;
 ///     let pose = models[0].mean_pose_rad::<13>(models[0].point(position));
 ///     let seen = AngleMeasurement::new(&pose.map(Some), 0.1).expect("a standard deviation above zero");
