@@ -262,7 +262,7 @@ impl<const N: usize> CoupledFilter<N> {
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);
         let scale = self.watch.fit.noise_scale();
-        let mut evidence = PhaseEvidence::none();
+        let mut evidence = PhaseEvidence::none(model.winds());
         let mut seen: [Option<(Outlook, f32, f32)>; N] = [None; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };

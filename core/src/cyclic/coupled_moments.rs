@@ -45,7 +45,7 @@ pub struct BlockTransition {
 /// let transition = filter.transition(&model, 2.0);
 /// let [position_noise, _, velocity_noise] = transition.cycle_noise;
 /// assert_eq!(transition.step_frames, 2.0);
-/// assert!((velocity_noise - 2.0 * 1.0e-4 * 1.0e-4).abs() < 1e-10, "0.0001 cycles per frame^2");
+/// assert!((velocity_noise - 2.0 * 2.0e-4 * 2.0e-4).abs() < 1e-10, "0.0002 cycles per frame^2");
 /// assert!(position_noise > 0.0);
 /// # }
 /// # Ok::<(), Box<dyn core::error::Error>>(())

@@ -3,8 +3,8 @@
 use crate::math::{clamp, ln, max, min, sqrt};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 
-/// Temporal acceleration, cycles per frame^2.
-const TEMPORAL_STD: f32 = 1.0e-4;
+/// Temporal acceleration, cycles per frame^2: twice the paper's, in whose filter no measurement corrects the velocity.
+const TEMPORAL_STD: f32 = 2.0e-4;
 
 /// Covariance of (c, v), in cycles and frames.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -218,6 +218,12 @@ impl<'a> MotionModel<'a> {
         1.0 / self.parts.mean_duration_frames
     }
 
+    /// Whether an angle goes round in a cycle.
+    #[inline]
+    pub(super) fn winds(&self) -> bool {
+        self.parts.turns_per_cycle.iter().any(|&turns| turns != 0)
+    }
+
     /// Frames per second of the training cycles: the frame that velocities of the filters refer to.
     #[inline]
     #[must_use]

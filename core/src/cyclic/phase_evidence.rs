@@ -10,6 +10,9 @@ const TEMPERING: f32 = 2.5;
 /// No angle tells the phase better than this, rad: between people the shape of the mean cycle is not the same to the last degree,
 /// and an exact measurement of somebody else's shape would drag position and speed along.
 const SHAPE_STD_RAD: f32 = 0.08;
+/// The same of a motion in which an angle goes round: that swings four to five times as far as the limbs of walkers, and so do the
+/// differences of its shape.
+const WINDING_SHAPE_STD_RAD: f32 = 0.3;
 
 /// Residuals of the angles seen, with their derivatives by (c, v).
 pub(super) struct PhaseEvidence {
@@ -24,6 +27,8 @@ pub(super) struct PhaseEvidence {
     count: usize,
     /// Squared residuals over their whole variance, and number, of the angles that are judged each by itself.
     apart: (f32, usize),
+    /// Variance, rad^2, below which no angle tells the phase.
+    shape_rad2: f32,
 }
 
 /// How a measurement fitted its prediction.
@@ -39,7 +44,9 @@ pub(super) struct Judgement {
 }
 
 impl PhaseEvidence {
-    pub(super) const fn none() -> Self {
+    /// No angle yet, of a motion in which angles go round, or none does.
+    pub(super) const fn none(winds: bool) -> Self {
+        let shape_std_rad = if winds { WINDING_SHAPE_STD_RAD } else { SHAPE_STD_RAD };
         Self {
             all: Information::NONE,
             trusted: Information::NONE,
@@ -47,6 +54,7 @@ impl PhaseEvidence {
             volume: LogProduct::one(),
             count: 0,
             apart: (0.0, 0),
+            shape_rad2: shape_std_rad * shape_std_rad,
         }
     }
 
@@ -69,7 +77,7 @@ impl PhaseEvidence {
 
     /// Lets an angle correct the phase.
     pub(super) fn trust(&mut self, gradient: &[f32; 2], variance: f32, residual: f32) {
-        let weight = 1.0 / (TEMPERING * variance + SHAPE_STD_RAD * SHAPE_STD_RAD);
+        let weight = 1.0 / (TEMPERING * variance + self.shape_rad2);
         self.trusted.add(gradient, weight, residual);
     }
 
