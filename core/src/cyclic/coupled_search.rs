@@ -25,7 +25,7 @@ const SURE: f32 = 0.9;
 /// Weight of a place that is likelier than all others together.
 const PROBABLE: f32 = 0.5;
 /// Cycles at the mean speed in which a person is learned: after them a filter that predicts well is not sent elsewhere.
-const LEARNING_CYCLES: f32 = 0.6;
+const LEARNING_CYCLES: f32 = 1.5;
 /// Cycles at the mean speed, from a place found anew on, for which the filter leans on the grid. Somebody who swings little would otherwise
 /// be taken for one who moves slowly, before either is known.
 const LEANING_CYCLES: f32 = 1.2;
