@@ -5,12 +5,11 @@
 mod circles;
 mod shared_data;
 
-use circles::{Circles, FORWARDS, table};
+use circles::{Circles, FORWARDS, table, trained, write_tables};
 use sinew::cyclic::angle_table::ANGLES;
 use sinew::cyclic::cuts::{self, Cut};
 use sinew::cyclic::synthetic_person::SyntheticPerson;
 use sinew::cyclic::tracking::FilterName;
-use sinew::cyclic::training::{TrainingOptions, train};
 use sinew::cyclic::{AngleTable, CutList, CyclicModel};
 use sinew::evaluate::cyclic::{LongRun, long_runs};
 use std::f64::consts::TAU;
@@ -121,29 +120,20 @@ fn recorded_circles_that_go_on_have_their_cadence() {
     }
 }
 
-/// A model of the circles of one recording alone.
-fn model_of(data: &Path, (trial, circles): (&str, Circles)) -> CyclicModel {
-    let folder = tempfile::tempdir().unwrap();
-    let file = format!("{trial}.csv");
-    table(data, trial).write(&folder.path().join(&file)).unwrap();
-    let cut = |&(start_frame, end_frame): &(u64, u64)| Cut { file: file.clone(), start_frame, end_frame, line: 0 };
-    let path = folder.path().join("cuts.csv");
-    cuts::write(&path, &circles.iter().map(cut).collect::<Vec<_>>()).unwrap();
-    train(&CutList::read(&path).unwrap(), TrainingOptions::default()).unwrap()
-}
-
 #[test]
 fn models_of_two_or_three_circles_have_the_cadence_of_circles() {
     let Some(data) = shared_data::in_release("mocap") else { return };
     let folder = tempfile::tempdir().unwrap();
+    write_tables(&data, folder.path());
+    let models = FORWARDS.map(|recording| trained(folder.path(), &[recording]));
+    let cuts = FORWARDS.map(|recording| repeated(&data, recording, folder.path()));
     for sigma_deg in SIGMAS_DEG {
         let mut errors = [Vec::new(), Vec::new()];
-        for of in FORWARDS {
-            let model = model_of(&data, of);
-            for tracked in FORWARDS {
-                let runs = runs(folder.path(), &repeated(&data, tracked, folder.path()), &model, sigma_deg);
+        for (known, model) in models.iter().enumerate() {
+            for (tracked, cuts) in cuts.iter().enumerate() {
+                let runs = runs(folder.path(), cuts, model, sigma_deg);
                 print(&runs, sigma_deg);
-                errors[usize::from(of.0 != tracked.0)].extend(runs.iter().map(|run| run.cadence_error.abs()));
+                errors[usize::from(known != tracked)].extend(runs.iter().map(|run| run.cadence_error.abs()));
             }
         }
         let means = errors.map(|errors| errors.iter().sum::<f64>() / errors.len() as f64);

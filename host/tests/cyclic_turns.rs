@@ -5,10 +5,9 @@
 mod circles;
 mod shared_data;
 
-use circles::{Circles, FORWARDS};
+use circles::{Circles, FORWARDS, trained, write_tables};
 use sinew::cyclic::tracking::{FilterName, TrackingOptions, track};
-use sinew::cyclic::training::{TrainingOptions, train};
-use sinew::cyclic::{AngleRow, AngleTable, CutList, CyclicModel};
+use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
 use sinew::evaluate::cyclic::Protocol;
 use sinew::evaluate::cyclic::protocol::measurements;
 use std::f64::consts::{PI, TAU};
@@ -17,22 +16,6 @@ use std::path::Path;
 
 /// Cycles backwards in the same recordings.
 const BACKWARDS: [(&str, Circles); 2] = [("13_29", &[(844, 914)]), ("13_31", &[(1186, 1252)])];
-
-/// Both trials as angle tables in `folder`.
-fn write_tables(data: &Path, folder: &Path) {
-    for (trial, _) in FORWARDS {
-        circles::table(data, trial).write(&folder.join(format!("{trial}.csv"))).unwrap();
-    }
-}
-
-fn trained(folder: &Path, recordings: &[(&str, Circles)]) -> CyclicModel {
-    let lines = recordings
-        .iter()
-        .flat_map(|(trial, circles)| circles.iter().map(move |(first, end)| format!("{trial}.csv,{first},{end}\n")));
-    let cuts: String = lines.collect();
-    let list = CutList::parse(&format!("file,start_frame,end_frame\n{cuts}"), &folder.join("cuts.csv")).unwrap();
-    train(&list, TrainingOptions::default()).unwrap()
-}
 
 fn frames(folder: &Path, trial: &str, frames: Range<u64>) -> AngleTable {
     let table = AngleTable::read(&folder.join(format!("{trial}.csv"))).unwrap();
