@@ -12,13 +12,14 @@ use sinew::resume::Cells;
 /// Particles that are compared with a known start, and with an unknown one; seeds.
 const PARTICLES: [usize; 3] = [1000, 20_000, 100_000];
 const START_PARTICLES: [usize; 2] = [1000, 10_000];
-const SEEDS: u64 = 2;
+const SEEDS: u64 = 4;
 /// Greatest error with 20,000 particles, degrees.
 const GREATEST_DEG: f64 = 9.0;
-/// Error of the exact posterior, which `paper` computes (`cyclic_accuracy.rs`): no number of particles goes below it.
-const EXACT_DEG: f64 = 3.80;
-/// Greatest error with 100,000 particles beyond the exact one's, as a share of that with 1000.
-const GREATEST_SHARE: f64 = 0.3;
+/// Error of `paper` (`cyclic_accuracy.rs`), which no measurement tells where in the cycle the motion is: more than that the
+/// particles need.
+const PAPER_DEG: f64 = 3.80;
+/// Greatest error with 100,000 particles as a share of that with 1000.
+const GREATEST_SHARE: f64 = 0.5;
 /// Error of a uniform start as a share of the standard one's, from the fifth frame on: never much above, and with few particles
 /// sometimes below, since it looks at more positions.
 const UNIFORM_SHARE: [f64; 2] = [0.85, 1.1];
@@ -32,10 +33,10 @@ fn more_particles_and_an_unknown_phase_do_what_the_book_says() {
     let setting = Setting { cycles: &cycles, model: &model, rate_hz: 60.0, seeds: SEEDS, cells: &Cells::not_kept() };
     let table = setting.particle_table(&PARTICLES).unwrap();
     let [few, more, most] = std::array::from_fn(|i| table[i].error_deg);
-    println!("standard start: {few:.2}, {more:.2}, {most:.2} degrees; the last {:.3} of the first", most / few);
-    assert!(more > EXACT_DEG && more < GREATEST_DEG, "{more}");
-    let share = (most - EXACT_DEG) / (few - EXACT_DEG);
-    assert!(share > 0.0 && share < GREATEST_SHARE, "{most} beside {few}");
+    let share = most / few;
+    println!("standard start: {few:.2}, {more:.2}, {most:.2} degrees; the last {share:.3} of the first");
+    assert!(most > PAPER_DEG && more < GREATEST_DEG, "{more}");
+    assert!(share > PAPER_DEG / few && share < GREATEST_SHARE, "{most} beside {few}");
     let cells = setting.starts(&START_PARTICLES).unwrap();
     let cell = |start: StartName, particles: usize| -> &Cell {
         cells.iter().find(|cell| cell.start == start && cell.particles == Some(particles)).unwrap()

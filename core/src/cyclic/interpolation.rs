@@ -85,6 +85,35 @@ impl MotionModel<'_> {
         std
     }
 
+    /// Standard deviation of each angle's velocity about the mean cycle's, rad per reference frame, at the model's mean speed; zero
+    /// where the model has none.
+    ///
+    /// Follows from the deviation's parts: a swing moves by 2 pi of itself in a cycle, the rest by its rate (the derivative of a
+    /// Matern process of order 3/2, which is rough: people's velocities differ by about six tenths of this).
+    ///
+    /// ```
+    /// # #[cfg(feature = "walking-model")] {
+    /// use sinew_core::cyclic::models::walking::WALKING;
+    ///
+    /// // An elbow (the angle of l_wrist) swings otherwise in every walker, a neck hardly.
+    /// let velocity_std = WALKING.model()?.deviation_velocity_std::<13>();
+    /// assert!(velocity_std[3] > 2.0 * velocity_std[0]);
+    /// # }
+    /// # Ok::<(), sinew_core::cyclic::ModelError>(())
+    /// ```
+    #[must_use]
+    pub fn deviation_velocity_std<const N: usize>(&self) -> [f32; N] {
+        let deviation = &self.parts().deviation;
+        let mut std = [0.0; N];
+        for (i, value) in std.iter_mut().enumerate() {
+            let part = |parts: &[f32]| parts.get(i).copied().unwrap_or(0.0);
+            let swing = TAU * part(deviation.swing_std_rad);
+            let rest = part(deviation.rest_rate_per_cycle) * part(deviation.rest_std_rad);
+            *value = self.mean_cycle_velocity() * sqrt(swing * swing + rest * rest);
+        }
+        std
+    }
+
     /// Change of the mean pose from `reach` cycles before `position` to `reach` behind it, rad per cycle; `reach` is at least half the
     /// way between two stored positions.
     ///

@@ -92,19 +92,22 @@ pub enum Spread {
 /// use sinew_core::cyclic::KalmanOptions;
 /// use sinew_core::cyclic::particle::{ParticleOptions, Spread};
 ///
-/// // By default as sure at the start as the Kalman filters.
+/// // By default as sure of the first angles as the Kalman filters.
 /// let (particles, kalman) = (ParticleOptions::default(), KalmanOptions::default());
 /// assert!((particles.start_std * particles.start_std / kalman.angle_variance - 1.0).abs() < 1e-5);
-/// // A person of whom nothing is known but the first picture: anywhere that it allows, at a speed 10 % off or less.
-/// let anywhere = ParticleOptions { spread: Spread::UniformPosition, velocity_std: 0.1 / 64.0, ..particles };
+/// // A person of whom nothing is known but the first picture: anywhere that it allows, at a speed 20 % off or less.
+/// let anywhere = ParticleOptions { spread: Spread::UniformPosition, velocity_std: 0.2 / 64.0, ..particles };
 /// assert!(anywhere.velocity_std > particles.velocity_std);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParticleOptions {
     /// How the first particles are spread.
     pub spread: Spread,
-    /// First standard deviation of each angle (rad) and each velocity (rad per frame).
+    /// First standard deviation of each angle (rad), and of the velocity (rad per frame) of an angle about whose deviation the
+    /// model says nothing.
     pub start_std: f32,
+    /// First standard deviation of each other velocity, as a share of [`MotionModel::deviation_velocity_std`].
+    pub deviation_velocity_share: f32,
     /// First standard deviation of the cycle position, cycles.
     pub position_std: f32,
     /// First standard deviation of the cycle velocity, cycles per frame.
@@ -114,15 +117,25 @@ pub struct ParticleOptions {
 }
 
 impl Default for ParticleOptions {
-    /// The square roots of the Kalman filters' first variances.
+    /// The first angles as sure as the Kalman filters', the rest as unsure as people are about it (docs/cyclic_tracker.md).
     fn default() -> Self {
         Self {
             spread: Spread::Standard,
             start_std: 1.0e-2,
-            position_std: 3.162_277_7e-3,
-            velocity_std: 1.0e-3,
-            temporal_acceleration_std: 1.0e-4,
+            deviation_velocity_share: 0.6,
+            position_std: 3.0e-2,
+            velocity_std: 1.5e-3,
+            temporal_acceleration_std: 8.0e-4,
         }
+    }
+}
+
+impl ParticleOptions {
+    /// First standard deviation of each angle's velocity, rad per frame.
+    fn first_velocity_std<const N: usize>(&self, model: &MotionModel<'_>) -> [f32; N] {
+        model
+            .deviation_velocity_std::<N>()
+            .map(|std| if std > 0.0 { self.deviation_velocity_share * std } else { self.start_std })
     }
 }
 
@@ -167,6 +180,7 @@ pub fn first_particle<const N: usize>(
         let point = model.point(particle.cycle_position);
         particle.velocities = model.mean_velocity::<N>(point).map(|velocity| ratio * velocity);
     }
+    let velocity_std = options.first_velocity_std::<N>(model);
     for i in 0..N {
         if options.spread == Spread::Random {
             particle.angles_rad[i] = wrap_angle(PI * (2.0 * stream.uniform() - 1.0));
@@ -174,7 +188,7 @@ pub fn first_particle<const N: usize>(
         } else {
             let std = sqrt(options.start_std * options.start_std + start.extra_variance_rad2[i]);
             particle.angles_rad[i] = wrap_angle(particle.angles_rad[i] + std * stream.normal());
-            particle.velocities[i] += options.start_std * stream.normal();
+            particle.velocities[i] += velocity_std[i] * stream.normal();
         }
     }
     match options.spread {
@@ -303,7 +317,35 @@ impl<const N: usize> CyclicParticle<N> {
 #[cfg(test)]
 mod tests {
     use super::super::synthetic;
+    use super::super::{Deviation, ModelParts};
     use super::*;
+
+    #[test]
+    fn first_velocities_spread_as_far_as_the_models_people_differ() {
+        const COUNT: u32 = 4096;
+        let table = synthetic::table(4.0e-3, 9);
+        let of = |deviation| MotionModel::new(ModelParts { deviation, ..*table.model().unwrap().parts() }).unwrap();
+        let unknown = of(Deviation::default());
+        let known = of(Deviation {
+            offset_std_rad: &[0.1; 13],
+            swing_std_rad: &[0.2; 13],
+            rest_std_rad: &[0.05; 13],
+            rest_rate_per_cycle: &[20.0; 13],
+        });
+        // A swing of 0.2 rad moves by 1.26 rad in a cycle, the rest by 1; a person's velocity by six tenths of both.
+        let of_people = 0.6 * 1.26_f32.hypot(1.0) * known.mean_cycle_velocity();
+        for (model, wanted) in [(unknown, 0.01), (known, of_people)] {
+            let start = CycleStart::<13>::standard(&model, &[Some(0.0); 13], Some(0.3), None).unwrap();
+            let options = ParticleOptions::default();
+            let particles: Vec<_> =
+                (0..COUNT).map(|index| first_particle(&model, &[], &start, &options, (1, index))).collect();
+            for i in 0..13 {
+                let squares = particles.iter().map(|particle| (particle.velocities[i] - start.velocities[i]).powi(2));
+                let std = (squares.sum::<f32>() / COUNT as f32).sqrt();
+                assert!((std / wanted - 1.0).abs() < 0.06, "angle {i}: {std} for {wanted}");
+            }
+        }
+    }
 
     /// The transition's mean and spread are those of eq. (11): a cloud that starts at one point.
     #[test]
