@@ -78,6 +78,11 @@ pub(super) struct MeanShift<const N: usize> {
     pub(super) determinant: LogProduct,
 }
 
+/// Places in a row of [`Columns::last`].
+const AHEAD: usize = 0;
+const VELOCITY: usize = 1;
+const INNOVATION: usize = 2;
+
 /// What the columns of the covariance that the angles seen call for need beside its own place. A row is a column there; angles are in
 /// the order of [`SeenAngles`].
 ///
@@ -87,6 +92,10 @@ struct Columns<const N: usize> {
     /// Covariances with the angles measured before, less the measurement's variance at the angle itself, and those with the angles
     /// never seen.
     settled: [[f32; N]; N],
+    /// The covariances with the last angle and the last velocity, then the innovation, given what was measured before: all go through
+    /// the same sums, and four numbers are one register where thirteen are three and a bit. The fourth is nothing. The last column of
+    /// `velocities` has no meaning meanwhile.
+    last: [[f32; SQUARE]; N],
     /// One over the variance of each innovation.
     inverse_variance: [f32; N],
     /// Part of the angle's covariances that the measurement leaves.
@@ -106,37 +115,24 @@ impl<const N: usize> KinematicCovariance<N> {
             self.order_angles(seen);
         }
         let Self { angle: aheads, cross: velocities, velocity: covariance } = self;
-        let mut columns =
-            Columns { settled: [[0.0; N]; N], inverse_variance: [0.0; N], left: [0.0; N], is_severe: [false; N] };
-        for place in 0..count {
-            columns.settled[place][place] = -seen.noise_variance[place];
-        }
-        let (mut weighed, mut ahead_rad) = ([0.0; N], [0.0; N]);
-        let (mut squared, mut determinant) = (0.0, LogProduct::one());
+        let mut columns = Columns::of(seen, (aheads, velocities), count);
+        let mut shift =
+            MeanShift { angles_rad: [0.0; N], velocities: [0.0; N], squared: 0.0, determinant: LogProduct::one() };
         for place in 0..count {
             let variance = columns.find((aheads, velocities), place, count, seen.noise_variance[place]);
-            let innovation_rad = seen.innovation_rad[place] - ahead_rad[place];
-            weighed[place] = innovation_rad * columns.inverse_variance[place];
-            add_scaled(&mut ahead_rad, weighed[place], &aheads[place]);
-            squared += innovation_rad * weighed[place];
-            determinant.multiply(variance);
+            let innovation_rad = columns.last[place][INNOVATION];
+            shift.squared += innovation_rad * innovation_rad * columns.inverse_variance[place];
+            shift.determinant.multiply(variance);
         }
-        // A measured angle ends at its measurement less R times the weighed innovations, which the settled columns hold.
-        let mut shift = MeanShift {
-            angles_rad: combined(&weighed, &columns.settled, count),
-            velocities: combined(&weighed, velocities, count),
-            squared,
-            determinant,
-        };
-        add_scaled(&mut shift.angles_rad, 1.0, &seen.innovation_rad);
         let is_any_severe = columns.is_severe.contains(&true);
         let margins = is_any_severe.then(|| columns.margins(aheads, velocities, count));
-        if keeps_velocities {
-            shift.velocities = [0.0; N];
-        } else {
-            columns.reduce_velocities(velocities, covariance, count);
+        if !keeps_velocities {
+            shift.velocities = columns.reduce_velocities(velocities, covariance, count);
         }
-        columns.reduce_angles(aheads, velocities, count);
+        shift.angles_rad = columns.reduce_angles(aheads, velocities, count);
+        for i in 0..N {
+            shift.angles_rad[i] = seen.innovation_rad[i] - shift.angles_rad[i];
+        }
         if let Some((of_angles, of_velocities)) = margins {
             for i in 0..N {
                 aheads[i][i] += of_angles[i];
@@ -168,6 +164,24 @@ impl<const N: usize> KinematicCovariance<N> {
 }
 
 impl<const N: usize> Columns<N> {
+    /// Nothing found yet.
+    #[inline(always)]
+    fn of(seen: &SeenAngles<N>, (aheads, velocities): (&[[f32; N]; N], &[[f32; N]; N]), count: usize) -> Self {
+        let mut columns = Self {
+            settled: [[0.0; N]; N],
+            last: [[0.0; SQUARE]; N],
+            inverse_variance: [0.0; N],
+            left: [0.0; N],
+            is_severe: [false; N],
+        };
+        for place in 0..count.min(N) {
+            columns.settled[place][place] = -seen.noise_variance[place];
+            columns.last[place] =
+                [aheads[place][const { N - 1 }], velocities[place][const { N - 1 }], seen.innovation_rad[place], 0.0];
+        }
+        columns
+    }
+
     /// Finds the columns of the measurement at `place` from those before; returns the variance of its innovation.
     #[inline]
     fn find(
@@ -178,33 +192,39 @@ impl<const N: usize> Columns<N> {
         noise_variance: f32,
     ) -> f32 {
         let (mut ahead, mut settled, mut velocity) = (aheads[place], self.settled[place], velocities[place]);
+        let mut last = self.last[place];
         if place < half::<N>() {
             for earlier in 0..place {
                 let factor = self.inverse_variance[earlier] * aheads[earlier][place];
-                subtract_scaled(&mut ahead, factor, &aheads[earlier]);
+                subtract_but_last(&mut ahead, factor, &aheads[earlier]);
                 subtract_first_half(&mut settled, factor, &self.settled[earlier]);
-                subtract_scaled(&mut velocity, factor, &velocities[earlier]);
+                subtract_but_last(&mut velocity, factor, &velocities[earlier]);
+                subtract_scaled(&mut last, factor, &self.last[earlier]);
             }
         } else {
             for earlier in 0..half::<N>() {
                 let factor = self.inverse_variance[earlier] * aheads[earlier][place];
                 subtract_second_half(&mut ahead, factor, &aheads[earlier]);
                 subtract_first_half(&mut settled, factor, &self.settled[earlier]);
-                subtract_scaled(&mut velocity, factor, &velocities[earlier]);
+                subtract_but_last(&mut velocity, factor, &velocities[earlier]);
+                subtract_scaled(&mut last, factor, &self.last[earlier]);
             }
             for earlier in half::<N>()..place {
                 let factor = self.inverse_variance[earlier] * aheads[earlier][place];
                 subtract_second_half(&mut ahead, factor, &aheads[earlier]);
-                subtract_scaled(&mut settled, factor, &self.settled[earlier]);
-                subtract_scaled(&mut velocity, factor, &velocities[earlier]);
+                subtract_but_last(&mut settled, factor, &self.settled[earlier]);
+                subtract_but_last(&mut velocity, factor, &velocities[earlier]);
+                subtract_scaled(&mut last, factor, &self.last[earlier]);
             }
         }
-        let variance = ahead[place] + noise_variance;
+        ahead[const { N - 1 }] = last[AHEAD];
+        aheads[place] = ahead;
+        let variance = aheads[place][place] + noise_variance;
         let inverse_variance = 1.0 / variance;
         self.inverse_variance[place] = inverse_variance;
         self.left[place] = noise_variance * inverse_variance;
         self.is_severe[place] = noise_variance < SEVERE * variance;
-        (aheads[place], self.settled[place], velocities[place]) = (ahead, settled, velocity);
+        (self.settled[place], velocities[place], self.last[place]) = (settled, velocity, last);
         for j in count..N {
             self.settled[place][j] = aheads[place][j];
         }
@@ -212,28 +232,36 @@ impl<const N: usize> Columns<N> {
     }
 
     /// Rows of the angles after all measurements: up to the diagonal at least, the rest from the rows below. A row begins as it is
-    /// right after its own measurement, or as it was where its angle is not seen.
+    /// right after its own measurement, or as it was where its angle is not seen. Returns what is left of the innovations: from the
+    /// corrected angles to the measurements, or where an angle is not seen, to where it was.
     #[inline]
-    fn reduce_angles(&self, aheads: &mut [[f32; N]; N], velocities: &mut [[f32; N]; N], count: usize) {
+    fn reduce_angles(&self, aheads: &mut [[f32; N]; N], velocities: &mut [[f32; N]; N], count: usize) -> [f32; N] {
         // It is no more; said here, it lets no index be checked.
         let count = count.min(N);
+        let mut innovation_left = [0.0; N];
         // The angles not seen call for all columns, of which each angle seen then takes away its own.
         for place in count..N {
             let (mut angle, mut velocity) = (aheads[place], velocities[place]);
             angle.iter_mut().take(count).for_each(|covariance| *covariance = 0.0);
-            self.take_off::<false>(place, 0..count, (&mut angle, &mut velocity), velocities);
+            let mut last = [0.0, velocity[const { N - 1 }], 0.0, 0.0];
+            self.take_off::<false>(place, 0..count, (&mut angle, &mut velocity, &mut last), velocities);
+            velocity[const { N - 1 }] = last[VELOCITY];
+            innovation_left[place] = last[INNOVATION];
             (aheads[place], velocities[place]) = (angle, velocity);
         }
         for place in 0..count {
             let left = self.left[place];
             let mut angle = self.settled[place].map(|covariance| left * covariance);
             let mut velocity = velocities[place].map(|covariance| left * covariance);
-            let (rows, later) = ((&mut angle, &mut velocity), place + 1..count);
+            let mut last = self.last[place].map(|covariance| left * covariance);
+            let (rows, later) = ((&mut angle, &mut velocity, &mut last), place + 1..count);
             let taken = if place < half::<N>() {
                 self.take_off::<true>(place, later, rows, velocities)
             } else {
                 self.take_off::<false>(place, later, rows, velocities)
             };
+            velocity[const { N - 1 }] = last[VELOCITY];
+            innovation_left[place] = last[INNOVATION];
             let variance = left * aheads[place][place] - taken;
             (aheads[place], velocities[place]) = (angle, velocity);
             aheads[place][place] = variance;
@@ -243,16 +271,17 @@ impl<const N: usize> Columns<N> {
                 aheads[i][j] = aheads[j][i];
             }
         }
+        innovation_left
     }
 
-    /// Takes what measurements at `later` places say off the covariances of the angle at `place` with angles and velocities; returns
-    /// what they take off its variance. Of the angles those of the first half alone, if asked.
+    /// Takes what measurements at `later` places say off the covariances of the angle at `place` with angles and velocities and off its
+    /// innovation; returns what they take off its variance. Of the angles those of the first half alone, if asked.
     #[inline(always)]
     fn take_off<const FIRST_HALF: bool>(
         &self,
         place: usize,
         later: core::ops::Range<usize>,
-        (angle, velocity): (&mut [f32; N], &mut [f32; N]),
+        (angle, velocity, last): (&mut [f32; N], &mut [f32; N], &mut [f32; SQUARE]),
         velocities: &[[f32; N]; N],
     ) -> f32 {
         let mut taken = 0.0;
@@ -265,7 +294,8 @@ impl<const N: usize> Columns<N> {
             } else {
                 subtract_scaled(angle, factor, &self.settled[later]);
             }
-            subtract_scaled(velocity, factor, &velocities[later]);
+            subtract_but_last(velocity, factor, &velocities[later]);
+            subtract_scaled(last, factor, &self.last[later]);
         }
         taken
     }
@@ -282,7 +312,7 @@ impl<const N: usize> Columns<N> {
             let margin = MARGIN * self.inverse_variance[place];
             for j in 0..N {
                 let angle = if j < place { self.settled[place][j] } else { aheads[place][j] };
-                let velocity = velocities[place][j];
+                let velocity = if j < N - 1 { velocities[place][j] } else { self.last[place][VELOCITY] };
                 margins.0[j] += margin * angle * angle;
                 margins.1[j] += margin * velocity * velocity;
             }
@@ -290,13 +320,15 @@ impl<const N: usize> Columns<N> {
         margins
     }
 
-    /// Takes the sum of w w' / s off the velocities' covariance, in squares of four rows and columns.
+    /// Takes the sum of w w' / s off the velocities' covariance, in squares of four rows and columns; returns what the innovations add
+    /// to the velocities.
     #[inline]
-    fn reduce_velocities(&self, velocities: &[[f32; N]; N], covariance: &mut [[f32; N]; N], count: usize) {
+    fn reduce_velocities(&self, velocities: &[[f32; N]; N], covariance: &mut [[f32; N]; N], count: usize) -> [f32; N] {
         // It is no more; said here, it lets no index be checked.
         let count = count.min(N);
-        let (row_blocks, last_rows) = covariance.as_chunks_mut::<SQUARE>();
-        let first_of_last = SQUARE * row_blocks.len();
+        let Some((last_row, rows)) = covariance.split_last_mut() else { return [0.0; N] };
+        let (row_blocks, rest) = rows.as_chunks_mut::<SQUARE>();
+        let first_of_rest = SQUARE * row_blocks.len();
         for (block, rows) in row_blocks.iter_mut().enumerate() {
             for part in (0..=block).step_by(2) {
                 if part < block {
@@ -306,14 +338,37 @@ impl<const N: usize> Columns<N> {
                 }
             }
         }
-        for (i, row) in last_rows.iter_mut().enumerate() {
-            let mut weighed = self.inverse_variance;
+        for (i, row) in rest.iter_mut().enumerate() {
             for place in 0..count {
-                weighed[place] *= velocities[place][first_of_last + i];
+                let factor = self.inverse_variance[place] * velocities[place][first_of_rest + i];
+                subtract_but_last(row, factor, &velocities[place]);
             }
-            add_scaled(row, -1.0, &combined(&weighed, velocities, count));
         }
+        let shift = self.reduce_last_velocity(velocities, last_row, count);
         mirror(covariance);
+        shift
+    }
+
+    /// [`Self::reduce_velocities`] for the last row, and the shift of the velocities.
+    #[inline(always)]
+    fn reduce_last_velocity(&self, velocities: &[[f32; N]; N], row: &mut [f32; N], count: usize) -> [f32; N] {
+        let (mut shift, mut sum, mut sum_last) = ([0.0; N], [0.0; N], [0.0; SQUARE]);
+        for place in 0..count {
+            let last = self.last[place].map(|covariance| self.inverse_variance[place] * covariance);
+            let of_place = velocities[place];
+            for j in 0..const { N - 1 } {
+                sum[j] += last[VELOCITY] * of_place[j];
+                shift[j] += last[INNOVATION] * of_place[j];
+            }
+            for j in 0..SQUARE {
+                sum_last[j] += last[VELOCITY] * self.last[place][j];
+            }
+        }
+        (sum[const { N - 1 }], shift[const { N - 1 }]) = (sum_last[VELOCITY], sum_last[INNOVATION]);
+        for j in 0..N {
+            row[j] -= sum[j];
+        }
+        shift
     }
 
     /// [`Self::reduce_velocities`] for `WIDE` squares side by side, the first at row `block` and column `part`.
@@ -359,28 +414,18 @@ fn in_place<const N: usize>(seen: &SeenAngles<N>, ordered: &[f32; N]) -> [f32; N
     values
 }
 
-/// The sum of the first `count` of `rows`, each with its factor.
-#[inline]
-fn combined<const N: usize>(factors: &[f32; N], rows: &[[f32; N]; N], count: usize) -> [f32; N] {
-    let mut sum = [0.0; N];
-    for place in 0..count.min(N) {
-        add_scaled(&mut sum, factors[place], &rows[place]);
-    }
-    sum
-}
-
-/// `target` += `factor` `direction`.
-#[inline]
-fn add_scaled<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
-    for j in 0..N {
-        target[j] += factor * direction[j];
-    }
-}
-
 /// `target` -= `factor` `direction`.
 #[inline]
 fn subtract_scaled<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
     for j in 0..N {
+        target[j] -= factor * direction[j];
+    }
+}
+
+/// As [`subtract_scaled`], all numbers but the last.
+#[inline]
+fn subtract_but_last<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
+    for j in 0..const { N - 1 } {
         target[j] -= factor * direction[j];
     }
 }
@@ -393,10 +438,10 @@ fn subtract_first_half<const N: usize>(target: &mut [f32; N], factor: f32, direc
     }
 }
 
-/// As [`subtract_scaled`], the numbers from [`half`] on.
+/// As [`subtract_scaled`], the numbers from [`half`] on but the last.
 #[inline]
 fn subtract_second_half<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
-    for j in const { half::<N>() }..N {
+    for j in const { half::<N>() }..const { N - 1 } {
         target[j] -= factor * direction[j];
     }
 }

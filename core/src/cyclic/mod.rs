@@ -73,6 +73,8 @@ pub mod gate;
 pub mod image_filter;
 pub mod interpolation;
 mod joint_update;
+#[cfg(test)]
+mod joint_update_tests;
 pub mod kalman;
 pub mod kalman_options;
 mod kalman_state;
