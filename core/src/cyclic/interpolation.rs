@@ -42,6 +42,15 @@ impl MotionModel<'_> {
         CyclePoint { before, after: if before + 1 == count { 0 } else { before + 1 }, fraction }
     }
 
+    /// As [`Self::point`] for number `index`, below `count`, of `count` positions evenly along the cycle: exact, in whole numbers.
+    #[inline(always)]
+    pub(super) fn point_among(&self, index: usize, count: usize) -> CyclePoint {
+        let stored = self.position_count();
+        let (before, rest) = (index * stored / count, index * stored % count);
+        let fraction = rest as f32 / count as f32;
+        CyclePoint { before, after: if before + 1 == stored { 0 } else { before + 1 }, fraction }
+    }
+
     /// Mean acceleration, rad per reference frame^2; entries beyond the model's angles are zero.
     #[inline]
     #[must_use]
@@ -59,8 +68,15 @@ impl MotionModel<'_> {
     /// Mean pose, radians, unwrapped along the cycle (not in (-pi, pi]); entries beyond the model's angles are zero.
     ///
     /// From the last stored position on it leads to the first one plus the angle's turns.
+    #[inline(never)]
     #[must_use]
     pub fn mean_pose_rad<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
+        self.pose_at(point)
+    }
+
+    /// As [`Self::mean_pose_rad`], written out where it is asked for: for a loop over many points, elsewhere it costs flash.
+    #[inline(always)]
+    pub(super) fn pose_at<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
         let mut pose = self.row(self.parts().mean_pose_rad, point);
         if point.after == 0 {
             for (angle, &turns) in pose.iter_mut().zip(self.parts().turns_per_cycle) {
@@ -230,6 +246,17 @@ mod tests {
             let [swing, wind] = model.mean_pose_rad::<2>(point);
             prop_assert!((swing - (TAU * c).sin()).abs() < 4.0e-3);
             prop_assert!((wind - (TAU * c + 0.5)).abs() < 1.0e-3);
+        }
+
+        #[test]
+        fn a_position_among_many_is_the_point_there(count in 1_usize..200, part in 0.0_f32..1.0) {
+            let (pose, covariance) = tables();
+            let model = model(&pose, &covariance);
+            let index = (part * count as f32) as usize;
+            let (exact, near) = (model.point_among(index, count), model.point(index as f32 / count as f32));
+            let along = |point: super::CyclePoint| point.before as f32 + point.fraction;
+            prop_assert!((along(exact) - along(near)).abs() < 1.0e-4, "{index} of {count}: {exact:?}, {near:?}");
+            prop_assert!(exact.fraction < 1.0 && exact.after == (exact.before + 1) % 40);
         }
 
         /// Over a part of the cycle, the seam in it or not.

@@ -142,8 +142,7 @@ impl PhaseGrid {
                 let (Some(from), Some(travelled)) = (old.get(other), self.travelled.get(other)) else { continue };
                 let shift = round((self.travelled[speed] - travelled) * POSITIONS as f32) as i32;
                 let shift = shift.rem_euclid(POSITIONS as i32) as usize;
-                let twice: [f32; 2 * POSITIONS] = core::array::from_fn(|i| from[i % POSITIONS]);
-                for (weight, from) in row.iter_mut().zip(twice.iter().skip(shift)) {
+                for (weight, from) in row.iter_mut().zip(twice(from).iter().skip(shift)) {
                     *weight += change * from;
                 }
             }
@@ -199,10 +198,11 @@ impl PhaseGrid {
         let mut sums = [0.0; POSITIONS];
         for (weights, &travelled) in self.weights.iter().zip(&self.travelled) {
             let (shift, part) = cells_and_rest(travelled, POSITIONS);
-            for (cell, weight) in weights.iter().enumerate() {
-                let before = (cell + shift) % POSITIONS;
-                sums[before] += (1.0 - part) * weight;
-                sums[(before + 1) % POSITIONS] += part * weight;
+            let twice = twice(weights);
+            let before = twice.iter().skip(POSITIONS - 1 - shift);
+            let here = twice.iter().skip(POSITIONS - shift);
+            for (sum, (before, here)) in sums.iter_mut().zip(before.zip(here)) {
+                *sum += part * before + (1.0 - part) * here;
             }
         }
         sums
@@ -240,6 +240,16 @@ impl PhaseGrid {
         let covariance = [cc + cell * cell / 12.0, cv, vv + step * step];
         PhaseMode { weight, position: wrap_position(centre + way), velocity, covariance }
     }
+}
+
+/// A row after itself, so that it can be read around the circle from any cell.
+#[inline]
+fn twice(row: &[f32; POSITIONS]) -> [f32; 2 * POSITIONS] {
+    let mut twice = [0.0; 2 * POSITIONS];
+    for half in twice.as_chunks_mut::<POSITIONS>().0 {
+        *half = *row;
+    }
+    twice
 }
 
 /// Sum of the cells within [`MODE_REACH`] of each, around the circle.
@@ -299,8 +309,7 @@ fn likelihood_table<const N: usize>(
 fn lanes_of_poses<const N: usize>(model: &MotionModel<'_>, block: usize) -> [[f32; LANES]; N] {
     let mut poses_rad = [[0.0; LANES]; N];
     for lane in 0..LANES {
-        let position = (LANES * block + lane) as f32 / TABLE as f32;
-        let pose_rad = model.mean_pose_rad::<N>(model.point(position));
+        let pose_rad: [f32; N] = model.pose_at(model.point_among(LANES * block + lane, TABLE));
         for (lanes, angle_rad) in poses_rad.iter_mut().zip(pose_rad) {
             lanes[lane] = angle_rad;
         }
