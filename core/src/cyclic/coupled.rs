@@ -7,6 +7,7 @@ use super::coupled_block::{AngleBlock, Basis, Outlook, PARTS, Spread};
 use super::coupled_search::{LOST_STD, Watch};
 use super::cycle_pair::CyclePair;
 use super::explained_swing::ExplainedSwing;
+use super::first_row::FirstRow;
 use super::measured_path::MeasuredPath;
 use super::phase::wrap_position;
 use super::phase_evidence::{Judgement, PhaseEvidence};
@@ -17,17 +18,9 @@ use super::winding::Winding;
 use super::{AngleMeasurement, CyclicEstimate, MotionModel};
 use crate::angle::split_turns;
 use crate::error::{ParameterError, Rule, finite, within};
-use crate::math::{abs, clamp, exp, max, min, round, sqrt, wrap_angle};
+use crate::math::{abs, clamp, exp, max, round, sqrt, wrap_angle};
 use core::f32::consts::TAU;
 
-/// Least standard deviation of the angles of the first row, rad: the cyclic filters' initial variance of 1e-4 rad^2.
-const LEAST_FIRST_STD_RAD: f32 = 0.01;
-/// By how much training widens the spread between people (`inflation` of the model files).
-const SPREAD_INFLATION: f32 = 4.0;
-/// Median of the square of a standard normal.
-const MEDIAN_CHI_SQUARE: f32 = 0.454_9;
-/// Noise too small to be seen beside the spread between people, rad.
-const SMALL_FIRST_STD_RAD: f32 = 0.025;
 /// Spread of a person's speed about the model's mean, as a part of it.
 const SPEED_SPREAD: f32 = 0.1;
 /// Rate per cycle at which constant and swing are forgotten.
@@ -137,12 +130,15 @@ impl<const N: usize> CoupledFilter<N> {
             Some(position) => wrap_position(finite("initial cycle position", position)?),
             None => super::start::best_position(model, first.angles_rad()),
         };
-        let looks = as_exact_as_it_looks(model, first, position)?;
+        let row = FirstRow::of(model, first, position)?;
         self.forget(model)?;
         self.position = position;
         self.velocity = velocity;
         self.grid.keep(&PhaseGrid::near(position));
-        self.correct_phase(model, &looks);
+        for (block, otherwise_rad2) in self.blocks.iter_mut().zip(row.otherwise_rad2) {
+            block.hold_otherwise(otherwise_rad2);
+        }
+        self.correct_phase(model, &row.measurement);
         self.start_counting(model, first);
         Ok(())
     }
@@ -358,34 +354,6 @@ impl<const N: usize> CoupledFilter<N> {
     pub const fn cycles(&self) -> i32 {
         self.cycles
     }
-}
-
-/// The first row with the noise that its distance from the mean pose shows beyond the spread between people. At most its own,
-/// that of the rows to come; at least half of that where it is small. The middle one of the angles tells: noise moves them all,
-/// but a person, or whoever placed the joints, may hold some otherwise.
-fn as_exact_as_it_looks<const N: usize>(
-    model: &MotionModel<'_>,
-    first: &AngleMeasurement<N>,
-    position: f32,
-) -> Result<AngleMeasurement<N>, ParameterError> {
-    let pose = model.mean_pose_rad::<N>(model.point(position));
-    let spread = model.deviation_std_rad::<N>();
-    let mut excess: heapless::Vec<f32, N> = heapless::Vec::new();
-    for i in 0..model.angle_count().min(N) {
-        if let Some(angle) = first.angle_rad(i) {
-            let off = wrap_angle(angle - pose[i]);
-            let _ = excess.push(off * off / MEDIAN_CHI_SQUARE - spread[i] * spread[i] / SPREAD_INFLATION);
-        }
-    }
-    let looks = sqrt(median(&excess));
-    let noise = |std: f32| max(min(std, looks), max(min(0.5 * std, SMALL_FIRST_STD_RAD), LEAST_FIRST_STD_RAD));
-    AngleMeasurement::with_std(first.angles_rad(), &first.std_rad().map(noise))
-}
-
-/// The value with as many below it as above, the greater of two; at least 0.
-fn median(values: &[f32]) -> f32 {
-    let below = |&value: &f32| values.iter().filter(|&&other| other < value).count() <= values.len() / 2;
-    values.iter().copied().filter(below).fold(0.0, max)
 }
 
 /// Stationary spread of an angle's parts.

@@ -18,6 +18,9 @@ const SLOPE: usize = 4;
 /// variances; five times that on the diagonal of five rows keeps the matrix positive semi-definite.
 const ROUNDING: f32 = 5.0 / 8_388_608.0;
 
+/// Variance of the swing of an angle that is held otherwise, as a part of the squared distance: it swings otherwise by a sixth of that.
+const OTHERWISE_SWING_SHARE: f32 = 0.03;
+
 /// Direction in which an angle depends on its parts at a cycle position.
 ///
 /// ```
@@ -164,6 +167,13 @@ impl AngleBlock {
     /// The constant is as uncertain as `variance` more.
     pub(super) fn loosen_offset(&mut self, variance: f32) {
         self.covariance[0] += variance;
+    }
+
+    /// The angle is held otherwise, by about the root of `square_rad2`: the constant is as uncertain, and the swing by a share.
+    pub(super) fn hold_otherwise(&mut self, square_rad2: f32) {
+        self.loosen_offset(square_rad2);
+        self.covariance[packed_index(1, 1)] += OTHERWISE_SWING_SHARE * square_rad2;
+        self.covariance[packed_index(2, 2)] += OTHERWISE_SWING_SHARE * square_rad2;
     }
 
     /// Moves on by `phase` cycles: a, p, q keep the part `memory`, d follows its process; `z_map` is the regression of the

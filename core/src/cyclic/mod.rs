@@ -69,6 +69,7 @@ pub mod events;
 mod explained_swing;
 pub mod figure_place;
 pub mod filter;
+mod first_row;
 pub mod gate;
 pub mod image_filter;
 pub mod interpolation;
