@@ -278,8 +278,13 @@ pub(super) fn advance<const N: usize>(
     }
     let temporal = streams.normal();
     let temporal_scale = temporal_std * noise_factor;
+    // All places in the model first: a processor can fetch what stands there while it works on the particles before.
+    let mut points = [model.point(0.0); LANES];
+    for (point, particle) in points.iter_mut().zip(particles.iter()) {
+        *point = model.point(particle.cycle_position);
+    }
     for (lane, particle) in particles.iter_mut().enumerate().take(LANES) {
-        let point = model.point(particle.cycle_position);
+        let point = points[lane];
         let ratio = model.speed_ratio(particle.cycle_velocity);
         let squared_ratio = ratio * ratio;
         let place = if side[lane] < point.fraction { point.after } else { point.before };
