@@ -288,7 +288,7 @@ pub(super) fn advance<const N: usize>(
         let ratio = model.speed_ratio(particle.cycle_velocity);
         let squared_ratio = ratio * ratio;
         let place = if side[lane] < point.fraction { point.after } else { point.before };
-        let accelerations = table.accelerations(
+        let accelerations = table.accelerations::<N>(
             (point.before, point.after, point.fraction),
             place,
             (squared_ratio, squared_ratio * noise_factor),

@@ -104,9 +104,10 @@ impl<'a> ParticleTable<'a> {
     }
 
     /// `mean_scale` mean + `noise_scale` factor draws: the mean a `fraction` of the way from position `before` to `after`,
-    /// the factor that of position `place`. `draws` beyond the model's angles are zero.
+    /// the factor that of position `place`. The model has up to `N` angles; `draws` beyond them are zero, and the factor's columns
+    /// there are not looked at.
     #[inline(always)]
-    pub(super) fn accelerations(
+    pub(super) fn accelerations<const N: usize>(
         &self,
         (before, after, fraction): (usize, usize, f32),
         place: usize,
@@ -120,8 +121,17 @@ impl<'a> ParticleTable<'a> {
             let Some((squares, others)) = rest.split_at_checked(block + 1) else { break };
             rest = others;
             let mut noise = [0.0; BLOCK];
-            for (square, draw) in squares.iter().zip(draws) {
-                add_product(&mut noise, square, draw);
+            let mut products = squares.iter().zip(draws);
+            for (square, draw) in products.by_ref().take(const { N / BLOCK }) {
+                for column in 0..BLOCK {
+                    add_column(&mut noise, square, draw, column);
+                }
+            }
+            // Of the last block of columns the first few are numbers, the rest zeros.
+            for (square, draw) in products {
+                for column in 0..const { N % BLOCK } {
+                    add_column(&mut noise, square, draw, column);
+                }
             }
             for row in 0..BLOCK {
                 let mean = a[row] + fraction * (b[row] - a[row]);
@@ -132,13 +142,11 @@ impl<'a> ParticleTable<'a> {
     }
 }
 
-/// Adds the product of a square, stored by columns, and `draw`.
+/// Adds the product of one column of a square, stored by columns, and its number of `draw`.
 #[inline(always)]
-fn add_product(sum: &mut [f32; BLOCK], square: &[f32; BLOCK * BLOCK], draw: &[f32; BLOCK]) {
-    for column in 0..BLOCK {
-        for row in 0..BLOCK {
-            sum[row] += square[BLOCK * column + row] * draw[column];
-        }
+fn add_column(sum: &mut [f32; BLOCK], square: &[f32; BLOCK * BLOCK], draw: &[f32; BLOCK], column: usize) {
+    for row in 0..BLOCK {
+        sum[row] += square[BLOCK * column + row] * draw[column];
     }
 }
 
@@ -156,7 +164,7 @@ mod tests {
         assert_eq!(factors.len(), 20_800);
         fill_factors(&model, &mut factors);
         let particle_table = ParticleTable::new(&model, &factors);
-        let still = particle_table.accelerations((99, 0, 0.25), 0, (2.0, 1.0), &AngleBlocks::default());
+        let still = particle_table.accelerations::<13>((99, 0, 0.25), 0, (2.0, 1.0), &AngleBlocks::default());
         let point = super::super::CyclePoint { before: 99, after: 0, fraction: 0.25 };
         let mean = model.mean_acceleration::<13>(point);
         assert_eq!(still.as_flattened()[..13], mean.map(|value| 2.0 * value));
@@ -167,7 +175,7 @@ mod tests {
             .map(|column| {
                 let mut draws = AngleBlocks::default();
                 draws[column / BLOCK][column % BLOCK] = 1.0;
-                particle_table.accelerations((7, 8, 0.0), 7, (0.0, 1.0), &draws)
+                particle_table.accelerations::<13>((7, 8, 0.0), 7, (0.0, 1.0), &draws)
             })
             .collect();
         for i in 0..13 {
