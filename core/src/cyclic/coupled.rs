@@ -257,30 +257,33 @@ impl<const N: usize> CoupledFilter<N> {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);
-        let scale = self.watch.fit.noise_scale();
-        let mut evidence = PhaseEvidence::none(model.winds());
+        let (told_scale, share) = (self.watch.fit.noise_scale(), self.watch.noise.share());
+        let mut evidence = PhaseEvidence::none(model.winds(), self.watch.noise.score());
         let mut seen: [Option<(Outlook, f32, f32)>; N] = [None; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
-            let noise = scale * measurement.std_rad()[i] * measurement.std_rad()[i];
+            let told = told_scale * measurement.std_rad()[i] * measurement.std_rad()[i];
+            let noise = share * told;
             let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
             let mut outlook = self.blocks[i].outlook(&basis, slope[i]);
             let given = outlook.variance + noise;
             let (total, is_believed) = (given + self.pair.along(&outlook.gradient), self.winding.is_believed(i));
             if is_believed {
                 evidence.add(&outlook.gradient, given, residual);
+                evidence.noise.add(told, total - noise, residual);
             } else {
                 evidence.add_apart(total, residual);
             }
             if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total {
                 self.blocks[i].loosen_offset(residual * residual);
-                outlook = self.blocks[i].outlook(&basis, slope[i]);
+                outlook.loosen_offset(residual * residual);
             } else if is_believed {
                 evidence.trust(&outlook.gradient, given, residual);
             }
             seen[i] = Some((outlook, noise, residual));
         }
-        let judgement = evidence.judge(&self.pair);
+        self.watch.noise.see(&evidence.noise);
+        let judgement = evidence.judge(&self.pair, told_scale * share);
         let shift = self.pair.correct(&evidence.trusted);
         for (block, seen) in self.blocks.iter_mut().zip(&seen) {
             block.follow(shift);
@@ -330,11 +333,11 @@ impl<const N: usize> CoupledFilter<N> {
 
     fn estimate(&self, model: &MotionModel<'_>, log_likelihood: f32, outlier: bool) -> CyclicEstimate<N> {
         let slope = self.pose_slope(model);
-        let basis = Basis::at(self.position);
+        let (basis, band_calibration) = (Basis::at(self.position), self.band_calibration());
         let mut angle_variance_rad2 = [0.0; N];
         for i in 0..model.angle_count().min(N) {
             let outlook = self.blocks[i].outlook(&basis, slope[i]);
-            angle_variance_rad2[i] = BAND_CALIBRATION * (outlook.variance + self.pair.along(&outlook.gradient));
+            angle_variance_rad2[i] = band_calibration * (outlook.variance + self.pair.along(&outlook.gradient));
         }
         CyclicEstimate {
             angles_rad: self.angles_rad,
@@ -347,6 +350,13 @@ impl<const N: usize> CoupledFilter<N> {
             log_likelihood,
             outlier,
         }
+    }
+
+    /// Factor of the computed variances of the angles that is reported: [`BAND_CALIBRATION`], and more where measurements are taken for
+    /// better than their standard deviations say. Noise that moves slowly cannot be told from such, so that bands stay as wide as told.
+    #[must_use]
+    pub fn band_calibration(&self) -> f32 {
+        BAND_CALIBRATION * self.watch.noise.band_scale()
     }
 
     /// Cycles completed since the start (negative backwards).

@@ -85,6 +85,14 @@ pub(super) struct Outlook {
     pub(super) variance: f32,
 }
 
+impl Outlook {
+    /// What it becomes where the block's constant is loosened by `variance`.
+    pub(super) fn loosen_offset(&mut self, variance: f32) {
+        self.column[0] += variance;
+        self.variance += variance;
+    }
+}
+
 /// Five parts given z.
 ///
 /// ```

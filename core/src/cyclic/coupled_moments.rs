@@ -122,7 +122,7 @@ impl<const N: usize> CoupledFilter<N> {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);
-        let scale = self.watch.fit.noise_scale();
+        let scale = self.watch.noise_scale();
         let mut opened = [0.0; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };

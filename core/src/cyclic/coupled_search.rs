@@ -7,6 +7,7 @@ use super::explained_swing::{ExplainedSwing, cycle_variances_rad2};
 use super::gate::{DEFAULT_GATE_SIGMAS, is_outlier};
 use super::log_product::LogProduct;
 use super::measured_path::MeasuredPath;
+use super::noise_share::NoiseShare;
 use super::phase::position_difference;
 use super::phase_grid::{POSITIONS, PhaseMode};
 use super::prediction_fit::PredictionFit;
@@ -66,6 +67,8 @@ pub(super) struct Watch {
     pub(super) searching: bool,
     /// How well measurements are predicted.
     pub(super) fit: PredictionFit,
+    /// How much of the noise told is there.
+    pub(super) noise: NoiseShare,
 }
 
 impl SavedState for Watch {
@@ -75,14 +78,21 @@ impl SavedState for Watch {
         visitor.real(&mut self.strange_frames, &NOT_NEGATIVE);
         visitor.flag(&mut self.searching);
         self.fit.visit(visitor);
+        self.noise.visit(visitor);
     }
 }
 
 impl Watch {
     /// As if the position had been known for ever.
     pub(super) const fn new() -> Self {
-        let fit = PredictionFit::new();
-        Self { unwatched_frames: 0.0, usual_way: 0.0, strange_frames: 0.0, searching: false, fit }
+        let (fit, noise) = (PredictionFit::new(), NoiseShare::new());
+        Self { unwatched_frames: 0.0, usual_way: 0.0, strange_frames: 0.0, searching: false, fit, noise }
+    }
+
+    /// Factor of the noise variances told by which measurements are taken in.
+    #[inline]
+    pub(super) fn noise_scale(&self) -> f32 {
+        self.fit.noise_scale() * self.noise.share()
     }
 
     /// Compares the place `mode` with the filter's `position`, `frames` after the last time.

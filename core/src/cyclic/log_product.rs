@@ -22,9 +22,16 @@ impl LogProduct {
     pub(super) fn multiply(&mut self, factor: f32) {
         self.product *= factor;
         if !(1.0e-18..1.0e18).contains(&self.product) {
-            self.logarithm += ln(self.product);
-            self.product = 1.0;
+            self.begin_anew();
         }
+    }
+
+    /// Takes the logarithm so far, which is rare: said once, not wherever a factor comes in.
+    #[cold]
+    #[inline(never)]
+    fn begin_anew(&mut self) {
+        self.logarithm += ln(self.product);
+        self.product = 1.0;
     }
 
     /// Logarithm of the product.

@@ -89,6 +89,7 @@ pub mod model_bytes;
 pub mod model_table;
 pub mod models;
 pub mod motion_bank;
+mod noise_share;
 pub mod particle;
 pub mod particle_moments;
 pub mod particle_resampling;

@@ -3,6 +3,7 @@
 use super::cycle_pair::{CyclePair, Information};
 use super::gate::{DEFAULT_GATE_SIGMAS, is_outlier};
 use super::log_product::LogProduct;
+use super::noise_share::NoiseScore;
 use core::f32::consts::TAU;
 
 /// Angles deviate together, so that thirteen of them say less about the phase than thirteen independent ones would.
@@ -20,6 +21,8 @@ pub(super) struct PhaseEvidence {
     all: Information,
     /// Of the angles within the gate, tempered: for the correction.
     pub(super) trusted: Information,
+    /// What they say about the noise.
+    pub(super) noise: NoiseScore,
     /// Sum of squared residuals over their variance given (c, v).
     squares: f32,
     /// Product of those variances times 2 pi.
@@ -41,15 +44,18 @@ pub(super) struct Judgement {
     pub(super) present: usize,
     /// Whether the innovation lies beyond the gate.
     pub(super) outlier: bool,
+    /// Times the noise variances told by which it was judged.
+    pub(super) noise_scale: f32,
 }
 
 impl PhaseEvidence {
-    /// No angle yet, of a motion in which angles go round, or none does.
-    pub(super) const fn none(winds: bool) -> Self {
+    /// No angle yet, of a motion in which angles go round, or none does; `noise` says nothing yet either.
+    pub(super) const fn none(winds: bool, noise: NoiseScore) -> Self {
         let shape_std_rad = if winds { WINDING_SHAPE_STD_RAD } else { SHAPE_STD_RAD };
         Self {
             all: Information::NONE,
             trusted: Information::NONE,
+            noise,
             squares: 0.0,
             volume: LogProduct::one(),
             count: 0,
@@ -81,8 +87,8 @@ impl PhaseEvidence {
         self.trusted.add(gradient, weight, residual);
     }
 
-    /// Judges all angles together; `pair` is what was known of (c, v) before.
-    pub(super) fn judge(&self, pair: &CyclePair) -> Judgement {
+    /// Judges all angles together, by `noise_scale` times the noise variances told; `pair` is what was known of (c, v) before.
+    pub(super) fn judge(&self, pair: &CyclePair, noise_scale: f32) -> Judgement {
         let (explained, log_growth) = pair.explained(&self.all);
         let squared = crate::math::max(self.squares - explained, 0.0);
         Judgement {
@@ -90,6 +96,7 @@ impl PhaseEvidence {
             squared,
             present: self.count,
             outlier: is_outlier(squared + self.apart.0, self.count + self.apart.1, DEFAULT_GATE_SIGMAS),
+            noise_scale,
         }
     }
 }

@@ -49,12 +49,11 @@ impl PredictionFit {
         clamp(self.least, 1.0, MOST_NOISE)
     }
 
-    /// Takes in a frame, `step_frames` after the last one, that was judged by the noise that [`Self::noise_scale`] makes of what was
-    /// told.
+    /// Takes in a frame, `step_frames` after the last one.
     pub(super) fn see(&mut self, judgement: &Judgement, step_frames: f32) {
         self.frames += step_frames;
         if judgement.present > 0 {
-            let misfit = self.noise_scale() * min(judgement.squared / judgement.present as f32, MOST);
+            let misfit = judgement.noise_scale * min(judgement.squared / judgement.present as f32, MOST);
             self.recent += NEWEST * (misfit - self.recent);
             let share = if self.recent < self.least { NEWEST } else { RISE };
             self.least += share * (self.recent - self.least);
@@ -93,11 +92,15 @@ impl PredictionFit {
 mod tests {
     use super::*;
 
+    fn judgement(squared: f32, present: usize, noise_scale: f32) -> Judgement {
+        Judgement { log_likelihood: 0.0, squared, present, outlier: false, noise_scale }
+    }
+
     /// Frames whose misfit by the noise told is `misfit`.
     fn seen(fit: &mut PredictionFit, misfit: f32, frames: usize) {
         for _ in 0..frames {
             let squared = 13.0 * misfit / fit.noise_scale();
-            fit.see(&Judgement { log_likelihood: 0.0, squared, present: 13, outlier: false }, 1.0);
+            fit.see(&judgement(squared, 13, fit.noise_scale()), 1.0);
         }
     }
 
@@ -138,7 +141,7 @@ mod tests {
     fn frames_without_a_measurement_tell_nothing() {
         let mut fit = PredictionFit::new();
         let before = fit;
-        fit.see(&Judgement { log_likelihood: 0.0, squared: 0.0, present: 0, outlier: false }, 7.0);
+        fit.see(&judgement(0.0, 0, 1.0), 7.0);
         assert_eq!(fit, PredictionFit { frames: 7.0, ..before });
     }
 }

@@ -3,7 +3,6 @@
 use super::pass::{Link, Smoothable, Smoothed};
 use super::recursion::Moments;
 use nalgebra::{DMatrix, DVector};
-use sinew_core::cyclic::coupled::BAND_CALIBRATION;
 use sinew_core::cyclic::coupled_block::{Basis, PARTS};
 use sinew_core::cyclic::{AngleMeasurement, CoupledFilter, MotionModel};
 use std::f64::consts::TAU;
@@ -131,7 +130,7 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
                     variance += gradient[i] * gradient[j] * moments.covariance[(index(i), index(j))];
                 }
             }
-            angle_variance_rad2[angle] = f64::from(BAND_CALIBRATION) * variance.max(0.0);
+            angle_variance_rad2[angle] = f64::from(self.0.band_calibration()) * variance.max(0.0);
         }
         // An angle that is judged by itself moves its own parts but not (c, v): what looks back adds that up as if it knew less of them.
         let filtered = self.0.cycle();
