@@ -9,16 +9,14 @@ mod walks;
 
 use sinew::cyclic::tracking::{TrackingOptions, track};
 use sinew::cyclic::{AngleTable, CyclicModel};
+use sinew::evaluate::cyclic::Errors;
 use sinew_core::random::Stream;
-use std::f64::consts::TAU;
 use std::ops::Range;
 use walk_cuts::list;
 use walks::WALKS;
 
 /// Standard deviation that the filter is told, degrees.
 const TOLD_DEG: f64 = 6.0;
-/// Half width of a normal's 90 % band, standard deviations.
-const HALF_90: f64 = 1.645;
 
 /// Noise that there is.
 struct Noise {
@@ -66,22 +64,12 @@ fn smaller_noise_than_told_gives_smaller_errors_and_slow_noise_keeps_its_bands()
     let model = CyclicModel::from_option("walking").unwrap();
     let options = TrackingOptions { sigma_rad: TOLD_DEG.to_radians(), ..TrackingOptions::default() };
     for noise in &CASES {
-        let (mut sum_rad, mut inside, mut count) = (0.0, 0.0, 0.0);
+        let mut errors = Errors::default();
         for (seed, walk) in walks.iter().enumerate() {
             let tracked = track(&with_noise(walk, noise, seed as u64), &model, &options).unwrap();
-            for (frame, row) in tracked.frames.iter().zip(walk.rows()) {
-                for (angle, truth) in row.angles_rad.iter().enumerate() {
-                    let Some(truth) = truth else { continue };
-                    let off = frame.angles_rad[angle] - truth;
-                    let off = (off - TAU * (off / TAU).round()).abs();
-                    let std = f64::from(frame.estimate.angle_variance_rad2[angle]).sqrt();
-                    sum_rad += off;
-                    inside += f64::from(u8::from(off <= HALF_90 * std));
-                    count += 1.0;
-                }
-            }
+            errors.merge(&Errors::of(&tracked, walk));
         }
-        let (error_deg, inside_90) = ((sum_rad / count).to_degrees(), inside / count);
+        let (error_deg, inside_90) = (errors.all_deg(), errors.inside_90().0);
         println!(
             "told {TOLD_DEG}, noise {} with correlation {}: {error_deg:.2} degrees, {:.1} % inside",
             noise.std_deg,

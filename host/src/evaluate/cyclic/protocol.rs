@@ -1,7 +1,7 @@
 //! The paper's protocol: a filter over one cut cycle, its errors against the true angles (cyclic paper, section 4).
 
 use crate::cyclic::angle_table::ANGLES;
-use crate::cyclic::tracking::{TrackingOptions, track};
+use crate::cyclic::tracking::{Tracked, TrackingOptions, track};
 use crate::cyclic::{AngleRow, AngleTable, CutList, CyclicModel};
 use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
@@ -92,6 +92,22 @@ pub struct Errors {
 const HALF_90: f64 = 1.644_853_626_951;
 
 impl Errors {
+    /// Those of every frame after the first, row by row against `truth`.
+    #[must_use]
+    pub fn of(tracked: &Tracked, truth: &AngleTable) -> Self {
+        let mut errors = Self::default();
+        for (index, (frame, row)) in tracked.frames.iter().zip(truth.rows()).enumerate().skip(1) {
+            for (angle, truth) in row.angles_rad.iter().enumerate() {
+                let Some(truth) = truth else { continue };
+                let error = frame.angles_rad[angle] - truth;
+                let error = error - TAU * (error / TAU).round();
+                let std = f64::from(frame.estimate.angle_variance_rad2[angle]).max(0.0).sqrt();
+                errors.add(index - 1, angle, error, std);
+            }
+        }
+        errors
+    }
+
     fn add(&mut self, index: usize, angle: usize, error_rad: f64, std_rad: f64) {
         let size = error_rad.abs();
         self.sum_deg[angle] += size.to_degrees();
@@ -177,18 +193,7 @@ pub fn measurements(truth: &AngleTable, protocol: Protocol, sigma_rad: f64, seed
 /// As [`track`].
 pub fn run(cycle: &TestCycle, model: &CyclicModel, protocol: Protocol, options: &TrackingOptions) -> Result<Errors> {
     let measured = measurements(&cycle.truth, protocol, options.sigma_rad, options.seed);
-    let tracked = track(&measured, model, options)?;
-    let mut errors = Errors::default();
-    for (index, (frame, row)) in tracked.frames.iter().zip(cycle.truth.rows()).enumerate().skip(1) {
-        for (angle, truth) in row.angles_rad.iter().enumerate() {
-            let Some(truth) = truth else { continue };
-            let error = frame.angles_rad[angle] - truth;
-            let error = error - TAU * (error / TAU).round();
-            let std = f64::from(frame.estimate.angle_variance_rad2[angle]).max(0.0).sqrt();
-            errors.add(index - 1, angle, error, std);
-        }
-    }
-    Ok(errors)
+    Ok(Errors::of(&track(&measured, model, options)?, &cycle.truth))
 }
 
 /// All cycles with all seeds, pooled; a cycle starts at position 0 of the model. The same on any number of threads.
