@@ -393,29 +393,65 @@ pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
 /// assert!((sine - 0.5).abs() <= 2.0 * SIN_COS_MAX_ERROR);
 /// assert!((cosine * cosine - 0.75).abs() <= 4.0 * SIN_COS_MAX_ERROR);
 /// ```
-#[inline]
+#[cfg_attr(target_arch = "arm", inline(never))]
+#[cfg_attr(not(target_arch = "arm"), inline)]
 #[must_use]
 pub fn sin_cos(x_rad: f32) -> (f32, f32) {
-    const PI_HALF_HIGH: f32 = 1.570_312_5;
-    const PI_HALF_MIDDLE: f32 = 4.837_512_97e-4;
-    const PI_HALF_LOW: f32 = 7.549_789_95e-8;
     if !x_rad.is_finite() {
         return (f32::NAN, f32::NAN);
     }
+    sin_cos_finite(x_rad)
+}
+
+/// [`sin_cos`] of each of several angles, to the same bits: all sines and all cosines. Processors reckon several at a time.
+///
+/// ```
+/// use sinew_core::math::{sin_cos, sin_cos_each};
+///
+/// let (sines, cosines) = sin_cos_each(&[0.0, 0.5, -2.0]);
+/// assert_eq!((sines[2], cosines[2]), sin_cos(-2.0));
+/// ```
+#[inline]
+#[must_use]
+pub fn sin_cos_each<const N: usize>(x_rad: &[f32; N]) -> ([f32; N], [f32; N]) {
+    let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
+    sin_cos_into(x_rad, &mut sines, &mut cosines);
+    (sines, cosines)
+}
+
+/// One loop for any number of angles: were its length known, a short one would be unrolled and its vectors lost.
+#[inline(never)]
+fn sin_cos_into(x_rad: &[f32], sines: &mut [f32], cosines: &mut [f32]) {
+    for ((&x_rad, sine_out), cosine_out) in x_rad.iter().zip(sines).zip(cosines) {
+        // A processor without vectors of numbers would only have a longer loop to keep.
+        let (sine, cosine) = if cfg!(target_arch = "arm") { sin_cos(x_rad) } else { sin_cos_finite(x_rad) };
+        let is_finite = x_rad.is_finite();
+        *sine_out = if is_finite { sine } else { f32::NAN };
+        *cosine_out = if is_finite { cosine } else { f32::NAN };
+    }
+}
+
+/// Without a branch, so that a loop over angles is a loop over vectors.
+#[inline(always)]
+fn sin_cos_finite(x_rad: f32) -> (f32, f32) {
+    const PI_HALF_HIGH: f32 = 1.570_312_5;
+    const PI_HALF_MIDDLE: f32 = 4.837_512_97e-4;
+    const PI_HALF_LOW: f32 = 7.549_789_95e-8;
     let scaled = x_rad * FRAC_2_PI;
-    let quarter_turns = if scaled < 0.0 { (scaled - 0.5) as i32 } else { (scaled + 0.5) as i32 };
+    let quarter_turns = (scaled + if scaled < 0.0 { -0.5 } else { 0.5 }) as i32;
     let whole = quarter_turns as f32;
     let r = ((x_rad - whole * PI_HALF_HIGH) - whole * PI_HALF_MIDDLE) - whole * PI_HALF_LOW;
     let r2 = r * r;
     let sine = r + r * r2 * (-1.666_666_7e-1 + r2 * (8.333_333_3e-3 + r2 * (-1.984_127e-4 + r2 * 2.755_731_9e-6)));
     let cosine = 1.0
         + r2 * (-0.5 + r2 * (4.166_666_7e-2 + r2 * (-1.388_888_9e-3 + r2 * (2.480_158_7e-5 - r2 * 2.755_731_9e-7))));
-    match quarter_turns & 3 {
-        0 => (sine, cosine),
-        1 => (cosine, -sine),
-        2 => (-sine, -cosine),
-        _ => (-cosine, sine),
-    }
+    // Each quarter of a turn changes places and signs.
+    let (a, b) = if quarter_turns & 1 == 0 { (sine, cosine) } else { (cosine, sine) };
+    let sign_if = |bit: i32| ((bit & 2) as u32) << 30;
+    (
+        f32::from_bits(a.to_bits() ^ sign_if(quarter_turns)),
+        f32::from_bits(b.to_bits() ^ sign_if(quarter_turns.wrapping_add(1))),
+    )
 }
 
 /// `angle_rad` moved by whole turns into (-pi, pi].
@@ -593,6 +629,26 @@ mod tests {
     fn sine_of_infinity_is_nan() {
         assert!(sin_cos(f32::INFINITY).0.is_nan());
         assert!(sin_cos(f32::NAN).1.is_nan());
+        let (sines, cosines) = sin_cos_each(&[1.0, f32::INFINITY, f32::NAN, 2.0]);
+        assert_eq!(sines.map(f32::is_nan), [false, true, true, false]);
+        assert_eq!(cosines.map(f32::is_nan), [false, true, true, false]);
+    }
+
+    #[test]
+    fn each_sine_and_cosine_is_that_of_its_angle_alone() {
+        for i in -40_000..=40_000_i32 {
+            let x_rad: [f32; 5] = core::array::from_fn(|k| i as f32 * [1.0e-3, 0.25 * PI, 1.0e-7, 0.1, 1.0e6][k]);
+            let (sines, cosines) = sin_cos_each(&x_rad);
+            for k in 0..5 {
+                let (sine, cosine) = sin_cos(x_rad[k]);
+                assert_eq!(
+                    [sines[k].to_bits(), cosines[k].to_bits()],
+                    [sine.to_bits(), cosine.to_bits()],
+                    "{}",
+                    x_rad[k]
+                );
+            }
+        }
     }
 
     #[test]

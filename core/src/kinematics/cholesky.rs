@@ -28,20 +28,27 @@ pub struct Cholesky<const N: usize> {
 
 impl<const N: usize> Cholesky<N> {
     /// Factors `matrix` (only its lower half is read); `None` where it is not positive definite.
+    #[inline(always)]
     #[must_use]
     pub fn new(matrix: &[[f32; N]; N]) -> Option<Self> {
         if N > SMALL {
             return Self::by_columns(matrix, 0);
         }
         let mut lower = [[0.0; N]; N];
+        // Bounds that are constants, so that small ones are unrolled.
         for i in 0..N {
-            for j in 0..=i {
+            for j in 0..N {
+                if j > i {
+                    continue;
+                }
                 let mut sum = matrix[i][j];
-                for k in 0..j {
-                    sum -= lower[i][k] * lower[j][k];
+                for k in 0..N {
+                    if k < j {
+                        sum -= lower[i][k] * lower[j][k];
+                    }
                 }
                 if i == j {
-                    if !(sum > 0.0 && sum.is_finite()) {
+                    if !(sum > 0.0 && sum < f32::INFINITY) {
                         return None;
                     }
                     lower[i][i] = sqrt(sum);
@@ -72,7 +79,7 @@ impl<const N: usize> Cholesky<N> {
             lower[i][first..=i].copy_from_slice(&matrix[i][first..=i]);
         }
         for k in first..N {
-            if !(lower[k][k] > 0.0 && lower[k][k].is_finite()) {
+            if !(lower[k][k] > 0.0 && lower[k][k] < f32::INFINITY) {
                 return None;
             }
             let pivot = sqrt(lower[k][k]);

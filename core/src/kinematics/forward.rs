@@ -14,7 +14,8 @@
 //! # Ok::<(), sinew_core::error::ParameterError>(())
 //! ```
 
-use crate::math::{Mat3, Vec3, axis_rotation};
+use super::rotation::Rotation;
+use crate::math::{Vec3, sin_cos_each};
 use crate::skeleton::Skeleton;
 
 /// Where all bones of a skeleton are in one pose.
@@ -81,30 +82,29 @@ impl<const BONES: usize, const ANGLES: usize> Posture<BONES, ANGLES> {
     /// Becomes the posture of `skeleton` at `root_m` with `angles_rad`, in place.
     #[inline(never)]
     pub(super) fn turn(&mut self, skeleton: &Skeleton<BONES, ANGLES>, root_m: &Vec3, angles_rad: &[f32; ANGLES]) {
-        // Of each bone; nothing for one that has not turned.
-        let mut rotations: [Option<Mat3>; BONES] = [None; BONES];
+        let (sines, cosines) = sin_cos_each(angles_rad);
+        let mut rotations = [Rotation::NONE; BONES];
         let mut angle = 0;
         for (index, bone) in skeleton.bones().iter().enumerate() {
             let parent = bone.parent.map(usize::from).filter(|&parent| parent < BONES);
-            let mut rotation = parent.and_then(|parent| rotations[parent]);
-            let mut joint = parent.map_or(*root_m, |parent| self.ends[parent]);
+            let (mut rotation, mut joint) =
+                parent.map_or((Rotation::NONE, *root_m), |parent| (rotations[parent], self.ends[parent]));
             for axis in bone.joint.axes() {
-                if let (Some(slot), Some(&value)) = (self.axes.get_mut(angle), angles_rad.get(angle)) {
-                    if skeleton.is_shift(angle) {
-                        *slot = *axis;
-                        joint += axis * value;
-                        angle += 1;
-                        continue;
-                    }
-                    *slot = rotation.map_or(*axis, |rotation| rotation * axis);
-                    let turned = axis_rotation(axis, value);
-                    rotation = Some(rotation.map_or(turned, |rotation| rotation * turned));
+                if angle >= ANGLES {
+                    break;
+                }
+                if skeleton.is_shift(angle) {
+                    self.axes[angle] = *axis;
+                    joint += axis * angles_rad[angle];
+                } else {
+                    self.axes[angle] = rotation.turned(axis);
+                    rotation = rotation.then(axis, (sines[angle], cosines[angle]));
                 }
                 angle += 1;
             }
             rotations[index] = rotation;
             self.joints[index] = joint;
-            self.ends[index] = joint + rotation.map_or(bone.offset_m, |rotation| rotation * bone.offset_m);
+            self.ends[index] = joint + rotation.turned(&bone.offset_m);
         }
     }
 }

@@ -35,3 +35,4 @@ pub mod gradient_projection;
 pub mod inverse;
 pub mod jacobian;
 pub mod pose_density;
+mod rotation;

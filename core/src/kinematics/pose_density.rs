@@ -5,6 +5,9 @@ use super::jacobian::moving_column;
 use crate::math::{Mat3, Vec3, length, max};
 use crate::skeleton::Skeleton;
 
+/// A processor with vectors reckons a whole row of the Hessian sooner than the half that is read.
+const WHOLE_ROWS: bool = !cfg!(target_arch = "arm");
+
 /// Where an end-effector wants to be.
 ///
 /// ```
@@ -198,18 +201,20 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
         for goal in self.goals {
             let Some(end) = posture.ends.get(goal.bone) else { continue };
             let miss = goal.position_m - end;
-            let mut columns = [Vec3::zeros(); ANGLES];
+            // By coordinate, so that a row of the Hessian is made of vectors.
+            let (mut x, mut y, mut z) = ([0.0; ANGLES], [0.0; ANGLES], [0.0; ANGLES]);
             // Bounds that are constants, so that small skeletons are unrolled.
             for i in 0..ANGLES {
                 // What does not move the end adds nothing.
                 if i < self.held || !self.skeleton.angle_moves(i, goal.bone) {
                     continue;
                 }
-                columns[i] = moving_column(self.skeleton, posture, goal.bone, i);
-                let weighted = goal.precision * columns[i];
+                let column = moving_column(self.skeleton, posture, goal.bone, i);
+                (x[i], y[i], z[i]) = (column.x, column.y, column.z);
+                let weighted = goal.precision * column;
                 gradient[i] += weighted.dot(&miss);
-                for j in 0..=i {
-                    hessian[i][j] += weighted.dot(&columns[j]);
+                for j in 0..if WHOLE_ROWS { ANGLES } else { i + 1 } {
+                    hessian[i][j] += weighted.x * x[j] + weighted.y * y[j] + weighted.z * z[j];
                 }
             }
         }
