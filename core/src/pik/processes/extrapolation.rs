@@ -2,10 +2,13 @@
 
 use crate::error::{ParameterError, Rule, positive};
 use crate::kinematics::inverse::Goal;
-use crate::math::{Mat3, Vec3};
+use crate::math::{Mat3, Vec3, max};
 use crate::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals, LinearExtrapolation, MAX_GOALS};
 use crate::random::Stream;
 use heapless::Vec;
+
+/// A limb without any noise still has a precision that is a number, square metres.
+const LEAST_VARIANCE_M2: f32 = 1.0e-8;
 
 /// Each end-effector goes on from the place that it *reached*, with a share of the filter's velocity: those that the root carries
 /// (head, hands) relative to it, the others (feet, which stand) in space. Carried ones may go on along an arc about the joint that their limb
@@ -48,7 +51,8 @@ pub struct LinearGoals {
     pub process: LinearExtrapolation,
     /// Standard deviations of the first end-effectors after one second, metres, in place of the process's.
     std_m_per_sqrt_s: Vec<f32, MAX_GOALS>,
-    /// How closely a goal is reached along each axis: W = 1 / std^2, metres.
+    /// How closely a goal is reached along each axis, metres: W = 1 / std^2, of a limb that has all of its noise. A drawn goal of one at
+    /// rest, which has less, is reached as much more closely; what is expected of it is not.
     pub reach_std_m: f32,
 }
 
@@ -110,19 +114,20 @@ impl LinearGoals {
         LinearExtrapolation { std_m_per_sqrt_s, ..self.process }
     }
 
-    /// Where each end-effector goes on the mean and how far it spreads, metres, with its bone.
+    /// Where each end-effector goes on the mean, how far it spreads and how closely it is reached, metres, with its bone.
     fn means<'p, const BONES: usize>(
         &'p self,
         past: &'p GoalPast<'_, BONES>,
-    ) -> impl Iterator<Item = (usize, Vec3, f32)> + 'p {
+    ) -> impl Iterator<Item = (usize, Vec3, Looseness)> + 'p {
         let root_velocity = past.velocity_m_per_s.first().copied().unwrap_or_default();
         let place = move |bone: usize| Some((*past.reached_m.get(bone)?, *past.velocity_m_per_s.get(bone)?));
         self.end_effectors.iter().enumerate().filter_map(move |(index, &bone)| {
             let (reached_m, velocity) = place(bone)?;
             let share = past.noise_share.get(bone).copied().unwrap_or(1.0);
             let std_m = self.process_of(index).std_m(past.dt_s) * share;
+            let loose = Looseness { std_m, reach_std_m: self.reach_std_m * share };
             if index >= self.carried {
-                return Some((bone, self.process.mean(&reached_m, &velocity, past.dt_s), std_m));
+                return Some((bone, self.process.mean(&reached_m, &velocity, past.dt_s), loose));
             }
             let with_root = |(place_m, velocity)| (place_m + past.root_shift_m, velocity - root_velocity);
             let (reached_m, velocity) = with_root((reached_m, velocity));
@@ -130,13 +135,23 @@ impl LinearGoals {
                 Some(joint) => self.process.mean_about((reached_m, velocity), joint, past.dt_s),
                 None => self.process.mean(&reached_m, &velocity, past.dt_s),
             };
-            Some((bone, mean_m, std_m))
+            Some((bone, mean_m, loose))
         })
     }
+}
 
-    fn goal(&self, bone: usize, position_m: Vec3, std_m: f32) -> Goal {
-        Goal { bone, position_m, precision: Mat3::identity() / (self.reach_std_m * self.reach_std_m + std_m * std_m) }
-    }
+/// How far a goal may be missed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Looseness {
+    /// Spread of the goal itself, metres.
+    std_m: f32,
+    /// How closely the end-effector comes to it, metres.
+    reach_std_m: f32,
+}
+
+/// The goal of a bone's end that is missed by so much along each axis; a tenth of a millimetre is not told from none.
+fn goal(bone: usize, position_m: Vec3, variance_m2: f32) -> Goal {
+    Goal { bone, position_m, precision: Mat3::identity() / max(variance_m2, LEAST_VARIANCE_M2) }
 }
 
 /// A list of bones of a skeleton with `bones` bones.
@@ -158,16 +173,17 @@ impl<const BONES: usize> GoalProcess<BONES> for LinearGoals {
     }
 
     fn draw(&self, past: &GoalPast<'_, BONES>, _memory: &mut GoalMemory, stream: &mut Stream, goals: &mut Goals) {
-        for (bone, mean_m, std_m) in self.means(past) {
+        for (bone, mean_m, Looseness { std_m, reach_std_m }) in self.means(past) {
             let position_m = mean_m + stream.normal3() * std_m;
             // As many goals as end-effectors fit.
-            let _ = goals.push(self.goal(bone, position_m, 0.0));
+            let _ = goals.push(goal(bone, position_m, reach_std_m * reach_std_m));
         }
     }
 
     fn expect(&self, past: &GoalPast<'_, BONES>, _memory: &mut GoalMemory, _stream: &mut Stream, goals: &mut Goals) {
-        for (bone, mean_m, std_m) in self.means(past) {
-            let _ = goals.push(self.goal(bone, mean_m, std_m));
+        for (bone, mean_m, Looseness { std_m, .. }) in self.means(past) {
+            // The spread, which is most of it, follows the pace; W stays as it is.
+            let _ = goals.push(goal(bone, mean_m, self.reach_std_m * self.reach_std_m + std_m * std_m));
         }
     }
 }
@@ -219,6 +235,10 @@ mod tests {
             square += off.norm_squared() / (3 * n) as f32;
         }
         assert!(mean.norm() < 4.0 * 0.1 * (3.0 / n as f32).sqrt(), "{mean:?}");
+        let mut drawn = Goals::new();
+        goals_of.draw(&past, &mut memory, &mut stream, &mut drawn);
+        let reach_std_m = (1.0 / drawn[0].precision[(0, 0)]).sqrt();
+        assert!((reach_std_m - 0.015).abs() < 1.0e-6, "half of it too: {reach_std_m}");
         let variance = 1.0 / expected[0].precision[(0, 0)];
         assert!((variance / (square + 0.03 * 0.03) - 1.0).abs() < 0.06, "{variance} {square}");
     }

@@ -135,7 +135,6 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         let (tuning, goals) = (self.tuning, self.goals.clone());
         let (frame, root) = (seen.frame, tuning.root.process());
         let goal_std = self.angle_std(&tuning.end_effector.joint_std);
-        let reach_std_m = tuning.end_effector.reach_std_m;
         match self.kind {
             BodyModelKind::EndEffector => self.advance(&with_goals(&tuning, goal_std, &goals, root), &frame),
             BodyModelKind::Guided => {
@@ -169,11 +168,13 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
                 self.advance(&with_goals(&tuning, goal_std, &process, root), &frame)
             }
             BodyModelKind::PelvicLift => {
+                let reach_std_m = tuning.lift_reach_std_m;
                 let process = FixedGoals { end_effectors: end_effectors(BONES), reach_std_m };
                 let root = RootProcess::pelvic_lift(tuning.lift_std_m, tuning.lift_turn_std_rad, seen.floor_y_m);
                 self.advance(&with_goals(&tuning, goal_std, &process, root), &frame)
             }
             BodyModelKind::EndEffectorPaper => {
+                let reach_std_m = tuning.end_effector.reach_std_m;
                 let process = PaperGoals { end_effectors: &PAPER_END_EFFECTORS, std_m: PAPER_GOAL_STD_M, reach_std_m };
                 let angle_std = paper_angle_std(frame.dt_s);
                 let motion = EndEffectorMotion {

@@ -144,7 +144,7 @@ pub struct GoalTuning {
     pub persistence: f32,
     /// Share of the velocities' last change that goes on.
     pub acceleration_share: f32,
-    /// How closely a goal is reached, metres.
+    /// How closely a goal is reached, metres, by a limb that has all of its noise; as much more closely by one at rest.
     pub reach_std_m: f32,
     /// Spread of the goals.
     pub goal_std: GoalStd,
@@ -284,12 +284,16 @@ pub struct BodyTuning {
     pub stick_reach_std_m: f32,
     /// Pelvic lift: the root's sideways standard deviation, metres by root second; four times as much up and down.
     pub lift_std_m: f32,
+    /// Pelvic lift: how closely hands, feet and head stay where they are, metres.
+    pub lift_reach_std_m: f32,
     /// Pelvic lift: the pelvis' turning, radians by root second.
     pub lift_turn_std_rad: f32,
 }
 
 /// Least effective share of whole poses with the settings that the paper prints.
 const PAPER_EFFECTIVE_SHARE: f32 = 0.05;
+/// How closely goals are reached there, metres: near the 5 cm of DESIGN.md section 3, whatever a limb's pace.
+const PAPER_REACH_STD_M: f32 = 0.054;
 
 impl BodyTuning {
     /// The numbers that a model goes by: one with the settings that the paper prints sees the points as they are, weighs whole poses that may
@@ -298,6 +302,7 @@ impl BodyTuning {
     pub fn of_kind(mut self, kind: BodyModelKind) -> Self {
         if kind.is_printed() {
             self.smoothing.radius_m = 0.0;
+            self.end_effector.reach_std_m = PAPER_REACH_STD_M;
             (self.pace.rest_share, self.pace.swing_most, self.pace.unseen_most) = (1.0, 1.0, 1.0);
             (self.end_effector.acceleration_share, self.angular.acceleration_share) = (0.0, 0.0);
             self.steady = SteadyTuning { tremble_errors: 0.0, tremble_m: 0.0 };
@@ -334,7 +339,7 @@ const GUIDED_JOINTS: JointStd =
 const GOALS: GoalTuning = GoalTuning {
     persistence: 0.90,
     acceleration_share: 0.5,
-    reach_std_m: 0.054,
+    reach_std_m: 0.10,
     goal_std: GoalStd { head: 0.105, hand: 0.21, foot: 0.18 },
     joint_std: GOAL_JOINTS,
     angle_persistence: 0.4,
@@ -393,6 +398,7 @@ impl Default for BodyTuning {
             stick_gamma_std: 0.1,
             stick_reach_std_m: 0.01,
             lift_std_m: 0.08,
+            lift_reach_std_m: 0.054,
             lift_turn_std_rad: 0.3,
         }
     }

@@ -169,7 +169,7 @@ fn sample(
         dt_s,
         is_first: false,
     };
-    let process = FixedGoals { end_effectors: &END_EFFECTORS, reach_std_m: tuning.end_effector.reach_std_m };
+    let process = FixedGoals { end_effectors: &END_EFFECTORS, reach_std_m: tuning.lift_reach_std_m };
     let mut goals = Goals::new();
     process.draw(&past, &mut [0.0; MEMORY], stream, &mut goals);
     let held = skeleton.root_coordinates();
