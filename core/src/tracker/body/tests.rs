@@ -295,6 +295,9 @@ fn a_hidden_arm_grows_uncertain_is_said_to_be_unseen_and_comes_back() {
     let goals = goals();
     let guided = hidden_arms_found(&guided(&goals), 60, BodyOptions { pace: Some(PACE), ..OPTIONS });
     assert!(guided >= 4, "{guided} of 6");
+    // Twice the reach of a limb in full swing: at rest, with two fifths of it, about what a goal without a pace has.
+    let mut goals = goals;
+    goals.reach_std_m = 0.10;
     let by_goals = hidden_arms_found(&end_effector(&goals), 200, BodyOptions { pace: Some(PACE), ..LIMB_BY_LIMB });
     assert!(by_goals >= 5, "{by_goals} of 6");
 }
@@ -319,7 +322,7 @@ fn hidden_arms_found(motion: &impl BodyMotion<BODY_BONES, BODY_ANGLES>, count: u
             }
             last_error = (estimate.ends_m[hand] - scene.posture(&truth(frame)).ends[hand]).norm();
         }
-        assert!(hidden_spread > 1.5 * seen_spread, "{seen_spread} {hidden_spread}");
+        assert!(hidden_spread > 1.7 * seen_spread, "{seen_spread} {hidden_spread}");
         assert!(said_seen <= 3, "{said_seen} of 15 frames");
         found += usize::from(last_error < 0.15);
     }
