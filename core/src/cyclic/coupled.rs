@@ -197,13 +197,16 @@ impl<const N: usize> CoupledFilter<N> {
         self.winding = Winding::new();
     }
 
-    /// One frame: predict over the measurement's step, then correct by the angles seen.
+    /// One frame: predict over the measurement's step, then correct by the angles seen. On x86-64 what every frame needs is inlined, so
+    /// that a caller compiled for wider vectors than the crate has them; elsewhere it would cost flash.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn step(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
         self.predict(model, measurement.step_frames());
         self.correct(model, measurement)
     }
 
     /// Moves on by `step_frames`, in substeps of one frame, longer ones where that would be more than [`MOST_SUBSTEPS`].
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn predict(&mut self, model: &MotionModel<'_>, step_frames: f32) {
         for step in Substeps::few(step_frames, MOST_SUBSTEPS) {
             self.advance(model, step);
@@ -211,6 +214,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.watch.unwatched_frames += step_frames;
     }
 
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn advance(&mut self, model: &MotionModel<'_>, step: f32) {
         let (map, rest) = self.pair.advance(step);
         let phase = step * max(abs(self.velocity), 0.1 * model.mean_cycle_velocity());
@@ -234,6 +238,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     /// Corrects by the angles seen, after the grid has told whether the position is still the right one.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn correct(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
         let mode = if measurement.is_empty(model.angle_count()) { None } else { self.watch(model, measurement) };
         if self.watch.searching {
@@ -253,6 +258,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     /// The extended Kalman correction about the present position; gives how the measurement fitted the prediction.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn correct_phase(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> Judgement {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
@@ -300,11 +306,13 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Change of the mean pose with the position, rad per cycle, over as much of the cycle as the position is uncertain by (statistical
     /// linearisation): where the mean pose jumps its tangent would hold the position there.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn pose_slope(&self, model: &MotionModel<'_>) -> [f32; N] {
         model.mean_pose_secant(self.position, sqrt(self.pair.cc))
     }
 
     /// Angles from the state.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn update_angles(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
         let pose = model.mean_pose_rad::<N>(model.point(self.position));
         let basis = Basis::at(self.position);
@@ -331,6 +339,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.angles_rad[index] = angle_rad;
     }
 
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn estimate(&self, model: &MotionModel<'_>, log_likelihood: f32, outlier: bool) -> CyclicEstimate<N> {
         let slope = self.pose_slope(model);
         let (basis, band_calibration) = (Basis::at(self.position), self.band_calibration());
@@ -367,6 +376,7 @@ impl<const N: usize> CoupledFilter<N> {
 }
 
 /// Stationary spread of an angle's parts.
+#[cfg_attr(target_arch = "x86_64", inline(always))]
 pub(super) fn spread(model: &MotionModel<'_>, index: usize) -> Spread {
     let deviation = &model.parts().deviation;
     let at = |values: &[f32]| values.get(index).copied().unwrap_or(1.0);

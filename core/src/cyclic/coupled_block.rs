@@ -42,6 +42,7 @@ pub struct Basis {
 
 impl Basis {
     /// At cycle position `position`.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
     pub fn at(position: f32) -> Self {
         let (sine, cosine) = sin_cos(TAU * position);
@@ -69,6 +70,7 @@ pub(super) struct Spread {
 }
 
 impl Spread {
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn diagonal(&self) -> [f32; PARTS] {
         [self.offset, self.swing, self.swing, self.rest, self.rest * self.rate * self.rate]
     }
@@ -186,6 +188,7 @@ impl AngleBlock {
 
     /// Moves on by `phase` cycles: a, p, q keep the part `memory`, d follows its process; `z_map` is the regression of the
     /// old z on the new one, `z_rest` (cc, cv, vv) what it leaves unexplained.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn advance(
         &mut self,
         spread: &Spread,
@@ -219,6 +222,7 @@ impl AngleBlock {
     }
 
     /// Adds what the parts owe to that in the old z which the new one leaves unexplained, (cc, cv, vv) in `z_rest`.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn spread_by(&mut self, z_rest: &[f32; 3]) {
         let b = &self.regression;
         for i in 0..PARTS {
@@ -231,6 +235,7 @@ impl AngleBlock {
     }
 
     /// Phi C Phi' for the lower triangle: the first three parts are scaled, the rest and its slope mixed.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn move_covariance(&mut self, memory: f32, rest_map: &[[f32; 2]; 2]) {
         let [[a, b], [c, d]] = *rest_map;
         self.covariance.iter_mut().take(packed_len(REST)).for_each(|entry| *entry *= memory * memory);
@@ -247,6 +252,7 @@ impl AngleBlock {
     }
 
     /// Adds the variance that keeps the parts' spread stationary.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn renew(&mut self, spread: &Spread, memory: f32, rest_map: &[[f32; 2]; 2]) {
         let stationary = spread.diagonal();
         let forget = 1.0 - memory * memory;
@@ -284,6 +290,7 @@ impl AngleBlock {
     }
 
     /// Takes in a measured angle that lies `residual` off; z has moved by `shift` at the same time.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn correct(&mut self, outlook: &Outlook, noise_variance: f32, residual: f32, shift: [f32; 2]) {
         let inverse = 1.0 / (outlook.variance + noise_variance);
         let g = &outlook.gradient;
@@ -304,6 +311,7 @@ impl AngleBlock {
     }
 
     /// The means follow z by `shift`.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn follow(&mut self, shift: [f32; 2]) {
         for i in 0..PARTS {
             self.mean[i] += self.regression[i][0] * shift[0] + self.regression[i][1] * shift[1];

@@ -116,6 +116,7 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Shows the grid a measurement, and takes its place where the filter has none or the wrong one. Gives the grid's place if it was
     /// looked for.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn watch(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> Option<PhaseMode> {
         let frames = self.watch.unwatched_frames;
         if self.pair.cc > LOST_STD * LOST_STD {
@@ -152,6 +153,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     /// Moves the grid on by `frames`, shows it the measurement, and gives its place.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn look_at_grid(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) -> PhaseMode {
         let mut grid = self.grid.open();
         grid.advance(model, frames);
@@ -161,6 +163,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     /// Keeps what the mean cycle tells, at the filter's place, of what is seen.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn see_swing(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) {
         let told_rad = model.mean_pose_rad::<N>(model.point(self.position));
         self.swing.add(frames * model.mean_cycle_velocity(), measurement, &told_rad);

@@ -88,7 +88,7 @@ impl<const N: usize> KinematicCovariance<N> {
     /// between `before` and `after`.
     ///
     /// Only as many rows of noise are added as the triangles hold.
-    #[inline]
+    #[inline(always)]
     pub(super) fn advance(&mut self, step: f32, before: &[f32], after: &[f32], fraction: f32, scale: f32) {
         // Half of what the velocities gain, of which the other blocks are made up.
         let mut half = [[0.0; N]; N];
@@ -109,7 +109,7 @@ impl<const N: usize> KinematicCovariance<N> {
 
     /// Shrinks what has grown beyond all knowledge in a long gap: row and column of an angle or a velocity are scaled, which
     /// keeps the matrix positive semi-definite.
-    #[inline]
+    #[inline(always)]
     pub(super) fn saturate(&mut self) {
         for i in 0..N {
             if self.angle[i][i] > MAX_ANGLE_VARIANCE {
@@ -132,7 +132,7 @@ impl<const N: usize> KinematicCovariance<N> {
 
 /// Makes `matrix`, all zeros, the symmetric one whose packed lower triangle is `scale` times what lies between `before` and `after`,
 /// its diagonal raised by [`DIAGONAL_EXCESS`]; zeros stay where the triangles end.
-#[inline]
+#[inline(always)]
 fn interpolate<const N: usize>(matrix: &mut [[f32; N]; N], before: &[f32], after: &[f32], fraction: f32, scale: f32) {
     let between = |(a, b): (&f32, &f32)| scale * (a + fraction * (b - a));
     let (first, last) = matrix.split_at_mut(half::<N>());
@@ -176,7 +176,7 @@ fn fill_row<const N: usize>(
 }
 
 /// Copies what stands below the diagonal to above it.
-#[inline]
+#[inline(always)]
 pub(super) fn mirror<const N: usize>(matrix: &mut [[f32; N]; N]) {
     for i in 0..N {
         for j in 0..i {
@@ -185,9 +185,27 @@ pub(super) fn mirror<const N: usize>(matrix: &mut [[f32; N]; N]) {
     }
 }
 
-#[inline]
+/// Rows as columns, in squares that fit the registers.
+#[inline(always)]
 fn transpose<const N: usize>(matrix: &[[f32; N]; N]) -> [[f32; N]; N] {
-    core::array::from_fn(|i| core::array::from_fn(|j| matrix[j][i]))
+    let mut transposed = [[0.0; N]; N];
+    let whole = const { N - N % SQUARE };
+    for first in (0..whole).step_by(SQUARE) {
+        for other in (0..whole).step_by(SQUARE) {
+            for i in first..first + SQUARE {
+                for j in other..other + SQUARE {
+                    transposed[j][i] = matrix[i][j];
+                }
+            }
+        }
+    }
+    for i in 0..N {
+        for j in whole..N {
+            transposed[i][j] = matrix[j][i];
+            transposed[j][i] = matrix[i][j];
+        }
+    }
+    transposed
 }
 
 /// Scales row and column `index`; the entry on the diagonal is the caller's.

@@ -54,6 +54,7 @@ impl Information {
 impl CyclePair {
     /// Moves on by `step` frames. Gives the regression of the old (c, v) on the new one, and the covariance (cc, cv, vv)
     /// which that leaves unexplained.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn advance(&mut self, step: f32) -> ([[f32; 2]; 2], [f32; 3]) {
         let Self { cc, cv, vv } = *self;
         let noise = TEMPORAL_STD * TEMPORAL_STD * step;
@@ -74,6 +75,7 @@ impl CyclePair {
     }
 
     /// Takes in what was measured; gives the shift of (c, v).
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn correct(&mut self, information: &Information) -> [f32; 2] {
         let [x, y] = information.vector;
         *self = self.with(information);
@@ -81,6 +83,7 @@ impl CyclePair {
     }
 
     /// The covariance after `information`.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn with(&self, information: &Information) -> Self {
         let prior = self.inverse();
         let sum: [f32; 3] = core::array::from_fn(|i| prior[i] + information.matrix[i]);
@@ -90,6 +93,7 @@ impl CyclePair {
 
     /// Part of the sum of squared residuals that (c, v) explains, and by how much its uncertainty widens the residuals' joint
     /// normal density: ln det(1 + covariance times information).
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
     pub(super) fn explained(&self, information: &Information) -> (f32, f32) {
         let [x, y] = information.vector;
@@ -108,6 +112,7 @@ impl CyclePair {
     }
 
     /// Inverse (cc, cv, vv); the correlation is kept within what can be inverted.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
     pub(super) fn inverse(&self) -> [f32; 3] {
         let (cc, vv) = (max(self.cc, 1.0e-14), max(self.vv, 1.0e-14));

@@ -37,11 +37,13 @@ impl SwingSums {
         Self { weight: 0.0, seen: [0.0; 2], told: [0.0; 2], left: [0.0; 2] }
     }
 
+    #[inline(always)]
     fn fade(&mut self, keep: f32) {
         self.weight *= keep;
         self.seen.iter_mut().chain(&mut self.told).chain(&mut self.left).for_each(|sum| *sum *= keep);
     }
 
+    #[inline(always)]
     fn add(&mut self, seen_rad: f32, told_rad: f32) {
         let ((seen_sin, seen_cos), (told_sin, told_cos)) = (sin_cos(seen_rad), sin_cos(told_rad));
         self.weight += 1.0;
@@ -134,6 +136,7 @@ impl<const N: usize> ExplainedSwing<N> {
 
     /// Takes in a measurement, of which the motion's mean cycle tells `told_rad`. What was seen before fades as it does in so many
     /// `cycles` of the motion: to 1/e in one.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn add(&mut self, cycles: f32, measurement: &AngleMeasurement<N>, told_rad: &[f32; N]) {
         self.keep = exp(-cycles);
         for (i, sums) in self.angles.iter_mut().enumerate() {

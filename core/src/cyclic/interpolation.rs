@@ -52,7 +52,7 @@ impl MotionModel<'_> {
     }
 
     /// Mean acceleration, rad per reference frame^2; entries beyond the model's angles are zero.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn mean_acceleration<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
         self.row(self.parts().mean_acceleration, point)
@@ -144,6 +144,7 @@ impl MotionModel<'_> {
     /// # }
     /// # Ok::<(), sinew_core::cyclic::ModelError>(())
     /// ```
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
     pub fn mean_pose_secant<const N: usize>(&self, position: f32, reach: f32) -> [f32; N] {
         let reach = max(reach, 0.5 / self.position_count() as f32);
@@ -179,7 +180,7 @@ impl MotionModel<'_> {
     }
 
     /// The rows of `table` on both sides of a point, interpolated; zero beyond the model's angles.
-    #[inline]
+    #[inline(always)]
     fn row<const N: usize>(&self, table: &[f32], point: CyclePoint) -> [f32; N] {
         let between = |a: f32, b: f32| a + point.fraction * (b - a);
         let columns = self.angle_count();

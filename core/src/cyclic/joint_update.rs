@@ -30,7 +30,7 @@ pub(super) struct SeenAngles<const N: usize> {
 
 impl<const N: usize> SeenAngles<N> {
     /// What a measurement shows of the first `angle_count` angles, relative to those predicted: the shorter way round.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub(super) fn of(measurement: &AngleMeasurement<N>, predicted_rad: &[f32; N], angle_count: usize) -> Self {
         let mut seen = Self { order: [0; N], count: 0, innovation_rad: [0.0; N], noise_variance: [0.0; N] };
@@ -58,7 +58,7 @@ impl<const N: usize> SeenAngles<N> {
     }
 
     /// Number of angles seen.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub(super) const fn count(&self) -> usize {
         self.count
@@ -108,7 +108,7 @@ impl<const N: usize> KinematicCovariance<N> {
     /// The update by all angles seen.
     ///
     /// With `keeps_velocities` the gain moves the angles only (Joseph's form): the velocities keep their covariance.
-    #[inline]
+    #[inline(always)]
     pub(super) fn correct(&mut self, seen: &SeenAngles<N>, keeps_velocities: bool) -> MeanShift<N> {
         let count = seen.count.min(N);
         if count < N {
@@ -183,7 +183,7 @@ impl<const N: usize> Columns<N> {
     }
 
     /// Finds the columns of the measurement at `place` from those before; returns the variance of its innovation.
-    #[inline]
+    #[inline(always)]
     fn find(
         &mut self,
         (aheads, velocities): (&mut [[f32; N]; N], &mut [[f32; N]; N]),
@@ -234,7 +234,7 @@ impl<const N: usize> Columns<N> {
     /// Rows of the angles after all measurements: up to the diagonal at least, the rest from the rows below. A row begins as it is
     /// right after its own measurement, or as it was where its angle is not seen. Returns what is left of the innovations: from the
     /// corrected angles to the measurements, or where an angle is not seen, to where it was.
-    #[inline]
+    #[inline(always)]
     fn reduce_angles(&self, aheads: &mut [[f32; N]; N], velocities: &mut [[f32; N]; N], count: usize) -> [f32; N] {
         // It is no more; said here, it lets no index be checked.
         let count = count.min(N);
@@ -322,7 +322,7 @@ impl<const N: usize> Columns<N> {
 
     /// Takes the sum of w w' / s off the velocities' covariance, in squares of four rows and columns; returns what the innovations add
     /// to the velocities.
-    #[inline]
+    #[inline(always)]
     fn reduce_velocities(&self, velocities: &[[f32; N]; N], covariance: &mut [[f32; N]; N], count: usize) -> [f32; N] {
         // It is no more; said here, it lets no index be checked.
         let count = count.min(N);
@@ -403,7 +403,7 @@ impl<const N: usize> Columns<N> {
 }
 
 /// Values in the order of the angles seen, put at the angles' own places.
-#[inline]
+#[inline(always)]
 fn in_place<const N: usize>(seen: &SeenAngles<N>, ordered: &[f32; N]) -> [f32; N] {
     let mut values = [0.0; N];
     for (&index, value) in seen.order.iter().zip(ordered) {
@@ -415,7 +415,7 @@ fn in_place<const N: usize>(seen: &SeenAngles<N>, ordered: &[f32; N]) -> [f32; N
 }
 
 /// `target` -= `factor` `direction`.
-#[inline]
+#[inline(always)]
 fn subtract_scaled<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
     for j in 0..N {
         target[j] -= factor * direction[j];
@@ -423,7 +423,7 @@ fn subtract_scaled<const N: usize>(target: &mut [f32; N], factor: f32, direction
 }
 
 /// As [`subtract_scaled`], all numbers but the last.
-#[inline]
+#[inline(always)]
 fn subtract_but_last<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
     for j in 0..const { N - 1 } {
         target[j] -= factor * direction[j];
@@ -431,7 +431,7 @@ fn subtract_but_last<const N: usize>(target: &mut [f32; N], factor: f32, directi
 }
 
 /// As [`subtract_scaled`], the first [`half`] of the numbers.
-#[inline]
+#[inline(always)]
 fn subtract_first_half<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
     for j in 0..const { half::<N>() } {
         target[j] -= factor * direction[j];
@@ -439,7 +439,7 @@ fn subtract_first_half<const N: usize>(target: &mut [f32; N], factor: f32, direc
 }
 
 /// As [`subtract_scaled`], the numbers from [`half`] on but the last.
-#[inline]
+#[inline(always)]
 fn subtract_second_half<const N: usize>(target: &mut [f32; N], factor: f32, direction: &[f32; N]) {
     for j in const { half::<N>() }..const { N - 1 } {
         target[j] -= factor * direction[j];

@@ -121,7 +121,9 @@ impl<const N: usize> KalmanFilter<N> {
         })
     }
 
-    /// One frame: predict over the measurement's step, then correct by the angles seen.
+    /// One frame: predict over the measurement's step, then correct by the angles seen. On x86-64 all of it is inlined, so that
+    /// a caller compiled for wider vectors than the crate has them; elsewhere it would cost flash.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn step(
         &mut self,
         model: &MotionModel<'_>,
@@ -139,6 +141,7 @@ impl<const N: usize> KalmanFilter<N> {
     }
 
     /// The state transition of eqs. (11) and (12) over `step_frames`, in substeps of at most one frame.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn predict(&mut self, model: &MotionModel<'_>, options: &KalmanOptions, step_frames: f32) {
         let temporal_variance = options.temporal_acceleration_std * options.temporal_acceleration_std;
         for step in Substeps::of(step_frames) {
@@ -177,6 +180,7 @@ impl<const N: usize> KalmanFilter<N> {
     }
 
     /// The measurement update, angle by angle; innovations are wrapped relative to the prediction.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn correct(
         &mut self,
         model: &MotionModel<'_>,
@@ -196,6 +200,7 @@ impl<const N: usize> KalmanFilter<N> {
         Innovation { log_likelihood, squared: shift.squared, present: seen.count() }
     }
 
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn estimate(&self, innovation: &Innovation, outlier: bool) -> CyclicEstimate<N> {
         CyclicEstimate {
             angles_rad: self.angles_rad,

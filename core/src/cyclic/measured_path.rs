@@ -41,7 +41,8 @@ impl<const N: usize> MeasuredPath<N> {
 
     /// Whole turns that the estimate of an angle went beyond the shorter way from `from_rad` to `to_rad`, so that it stays within half
     /// a turn of the path of the measurements.
-    #[inline]
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline)]
     pub(super) fn turns(
         &mut self,
         index: usize,

@@ -65,6 +65,7 @@ impl PhaseEvidence {
     }
 
     /// Counts an angle for the likelihood; `variance` is that of the residual given (c, v).
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn add(&mut self, gradient: &[f32; 2], variance: f32, residual: f32) {
         self.all.add(gradient, 1.0 / variance, residual);
         self.squares += residual * residual / variance;
@@ -74,6 +75,7 @@ impl PhaseEvidence {
 
     /// Counts an angle that winds otherwise than the mean cycle: by itself, for the likelihood and as an outlier only; `variance` is
     /// that of the residual.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn add_apart(&mut self, variance: f32, residual: f32) {
         let (squares, count) = &mut self.apart;
         *squares += residual * residual / variance;
@@ -82,12 +84,14 @@ impl PhaseEvidence {
     }
 
     /// Lets an angle correct the phase.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn trust(&mut self, gradient: &[f32; 2], variance: f32, residual: f32) {
         let weight = 1.0 / (TEMPERING * variance + self.shape_rad2);
         self.trusted.add(gradient, weight, residual);
     }
 
     /// Judges all angles together, by `noise_scale` times the noise variances told; `pair` is what was known of (c, v) before.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn judge(&self, pair: &CyclePair, noise_scale: f32) -> Judgement {
         let (explained, log_growth) = pair.explained(&self.all);
         let squared = crate::math::max(self.squares - explained, 0.0);

@@ -116,6 +116,7 @@ impl PhaseGrid {
     }
 
     /// Scales all weights to a sum of one; nothing is known where they have none.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn normalise(&mut self) {
         let sum: f32 = self.weights.iter().map(|row| row.iter().sum::<f32>()).sum();
         if !(sum > 1.0e-30 && sum.is_finite()) {
@@ -127,6 +128,7 @@ impl PhaseGrid {
     }
 
     /// Moves on by `step_frames`; speeds may change to the next slower or faster one.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn advance(&mut self, model: &MotionModel<'_>, step_frames: f32) {
         for (travelled, ratio) in self.travelled.iter_mut().zip(SPEED_RATIOS) {
             *travelled = wrap_position(*travelled + ratio * model.mean_cycle_velocity() * step_frames);
@@ -154,6 +156,7 @@ impl PhaseGrid {
     }
 
     /// Takes in a measurement of a person about whom nothing but the spread between people is known.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn weigh<const N: usize>(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) {
         let likelihood = likelihood_table(model, measurement, frames);
         // Of the table's positions a speed's cells lie behind all even or all odd ones.
@@ -179,6 +182,7 @@ impl PhaseGrid {
     }
 
     /// Shows speed, weight and way from `position` of each cell within [`MODE_REACH`] to `take`.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn each_near(&self, position: f32, mut take: impl FnMut(usize, f32, f32)) {
         for (speed, (weights, &travelled)) in self.weights.iter().zip(&self.travelled).enumerate() {
             let (below, rest) = cells_and_rest(wrap_position(position - travelled), POSITIONS);
@@ -193,6 +197,7 @@ impl PhaseGrid {
     }
 
     /// Weight by position alone, on positions i / [`POSITIONS`].
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
     pub fn by_position(&self) -> [f32; POSITIONS] {
         let mut sums = [0.0; POSITIONS];
@@ -209,6 +214,7 @@ impl PhaseGrid {
     }
 
     /// The place with the most weight.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
     pub fn mode(&self, model: &MotionModel<'_>) -> PhaseMode {
         let sums = self.by_position();
@@ -253,6 +259,7 @@ fn twice(row: &[f32; POSITIONS]) -> [f32; 2 * POSITIONS] {
 }
 
 /// Sum of the cells within [`MODE_REACH`] of each, around the circle.
+#[cfg_attr(target_arch = "x86_64", inline(always))]
 fn sums_around(cells: &[f32; POSITIONS]) -> [f32; POSITIONS] {
     const REACH: usize = (MODE_REACH * POSITIONS as f32) as usize;
     let around: [f32; POSITIONS + 2 * REACH] = core::array::from_fn(|i| cells[(i + POSITIONS - REACH) % POSITIONS]);
@@ -266,6 +273,7 @@ fn sums_around(cells: &[f32; POSITIONS]) -> [f32; POSITIONS] {
 }
 
 /// Likelihood of a measurement at each position of the table, the greatest being one.
+#[cfg_attr(target_arch = "x86_64", inline(always))]
 fn likelihood_table<const N: usize>(
     model: &MotionModel<'_>,
     measurement: &AngleMeasurement<N>,
@@ -305,7 +313,7 @@ fn likelihood_table<const N: usize>(
 }
 
 /// Mean poses at [`LANES`] positions of the table, by angle.
-#[inline]
+#[inline(always)]
 fn lanes_of_poses<const N: usize>(model: &MotionModel<'_>, block: usize) -> [[f32; LANES]; N] {
     let mut poses_rad = [[0.0; LANES]; N];
     for lane in 0..LANES {
@@ -318,6 +326,7 @@ fn lanes_of_poses<const N: usize>(model: &MotionModel<'_>, block: usize) -> [[f3
 }
 
 /// A way in [0, 1) as whole cells of `cells` to a cycle, and the rest as a part of a cell.
+#[cfg_attr(target_arch = "x86_64", inline(always))]
 fn cells_and_rest(way: f32, cells: usize) -> (usize, f32) {
     let along = way * cells as f32;
     let whole = (along as usize).min(cells - 1);

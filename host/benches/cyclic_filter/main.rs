@@ -1,4 +1,4 @@
-//! The cyclic filters' steps: `paper` and `coupled` against dense filters of other crates; the particle filter by stage, on one
+//! The cyclic filters' steps: `paper` and `coupled`, as the command takes them and with SSE2 alone, against dense filters of other crates; the particle filter by stage, on one
 //! thread and two, and beside numpy and the Python package `particles` where they are installed.
 //!
 //! Medians and least times taken in turns in this process, on one thread unless said otherwise, and ratios of them. The Python filters run
@@ -13,6 +13,7 @@ mod walk;
 use dense_peers::{KfilterPeer, minikalman_step};
 use particle_step::{ParticleStep, STAGES};
 use sinew::cyclic::model::CyclicModel;
+use sinew::cyclic::tracking::wide_vectors::{coupled_step, kalman_step};
 use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
 use sinew_core::cyclic::{CycleStart, KalmanFilter, KalmanOptions, MotionModel};
 use std::hint::black_box;
@@ -57,21 +58,24 @@ fn microseconds<T>(first: usize, mut step: impl FnMut(usize) -> T) -> f64 {
     start.elapsed().as_secs_f64() * 1.0e6 / STEPS as f64
 }
 
-/// One round of every filter in turn: `paper`, `coupled`, `kfilter`, `minikalman`.
-fn kalman_rounds(model: &MotionModel<'_>, walk: &Walk) -> Vec<[f64; 4]> {
+/// One round of every filter in turn: `paper`, `coupled`, `kfilter`, `minikalman`, and the first two with SSE2 alone.
+fn kalman_rounds(model: &MotionModel<'_>, walk: &Walk) -> Vec<[f64; 6]> {
     let options = KalmanOptions::default();
     let start = CycleStart::standard(model, walk.angles(0), None, None).expect("a sound start");
     let mut paper = KalmanFilter::new(model, &options, &start).expect("sound options");
     let first = AngleMeasurement::new(walk.angles(0), walk::STD_RAD).expect("positive noise");
     let mut coupled = CoupledFilter::<ANGLES>::new(model, &first, None, None).expect("a model with spread");
+    let (mut narrow_paper, mut narrow_coupled) = (paper, coupled);
     let (mut kfilter, mut minikalman) = (KfilterPeer::new(), minikalman_step());
     let round = |round: usize| {
         let first = 1 + round * STEPS;
         [
-            microseconds(first, |frame| paper.step(model, &options, &walk.measurement(frame))),
-            microseconds(first, |frame| coupled.step(model, &walk.measurement(frame))),
+            microseconds(first, |frame| kalman_step(&mut paper, model, &options, &walk.measurement(frame))),
+            microseconds(first, |frame| coupled_step(&mut coupled, model, &walk.measurement(frame))),
             microseconds(first, |frame| kfilter.step(walk.angles(frame))),
             microseconds(first, |frame| minikalman(walk.angles(frame))),
+            microseconds(first, |frame| narrow_paper.step(model, &options, &walk.measurement(frame))),
+            microseconds(first, |frame| narrow_coupled.step(model, &walk.measurement(frame))),
         ]
     };
     (0..ROUNDS).map(round).collect()
@@ -81,7 +85,8 @@ fn print_kalman(model: &MotionModel<'_>, walk: &Walk) {
     let rounds = kalman_rounds(model, walk);
     let times = |i: usize| median_and_least(rounds.iter().map(|round| round[i]).collect());
     print_heading("filter, one step", "us");
-    for (i, name) in ["paper", "coupled", "kfilter", "minikalman"].into_iter().enumerate() {
+    let names = ["paper", "coupled", "kfilter", "minikalman", "paper, SSE2", "coupled, SSE2"];
+    for (i, name) in names.into_iter().enumerate() {
         print_line(name, times(i), times(0));
     }
 }

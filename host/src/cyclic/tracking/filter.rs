@@ -2,6 +2,7 @@
 
 use super::options::{FilterName, StartName, TrackingOptions};
 use super::particles::ParticleFilter;
+use super::wide_vectors::{coupled_step, kalman_step};
 use crate::cyclic::smoothing::{CoupledState, KalmanState, Smoothed, backward};
 use anyhow::Result;
 use sinew_core::cyclic::particle::{ParticleOptions, Spread};
@@ -85,9 +86,9 @@ impl<'m, const N: usize> Filter<'m, N> {
     /// One frame.
     pub fn step(&mut self, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
         match &mut self.kind {
-            Kind::Kalman(filter, options) => filter.step(&self.model, options, measurement),
+            Kind::Kalman(filter, options) => kalman_step(filter, &self.model, options, measurement),
             Kind::Particle(filter) => filter.step(&self.model, measurement),
-            Kind::Coupled(filter) => filter.step(&self.model, measurement),
+            Kind::Coupled(filter) => coupled_step(filter, &self.model, measurement),
         }
     }
 }

@@ -10,6 +10,7 @@ pub mod summary;
 pub mod table;
 pub mod table_run;
 mod walk;
+pub mod wide_vectors;
 
 pub use bank::NamedMotion;
 pub use measurements::Measurements;
