@@ -530,20 +530,19 @@ pub fn length(v: &Vec3) -> f32 {
 #[inline]
 #[must_use]
 pub fn axis_rotation(axis: &Vec3, angle_rad: f32) -> Mat3 {
-    let (s, c) = sin_cos(angle_rad);
-    let t = 1.0 - c;
+    turn_columns(axis, sin_cos(angle_rad)).into()
+}
+
+/// The columns of [`axis_rotation`], from sine and cosine of the angle.
+#[inline(always)]
+pub(crate) fn turn_columns(axis: &Vec3, (sine, cosine): (f32, f32)) -> [[f32; 3]; 3] {
     let (x, y, z) = (axis.x, axis.y, axis.z);
-    Mat3::new(
-        t * x * x + c,
-        t * x * y - s * z,
-        t * x * z + s * y,
-        t * x * y + s * z,
-        t * y * y + c,
-        t * y * z - s * x,
-        t * x * z - s * y,
-        t * y * z + s * x,
-        t * z * z + c,
-    )
+    let rest = 1.0 - cosine;
+    [
+        [rest * x * x + cosine, rest * x * y + sine * z, rest * x * z - sine * y],
+        [rest * x * y - sine * z, rest * y * y + cosine, rest * y * z + sine * x],
+        [rest * x * z + sine * y, rest * y * z - sine * x, rest * z * z + cosine],
+    ]
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Rotations of bones, joint after joint.
 
-use crate::math::Vec3;
+use crate::math::{Vec3, turn_columns};
 
 /// What turns a bone against the world: its columns are the bone's own axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,17 +20,10 @@ impl Rotation {
         if self.is_none { *vector } else { self.combined([vector.x, vector.y, vector.z]).into() }
     }
 
-    /// Itself, and then the turn about `axis`, a unit vector that turns with the bone, by the angle of this sine and cosine
-    /// ([`axis_rotation`](crate::math::axis_rotation), which reckons alike).
+    /// Itself, and then the turn about `axis`, a unit vector that turns with the bone, by the angle of this sine and cosine.
     #[inline(always)]
-    pub(super) fn then(&self, axis: &Vec3, (sine, cosine): (f32, f32)) -> Self {
-        let (x, y, z) = (axis.x, axis.y, axis.z);
-        let rest = 1.0 - cosine;
-        let turn = [
-            [rest * x * x + cosine, rest * x * y + sine * z, rest * x * z - sine * y],
-            [rest * x * y - sine * z, rest * y * y + cosine, rest * y * z + sine * x],
-            [rest * x * z + sine * y, rest * y * z - sine * x, rest * z * z + cosine],
-        ];
+    pub(super) fn then(&self, axis: &Vec3, sine_and_cosine: (f32, f32)) -> Self {
+        let turn = turn_columns(axis, sine_and_cosine);
         let columns = if self.is_none { turn } else { turn.map(|column| self.combined(column)) };
         Self { columns, is_none: false }
     }
