@@ -1,6 +1,6 @@
 //! One step of the particle filter on one thread, stage by stage, with the shipped model of walking.
 
-use sinew::cyclic::tracking::particles::sweep_in_wide_vectors;
+use sinew::cyclic::tracking::wide_vectors::particle_sweep;
 use sinew_core::cyclic::particle::{CyclicParticle, ParticleOptions, factors_len, fill_factors, first_particle};
 use sinew_core::cyclic::particle_moments::ParticleMoments;
 use sinew_core::cyclic::particle_resampling::{Comb, WeightShare};
@@ -69,8 +69,7 @@ impl<'a> ParticleStep<'a> {
         let chunks = self.particles.chunks_mut(CHUNK).zip(self.weights.chunks_mut(CHUNK));
         for (chunk, (particles, weights)) in chunks.enumerate() {
             let key = (1, self.frame as u64, (chunk * CHUNK) as u32);
-            let moments =
-                sweep_in_wide_vectors(&self.model, &self.factors, &options, (target, 1.0), key, particles, weights);
+            let moments = particle_sweep(&self.model, &self.factors, &options, (target, 1.0), key, particles, weights);
             self.shares.push(moments.share());
             all.merge(&moments);
         }

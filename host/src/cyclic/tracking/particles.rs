@@ -4,6 +4,7 @@
 //! any number of threads.
 
 use super::walk::visit_estimate;
+use super::wide_vectors::particle_sweep;
 use crate::resume::{real, reals};
 use rayon::prelude::*;
 use sinew_core::cyclic::particle::{
@@ -11,25 +12,10 @@ use sinew_core::cyclic::particle::{
 };
 use sinew_core::cyclic::particle_moments::ParticleMoments;
 use sinew_core::cyclic::particle_resampling::{Comb, WeightShare};
-use sinew_core::cyclic::particle_sweep::{CHUNK, ParticleTarget, sweep};
+use sinew_core::cyclic::particle_sweep::{CHUNK, ParticleTarget};
 use sinew_core::cyclic::particle_tracker::{count_turns, log_likelihood, resampling_offset};
 use sinew_core::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
 use sinew_core::saved_state::{SavedState, StateVisitor};
-
-/// [`sweep`] with the widest vectors of those named that the processor has. No operation is contracted or taken in another order,
-/// so the bits are those of any other processor.
-#[multiversion::multiversion(targets("x86_64+avx2"))]
-pub fn sweep_in_wide_vectors<const N: usize>(
-    model: &MotionModel<'_>,
-    factors: &[f32],
-    options: &ParticleOptions,
-    frame: (&ParticleTarget<N>, f32),
-    key: (u64, u64, u32),
-    particles: &mut [CyclicParticle<N>],
-    weights: &mut [f32],
-) -> ParticleMoments<N> {
-    sweep(model, factors, options, frame, key, particles, weights)
-}
 
 /// State of a particle filter.
 #[derive(Debug, Clone)]
@@ -107,7 +93,7 @@ impl<const N: usize> ParticleFilter<N> {
             .enumerate()
             .map(|(chunk, (particles, weights))| {
                 let key = (seed, frame, (chunk * CHUNK) as u32);
-                sweep_in_wide_vectors(model, factors, options, (target, step_frames), key, particles, weights)
+                particle_sweep(model, factors, options, (target, step_frames), key, particles, weights)
             })
             .collect()
     }

@@ -1,8 +1,11 @@
-//! The Gaussian filters' steps in the widest vectors that serve them on the processor at hand, chosen when the program runs.
+//! The filters' steps in the widest vectors that serve them on the processor at hand, chosen when the program runs.
 //!
 //! No operation is contracted or taken in another order, so the bits are those of any other processor. Speeds of both ways:
 //! `docs/measurements.md`.
 
+use sinew_core::cyclic::particle::{CyclicParticle, ParticleOptions};
+use sinew_core::cyclic::particle_moments::ParticleMoments;
+use sinew_core::cyclic::particle_sweep::{ParticleTarget, sweep};
 use sinew_core::cyclic::{AngleMeasurement, CoupledFilter, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel};
 
 /// [`KalmanFilter::step`], with AVX2 on AMD's processors, of which `sse4a` tells: there it takes a fifth off the step. An Intel Xeon
@@ -25,6 +28,20 @@ pub fn coupled_step<const N: usize>(
     measurement: &AngleMeasurement<N>,
 ) -> CyclicEstimate<N> {
     filter.step(model, measurement)
+}
+
+/// The particle filter's [`sweep`], with AVX2 wherever it is.
+#[multiversion::multiversion(targets("x86_64+avx2"))]
+pub fn particle_sweep<const N: usize>(
+    model: &MotionModel<'_>,
+    factors: &[f32],
+    options: &ParticleOptions,
+    frame: (&ParticleTarget<N>, f32),
+    key: (u64, u64, u32),
+    particles: &mut [CyclicParticle<N>],
+    weights: &mut [f32],
+) -> ParticleMoments<N> {
+    sweep(model, factors, options, frame, key, particles, weights)
 }
 
 #[cfg(test)]
