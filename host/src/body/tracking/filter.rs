@@ -32,7 +32,7 @@ pub const MAX_BODY_PARTICLES: usize = 16_384;
 /// End-effectors with goals: head, hands and feet; an upper body has the first three.
 pub const END_EFFECTORS: [usize; 5] = [HEAD, FOREARMS[0], FOREARMS[1], SHANKS[0], SHANKS[1]];
 /// Of these head and hands go with the root; feet stand.
-pub(super) const CARRIED: usize = 3;
+pub const CARRIED: usize = 3;
 /// About whose ends they swing: the neck and the shoulders.
 pub(super) const JOINTS: [usize; CARRIED] = [TRUNK, COLLARS[0], COLLARS[1]];
 
@@ -89,7 +89,7 @@ impl BodyFilter {
         seed: u64,
     ) -> Result<Self, ParameterError> {
         let tuning = tuning.of_kind(kind);
-        let points = if kind == BodyModelKind::Guided { tuning.guided_points } else { tuning.points };
+        let (points, _) = tuning.points_and_goals(kind);
         let scene = BodyScene {
             skeleton: full_body(measures)?,
             radii_m: part.radii_m(measures),

@@ -21,7 +21,7 @@ use sinew_core::pik::processes::stick::{StickGoals, StickSight};
 use sinew_core::pik::root::RootProcess;
 use sinew_core::skeleton::Skeleton;
 use sinew_core::skeleton::full_body::{FOREARMS, HEAD};
-use sinew_core::tracker::body::{BodyEstimate, BodyFrame, BodyOptions, BodyTracker};
+use sinew_core::tracker::body::{BodyEstimate, BodyFrame, BodyTracker};
 
 /// End-effectors of the PIK paper (section 7.1.2): head and hands.
 const PAPER_END_EFFECTORS: [usize; 3] = [HEAD, FOREARMS[0], FOREARMS[1]];
@@ -76,14 +76,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         particles: usize,
         seed: u64,
     ) -> Result<Self, ParameterError> {
-        let (points, goals) = match kind {
-            BodyModelKind::Guided => (tuning.guided_points, tuning.guided),
-            _ => (tuning.points, tuning.end_effector),
-        };
-        let acceleration_share = match kind {
-            BodyModelKind::Angular | BodyModelKind::AngularPaper => tuning.angular.acceleration_share,
-            _ => goals.acceleration_share,
-        };
+        let (points, goals) = tuning.points_and_goals(kind);
         let std_m = tuning.self_penetration_std_m;
         let apart = (std_m > 0.0).then(|| SelfPenetration::new(&body.skeleton, &body.radii_m, std_m));
         let self_penetration = apart.transpose()?;
@@ -99,16 +92,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             .carrying(CARRIED)
             .swinging_about(&JOINTS, BONES)?;
         let first = BodyParticle::at(&scene.skeleton, first_rad);
-        let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::PelvicLift);
-        let options = BodyOptions {
-            least_effective_share: points.least_effective_share,
-            limb_by_limb: points.limb_by_limb,
-            alignment: tuning.root.alignment().filter(|_| is_aligned),
-            tremble_errors: tuning.steady.tremble_errors,
-            tremble_m: tuning.steady.tremble_m,
-            pace: Some(tuning.pace.noise()),
-            acceleration_share,
-        };
+        let options = tuning.options(kind);
         let lays_trunk = options.alignment.is_some_and(|alignment| alignment.lays_trunk);
         let set = vec![first; particles];
         let tracker = Tracker::new(&first, (set.clone(), set), options, seed)?;

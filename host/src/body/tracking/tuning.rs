@@ -8,7 +8,7 @@ use sinew_core::observation::range_smoothing::RangeSmoothing;
 use sinew_core::pik::goal::LinearExtrapolation;
 use sinew_core::pik::root::{NO_PLANES, RootProcess};
 use sinew_core::skeleton::full_body::BODY_ANGLES;
-use sinew_core::tracker::body::{PaceNoise, RootAlignment};
+use sinew_core::tracker::body::{BodyOptions, PaceNoise, RootAlignment};
 
 /// Standard deviations of angles after one second, by the joint they belong to; radians by root second.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -312,6 +312,34 @@ impl BodyTuning {
             self.points.least_effective_share = PAPER_EFFECTIVE_SHARE;
         }
         self
+    }
+
+    /// How the model `kind` weighs its points, and how its goals move.
+    pub(super) const fn points_and_goals(&self, kind: BodyModelKind) -> (PointTuning, GoalTuning) {
+        match kind {
+            BodyModelKind::Guided => (self.guided_points, self.guided),
+            _ => (self.points, self.end_effector),
+        }
+    }
+
+    /// The core's options of the tracker of `kind`, of which these are the numbers ([`Self::of_kind`]).
+    #[must_use]
+    pub fn options(&self, kind: BodyModelKind) -> BodyOptions {
+        let (points, goals) = self.points_and_goals(kind);
+        let acceleration_share = match kind {
+            BodyModelKind::Angular | BodyModelKind::AngularPaper => self.angular.acceleration_share,
+            _ => goals.acceleration_share,
+        };
+        let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::PelvicLift);
+        BodyOptions {
+            least_effective_share: points.least_effective_share,
+            limb_by_limb: points.limb_by_limb,
+            alignment: self.root.alignment().filter(|_| is_aligned),
+            tremble_errors: self.steady.tremble_errors,
+            tremble_m: self.steady.tremble_m,
+            pace: Some(self.pace.noise()),
+            acceleration_share,
+        }
     }
 
     /// How points are smoothed; `None` where they are taken as they are.
