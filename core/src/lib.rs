@@ -11,6 +11,7 @@ pub mod cyclic;
 pub mod error;
 pub mod kinematics;
 pub mod math;
+pub mod numeric;
 pub mod observation;
 pub mod particle;
 pub mod pik;

@@ -1,14 +1,16 @@
 //! The particle filter against the exact posterior where that is known: a linear model with normal noise.
 
-use sinew_core::cyclic::particle::{CyclicParticle, ParticleOptions, factors_len, fill_factors, first_particle};
-use sinew_core::cyclic::particle_moments::ParticleMoments;
-use sinew_core::cyclic::particle_resampling::{Comb, WeightShare};
-use sinew_core::cyclic::particle_sweep::{CHUNK, ParticleTarget, sweep};
-use sinew_core::cyclic::particle_tracker::resampling_offset;
-use sinew_core::cyclic::semi_definite::{packed_index, packed_len};
+use sinew_core::cyclic::particle::moments::ParticleMoments;
+use sinew_core::cyclic::particle::propose::{
+    CyclicParticle, ParticleOptions, factors_len, fill_factors, first_particle,
+};
+use sinew_core::cyclic::particle::resample::{Comb, WeightShare};
+use sinew_core::cyclic::particle::sweep::{CHUNK, ParticleTarget, sweep};
+use sinew_core::cyclic::particle::tracker::resampling_offset;
 use sinew_core::cyclic::{
     AngleMeasurement, CycleStart, Deviation, KalmanFilter, KalmanOptions, ModelParts, MotionModel,
 };
+use sinew_core::numeric::semi_definite::{packed_index, packed_len};
 use sinew_core::random::Stream;
 
 const N: usize = 13;

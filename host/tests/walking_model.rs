@@ -7,7 +7,7 @@ use std::path::Path;
 fn the_model_for_flash_is_the_shipped_one() {
     let shipped = CyclicModel::from_option("walking").unwrap();
     let bytes = shipped.to_bytes().unwrap();
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/src/cyclic/models/walking.sinewmodel");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/src/cyclic/model/walking.sinewmodel");
     if std::env::var_os("SINEW_REGENERATE").is_some() {
         std::fs::write(&path, &bytes).unwrap();
     }

@@ -1,12 +1,12 @@
 //! Ten million frames of `f32`: the covariances stay symmetric, finite and positive semi-definite.
 
 use nalgebra::DMatrix;
-use sinew_core::cyclic::coupled_block::PARTS;
-use sinew_core::cyclic::model_table::HumanModelTable;
-use sinew_core::cyclic::semi_definite::{packed_index, packed_len};
+use sinew_core::cyclic::coupled::block::PARTS;
+use sinew_core::cyclic::model::table::HumanModelTable;
 use sinew_core::cyclic::{
     AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel,
 };
+use sinew_core::numeric::semi_definite::{packed_index, packed_len};
 use sinew_core::random::Stream;
 
 const N: usize = 13;

@@ -1,7 +1,7 @@
 //! The walking model as a constant of the core is the one that the command ships.
 
 use sinew::cyclic::model::CyclicModel;
-use sinew_core::cyclic::models::walking::WALKING;
+use sinew_core::cyclic::model::walking::WALKING;
 
 #[test]
 fn the_constant_is_the_shipped_model() {

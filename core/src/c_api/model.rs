@@ -5,7 +5,7 @@ use super::object::list;
 use super::status::SinewStatus;
 use crate::checksum::Crc32;
 use crate::cyclic::MotionModel;
-use crate::cyclic::model_bytes::{HEADER_BYTES, ModelHeader};
+use crate::cyclic::model::bytes::{HEADER_BYTES, ModelHeader};
 use core::ffi::c_void;
 
 #[cfg(target_endian = "big")]
@@ -41,7 +41,7 @@ pub(super) unsafe fn read_model(model: *const c_void, bytes: usize) -> Result<Mo
 
 #[cfg(feature = "walking-model")]
 fn walking() -> Result<MotionModel<'static>, SinewStatus> {
-    Ok(crate::cyclic::models::walking::WALKING.model()?)
+    Ok(crate::cyclic::model::walking::WALKING.model()?)
 }
 
 #[cfg(not(feature = "walking-model"))]

@@ -1,7 +1,7 @@
 //! What firmware in Rust calls and no C function does, so that the link-time proof of `prove-no-panic` covers it too. In no other library, and in no header.
 #![allow(missing_docs, improper_ctypes_definitions, reason = "called by nobody, only linked")]
 
-use crate::cyclic::motion_bank::MotionBank;
+use crate::cyclic::recognition::bank::MotionBank;
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::error::ParameterError;
 use crate::record::{ArmInput, ArmSetup, CameraLine, CyclicInput, CyclicResult, Record, RecordError, decode, encode};

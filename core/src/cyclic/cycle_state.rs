@@ -1,6 +1,6 @@
 //! Position and velocity in the cycle with their covariance: eqs. (4), (5) and (10) of the cyclic paper.
 
-use super::phase::wrap_position;
+use crate::cyclic::phase::wrap_position;
 use crate::math::{min, sqrt};
 
 /// Greatest variance of the cycle position, cycles^2: one cycle of standard deviation is no knowledge at all.

@@ -13,7 +13,7 @@
 //! assert_eq!(counter.completed(), 1);
 //! ```
 
-use super::phase::{POSITIONS_IN_CYCLE, position_difference, wrap_position};
+use crate::cyclic::phase::{POSITIONS_IN_CYCLE, position_difference, wrap_position};
 use crate::math::{floor, min, round};
 use crate::saved_state::{SavedState, StateVisitor};
 

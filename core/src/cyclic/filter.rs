@@ -1,6 +1,8 @@
 //! The filters that need no cloud of particles, behind one type.
 
-use super::{AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel};
+use crate::cyclic::{
+    AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel,
+};
 use crate::error::ParameterError;
 
 /// Which filter, with what may be chosen in it.
@@ -8,7 +10,7 @@ use crate::error::ParameterError;
 /// ```
 /// # #[cfg(feature = "walking-model")] {
 /// use sinew_core::cyclic::filter::FilterChoice;
-/// use sinew_core::cyclic::{AngleMeasurement, KalmanOptions, models::walking::WALKING};
+/// use sinew_core::cyclic::{AngleMeasurement, KalmanOptions, model::walking::WALKING};
 /// use sinew_core::tracker::cyclic::{CyclicTracker, CyclicTrackerOptions, FirstPhase};
 ///
 /// // The paper's filter in place of the default.
@@ -36,7 +38,7 @@ pub enum FilterChoice {
 /// ```
 /// # #[cfg(feature = "walking-model")] {
 /// use sinew_core::cyclic::filter::{CyclicFilter, FilterChoice};
-/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::cyclic::{AngleMeasurement, KalmanOptions};
 ///
 /// // Both filters, one after the other, on half a second of the mean cycle.

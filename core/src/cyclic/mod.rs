@@ -52,74 +52,29 @@
 //! # Ok::<(), sinew_core::error::ParameterError>(())
 //! ```
 
-mod angle_blocks;
 pub mod coupled;
-pub mod coupled_block;
-pub mod coupled_moments;
-mod coupled_search;
-mod coupled_state;
-#[cfg(test)]
-mod coupled_tests;
-pub mod covariance;
-mod cycle_pair;
 pub mod cycle_state;
-pub mod deviation;
 pub mod estimate;
 pub mod events;
-mod explained_swing;
-pub mod figure_place;
+pub mod figure;
 pub mod filter;
-mod first_row;
-pub mod gate;
-pub mod image_filter;
-pub mod interpolation;
-mod joint_update;
-#[cfg(test)]
-mod joint_update_tests;
 pub mod kalman;
-pub mod kalman_options;
-mod kalman_state;
-#[cfg(test)]
-mod kalman_tests;
-mod log_product;
-mod measured_path;
 pub mod measurement;
 pub mod model;
-pub mod model_bytes;
-pub mod model_table;
-pub mod models;
-pub mod motion_bank;
-mod noise_share;
 pub mod particle;
-pub mod particle_moments;
-pub mod particle_resampling;
-pub mod particle_sweep;
-pub mod particle_table;
-pub mod particle_tracker;
 pub mod phase;
-mod phase_evidence;
-pub mod phase_grid;
-mod prediction_fit;
-pub mod semi_definite;
-mod short_real;
+pub mod recognition;
 pub mod start;
-mod stored_grid;
 pub mod substeps;
 #[cfg(test)]
 pub mod synthetic;
-mod winding;
 
-pub use coupled::CoupledFilter;
-pub use coupled_moments::{BlockTransition, CoupledTransition};
-pub use deviation::Deviation;
+pub use coupled::{BlockTransition, CoupledFilter, CoupledTransition};
 pub use estimate::CyclicEstimate;
-pub use figure_place::{FigurePlace, PlaceOptions};
+pub use figure::{FigurePlace, PlaceOptions};
 pub use filter::{CyclicFilter, FilterChoice};
-pub use interpolation::CyclePoint;
-pub use kalman::KalmanFilter;
-pub use kalman_options::{CovarianceScaling, GainReach, KalmanOptions};
+pub use kalman::{CovarianceScaling, GainReach, KalmanFilter, KalmanOptions};
 pub use measurement::AngleMeasurement;
-pub use model::{ModelError, ModelParts, MotionModel};
-pub use model_table::{HumanModelTable, ModelTable};
-pub use particle_tracker::ParticleTracker;
+pub use model::{CyclePoint, Deviation, HumanModelTable, ModelError, ModelParts, ModelTable, MotionModel};
+pub use particle::ParticleTracker;
 pub use start::CycleStart;

@@ -1,8 +1,8 @@
 //! Where a filter begins: pose, velocities, cycle position and velocity (cyclic paper, sections 3.2 and 3.3).
 
-use super::phase::wrap_position;
-use super::{CyclicEstimate, MotionModel};
 use crate::angle::{angle_difference, split_turns};
+use crate::cyclic::phase::wrap_position;
+use crate::cyclic::{CyclicEstimate, MotionModel};
 use crate::error::{ParameterError, finite};
 
 /// Variance of an angle that the first frame does not show and about whose spread the model says nothing, rad^2.
@@ -17,7 +17,7 @@ pub const MAX_CYCLE_VELOCITY: f32 = 0.5;
 /// ```
 /// # #[cfg(feature = "walking-model")] {
 /// use sinew_core::cyclic::CycleStart;
-/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::model::walking::WALKING;
 ///
 /// // The first picture shows all angles but one; that one is taken from the mean cycle, and is less sure.
 /// let model = WALKING.model()?;
@@ -123,7 +123,7 @@ impl<const N: usize> CycleStart<N> {
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
-/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::cyclic::start::best_position;
 ///
 /// // Where in the cycle a single picture is.

@@ -1,7 +1,7 @@
 //! A step of any length in parts: of at most one frame, as the noise of eqs. (9) and (10) is defined for those, or in few parts where
 //! the work of a step has a limit.
 
-use super::measurement::MAX_STEP_FRAMES;
+use crate::cyclic::measurement::MAX_STEP_FRAMES;
 use crate::math::{clamp, max, min};
 
 /// The parts of a step: whole ones first, then what is left.

@@ -1,7 +1,7 @@
 //! A made-up motion for the tests of the filters: every angle swings or winds, correlated noise.
 
-use super::HumanModelTable;
-use super::semi_definite::{packed_index, packed_len};
+use crate::cyclic::HumanModelTable;
+use crate::numeric::semi_definite::{packed_index, packed_len};
 use crate::random::Stream;
 use core::f32::consts::TAU;
 

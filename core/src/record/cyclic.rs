@@ -31,7 +31,7 @@ pub struct CyclicSetup {
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
-/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::cyclic::{ModelParts, MotionModel};
 /// use sinew_core::record::model_checksum;
 ///

@@ -13,7 +13,7 @@ use crate::tracker::cyclic::CyclicFrame;
 /// ```
 /// # #[cfg(feature = "walking-model")] {
 /// use sinew_core::cyclic::AngleMeasurement;
-/// use sinew_core::cyclic::models::walking::WALKING;
+/// use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::record::{CyclicResult, decode, encode};
 /// use sinew_core::tracker::cyclic::{CyclicTracker, CyclicTrackerOptions, FirstPhase};
 ///

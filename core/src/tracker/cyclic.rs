@@ -3,7 +3,7 @@
 //! ```
 //! # #[cfg(feature = "walking-model")] {
 //! use sinew_core::cyclic::AngleMeasurement;
-//! use sinew_core::cyclic::models::walking::WALKING;
+//! use sinew_core::cyclic::model::walking::WALKING;
 //! use sinew_core::tracker::cyclic::{CyclicTracker, CyclicTrackerOptions, FirstPhase};
 //!
 //! // The walking model is in flash (feature `walking-model`); somebody walks as it says.
@@ -30,7 +30,7 @@
 //! ```
 
 use crate::cyclic::events::{CycleCounter, CycleStep};
-use crate::cyclic::figure_place::{FigurePlace, PlaceOptions};
+use crate::cyclic::figure::place::{FigurePlace, PlaceOptions};
 use crate::cyclic::filter::{CyclicFilter, FilterChoice};
 use crate::cyclic::{AngleMeasurement, CyclicEstimate, MotionModel};
 use crate::error::ParameterError;

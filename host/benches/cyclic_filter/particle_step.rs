@@ -1,10 +1,12 @@
 //! One step of the particle filter on one thread, stage by stage, with the shipped model of walking.
 
 use sinew::cyclic::tracking::wide_vectors::particle_sweep;
-use sinew_core::cyclic::particle::{CyclicParticle, ParticleOptions, factors_len, fill_factors, first_particle};
-use sinew_core::cyclic::particle_moments::ParticleMoments;
-use sinew_core::cyclic::particle_resampling::{Comb, WeightShare};
-use sinew_core::cyclic::particle_sweep::{CHUNK, ParticleTarget};
+use sinew_core::cyclic::particle::moments::ParticleMoments;
+use sinew_core::cyclic::particle::propose::{
+    CyclicParticle, ParticleOptions, factors_len, fill_factors, first_particle,
+};
+use sinew_core::cyclic::particle::resample::{Comb, WeightShare};
+use sinew_core::cyclic::particle::sweep::{CHUNK, ParticleTarget};
 use sinew_core::cyclic::{CycleStart, CyclicEstimate, MotionModel};
 use std::hint::black_box;
 use std::time::Instant;

@@ -1,7 +1,7 @@
 //! The host's particle filter on one thread and on two, in turns of some frames each.
 
 use sinew::cyclic::tracking::particles::ParticleFilter;
-use sinew_core::cyclic::particle::ParticleOptions;
+use sinew_core::cyclic::particle::propose::ParticleOptions;
 use sinew_core::cyclic::{CycleStart, MotionModel};
 use std::hint::black_box;
 use std::time::Instant;

@@ -3,7 +3,7 @@
 use super::model_file;
 use anyhow::{Result, bail};
 use serde::{Deserialize, Serialize};
-use sinew_core::cyclic::model_bytes::{self, ModelHeader};
+use sinew_core::cyclic::model::bytes::{self, ModelHeader};
 use sinew_core::cyclic::{Deviation, ModelError, ModelParts, MotionModel};
 use std::path::Path;
 
@@ -137,7 +137,7 @@ impl CyclicModel {
         self.numbers.view().expect("the numbers were checked when the model was made")
     }
 
-    /// The model as firmware reads it ([`sinew_core::cyclic::model_bytes`]); `None` where it says nothing of how people differ.
+    /// The model as firmware reads it ([`sinew_core::cyclic::model::bytes`]); `None` where it says nothing of how people differ.
     #[must_use]
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
         let view = self.view();
@@ -148,7 +148,7 @@ impl CyclicModel {
             rate_hz: view.rate_hz(),
         };
         let mut bytes = vec![0; header.byte_count()];
-        model_bytes::write(&view, &mut bytes)?;
+        bytes::write(&view, &mut bytes)?;
         Some(bytes)
     }
 

@@ -6,7 +6,7 @@ use crate::model_text::{self, ModelFileKind};
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
-use sinew_core::cyclic::semi_definite::packed_len;
+use sinew_core::numeric::semi_definite::packed_len;
 use std::path::Path;
 
 const KIND: ModelFileKind =

@@ -3,8 +3,8 @@
 use super::SEED;
 use super::bits::Bits;
 use super::motion::{POSITIONS, Person, Table, table};
-use sinew_core::cyclic::particle::{ParticleOptions, Spread, factors_len, fill_factors, fill_positions};
-use sinew_core::cyclic::particle_tracker::ParticleTables;
+use sinew_core::cyclic::particle::propose::{ParticleOptions, Spread, factors_len, fill_factors, fill_positions};
+use sinew_core::cyclic::particle::tracker::ParticleTables;
 use sinew_core::cyclic::{
     AngleMeasurement, CycleStart, CyclicEstimate, FilterChoice, KalmanOptions, MotionModel, ParticleTracker,
     PlaceOptions,

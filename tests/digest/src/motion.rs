@@ -3,8 +3,8 @@
 use core::array::from_fn;
 use core::f32::consts::TAU;
 use sinew_core::cyclic::ModelTable;
-use sinew_core::cyclic::semi_definite::{packed_index, packed_len};
 use sinew_core::math::sin_cos;
+use sinew_core::numeric::semi_definite::{packed_index, packed_len};
 use sinew_core::random::Stream;
 use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
 

@@ -4,7 +4,7 @@ use sinew::cyclic::CyclicModel;
 use sinew::cyclic::tracking::{TrackingOptions, track};
 use sinew::record::StreamWriter;
 use sinew_core::cyclic::AngleMeasurement;
-use sinew_core::cyclic::models::walking::WALKING;
+use sinew_core::cyclic::model::walking::WALKING;
 use sinew_core::record::{
     CyclicInput, CyclicResult, CyclicSetup, Failure, Kind, RecordError, RecordStream, model_checksum,
 };

@@ -4,9 +4,9 @@
 use super::pass::{Link, Smoothable, Smoothed};
 use super::recursion::Moments;
 use nalgebra::{DMatrix, DVector};
-use sinew_core::cyclic::semi_definite::{DIAGONAL_EXCESS, packed_index, packed_len};
 use sinew_core::cyclic::substeps::Substeps;
 use sinew_core::cyclic::{AngleMeasurement, CovarianceScaling, GainReach, KalmanFilter, KalmanOptions, MotionModel};
+use sinew_core::numeric::semi_definite::{DIAGONAL_EXCESS, packed_index, packed_len};
 use std::f64::consts::TAU;
 
 /// `paper` or `paper-cut` after a frame.

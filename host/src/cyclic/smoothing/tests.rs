@@ -6,10 +6,10 @@ use crate::evaluate::cyclic::Protocol;
 use crate::evaluate::cyclic::protocol::measurements;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
-use sinew_core::cyclic::semi_definite::DIAGONAL_EXCESS;
 use sinew_core::cyclic::{
     AngleMeasurement, CycleStart, Deviation, KalmanFilter, KalmanOptions, ModelParts, MotionModel,
 };
+use sinew_core::numeric::semi_definite::DIAGONAL_EXCESS;
 
 const NOISE: f64 = 0.05;
 const ACCELERATION: [f32; 2] = [2.0e-3, -1.0e-3];

@@ -8,7 +8,7 @@ use crate::cyclic::{AngleTable, CyclicModel};
 use anyhow::Result;
 use sinew_core::cyclic::MotionModel;
 use sinew_core::cyclic::events::CycleCounter;
-use sinew_core::cyclic::motion_bank::MotionBank;
+use sinew_core::cyclic::recognition::bank::MotionBank;
 
 /// Most motions of a bank.
 pub const MOST_MOTIONS: usize = 32;

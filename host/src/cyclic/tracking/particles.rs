@@ -7,13 +7,13 @@ use super::walk::visit_estimate;
 use super::wide_vectors::particle_sweep;
 use crate::resume::{real, reals};
 use rayon::prelude::*;
-use sinew_core::cyclic::particle::{
+use sinew_core::cyclic::particle::moments::ParticleMoments;
+use sinew_core::cyclic::particle::propose::{
     CyclicParticle, ParticleOptions, factors_len, fill_factors, fill_positions, first_particle,
 };
-use sinew_core::cyclic::particle_moments::ParticleMoments;
-use sinew_core::cyclic::particle_resampling::{Comb, WeightShare};
-use sinew_core::cyclic::particle_sweep::{CHUNK, ParticleTarget};
-use sinew_core::cyclic::particle_tracker::{count_turns, log_likelihood, resampling_offset};
+use sinew_core::cyclic::particle::resample::{Comb, WeightShare};
+use sinew_core::cyclic::particle::sweep::{CHUNK, ParticleTarget};
+use sinew_core::cyclic::particle::tracker::{count_turns, log_likelihood, resampling_offset};
 use sinew_core::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
 use sinew_core::saved_state::{SavedState, StateVisitor};
 
@@ -142,8 +142,8 @@ mod tests {
     use super::*;
     use crate::cyclic::CyclicModel;
     use sinew_core::cyclic::ParticleTracker;
-    use sinew_core::cyclic::particle::Spread;
-    use sinew_core::cyclic::particle_tracker::ParticleTables;
+    use sinew_core::cyclic::particle::propose::Spread;
+    use sinew_core::cyclic::particle::tracker::ParticleTables;
     use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
 
     const PARTICLES: usize = 1500;

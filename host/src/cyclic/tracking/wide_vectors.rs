@@ -3,9 +3,9 @@
 //! No operation is contracted or taken in another order, so the bits are those of any other processor. Speeds of both ways:
 //! `docs/measurements.md`.
 
-use sinew_core::cyclic::particle::{CyclicParticle, ParticleOptions};
-use sinew_core::cyclic::particle_moments::ParticleMoments;
-use sinew_core::cyclic::particle_sweep::{ParticleTarget, sweep};
+use sinew_core::cyclic::particle::moments::ParticleMoments;
+use sinew_core::cyclic::particle::propose::{CyclicParticle, ParticleOptions};
+use sinew_core::cyclic::particle::sweep::{ParticleTarget, sweep};
 use sinew_core::cyclic::{AngleMeasurement, CoupledFilter, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel};
 
 /// [`KalmanFilter::step`], with AVX2 on AMD's processors, of which `sse4a` tells: there it takes a fifth off the step. An Intel Xeon

@@ -185,9 +185,9 @@ proptest! {
 
 #[test]
 fn a_model_in_bytes_gives_the_same_results_as_the_one_built_in() {
-    let table = &sinew_core::cyclic::models::walking::WALKING;
+    let table = &sinew_core::cyclic::model::walking::WALKING;
     let mut words = vec![0_u8; 64 * 1024];
-    let count = sinew_core::cyclic::model_bytes::write(&table.model().unwrap(), &mut words).unwrap();
+    let count = sinew_core::cyclic::model::bytes::write(&table.model().unwrap(), &mut words).unwrap();
     let mut model = Memory::new(count);
     for (word, bytes) in model.0.iter_mut().zip(words.as_chunks::<8>().0) {
         *word = u64::from_le_bytes(*bytes);

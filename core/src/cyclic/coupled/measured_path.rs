@@ -1,0 +1,118 @@
+//! Turns by the measured angles: where an angle moves fast an estimate that lags may take the shorter way round, which is the wrong
+//! one. From one measurement to the next the way is short, unless the noise is wide.
+
+use crate::cyclic::AngleMeasurement;
+use crate::math::{round_small, wrap_angle};
+use crate::saved_state::{SavedState, StateVisitor};
+use core::f32::consts::TAU;
+
+/// Steps of a turn to which a measured angle is kept; as wrapping bytes their differences are the shorter way.
+const STEPS: f32 = 256.0;
+/// Largest standard deviation of a measurement that tells the way, rad: the difference of two goes wrong beyond 4.3 of its own.
+const WIDEST_STD_RAD: f32 = 0.52;
+/// Frames from one measurement to the next beyond which the way may be long.
+const LONGEST_STEP_FRAMES: f32 = 4.0;
+
+/// Where each angle was measured in the last frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct MeasuredPath<const N: usize> {
+    /// In parts of a turn, 1 / [`STEPS`] each.
+    last: [i8; N],
+    /// A bit for each angle that was measured.
+    known: u32,
+}
+
+impl<const N: usize> SavedState for MeasuredPath<N> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        for last in &mut self.last {
+            let mut word = u32::from(last.cast_unsigned());
+            visitor.word(&mut word);
+            *last = word.to_le_bytes()[0].cast_signed();
+        }
+        visitor.word(&mut self.known);
+    }
+}
+
+impl<const N: usize> MeasuredPath<N> {
+    /// Nothing measured.
+    pub(super) const fn new() -> Self {
+        Self { last: [0; N], known: 0 }
+    }
+
+    /// Whole turns that the estimate of an angle went beyond the shorter way from `from_rad` to `to_rad`, so that it stays within half
+    /// a turn of the path of the measurements.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline)]
+    pub(super) fn turns(
+        &mut self,
+        index: usize,
+        [from_rad, to_rad]: [f32; 2],
+        measurement: &AngleMeasurement<N>,
+    ) -> i32 {
+        let bit = 1_u32.checked_shl(index as u32).unwrap_or(0);
+        let was_known = self.known & bit != 0;
+        self.known &= !bit;
+        let (Some(measured_rad), Some(last)) = (measurement.angle_rad(index), self.last.get_mut(index)) else {
+            return 0;
+        };
+        let is_wide = measurement.std_rad().get(index).is_none_or(|std_rad| *std_rad > WIDEST_STD_RAD);
+        if is_wide || measurement.step_frames() > LONGEST_STEP_FRAMES {
+            return 0;
+        }
+        self.known |= bit;
+        let now = round_small(wrap_angle(measured_rad) * (STEPS / TAU)) as i32 as i8;
+        let before = core::mem::replace(last, now);
+        if !was_known {
+            return 0;
+        }
+        let angle_rad = |steps: i8| f32::from(steps) * (TAU / STEPS);
+        let way_rad = wrap_angle(angle_rad(before) - from_rad)
+            + angle_rad(now.wrapping_sub(before))
+            + wrap_angle(to_rad - angle_rad(now));
+        round_small((way_rad - wrap_angle(to_rad - from_rad)) / TAU) as i32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::MeasuredPath;
+    use crate::angle::split_turns;
+    use crate::cyclic::AngleMeasurement;
+    use core::f32::consts::{PI, TAU};
+
+    fn seen(angle_rad: f32, std_rad: f32) -> AngleMeasurement<1> {
+        AngleMeasurement::new(&[Some(angle_rad)], std_rad).unwrap()
+    }
+
+    /// An angle goes round forwards in three steps; an estimate that lags goes back instead, and meets it on the other side.
+    #[test]
+    fn a_lagging_estimate_keeps_the_turns_of_what_is_measured() {
+        let mut path = MeasuredPath::new();
+        let (mut before_rad, mut turns, mut shorter_turns) = (0.0, 0, 0);
+        for (gone_rad, estimate_rad) in [(0.0, 0.0), (2.0, -0.2), (4.0, -1.5), (6.0, -0.4), (8.0, 1.6), (10.0, -2.6)] {
+            let shorter = -split_turns(estimate_rad - before_rad).1;
+            shorter_turns += shorter;
+            turns += shorter + path.turns(0, [before_rad, estimate_rad], &seen(gone_rad, 0.1));
+            let off_rad = estimate_rad + TAU * turns as f32 - gone_rad;
+            assert!(off_rad.abs() < PI, "{off_rad} off at {gone_rad}");
+            before_rad = estimate_rad;
+        }
+        assert_eq!([turns, shorter_turns], [2, 1]);
+    }
+
+    /// The measurements go round in three steps, the estimate does not, and what lies between says nothing.
+    #[test]
+    fn wide_noise_gaps_and_long_steps_leave_the_shorter_way() {
+        let round = |second: &AngleMeasurement<1>| {
+            let mut path = MeasuredPath::new();
+            path.turns(0, [0.0, 0.0], &seen(0.0, 0.1))
+                + path.turns(0, [0.0, -0.2], second)
+                + path.turns(0, [-0.2, -1.5], &seen(4.0, 0.1))
+                + path.turns(0, [-1.5, 0.0], &seen(TAU, 0.1))
+        };
+        assert_eq!(round(&seen(2.0, 0.1)), 1);
+        assert_eq!(round(&seen(2.0, 0.6)), 0);
+        assert_eq!(round(&AngleMeasurement::nothing()), 0);
+        assert_eq!(round(&seen(2.0, 0.1).after(5.0).unwrap()), 0);
+    }
+}

@@ -1,0 +1,211 @@
+//! What a smoother over a whole recording reads of the phase-coupled filter: moments, and the linear step between two frames.
+
+use crate::cyclic::coupled::block::{AngleBlock, Basis, PARTS};
+use crate::cyclic::coupled::cycle_pair::CyclePair;
+use crate::cyclic::coupled::filter::{CoupledFilter, GATE_SIGMAS};
+use crate::cyclic::cycle_state::CycleState;
+use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::math::wrap_angle;
+
+/// How one angle's parts move on: parts <- map parts + noise.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::model::walking::WALKING;
+/// # use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
+/// # let model = WALKING.model()?;
+/// # let filter = CoupledFilter::<13>::new(&model, &AngleMeasurement::nothing(), Some(0.0), None)?;
+/// // How a person's constant and the rest of an angle move on in six frames.
+/// let knee = filter.transition(&model, 6.0).blocks[5];
+/// assert!(knee.map[0][0] > 0.99, "the constant lasts");
+/// assert!(knee.map[3][3] < knee.map[0][0], "the rest is forgotten sooner");
+/// assert!(knee.noise[3][3] > knee.noise[0][0], "and drawn anew");
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BlockTransition {
+    /// Row: new part, column: old part.
+    pub map: [[f32; PARTS]; PARTS],
+    /// Covariance of the noise.
+    pub noise: [[f32; PARTS]; PARTS],
+}
+
+/// A step of the phase-coupled filter as a linear map with noise. (c, v) move by [1, `step_frames`; 0, 1]; the angles' parts move
+/// on each by themselves.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::model::walking::WALKING;
+/// use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
+///
+/// // What a step of two frames adds to the uncertainty of position and velocity, whatever is known of them.
+/// let model = WALKING.model()?;
+/// let filter = CoupledFilter::<13>::new(&model, &AngleMeasurement::nothing(), Some(0.0), None)?;
+/// let transition = filter.transition(&model, 2.0);
+/// let [position_noise, _, velocity_noise] = transition.cycle_noise;
+/// assert_eq!(transition.step_frames, 2.0);
+/// assert!((velocity_noise - 2.0 * 2.0e-4 * 2.0e-4).abs() < 1e-10, "0.0002 cycles per frame^2");
+/// assert!(position_noise > 0.0);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoupledTransition<const N: usize> {
+    /// Length of the step, frames at the model's rate.
+    pub step_frames: f32,
+    /// Covariance of the noise of (c, v): cc, cv, vv.
+    pub cycle_noise: [f32; 3],
+    /// Each angle's parts.
+    pub blocks: [BlockTransition; N],
+}
+
+impl<const N: usize> CoupledFilter<N> {
+    /// Position and velocity in the cycle with their covariance.
+    #[must_use]
+    pub const fn cycle(&self) -> CycleState {
+        let CyclePair { cc, cv, vv } = self.pair;
+        CycleState {
+            position: self.position,
+            velocity: self.velocity,
+            position_variance: cc,
+            covariance: cv,
+            velocity_variance: vv,
+        }
+    }
+
+    /// The parts of each angle, given the cycle's state; those beyond the model's angles mean nothing.
+    #[must_use]
+    pub const fn blocks(&self) -> &[AngleBlock; N] {
+        &self.blocks
+    }
+
+    /// How often the position was searched for anew, which a frame before says nothing about (wraps at 65536).
+    #[must_use]
+    pub const fn relocks(&self) -> u16 {
+        self.relocks
+    }
+
+    /// The step that [`Self::predict`] would take from here: found by letting it move unit vectors, and noise alone.
+    #[must_use]
+    pub fn transition(&self, model: &MotionModel<'_>, step_frames: f32) -> CoupledTransition<N> {
+        let mut still = *self;
+        still.pair = CyclePair { cc: 0.0, cv: 0.0, vv: 0.0 };
+        for block in &mut still.blocks {
+            *block = AngleBlock::zero();
+        }
+        let mut noise = still;
+        noise.predict(model, step_frames);
+        let mut blocks = core::array::from_fn(|i| BlockTransition {
+            map: [[0.0; PARTS]; PARTS],
+            noise: noise.blocks[i].covariance_matrix(),
+        });
+        for part in 0..PARTS {
+            let mut unit = still;
+            for block in &mut unit.blocks {
+                block.mean[part] = 1.0;
+            }
+            unit.predict(model, step_frames);
+            for (block, moved) in blocks.iter_mut().zip(&unit.blocks) {
+                for (row, value) in block.map.iter_mut().zip(moved.mean) {
+                    row[part] = value;
+                }
+            }
+        }
+        CoupledTransition { step_frames, cycle_noise: [noise.pair.cc, noise.pair.cv, noise.pair.vv], blocks }
+    }
+
+    /// Variance by which [`Self::correct`] opens the constant of each angle that lies beyond the gate, rad^2; 0 for the others.
+    /// Called before it, on the predicted filter.
+    #[must_use]
+    pub fn gated_variance_rad2(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> [f32; N] {
+        let point = model.point(self.position);
+        let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
+        let basis = Basis::at(self.position);
+        let scale = self.watch.noise_scale();
+        let mut opened = [0.0; N];
+        for i in 0..model.angle_count().min(N) {
+            let Some(measured) = measurement.angle_rad(i) else { continue };
+            let noise = scale * measurement.std_rad()[i] * measurement.std_rad()[i];
+            let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
+            let outlook = self.blocks[i].outlook(&basis, slope[i]);
+            let total = outlook.variance + noise + self.pair.along(&outlook.gradient);
+            if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total {
+                opened[i] = residual * residual;
+            }
+        }
+        opened
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cyclic::synthetic::{mean_angle, table};
+
+    const N: usize = 13;
+
+    fn started(model: &MotionModel<'_>) -> CoupledFilter<N> {
+        let first = core::array::from_fn(|i| Some(mean_angle(i, 0.2) + 0.05));
+        let first = AngleMeasurement::new(&first, 0.01).unwrap();
+        let mut filter = CoupledFilter::<N>::new(model, &first, Some(0.2), None).unwrap();
+        for frame in 1..20 {
+            let seen = core::array::from_fn(|i| Some(mean_angle(i, 0.2 + frame as f32 / 65.0) + 0.05));
+            filter.step(model, &AngleMeasurement::new(&seen, 0.05).unwrap());
+        }
+        filter
+    }
+
+    /// What predict does to means and, where no regression on (c, v) is left, to covariances.
+    #[test]
+    fn the_transition_is_that_of_predict() {
+        let table = table(0.001, 9);
+        let model = table.model().unwrap();
+        let mut filter = started(&model);
+        for block in &mut filter.blocks {
+            block.regression = [[0.0; 2]; PARTS];
+        }
+        let transition = filter.transition(&model, 2.5);
+        let mut moved = filter;
+        moved.predict(&model, 2.5);
+        for ((old, new), step) in filter.blocks.iter().zip(&moved.blocks).zip(&transition.blocks) {
+            for i in 0..PARTS {
+                let mean: f32 = (0..PARTS).map(|j| step.map[i][j] * old.mean[j]).sum();
+                assert!((mean - new.mean[i]).abs() < 1.0e-5, "{mean} beside {}", new.mean[i]);
+                for j in 0..PARTS {
+                    let sum = (0..PARTS * PARTS).map(|k| {
+                        let (a, b) = (k / PARTS, k % PARTS);
+                        step.map[i][a] * old.covariance(a, b) * step.map[j][b]
+                    });
+                    let moved = sum.sum::<f32>() + step.noise[i][j];
+                    let scale = (new.covariance(i, i) * new.covariance(j, j)).sqrt();
+                    assert!((moved - new.covariance(i, j)).abs() < 1.0e-4 * scale, "{i} {j}");
+                }
+            }
+        }
+        let (old, new) = (filter.cycle(), moved.cycle());
+        let vv = old.velocity_variance + transition.cycle_noise[2];
+        assert!((vv / new.velocity_variance - 1.0).abs() < 1.0e-5);
+        let cc =
+            old.position_variance + 5.0 * old.covariance + 6.25 * old.velocity_variance + transition.cycle_noise[0];
+        assert!((cc / new.position_variance - 1.0).abs() < 1.0e-4);
+    }
+
+    #[test]
+    fn what_lies_beyond_the_gate_opens_its_constant() {
+        let table = table(0.001, 9);
+        let model = table.model().unwrap();
+        let mut filter = started(&model);
+        filter.predict(&model, 1.0);
+        let position = filter.cycle().position;
+        let seen = core::array::from_fn(|i| Some(mean_angle(i, position) + if i == 4 { 2.0 } else { 0.05 }));
+        let measurement = AngleMeasurement::new(&seen, 0.05).unwrap();
+        let opened = filter.gated_variance_rad2(&model, &measurement);
+        assert!(opened[4] > 1.0 && opened.iter().filter(|variance| **variance > 0.0).count() == 1, "{opened:?}");
+        let mut corrected = filter;
+        corrected.correct(&model, &measurement);
+        assert!(corrected.blocks()[4].covariance(0, 0) < opened[4]);
+        assert!((corrected.blocks()[4].mean[0] - filter.blocks()[4].mean[0]).abs() > 1.0, "learned anew");
+        assert_eq!(corrected.relocks(), 0);
+    }
+}

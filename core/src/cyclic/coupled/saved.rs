@@ -1,0 +1,59 @@
+//! The phase-coupled filter's state as it is saved.
+
+use crate::cyclic::coupled::filter::CoupledFilter;
+use crate::cyclic::phase::POSITIONS_IN_CYCLE;
+use crate::cyclic::start::MAX_CYCLE_VELOCITY;
+use crate::saved_state::{SavedState, StateVisitor};
+use core::f32::consts::PI;
+
+impl<const N: usize> SavedState for CoupledFilter<N> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        for block in &mut self.blocks {
+            block.visit(visitor);
+        }
+        visitor.reals(&mut self.angles_rad, &(-PI..=PI));
+        for turns in &mut self.turns {
+            visitor.integer(turns);
+        }
+        visitor.real(&mut self.position, &POSITIONS_IN_CYCLE);
+        visitor.real(&mut self.velocity, &(-MAX_CYCLE_VELOCITY..=MAX_CYCLE_VELOCITY));
+        self.pair.visit(visitor);
+        visitor.integer(&mut self.cycles);
+        self.grid.visit(visitor);
+        self.watch.visit(visitor);
+        self.winding.visit(visitor);
+        self.path.visit(visitor);
+        self.swing.visit(visitor);
+        let mut relocks = u32::from(self.relocks);
+        visitor.word(&mut relocks);
+        self.relocks = relocks as u16;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::cyclic::{AngleMeasurement, CoupledFilter, synthetic};
+    use crate::saved_state::{StateError, StateKind, restore, save};
+
+    #[test]
+    fn a_filter_goes_on_from_its_saved_state_as_if_nothing_had_been() {
+        let table = synthetic::table(4.0e-3, 9);
+        let model = table.model().unwrap();
+        let seen = |frame: u16| {
+            let angles: [_; 13] = core::array::from_fn(|i| Some(synthetic::mean_angle(i, f32::from(frame) / 65.0)));
+            AngleMeasurement::new(&angles, 0.1).unwrap()
+        };
+        let mut filter = CoupledFilter::<13>::new(&model, &seen(0), None, None).unwrap();
+        let mut other = filter;
+        let mut bytes = [0; 4096];
+        for frame in 1..=150 {
+            filter.step(&model, &seen(frame));
+            let count = save(StateKind::Cyclic, 1, &mut filter, &mut bytes).unwrap();
+            restore(StateKind::Cyclic, 1, &mut other, &bytes[..count]).unwrap();
+            assert_eq!(other, filter, "frame {frame}");
+        }
+        filter.position = 1.0;
+        let count = save(StateKind::Cyclic, 1, &mut filter, &mut bytes).unwrap();
+        assert_eq!(restore(StateKind::Cyclic, 1, &mut other, &bytes[..count]), Err(StateError::Illegal));
+    }
+}

@@ -1,0 +1,290 @@
+//! The phase-coupled filter on made-up motion.
+
+use crate::cyclic::phase::{position_difference, wrap_position};
+use crate::cyclic::synthetic::{mean_angle, table};
+use crate::cyclic::{AngleMeasurement, CoupledFilter, MotionModel};
+use crate::math::wrap_angle;
+use crate::random::Stream;
+use core::f32::consts::TAU;
+use std::vec::Vec;
+
+const N: usize = 13;
+
+/// The first row without noise.
+fn exact(angles_rad: &[Option<f32>; N]) -> AngleMeasurement<N> {
+    AngleMeasurement::new(angles_rad, 0.01).unwrap()
+}
+
+/// A person who differs from the mean cycle by a constant and a swing.
+fn person(index: usize, position: f32) -> f32 {
+    let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
+    mean_angle(index, position) + 0.1 * sign + 0.06 * (TAU * position).cos()
+}
+
+/// Ten cycles at a cadence 8 % above the model's, with noise of 0.1 rad and every seventh frame missing.
+#[test]
+fn it_follows_another_person_at_another_cadence() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let velocity = 1.08 / 65.0;
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
+    let mut stream = Stream::new(5, 0, 0);
+    let (mut inside, mut all, mut error) = (0, 0, 0.0_f32);
+    let frames = 602;
+    let mut last = None;
+    for frame in 1..=frames {
+        let position = velocity * frame as f32;
+        let seen = core::array::from_fn(|i| {
+            let angle = person(i, position) + 0.1 * stream.normal();
+            (frame % 7 != 0).then_some(angle)
+        });
+        let estimate = filter.step(&model, &AngleMeasurement::new(&seen, 0.1).unwrap());
+        for i in 0..N {
+            let off = wrap_angle(estimate.angles_rad[i] - person(i, position)).abs();
+            inside += i32::from(off <= 1.645 * estimate.angle_variance_rad2[i].sqrt());
+            all += 1;
+            error += off;
+        }
+        last = Some(estimate);
+    }
+    let estimate = last.unwrap();
+    let phase = velocity * frames as f32 - (filter.cycles() as f32 + estimate.cycle_position);
+    assert!(phase.abs() < 0.05, "phase is off by {phase} cycles");
+    assert_eq!(filter.cycles(), 10 - i32::from(estimate.cycle_position > 0.5));
+    assert!((estimate.cycle_velocity_per_frame / velocity - 1.0).abs() < 0.02);
+    assert!((9..=10).contains(&estimate.turns[12]), "angle 12 winds once a cycle: {}", estimate.turns[12]);
+    let mean_error = error / all as f32;
+    assert!(mean_error < 0.035, "a third of the noise, not {mean_error}");
+    let share = inside as f32 / all as f32;
+    assert!((0.85..=0.99).contains(&share), "{share} of the truth lies in the 90 % band");
+}
+
+/// Angles of a table are unwrapped and may begin many turns away from zero: the count goes on from there, whichever way the angle winds,
+/// without a jump.
+#[test]
+fn turns_are_counted_from_those_of_the_first_row() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    for direction in [1.0_f32, -1.0] {
+        let truth = |i: usize, frame: u16| person(i, direction * f32::from(frame) / 65.0) + TAU * (i as f32 - 5.0);
+        let first = core::array::from_fn(|i| Some(truth(i, 0)));
+        let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), Some(direction / 65.0)).unwrap();
+        for frame in 1..=400 {
+            let seen = core::array::from_fn(|i| Some(truth(i, frame)));
+            let estimate = filter.step(&model, &AngleMeasurement::new(&seen, 0.1).unwrap());
+            for i in 0..N {
+                let unwrapped = estimate.angles_rad[i] + TAU * estimate.turns[i] as f32;
+                assert!((unwrapped - truth(i, frame)).abs() < 0.3, "angle {i} in frame {frame}: {unwrapped}");
+            }
+        }
+    }
+}
+
+/// Gaps of random length: blocks stay symmetric with variances above zero, and every number finite.
+#[test]
+fn it_stays_sound_through_random_gaps() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), None, None).unwrap();
+    let mut stream = Stream::new(9, 0, 0);
+    let mut time = 0.0;
+    for _ in 0..20_000 {
+        let gap = stream.normal().abs() > 2.5;
+        let step = if gap { 1.0 + 40.0 * stream.normal().abs() } else { 1.0 };
+        time += step / 65.0;
+        time -= time.floor();
+        let seen = core::array::from_fn(|i| (stream.normal() > -0.5).then_some(person(i, time)));
+        let estimate = filter.step(&model, &AngleMeasurement::new(&seen, 0.05).unwrap().after(step).unwrap());
+        assert!(estimate.angles_rad.iter().all(|angle| angle.is_finite()));
+        assert!(estimate.angle_variance_rad2.iter().all(|variance| variance.is_finite() && *variance > 0.0));
+        assert!((0.0..1.0).contains(&estimate.cycle_position) && estimate.cycle_velocity_variance > 0.0);
+    }
+}
+
+/// After a gap in which the phase is lost, the position is found again.
+#[test]
+fn a_lost_phase_is_found_again() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
+    filter.predict(&model, 600.0);
+    let mut last = 0.0;
+    for frame in 0..65 {
+        let position = 0.37 + frame as f32 / 65.0;
+        let seen = core::array::from_fn(|i| Some(person(i, position)));
+        last = position_difference(
+            filter.step(&model, &AngleMeasurement::new(&seen, 0.05).unwrap()).cycle_position,
+            wrap_position(position),
+        );
+    }
+    assert!(last.abs() < 0.05, "off by {last} cycles");
+}
+
+/// Way from the person's position to the filter's after each of `positions` was shown with noise of 0.1 rad.
+fn ways(filter: &mut CoupledFilter<N>, model: &MotionModel<'_>, seed: u64, positions: &[f32]) -> Vec<f32> {
+    let mut stream = Stream::new(seed, 0, 0);
+    let mut way = |&position: &f32| {
+        let seen = core::array::from_fn(|i| Some(person(i, position) + 0.1 * stream.normal()));
+        let estimate = filter.step(model, &AngleMeasurement::new(&seen, 0.1).unwrap());
+        position_difference(estimate.cycle_position, wrap_position(position))
+    };
+    positions.iter().map(&mut way).collect()
+}
+
+/// Positions of a person whose speed, in parts of the model's, is `ratio(frame)`.
+fn walked(frames: u16, ratio: impl Fn(u16) -> f32) -> Vec<f32> {
+    let mut position = 0.0;
+    (1..=frames)
+        .map(|frame| {
+            position += ratio(frame) / 65.0;
+            position
+        })
+        .collect()
+}
+
+#[test]
+fn it_follows_a_person_who_hurries_dawdles_or_stops_and_goes_on() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    for (name, ratio) in [("hurries", 1.5), ("dawdles", 0.6), ("stops", 0.0)] {
+        for seed in 1..=5 {
+            let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
+            let positions = walked(400, |frame| if (131..261).contains(&frame) { ratio } else { 1.0 });
+            let ways = ways(&mut filter, &model, seed, &positions);
+            // Two cycles later at the most the filter is with the person again, and stays there.
+            let settled = |range: core::ops::Range<usize>| ways[range].iter().all(|way| way.abs() < 0.12);
+            assert!(settled(60..131), "{name}, seed {seed}: steady before");
+            assert!(settled(380..400), "{name}, seed {seed}: {:?}", &ways[380..]);
+        }
+    }
+}
+
+/// Share of the 90 % bands that hold `person`, whose noise of 0.1 rad is told as `told`.
+fn inside_the_band(model: &MotionModel<'_>, person: impl Fn(usize, f32) -> f32, told: f32) -> f64 {
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    let mut filter = CoupledFilter::<N>::new(model, &exact(&first), Some(0.0), None).unwrap();
+    let mut stream = Stream::new(7, 0, 0);
+    let (mut inside, mut all) = (0_u32, 0_u32);
+    for (frame, position) in walked(600, |_| 1.0).into_iter().enumerate() {
+        let seen = core::array::from_fn(|i| Some(person(i, position) + 0.1 * stream.normal()));
+        let estimate = filter.step(model, &AngleMeasurement::new(&seen, told).unwrap());
+        for i in (0..N).filter(|_| frame > 200) {
+            let off = wrap_angle(estimate.angles_rad[i] - person(i, position)).abs();
+            inside += u32::from(off <= 1.645 * estimate.angle_variance_rad2[i].sqrt());
+            all += 1;
+        }
+    }
+    f64::from(inside) / f64::from(all)
+}
+
+/// Somebody says 3 degrees, and it is 6: the filter finds that out, and its bands hold. A motion that winds allows for a shape of the
+/// person's own, which nobody has here: its bands are wider.
+#[test]
+fn noise_that_is_larger_than_told_is_noticed() {
+    let winding = table(0.001, 9);
+    let mut swinging = winding.clone();
+    // The angle that winds moves as the first one.
+    swinging.turns_per_cycle[12] = 0;
+    swinging.mean_pose_rad.iter_mut().for_each(|pose| pose[12] = pose[0]);
+    for told in [0.05, 0.1] {
+        let share = inside_the_band(&winding.model().unwrap(), person, told);
+        assert!((0.8..0.99).contains(&share), "told {told} rad: {share} inside the 90 % band, winding");
+        let share = inside_the_band(&swinging.model().unwrap(), |i, position| person(i % 12, position), told);
+        assert!((0.8..0.97).contains(&share), "told {told} rad: {share} inside the 90 % band");
+    }
+}
+
+#[test]
+fn somebody_who_walks_backwards_is_not_turned_round() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    for seed in 1..=5 {
+        let velocity = Some(-1.0 / 65.0);
+        let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), velocity).unwrap();
+        let ways = ways(&mut filter, &model, seed, &walked(400, |_| -1.0));
+        assert!(ways.iter().all(|way| way.abs() < 0.1), "seed {seed}");
+        assert!((-7..=-5).contains(&filter.cycles()), "seed {seed}: {} cycles", filter.cycles());
+    }
+}
+
+#[test]
+fn a_steady_motion_is_never_searched_for_anew() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
+    ways(&mut filter, &model, 3, &walked(3000, |_| 1.08));
+    assert_eq!(filter.relocks(), 0);
+}
+
+#[test]
+fn from_anywhere_the_position_is_found_and_the_bands_hold_meanwhile() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let (mut inside, mut all) = (0_u32, 0_u32);
+    for start in 0..10_u8 {
+        let begin = f32::from(start) / 10.0;
+        let mut stream = Stream::new(u64::from(start), 1, 0);
+        let mut seen = |frame: u16| {
+            let position = begin + f32::from(frame) / 65.0;
+            let noisy = core::array::from_fn(|i| Some(person(i, position) + 0.5 * stream.normal()));
+            (position, AngleMeasurement::new(&noisy, 0.5).unwrap())
+        };
+        let mut filter = CoupledFilter::<N>::anywhere(&model, &seen(0).1).unwrap();
+        let mut way = 1.0;
+        for frame in 1..=130 {
+            let (position, measurement) = seen(frame);
+            let estimate = filter.step(&model, &measurement);
+            way = position_difference(estimate.cycle_position, wrap_position(position));
+            if filter.is_searching() {
+                for i in 0..N {
+                    let off = wrap_angle(estimate.angles_rad[i] - person(i, position)).abs();
+                    inside += u32::from(off <= 1.645 * estimate.angle_variance_rad2[i].sqrt());
+                    all += 1;
+                }
+            }
+        }
+        assert!(!filter.is_searching() && way.abs() < 0.1, "start {begin}: {way} off");
+    }
+    let share = f64::from(inside) / f64::from(all);
+    assert!(all > 13 && (0.8..=1.0).contains(&share), "{share} of {all} inside the band while searching");
+}
+
+/// A gap costs a few parts and not a part a frame; what is foretold across it is nearly the same.
+#[test]
+fn a_gap_in_few_parts_is_the_gap_frame_by_frame() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let first = core::array::from_fn(|i| Some(person(i, 0.1)));
+    let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.1), None).unwrap();
+    for frame in 1..=130 {
+        let seen = core::array::from_fn(|i| Some(person(i, 0.1 + frame as f32 / 65.0)));
+        filter.step(&model, &AngleMeasurement::new(&seen, 0.1).unwrap());
+    }
+    for gap in [9_u16, 20, 60, 200] {
+        let (mut few, mut many) = (filter, filter);
+        few.predict(&model, f32::from(gap));
+        for _ in 0..gap {
+            many.predict(&model, 1.0);
+        }
+        let (a, b) = (few.cycle(), many.cycle());
+        assert!(position_difference(a.position, b.position).abs() < 1.0e-3, "{gap}: {a:?} {b:?}");
+        let stds = [(a.position_variance, b.position_variance), (a.velocity_variance, b.velocity_variance)];
+        for (x, y) in stds {
+            assert!(((x / y).sqrt() - 1.0).abs() < 0.03, "{gap}: {a:?} {b:?}");
+        }
+        let (pose_a, pose_b) =
+            (few.present(&model, &AngleMeasurement::nothing()), many.present(&model, &AngleMeasurement::nothing()));
+        for i in 0..N {
+            let std = pose_b.angle_variance_rad2[i].sqrt();
+            assert!(wrap_angle(pose_a.angles_rad[i] - pose_b.angles_rad[i]).abs() < 0.05 * std, "{gap}: angle {i}");
+            let ratio = pose_a.angle_variance_rad2[i].sqrt() / std;
+            assert!((ratio - 1.0).abs() < 0.05, "{gap}: angle {i}: {ratio}");
+        }
+    }
+}

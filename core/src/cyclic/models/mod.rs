@@ -1,4 +1,0 @@
-//! Motion models that are shipped, as constants for flash.
-
-#[cfg(feature = "walking-model")]
-pub mod walking;

@@ -1,0 +1,11 @@
+//! The particle filter over poses in their cycle, with the transition of the paper's Kalman filter.
+
+mod angle_blocks;
+pub mod factors;
+pub mod moments;
+pub mod propose;
+pub mod resample;
+pub mod sweep;
+pub mod tracker;
+
+pub use tracker::ParticleTracker;

@@ -1,0 +1,6 @@
+//! Numerics that several topics share.
+
+pub(crate) mod bf16;
+pub mod chi_square;
+pub(crate) mod log_product;
+pub mod semi_definite;
