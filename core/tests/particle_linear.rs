@@ -4,9 +4,9 @@ use sinew_core::cyclic::particle::moments::ParticleMoments;
 use sinew_core::cyclic::particle::propose::{
     CyclicParticle, ParticleOptions, factors_len, fill_factors, first_particle,
 };
-use sinew_core::cyclic::particle::resample::{Comb, WeightShare};
-use sinew_core::cyclic::particle::sweep::{CHUNK, ParticleTarget, sweep};
+use sinew_core::cyclic::particle::sweep::{CHUNK, sweep};
 use sinew_core::cyclic::particle::tracker::resampling_offset;
+use sinew_core::cyclic::particle::{resample::Comb, weigh::ParticleTarget, weights::WeightShare};
 use sinew_core::cyclic::{
     AngleMeasurement, CycleStart, Deviation, KalmanFilter, KalmanOptions, ModelParts, MotionModel,
 };

@@ -8,7 +8,7 @@ use sinew_core::cyclic::MotionModel;
 use sinew_core::cyclic::model::walking::WALKING;
 use sinew_core::record::{Cost, CyclicInput, CyclicResult, CyclicSetup, Kind, Record, RecordError, model_checksum};
 use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
-use sinew_core::tracker::coupled::CoupledTracker;
+use sinew_core::tracker::cyclic::CoupledTracker;
 use sinew_core::tracker::cyclic::FirstPhase;
 use static_cell::ConstStaticCell;
 

@@ -9,7 +9,7 @@ use crate::cyclic::phase::wrap_position;
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::math::min;
 use crate::saved_state::{SavedState, StateError, StateKind, StateVisitor, restore, save, saved_bytes};
-use crate::tracker::coupled::CoupledTracker;
+use crate::tracker::cyclic::CoupledTracker;
 use crate::tracker::cyclic::{CyclicFrame, FirstPhase};
 use core::ffi::c_void;
 use core::mem::offset_of;

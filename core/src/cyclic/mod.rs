@@ -56,6 +56,7 @@ pub mod coupled;
 pub mod cycle_state;
 pub mod estimate;
 pub mod events;
+pub mod example;
 pub mod figure;
 pub mod filter;
 pub mod kalman;

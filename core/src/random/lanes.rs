@@ -3,8 +3,7 @@
 use super::normal_table::from_bits;
 use super::stream::{first_state, frame_key};
 
-/// Streams that advance together: enough that compilers keep loops over them, which they then vectorise.
-pub const LANES: usize = 32;
+pub use super::stream::LANES;
 
 /// The streams of [`LANES`] particles with successive indices.
 ///

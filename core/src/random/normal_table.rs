@@ -4,8 +4,8 @@
 //! floating-point number x choose one of four parts of one of 32 octaves, the others are the argument of that part's
 //! cubic. The table is computed at compile time from the rational approximation of [`super::normal`], 2 KiB.
 
-use super::lanes::LANES;
 use super::normal::{NEAR_MIDDLE, quantile_in_tail, quantile_near_middle};
+use super::stream::LANES;
 use core::f32::consts::LN_2;
 
 /// Largest difference between the table and the exact quantile, standard deviations (asserted by a test).

@@ -12,6 +12,11 @@
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 
+/// Streams that advance together in [`super::StreamLanes`].
+///
+/// Chosen: enough that compilers keep loops over them, which they then vectorise.
+pub const LANES: usize = 32;
+
 /// Finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every input bit reaches every output bit.
 #[inline]
 fn scramble(mut z: u64) -> u64 {

@@ -2,5 +2,4 @@
 
 pub mod arm;
 pub mod body;
-pub mod coupled;
 pub mod cyclic;

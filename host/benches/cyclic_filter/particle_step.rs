@@ -5,8 +5,8 @@ use sinew_core::cyclic::particle::moments::ParticleMoments;
 use sinew_core::cyclic::particle::propose::{
     CyclicParticle, ParticleOptions, factors_len, fill_factors, first_particle,
 };
-use sinew_core::cyclic::particle::resample::{Comb, WeightShare};
-use sinew_core::cyclic::particle::sweep::{CHUNK, ParticleTarget};
+use sinew_core::cyclic::particle::sweep::CHUNK;
+use sinew_core::cyclic::particle::{resample::Comb, weigh::ParticleTarget, weights::WeightShare};
 use sinew_core::cyclic::{CycleStart, CyclicEstimate, MotionModel};
 use std::hint::black_box;
 use std::time::Instant;

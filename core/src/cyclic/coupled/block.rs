@@ -180,7 +180,7 @@ impl AngleBlock {
     }
 
     /// The angle is held otherwise, by about the root of `square_rad2`: the constant is as uncertain, and the swing by a share.
-    pub(super) fn hold_otherwise(&mut self, square_rad2: f32) {
+    pub(super) fn inflate_offset_prior(&mut self, square_rad2: f32) {
         self.loosen_offset(square_rad2);
         self.covariance[packed_index(1, 1)] += OTHERWISE_SWING_SHARE * square_rad2;
         self.covariance[packed_index(2, 2)] += OTHERWISE_SWING_SHARE * square_rad2;

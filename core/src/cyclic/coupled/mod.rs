@@ -1,21 +1,25 @@
 //! The phase-coupled filter: measurements move the cycle position, and a person's own cycle is learned.
 
 pub mod block;
+mod correct;
 mod cycle_pair;
-pub mod filter;
-mod first_row;
+mod evidence;
+mod initial_measurement;
 mod measured_path;
 pub mod moments;
-mod noise_share;
-mod phase_evidence;
+mod nis_monitor;
+mod noise_scale;
 pub mod phase_grid;
-mod prediction_fit;
+pub mod predict;
 mod saved;
+mod start;
+pub mod state;
+pub mod step;
 mod stored_grid;
 #[cfg(test)]
 mod tests;
 mod watch;
 mod winding;
 
-pub use filter::CoupledFilter;
 pub use moments::{BlockTransition, CoupledTransition};
+pub use state::CoupledFilter;

@@ -1,8 +1,9 @@
 //! What a smoother over a whole recording reads of the phase-coupled filter: moments, and the linear step between two frames.
 
 use crate::cyclic::coupled::block::{AngleBlock, Basis, PARTS};
+use crate::cyclic::coupled::correct::GATE_SIGMAS;
 use crate::cyclic::coupled::cycle_pair::CyclePair;
-use crate::cyclic::coupled::filter::{CoupledFilter, GATE_SIGMAS};
+use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::cycle_state::CycleState;
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::math::wrap_angle;

@@ -1,6 +1,6 @@
 //! The phase-coupled filter's state as it is saved.
 
-use crate::cyclic::coupled::filter::CoupledFilter;
+use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::phase::POSITIONS_IN_CYCLE;
 use crate::cyclic::start::MAX_CYCLE_VELOCITY;
 use crate::saved_state::{SavedState, StateVisitor};

@@ -2,13 +2,13 @@
 
 use crate::cyclic::coupled::phase_grid::{POSITIONS, PhaseGrid, SPEEDS};
 use crate::cyclic::phase::POSITIONS_IN_CYCLE;
-use crate::numeric::bf16::ShortReal;
+use crate::numeric::bf16::Bf16;
 use crate::saved_state::{SavedState, StateVisitor};
 
 /// A [`PhaseGrid`] with its weights rounded to eight binary digits, which is finer than any of them is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StoredGrid {
-    weights: [[ShortReal; POSITIONS]; SPEEDS],
+    weights: [[Bf16; POSITIONS]; SPEEDS],
     travelled: [f32; SPEEDS],
 }
 
@@ -28,14 +28,14 @@ impl SavedState for StoredGrid {
 impl StoredGrid {
     /// Nothing known.
     pub(super) const fn uniform() -> Self {
-        let weight = ShortReal::new(1.0 / (POSITIONS * SPEEDS) as f32);
+        let weight = Bf16::new(1.0 / (POSITIONS * SPEEDS) as f32);
         Self { weights: [[weight; POSITIONS]; SPEEDS], travelled: [0.0; SPEEDS] }
     }
 
     /// The grid, to look at and to move.
     #[inline]
     pub(super) fn open(&self) -> PhaseGrid {
-        PhaseGrid { weights: self.weights.map(|row| row.map(ShortReal::get)), travelled: self.travelled }
+        PhaseGrid { weights: self.weights.map(|row| row.map(Bf16::get)), travelled: self.travelled }
     }
 
     /// Keeps `grid` in the place of this one.
@@ -43,7 +43,7 @@ impl StoredGrid {
     pub(super) fn keep(&mut self, grid: &PhaseGrid) {
         for (row, weights) in self.weights.iter_mut().zip(&grid.weights) {
             for (short, weight) in row.iter_mut().zip(weights) {
-                *short = ShortReal::new(*weight);
+                *short = Bf16::new(*weight);
             }
         }
         self.travelled = grid.travelled;

@@ -7,5 +7,7 @@ pub mod propose;
 pub mod resample;
 pub mod sweep;
 pub mod tracker;
+pub mod weigh;
+pub mod weights;
 
 pub use tracker::ParticleTracker;

@@ -1,8 +1,8 @@
 //! The particles' estimate: weighted circular means and spreads, from sums that chunks contribute to.
 
 use crate::cyclic::CyclicEstimate;
-use crate::cyclic::particle::resample::{WeightShare, greatest, relative_weight};
-use crate::cyclic::particle::sweep::{ParticleLanes, ParticleTarget};
+use crate::cyclic::particle::weigh::{ParticleLanes, ParticleTarget};
+use crate::cyclic::particle::weights::{WeightShare, greatest, relative_weight};
 use crate::math::{atan2, clamp, ln, max, round_small, sqrt, wrap_angle};
 use crate::random::lanes::LANES;
 use core::f32::consts::TAU;
@@ -25,7 +25,7 @@ struct AngleSums {
 /// # use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::cyclic::particle::propose::{ParticleOptions, first_particle};
 /// use sinew_core::cyclic::particle::moments::ParticleMoments;
-/// use sinew_core::cyclic::particle::sweep::{ParticleTarget, sweep};
+/// use sinew_core::cyclic::particle::{sweep::sweep, weigh::ParticleTarget};
 /// # use sinew_core::cyclic::{AngleMeasurement, CycleStart};
 ///
 /// # let model = WALKING.model()?;
@@ -210,8 +210,6 @@ impl<const N: usize> ParticleMoments<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cyclic::particle::propose::{CyclicParticle, ParticleOptions, factors_len, fill_factors};
-    use crate::cyclic::particle::sweep::sweep;
     use crate::cyclic::{AngleMeasurement, synthetic};
 
     #[test]
@@ -273,29 +271,5 @@ mod tests {
             assert!((estimate.cycle_position - other.cycle_position).abs() < 1.0e-6);
             assert!((all.share().weight - 4.0 / 3.0).abs() < 1.0e-5);
         }
-    }
-
-    #[test]
-    fn the_mean_across_the_seam_lies_at_the_seam() {
-        let table = synthetic::table(1.0e-3, 9);
-        let model = table.model().unwrap();
-        let mut factors = vec![0.0; factors_len(&model)];
-        fill_factors(&model, &mut factors);
-        let at = |angle: f32, position: f32| CyclicParticle {
-            angles_rad: [angle; 13],
-            velocities: [0.0; 13],
-            cycle_position: position,
-            cycle_velocity: 0.0,
-        };
-        let start = crate::cyclic::CycleStart::standard(&model, &[Some(3.0); 13], Some(0.9), None).unwrap();
-        let target = ParticleTarget::new(&AngleMeasurement::nothing(), 13, &start.estimate());
-        let mut particles = [at(3.1, 0.98), at(-3.1, 0.02)];
-        let options = ParticleOptions { temporal_acceleration_std: 0.0, ..ParticleOptions::default() };
-        let key = (1, 1, 0);
-        let moments = sweep(&model, &factors, &options, (&target, 1.0), key, &mut particles, &mut [0.0; 2]);
-        let estimate = moments.estimate(&target);
-        assert!((estimate.angles_rad[0].abs() - core::f32::consts::PI).abs() < 1.0e-4);
-        assert!(crate::cyclic::phase::position_difference(estimate.cycle_position, 0.0).abs() < 1.0e-4);
-        assert!((estimate.angle_variance_rad2[0] - 0.0416_f32.powi(2)).abs() < 1.0e-4);
     }
 }

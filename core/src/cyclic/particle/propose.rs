@@ -235,7 +235,7 @@ pub fn fill_positions<const N: usize>(model: &MotionModel<'_>, start: &CycleStar
         }
         *value = -0.5 * squared;
     }
-    let best = crate::cyclic::particle::resample::greatest(positions);
+    let best = crate::cyclic::particle::weights::greatest(positions);
     let mut sum = 0.0;
     for value in positions {
         sum += crate::math::exp(*value - best);

@@ -6,115 +6,19 @@
 //! A chunk's result depends on its particles alone and chunks are added in their order: the bits are the same however the
 //! chunks are spread over threads.
 
+use crate::cyclic::MotionModel;
 use crate::cyclic::particle::angle_blocks::AngleBlocks;
 use crate::cyclic::particle::factors::ParticleTable;
 use crate::cyclic::particle::moments::ParticleMoments;
 use crate::cyclic::particle::propose::{CyclicParticle, ParticleOptions, advance};
-use crate::cyclic::particle::resample::exponentiate;
+use crate::cyclic::particle::weigh::{ParticleLanes, ParticleTarget};
+use crate::cyclic::particle::weights::exponentiate;
 use crate::cyclic::substeps::Substeps;
-use crate::cyclic::{AngleMeasurement, CyclicEstimate, MotionModel};
-use crate::math::{least_angle, wrap_angle};
 use crate::random::StreamLanes;
 use crate::random::lanes::LANES;
 
 /// Particles whose sums are taken together.
 pub const CHUNK: usize = 1024;
-
-/// What a frame's particles are compared with: the measured angles, and the last estimate's where none was seen.
-///
-/// ```
-/// # #[cfg(feature = "walking-model")] {
-/// # use sinew_core::cyclic::model::walking::WALKING;
-/// use sinew_core::cyclic::particle::propose::{ParticleOptions, first_particle};
-/// use sinew_core::cyclic::particle::sweep::{ParticleTarget, sweep};
-/// use sinew_core::cyclic::{AngleMeasurement, CycleStart};
-///
-/// # let model = WALKING.model()?;
-/// # let start = CycleStart::<13>::standard(&model, &[Some(0.0); 13], Some(0.3), None)?;
-/// // Nothing was seen but the first angle, so two particles that differ in another one weigh the same.
-/// let mut angles_rad = [None; 13];
-/// angles_rad[0] = Some(0.1);
-/// let target = ParticleTarget::new(&AngleMeasurement::new(&angles_rad, 0.1)?, 13, &start.estimate());
-/// let options = ParticleOptions::default();
-/// let mut particles = [first_particle(&model, &[], &start, &options, (1, 0)); 2];
-/// particles[1].angles_rad[4] += 0.5;
-/// let mut weights = [0.0; 2];
-/// sweep(&model, &[], &options, (&target, 1.0), (1, 1, 0), &mut particles, &mut weights);
-/// assert_eq!(weights, [1.0, 1.0]);
-/// # }
-/// # Ok::<(), Box<dyn core::error::Error>>(())
-/// ```
-#[derive(Debug, Clone, Copy)]
-pub struct ParticleTarget<const N: usize> {
-    pub(super) angles_rad: [f32; N],
-    /// Zero where nothing was seen, so that weighing needs no question.
-    root_precision: [f32; N],
-    pub(super) cycle_position: f32,
-    pub(super) cycle_velocity: f32,
-}
-
-impl<const N: usize> ParticleTarget<N> {
-    /// The target of a frame after `last`.
-    #[must_use]
-    pub fn new(measurement: &AngleMeasurement<N>, angle_count: usize, last: &CyclicEstimate<N>) -> Self {
-        let mut target = Self {
-            angles_rad: last.angles_rad.map(wrap_angle),
-            root_precision: [0.0; N],
-            cycle_position: last.cycle_position,
-            cycle_velocity: last.cycle_velocity_per_frame,
-        };
-        for i in 0..N.min(angle_count) {
-            if let Some(measured) = measurement.angle_rad(i) {
-                target.angles_rad[i] = wrap_angle(measured);
-                target.root_precision[i] = 1.0 / measurement.std_rad()[i];
-            }
-        }
-        target
-    }
-}
-
-/// Up to [`LANES`] particles relative to a target, number by number side by side.
-pub(super) struct ParticleLanes<const N: usize> {
-    /// Angles less the target's, in [-pi, pi].
-    pub(super) off_rad: [[f32; LANES]; N],
-    /// Cycle positions less the target's.
-    pub(super) lead: [f32; LANES],
-    /// Cycle velocities less the target's.
-    pub(super) haste: [f32; LANES],
-    /// Log-weights; negative infinity where there is no particle.
-    pub(super) log_weights: [f32; LANES],
-}
-
-impl<const N: usize> ParticleLanes<N> {
-    const fn empty() -> Self {
-        Self { off_rad: [[0.0; LANES]; N], lead: [0.0; LANES], haste: [0.0; LANES], log_weights: [0.0; LANES] }
-    }
-
-    /// Takes `particles` and compares them with `target`.
-    #[inline(always)]
-    fn take(&mut self, particles: &[CyclicParticle<N>], target: &ParticleTarget<N>) {
-        for (lane, particle) in particles.iter().enumerate().take(LANES) {
-            for i in 0..N {
-                self.off_rad[i][lane] = particle.angles_rad[i];
-            }
-            self.lead[lane] = particle.cycle_position - target.cycle_position;
-            self.haste[lane] = particle.cycle_velocity - target.cycle_velocity;
-        }
-        let mut squares = [0.0; LANES];
-        for i in 0..N {
-            let (angle, root_precision) = (target.angles_rad[i], target.root_precision[i]);
-            for (off, square) in self.off_rad[i].iter_mut().zip(&mut squares) {
-                *off = least_angle(*off - angle);
-                let scaled = *off * root_precision;
-                *square += scaled * scaled;
-            }
-        }
-        self.log_weights = squares.map(|square| -0.5 * square);
-        for nobody in self.log_weights.iter_mut().skip(particles.len()) {
-            *nobody = f32::NEG_INFINITY;
-        }
-    }
-}
 
 /// Moves `particles`, of which the first has number `first_index`, over the measurement's step. Writes their weights relative to
 /// the greatest and returns their sums.
@@ -125,7 +29,7 @@ impl<const N: usize> ParticleLanes<N> {
 /// # #[cfg(feature = "walking-model")] {
 /// # use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::cyclic::particle::propose::{ParticleOptions, fill_factors, first_particle};
-/// use sinew_core::cyclic::particle::sweep::{ParticleTarget, sweep};
+/// use sinew_core::cyclic::particle::{sweep::sweep, weigh::ParticleTarget};
 /// use sinew_core::cyclic::{AngleMeasurement, CycleStart};
 ///
 /// # let model = WALKING.model()?;
@@ -175,4 +79,36 @@ pub fn sweep<const N: usize>(
     }
     let weight = exponentiate(moments.share().greatest_log_weight, weights);
     moments.weighing(weight)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cyclic::particle::factors::{factors_len, fill_factors};
+    use crate::cyclic::{AngleMeasurement, synthetic};
+    use std::vec;
+
+    #[test]
+    fn the_mean_across_the_seam_lies_at_the_seam() {
+        let table = synthetic::table(1.0e-3, 9);
+        let model = table.model().unwrap();
+        let mut factors = vec![0.0; factors_len(&model)];
+        fill_factors(&model, &mut factors);
+        let at = |angle: f32, position: f32| CyclicParticle {
+            angles_rad: [angle; 13],
+            velocities: [0.0; 13],
+            cycle_position: position,
+            cycle_velocity: 0.0,
+        };
+        let start = crate::cyclic::CycleStart::standard(&model, &[Some(3.0); 13], Some(0.9), None).unwrap();
+        let target = ParticleTarget::new(&AngleMeasurement::nothing(), 13, &start.estimate());
+        let mut particles = [at(3.1, 0.98), at(-3.1, 0.02)];
+        let options = ParticleOptions { temporal_acceleration_std: 0.0, ..ParticleOptions::default() };
+        let key = (1, 1, 0);
+        let moments = sweep(&model, &factors, &options, (&target, 1.0), key, &mut particles, &mut [0.0; 2]);
+        let estimate = moments.estimate(&target);
+        assert!((estimate.angles_rad[0].abs() - core::f32::consts::PI).abs() < 1.0e-4);
+        assert!(crate::cyclic::phase::position_difference(estimate.cycle_position, 0.0).abs() < 1.0e-4);
+        assert!((estimate.angle_variance_rad2[0] - 0.0416_f32.powi(2)).abs() < 1.0e-4);
+    }
 }

@@ -3,8 +3,8 @@
 use crate::angle::split_turns;
 use crate::cyclic::particle::moments::ParticleMoments;
 use crate::cyclic::particle::propose::{CyclicParticle, ParticleOptions, first_particle};
-use crate::cyclic::particle::resample::{Comb, WeightShare};
-use crate::cyclic::particle::sweep::{CHUNK, ParticleTarget, sweep};
+use crate::cyclic::particle::sweep::{CHUNK, sweep};
+use crate::cyclic::particle::{resample::Comb, weigh::ParticleTarget, weights::WeightShare};
 use crate::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
 use crate::math::ln;
 use crate::random::Stream;
@@ -164,7 +164,7 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
 ///
 /// ```
 /// use sinew_core::cyclic::AngleMeasurement;
-/// use sinew_core::cyclic::particle::resample::WeightShare;
+/// use sinew_core::cyclic::particle::weights::WeightShare;
 /// use sinew_core::cyclic::particle::tracker::log_likelihood;
 /// use sinew_core::random::normal::log_density;
 ///

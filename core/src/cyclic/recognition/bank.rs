@@ -23,7 +23,7 @@
 //! # }
 //! ```
 
-use crate::cyclic::recognition::explained_swing::{ExplainedSwing, cycle_variances_rad2};
+use crate::cyclic::recognition::explained_variance::{ExplainedVariance, cycle_variances_rad2};
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::math::{exp, max, min, wrap_angle};
 
@@ -43,23 +43,23 @@ const CYCLE_POSITIONS: u8 = 100;
 /// What was seen of one motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct WatchedMotion<const N: usize> {
-    swing: ExplainedSwing<N>,
+    swing: ExplainedVariance<N>,
     /// Variance of each angle over the motion's cycle, rad^2.
     cycle_rad2: [f32; N],
     /// Share of the swing seen that the mean cycle leaves over.
-    left_over: Option<f32>,
+    unexplained_share: Option<f32>,
 }
 
 impl<const N: usize> WatchedMotion<N> {
     fn new(model: &MotionModel<'_>) -> Self {
         let cycle_rad2 = cycle_variances_rad2(model, CYCLE_POSITIONS);
-        Self { swing: ExplainedSwing::new(), cycle_rad2, left_over: None }
+        Self { swing: ExplainedVariance::new(), cycle_rad2, unexplained_share: None }
     }
 
     fn add(&mut self, cycles: f32, measurement: &AngleMeasurement<N>, pose_rad: &[f32; N]) {
         self.swing.add(cycles, measurement, pose_rad);
         if !measurement.is_empty(N) {
-            self.left_over = self.swing.left_over(&self.cycle_rad2, measurement.std_rad());
+            self.unexplained_share = self.swing.unexplained_share(&self.cycle_rad2, measurement.std_rad());
         }
     }
 }
@@ -156,7 +156,7 @@ impl<const MOTIONS: usize, const N: usize> MotionBank<MOTIONS, N> {
     /// By how much the best motion leaves over less of the swing than it may, in units of the odds' slope: above zero if it is the one.
     fn log_odds(&self) -> f32 {
         let Some(motion) = self.motions.get(self.best()).and_then(Option::as_ref) else { return 0.0 };
-        let spare = motion.left_over.map_or(0.0, |left_over| GREATEST_LEFT_OVER - left_over);
+        let spare = motion.unexplained_share.map_or(0.0, |unexplained_share| GREATEST_LEFT_OVER - unexplained_share);
         motion.swing.knowledge() * spare / LEFT_OVER_SPREAD
     }
 

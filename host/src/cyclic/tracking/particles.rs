@@ -11,9 +11,9 @@ use sinew_core::cyclic::particle::moments::ParticleMoments;
 use sinew_core::cyclic::particle::propose::{
     CyclicParticle, ParticleOptions, factors_len, fill_factors, fill_positions, first_particle,
 };
-use sinew_core::cyclic::particle::resample::{Comb, WeightShare};
-use sinew_core::cyclic::particle::sweep::{CHUNK, ParticleTarget};
+use sinew_core::cyclic::particle::sweep::CHUNK;
 use sinew_core::cyclic::particle::tracker::{count_turns, log_likelihood, resampling_offset};
+use sinew_core::cyclic::particle::{resample::Comb, weigh::ParticleTarget, weights::WeightShare};
 use sinew_core::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
 use sinew_core::saved_state::{SavedState, StateVisitor};
 

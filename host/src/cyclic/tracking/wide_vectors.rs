@@ -5,7 +5,7 @@
 
 use sinew_core::cyclic::particle::moments::ParticleMoments;
 use sinew_core::cyclic::particle::propose::{CyclicParticle, ParticleOptions};
-use sinew_core::cyclic::particle::sweep::{ParticleTarget, sweep};
+use sinew_core::cyclic::particle::{sweep::sweep, weigh::ParticleTarget};
 use sinew_core::cyclic::{AngleMeasurement, CoupledFilter, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel};
 
 /// [`KalmanFilter::step`], with AVX2 on AMD's processors, of which `sse4a` tells: there it takes a fifth off the step. An Intel Xeon

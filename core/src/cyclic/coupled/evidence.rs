@@ -1,7 +1,7 @@
 //! What the angles of a frame say about the cycle's state in the phase-coupled filter, and how well they fit its prediction.
 
 use crate::cyclic::coupled::cycle_pair::{CyclePair, Information};
-use crate::cyclic::coupled::noise_share::NoiseScore;
+use crate::cyclic::coupled::noise_scale::NoiseScore;
 use crate::numeric::chi_square::{DEFAULT_GATE_SIGMAS, is_outlier};
 use crate::numeric::log_product::LogProduct;
 use core::f32::consts::TAU;

@@ -1,9 +1,10 @@
 //! The cyclic tracker of firmware: the phase-coupled filter and the count of cycles, without the choice of another filter, so that no
-//! other filter takes flash. The same numbers as [`super::cyclic::CyclicTracker`] has with that filter.
+//! other filter takes flash. The same numbers as [`super::step::CyclicTracker`] has with that filter.
 
-use super::cyclic::{CyclicFrame, FirstPhase};
+use super::estimate::CyclicFrame;
+use super::options::FirstPhase;
 use crate::cyclic::events::{CycleCounter, CycleStep};
-use crate::cyclic::{AngleMeasurement, CoupledFilter, CyclicEstimate, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledFilter, MotionModel};
 use crate::error::ParameterError;
 use crate::saved_state::{SavedState, StateVisitor};
 
@@ -11,35 +12,13 @@ use crate::saved_state::{SavedState, StateVisitor};
 ///
 /// ```
 /// use sinew_core::cyclic::AngleMeasurement;
-/// use sinew_core::tracker::{coupled::CoupledTracker, cyclic::FirstPhase};
-/// # use core::f32::consts::TAU;
-/// # use sinew_core::cyclic::ModelTable;
-/// # use sinew_core::math::sin_cos;
-/// # let pose = |position: f32| [0.5 * sin_cos(TAU * position).0, 0.3 * sin_cos(TAU * position).1];
-/// # let mut table = ModelTable::<100, 2, 3> {
-/// #     mean_acceleration: [[0.0; 2]; 100],
-/// #     acceleration_covariance: [[1e-8, 0.0, 1e-8]; 100],
-/// #     mean_pose_rad: core::array::from_fn(|i| pose(i as f32 / 100.0)),
-/// #     mean_velocity: [[0.0; 2]; 100],
-/// #     offset_std_rad: [0.08; 2],
-/// #     swing_std_rad: [0.05; 2],
-/// #     rest_std_rad: [0.03; 2],
-/// #     rest_rate_per_cycle: [6.0; 2],
-/// #     turns_per_cycle: [0; 2],
-/// #     mean_duration_frames: 60.0,
-/// #     rate_hz: 60.0,
-/// # };
-/// # for i in 0..100 {
-/// #     let [before, after] = [99, 1].map(|step| table.mean_pose_rad[(i + step) % 100]);
-/// #     for j in 0..2 {
-/// #         table.mean_velocity[i][j] = 0.5 * (after[j] - before[j]);
-/// #         table.mean_acceleration[i][j] = after[j] - 2.0 * table.mean_pose_rad[i][j] + before[j];
-/// #     }
-/// # }
+/// use sinew_core::cyclic::example::swing_pose_rad;
+/// use sinew_core::tracker::cyclic::{CoupledTracker, FirstPhase};
+/// # let table = sinew_core::cyclic::example::swing_table();
 /// # let model = table.model().expect("the numbers agree");
 ///
 /// // Two joints that swing once in 60 frames, seen with 0.05 rad of noise.
-/// let seen = |frame: usize| AngleMeasurement::new(&pose(frame as f32 / 60.0).map(Some), 0.05);
+/// let seen = |frame: usize| AngleMeasurement::new(&swing_pose_rad(frame as f32 / 60.0).map(Some), 0.05);
 /// let mut tracker = CoupledTracker::<2>::new(&model, &seen(0)?, FirstPhase::default())?;
 /// let mut last = tracker.first_frame(&model, &seen(0)?);
 /// for frame in 1..=210 {
@@ -97,7 +76,7 @@ impl<const N: usize> CoupledTracker<N> {
     pub fn first_frame(&mut self, model: &MotionModel<'_>, first: &AngleMeasurement<N>) -> CyclicFrame<N> {
         let estimate = self.filter.present(model, first);
         let from = estimate.cycle_position;
-        self.answer(model, estimate, CycleStep::none(from))
+        CyclicFrame::new(model, estimate, &self.counter, CycleStep::none(from))
     }
 
     /// One frame: predict and correct, count.
@@ -105,13 +84,7 @@ impl<const N: usize> CoupledTracker<N> {
         let estimate = self.filter.step(model, measurement);
         let (position, velocity) = (estimate.cycle_position, estimate.cycle_velocity_per_frame);
         let cycle_step = self.counter.advance(position, velocity, measurement.step_frames());
-        self.answer(model, estimate, cycle_step)
-    }
-
-    fn answer(&self, model: &MotionModel<'_>, estimate: CyclicEstimate<N>, cycle_step: CycleStep) -> CyclicFrame<N> {
-        let (cadence_per_min, cadence_std_per_min) = estimate.cadence_per_min(model.rate_hz());
-        let cycles_completed = self.counter.completed();
-        CyclicFrame { estimate, cycles_completed, cadence_per_min, cadence_std_per_min, cycle_step }
+        CyclicFrame::new(model, estimate, &self.counter, cycle_step)
     }
 
     /// The filter.
@@ -130,7 +103,7 @@ impl<const N: usize> SavedState for CoupledTracker<N> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cyclic::CyclicTracker;
+    use super::super::step::CyclicTracker;
     use super::*;
     use crate::cyclic::synthetic;
 

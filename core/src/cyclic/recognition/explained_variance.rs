@@ -11,16 +11,16 @@ use crate::saved_state::{FINITE, NOT_NEGATIVE, SavedState, StateVisitor};
 use core::f32::consts::PI;
 
 /// Greatest circular variance told apart, rad^2: that of an angle anywhere on the circle.
-const GREATEST_VARIANCE: f32 = PI * PI / 3.0;
+const MAX_VARIANCE_RAD2: f32 = PI * PI / 3.0;
 /// Part of the cycle's own variance that counts as left over even where the mean cycle tells everything, so that a person
 /// who hardly moves is not taken for one who moves as told.
 const REST_SHARE: f32 = 0.1;
 /// Standard errors, from the measurements' noise, by which a swing has to be told apart from noise.
 const STANDARD_ERRORS: f32 = 0.5;
-/// Least squared length of a mean unit vector: far below that of `GREATEST_VARIANCE`.
-const LEAST_LENGTH2: f32 = 1.0e-6;
+/// Least squared length of a mean unit vector: far below that of `MAX_VARIANCE_RAD2`.
+const MIN_LENGTH2: f32 = 1.0e-6;
 /// Greatest variance of a measurement, rad^2: beyond it there is nothing in it.
-const GREATEST_NOISE_RAD2: f32 = 13.0;
+const MAX_NOISE_RAD2: f32 = 13.0;
 
 /// Fading sums of one angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,11 +68,11 @@ impl SwingSums {
     #[inline(never)]
     fn variance_rad2(&self, sum: &[f32; 2], share: f32, clear2: f32) -> f32 {
         if share > 0.999 {
-            return GREATEST_VARIANCE;
+            return MAX_VARIANCE_RAD2;
         }
         let length2 = (sum[0] * sum[0] + sum[1] * sum[1]) / (self.weight * self.weight);
         let unbiased = (length2 - share) / (1.0 - share);
-        min(-ln(clamp(unbiased / clear2, LEAST_LENGTH2, 1.0)), GREATEST_VARIANCE)
+        min(-ln(clamp(unbiased / clear2, MIN_LENGTH2, 1.0)), MAX_VARIANCE_RAD2)
     }
 
     /// Share of the swing that is not told, and its standard error; `cycle_rad2` is the variance over the motion's whole cycle.
@@ -81,7 +81,7 @@ impl SwingSums {
         let told = self.variance_rad2(&self.told, share, 1.0);
         let seen = self.variance_rad2(&self.seen, share, clear2);
         let left = self.variance_rad2(&self.left, share, clear2);
-        let swing = max(max(told, seen), LEAST_LENGTH2);
+        let swing = max(max(told, seen), MIN_LENGTH2);
         let noise = sqrt(share * (1.0 / clear2 - 1.0));
         (min((left + REST_SHARE * cycle_rad2) / swing, 1.0), min(noise / swing, 1.0))
     }
@@ -89,7 +89,7 @@ impl SwingSums {
 
 /// What noise leaves of the squared length of a mean unit vector.
 fn clear2(std_rad: f32) -> f32 {
-    exp(-min(std_rad * std_rad, GREATEST_NOISE_RAD2))
+    exp(-min(std_rad * std_rad, MAX_NOISE_RAD2))
 }
 
 /// Circular variance of each angle of the mean cycle, rad^2, by so many `positions` of it; 0 beyond the model's angles.
@@ -110,13 +110,13 @@ pub(in crate::cyclic) fn cycle_variances_rad2<const N: usize>(model: &MotionMode
 
 /// Swing of up to `N` angles that was seen of late, and that one motion's mean cycle told.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::cyclic) struct ExplainedSwing<const N: usize> {
+pub(in crate::cyclic) struct ExplainedVariance<const N: usize> {
     angles: [SwingSums; N],
     /// Factor of all weights in the last frame.
     keep: f32,
 }
 
-impl<const N: usize> SavedState for ExplainedSwing<N> {
+impl<const N: usize> SavedState for ExplainedVariance<N> {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         for sums in &mut self.angles {
             visitor.real(&mut sums.weight, &NOT_NEGATIVE);
@@ -128,7 +128,7 @@ impl<const N: usize> SavedState for ExplainedSwing<N> {
     }
 }
 
-impl<const N: usize> ExplainedSwing<N> {
+impl<const N: usize> ExplainedVariance<N> {
     /// Nothing seen.
     pub(in crate::cyclic) const fn new() -> Self {
         Self { angles: [SwingSums::nothing(); N], keep: 0.0 }
@@ -149,7 +149,7 @@ impl<const N: usize> ExplainedSwing<N> {
 
     /// Share of the swing that the mean cycle leaves over, 0 to 1, plus half a standard error, so that it is at most 1.5; `None`
     /// before anything was seen. `cycle_rad2` are the variances over the whole cycle, `std_rad` the measurements' standard deviations.
-    pub(in crate::cyclic) fn left_over(&self, cycle_rad2: &[f32; N], std_rad: &[f32; N]) -> Option<f32> {
+    pub(in crate::cyclic) fn unexplained_share(&self, cycle_rad2: &[f32; N], std_rad: &[f32; N]) -> Option<f32> {
         let (mut sum, mut noise2, mut weights) = (0.0, 0.0, 0.0);
         for ((sums, &cycle_rad2), &std_rad) in self.angles.iter().zip(cycle_rad2).zip(std_rad) {
             let weight = sums.weight * cycle_rad2;
@@ -165,7 +165,7 @@ impl<const N: usize> ExplainedSwing<N> {
 
     /// How much swing is seen, as a share of that over the whole cycle: at most 1.
     pub(in crate::cyclic) fn seen(&self, cycle_rad2: &[f32; N], std_rad: &[f32; N]) -> f32 {
-        let (mut sum, mut weights) = (0.0, LEAST_LENGTH2);
+        let (mut sum, mut weights) = (0.0, MIN_LENGTH2);
         for ((sums, &cycle_rad2), &std_rad) in self.angles.iter().zip(cycle_rad2).zip(std_rad) {
             let weight = sums.weight * cycle_rad2;
             if weight > 0.0 {
@@ -203,27 +203,27 @@ mod tests {
     use proptest::prelude::*;
 
     /// What is left over after `frames` of `angle(index, cycle position, frame)`, with noise of `std_rad`, by the made-up motion at its true position.
-    fn left_over(frames: u16, std_rad: f32, angle: impl Fn(usize, f32, f32) -> f32) -> f32 {
+    fn unexplained_share(frames: u16, std_rad: f32, angle: impl Fn(usize, f32, f32) -> f32) -> f32 {
         let table = table(4.0e-3, 9);
         let model = table.model().unwrap();
         let cycle_rad2 = cycle_variances_rad2(&model, 100);
-        let mut swing = ExplainedSwing::<13>::new();
+        let mut swing = ExplainedVariance::<13>::new();
         let mut stream = Stream::new(11, 0, 0);
-        assert_eq!(swing.left_over(&cycle_rad2, &[std_rad; 13]), None);
+        assert_eq!(swing.unexplained_share(&cycle_rad2, &[std_rad; 13]), None);
         for frame in 0..frames {
             let position = f32::from(frame) / 65.0;
             let seen = core::array::from_fn(|i| Some(angle(i, position, f32::from(frame)) + std_rad * stream.normal()));
             let seen = AngleMeasurement::new(&seen, std_rad).unwrap();
             swing.add(1.0 / 65.0, &seen, &model.mean_pose_rad(model.point(position)));
         }
-        swing.left_over(&cycle_rad2, &[std_rad; 13]).unwrap()
+        swing.unexplained_share(&cycle_rad2, &[std_rad; 13]).unwrap()
     }
 
     #[test]
     fn the_motion_itself_leaves_a_tenth_whoever_holds_the_arms_otherwise() {
         for std_rad in [0.01, 0.1, 0.5] {
-            let same = left_over(300, std_rad, |i, position, _| mean_angle(i, position));
-            let leaning = left_over(300, std_rad, |i, position, _| mean_angle(i, position) + 0.2 * i as f32);
+            let same = unexplained_share(300, std_rad, |i, position, _| mean_angle(i, position));
+            let leaning = unexplained_share(300, std_rad, |i, position, _| mean_angle(i, position) + 0.2 * i as f32);
             assert!((0.08..0.3).contains(&same), "{std_rad}: {same}");
             assert!((same - leaning).abs() < 0.05, "{std_rad}: {same}, {leaning}");
         }
@@ -232,9 +232,9 @@ mod tests {
     #[test]
     fn who_stands_or_moves_otherwise_leaves_nearly_all() {
         for std_rad in [0.01, 0.1, 0.5] {
-            let standing = left_over(300, std_rad, |i, _, _| mean_angle(i, 0.0));
-            let slower = left_over(300, std_rad, |i, position, _| mean_angle(i, 0.37 * position));
-            let random = left_over(300, std_rad, |i, _, frame| {
+            let standing = unexplained_share(300, std_rad, |i, _, _| mean_angle(i, 0.0));
+            let slower = unexplained_share(300, std_rad, |i, position, _| mean_angle(i, 0.37 * position));
+            let random = unexplained_share(300, std_rad, |i, _, frame| {
                 let hash = (frame * 12.9898 + i as f32 * 78.233).sin() * 43_758.547;
                 TAU * (hash - hash.floor())
             });
@@ -248,12 +248,12 @@ mod tests {
         /// Turning an angle by any amount, for good, changes nothing; nor do whole turns.
         #[test]
         fn what_is_left_does_not_depend_on_where_an_angle_is(turned_rad in -30.0_f32..30.0, index in 0_usize..13) {
-            let plain = left_over(100, 0.05, |i, position, _| 0.7 * mean_angle(i, position));
+            let plain = unexplained_share(100, 0.05, |i, position, _| 0.7 * mean_angle(i, position));
             let turned = |i: usize, position: f32| {
                 let angle = 0.7 * mean_angle(i, position) + if i == index { turned_rad } else { 0.0 };
                 wrap_angle(angle)
             };
-            let turned = left_over(100, 0.05, |i, position, _| turned(i, position));
+            let turned = unexplained_share(100, 0.05, |i, position, _| turned(i, position));
             prop_assert!((plain - turned).abs() < 1.0e-3, "{plain}, {turned}");
         }
 
@@ -262,18 +262,18 @@ mod tests {
             let table = table(4.0e-3, 9);
             let model = table.model().unwrap();
             let cycle_rad2 = cycle_variances_rad2(&model, 20);
-            let mut swing = ExplainedSwing::<13>::new();
+            let mut swing = ExplainedVariance::<13>::new();
             let mut stream = Stream::new(seed, 0, 0);
             for _ in 0..40 {
                 let seen = core::array::from_fn(|i| (i >= missing).then(|| TAU * stream.uniform()));
                 let seen = AngleMeasurement::new(&seen, std_rad).unwrap();
                 swing.add(0.2 * stream.uniform(), &seen, &model.mean_pose_rad(model.point(stream.uniform())));
-                let left = swing.left_over(&cycle_rad2, seen.std_rad());
+                let left = swing.unexplained_share(&cycle_rad2, seen.std_rad());
                 prop_assert!(left.is_none_or(|left| (0.0..=1.0 + STANDARD_ERRORS + 1.0e-4).contains(&left)), "{left:?}");
                 prop_assert!((0.0..=1.0001).contains(&swing.seen(&cycle_rad2, seen.std_rad())));
                 prop_assert!((0.0..1.0).contains(&swing.knowledge()) && (0.0..=1.0).contains(&swing.filled()));
             }
-            prop_assert_eq!(swing.left_over(&cycle_rad2, &[std_rad; 13]).is_none(), missing == 13);
+            prop_assert_eq!(swing.unexplained_share(&cycle_rad2, &[std_rad; 13]).is_none(), missing == 13);
         }
     }
 }

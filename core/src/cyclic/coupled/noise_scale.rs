@@ -5,22 +5,22 @@
 //! rho = r R / S: where the prediction is unsure it says little. Each frame moves r a small way up that slope.
 //!
 //! Noise that moves slowly looks the same from frame to frame as noise that is not there. So a share is believed for the means, within
-//! [`LEAST_SHARE`], and never for the bands: see [`NoiseShare::band_scale`].
+//! [`MIN_SHARE`], and never for the bands: see [`NoiseScale::band_scale`].
 
 use crate::math::{clamp, min, sqrt};
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::PI;
 
 /// Share that chance stays above where noise is as it was told, since its logarithm is known to 0.1: nothing changes down to it.
-const CHANCE: f32 = 0.7;
+const INDISTINGUISHABLE_FROM_ONE: f32 = 0.7;
 /// Least share that is believed: half of the standard deviation.
-const LEAST_SHARE: f32 = 0.25;
+const MIN_SHARE: f32 = 0.25;
 /// Innovations over which the share is learned: those of eight frames with 13 angles.
 const INNOVATIONS: f32 = 100.0;
 /// Innovations of a frame that it counts as to have been told: predictions are as a rule somewhat surer than their variance.
-const TOLD: f32 = 1.0;
+const PRIOR_WEIGHT: f32 = 1.0;
 /// Greatest normalised square that an innovation counts with.
-const MOST_SQUARE: f32 = 9.0;
+const MAX_SQUARE: f32 = 9.0;
 
 /// What the innovations of a frame say about the share: twice the derivative of their log-likelihood by its logarithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,32 +39,32 @@ impl NoiseScore {
         let variance = predicted_variance + noise_variance;
         let inverse = 1.0 / variance;
         let square = innovation_rad * innovation_rad * inverse * wrapping(variance);
-        self.derivative += noise_variance * inverse * (min(square, MOST_SQUARE) - 1.0);
+        self.derivative += noise_variance * inverse * (min(square, MAX_SQUARE) - 1.0);
     }
 }
 
 /// The share of the noise variances told that is there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct NoiseShare {
+pub(super) struct NoiseScale {
     likeliest: f32,
 }
 
-impl SavedState for NoiseShare {
+impl SavedState for NoiseScale {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        visitor.real(&mut self.likeliest, &(CHANCE * LEAST_SHARE..=1.0));
+        visitor.real(&mut self.likeliest, &(INDISTINGUISHABLE_FROM_ONE * MIN_SHARE..=1.0));
     }
 }
 
-impl NoiseShare {
+impl NoiseScale {
     /// Noise is as it was told.
     pub(super) const fn new() -> Self {
         Self { likeliest: 1.0 }
     }
 
-    /// Factor of the told variances for the gains, in [[`LEAST_SHARE`], 1].
+    /// Factor of the told variances for the gains, in [[`MIN_SHARE`], 1].
     #[inline]
     pub(super) fn share(&self) -> f32 {
-        min(self.likeliest * (1.0 / CHANCE), 1.0)
+        min(self.likeliest * (1.0 / INDISTINGUISHABLE_FROM_ONE), 1.0)
     }
 
     /// Factor of the angles' variances for the bands: what the gains' noise makes of them is taken back.
@@ -81,8 +81,9 @@ impl NoiseShare {
 
     /// Takes in what a frame's [`Self::score`] has become.
     pub(super) fn see(&mut self, score: &NoiseScore) {
-        let derivative = score.derivative + TOLD * (1.0 - self.likeliest);
-        self.likeliest = clamp(self.likeliest * (1.0 + derivative / INNOVATIONS), CHANCE * LEAST_SHARE, 1.0);
+        let derivative = score.derivative + PRIOR_WEIGHT * (1.0 - self.likeliest);
+        self.likeliest =
+            clamp(self.likeliest * (1.0 + derivative / INNOVATIONS), INDISTINGUISHABLE_FROM_ONE * MIN_SHARE, 1.0);
     }
 }
 
@@ -103,7 +104,7 @@ mod tests {
     /// The share after so many frames of 13 angles that a filter of variance `predicted` sees, told `told`, with noise of which `truly` of
     /// the variance is there.
     fn share(told: f32, predicted: f32, truly: f32, frames: u64) -> f32 {
-        let mut noise = NoiseShare::new();
+        let mut noise = NoiseScale::new();
         for frame in 0..frames {
             let mut stream = Stream::new(3, frame, 0);
             let mut score = noise.score();
@@ -137,7 +138,7 @@ mod tests {
             let mean = mean_share(1.0e-3, truly);
             assert!(expected.contains(&mean), "{truly}: {mean}");
         }
-        assert!((LEAST_SHARE - 1.0e-6..LEAST_SHARE + 1.0e-6).contains(&share(0.01, 1.0e-3, 0.0, 60)), "a bound");
+        assert!((MIN_SHARE - 1.0e-6..MIN_SHARE + 1.0e-6).contains(&share(0.01, 1.0e-3, 0.0, 60)), "a bound");
     }
 
     #[test]
@@ -147,7 +148,7 @@ mod tests {
 
     #[test]
     fn it_comes_back_when_noise_does() {
-        let mut noise = NoiseShare { likeliest: CHANCE * LEAST_SHARE };
+        let mut noise = NoiseScale { likeliest: INDISTINGUISHABLE_FROM_ONE * MIN_SHARE };
         for frame in 0..30 {
             let mut stream = Stream::new(4, frame, 0);
             let mut score = noise.score();

@@ -1,0 +1,39 @@
+//! Prediction of the phase-coupled filter over a step of any length.
+
+use crate::cyclic::MotionModel;
+use crate::cyclic::coupled::block::PARTS;
+use crate::cyclic::coupled::state::{CoupledFilter, LOST_STD, spread};
+use crate::cyclic::substeps::Substeps;
+use crate::math::{abs, exp, max};
+
+/// Rate per cycle at which constant and swing are forgotten.
+const FORGETTING: f32 = 0.02;
+/// Parts of a step over frames that were left out: what a step costs does not grow with the gap before it.
+pub const MAX_SUBSTEPS: u8 = 6;
+
+impl<const N: usize> CoupledFilter<N> {
+    /// Moves on by `step_frames`, in substeps of one frame, longer ones where that would be more than [`MAX_SUBSTEPS`].
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
+    pub fn predict(&mut self, model: &MotionModel<'_>, step_frames: f32) {
+        for step in Substeps::few(step_frames, MAX_SUBSTEPS) {
+            self.advance(model, step);
+        }
+        self.watch.unwatched_frames += step_frames;
+    }
+
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
+    fn advance(&mut self, model: &MotionModel<'_>, step: f32) {
+        let (map, rest) = self.pair.advance(step);
+        let phase = step * max(abs(self.velocity), 0.1 * model.mean_cycle_velocity());
+        let memory = exp(-FORGETTING * phase);
+        let lost = self.pair.cc > LOST_STD * LOST_STD;
+        for i in 0..model.angle_count().min(N) {
+            if lost {
+                // Nothing is a straight line of (c, v) any more.
+                self.blocks[i].regression = [[0.0; 2]; PARTS];
+            }
+            self.blocks[i].advance(&spread(model, i), phase, memory, &map, &rest);
+        }
+        self.move_by(step * self.velocity);
+    }
+}

@@ -1,0 +1,121 @@
+//! Where the phase-coupled filter begins: at the first row, or anywhere in the cycle.
+
+use crate::cyclic::coupled::block::AngleBlock;
+use crate::cyclic::coupled::cycle_pair::CyclePair;
+use crate::cyclic::coupled::initial_measurement::InitialMeasurement;
+use crate::cyclic::coupled::measured_path::MeasuredPath;
+use crate::cyclic::coupled::phase_grid::PhaseGrid;
+use crate::cyclic::coupled::state::{CoupledFilter, spread};
+use crate::cyclic::coupled::stored_grid::StoredGrid;
+use crate::cyclic::coupled::watch::agreement::Watch;
+use crate::cyclic::coupled::winding::Winding;
+use crate::cyclic::phase::wrap_position;
+use crate::cyclic::recognition::explained_variance::ExplainedVariance;
+use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::error::{ParameterError, Rule, finite, within};
+use crate::math::{max, round};
+use core::f32::consts::TAU;
+
+/// Spread of a person's speed about the model's mean, as a part of it.
+const SPEED_SPREAD: f32 = 0.1;
+
+impl<const N: usize> CoupledFilter<N> {
+    /// The standard start: the angles of the first row, which the paper takes as exact. A row that looks noisy beside the mean
+    /// pose is trusted less, down to what its standard deviations say. `position` by best match and `velocity` by the model where absent.
+    ///
+    /// # Errors
+    /// At most `N` angles, a model with a deviation, a finite position, a velocity within +-0.5 cycles a frame.
+    pub fn new(
+        model: &MotionModel<'_>,
+        first: &AngleMeasurement<N>,
+        position: Option<f32>,
+        velocity: Option<f32>,
+    ) -> Result<Self, ParameterError> {
+        let mut filter = Self::empty();
+        filter.begin(model, first, position, velocity)?;
+        Ok(filter)
+    }
+
+    /// Becomes what [`Self::new`] gives, in place.
+    ///
+    /// # Errors
+    /// Those of [`Self::new`]; the filter is as before then.
+    pub fn begin(
+        &mut self,
+        model: &MotionModel<'_>,
+        first: &AngleMeasurement<N>,
+        position: Option<f32>,
+        velocity: Option<f32>,
+    ) -> Result<(), ParameterError> {
+        let velocity = within("initial cycle velocity", velocity.unwrap_or(model.mean_cycle_velocity()), -0.5, 0.5)?;
+        let position = match position {
+            Some(position) => wrap_position(finite("initial cycle position", position)?),
+            None => crate::cyclic::start::best_position(model, first.angles_rad()),
+        };
+        let row = InitialMeasurement::of(model, first, position)?;
+        self.forget(model)?;
+        self.position = position;
+        self.velocity = velocity;
+        self.grid.keep(&PhaseGrid::near(position));
+        for (block, unusual_offset_rad2) in self.blocks.iter_mut().zip(row.unusual_offset_rad2) {
+            block.inflate_offset_prior(unusual_offset_rad2);
+        }
+        self.correct_phase(model, &row.measurement);
+        self.start_counting(model, first);
+        Ok(())
+    }
+
+    /// A start anywhere in the cycle at any speed, with the first row as a measurement among others.
+    ///
+    /// # Errors
+    /// At most `N` angles, a model with a deviation.
+    pub fn anywhere(model: &MotionModel<'_>, first: &AngleMeasurement<N>) -> Result<Self, ParameterError> {
+        let mut filter = Self::empty();
+        filter.forget(model)?;
+        filter.watch.searching = true;
+        filter.correct(model, first);
+        filter.start_counting(model, first);
+        Ok(filter)
+    }
+
+    /// Position 0, the model's mean speed, nothing known of the person.
+    fn forget(&mut self, model: &MotionModel<'_>) -> Result<(), ParameterError> {
+        if model.angle_count() > N {
+            return Err(ParameterError::new("angles of the model", Rule::Capacity { capacity: N }));
+        }
+        if model.parts().deviation.is_absent() {
+            return Err(ParameterError::new("deviation of the model", Rule::NotEmpty));
+        }
+        let velocity = model.mean_cycle_velocity();
+        for (i, block) in self.blocks.iter_mut().enumerate() {
+            *block = AngleBlock::unknown(&spread(model, i));
+        }
+        self.angles_rad = [0.0; N];
+        self.turns = [0; N];
+        self.position = 0.0;
+        self.velocity = velocity;
+        self.pair =
+            CyclePair { cc: 1.0e-5, cv: 0.0, vv: max(1.0e-6, SPEED_SPREAD * SPEED_SPREAD * velocity * velocity) };
+        self.cycles = 0;
+        self.grid = StoredGrid::uniform();
+        self.watch = Watch::new();
+        self.winding = Winding::new();
+        self.path = MeasuredPath::new();
+        self.relocks = 0;
+        self.swing = ExplainedVariance::new();
+        Ok(())
+    }
+
+    /// Counts from here on. Whole turns of the first row (of the mean pose where an angle is missing) are kept, so that nothing
+    /// jumps after it.
+    fn start_counting(&mut self, model: &MotionModel<'_>, first: &AngleMeasurement<N>) {
+        let pose = model.mean_pose_rad::<N>(model.point(self.position));
+        self.turns = core::array::from_fn(|i| {
+            let first = first.angle_rad(i).unwrap_or(pose[i]);
+            round((first - self.angles_rad[i]) / TAU) as i32
+        });
+        self.cycles = 0;
+        self.relocks = 0;
+        self.winding = Winding::new();
+    }
+}

@@ -1,0 +1,125 @@
+//! State of the phase-coupled filter: measurements move the cycle position, and each person keeps their own way of moving.
+//!
+//! An angle is the mean cycle at c plus its deviation ([`crate::cyclic::Deviation`]). Given (c, v) the angles are taken as
+//! independent of each other: each has a block of five numbers, all together inform (c, v), and (c, v) informs each.
+
+use crate::angle::split_turns;
+use crate::cyclic::MotionModel;
+use crate::cyclic::coupled::block::{AngleBlock, Spread};
+use crate::cyclic::coupled::cycle_pair::CyclePair;
+use crate::cyclic::coupled::measured_path::MeasuredPath;
+use crate::cyclic::coupled::stored_grid::StoredGrid;
+use crate::cyclic::coupled::watch::agreement::Watch;
+use crate::cyclic::coupled::winding::Winding;
+use crate::cyclic::phase::wrap_position;
+use crate::cyclic::recognition::explained_variance::ExplainedVariance;
+use crate::math::round;
+
+/// Beyond this standard deviation of c, in cycles, the linearisation is void and the position is searched for.
+pub(super) const LOST_STD: f32 = 0.15;
+
+/// State of the filter `coupled` for models of up to `N` angles.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::model::walking::WALKING;
+/// use sinew_core::cyclic::phase::position_difference;
+/// use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
+///
+/// // Somebody walks into view, nobody knows where in the cycle: the filter looks everywhere until it has found it.
+/// let model = WALKING.model()?;
+/// let position = |frame: u8| 0.7 + f32::from(frame) * model.mean_cycle_velocity();
+/// let seen = |frame| AngleMeasurement::new(&model.mean_pose_rad::<13>(model.point(position(frame))).map(Some), 0.1);
+/// let mut filter = CoupledFilter::anywhere(&model, &seen(0)?)?;
+/// assert!(filter.is_searching());
+/// for frame in 1..=90 {
+///     filter.step(&model, &seen(frame)?);
+/// }
+/// assert!(!filter.is_searching());
+/// assert!(position_difference(filter.cycle().position, position(90)).abs() < 0.02);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoupledFilter<const N: usize> {
+    pub(super) blocks: [AngleBlock; N],
+    pub(super) angles_rad: [f32; N],
+    pub(super) turns: [i32; N],
+    pub(super) position: f32,
+    pub(super) velocity: f32,
+    /// Covariance of position and velocity.
+    pub(super) pair: CyclePair,
+    pub(super) cycles: i32,
+    pub(super) grid: StoredGrid,
+    pub(super) watch: Watch,
+    pub(super) winding: Winding<N>,
+    pub(super) path: MeasuredPath<N>,
+    /// What the mean cycle, at the filter's position, tells of the swing that is seen.
+    pub(super) swing: ExplainedVariance<N>,
+    /// Times that the position was taken from the grid.
+    pub(super) relocks: u16,
+}
+
+const _: () = assert!(size_of::<CoupledFilter<13>>() <= 2560, "the state has to fit 2.5 KiB");
+
+impl<const N: usize> CoupledFilter<N> {
+    /// A filter that has not begun, so that one in static memory can begin there; it takes no stack. Its answers mean nothing.
+    #[must_use]
+    pub const fn empty() -> Self {
+        Self {
+            blocks: [AngleBlock::zero(); N],
+            angles_rad: [0.0; N],
+            turns: [0; N],
+            position: 0.0,
+            velocity: 0.0,
+            pair: CyclePair { cc: 0.0, cv: 0.0, vv: 0.0 },
+            cycles: 0,
+            grid: StoredGrid::uniform(),
+            watch: Watch::new(),
+            winding: Winding::new(),
+            path: MeasuredPath::new(),
+            relocks: 0,
+            swing: ExplainedVariance::new(),
+        }
+    }
+
+    /// Whether the position in the cycle is unknown at the moment, so that estimates are those of all places together.
+    #[must_use]
+    pub const fn is_searching(&self) -> bool {
+        self.watch.searching
+    }
+
+    /// Cycles completed since the start (negative backwards).
+    #[must_use]
+    pub const fn cycles(&self) -> i32 {
+        self.cycles
+    }
+
+    pub(super) fn move_by(&mut self, way: f32) {
+        let position = self.position + way;
+        let wrapped = wrap_position(position);
+        self.cycles = self.cycles.saturating_add(round(position - wrapped) as i32);
+        self.position = wrapped;
+    }
+
+    /// Sets an angle; its turns follow from the shorter way since the last one.
+    pub(super) fn turn_to(&mut self, index: usize, angle_rad: f32) {
+        let (_, turns_less) = split_turns(angle_rad - self.angles_rad[index]);
+        self.turns[index] = self.turns[index].saturating_sub(turns_less);
+        self.angles_rad[index] = angle_rad;
+    }
+}
+
+/// Stationary spread of an angle's parts.
+#[cfg_attr(target_arch = "x86_64", inline(always))]
+pub(super) fn spread(model: &MotionModel<'_>, index: usize) -> Spread {
+    let deviation = &model.parts().deviation;
+    let at = |values: &[f32]| values.get(index).copied().unwrap_or(1.0);
+    let square = |std: f32| std * std;
+    Spread {
+        offset: square(at(deviation.offset_std_rad)),
+        swing: square(at(deviation.swing_std_rad)),
+        rest: square(at(deviation.rest_std_rad)),
+        rate: at(deviation.rest_rate_per_cycle),
+    }
+}

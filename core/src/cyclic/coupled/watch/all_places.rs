@@ -1,0 +1,77 @@
+//! The estimate while the phase is unknown: the mean over all places of the grid.
+
+use crate::cyclic::coupled::block::Basis;
+use crate::cyclic::coupled::measured_path::MeasuredPath;
+use crate::cyclic::coupled::phase_grid::{POSITIONS, PhaseMode};
+use crate::cyclic::coupled::state::CoupledFilter;
+use crate::cyclic::phase::position_difference;
+use crate::cyclic::{AngleMeasurement, CyclicEstimate, MotionModel};
+use crate::math::{max, wrap_angle};
+use crate::numeric::chi_square::{DEFAULT_GATE_SIGMAS, is_outlier};
+use crate::numeric::log_product::LogProduct;
+use core::f32::consts::TAU;
+
+impl<const N: usize> CoupledFilter<N> {
+    /// The pose over all places of the grid, each with its weight, corrected angle by angle. `mode` is the grid's place if it is known.
+    pub(in crate::cyclic::coupled) fn estimate_of_all_places(
+        &mut self,
+        model: &MotionModel<'_>,
+        measurement: &AngleMeasurement<N>,
+        mode: Option<PhaseMode>,
+    ) -> CyclicEstimate<N> {
+        let mode = mode.unwrap_or_else(|| self.grid.open().mode(model));
+        self.move_by(position_difference(mode.position, self.position));
+        self.velocity = mode.velocity;
+        self.path = MeasuredPath::new();
+        let (mean, mut variance) = self.pose_of_all_places(model);
+        let (mut squares, mut volume, mut count) = (0.0, LogProduct::one(), 0);
+        for i in 0..model.angle_count().min(N) {
+            let mut angle = mean[i];
+            if let Some(measured) = measurement.angle_rad(i) {
+                let total = variance[i] + measurement.std_rad()[i] * measurement.std_rad()[i];
+                let residual = wrap_angle(measured - angle);
+                squares += residual * residual / total;
+                volume.multiply(TAU * total);
+                count += 1;
+                angle += variance[i] / total * residual;
+                variance[i] -= variance[i] * variance[i] / total;
+            }
+            self.turn_to(i, wrap_angle(angle));
+        }
+        let elsewhere = 1.0 - mode.weight;
+        CyclicEstimate {
+            angles_rad: self.angles_rad,
+            turns: self.turns,
+            angle_variance_rad2: variance,
+            cycle_position: self.position,
+            // Elsewhere means anywhere: the variance of a uniform position.
+            cycle_position_variance: mode.weight * mode.covariance[0] + elsewhere / 12.0,
+            cycle_velocity_per_frame: self.velocity,
+            cycle_velocity_variance: mode.covariance[2],
+            log_likelihood: -0.5 * (squares + volume.ln()),
+            outlier: is_outlier(squares, count, DEFAULT_GATE_SIGMAS),
+        }
+    }
+
+    /// Mean and variance of each angle over the grid's positions, with what is known of the person.
+    fn pose_of_all_places(&self, model: &MotionModel<'_>) -> ([f32; N], [f32; N]) {
+        let reference = model.mean_pose_rad::<N>(model.point(self.position));
+        let (mut mean, mut square) = ([0.0; N], [0.0; N]);
+        for (cell, weight) in self.grid.open().by_position().into_iter().enumerate() {
+            let pose = model.mean_pose_rad::<N>(model.point(cell as f32 / POSITIONS as f32));
+            for i in 0..model.angle_count().min(N) {
+                let off = wrap_angle(pose[i] - reference[i]);
+                mean[i] += weight * off;
+                square[i] += weight * off * off;
+            }
+        }
+        let basis = Basis::at(self.position);
+        let mut variance = [0.0; N];
+        for i in 0..model.angle_count().min(N) {
+            let outlook = self.blocks[i].outlook(&basis, 0.0);
+            variance[i] = max(square[i] - mean[i] * mean[i], 0.0) + outlook.variance;
+            mean[i] += reference[i] + self.blocks[i].deviation(&basis);
+        }
+        (mean, variance)
+    }
+}

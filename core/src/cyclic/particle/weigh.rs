@@ -1,0 +1,102 @@
+//! Weighing: how far particles are from what a frame shows, side by side in lanes.
+
+use crate::cyclic::particle::propose::CyclicParticle;
+use crate::cyclic::{AngleMeasurement, CyclicEstimate};
+use crate::math::{least_angle, wrap_angle};
+use crate::random::lanes::LANES;
+
+/// What a frame's particles are compared with: the measured angles, and the last estimate's where none was seen.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::model::walking::WALKING;
+/// use sinew_core::cyclic::particle::propose::{ParticleOptions, first_particle};
+/// use sinew_core::cyclic::particle::{sweep::sweep, weigh::ParticleTarget};
+/// use sinew_core::cyclic::{AngleMeasurement, CycleStart};
+///
+/// # let model = WALKING.model()?;
+/// # let start = CycleStart::<13>::standard(&model, &[Some(0.0); 13], Some(0.3), None)?;
+/// // Nothing was seen but the first angle, so two particles that differ in another one weigh the same.
+/// let mut angles_rad = [None; 13];
+/// angles_rad[0] = Some(0.1);
+/// let target = ParticleTarget::new(&AngleMeasurement::new(&angles_rad, 0.1)?, 13, &start.estimate());
+/// let options = ParticleOptions::default();
+/// let mut particles = [first_particle(&model, &[], &start, &options, (1, 0)); 2];
+/// particles[1].angles_rad[4] += 0.5;
+/// let mut weights = [0.0; 2];
+/// sweep(&model, &[], &options, (&target, 1.0), (1, 1, 0), &mut particles, &mut weights);
+/// assert_eq!(weights, [1.0, 1.0]);
+/// # }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct ParticleTarget<const N: usize> {
+    pub(super) angles_rad: [f32; N],
+    /// Zero where nothing was seen, so that weighing needs no question.
+    root_precision: [f32; N],
+    pub(super) cycle_position: f32,
+    pub(super) cycle_velocity: f32,
+}
+
+impl<const N: usize> ParticleTarget<N> {
+    /// The target of a frame after `last`.
+    #[must_use]
+    pub fn new(measurement: &AngleMeasurement<N>, angle_count: usize, last: &CyclicEstimate<N>) -> Self {
+        let mut target = Self {
+            angles_rad: last.angles_rad.map(wrap_angle),
+            root_precision: [0.0; N],
+            cycle_position: last.cycle_position,
+            cycle_velocity: last.cycle_velocity_per_frame,
+        };
+        for i in 0..N.min(angle_count) {
+            if let Some(measured) = measurement.angle_rad(i) {
+                target.angles_rad[i] = wrap_angle(measured);
+                target.root_precision[i] = 1.0 / measurement.std_rad()[i];
+            }
+        }
+        target
+    }
+}
+
+/// Up to [`LANES`] particles relative to a target, number by number side by side.
+pub(super) struct ParticleLanes<const N: usize> {
+    /// Angles less the target's, in [-pi, pi].
+    pub(super) off_rad: [[f32; LANES]; N],
+    /// Cycle positions less the target's.
+    pub(super) lead: [f32; LANES],
+    /// Cycle velocities less the target's.
+    pub(super) haste: [f32; LANES],
+    /// Log-weights; negative infinity where there is no particle.
+    pub(super) log_weights: [f32; LANES],
+}
+
+impl<const N: usize> ParticleLanes<N> {
+    pub(super) const fn empty() -> Self {
+        Self { off_rad: [[0.0; LANES]; N], lead: [0.0; LANES], haste: [0.0; LANES], log_weights: [0.0; LANES] }
+    }
+
+    /// Takes `particles` and compares them with `target`.
+    #[inline(always)]
+    pub(super) fn take(&mut self, particles: &[CyclicParticle<N>], target: &ParticleTarget<N>) {
+        for (lane, particle) in particles.iter().enumerate().take(LANES) {
+            for i in 0..N {
+                self.off_rad[i][lane] = particle.angles_rad[i];
+            }
+            self.lead[lane] = particle.cycle_position - target.cycle_position;
+            self.haste[lane] = particle.cycle_velocity - target.cycle_velocity;
+        }
+        let mut squares = [0.0; LANES];
+        for i in 0..N {
+            let (angle, root_precision) = (target.angles_rad[i], target.root_precision[i]);
+            for (off, square) in self.off_rad[i].iter_mut().zip(&mut squares) {
+                *off = least_angle(*off - angle);
+                let scaled = *off * root_precision;
+                *square += scaled * scaled;
+            }
+        }
+        self.log_weights = squares.map(|square| -0.5 * square);
+        for nobody in self.log_weights.iter_mut().skip(particles.len()) {
+            *nobody = f32::NEG_INFINITY;
+        }
+    }
+}
