@@ -28,7 +28,6 @@
 //! ```
 
 pub mod body_surface;
-pub mod candidate;
 pub mod capsule;
 pub mod hough;
 pub mod limb_likelihood;

@@ -1,6 +1,6 @@
 //! Which bones make up a limb: those that hang on the trunk in a chain of their own.
 
-use super::Skeleton;
+use super::tree::Skeleton;
 
 /// Groups of bones at most: the trunk and seven limbs. Limbs beyond that count as trunk.
 pub const MAX_GROUPS: usize = 8;

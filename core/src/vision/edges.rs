@@ -1,4 +1,4 @@
-//! Temporal edge pixels: where the luminance has an edge and has changed since the frame before.
+//! Temporal edge pixels: edges of the luminance that changed since the previous frame.
 //!
 //! ```
 //! use sinew_core::vision::edges::{EdgeDetector, EdgeList};
@@ -27,7 +27,7 @@ const BLOCK: usize = 32;
 /// A block and its neighbours on both sides.
 const WINDOW: usize = BLOCK + 2;
 
-/// A pixel that is an edge and moving.
+/// A temporal edge pixel: an edge of the luminance that has changed since the previous frame.
 ///
 /// ```
 /// use sinew_core::vision::edges::{EdgeList, EdgePixel};
@@ -85,7 +85,8 @@ impl<const N: usize> EdgeList<N> {
         self.dropped = 0;
     }
 
-    /// Takes the set pixels of a mask; of more than fit every n-th, n a fraction, in the order of rows.
+    /// Takes the set pixels of a mask; of more than fit every n-th, n a fraction, in the order of
+    /// rows.
     pub fn take_mask(&mut self, bits: &[u32], width: usize) {
         self.clear();
         let total: u32 = bits.iter().map(|word| word.count_ones()).sum();
@@ -109,14 +110,15 @@ impl<const N: usize> EdgeList<N> {
     }
 }
 
-/// Thins edge pixels that come one by one, their number not known beforehand: every 2^k-th is kept, in the order in which they come.
+/// Thins a stream of edge pixels of unknown length: keeps every 2^k-th, in the order of the stream.
 ///
-/// Invariant: the list holds the pixels number 0, `stride`, 2 `stride` ... of those offered so far. A full list is thus at least half full again.
+/// Invariant: the list holds the pixels number 0, `stride`, 2 `stride` ... of those offered so far.
+/// After thinning, a full list is half full.
 ///
 /// ```
 /// use sinew_core::vision::edges::{EdgeList, EdgePixel, EdgeThinning};
 ///
-/// // Ten pixels come, nobody knows how many more, and there is room for four.
+/// // A stream of ten pixels, its length unknown at the start, and room for four.
 /// let (mut thinning, mut list) = (EdgeThinning::new(), EdgeList::<4>::new());
 /// for u in 0..10 {
 ///     thinning.offer(EdgePixel { u, v: 0 }, &mut list);
@@ -167,7 +169,7 @@ impl EdgeThinning {
     #[cold]
     #[inline(never)]
     fn offer_to_full<const N: usize>(&mut self, pixel: EdgePixel, list: &mut Vec<EdgePixel, N>) -> u32 {
-        let before = list.len();
+        let len_before = list.len();
         if self.stride < 1 << 31 {
             keep_every_second(list);
             self.stride *= 2;
@@ -176,7 +178,7 @@ impl EdgeThinning {
             // A list without any room stays empty.
             let _ = list.push(pixel);
         }
-        (before + 1 - list.len()) as u32
+        (len_before + 1 - list.len()) as u32
     }
 }
 
@@ -209,8 +211,9 @@ pub fn luminance_line(rgb: &[u8], luminance: &mut [u8]) {
 
 /// Finds temporal edges; both thresholds are in grey levels, 0 to 255.
 ///
-/// The gradient is Sobel's, divided by 8 so that a step of one grey level a pixel has length 1; the change between frames is weighted over
-/// 3x3 pixels by 1-2-1 in both directions, which takes most of a webcam's or JPEG's noise away.
+/// The gradient is Sobel's, divided by 8: a slope of one grey level a pixel has length 1. The
+/// change between frames is weighted over 3x3 pixels by 1-2-1 in both directions, which suppresses
+/// noise.
 ///
 /// ```
 /// use sinew_core::vision::edges::{DEFAULT_MIN_GRADIENT, DEFAULT_MIN_MOTION, EdgeDetector};
@@ -234,9 +237,14 @@ pub struct EdgeDetector {
     motion: i16,
 }
 
-/// Default of the smallest gradient, grey levels a pixel: a soft edge of 40 levels over five pixels passes.
+/// Default of the smallest gradient, grey levels a pixel.
+///
+/// Chosen: a soft edge of 40 levels over five pixels passes.
 pub const DEFAULT_MIN_GRADIENT: f32 = 8.0;
-/// Default of the smallest smoothed change, grey levels: about five standard deviations of a webcam's noise of 5 levels (smoothed: 2.7).
+/// Default of the smallest smoothed change, grey levels.
+///
+/// Chosen: four to five standard deviations of the smoothed difference of two frames, which is 2.7
+/// levels for a webcam's noise of 5 levels (tested).
 pub const DEFAULT_MIN_MOTION: f32 = 12.0;
 
 impl Default for EdgeDetector {
@@ -246,7 +254,8 @@ impl Default for EdgeDetector {
 }
 
 impl EdgeDetector {
-    /// A detector for gradients of at least `min_gradient` and changes of at least `min_motion`, grey levels.
+    /// A detector for gradients of at least `min_gradient` and changes of at least `min_motion`,
+    /// grey levels.
     ///
     /// # Errors
     /// Both have to lie from 0 to 255.
@@ -256,7 +265,8 @@ impl EdgeDetector {
         Ok(Self { gradient_square: (gradient * gradient) as i32, motion: motion as i16 })
     }
 
-    /// Sets the bits of the temporal edge pixels of two luminance frames in `bits` ([`words_per_row`] words a row).
+    /// Sets the bits of the temporal edge pixels of two luminance frames in `bits`
+    /// ([`words_per_row`] words a row).
     ///
     /// Pixels on the image's border are never edges.
     ///

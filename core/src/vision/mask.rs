@@ -201,7 +201,8 @@ impl<'a> MaskMut<'a> {
         self.words.fill(0);
     }
 
-    /// Lets `write` fill each row's words, given the row's number; bits beyond the width are cleared afterwards.
+    /// Lets `write` fill each row's words, given the row's number; bits beyond the width are
+    /// cleared afterwards.
     pub fn write_rows(&mut self, mut write: impl FnMut(usize, &mut [u32])) {
         for (v, row) in self.words.chunks_exact_mut(words_per_row(self.width).max(1)).enumerate() {
             write(v, row);
@@ -209,7 +210,7 @@ impl<'a> MaskMut<'a> {
         self.clear_padding();
     }
 
-    /// For code of this crate that keeps the invariant by itself.
+    /// All words, for code of this crate that keeps the invariant.
     pub(super) fn words_mut(&mut self) -> &mut [u32] {
         self.words
     }

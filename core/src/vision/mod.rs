@@ -1,4 +1,4 @@
-//! What a camera's lines can give without a frame buffer.
+//! From a camera's pixels to blobs that may be hands and to temporal edge pixels.
 //!
 //! ```
 //! use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION};
@@ -47,6 +47,7 @@
 //! ```
 
 pub mod blobs;
+pub mod candidate;
 pub mod component_scanner;
 pub mod components;
 pub mod distance;
