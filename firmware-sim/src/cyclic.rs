@@ -3,11 +3,11 @@
 use crate::log::debug;
 use crate::player::{Answers, Application, Refusal, play};
 use crate::port::{Part, Port, counted};
-use crate::slot::Slot;
 use sinew_core::cyclic::MotionModel;
 use sinew_core::cyclic::models::walking::WALKING;
 use sinew_core::record::{Cost, CyclicInput, CyclicResult, CyclicSetup, Kind, Record, RecordError, model_checksum};
 use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
+use sinew_core::slot::Slot;
 use sinew_core::tracker::coupled::CoupledTracker;
 use sinew_core::tracker::cyclic::FirstPhase;
 use static_cell::ConstStaticCell;

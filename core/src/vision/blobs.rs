@@ -27,13 +27,17 @@ pub const DEFAULT_MIN_AREA_FRACTION: f32 = 8.0e-5;
 /// # rows[20..36].fill(0x00ff_ff00);
 /// # let mask = Mask::new(&rows, 32, 64)?;
 /// let meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
-/// let mut finder = BlobFinder::<16, 16>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
+/// let mut finder =
+///     BlobFinder::<16, 16>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
 /// let mut list = BlobList::<4>::new();
 /// finder.find(&mask, &mut [Run::default(); 64], &mut list);
 /// // The tracker's input: the blob's place, its extent and its likelihood.
 /// let entry = &list.as_slice()[0];
 /// let candidate = entry.candidate();
-/// assert_eq!((candidate.centre, candidate.likelihood), (entry.blob.centroid, entry.likelihood));
+/// assert_eq!(
+///     (candidate.centre, candidate.likelihood),
+///     (entry.blob.centroid, entry.likelihood)
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,8 +52,8 @@ pub struct LikelyBlob {
 /// A blob that can be ranked and passed to a tracker.
 ///
 /// ```
-/// use sinew_core::vision::candidate::HandCandidate;
 /// use sinew_core::vision::blobs::{BlobList, Ranked};
+/// use sinew_core::vision::candidate::HandCandidate;
 ///
 /// // What another detector found: a place and a score.
 /// struct Detection(HandCandidate);
@@ -101,12 +105,13 @@ impl Ranked for LikelyBlob {
 /// # rows[60..64].fill(0x0000_0f00);
 /// # let mask = Mask::new(&rows, 32, 96)?;
 /// # let meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
-/// # let mut finder = BlobFinder::<16, 16>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
+/// # let likelihood = HandLikelihood::default();
+/// # let mut finder = BlobFinder::<16, 16>::new(meter, likelihood, DEFAULT_MIN_AREA_FRACTION);
 /// // A mask with three squares, and room for two.
 /// let mut list = BlobList::<2>::new();
 /// finder.find(&mask, &mut [Run::default(); 64], &mut list);
-/// assert!(list.as_slice()[0].likelihood >= list.as_slice()[1].likelihood, "the most likely comes first");
-/// assert_eq!((list.as_slice().len(), list.dropped_blobs), (2, 1), "what found no room is counted");
+/// assert!(list.as_slice()[0].likelihood >= list.as_slice()[1].likelihood);
+/// assert_eq!((list.as_slice().len(), list.dropped_blobs), (2, 1));
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -191,7 +196,11 @@ impl<const N: usize, B: Ranked> BlobList<N, B> {
 /// let mut finder = BlobFinder::<16, 16>::new(meter, HandLikelihood::default(), 0.01);
 /// let mut list = BlobList::<4>::new();
 /// finder.find(&Mask::new(&rows, 32, 64)?, &mut [Run::default(); 64], &mut list);
-/// assert_eq!((list.as_slice().len(), list.specks), (1, 1), "less than a hundredth of the image is no blob");
+/// assert_eq!(
+///     (list.as_slice().len(), list.specks),
+///     (1, 1),
+///     "less than a hundredth of the image is no blob"
+/// );
 /// assert_eq!(list.as_slice()[0].blob.area_px, 256);
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```

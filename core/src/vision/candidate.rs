@@ -15,7 +15,7 @@ use core::f32::consts::PI;
 /// let edge = HandCandidate { moments_px2: [100.0, 0.0, 6.25], ..flat };
 /// assert!((flat.length_weighted_area_px(0.5) - 628.3).abs() < 0.1);
 /// // A size weighted towards the length keeps more of it: a better measure of the hand's distance.
-/// let kept = |length_share| edge.length_weighted_area_px(length_share) / flat.length_weighted_area_px(length_share);
+/// let kept = |share| edge.length_weighted_area_px(share) / flat.length_weighted_area_px(share);
 /// assert!((kept(0.5) - 0.5).abs() < 1e-3 && kept(0.65) > 0.6);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

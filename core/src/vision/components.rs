@@ -235,7 +235,10 @@ pub(super) fn overlaps(above: (u16, u16), below: (u16, u16)) -> [u32; 3] {
 ///
 /// // A square of ten pixels: 90 of them have one below, 81 one to the left or right below.
 /// let perimeter_px = crofton_perimeter(100, 10, [81, 90, 81]);
-/// assert!((perimeter_px - 36.8).abs() < 0.1, "upright edges read 5 % short, and corners are cut");
+/// assert!(
+///     (perimeter_px - 36.8).abs() < 0.1,
+///     "upright edges read 5 % short, and corners are cut"
+/// );
 /// ```
 #[must_use]
 pub fn crofton_perimeter(area_px: u32, run_count: u32, pairs: [u32; 3]) -> f32 {

@@ -24,14 +24,20 @@ const FAR: i16 = 16_000;
 /// let plus: [CellRow; 3] = [0b010, 0b111, 0b010];
 /// let mut distances = [EMPTY_ROW; 3];
 /// transform(&plus, 3, true, &mut distances);
-/// assert_eq!(at(&distances, 1, 1), 7, "from the middle to a corner: one diagonal, in fifths of a cell");
+/// assert_eq!(
+///     at(&distances, 1, 1),
+///     7,
+///     "from the middle to a corner: one diagonal, in fifths of a cell"
+/// );
 /// ```
 pub type CellRow = u128;
 
 /// Distances of one row of cells, with a border on both sides.
 ///
 /// ```
-/// use sinew_core::vision::distance::{DistanceRow, EMPTY_ROW, MAX_COLUMNS, UNIT, at, transform};
+/// use sinew_core::vision::distance::{
+///     DistanceRow, EMPTY_ROW, MAX_COLUMNS, UNIT, at, transform,
+/// };
 ///
 /// // Working memory for a grid of twenty rows: a row of distances each, with a border.
 /// let mut distances: [DistanceRow; 20] = [EMPTY_ROW; 20];

@@ -7,14 +7,19 @@
 //! // A bright bar that moves by three pixels.
 //! const SIZE: (usize, usize) = (64, 32);
 //! let frame = |left: usize| -> Vec<u8> {
-//!     (0..SIZE.0 * SIZE.1).map(|i| if (left..left + 10).contains(&(i % SIZE.0)) { 200 } else { 40 }).collect()
+//!     (0..SIZE.0 * SIZE.1)
+//!         .map(|i| if (left..left + 10).contains(&(i % SIZE.0)) { 200 } else { 40 })
+//!         .collect()
 //! };
 //! let mut bits = [0; words_per_row(SIZE.0) * SIZE.1];
 //! EdgeDetector::default().find(&frame(23), &frame(20), SIZE.0, SIZE.1, &mut bits)?;
 //! let mut edges = EdgeList::<500>::new();
 //! edges.take_mask(&bits, SIZE.0);
 //! assert!(!edges.as_slice().is_empty() && edges.dropped == 0);
-//! assert!(edges.as_slice().iter().all(|pixel| (18..37).contains(&pixel.u)), "only where the bar is or was");
+//! assert!(
+//!     edges.as_slice().iter().all(|pixel| (18..37).contains(&pixel.u)),
+//!     "only where the bar is or was"
+//! );
 //! # Ok::<(), sinew_core::error::ParameterError>(())
 //! ```
 
@@ -124,7 +129,11 @@ impl<const N: usize> EdgeList<N> {
 ///     thinning.offer(EdgePixel { u, v: 0 }, &mut list);
 /// }
 /// let sum: u16 = list.as_slice().iter().map(|pixel| pixel.u).sum();
-/// assert_eq!((list.as_slice().len(), sum), (3, 12), "0, 4 and 8: every fourth is kept by now");
+/// assert_eq!(
+///     (list.as_slice().len(), sum),
+///     (3, 12),
+///     "0, 4 and 8: every fourth is kept by now"
+/// );
 /// assert_eq!(list.dropped, 7);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -219,11 +228,17 @@ pub fn luminance_line(rgb: &[u8], luminance: &mut [u8]) {
 /// use sinew_core::vision::edges::{DEFAULT_MIN_GRADIENT, DEFAULT_MIN_MOTION, EdgeDetector};
 ///
 /// // Bright from column `left` on, in 16 x 16 pixels.
-/// let frame = |left: usize| core::array::from_fn::<u8, 256, _>(|i| if i % 16 >= left { 200 } else { 40 });
+/// let frame = |left: usize| {
+///     core::array::from_fn::<u8, 256, _>(|i| if i % 16 >= left { 200 } else { 40 })
+/// };
 /// let detector = EdgeDetector::new(DEFAULT_MIN_GRADIENT, DEFAULT_MIN_MOTION)?;
 /// let mut bits = [0; 16];
 /// detector.find(&frame(10), &frame(7), 16, 16, &mut bits)?;
-/// assert_eq!((bits[0], bits[8]), (0, 0b11 << 9), "the edge has moved to columns 9 and 10; the border has none");
+/// assert_eq!(
+///     (bits[0], bits[8]),
+///     (0, 0b11 << 9),
+///     "the edge has moved to columns 9 and 10; the border has none"
+/// );
 /// detector.find(&frame(10), &frame(10), 16, 16, &mut bits)?;
 /// assert_eq!(bits, [0; 16], "what stands still is no temporal edge");
 /// # Ok::<(), sinew_core::error::ParameterError>(())

@@ -58,9 +58,13 @@ pub fn semi_axes(area: f32, perimeter: f32) -> (f32, f32) {
 ///
 /// // A bar of twenty by six cells that stands upright.
 /// let (area, perimeter) = (120.0, 52.0);
-/// let (overlap, rotation_rad) = best_overlap(&[0b11_1111; 20], area, (2.5, 9.5), semi_axes(area, perimeter));
+/// let (overlap, rotation_rad) =
+///     best_overlap(&[0b11_1111; 20], area, (2.5, 9.5), semi_axes(area, perimeter));
 /// assert!(overlap > 0.8, "an ellipse covers most of a bar: {overlap}");
-/// assert!((rotation_rad - core::f32::consts::FRAC_PI_2).abs() < 0.1, "its long axis is upright, too");
+/// assert!(
+///     (rotation_rad - core::f32::consts::FRAC_PI_2).abs() < 0.1,
+///     "its long axis is upright, too"
+/// );
 /// ```
 #[must_use]
 pub fn best_overlap(cells: &[CellRow], area: f32, (centre_u, centre_v): (f32, f32), (a, b): (f32, f32)) -> (f32, f32) {

@@ -72,12 +72,19 @@ impl ShapeFeatures {
 /// let mut meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
 /// let mut storage = [Run::default(); 64];
 /// # let mask = Mask::new(&rows, 32, 20)?;
-/// ComponentScanner::<8, 8>::new().scan(&mask, &mut RunPool::new(&mut storage), &mut |component, pool| {
-///     let blob = meter.measure(component, pool);
-///     assert_eq!((blob.area_px, blob.shape_complete), (12 * 12 + 8 * 4, true));
-///     assert!(blob.filled.area_px > blob.plain.area_px, "the gap between the fingers counts");
-///     assert!(blob.palm_centre().v_px > 8.0, "the palm is where there is most room");
-/// });
+/// ComponentScanner::<8, 8>::new().scan(
+///     &mask,
+///     &mut RunPool::new(&mut storage),
+///     &mut |component, pool| {
+///         let blob = meter.measure(component, pool);
+///         assert_eq!((blob.area_px, blob.shape_complete), (12 * 12 + 8 * 4, true));
+///         assert!(
+///             blob.filled.area_px > blob.plain.area_px,
+///             "the gap between the fingers counts"
+///         );
+///         assert!(blob.palm_centre().v_px > 8.0, "the palm is where there is most room");
+///     },
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,12 +113,6 @@ impl Blob {
     #[must_use]
     pub fn palm_centre(&self) -> Pixel {
         self.filled.dt_max_at
-    }
-
-    /// Radius of the palm: the greatest distance transform of the filled blob, pixels.
-    #[must_use]
-    pub fn palm_radius_px(&self) -> f32 {
-        self.filled.dt_max_px
     }
 
     /// The trackers' input for this blob; its centre is the centre of gravity (arm paper, section
@@ -299,7 +300,7 @@ mod tests {
             assert!(open.filled.ellipse_iou > 0.62, "{open:?}");
             assert!(open.filled.area_px > 1.2 * open.plain.area_px);
             assert!(open.palm_centre().distance_px(Pixel::new(centre.0, centre.1)) < 1.2 * r, "{open:?}");
-            assert!((0.9..1.9).contains(&(open.palm_radius_px() / r)), "{open:?}");
+            assert!((0.9..1.9).contains(&(open.filled.dt_max_px / r)), "{open:?}");
         }
     }
 
@@ -319,7 +320,7 @@ mod tests {
             (speck.area_px, speck.centroid, speck.palm_centre()),
             (1, Pixel::new(7.0, 9.0), Pixel::new(7.0, 9.0))
         );
-        assert_eq!(speck.palm_radius_px(), 1.0);
+        assert_eq!(speck.filled.dt_max_px, 1.0);
         assert_eq!(speck.candidate(0.25).likelihood, 0.25);
     }
 

@@ -11,32 +11,22 @@ use crate::error::{ParameterError, Rule, within};
 /// Working memory for frames of one size; it keeps the previous frame's luminance.
 ///
 /// ```
-/// use sinew_core::vision::frame::{FrameBuffers, mask_words, runs_that_suffice};
+/// use sinew_core::vision::frame::{FrameBuffers, last_mask, mask_words, runs_that_suffice};
 /// use sinew_core::vision::morphology::scratch_words;
-/// # use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION};
-/// # use sinew_core::vision::edges::{EdgeDetector, EdgeList};
-/// # use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
-/// # use sinew_core::vision::{frame::FrameAnalyser, hand_likelihood::HandLikelihood, runs::Run, skin::GaussianSkin};
+/// use sinew_core::vision::runs::Run;
 ///
 /// const WIDTH: usize = 64;
 /// const HEIGHT: usize = 48;
-/// let mut buffers = FrameBuffers {
+/// let buffers = FrameBuffers {
 ///     mask: &mut [0; mask_words(WIDTH, HEIGHT)],
 ///     edges: &mut [0; mask_words(WIDTH, HEIGHT)],
 ///     scratch: &mut [0; scratch_words(WIDTH)],
 ///     runs: &mut [Run::default(); runs_that_suffice(WIDTH, HEIGHT)],
 ///     luminance: [&mut [0; WIDTH * HEIGHT], &mut [0; WIDTH * HEIGHT]],
 /// };
-/// # let meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
-/// # let finder = BlobFinder::<32, 32>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
-/// # let mut analyser = FrameAnalyser::new(finder, EdgeDetector::default());
-/// # let skin = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?;
-/// # let (mut blobs, mut edges) = (BlobList::<4>::new(), EdgeList::<64>::new());
-/// // A frame of twice the width does not fit: the first buffer that is too short is named.
-/// let wide = [0; 3 * 2 * WIDTH * HEIGHT];
-/// let refused = analyser.analyse(&wide, (2 * WIDTH, HEIGHT), &skin, &mut buffers, &mut blobs, &mut edges);
-/// assert_eq!(refused.map_err(|error| error.parameter), Err("buffers.mask"));
-/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// // They fit a frame of this size, and none of twice the width.
+/// assert!(last_mask(&buffers, WIDTH, HEIGHT).is_ok());
+/// assert!(last_mask(&buffers, 2 * WIDTH, HEIGHT).is_err());
 /// ```
 #[derive(Debug)]
 pub struct FrameBuffers<'a> {
@@ -109,40 +99,19 @@ pub const fn runs_that_suffice(width: usize, height: usize) -> usize {
 /// [`super::component_scanner::ComponentScanner`].
 ///
 /// ```
-/// # use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION};
-/// # use sinew_core::vision::edges::{EdgeDetector, EdgeList};
-/// # use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
-/// # use sinew_core::vision::frame::{FrameAnalyser, FrameBuffers, mask_words, runs_that_suffice};
-/// # use sinew_core::vision::{hand_likelihood::HandLikelihood, morphology::scratch_words, runs::Run};
-/// # use sinew_core::vision::skin::GaussianSkin;
-/// # let skin = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?;
-/// # let meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
-/// # let finder = BlobFinder::<32, 32>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
-/// # let mut buffers = FrameBuffers {
-/// #     mask: &mut [0; mask_words(64, 48)],
-/// #     edges: &mut [0; mask_words(64, 48)],
-/// #     scratch: &mut [0; scratch_words(64)],
-/// #     runs: &mut [Run::default(); runs_that_suffice(64, 48)],
-/// #     luminance: [&mut [0; 64 * 48], &mut [0; 64 * 48]],
-/// # };
-/// # let frame = |left: usize| {
-/// #     core::array::from_fn::<[u8; 3], { 64 * 48 }, _>(|i| {
-/// #         let is_skin = (left..left + 16).contains(&(i % 64)) && (16..32).contains(&(i / 64));
-/// #         if is_skin { [200, 140, 110] } else { [20, 40, 90] }
-/// #     })
-/// # };
-/// // Frames of 64 x 48 pixels with a square of skin, which moves to the right and then stands
-/// // still.
-/// let mut analyser = FrameAnalyser::new(finder, EdgeDetector::default());
-/// let (mut blobs, mut edges) = (BlobList::<4>::new(), EdgeList::<200>::new());
-/// let mut counts = [(0, 0); 3];
-/// for (count, left) in counts.iter_mut().zip([20, 26, 26]) {
-///     analyser.analyse(frame(left).as_flattened(), (64, 48), &skin, &mut buffers, &mut blobs, &mut edges)?;
-///     *count = (blobs.as_slice().len(), edges.as_slice().len());
-/// }
-/// assert!(counts.iter().all(|(blobs, _)| *blobs == 1));
-/// assert!(counts[1].1 > 20, "the second frame has temporal edges");
-/// assert_eq!((counts[0].1, counts[2].1), (0, 0), "the first and a still one have none");
+/// use sinew_core::vision::blobs::{BlobFinder, DEFAULT_MIN_AREA_FRACTION};
+/// use sinew_core::vision::edges::EdgeDetector;
+/// use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
+/// use sinew_core::vision::frame::FrameAnalyser;
+/// use sinew_core::vision::hand_likelihood::HandLikelihood;
+///
+/// // The page of `vision` runs one on frames. A wider closing joins parts that are farther apart.
+/// let (meter, likelihood) = (BlobMeter::new(DEFAULT_FILL_RATIO)?, HandLikelihood::default());
+/// let finder = BlobFinder::<32, 32>::new(meter, likelihood, DEFAULT_MIN_AREA_FRACTION);
+/// let analyser = FrameAnalyser::new(finder, EdgeDetector::default());
+/// assert!(analyser.clone().with_closing_fraction(0.01).is_ok());
+/// let refused = analyser.with_closing_fraction(0.2).map_err(|error| error.parameter);
+/// assert_eq!(refused.err(), Some("closing_fraction"));
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -229,7 +198,11 @@ impl<const RUNS: usize, const OPEN: usize> FrameAnalyser<RUNS, OPEN> {
 /// // Two lines of two pixels: skin on the left, a wall on the right.
 /// let (hand, wall) = ([200, 140, 110], [20, 40, 90]);
 /// let mut words = [0; 2];
-/// segment([hand, wall, hand, wall].as_flattened(), &skin, &mut MaskMut::new(&mut words, 2, 2)?);
+/// segment(
+///     [hand, wall, hand, wall].as_flattened(),
+///     &skin,
+///     &mut MaskMut::new(&mut words, 2, 2)?,
+/// );
 /// assert_eq!(words, [0b01, 0b01]);
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
@@ -247,7 +220,13 @@ pub fn segment(rgb: &[u8], skin: &impl SkinClassifier, mask: &mut MaskMut<'_>) {
 /// let mut mask = [0; mask_words(32, 4)];
 /// mask[2] = 0xff;
 /// let luminance: [&mut [u8]; 2] = [&mut [], &mut []];
-/// let buffers = FrameBuffers { mask: &mut mask, edges: &mut [], scratch: &mut [], runs: &mut [], luminance };
+/// let buffers = FrameBuffers {
+///     mask: &mut mask,
+///     edges: &mut [],
+///     scratch: &mut [],
+///     runs: &mut [],
+///     luminance,
+/// };
 /// let skin = last_mask(&buffers, 32, 4)?;
 /// assert_eq!(skin.count(), 8);
 /// assert!(last_mask(&buffers, 640, 480).is_err(), "that was no frame of this size");

@@ -24,7 +24,8 @@ use crate::math::{clamp, exp, ln, max};
 /// // default lowers its likelihood.
 /// let filled = HandLikelihood::default();
 /// let paper = filled.with_form(LikelihoodForm::Paper);
-/// let [paper, filled] = [paper, filled].map(|form| form.of_features(300.0, 640.0 * 480.0, 0.9, 0.8));
+/// let [paper, filled] =
+///     [paper, filled].map(|form| form.of_features(300.0, 640.0 * 480.0, 0.9, 0.8));
 /// assert_eq!(paper, 0.0);
 /// assert!((0.1..0.5).contains(&filled), "{filled}");
 /// ```
@@ -43,15 +44,28 @@ pub enum LikelihoodForm {
 /// Turns a blob's features into p(hand | blob).
 ///
 /// ```
-/// use sinew_core::vision::hand_likelihood::{DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE, HandLikelihood, LikelihoodForm};
+/// use sinew_core::vision::hand_likelihood::{
+///     DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE, HandLikelihood, LikelihoodForm,
+/// };
 ///
 /// // Gloves change the outline: leave the ellipse out, by a weight of zero.
 /// let weights = [1.0, 1.0, 0.0];
-/// let gloved = HandLikelihood::new(LikelihoodForm::Filled, weights, DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE)?;
-/// let of = |likelihood: &HandLikelihood| likelihood.of_features(5000.0, 640.0 * 480.0, 0.9, 0.1);
+/// let gloved = HandLikelihood::new(
+///     LikelihoodForm::Filled,
+///     weights,
+///     DEFAULT_AREA_FRACTIONS,
+///     DEFAULT_SCALE,
+/// )?;
+/// let of =
+///     |likelihood: &HandLikelihood| likelihood.of_features(5000.0, 640.0 * 480.0, 0.9, 0.1);
 /// assert!(of(&gloved) > 0.9 && of(&gloved) > of(&HandLikelihood::default()));
 /// // A wrong parameter is refused by its name.
-/// let wrong = HandLikelihood::new(LikelihoodForm::Filled, [-1.0; 3], DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE);
+/// let wrong = HandLikelihood::new(
+///     LikelihoodForm::Filled,
+///     [-1.0; 3],
+///     DEFAULT_AREA_FRACTIONS,
+///     DEFAULT_SCALE,
+/// );
 /// assert_eq!(wrong.map_err(|error| error.parameter), Err("weights"));
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```

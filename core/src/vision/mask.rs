@@ -67,7 +67,10 @@ fn checked_len(len: usize, width: usize, height: usize) -> Result<usize, Paramet
 /// assert!(mask.get(8, 5) && mask.get(15, 5) && !mask.get(16, 5));
 /// assert_eq!(mask.count(), 8);
 /// // A view as narrow as 12 pixels would hide some of them.
-/// assert_eq!(Mask::new(&words, 12, 24).map_err(|error| error.parameter).err(), Some("bits beyond the width"));
+/// assert_eq!(
+///     Mask::new(&words, 12, 24).map_err(|error| error.parameter).err(),
+///     Some("bits beyond the width")
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy)]

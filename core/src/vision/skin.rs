@@ -40,7 +40,8 @@ pub const CUBE_WORDS: usize = CUBE_SIDE * CUBE_SIDE;
 ///     fn classify_line(&self, rgb: &[u8], bits: &mut [u32]) {
 ///         bits.fill(0);
 ///         for (u, pixel) in rgb.chunks_exact(3).enumerate() {
-///             let is_red = pixel[0] > 120 && pixel[0] / 2 > pixel[1] && pixel[0] / 2 > pixel[2];
+///             let is_red =
+///                 pixel[0] > 120 && pixel[0] / 2 > pixel[1] && pixel[0] / 2 > pixel[2];
 ///             if let Some(word) = bits.get_mut(u / 32) {
 ///                 *word |= u32::from(is_red) << (u % 32);
 ///             }
@@ -73,7 +74,10 @@ pub trait SkinClassifier {
 /// skin.classify_line(&[200, 140, 110, 20, 40, 90, 100, 70, 55], &mut bits);
 /// assert_eq!(bits, [0b101]);
 /// // A matrix that is not positive definite is refused.
-/// assert_eq!(GaussianSkin::new(0.44, 0.31, [-1.0, 0.0, 1.0], 2.0, 60).map_err(|e| e.parameter), Err("covariance"));
+/// assert_eq!(
+///     GaussianSkin::new(0.44, 0.31, [-1.0, 0.0, 1.0], 2.0, 60).map_err(|e| e.parameter),
+///     Err("covariance")
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -146,14 +150,6 @@ impl GaussianSkin {
     #[must_use]
     pub fn min_sum(&self) -> u16 {
         self.min_sum
-    }
-
-    /// The same distribution with another `threshold`.
-    ///
-    /// # Errors
-    /// The threshold has to be positive.
-    pub fn with_threshold(self, threshold: f32) -> Result<Self, ParameterError> {
-        Ok(Self { threshold: positive("threshold", threshold)?, ..self })
     }
 
     /// Mahalanobis distance of a colour's chromaticity from the mean; `None` for a colour darker

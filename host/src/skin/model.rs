@@ -4,7 +4,7 @@ use super::bit_image::BitImage;
 use super::gaussian::GaussianModel;
 use super::histogram::HistogramModel;
 use super::model_file::{self, TrainedOn};
-use super::white_balance::{Gains, WhiteBalance};
+use super::white_balance::WhiteBalance;
 use anyhow::{Result, bail};
 use clap::ValueEnum;
 use image::RgbImage;
@@ -108,7 +108,7 @@ impl SkinModel {
     pub fn for_image(&self, image: &RgbImage) -> Result<Cow<'_, Self>> {
         match &self.numbers {
             ModelNumbers::Gaussian(gaussian) if gaussian.white_balance == WhiteBalance::QuarterGreyWorld => {
-                let raw = Gains::of_image(gaussian.white_balance, image).raw_model(gaussian);
+                let raw = gaussian.before_balance(&gaussian.white_balance.gains(image));
                 let raw = GaussianModel { white_balance: WhiteBalance::None, ..raw };
                 Ok(Cow::Owned(Self::new(ModelNumbers::Gaussian(raw), self.trained_on.clone())?))
             }

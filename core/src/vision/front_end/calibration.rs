@@ -18,7 +18,9 @@
 //! }
 //! assert_eq!(sample.len(), 128, "what is outside of the box does not count");
 //! let adapted = sample.adapted(&trained)?;
-//! let far = |skin: &GaussianSkin| skin.distance(hand.map(|value| value as u8)).expect("bright enough");
+//! let far = |skin: &GaussianSkin| {
+//!     skin.distance(hand.map(|value| value as u8)).expect("bright enough")
+//! };
 //! assert!(far(&adapted) < far(&trained));
 //! # Ok::<(), sinew_core::error::ParameterError>(())
 //! ```
@@ -61,7 +63,8 @@ const CELL_VARIANCE: f32 = 1.0e-5;
 /// use sinew_core::vision::skin::GaussianSkin;
 ///
 /// let trained = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?;
-/// let mut sample = SkinSample::<Rgb565, 50>::new(BoundingBox { min_u: 0, min_v: 0, max_u: 15, max_v: 7 });
+/// let mut sample =
+///     SkinSample::<Rgb565, 50>::new(BoundingBox { min_u: 0, min_v: 0, max_u: 15, max_v: 7 });
 /// // Before the frame came there is nothing to learn from.
 /// assert_eq!(sample.adapted(&trained).map_err(|error| error.parameter), Err("skin sample"));
 /// for v in 0..8 {

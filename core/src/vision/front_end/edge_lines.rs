@@ -21,7 +21,8 @@ type Cells<const WORDS: usize> = [[u32; BLOCK_WORDS]; WORDS];
 /// How steep an edge has to be; grey levels are those of a camera from 0 to 255.
 ///
 /// ```
-/// use sinew_core::vision::front_end::edge_lines::{DEFAULT_KNOWN_STEP, DEFAULT_NEW_STEP, EdgeSteps};
+/// use sinew_core::vision::front_end::edge_lines::EdgeSteps;
+/// use sinew_core::vision::front_end::edge_lines::{DEFAULT_KNOWN_STEP, DEFAULT_NEW_STEP};
 ///
 /// assert_eq!(EdgeSteps::new(DEFAULT_NEW_STEP, DEFAULT_KNOWN_STEP)?, EdgeSteps::default());
 /// // The map has to remember what is as steep as a new edge, else one that stands still would be
@@ -118,13 +119,17 @@ struct EdgeMap<const WORDS: usize, const ROWS: usize> {
 /// for left in [10, 16] {
 ///     lines.begin_frame(&mut edges);
 ///     for v in 0..32 {
-///         let line = core::array::from_fn::<u16, 32, _>(|u| if u >= left { 0xffff } else { 0 });
+///         let line =
+///             core::array::from_fn::<u16, 32, _>(|u| if u >= left { 0xffff } else { 0 });
 ///         lines.line::<Rgb565, 64>(v, &line, 32, &mut edges);
 ///     }
 ///     lines.end_frame();
 /// }
 /// assert!(!edges.as_slice().is_empty());
-/// assert!(edges.as_slice().iter().all(|pixel| (14..=16).contains(&pixel.u)), "where the edge is now");
+/// assert!(
+///     edges.as_slice().iter().all(|pixel| (14..=16).contains(&pixel.u)),
+///     "where the edge is now"
+/// );
 /// ```
 #[derive(Debug, Clone)]
 pub struct EdgeLines<const WORDS: usize, const ROWS: usize> {

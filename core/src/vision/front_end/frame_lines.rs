@@ -13,14 +13,18 @@ use crate::vision::edges::EdgePixel;
 /// use sinew_core::vision::hand_likelihood::HandLikelihood;
 ///
 /// // A camera that drops its last ten lines and repeats one.
-/// let mut front_end = QvgaFrontEnd::new((320, 240), HandLikelihood::default(), EdgeSteps::default())?;
+/// let mut front_end =
+///     QvgaFrontEnd::new((320, 240), HandLikelihood::default(), EdgeSteps::default())?;
 /// let table = SkinTable::<Rgb565>::new();
 /// front_end.begin_frame();
 /// for v in (0..230).chain([229]) {
 ///     front_end.line(v, &[0; 320], &table);
 /// }
 /// let losses = front_end.end_frame().losses;
-/// assert_eq!(losses, FrameLosses { missing_lines: 10, ignored_lines: 1, ..FrameLosses::default() });
+/// assert_eq!(
+///     losses,
+///     FrameLosses { missing_lines: 10, ignored_lines: 1, ..FrameLosses::default() }
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -52,8 +56,11 @@ pub struct FrameLosses {
 /// # table.learn(&GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?);
 /// # const SKIN: u16 = 200 >> 3 << 11 | 140 >> 2 << 5 | 110 >> 3;
 ///
-/// let mut front_end =
-///     LineFrontEnd::<2, 16, 16, 4, 64, 24>::new((64, 48), HandLikelihood::default(), EdgeSteps::default())?;
+/// let mut front_end = LineFrontEnd::<2, 16, 16, 4, 64, 24>::new(
+///     (64, 48),
+///     HandLikelihood::default(),
+///     EdgeSteps::default(),
+/// )?;
 /// // Two squares of skin before black.
 /// front_end.begin_frame();
 /// for v in 0..48 {
@@ -66,7 +73,10 @@ pub struct FrameLosses {
 /// let seen = front_end.end_frame();
 /// let [first, second] = seen.blobs else { panic!("two squares are two blobs") };
 /// assert!(first.moment_likelihood > second.moment_likelihood, "the most likely comes first");
-/// assert_eq!(seen.candidates[0].centre, first.centroid, "a tracker's input, in the same order");
+/// assert_eq!(
+///     seen.candidates[0].centre, first.centroid,
+///     "a tracker's input, in the same order"
+/// );
 /// assert!(seen.edges.is_empty(), "the first frame has no temporal edges");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```

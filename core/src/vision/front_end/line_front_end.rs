@@ -37,7 +37,8 @@ use crate::vision::runs::RunPool;
 /// const { assert!(size_of::<QqvgaFrontEnd>() < 7 * 1024) };
 /// let new = |size| QqvgaFrontEnd::new(size, HandLikelihood::default(), EdgeSteps::default());
 /// assert!(new((160, 120)).is_ok());
-/// assert_eq!(new((320, 240)).map_err(|error| error.parameter).err(), Some("width"), "it has no room for more");
+/// let too_wide = new((320, 240)).map_err(|error| error.parameter);
+/// assert_eq!(too_wide.err(), Some("width"));
 /// ```
 #[derive(Debug, Clone)]
 pub struct LineFrontEnd<
@@ -80,7 +81,8 @@ pub struct LineFrontEnd<
 ///
 /// // A hand that moves by eight pixels a frame has temporal edges; the blob is that of the last
 /// // frame.
-/// let mut front_end = QvgaFrontEnd::new((320, 240), HandLikelihood::default(), EdgeSteps::default())?;
+/// let mut front_end =
+///     QvgaFrontEnd::new((320, 240), HandLikelihood::default(), EdgeSteps::default())?;
 /// for (frame, left) in [100, 108, 116].into_iter().enumerate() {
 ///     let (across_hand, wall) = (line(left), [0; 320]);
 ///     front_end.begin_frame();

@@ -7,13 +7,16 @@
 //! it and with the 1-bit edge map of the previous frame ([`edge_lines`]).
 //!
 //! ```
-//! use sinew_core::vision::front_end::{QvgaFrontEnd, edge_lines::EdgeSteps, pixel_format::Rgb565, skin_table::SkinTable};
+//! use sinew_core::vision::front_end::{
+//!     QvgaFrontEnd, edge_lines::EdgeSteps, pixel_format::Rgb565, skin_table::SkinTable,
+//! };
 //! use sinew_core::vision::hand_likelihood::HandLikelihood;
 //! use sinew_core::vision::skin::GaussianSkin;
 //!
 //! let mut table = SkinTable::<Rgb565>::new();
 //! table.learn(&GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?);
-//! let mut front_end = QvgaFrontEnd::new((320, 240), HandLikelihood::default(), EdgeSteps::default())?;
+//! let mut front_end =
+//!     QvgaFrontEnd::new((320, 240), HandLikelihood::default(), EdgeSteps::default())?;
 //!
 //! // Lines as a camera sends them, 16 bits a pixel: a hand's worth of skin in the middle.
 //! let rgb565 = |[r, g, b]: [u16; 3]| (r >> 3) << 11 | (g >> 2) << 5 | b >> 3;

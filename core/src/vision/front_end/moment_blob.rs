@@ -23,11 +23,18 @@ use core::f32::consts::PI;
 /// let mut rows = [0x0f; 32];
 /// rows[28..].fill(u32::MAX);
 /// let mask = Mask::new(&rows, 32, 32)?;
-/// ComponentScanner::<8, 8>::new().scan(&mask, &mut RunPool::new(&mut []), &mut |component, _| {
-///     let bracket = MomentBlob::of(component, &HandLikelihood::default(), 32.0 * 32.0);
-///     assert_eq!(bracket.area_px, 28 * 4 + 4 * 32);
-///     assert!(bracket.ellipse_fill() < 0.6 && bracket.roundness() < 0.5, "neither an ellipse nor round");
-/// });
+/// ComponentScanner::<8, 8>::new().scan(
+///     &mask,
+///     &mut RunPool::new(&mut []),
+///     &mut |component, _| {
+///         let bracket = MomentBlob::of(component, &HandLikelihood::default(), 32.0 * 32.0);
+///         assert_eq!(bracket.area_px, 28 * 4 + 4 * 32);
+///         assert!(
+///             bracket.ellipse_fill() < 0.6 && bracket.roundness() < 0.5,
+///             "neither an ellipse nor round"
+///         );
+///     },
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]

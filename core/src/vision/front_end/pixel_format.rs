@@ -24,7 +24,10 @@
 ///     }
 /// }
 ///
-/// assert_eq!(Grey::luminances(&[0, 9, 100, 9, 254, 9, 20, 9]).to_le_bytes(), [0, 50, 127, 10]);
+/// assert_eq!(
+///     Grey::luminances(&[0, 9, 100, 9, 254, 9, 20, 9]).to_le_bytes(),
+///     [0, 50, 127, 10]
+/// );
 /// ```
 pub trait PixelFormat {
     /// The keys of two neighbours, the left one at an even column.
@@ -83,7 +86,10 @@ pub struct SwappedRgb565;
 /// let pair = [u16::from_le_bytes([128, 128]); 2];
 /// let [left, right] = Yuyv::keys(pair);
 /// assert_eq!(left, right, "both have the pair's chrominance");
-/// assert!(Yuyv::rgb(left).iter().all(|channel| channel.abs_diff(128) < 14), "the middle of a cell");
+/// assert!(
+///     Yuyv::rgb(left).iter().all(|channel| channel.abs_diff(128) < 14),
+///     "the middle of a cell"
+/// );
 /// assert_eq!(Yuyv::luminances(&[pair[0]; 8]).to_le_bytes(), [64; 4], "half of Y");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -20,7 +20,8 @@ pub const TABLE_WORDS: usize = 1 << 11;
 ///
 /// let mut table = SkinTable::<Rgb565>::new();
 /// table.learn(&GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?);
-/// let (hand, wall) = (200 >> 3 << 11 | 140 >> 2 << 5 | 110 >> 3, 20 >> 3 << 11 | 40 >> 2 << 5 | 90 >> 3);
+/// let (hand, wall) =
+///     (200 >> 3 << 11 | 140 >> 2 << 5 | 110 >> 3, 20 >> 3 << 11 | 40 >> 2 << 5 | 90 >> 3);
 /// let mut bits = [0];
 /// table.classify_line(&[wall, hand, hand, wall], &mut bits);
 /// assert_eq!(bits, [0b0110]);
