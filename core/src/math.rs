@@ -261,6 +261,7 @@ pub const ROUND_SMALL_LIMIT: f32 = 4_194_304.0;
 #[inline]
 #[must_use]
 pub fn round_small(x: f32) -> f32 {
+    /// 1.5 x 2^23: adding and subtracting it rounds to whole numbers.
     const SHIFT: f32 = 12_582_912.0;
     (x + SHIFT) - SHIFT
 }
@@ -316,8 +317,11 @@ pub fn wrap_angle_small(angle_rad: f32) -> f32 {
 #[inline]
 #[must_use]
 pub fn exp_small(x: f32) -> f32 {
+    /// 1.5 x 2^23: adding and subtracting it rounds to whole numbers.
     const SHIFT: f32 = 12_582_912.0;
+    /// ln 2 in two parts (Cody and Waite), the first exact in products with small whole numbers.
     const LN_2_HIGH: f32 = 0.693_359_375;
+    /// The rest of ln 2 (Cody and Waite).
     const LN_2_LOW: f32 = -2.121_944_4e-4;
     let shifted = x * core::f32::consts::LOG2_E + SHIFT;
     let whole = shifted - SHIFT;
@@ -448,8 +452,11 @@ fn sin_cos_into(x_rad: &[f32], sines: &mut [f32], cosines: &mut [f32]) {
 /// Without a branch, so that a loop over angles is a loop over vectors.
 #[inline(always)]
 fn sin_cos_finite(x_rad: f32) -> (f32, f32) {
+    /// pi / 2 in three parts (Cody and Waite), the first exact in products with whole numbers.
     const PI_HALF_HIGH: f32 = 1.570_312_5;
+    /// The second part (Cody and Waite).
     const PI_HALF_MIDDLE: f32 = 4.837_512_97e-4;
+    /// The third part (Cody and Waite).
     const PI_HALF_LOW: f32 = 7.549_789_95e-8;
     let scaled = x_rad * FRAC_2_PI;
     let quarter_turns = (scaled + if scaled < 0.0 { -0.5 } else { 0.5 }) as i32;

@@ -124,6 +124,7 @@ impl Limit {
     /// An interval in degrees.
     #[must_use]
     pub const fn from_degrees(low_deg: f32, high_deg: f32) -> Self {
+        /// Radians of a degree, by definition.
         const RADIANS: f32 = core::f32::consts::PI / 180.0;
         Self { low_rad: low_deg * RADIANS, high_rad: high_deg * RADIANS }
     }
