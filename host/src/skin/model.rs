@@ -9,6 +9,7 @@ use anyhow::{Result, bail};
 use clap::ValueEnum;
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
+use sinew_core::vision::frame::segment;
 use sinew_core::vision::skin::{CUBE_WORDS, GaussianSkin, HistogramSkin, SkinClassifier};
 use std::borrow::Cow;
 use std::path::Path;
@@ -123,10 +124,7 @@ impl SkinModel {
     pub fn classify(&self, image: &RgbImage) -> Result<BitImage> {
         let model = self.for_image(image)?;
         let mut bits = BitImage::new(image.width() as usize, image.height() as usize)?;
-        let row_bytes = 3 * image.width() as usize;
-        for (pixels, words) in image.as_raw().chunks_exact(row_bytes).zip(bits.rows_mut()) {
-            model.classify_line(pixels, words);
-        }
+        segment(image.as_raw(), model.as_ref(), &mut bits.view_mut()?);
         Ok(bits)
     }
 }
