@@ -97,7 +97,7 @@ impl ReachableShell {
 
 /// Smallest depth of a hand, metres.
 ///
-/// Chosen: keeps a drawn hand in front of the camera; nearer, a hand fills the image.
+/// Chosen: keeps a drawn hand in front of the camera.
 pub const MIN_DEPTH_M: f32 = 0.05;
 
 /// How a corrected hand spreads around H1.

@@ -184,7 +184,7 @@ mod tests {
             let found = (point - capsule.nearest_visible(&camera, &point)).norm();
             let [own, all] = brute_force(&capsule, &camera, &point);
             prop_assert!((found - own).abs() < 0.005, "{} found, {} is there round the axis' nearest place", found, own);
-            // Eq. (28) asks per place of the axis: another place may see a nearer point, by less
+            // PIK (28) asks per place of the axis: another place may see a nearer point, by less
             // than the radius.
             prop_assert!(found <= all + radius && found >= all - 0.005, "{} found, {} is there", found, all);
         }

@@ -9,7 +9,7 @@ pub const BLOCK_POINTS: usize = 16;
 const KEY_BITS: u32 = 10;
 /// Edge of a cell of the Morton order, metres.
 ///
-/// Chosen: 1024 cells span 20 m, the range of a stereo camera.
+/// Chosen: 1024 cells span 20 m.
 const CELL_M: f32 = 0.02;
 /// A point nearer to the camera than this is an error of the sensor, metres.
 ///
