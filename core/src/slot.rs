@@ -12,7 +12,8 @@
 /// let mut slot = Slot::Empty;
 /// assert!(slot.get().is_none());
 /// *slot.get_or_insert(|| 3) += 1;
-/// assert_eq!((slot.get(), slot.get_mut().copied()), (Some(&4), Some(4)));
+/// assert_eq!(slot.get(), Some(&4));
+/// assert!(slot.get_mut().is_some_and(|content| *content == 4));
 /// ```
 #[derive(Debug)]
 #[repr(u8)]
