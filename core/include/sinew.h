@@ -357,11 +357,12 @@ typedef struct SinewPixel {
 } SinewPixel;
 
 /**
- * The part of a blob that an arm tracker uses: a few numbers, so that a frame's list is small state.
+ * The part of a blob that an arm tracker uses: a few numbers, so that a frame's list is small
+ * state.
  */
 typedef struct SinewHandCandidate {
   /**
-   * Where the hand's centre is taken to be.
+   * Assumed centre of the hand.
    */
   struct SinewPixel centre;
   /**
@@ -373,13 +374,13 @@ typedef struct SinewHandCandidate {
    */
   float area_px;
   /**
-   * p(hand | blob) in [0, 1], eq. (6) of the arm paper or the default form.
+   * p(hand | blob) in [0, 1]: arm (6) or the default form.
    */
   float likelihood;
 } SinewHandCandidate;
 
 /**
- * A pixel that is an edge and moving.
+ * A temporal edge pixel: an edge of the luminance that has changed since the previous frame.
  */
 typedef struct SinewEdgePixel {
   /**

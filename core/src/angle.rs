@@ -44,7 +44,8 @@ pub fn split_turns(angle_rad: f32) -> (f32, i32) {
 /// ```
 /// use sinew_core::angle::angle_difference;
 ///
-/// // From a heading of 350 degrees to one of 20 it is 30 degrees to the left, not 330 to the right.
+/// // From a heading of 350 degrees to one of 20 it is 30 degrees to the left, not 330 to the
+/// // right.
 /// let way_rad = angle_difference(20.0_f32.to_radians(), 350.0_f32.to_radians());
 /// assert!((way_rad.to_degrees() - 30.0).abs() < 1e-3);
 /// ```
@@ -66,7 +67,9 @@ pub fn angle_difference(to_rad: f32, from_rad: f32) -> f32 {
 /// }
 /// assert!(headings.mean_rad().is_some_and(|mean_rad| mean_rad.abs() < 1e-4));
 /// // Their spread is sqrt((10^2 + 10^2) / 4) degrees.
-/// assert!(headings.std_rad().is_some_and(|std_rad| (std_rad.to_degrees() - 7.1).abs() < 0.05));
+/// assert!(
+///     headings.std_rad().is_some_and(|std_rad| (std_rad.to_degrees() - 7.1).abs() < 0.05)
+/// );
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CircularSum {

@@ -1,7 +1,8 @@
 //! Pinhole camera with optional radial-tangential distortion.
 //!
-//! Camera axes: x to the right of the image, y down, z along the line of sight; metres. Pixel axes: u right, v down,
-//! (0, 0) at the centre of the top left pixel. All trackers work in camera axes, so the camera centre is the origin.
+//! Camera axes: x to the right of the image, y down, z along the line of sight; metres. Pixel axes:
+//! u right, v down, (0, 0) at the centre of the top left pixel. All trackers work in camera axes,
+//! so the camera centre is the origin.
 //!
 //! ```
 //! use sinew_core::camera::Camera;
@@ -22,7 +23,7 @@
 use crate::error::{ParameterError, Rule, finite, positive};
 use crate::math::{Vec3, sin_cos, unit};
 
-/// Fixed-point steps that undo the distortion.
+/// Fixed-point steps that undo the distortion; the bound of the work.
 const UNDISTORT_STEPS: usize = 12;
 
 /// A point of the image, pixels.
@@ -58,7 +59,8 @@ impl Pixel {
     }
 }
 
-/// Radial (`k1..k3`) and tangential (`p1`, `p2`) distortion, the Brown-Conrady model in OpenCV's order of terms.
+/// Radial (`k1..k3`) and tangential (`p1`, `p2`) distortion, the Brown-Conrady model in OpenCV's
+/// order of terms.
 ///
 /// ```
 /// use sinew_core::camera::{Camera, Distortion};
@@ -92,12 +94,16 @@ pub struct Distortion {
 /// ```
 /// use sinew_core::camera::{Camera, Pixel};
 ///
-/// // All that a pixel says about a hand is the ray that it lies on; a metre away it may be here.
+/// // A pixel gives the ray of a hand; a metre away it is here.
 /// let camera = Camera::from_field_of_view(640, 480, 1.05)?;
 /// let ray = camera.back_project(Pixel::new(400.0, 300.0));
 /// let hand_m = ray.origin + ray.direction;
 /// assert!((ray.project(&hand_m) - hand_m).norm() < 1e-6);
-/// assert!(camera.project(&hand_m).is_some_and(|seen| seen.distance_px(Pixel::new(400.0, 300.0)) < 1e-3));
+/// assert!(
+///     camera
+///         .project(&hand_m)
+///         .is_some_and(|seen| seen.distance_px(Pixel::new(400.0, 300.0)) < 1e-3)
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,7 +115,8 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// Foot of the perpendicular from `point` on the whole line: P + ((H - P).F) F, the arm paper's section 3.2.
+    /// Foot of the perpendicular from `point` on the whole line: P + ((H - P).F) F (arm paper,
+    /// section 3.2).
     #[must_use]
     pub fn project(&self, point: &Vec3) -> Vec3 {
         self.origin + self.direction * (point - self.origin).dot(&self.direction)
@@ -122,7 +129,8 @@ impl Ray {
 /// use sinew_core::camera::{Camera, Pixel};
 /// use sinew_core::math::Vec3;
 ///
-/// // Calibrated: focal lengths and principal point. Half a metre away, 10 cm are a fifth of a focal length.
+/// // Calibrated: focal lengths and principal point. Half a metre away, 10 cm are a fifth of a
+/// // focal length.
 /// let camera = Camera::new(600.0, 600.0, Pixel::new(320.0, 240.0))?;
 /// assert_eq!(camera.project(&Vec3::new(0.1, 0.0, 0.5)), Some(Pixel::new(440.0, 240.0)));
 /// // Not calibrated: the field of view from the data sheet has to do.
@@ -152,7 +160,8 @@ impl Camera {
         })
     }
 
-    /// A camera with square pixels, its principal point in the middle of a `width_px` x `height_px` image.
+    /// A camera with square pixels, its principal point in the middle of a `width_px` x `height_px`
+    /// image.
     ///
     /// # Errors
     /// The field of view has to lie strictly between 0 and pi, the size above zero.
@@ -207,7 +216,8 @@ impl Camera {
         Some(Pixel::new(self.focal_u_px * x + self.centre.u_px, self.focal_v_px * y + self.centre.v_px))
     }
 
-    /// Where an ideal pinhole camera with the same focal lengths would see what the lens shows at `pixel`.
+    /// Where an ideal pinhole camera with the same focal lengths would see what the lens shows at
+    /// `pixel`.
     #[must_use]
     pub fn undistort(&self, pixel: Pixel) -> Pixel {
         let (x, y) = self.normalised(pixel);
@@ -232,7 +242,8 @@ impl Camera {
         )
     }
 
-    /// Undistorted coordinates on the plane z = 1, by fixed-point iteration with a fixed number of steps.
+    /// Undistorted coordinates on the plane z = 1, by fixed-point iteration with a fixed number of
+    /// steps.
     fn normalised(&self, pixel: Pixel) -> (f32, f32) {
         let seen_x = (pixel.u_px - self.centre.u_px) / self.focal_u_px;
         let seen_y = (pixel.v_px - self.centre.v_px) / self.focal_v_px;

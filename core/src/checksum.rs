@@ -1,4 +1,4 @@
-//! CRC-32 (ISO 3309, polynomial 0x04C11DB7 reflected): tells data that a memory or a wire changed from what was written.
+//! CRC-32 (ISO 3309, polynomial 0x04C11DB7 reflected): detects data changed by a memory or a wire.
 //!
 //! ```
 //! use sinew_core::checksum::{Crc32, crc32};

@@ -17,8 +17,10 @@ use core::fmt;
 /// use sinew_core::error::Rule;
 /// use sinew_core::skeleton::{ArmGeometry, Side};
 ///
-/// // Which rule it was tells a sensor that failed from a length typed wrongly.
-/// let rule = |forearm_m| ArmGeometry::new(Side::Left, 0.3, forearm_m).map_err(|refused| refused.rule);
+/// // The rule separates a failed sensor from a mistyped length.
+/// let rule = |forearm_m| {
+///     ArmGeometry::new(Side::Left, 0.3, forearm_m).map_err(|refused| refused.rule)
+/// };
 /// assert_eq!(rule(f32::NAN), Err(Rule::Finite));
 /// assert_eq!(rule(-0.3), Err(Rule::Positive));
 /// assert!(rule(0.3).is_ok());
@@ -60,7 +62,7 @@ pub enum Rule {
         /// The length that was needed.
         expected: usize,
     },
-    /// A timestamp lies before that of the frame before.
+    /// A timestamp lies before that of the previous frame.
     TimeGoesForward,
 }
 
@@ -155,8 +157,14 @@ pub fn positive(parameter: &'static str, value: f32) -> Result<f32, ParameterErr
 /// ```
 /// use sinew_core::error::{Rule, not_negative};
 ///
-/// assert_eq!(not_negative("walk_std_px", 0.0), Ok(0.0), "something that stands still is allowed");
-/// assert!(not_negative("walk_std_px", -1.0).is_err_and(|error| error.rule == Rule::NotNegative));
+/// assert_eq!(
+///     not_negative("walk_std_px", 0.0),
+///     Ok(0.0),
+///     "something that stands still is allowed"
+/// );
+/// assert!(
+///     not_negative("walk_std_px", -1.0).is_err_and(|error| error.rule == Rule::NotNegative)
+/// );
 /// ```
 ///
 /// # Errors

@@ -19,5 +19,6 @@ pub mod random;
 pub mod record;
 pub mod saved_state;
 pub mod skeleton;
+pub mod slot;
 pub mod tracker;
 pub mod vision;

@@ -1,8 +1,9 @@
 //! The one place that computes transcendental functions, so that every target gives the same bits.
 //!
-//! `libm` works in `f32` for all that is used here but sine and cosine; those two are own code, accurate to
-//! [`SIN_COS_MAX_ERROR`] for arguments up to [`SIN_COS_MAX_ARGUMENT_RAD`] in size.
-//! Comparisons are explicit ([`min`], [`max`], [`clamp`]), since `f32::min` of -0 and +0 differs between targets.
+//! `libm` works in `f32` for all that is used here but sine and cosine; those two are own code,
+//! accurate to [`SIN_COS_MAX_ERROR`] for arguments up to [`SIN_COS_MAX_ARGUMENT_RAD`] in size.
+//! Comparisons are explicit ([`min`], [`max`], [`clamp`]), since `f32::min` of -0 and +0 differs
+//! between targets.
 //!
 //! ```
 //! use sinew_core::math::{Vec3, axis_rotation, sin_cos, unit, wrap_angle};
@@ -36,7 +37,8 @@ pub type Vec3 = nalgebra::Vector3<f32>;
 /// use sinew_core::math::{Mat3, Vec3, axis_rotation};
 ///
 /// // Two quarter turns one after the other, the right one first.
-/// let turned: Mat3 = axis_rotation(&Vec3::z(), FRAC_PI_2) * axis_rotation(&Vec3::x(), FRAC_PI_2);
+/// let turned: Mat3 =
+///     axis_rotation(&Vec3::z(), FRAC_PI_2) * axis_rotation(&Vec3::x(), FRAC_PI_2);
 /// assert!((turned * Vec3::y() - Vec3::z()).norm() < 1e-6);
 /// assert!((turned * turned.transpose() - Mat3::identity()).norm() < 1e-6);
 /// ```
@@ -44,7 +46,7 @@ pub type Mat3 = nalgebra::Matrix3<f32>;
 
 /// Largest absolute error of [`sin_cos`] (asserted by a test against `f64`).
 pub const SIN_COS_MAX_ERROR: f32 = 1.2e-7;
-/// Largest argument for which [`SIN_COS_MAX_ERROR`] holds.
+/// Largest argument for which [`SIN_COS_MAX_ERROR`] holds (asserted by the same test).
 pub const SIN_COS_MAX_ARGUMENT_RAD: f32 = 1.0e4;
 
 /// Square root; NaN below zero.
@@ -65,15 +67,16 @@ pub fn sqrt(x: f32) -> f32 {
     sqrt_by_instruction(x)
 }
 
-/// The floating-point unit's own square root. Both are rounded correctly, so the bits are those of `libm`, which computes them in 50
-/// instructions.
+/// The floating-point unit's own square root.
+///
+/// Both are rounded correctly, so the bits are those of `libm`, which takes 50 instructions.
 #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
 #[inline]
 #[expect(unsafe_code, reason = "stable Rust has no other way to the instruction without `std`")]
 fn sqrt_by_instruction(x: f32) -> f32 {
     let mut bits = x.to_bits();
-    // SAFETY: every processor of this calling convention has the instruction. Its register is put back as it was, since Rust cannot
-    // name it where the unit has single precision only.
+    // SAFETY: every processor of this calling convention has the instruction. Its register is put
+    // back as it was, since Rust cannot name it where the unit has single precision only.
     unsafe {
         core::arch::asm!(
             "vmov {kept}, s0",
@@ -92,8 +95,10 @@ fn sqrt_by_instruction(x: f32) -> f32 {
 /// Relative error of [`sqrt_branch_free`] (asserted by a test).
 pub const SQRT_BRANCH_FREE_MAX_ERROR: f32 = 3.0e-7;
 
-/// Square root without a branch or a processor's instruction, so that a loop over lanes of points is a loop over vectors: Newton's
-/// method for 1/sqrt(x) from the exponent halved. Zero for zero; meaningless below zero and below 10^-36.
+/// Square root without a branch or a processor's instruction, for loops over vectors.
+///
+/// Newton's method for 1/sqrt(x) from the exponent halved. Zero for zero; undefined below zero and
+/// below 10^-36.
 ///
 /// ```
 /// use sinew_core::math::{SQRT_BRANCH_FREE_MAX_ERROR, sqrt_branch_free};
@@ -178,7 +183,8 @@ pub fn acos(x: f32) -> f32 {
 
 /// Arc sine; arguments beyond +-1 are clamped, so rounding never gives NaN.
 ///
-/// By the arc tangent, since libm's arc sine takes a root in f64, which a core with single-precision hardware has to emulate.
+/// By the arc tangent, since libm's arc sine takes a root in f64, which a core with
+/// single-precision hardware has to emulate.
 ///
 /// ```
 /// use sinew_core::math::asin;
@@ -242,7 +248,9 @@ pub fn round(x: f32) -> f32 {
 /// Size of an argument below which [`round_small`] gives whole numbers: 2^22.
 pub const ROUND_SMALL_LIMIT: f32 = 4_194_304.0;
 
-/// Nearest whole number, halves to the even one, for arguments below [`ROUND_SMALL_LIMIT`] in size. Two additions without a branch, so that loops over arrays are vectorised.
+/// Nearest whole number, halves to the even one, for arguments below [`ROUND_SMALL_LIMIT`] in size.
+///
+/// Two additions without a branch, so that loops over arrays are vectorised.
 ///
 /// ```
 /// use sinew_core::math::{ROUND_SMALL_LIMIT, round_small};
@@ -253,17 +261,20 @@ pub const ROUND_SMALL_LIMIT: f32 = 4_194_304.0;
 #[inline]
 #[must_use]
 pub fn round_small(x: f32) -> f32 {
+    /// 1.5 x 2^23: adding and subtracting it rounds to whole numbers.
     const SHIFT: f32 = 12_582_912.0;
     (x + SHIFT) - SHIFT
 }
 
-/// `angle_rad` moved by whole turns to within rounding of [-pi, pi], where either end will do. Without a branch.
+/// `angle_rad` moved by whole turns to within rounding of [-pi, pi], where either end will do.
+/// Without a branch.
 ///
 /// ```
 /// use core::f32::consts::TAU;
 /// use sinew_core::math::least_angle;
 ///
-/// // How far the angles of many particles are off a measured one, in a loop that becomes vector instructions.
+/// // How far the angles of many particles are off a measured one, in a loop that becomes vector
+/// // instructions.
 /// let off_rad = [6.2, 0.1, -3.0].map(|angle_rad| least_angle(angle_rad - 0.05));
 /// assert!((off_rad[0] - (6.15 - TAU)).abs() < 1e-5, "the short way");
 /// assert!((off_rad[1] - 0.05).abs() < 1e-5 && (off_rad[2] + 3.05).abs() < 1e-5);
@@ -291,8 +302,9 @@ pub fn wrap_angle_small(angle_rad: f32) -> f32 {
     if above <= -PI { PI } else { above }
 }
 
-/// e to the power of `x` in [-80, 0], relative error below [`EXP_SMALL_MAX_ERROR`], exactly 1 at 0. Without a branch or a
-/// call: for loops over many numbers. Outside of the interval the result means nothing.
+/// e to the power of `x` in [-80, 0], relative error below [`EXP_SMALL_MAX_ERROR`], exactly 1 at 0.
+/// Without a branch or a call: for loops over many numbers. Outside of the interval the result is
+/// undefined.
 ///
 /// ```
 /// use sinew_core::math::{EXP_SMALL_MAX_ERROR, exp, exp_small};
@@ -305,8 +317,11 @@ pub fn wrap_angle_small(angle_rad: f32) -> f32 {
 #[inline]
 #[must_use]
 pub fn exp_small(x: f32) -> f32 {
+    /// 1.5 x 2^23: adding and subtracting it rounds to whole numbers.
     const SHIFT: f32 = 12_582_912.0;
+    /// ln 2 in two parts (Cody and Waite), the first exact in products with small whole numbers.
     const LN_2_HIGH: f32 = 0.693_359_375;
+    /// The rest of ln 2 (Cody and Waite).
     const LN_2_LOW: f32 = -2.121_944_4e-4;
     let shifted = x * core::f32::consts::LOG2_E + SHIFT;
     let whole = shifted - SHIFT;
@@ -383,8 +398,9 @@ pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
 
 /// Sine and cosine of `x_rad`.
 ///
-/// Reduction by multiples of pi/2 (Cody and Waite, three parts), then Taylor polynomials of degree 9 and 10 on
-/// [-pi/4, pi/4]. NaN for NaN and infinity. Beyond [`SIN_COS_MAX_ARGUMENT_RAD`] the error grows with the argument.
+/// Reduction by multiples of pi/2 (Cody and Waite, three parts), then Taylor polynomials of degree
+/// 9 and 10 on [-pi/4, pi/4]. NaN for NaN and infinity. Beyond [`SIN_COS_MAX_ARGUMENT_RAD`] the
+/// error grows with the argument.
 ///
 /// ```
 /// use sinew_core::math::{SIN_COS_MAX_ERROR, sin_cos};
@@ -403,7 +419,8 @@ pub fn sin_cos(x_rad: f32) -> (f32, f32) {
     sin_cos_finite(x_rad)
 }
 
-/// [`sin_cos`] of each of several angles, to the same bits: all sines and all cosines. Processors reckon several at a time.
+/// [`sin_cos`] of each of several angles, to the same bits: all sines and all cosines. Processors
+/// compute several at a time.
 ///
 /// ```
 /// use sinew_core::math::{sin_cos, sin_cos_each};
@@ -419,7 +436,8 @@ pub fn sin_cos_each<const N: usize>(x_rad: &[f32; N]) -> ([f32; N], [f32; N]) {
     (sines, cosines)
 }
 
-/// One loop for any number of angles: were its length known, a short one would be unrolled and its vectors lost.
+/// One loop for any number of angles: were its length known, a short one would be unrolled and its
+/// vectors lost.
 #[inline(never)]
 fn sin_cos_into(x_rad: &[f32], sines: &mut [f32], cosines: &mut [f32]) {
     for ((&x_rad, sine_out), cosine_out) in x_rad.iter().zip(sines).zip(cosines) {
@@ -434,8 +452,11 @@ fn sin_cos_into(x_rad: &[f32], sines: &mut [f32], cosines: &mut [f32]) {
 /// Without a branch, so that a loop over angles is a loop over vectors.
 #[inline(always)]
 fn sin_cos_finite(x_rad: f32) -> (f32, f32) {
+    /// pi / 2 in three parts (Cody and Waite), the first exact in products with whole numbers.
     const PI_HALF_HIGH: f32 = 1.570_312_5;
+    /// The second part (Cody and Waite).
     const PI_HALF_MIDDLE: f32 = 4.837_512_97e-4;
+    /// The third part (Cody and Waite).
     const PI_HALF_LOW: f32 = 7.549_789_95e-8;
     let scaled = x_rad * FRAC_2_PI;
     let quarter_turns = (scaled + if scaled < 0.0 { -0.5 } else { 0.5 }) as i32;

@@ -2,10 +2,10 @@
 
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::{Vec3, exp, sin_cos};
-use sinew_core::observation::candidate::HandCandidate;
 use sinew_core::random::Stream;
 use sinew_core::skeleton::{ArmGeometry, Side};
 use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, Status, Variant};
+use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::edges::EdgePixel;
 use std::f32::consts::TAU;
 

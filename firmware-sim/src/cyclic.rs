@@ -3,13 +3,12 @@
 use crate::log::debug;
 use crate::player::{Answers, Application, Refusal, play};
 use crate::port::{Part, Port, counted};
-use crate::slot::Slot;
 use sinew_core::cyclic::MotionModel;
 use sinew_core::cyclic::model::walking::WALKING;
 use sinew_core::record::{Cost, CyclicInput, CyclicResult, CyclicSetup, Kind, Record, RecordError, model_checksum};
 use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
-use sinew_core::tracker::cyclic::CoupledTracker;
-use sinew_core::tracker::cyclic::FirstPhase;
+use sinew_core::slot::Slot;
+use sinew_core::tracker::cyclic::{CoupledTracker, FirstPhase};
 use static_cell::ConstStaticCell;
 
 /// The tracker with what it needs between records.

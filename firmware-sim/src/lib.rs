@@ -16,7 +16,6 @@ mod log;
 pub mod machine;
 pub mod player;
 pub mod port;
-pub mod slot;
 
 /// The `main` of an image that runs `$run`, a function of a [`port::Port`].
 #[macro_export]

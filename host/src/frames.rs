@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 use image::{GrayImage, Luma, RgbImage};
-use sinew_core::observation::candidate::HandCandidate;
 use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION, LikelyBlob};
+use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::edges::{EdgeDetector, EdgeList, EdgePixel};
 use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
 use sinew_core::vision::frame::{FrameAnalyser, FrameBuffers, last_mask, mask_words, runs_that_suffice};

@@ -6,9 +6,9 @@ use crate::camera::{Camera, Pixel};
 use crate::checksum::Crc32;
 use crate::error::{finite, positive, within};
 use crate::math::Vec3;
-use crate::observation::candidate::HandCandidate;
 use crate::skeleton::{ArmGeometry, Side};
 use crate::tracker::arm::{ArmEstimate, ArmImage, ArmModel, ArmOptions, Status};
+use crate::vision::candidate::HandCandidate;
 use crate::vision::edges::EdgePixel;
 
 /// Particles of an arm tracker.

@@ -1,7 +1,7 @@
 //! What the front end is told, and what a frame showed.
 
 use super::status::SinewStatus;
-use crate::observation::candidate::HandCandidate;
+use crate::vision::candidate::HandCandidate;
 use crate::vision::components::BoundingBox;
 use crate::vision::edges::EdgePixel;
 use crate::vision::front_end::FrameLines;

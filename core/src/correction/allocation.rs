@@ -1,4 +1,4 @@
-//! How many particles each blob gets (arm paper, eqs. 4 and 5).
+//! How many particles each blob gets: arm (4), (5).
 //!
 //! ```
 //! use sinew_core::correction::allocation::allot;
@@ -10,12 +10,13 @@
 //! assert!(counts[0] > counts[1] && counts[2] == 0);
 //! ```
 
-/// Share T of the particles that ignore the blobs, eq. (5); `best_likelihood` is k.
+/// Share T of the particles that ignore the blobs, arm (5); `best_likelihood` is k.
 ///
 /// ```
 /// use sinew_core::correction::allocation::free_share;
 ///
-/// // A blob that is surely a hand leaves a tenth of the particles free, a doubtful one leaves most of them.
+/// // A blob that is surely a hand leaves a tenth of the particles free, a doubtful one leaves most
+/// // of them.
 /// assert_eq!(free_share(0.95), 0.1);
 /// assert_eq!(free_share(0.25), 0.75);
 /// assert_eq!(free_share(0.0), 1.0);
@@ -31,15 +32,18 @@ pub fn free_share(best_likelihood: f32) -> f32 {
     }
 }
 
-/// Allots `total` particles: writes one count a blob into `counts` and returns how many ignore the blobs.
+/// Allots `total` particles: writes one count a blob into `counts` and returns how many ignore the
+/// blobs.
 ///
-/// `likelihoods` are p(hand | blob); those that are not above zero get nothing. Whole numbers by largest remainder, so
-/// that all counts and the returned number sum to `total` (property-tested). Blobs beyond `counts` get nothing.
+/// `likelihoods` are p(hand | blob); those that are not above zero get nothing. Whole numbers by
+/// largest remainder, so that all counts and the returned number sum to `total` (property-tested).
+/// Blobs beyond `counts` get nothing.
 ///
 /// ```
 /// use sinew_core::correction::allocation::allot;
 ///
-/// // The better blob is 40 % a hand, so 20 of 50 particles follow the blobs: two thirds of them the better one.
+/// // The better blob is 40 % a hand, so 20 of 50 particles follow the blobs: two thirds of them
+/// // the better one.
 /// let mut counts = [0; 2];
 /// assert_eq!(allot(50, &[0.4, 0.2], &mut counts), 30);
 /// assert_eq!(counts, [13, 7]);

@@ -1,4 +1,4 @@
-//! The elbow that fits a hand (arm paper, section 3.2, as DESIGN.md section 4 completes it).
+//! The elbow that fits a hand (arm paper, section 3.2, whose text is incomplete).
 //!
 //! ```
 //! use sinew_core::correction::elbow::nearest_elbow;
@@ -6,7 +6,10 @@
 //!
 //! let (shoulder_m, hand_m) = (Vec3::zeros(), Vec3::new(0.3, 0.3, 0.0));
 //! let elbow_m = nearest_elbow(&shoulder_m, &hand_m, 0.30, 0.35, &Vec3::new(0.0, 0.3, 0.1));
-//! assert!(((elbow_m - shoulder_m).norm() - 0.30).abs() < 1e-4, "the upper arm keeps its length");
+//! assert!(
+//!     ((elbow_m - shoulder_m).norm() - 0.30).abs() < 1e-4,
+//!     "the upper arm keeps its length"
+//! );
 //! assert!(((hand_m - elbow_m).norm() - 0.35).abs() < 1e-4, "and so does the forearm");
 //! ```
 
@@ -14,8 +17,9 @@ use crate::math::{Vec3, clamp, length, max, sqrt, unit};
 
 /// The point nearest to `predicted_m` on the circle where an elbow can be, given shoulder and hand.
 ///
-/// The circle is that of the spheres of radius `upper_arm_m` around the shoulder and `forearm_m` around the hand; where
-/// they do not meet (the hand is out of reach, or too near), the elbow lies on the line of shoulder and hand.
+/// The circle is that of the spheres of radius `upper_arm_m` around the shoulder and `forearm_m`
+/// around the hand; where they do not intersect (the hand is out of reach, or too near), the elbow
+/// lies on the line of shoulder and hand.
 ///
 /// ```
 /// use sinew_core::correction::elbow::nearest_elbow;
@@ -23,11 +27,13 @@ use crate::math::{Vec3, clamp, length, max, sqrt, unit};
 ///
 /// // The elbow was predicted too high; both lengths let it hang straight below the shoulder.
 /// let (shoulder_m, predicted_m) = (Vec3::zeros(), Vec3::new(0.0, 0.2, 0.0));
-/// let elbow_m = nearest_elbow(&shoulder_m, &Vec3::new(0.35, 0.30, 0.0), 0.30, 0.35, &predicted_m);
+/// let elbow_m =
+///     nearest_elbow(&shoulder_m, &Vec3::new(0.35, 0.30, 0.0), 0.30, 0.35, &predicted_m);
 /// assert!((elbow_m - Vec3::new(0.0, 0.30, 0.0)).norm() < 1e-5);
 ///
 /// // A hand out of reach stretches the arm.
-/// let elbow_m = nearest_elbow(&shoulder_m, &Vec3::new(2.0, 0.0, 0.0), 0.30, 0.35, &predicted_m);
+/// let elbow_m =
+///     nearest_elbow(&shoulder_m, &Vec3::new(2.0, 0.0, 0.0), 0.30, 0.35, &predicted_m);
 /// assert!((elbow_m - Vec3::new(0.30, 0.0, 0.0)).norm() < 1e-5);
 /// ```
 #[must_use]
@@ -47,7 +53,7 @@ pub fn nearest_elbow(shoulder_m: &Vec3, hand_m: &Vec3, upper_arm_m: f32, forearm
     centre + across * radius
 }
 
-/// A unit vector across `axis`, downwards where that is possible: an elbow without history hangs.
+/// A unit vector across `axis`, downwards where that is possible.
 fn any_perpendicular(axis: &Vec3) -> Vec3 {
     let hanging = Vec3::y() - axis * axis.y;
     unit(hanging).filter(|_| length(&hanging) > 1.0e-3).unwrap_or(Vec3::x())

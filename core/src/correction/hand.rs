@@ -1,7 +1,8 @@
-//! From a blob's centre to a hand in space (arm paper, section 3.2; its missing page as DESIGN.md section 4 decides).
+//! From a blob's centre to a hand in space (arm paper, section 3.2, whose text is incomplete).
 //!
-//! The predicted hand is projected on the camera's ray through the blob's centre. Around that foot H1 the corrected hand
-//! is drawn: wide along the ray, since depth is what one camera does not know, and narrow across it.
+//! The predicted hand is projected on the camera's ray through the blob's centre. Around that foot
+//! H1 the corrected hand is drawn: wide along the ray, since one camera does not measure depth, and
+//! narrow across it.
 //!
 //! ```
 //! use sinew_core::correction::hand::ReachableShell;
@@ -25,8 +26,9 @@ use crate::random::Stream;
 /// use sinew_core::correction::hand::ReachableShell;
 /// use sinew_core::math::Vec3;
 ///
-/// // A shoulder a metre before the camera, whose optical axis meets it.
-/// let shell = ReachableShell { centre_m: Vec3::new(0.0, 0.0, 1.0), inner_m: 0.05, outer_m: 0.65 };
+/// // A shoulder on the optical axis, a metre before the camera.
+/// let shell =
+///     ReachableShell { centre_m: Vec3::new(0.0, 0.0, 1.0), inner_m: 0.05, outer_m: 0.65 };
 /// let ray = Ray { origin: Vec3::zeros(), direction: Vec3::z() };
 /// // No hand is two metres away: it comes back along the ray that it was seen on.
 /// let hand_m = shell.along_ray(&Vec3::new(0.0, 0.0, 2.0), &ray);
@@ -36,7 +38,7 @@ use crate::random::Stream;
 pub struct ReachableShell {
     /// Shoulder, metres.
     pub centre_m: Vec3,
-    /// Least distance, |upper arm - forearm| or what the elbow's limit leaves; metres.
+    /// Smallest distance, from |upper arm - forearm| or the elbow's limit; metres.
     pub inner_m: f32,
     /// Greatest distance, metres.
     pub outer_m: f32,
@@ -62,8 +64,8 @@ impl ReachableShell {
         }
     }
 
-    /// `point` if the hand can be there; else the nearest reachable point of `ray` in front of the camera; else, where the
-    /// ray misses the shell, the shell's nearest point to the ray.
+    /// `point` if the hand can be there; else the nearest reachable point of `ray` in front of the
+    /// camera; else, where the ray misses the shell, the shell's nearest point to the ray.
     #[must_use]
     pub fn along_ray(&self, point: &Vec3, ray: &Ray) -> Vec3 {
         if self.contains(point) {
@@ -93,7 +95,9 @@ impl ReachableShell {
     }
 }
 
-/// Nearest place to the camera at which a hand is looked for, metres.
+/// Smallest depth of a hand, metres.
+///
+/// Chosen: keeps a drawn hand in front of the camera.
 pub const MIN_DEPTH_M: f32 = 0.05;
 
 /// How a corrected hand spreads around H1.
@@ -103,12 +107,17 @@ pub const MIN_DEPTH_M: f32 = 0.05;
 /// use sinew_core::correction::hand::{HandSpread, log_density_on_ray};
 /// use sinew_core::math::Vec3;
 ///
-/// // One camera knows well where a hand is across its ray, and badly how far away.
+/// // One camera measures a hand well across its ray, and badly along it.
 /// let spread = HandSpread { along_std_m: 0.10, across_std_m: 0.01 };
 /// let ray = Ray { origin: Vec3::zeros(), direction: Vec3::z() };
-/// let log_density = |x, z| log_density_on_ray(&Vec3::new(x, 0.0, z), &Vec3::new(0.0, 0.0, 0.8), &ray, &spread);
+/// let log_density = |x, z| {
+///     log_density_on_ray(&Vec3::new(x, 0.0, z), &Vec3::new(0.0, 0.0, 0.8), &ray, &spread)
+/// };
 /// let (deeper, beside) = (log_density(0.0, 0.85), log_density(0.05, 0.8));
-/// assert!(deeper > beside + 12.0, "five centimetres are little along the ray and much across");
+/// assert!(
+///     deeper > beside + 12.0,
+///     "five centimetres are little along the ray and much across"
+/// );
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandSpread {
@@ -131,7 +140,8 @@ pub struct HandSpread {
 /// let (mut along_m2, mut across_m2) = (0.0, 0.0);
 /// for particle in 0..1000 {
 ///     let mut stream = Stream::new(7, 0, particle);
-///     let off = draw_on_ray(&Vec3::new(0.0, 0.0, 0.8), &ray, &spread, &mut stream) - Vec3::new(0.0, 0.0, 0.8);
+///     let off = draw_on_ray(&Vec3::new(0.0, 0.0, 0.8), &ray, &spread, &mut stream)
+///         - Vec3::new(0.0, 0.0, 0.8);
 ///     along_m2 += off.z * off.z / 1000.0;
 ///     across_m2 += off.x * off.x / 1000.0;
 /// }
@@ -223,7 +233,8 @@ mod tests {
             entropy -= f64::from(log_density_on_ray(&hand, &mean, &ray, &spread));
             along += f64::from((hand - mean).dot(&ray.direction)).powi(2);
         }
-        // Entropy of a normal in three dimensions: 3/2 (1 + ln 2 pi) + ln of the product of standard deviations.
+        // Entropy of a normal in three dimensions: 3/2 (1 + ln 2 pi) + ln of the product of
+        // standard deviations.
         let exact = 1.5 * (1.0 + std::f64::consts::TAU.ln()) + (0.1_f64 * 0.02 * 0.02).ln();
         assert!((entropy / f64::from(n) - exact).abs() < 0.025);
         assert!(((along / f64::from(n)).sqrt() - 0.1).abs() < 0.002);

@@ -1,9 +1,10 @@
-//! Many squared residuals on many bones, summed bone by bone before they become angles.
+//! Least squares of residuals on bones: sums bone by bone, then the information about the angles.
 //!
-//! A residual along a unit normal n at a place h of a bone changes with the bone's rigid motion (v, omega) by
-//! n'(v + omega x h) = [n; h x n]'[v; omega]. So all residuals of a bone are one 6x6 information matrix and one 6-vector; a
-//! subtree's are the sum of its bones'; and an angle's column is its twist. The work for a point does not depend on how
-//! many angles move it (the composite rigid body method of dynamics, R. Featherstone, 1987, for least squares).
+//! A residual along a unit normal n at a place h of a bone changes with the bone's rigid motion (v,
+//! omega) by n'(v + omega x h) = [n; h x n]'[v; omega]. So all residuals of a bone are one 6x6
+//! information matrix and one 6-vector; a subtree's are the sum of its bones'; and an angle's
+//! column is its twist. The work for a point does not depend on how many angles move it (the
+//! composite rigid body method of dynamics, R. Featherstone, 1987, for least squares).
 
 use super::forward::Posture;
 use crate::math::Vec3;
@@ -25,12 +26,12 @@ struct RigidInformation {
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyInformation<const BONES: usize> {
     of_bone: [RigidInformation; BONES],
-    /// Places are taken relative to this one, so that nothing cancels, metres.
+    /// Places are taken relative to this one, which avoids cancellation, metres.
     about_m: Vec3,
 }
 
 impl<const BONES: usize> BodyInformation<BONES> {
-    /// Nothing known, about the root of `posture`.
+    /// No information, about the root of `posture`.
     #[must_use]
     pub fn none<const ANGLES: usize>(posture: &Posture<BONES, ANGLES>) -> Self {
         let nothing = RigidInformation { matrix: [[0.0; TWIST]; TWIST], vector: [0.0; TWIST] };
@@ -38,8 +39,8 @@ impl<const BONES: usize> BodyInformation<BONES> {
         Self { of_bone: [nothing; BONES], about_m }
     }
 
-    /// Adds a residual: the place `place_m` of `bone` should move by `residual_m` along the unit vector `normal`; `weight` is
-    /// the inverse variance, 1 / m^2.
+    /// Adds a residual: the place `place_m` of `bone` should move by `residual_m` along the unit
+    /// vector `normal`; `weight` is the inverse variance, 1 / m^2.
     #[inline]
     pub fn add(&mut self, bone: usize, place_m: &Vec3, normal: &Vec3, residual_m: f32, weight: f32) {
         let Some(information) = self.of_bone.get_mut(bone) else { return };
@@ -54,7 +55,8 @@ impl<const BONES: usize> BodyInformation<BONES> {
         }
     }
 
-    /// Adds the sums to the gradient of a log density and to minus its second derivative, coordinate by coordinate.
+    /// Adds the sums to the gradient of a log density and to minus its second derivative,
+    /// coordinate by coordinate.
     pub fn add_to<const ANGLES: usize>(
         mut self,
         skeleton: &Skeleton<BONES, ANGLES>,

@@ -1,10 +1,10 @@
 //! Cholesky factor of a small symmetric matrix: H = L L'.
 //!
-//! Own code in place of nalgebra's, since the proposal needs the rows of L one by one and none of it may hold a panic.
+//! nalgebra's has no access to the rows of L, which the proposal needs, and can panic.
 
 use crate::math::sqrt;
 
-/// Up to this size entry by entry is cheaper than column by column; the bits are the same.
+/// Up to this size entry by entry is faster than column by column; the bits are the same.
 const SMALL: usize = 8;
 
 /// Lower triangular factor; entries above the diagonal are zero.
@@ -15,7 +15,10 @@ const SMALL: usize = 8;
 ///
 /// let factor = Cholesky::new(&[[4.0, 2.0], [2.0, 3.0]]).expect("it is positive definite");
 /// let x = factor.solve(&[8.0, 7.0]);
-/// assert!((x[0] - 1.25).abs() < 1e-6 && (x[1] - 1.5).abs() < 1e-6, "4 x + 2 y = 8, 2 x + 3 y = 7");
+/// assert!(
+///     (x[0] - 1.25).abs() < 1e-6 && (x[1] - 1.5).abs() < 1e-6,
+///     "4 x + 2 y = 8, 2 x + 3 y = 7"
+/// );
 /// assert!((factor.log_determinant() - ln(8.0)).abs() < 1e-6);
 /// // A density with a saddle has no factor.
 /// assert_eq!(Cholesky::new(&[[1.0, 2.0], [2.0, 1.0]]), None);
@@ -60,10 +63,11 @@ impl<const N: usize> Cholesky<N> {
         Some(Self { lower })
     }
 
-    /// As [`Self::new`], of the part of `matrix` from row and column `first` on; the rest of the factor is zero.
+    /// As [`Self::new`], of the part of `matrix` from row and column `first` on; the rest of the
+    /// factor is zero.
     ///
-    /// Beyond a few rows, a column of L is taken out of all later rows at once, so that the innermost loop runs along a row; where limbs do not
-    /// know of each other rows are left out.
+    /// Beyond a few rows, a column of L is taken out of all later rows at once: the innermost loop
+    /// runs along a row. Rows with a zero factor, those of independent limbs, are left out.
     #[inline(always)]
     #[must_use]
     pub fn from(matrix: &[[f32; N]; N], first: usize) -> Option<Self> {
@@ -110,7 +114,8 @@ impl<const N: usize> Cholesky<N> {
         x
     }
 
-    /// As [`Self::solve`], for a factor [`Self::from`] row `first` on; the entries before it are zero.
+    /// As [`Self::solve`], for a factor [`Self::from`] row `first` on; the entries before it are
+    /// zero.
     #[inline(always)]
     #[must_use]
     pub fn solve_from(&self, right: &[f32; N], first: usize) -> [f32; N] {

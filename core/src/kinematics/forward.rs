@@ -1,4 +1,4 @@
-//! Forward kinematics (PIK paper, section 2.1, eq. 1).
+//! Forward kinematics, PIK (1).
 //!
 //! ```
 //! use sinew_core::kinematics::forward::posture;
@@ -54,7 +54,8 @@ pub struct Posture<const BONES: usize, const ANGLES: usize> {
 ///
 /// // Two links of a metre that lie along x at rest, hinged in the plane of the image.
 /// let link = |parent| Bone { parent, joint: Joint::Hinge(Vec3::z()), offset_m: Vec3::x() };
-/// let chain = Skeleton::new([link(None), link(Some(0))], [Limit::from_degrees(-180.0, 180.0); 2])?;
+/// let chain =
+///     Skeleton::new([link(None), link(Some(0))], [Limit::from_degrees(-180.0, 180.0); 2])?;
 /// // A quarter turn and back again: an L.
 /// let bent = posture(&chain, &Vec3::new(5.0, 0.0, 0.0), &[FRAC_PI_2, -FRAC_PI_2]);
 /// assert!((bent.ends[0] - Vec3::new(5.0, 1.0, 0.0)).norm() < 1e-6);

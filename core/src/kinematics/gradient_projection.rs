@@ -1,19 +1,27 @@
-//! The PIK paper's own way to the mode: gradient projection with a line search (section 5.2.1), as an alternative.
+//! Gradient projection with a line search, the PIK paper's own solver (section 5.2.1), as an
+//! alternative.
 
 use super::forward::Posture;
 use super::inverse::{Mode, PoseObjective, Stop};
 use crate::math::{abs, max, sqrt};
 
-/// Halvings of a step until it climbs enough.
+/// Largest number of halvings of a step; the bound of the work.
 const MAX_HALVINGS: usize = 16;
-/// A step climbs enough if it has this share of what the slope promises (Armijo's rule).
-const LEAST_SHARE: f32 = 1.0e-4;
-/// A step shorter than this (radians) ends the search.
+/// Smallest gain of a step relative to that of the slope (Armijo's rule).
+///
+/// Nocedal and Wright, Numerical Optimization, section 3.1: c1 = 1e-4.
+const MIN_GAIN_SHARE: f32 = 1.0e-4;
+/// A step shorter than this ends the search, radians.
+///
+/// Chosen: a tenth of the tolerance of [`super::inverse`], since gradient steps are shorter.
 const STEP_TOLERANCE_RAD: f32 = 1.0e-4;
 /// Length of the first step tried, radians; later ones begin at twice the last that climbed.
+///
+/// Chosen: only a start, since the line search halves it and doubles it.
 const FIRST_STEP_RAD: f32 = 0.2;
 
-/// Climbs from the objective's start to its mode in at most `max_steps` steps along the gradient, cut to the limits.
+/// Climbs from the objective's start to its mode in at most `max_steps` steps along the gradient,
+/// cut to the limits.
 ///
 /// ```
 /// use sinew_core::kinematics::gradient_projection::mode_by_gradient;
@@ -23,10 +31,20 @@ const FIRST_STEP_RAD: f32 = 0.2;
 /// use sinew_core::skeleton::{ArmGeometry, Side};
 ///
 /// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// let goals = [Goal { bone: FOREARM, position_m: Vec3::new(0.3, 0.3, -0.2), precision: Mat3::identity() * 400.0 }];
+/// let goals = [Goal {
+///     bone: FOREARM,
+///     position_m: Vec3::new(0.3, 0.3, -0.2),
+///     precision: Mat3::identity() * 400.0,
+/// }];
 /// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// let density =
-///     PoseDensity { skeleton: &arm, root_m, goals: &goals, previous_rad, stiffness: [4.0; 4], held: 0 };
+/// let density = PoseDensity {
+///     skeleton: &arm,
+///     root_m,
+///     goals: &goals,
+///     previous_rad,
+///     stiffness: [4.0; 4],
+///     held: 0,
+/// };
 /// // The same mode as by Gauss-Newton steps, which need far fewer of them.
 /// let (slow, fast) = (mode_by_gradient(&density, 400), density.mode(10));
 /// assert!((slow.log_density - fast.log_density).abs() < 0.05);
@@ -76,7 +94,8 @@ struct Step<const BONES: usize, const ANGLES: usize> {
     scale: f32,
 }
 
-/// The longest of the step `scale` times the gradient and its halvings, cut to the limits, that climbs enough.
+/// The longest of the step `scale` times the gradient and its halvings, cut to the limits, that
+/// climbs enough.
 fn line_search<const BONES: usize, const ANGLES: usize>(
     objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
     angles_rad: &[f32; ANGLES],
@@ -93,7 +112,7 @@ fn line_search<const BONES: usize, const ANGLES: usize>(
         let promised: f32 = (0..ANGLES).map(|i| gradient[i] * (next[i] - angles_rad[i])).sum();
         let posture = objective.posture(&next);
         let log_next = objective.log_density(&next, &posture);
-        if promised > 0.0 && log_next >= log_density + LEAST_SHARE * promised {
+        if promised > 0.0 && log_next >= log_density + MIN_GAIN_SHARE * promised {
             return Some(Step { angles_rad: next, posture, log_density: log_next, scale });
         }
         scale *= 0.5;

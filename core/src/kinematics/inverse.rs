@@ -1,23 +1,28 @@
-//! The mode of probabilistic inverse kinematics: a least-squares pose inside the limits (PIK paper, section 5.2.1).
+//! The mode of probabilistic inverse kinematics: the maximum of PIK (12) inside the limits.
 //!
-//! The paper uses gradient projection with line search. Here each step is a projected Gauss-Newton step with an active
-//! set, since its Hessian J'WJ + lambda is needed for the proposal anyway. Both the steps and the halvings of the line
-//! search are bounded.
+//! The PIK paper (section 5.2.1) uses gradient projection with line search. Here each step is a
+//! projected Gauss-Newton step with an active set, since its Hessian J'WJ + lambda is needed for
+//! the proposal anyway. Both the steps and the halvings of the line search are bounded.
 
 use super::cholesky::Cholesky;
 use super::forward::Posture;
 pub use super::pose_density::{Goal, PoseDensity, PoseObjective};
 use crate::math::{abs, max};
 
-/// Halvings of a step that does not climb.
+/// Largest number of halvings of a step that does not climb; the bound of the work.
 const MAX_HALVINGS: usize = 6;
-/// A step shorter than this (radians) ends the iteration.
+/// A step shorter than this ends the iteration, radians.
+///
+/// Chosen: 0.06 degrees; `cargo test -p sinew-core --test solver_brute_force` holds the error of
+/// the mode.
 const STEP_TOLERANCE_RAD: f32 = 1.0e-3;
 
-/// A step that promises less log density than this ends the iteration: a draw around the mode costs a hundred times more.
-const LEAST_LOG_GAIN: f32 = 0.01;
+/// A step with a smaller predicted gain of log density ends the iteration.
+///
+/// Chosen: a draw around the mode loses about a hundred times more.
+const MIN_LOG_GAIN: f32 = 0.01;
 
-/// The mode and what is known of the density around it.
+/// The mode and the derivatives of the density there.
 ///
 /// ```
 /// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
@@ -25,12 +30,14 @@ const LEAST_LOG_GAIN: f32 = 0.01;
 /// use sinew_core::skeleton::arm::FOREARM;
 /// use sinew_core::skeleton::{ArmGeometry, Side};
 ///
-/// // A goal 0.95 m away and an arm of 0.65 m: the answer is the stretched arm, and says by how much it misses.
-/// let goals = [Goal { bone: FOREARM, position_m: Vec3::new(0.95, 0.0, 0.0), precision: Mat3::identity() * 400.0 }];
+/// // A goal 0.95 m away and an arm of 0.65 m: the answer is the stretched arm, with its residual.
+/// let position_m = Vec3::new(0.95, 0.0, 0.0);
+/// let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 400.0 }];
 /// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
 /// # let (root_m, previous_rad) = (Vec3::zeros(), [1.2, -0.5, 0.0, 0.5]);
+/// let (skeleton, stiffness) = (&arm, [0.01; 4]);
 /// let mode =
-///     PoseDensity { skeleton: &arm, root_m, goals: &goals, previous_rad, stiffness: [0.01; 4], held: 0 }.mode(30);
+///     PoseDensity { skeleton, root_m, goals: &goals, previous_rad, stiffness, held: 0 }.mode(30);
 /// assert!((mode.residual_m - 0.30).abs() < 0.02 && mode.angles_rad[3] < 0.1, "{mode:?}");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
@@ -40,9 +47,9 @@ pub struct Mode<const ANGLES: usize> {
     pub angles_rad: [f32; ANGLES],
     /// Gradient of the log density there; not zero where a limit is active.
     pub gradient: [f32; ANGLES],
-    /// J'WJ + lambda there, eq. (21).
+    /// J'WJ + lambda there, PIK (21).
     pub hessian: [[f32; ANGLES]; ANGLES],
-    /// log density there, up to the constant of eq. (12).
+    /// log density there, up to the constant of PIK (12).
     pub log_density: f32,
     /// Distance of the worst end-effector from its goal, metres.
     pub residual_m: f32,
@@ -55,38 +62,36 @@ pub struct Mode<const ANGLES: usize> {
 /// Why a search for a mode ended.
 ///
 /// ```
-/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve, Stop};
-/// # use sinew_core::math::{Mat3, Vec3};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
-/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
-/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
-/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// # let density =
-/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
+/// use sinew_core::kinematics::inverse::{PoseDensity, Solve, Stop};
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
 ///
-/// let (hurried, patient) = (density.mode(1), density.mode(20));
-/// assert_eq!(hurried.stop, Stop::StepsUsed);
-/// assert!(patient.converged() && patient.log_density >= hurried.log_density);
+/// // Without a goal the previous pose is the mode; no step is needed, but one has to be allowed.
+/// let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
+/// let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
+/// let stiffness = [50.0; 4];
+/// let density =
+///     PoseDensity { skeleton: &skeleton, root_m, goals: &[], previous_rad, stiffness, held: 0 };
+/// assert_eq!(density.mode(0).stop, Stop::StepsUsed);
+/// assert!(density.mode(20).converged());
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stop {
     /// The last step was shorter than a thousandth of a radian in every angle.
     ShortStep,
-    /// The next step promises next to nothing.
+    /// The predicted gain of the next step is negligible.
     LittleGain,
     /// No step along the direction climbs.
     NoClimb,
-    /// All steps are used up.
+    /// The largest number of steps is reached.
     StepsUsed,
-    /// The second derivative cannot be factored: the density says nothing about some angle.
+    /// The second derivative cannot be factored: the density is flat in some direction.
     NoCurvature,
 }
 
 impl<const ANGLES: usize> Mode<ANGLES> {
-    /// Whether the search ended of itself at a place that no step betters.
+    /// Whether the search ended at a pose that no step improves.
     #[must_use]
     pub fn converged(&self) -> bool {
         matches!(self.stop, Stop::ShortStep | Stop::LittleGain | Stop::NoClimb)
@@ -96,38 +101,36 @@ impl<const ANGLES: usize> Mode<ANGLES> {
 /// The solver of any [`PoseObjective`].
 ///
 /// ```
-/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
-/// # use sinew_core::math::{Mat3, Vec3};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
-/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
-/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
-/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// # let density =
-/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
+/// use sinew_core::kinematics::inverse::{PoseDensity, Solve};
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
 ///
-/// let mode = density.mode(10);
-/// let hand_m = density.posture(&mode.angles_rad).ends[FOREARM];
-/// assert!((hand_m - goals[0].position_m).norm() < 0.1, "near the goal; the angles are stiff");
-/// // More than one idea of where to begin: the likeliest is taken, and one step from there is enough.
-/// let near = density.mode_from(&[[0.0; 4], mode.angles_rad], 1);
-/// assert!((near.log_density - mode.log_density).abs() < 0.01);
+/// // Without a goal the previous pose is the mode, from any start.
+/// let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
+/// let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
+/// let stiffness = [50.0; 4];
+/// let density =
+///     PoseDensity { skeleton: &skeleton, root_m, goals: &[], previous_rad, stiffness, held: 0 };
+/// let mode = density.mode_from(&[[0.0; 4], [0.2, 0.0, 0.0, 1.5]], 10);
+/// assert!(mode.converged() && mode.log_density > -0.01);
+/// assert!((mode.angles_rad[3] - 0.9).abs() < 0.01);
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 pub trait Solve<const BONES: usize, const ANGLES: usize>: PoseObjective<BONES, ANGLES> {
-    /// Climbs from the pose of the frame before to the mode in at most `max_steps` steps.
+    /// Climbs from the previous frame's pose to the mode in at most `max_steps` steps.
     fn mode(&self, max_steps: usize) -> Mode<ANGLES> {
         self.mode_from(&[], max_steps)
     }
 
-    /// As [`Self::mode`], but climbs from the likeliest of `starts` (from the pose of the frame before where there is none): after a
-    /// jump the way from the old pose may end at a limit.
+    /// As [`Self::mode`], but climbs from the most likely of `starts`, or from the previous pose
+    /// where there is none.
+    ///
+    /// After a jump the way from the previous pose may end at a limit.
     fn mode_from(&self, starts: &[[f32; ANGLES]], max_steps: usize) -> Mode<ANGLES> {
         let (first, others) =
             starts.split_first().map_or((self.start_rad(), starts), |(first, others)| (*first, others));
         let mut angles_rad = self.skeleton().clamp(first);
-        // Two places in turns: a posture is too large to be handed on.
+        // Two buffers in turn: a posture is too large to be copied.
         let (mut here, mut there) = (Posture::folded(), Posture::folded());
         here.turn(self.skeleton(), &self.root_m(), &angles_rad);
         let mut log_density = self.log_density(&angles_rad, &here);
@@ -147,7 +150,7 @@ pub trait Solve<const BONES: usize, const ANGLES: usize>: PoseObjective<BONES, A
                 stop = Stop::NoCurvature;
                 break;
             };
-            if gain < LEAST_LOG_GAIN {
+            if gain < MIN_LOG_GAIN {
                 stop = Stop::LittleGain;
                 break;
             }
@@ -174,8 +177,9 @@ pub trait Solve<const BONES: usize, const ANGLES: usize>: PoseObjective<BONES, A
 
 impl<const BONES: usize, const ANGLES: usize, T: PoseObjective<BONES, ANGLES> + ?Sized> Solve<BONES, ANGLES> for T {}
 
-/// Gauss-Newton direction of the angles that no limit holds and the gain of log density that it promises; `None` where
-/// the Hessian cannot be factored.
+/// Gauss-Newton direction of the angles that no limit holds, and its predicted gain of log density.
+///
+/// `None` where the Hessian cannot be factored.
 fn free_direction<const BONES: usize, const ANGLES: usize>(
     objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
     angles_rad: &[f32; ANGLES],
@@ -205,8 +209,10 @@ fn free_direction<const BONES: usize, const ANGLES: usize>(
     Some((direction, gain))
 }
 
-/// The longest of the step and its halvings, cut to the limits, that raises the density, and the density; its posture is left in
-/// `there`.
+/// The longest of the step and its halvings, cut to the limits, that raises the density, and the
+/// density.
+///
+/// Its posture is left in `there`.
 fn climb<const BONES: usize, const ANGLES: usize>(
     objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
     angles_rad: &[f32; ANGLES],

@@ -1,4 +1,5 @@
-//! How a bone's end moves with each angle: axis x (end-effector - joint) (PIK paper, fig. 5).
+//! Jacobian of a bone's end by each angle: axis x (end-effector - joint), figure 5 of the PIK
+//! paper.
 
 use super::forward::Posture;
 use crate::math::Vec3;
@@ -15,7 +16,8 @@ use crate::skeleton::Skeleton;
 ///
 /// let arm = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
 /// let pose = posture(&arm, &Vec3::zeros(), &[0.4, 0.2, 0.1, 1.0]);
-/// // Angle 3 is the elbow: it swings the hand on a circle as wide as the forearm, and leaves the elbow where it is.
+/// // Angle 3 is the elbow: it swings the hand on a circle as wide as the forearm, and leaves the
+/// // elbow where it is.
 /// assert!((column(&arm, &pose, FOREARM, 3).norm() - 0.35).abs() < 1e-5);
 /// assert_eq!(column(&arm, &pose, UPPER_ARM, 3), Vec3::zeros());
 /// # Ok::<(), sinew_core::error::ParameterError>(())

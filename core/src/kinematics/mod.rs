@@ -1,4 +1,4 @@
-//! From angles to places and back.
+//! Forward and inverse kinematics: from angles to places and back.
 //!
 //! ```
 //! use sinew_core::kinematics::forward::posture;
@@ -13,7 +13,11 @@
 //! let hand_m = posture(&skeleton, &shoulder_m, &pose).ends[FOREARM];
 //!
 //! // Back: from another pose to one whose hand is there, inside the limits.
-//! let goals = [Goal { bone: FOREARM, position_m: hand_m, precision: Mat3::identity() / (0.002 * 0.002) }];
+//! let goals = [Goal {
+//!     bone: FOREARM,
+//!     position_m: hand_m,
+//!     precision: Mat3::identity() / (0.002 * 0.002),
+//! }];
 //! let density = PoseDensity {
 //!     skeleton: &skeleton,
 //!     root_m: shoulder_m,

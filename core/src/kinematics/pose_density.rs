@@ -1,14 +1,15 @@
-//! The density of a pose given goals of its end-effectors (PIK paper, eq. 12), and what the solver asks of any density.
+//! The density of a pose given goals of its end-effectors, PIK (12), and the solver's trait of any
+//! density.
 
 use super::forward::{Posture, posture};
 use super::jacobian::moving_column;
 use crate::math::{Mat3, Vec3, length, max};
 use crate::skeleton::Skeleton;
 
-/// A processor with vectors reckons a whole row of the Hessian sooner than the half that is read.
+/// Whether whole rows of the Hessian are computed: faster with vectors than the half that is read.
 const WHOLE_ROWS: bool = !cfg!(target_arch = "arm");
 
-/// Where an end-effector wants to be.
+/// Goal of an end-effector.
 ///
 /// ```
 /// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
@@ -16,29 +17,39 @@ const WHOLE_ROWS: bool = !cfg!(target_arch = "arm");
 /// use sinew_core::skeleton::arm::FOREARM;
 /// use sinew_core::skeleton::{ArmGeometry, Side};
 ///
-/// // What one camera knows: where the hand is across its axis, to a centimetre, and nothing along it.
+/// // One camera measures a hand across its axis to a centimetre, and not along it.
 /// let across = Mat3::from_diagonal(&Vec3::new(10_000.0, 10_000.0, 0.0));
-/// let goals = [Goal { bone: FOREARM, position_m: Vec3::new(0.3, 0.3, 7.0), precision: across }];
+/// let goals =
+///     [Goal { bone: FOREARM, position_m: Vec3::new(0.3, 0.3, 7.0), precision: across }];
 /// let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
 /// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// let density =
-///     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [1.0; 4], held: 0 };
+/// let density = PoseDensity {
+///     skeleton: &skeleton,
+///     root_m,
+///     goals: &goals,
+///     previous_rad,
+///     stiffness: [1.0; 4],
+///     held: 0,
+/// };
 /// # use sinew_core::kinematics::inverse::PoseObjective;
 /// let hand_m = density.posture(&density.mode(20).angles_rad).ends[FOREARM];
-/// assert!((hand_m.xy() - goals[0].position_m.xy()).norm() < 0.01, "seven metres away do not matter: {hand_m}");
+/// assert!(
+///     (hand_m.xy() - goals[0].position_m.xy()).norm() < 0.01,
+///     "seven metres away do not matter: {hand_m}"
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// The bone whose end is to go there.
+    /// The bone whose end has the goal.
     pub bone: usize,
     /// The place, metres.
     pub position_m: Vec3,
-    /// W of eq. (12): inverse covariance of the goal, 1 / m^2.
+    /// W of PIK (12): inverse covariance of the goal, 1 / m^2.
     pub precision: Mat3,
 }
 
-/// log p(theta | g, theta before) of eq. (12), up to its constant.
+/// log p(theta | g, previous theta) of PIK (12), up to its constant.
 ///
 /// ```
 /// use sinew_core::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
@@ -49,14 +60,15 @@ pub struct Goal {
 /// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
 /// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
 /// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// # let density =
-/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
+/// # let (skeleton, goals, stiffness) = (&skeleton, &goals, [50.0; 4]);
+/// # let density = PoseDensity { skeleton, root_m, goals, previous_rad, stiffness, held: 0 };
 ///
 /// // A goal pulls at the hand, stiffness holds every angle where it was: the mode lies between.
-/// let log_density = |angles_rad: &[f32; 4]| density.log_density(angles_rad, &density.posture(angles_rad));
+/// let log_density =
+///     |pose: &[f32; 4]| density.log_density(pose, &density.posture(pose));
 /// let mode = density.mode(20);
 /// assert!(log_density(&mode.angles_rad) > log_density(&previous_rad) + 1.0);
-/// // Angles that are held stay, whatever the goal wants.
+/// // Held angles stay, for any goal.
 /// let held = PoseDensity { held: 3, ..density }.mode(20);
 /// assert_eq!(held.angles_rad[..3], previous_rad[..3]);
 /// # Ok::<(), sinew_core::error::ParameterError>(())
@@ -69,15 +81,16 @@ pub struct PoseDensity<'a, const BONES: usize, const ANGLES: usize> {
     pub root_m: Vec3,
     /// Goals of the end-effectors.
     pub goals: &'a [Goal],
-    /// Angles of the frame before.
+    /// Angles of the previous frame.
     pub previous_rad: [f32; ANGLES],
-    /// lambda of eq. (12), one an angle: inverse variance of its change, 1 / rad^2.
+    /// lambda of PIK (12), one an angle: inverse variance of its change, 1 / rad^2.
     pub stiffness: [f32; ANGLES],
-    /// How many of the first coordinates are given, those of a root that was drawn before: they stay at `previous_rad`.
+    /// How many of the first coordinates are given, those of a root that was drawn before: they
+    /// stay at `previous_rad`.
     pub held: usize,
 }
 
-/// A log density of poses that has its greatest values where some squares are least: what the solver climbs.
+/// A log density of poses made of squares, which the solver maximises.
 ///
 /// ```
 /// use sinew_core::kinematics::forward::Posture;
@@ -105,11 +118,23 @@ pub struct PoseDensity<'a, const BONES: usize, const ANGLES: usize> {
 ///         0
 ///     }
 ///     fn log_density(&self, angles_rad: &[f32; 4], _posture: &Posture<2, 4>) -> f32 {
-///         (0..4).map(|i| -0.5 * (angles_rad[i] - self.rest_rad[i]) * (angles_rad[i] - self.rest_rad[i])).sum()
+///         (0..4)
+///             .map(|i| {
+///                 -0.5 * (angles_rad[i] - self.rest_rad[i])
+///                     * (angles_rad[i] - self.rest_rad[i])
+///             })
+///             .sum()
 ///     }
-///     fn derivatives(&self, angles_rad: &[f32; 4], _posture: &Posture<2, 4>) -> ([f32; 4], [[f32; 4]; 4]) {
+///     fn derivatives(
+///         &self,
+///         angles_rad: &[f32; 4],
+///         _posture: &Posture<2, 4>,
+///     ) -> ([f32; 4], [[f32; 4]; 4]) {
 ///         let gradient = core::array::from_fn(|i| self.rest_rad[i] - angles_rad[i]);
-///         (gradient, core::array::from_fn(|i| core::array::from_fn(|j| f32::from(u8::from(i == j)))))
+///         (
+///             gradient,
+///             core::array::from_fn(|i| core::array::from_fn(|j| f32::from(u8::from(i == j)))),
+///         )
 ///     }
 ///     fn residual_m(&self, _posture: &Posture<2, 4>) -> f32 {
 ///         0.0
@@ -138,7 +163,8 @@ pub trait PoseObjective<const BONES: usize, const ANGLES: usize> {
     /// log density of a pose inside the limits, up to a constant.
     fn log_density(&self, angles_rad: &[f32; ANGLES], posture: &Posture<BONES, ANGLES>) -> f32;
 
-    /// Its gradient, and minus its second derivative by Gauss and Newton. What belongs to a held coordinate is not read.
+    /// Its gradient, and minus its second derivative by Gauss and Newton. What belongs to a held
+    /// coordinate is not read.
     fn derivatives(
         &self,
         angles_rad: &[f32; ANGLES],
@@ -171,7 +197,7 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
         self.held
     }
 
-    /// log density of a pose inside the limits, up to the constant of eq. (12).
+    /// log density of a pose inside the limits, up to the constant of PIK (12).
     fn log_density(&self, angles_rad: &[f32; ANGLES], posture: &Posture<BONES, ANGLES>) -> f32 {
         let mut sum = 0.0;
         for goal in self.goals {
@@ -186,7 +212,7 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
         sum
     }
 
-    /// Gradient of the log density (eq. 23) and J'WJ + lambda (eq. 21).
+    /// Gradient of the log density, PIK (23), and J'WJ + lambda, PIK (21).
     fn derivatives(
         &self,
         angles_rad: &[f32; ANGLES],
@@ -205,7 +231,7 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
             let (mut x, mut y, mut z) = ([0.0; ANGLES], [0.0; ANGLES], [0.0; ANGLES]);
             // Bounds that are constants, so that small skeletons are unrolled.
             for i in 0..ANGLES {
-                // What does not move the end adds nothing.
+                // Angles that do not move the end add nothing.
                 if i < self.held || !self.skeleton.angle_moves(i, goal.bone) {
                     continue;
                 }

@@ -2,11 +2,11 @@
 
 use crate::math::{Vec3, turn_columns};
 
-/// What turns a bone against the world: its columns are the bone's own axes.
+/// Rotation of a bone against the world: its columns are the bone's own axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rotation {
     columns: [[f32; 3]; 3],
-    /// Nothing has turned yet: the columns are the world's axes and need not be multiplied.
+    /// Whether it is the identity, which need not be multiplied.
     is_none: bool,
 }
 
@@ -20,7 +20,8 @@ impl Rotation {
         if self.is_none { *vector } else { self.combined([vector.x, vector.y, vector.z]).into() }
     }
 
-    /// Itself, and then the turn about `axis`, a unit vector that turns with the bone, by the angle of this sine and cosine.
+    /// This rotation followed by a turn about `axis`, a unit vector in the bone's axes, by the
+    /// angle of `sine` and `cosine`.
     #[inline(always)]
     pub(super) fn then(&self, axis: &Vec3, sine_and_cosine: (f32, f32)) -> Self {
         let turn = turn_columns(axis, sine_and_cosine);
@@ -43,7 +44,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// To the bit: results do not depend on how a rotation is written.
+        /// To the bit: results do not depend on the form of a rotation.
         #[test]
         fn a_rotation_is_the_product_of_its_turns(
             axes in prop::collection::vec(prop::array::uniform3(-1.0_f32..1.0), 1..5), angle_rad in -7.0_f32..7.0,

@@ -1,11 +1,12 @@
-//! The surface of a pose: the capsules of all bones, as one camera sees them (PIK paper, section 6.2, eq. 26).
+//! The surface of a pose: the capsules of all bones, as one camera sees them; PIK (26).
 
 use super::capsule::Capsule;
 use crate::kinematics::forward::Posture;
 use crate::math::{Vec3, max, sqrt_branch_free, unit};
 use heapless::Vec;
 
-/// A capsule with what is the same for all points of a cloud: v of eq. (28) is constant along a bone.
+/// A capsule with terms that are equal for all points of a cloud: v of PIK (28) is constant along a
+/// bone.
 ///
 /// ```
 /// use sinew_core::kinematics::forward::posture;
@@ -18,7 +19,8 @@ use heapless::Vec;
 /// let arm = ArmGeometry::new(Side::Left, 0.30, 0.40)?.skeleton()?;
 /// let hanging = posture(&arm, &Vec3::new(0.0, 0.0, 2.0), &[0.0; 4]);
 /// let surface = BodySurface::new(&hanging, &[0.05, 0.04], Vec3::zeros());
-/// let forearm = surface.capsules.iter().find(|seen| seen.bone == FOREARM).expect("it has flesh");
+/// let forearm =
+///     surface.capsules.iter().find(|seen| seen.bone == FOREARM).expect("it has flesh");
 /// let (place_m, share) = forearm.axis_point(&Vec3::new(0.1, 0.4, 1.9));
 /// assert!((share - 0.25).abs() < 1e-5, "a quarter of the way from the elbow");
 /// assert!((place_m - Vec3::new(0.0, 0.4, 2.0)).norm() < 1e-5);
@@ -28,7 +30,7 @@ use heapless::Vec;
 pub struct SeenCapsule {
     /// The capsule.
     pub capsule: Capsule,
-    /// The bone whose flesh it is.
+    /// Index of its bone.
     pub bone: usize,
     /// From its start to its end, metres.
     pub along_m: Vec3,
@@ -50,7 +52,8 @@ pub struct SeenCapsule {
 /// use sinew_core::skeleton::full_body::{BODY_ANGLES, body_radii_m, full_body};
 ///
 /// let measures = BodyMeasures::of_height(1.75)?;
-/// let standing = posture(&full_body(&measures)?, &Vec3::new(0.0, 0.0, 3.0), &[0.0; BODY_ANGLES]);
+/// let standing =
+///     posture(&full_body(&measures)?, &Vec3::new(0.0, 0.0, 3.0), &[0.0; BODY_ANGLES]);
 /// let surface = BodySurface::new(&standing, &body_radii_m(&measures), Vec3::zeros());
 /// assert_eq!(surface.capsules.len(), 16, "all bones but the pelvis");
 /// // A marker on the chest, ten centimetres before the skin: the trunk is 12.5 cm thick.
@@ -63,11 +66,11 @@ pub struct BodySurface<const BONES: usize> {
     pub camera_m: Vec3,
     /// Capsules of the bones with flesh, in the bones' order.
     pub capsules: Vec<SeenCapsule, BONES>,
-    /// The same, number by number.
+    /// The same, as arrays by number.
     lanes: CapsuleLanes<BONES>,
 }
 
-/// Capsules number by number, so that a loop over them is a loop over vectors.
+/// Capsules as arrays by number, so that a loop over them is a loop over vectors.
 #[derive(Debug, Clone, PartialEq)]
 struct CapsuleLanes<const BONES: usize> {
     start: [[f32; BONES]; 3],
@@ -79,14 +82,15 @@ struct CapsuleLanes<const BONES: usize> {
 /// Bounds of the distances from a ball to each capsule's visible skin, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DistanceBounds<const BONES: usize> {
-    /// No point of the ball is nearer.
-    pub least: [f32; BONES],
-    /// No point of the ball is farther than its root.
-    pub most_squared: [f32; BONES],
+    /// No point of the ball is nearer, metres.
+    pub min_m: [f32; BONES],
+    /// No point of the ball is farther than the root of this, square metres.
+    pub max_squared_m2: [f32; BONES],
 }
 
 impl<const BONES: usize> BodySurface<BONES> {
-    /// The surface of `posture`; `radii_m` has the radius of each bone's capsule, zero for a bone without flesh.
+    /// The surface of `posture`; `radii_m` has the radius of each bone's capsule, zero for a bone
+    /// without flesh.
     #[must_use]
     pub fn new<const ANGLES: usize>(posture: &Posture<BONES, ANGLES>, radii_m: &[f32; BONES], camera_m: Vec3) -> Self {
         let mut capsules: Vec<SeenCapsule, BONES> = Vec::new();
@@ -112,15 +116,17 @@ impl<const BONES: usize> BodySurface<BONES> {
         Self { camera_m, capsules, lanes }
     }
 
-    /// How near and how far the points of a ball can be from the visible skin of each capsule; entries beyond the last capsule say
-    /// nothing.
+    /// Bounds of the distances from the points of a ball to the visible skin of each capsule.
     ///
-    /// With D the distance of the ball's centre from a bone, R the ball's radius and r the bone's, no point is nearer than D - R - r
-    /// or r - D - R, and none is farther than the root of (D + R)^2 + r^2, the hidden case.
+    /// Entries beyond the last capsule are undefined.
+    ///
+    /// With D the distance of the ball's centre from a bone, R the ball's radius and r the bone's,
+    /// no point is nearer than D - R - r or r - D - R, and none is farther than the root of (D +
+    /// R)^2 + r^2, the hidden case.
     #[must_use]
     pub(crate) fn distance_bounds(&self, centre_m: &Vec3, radius_m: f32) -> DistanceBounds<BONES> {
         let lanes = &self.lanes;
-        let mut bounds = DistanceBounds { least: [0.0; BONES], most_squared: [0.0; BONES] };
+        let mut bounds = DistanceBounds { min_m: [0.0; BONES], max_squared_m2: [0.0; BONES] };
         // Whole vectors, where the list ends with one.
         let lanes_used = self.capsules.len().next_multiple_of(4).min(BONES);
         for i in 0..lanes_used {
@@ -132,13 +138,14 @@ impl<const BONES: usize> BodySurface<BONES> {
             let distance = sqrt_branch_free(x * x + y * y + z * z);
             let r = lanes.radius[i];
             let (inner, outer) = (distance - radius_m, distance + radius_m);
-            bounds.least[i] = max(inner - r, r - outer);
-            bounds.most_squared[i] = outer * outer + r * r;
+            bounds.min_m[i] = max(inner - r, r - outer);
+            bounds.max_squared_m2[i] = outer * outer + r * r;
         }
         bounds
     }
 
-    /// Distance of `point_m` from the skin of the nearest bone, whole capsules, either side: D of eq. (34), metres.
+    /// Distance of `point_m` from the skin of the nearest bone, whole capsules, either side: D of
+    /// PIK (34), metres.
     #[must_use]
     pub fn skin_distance_m(&self, point_m: &Vec3) -> f32 {
         let mut least = f32::INFINITY;
@@ -164,7 +171,8 @@ impl SeenCapsule {
         }
     }
 
-    /// The point p of the axis nearest to `point_m`, and where it lies: 0 at the start, 1 at the end.
+    /// The point p of the axis nearest to `point_m`, and where it lies: 0 at the start, 1 at the
+    /// end.
     #[inline]
     #[must_use]
     pub fn axis_point(&self, point_m: &Vec3) -> (Vec3, f32) {

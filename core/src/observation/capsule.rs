@@ -1,10 +1,14 @@
-//! The surface of one bone: a capsule, and the part of it that a camera sees (PIK paper, section 6.2).
+//! The surface of one bone: a capsule, and the part of it that a camera sees; PIK (26) to (28).
 //!
 //! ```
 //! use sinew_core::math::Vec3;
 //! use sinew_core::observation::capsule::Capsule;
 //!
-//! let forearm = Capsule { start_m: Vec3::new(0.0, 0.0, 2.0), end_m: Vec3::new(0.3, 0.0, 2.0), radius_m: 0.04 };
+//! let forearm = Capsule {
+//!     start_m: Vec3::new(0.0, 0.0, 2.0),
+//!     end_m: Vec3::new(0.3, 0.0, 2.0),
+//!     radius_m: 0.04,
+//! };
 //! let point_m = Vec3::new(0.1, 0.1, 2.0);
 //! let (axis_m, _) = forearm.nearest_on_axis(&point_m);
 //! assert!((axis_m - Vec3::new(0.1, 0.0, 2.0)).norm() < 1e-6);
@@ -21,11 +25,19 @@ use crate::math::{Vec3, clamp, length, max, unit};
 ///
 /// // Two metres away, across the line of sight. The camera does not see its back:
 /// // the nearest skin that it sees to a point behind is the edge.
-/// let bone = Capsule { start_m: Vec3::new(-0.2, 0.0, 2.0), end_m: Vec3::new(0.2, 0.0, 2.0), radius_m: 0.05 };
+/// let bone = Capsule {
+///     start_m: Vec3::new(-0.2, 0.0, 2.0),
+///     end_m: Vec3::new(0.2, 0.0, 2.0),
+///     radius_m: 0.05,
+/// };
 /// let skin_m = bone.nearest_visible(&Vec3::zeros(), &Vec3::new(0.0, 0.1, 2.2));
 /// assert!((skin_m - Vec3::new(0.0, 0.05, 2.0)).norm() < 1e-5);
-/// // A second one crosses it six centimetres behind: they are four centimetres deep in one another.
-/// let other = Capsule { start_m: Vec3::new(0.0, -0.2, 2.06), end_m: Vec3::new(0.0, 0.2, 2.06), radius_m: 0.05 };
+/// // A second one crosses it six centimetres behind: they penetrate by four centimetres.
+/// let other = Capsule {
+///     start_m: Vec3::new(0.0, -0.2, 2.06),
+///     end_m: Vec3::new(0.0, 0.2, 2.06),
+///     radius_m: 0.05,
+/// };
 /// assert!((bone.depth_m(&other) - 0.04).abs() < 1e-5);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +51,8 @@ pub struct Capsule {
 }
 
 impl Capsule {
-    /// The point p of the segment that is nearest to `point_m`, and where it lies: 0 at the start, 1 at the end.
+    /// The point p of the segment that is nearest to `point_m`, and where it lies: 0 at the start,
+    /// 1 at the end.
     #[must_use]
     pub fn nearest_on_axis(&self, point_m: &Vec3) -> (Vec3, f32) {
         let along = self.end_m - self.start_m;
@@ -51,20 +64,23 @@ impl Capsule {
         (self.start_m + along * share, share)
     }
 
-    /// Distance D of `point_m` from the whole skin, on either side of it, metres (eq. 34).
+    /// Distance D of `point_m` from the whole skin, on either side of it, metres; PIK (34).
     #[must_use]
     pub fn skin_distance_m(&self, point_m: &Vec3) -> f32 {
         let (near_m, _) = self.nearest_on_axis(point_m);
         crate::math::abs(length(&(point_m - near_m)) - self.radius_m)
     }
 
-    /// How deep two capsules lie in one another, metres: the sum of their radii less the distance of their segments; negative where they are apart.
+    /// Penetration depth of two capsules, metres: the sum of their radii less the distance of their
+    /// segments.
+    ///
+    /// Negative where they are apart.
     #[must_use]
     pub fn depth_m(&self, other: &Self) -> f32 {
         self.radius_m + other.radius_m - self.axis_distance_m(other)
     }
 
-    /// Least distance between both segments, metres.
+    /// Smallest distance between both segments, metres.
     #[must_use]
     pub fn axis_distance_m(&self, other: &Self) -> f32 {
         let (u, v) = (self.end_m - self.start_m, other.end_m - other.start_m);
@@ -75,16 +91,19 @@ impl Capsule {
         // The nearest places of both lines; any place of the first where they are parallel.
         let s = share(uv * vb - vv * ub, max(uu * vv - uv * uv, 0.0));
         let t = share(uv * s + vb, vv);
-        // The place of the first that is nearest to the second's, which may have been cut to its end.
+        // The place of the first that is nearest to the second's, which may have been cut to its
+        // end.
         let s = share(uv * t - ub, uu);
         length(&(between + u * s - v * t))
     }
 
-    /// The point h of the skin that the camera at `camera_m` sees and that is nearest to `point_m` (eqs. 27 and 28).
+    /// The point h of the skin that the camera at `camera_m` sees and that is nearest to `point_m`;
+    /// PIK (27), (28).
     ///
-    /// Where eq. (28) is silent, DESIGN.md section 3 holds: the sign is that of (x - p)'v, and on the round ends, as
-    /// where v vanishes, the part of x - p across the line of sight is taken. A point whose direction is undefined (on the
-    /// axis, or straight behind it) takes any direction: its distance is right nevertheless.
+    /// PIK (28) leaves the sign open: it is that of (x - p)'v here. On the round ends, and where v
+    /// vanishes, the part of x - p across the line of sight is taken. A point whose direction is
+    /// undefined (on the axis, or straight behind it) takes any direction: its distance is right
+    /// nevertheless.
     #[must_use]
     pub fn nearest_visible(&self, camera_m: &Vec3, point_m: &Vec3) -> Vec3 {
         let (near_m, share) = self.nearest_on_axis(point_m);
@@ -110,8 +129,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Nearest of many points of the visible skin, cylinder and both caps: of those round the axis' place nearest to the point, and of
-    /// all.
+    /// Nearest of many points of the visible skin, cylinder and both caps: of those round the axis'
+    /// place nearest to the point, and of all.
     fn brute_force(capsule: &Capsule, camera: &Vec3, point: &Vec3) -> [f32; 2] {
         let along = capsule.end_m - capsule.start_m;
         let u = unit(along).unwrap_or_else(Vec3::x);
@@ -138,7 +157,7 @@ mod tests {
             for step in -60..=60 {
                 let lift = core::f32::consts::FRAC_PI_2 * step as f32 / 60.0;
                 let direction = round * lift.cos() + u * lift.sin();
-                // On a round end the whole sphere counts as its skin: DESIGN.md.
+                // On a round end the whole sphere counts as its skin.
                 if step >= 0 || share >= 1.0 {
                     look(capsule.end_m, direction);
                 }
@@ -165,7 +184,8 @@ mod tests {
             let found = (point - capsule.nearest_visible(&camera, &point)).norm();
             let [own, all] = brute_force(&capsule, &camera, &point);
             prop_assert!((found - own).abs() < 0.005, "{} found, {} is there round the axis' nearest place", found, own);
-            // Eq. (28) asks per place of the axis: another place may see a nearer point, by less than the radius.
+            // PIK (28) asks per place of the axis: another place may see a nearer point, by less
+            // than the radius.
             prop_assert!(found <= all + radius && found >= all - 0.005, "{} found, {} is there", found, all);
         }
 

@@ -1,8 +1,9 @@
-//! The dynamic Hough transform: the orientations of lines through random pairs of pixels (arm paper, section 4).
+//! The dynamic Hough transform: the orientations of lines through random pairs of pixels; arm (10)
+//! to (12).
 //!
-//! Pairs are drawn until the variance of the orientations is stable, eqs. (10)-(12), which is checked every tenth pair, or
-//! until a stated maximum. The stop rule keeps the paper's constant 12 (an interval of +-lambda has variance lambda^2/3;
-//! that only rescales gamma).
+//! Pairs are drawn until the variance of the orientations is stable, arm (10) to (12), or until a
+//! stated maximum. The rule is checked every tenth pair. It keeps the constant 12 of arm (12); an
+//! interval of +-lambda has variance lambda^2/3, which only rescales gamma.
 
 use super::orientation::{MAX_BINS, OrientationDensity, OrientationVariance};
 use crate::error::{ParameterError, Rule, positive};
@@ -32,15 +33,15 @@ pub struct HoughSettings {
     pub bins: usize,
     /// Number j of the last variances that have to agree, one every [`CHECK_EVERY`] pairs.
     pub window: usize,
-    /// gamma of eq. (11): how closely they have to agree.
+    /// gamma of arm (11): how closely they have to agree.
     pub gamma: f32,
-    /// Most pairs drawn; the bound of the work.
+    /// Largest number of pairs drawn; the bound of the work.
     pub max_pairs: usize,
-    /// Pairs nearer than this are drawn but do not vote: neighbours know only eight orientations.
+    /// Pairs nearer than this are drawn but do not vote: neighbours have only eight orientations.
     pub min_separation_px: f32,
-    /// Fewer pixels than this say nothing: uniform.
+    /// With fewer pixels than this the density is uniform.
     pub min_pixels: usize,
-    /// With this many pixels the density counts half, with more it counts more.
+    /// The density of n pixels has the weight n / (n + `doubt_pixels`), the uniform one the rest.
     pub doubt_pixels: f32,
 }
 
@@ -62,7 +63,8 @@ impl HoughSettings {
     /// Checks every value.
     ///
     /// # Errors
-    /// Bins from 2 to [`MAX_BINS`], window from 2 to [`MAX_WINDOW`], gamma and separation positive, pairs from 10 to 65,535.
+    /// Bins from 2 to [`MAX_BINS`], window from 2 to [`MAX_WINDOW`], gamma and separation positive,
+    /// pairs from 10 to 65,535.
     pub fn check(&self) -> Result<(), ParameterError> {
         OrientationDensity::uniform(self.bins)?;
         if !(2..=MAX_WINDOW).contains(&self.window) {
@@ -78,7 +80,7 @@ impl HoughSettings {
     }
 }
 
-/// What the transform found.
+/// Result of the transform.
 ///
 /// ```
 /// use sinew_core::observation::hough::{HoughSettings, dynamic_hough};
@@ -86,7 +88,8 @@ impl HoughSettings {
 /// use sinew_core::vision::edges::EdgePixel;
 ///
 /// // One clean line: the drawing ends long before the bound, as soon as the variance has settled.
-/// let line = core::array::from_fn::<EdgePixel, 90, _>(|i| EdgePixel { u: 100 + 2 * i as u16, v: 80 });
+/// let line =
+///     core::array::from_fn::<EdgePixel, 90, _>(|i| EdgePixel { u: 100 + 2 * i as u16, v: 80 });
 /// let settings = HoughSettings::default();
 /// let found = dynamic_hough(&line, &settings, &mut Stream::new(1, 0, 0)).expect("enough pixels");
 /// assert!(found.stable && found.pairs < settings.max_pairs / 2, "{} pairs", found.pairs);
@@ -102,7 +105,7 @@ pub struct HoughResult {
     pub stable: bool,
 }
 
-/// The last j variances, eq. (10).
+/// The last j variances, arm (10).
 #[derive(Debug, Clone, Copy)]
 struct StopRule {
     values: [f32; MAX_WINDOW],
@@ -111,7 +114,7 @@ struct StopRule {
 }
 
 impl StopRule {
-    /// Adds a variance and says whether inequality (12) holds for the last j.
+    /// Adds a variance; whether arm (12) holds for the last j.
     fn is_stable(&mut self, variance: f32, gamma: f32) -> bool {
         let oldest = self.seen.checked_rem(self.window);
         if let Some(slot) = oldest.and_then(|oldest| self.values.get_mut(oldest)) {
@@ -128,7 +131,8 @@ impl StopRule {
     }
 }
 
-/// Orientation density of the lines in `pixels`; uniform where they are too few or too near to one another.
+/// Orientation density of the lines in `pixels`; uniform where they are too few or too near to one
+/// another.
 ///
 /// ```
 /// use sinew_core::observation::hough::{HoughSettings, dynamic_hough};
@@ -136,11 +140,16 @@ impl StopRule {
 /// use sinew_core::vision::edges::EdgePixel;
 ///
 /// // A limb that goes as far down as across.
-/// let limb = core::array::from_fn::<EdgePixel, 60, _>(|i| EdgePixel { u: 100 + i as u16, v: 80 + i as u16 });
-/// let find = |pixels: &[EdgePixel]| dynamic_hough(pixels, &HoughSettings::default(), &mut Stream::new(1, 0, 0));
+/// let limb = core::array::from_fn::<EdgePixel, 60, _>(|i| EdgePixel {
+///     u: 100 + i as u16,
+///     v: 80 + i as u16,
+/// });
+/// let find = |pixels: &[EdgePixel]| {
+///     dynamic_hough(pixels, &HoughSettings::default(), &mut Stream::new(1, 0, 0))
+/// };
 /// let density = find(&limb).expect("enough pixels").density;
 /// assert!(density.at(45.0_f32.to_radians()) > 4.0 * density.at(135.0_f32.to_radians()));
-/// assert!(find(&limb[..5]).is_none(), "five pixels say nothing");
+/// assert!(find(&limb[..5]).is_none(), "five pixels are too few");
 /// ```
 #[must_use]
 pub fn dynamic_hough(pixels: &[EdgePixel], settings: &HoughSettings, stream: &mut Stream) -> Option<HoughResult> {

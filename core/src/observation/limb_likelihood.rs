@@ -1,7 +1,8 @@
-//! What each limb explains of a frame's points while the rest of the body is where it is expected.
+//! Likelihood of each limb, given a frame's points and the expected rest of the body.
 //!
-//! The likelihood (24) of a whole pose hardly sees one limb among thirty coordinates. How much nearer a limb brings the skin to the points
-//! than the expected skin of all others does is evidence about that limb alone, at the cost of the likelihood itself.
+//! The likelihood PIK (24) of a whole pose is barely sensitive to one limb among thirty
+//! coordinates. How much nearer a limb brings the skin to the points than the expected skin of all
+//! others is evidence about that limb alone. It takes as long as PIK (24).
 
 use super::body_surface::BodySurface;
 use super::point_cloud::{BLOCK_POINTS, PointBlock};
@@ -10,57 +11,36 @@ use crate::math::{max, min, sqrt};
 use crate::skeleton::limbs::{Limbs, MAX_GROUPS, TRUNK_GROUP};
 use heapless::Vec;
 
-/// Blocks of points that are looked at; of a larger cloud every n-th is, and counts n times.
+/// Blocks of points that are used; of a larger cloud every n-th is, with n times the weight.
 pub const MAX_BLOCKS: usize = 256;
 /// An owner that is no group.
-const NOBODY: u32 = u32::MAX;
+const NO_GROUP: u32 = u32::MAX;
 
-/// Log-weights of one pose: the whole body's likelihood in the trunk's place, then what each limb adds.
+/// Log-weights of one pose: the whole body's likelihood in the trunk's place, then each limb's own.
 ///
 /// ```
-/// use sinew_core::observation::limb_likelihood::{ExpectedBody, GroupLogs};
-/// use sinew_core::pik::motion::BodyScene;
-/// use sinew_core::skeleton::Limbs;
-/// use sinew_core::skeleton::limbs::TRUNK_GROUP;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let points_of = |pose: &[f32; 4]| {
-/// #     let surface = scene.surface(&scene.posture(pose));
-/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
-/// #         let bone = &surface.capsules[i % 2].capsule;
-/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
-/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
-/// #     });
-/// #     let mut cloud = PointCloud::<2>::new();
-/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
-/// #     cloud
-/// # };
+/// use sinew_core::observation::limb_likelihood::GroupLogs;
+/// use sinew_core::skeleton::limbs::{MAX_GROUPS, TRUNK_GROUP};
 ///
-/// // Where nobody asks limb by limb, the whole body's weight stands in the trunk's place and all others are zero.
-/// let pose = [0.5, 0.1, 0.1, 1.0];
-/// let (cloud, surface) = (points_of(&pose), scene.surface(&scene.posture(&pose)));
-/// let logs: GroupLogs = scene.log_weights(&surface, cloud.blocks(), &ExpectedBody::new(Limbs::none()));
-/// assert_eq!(logs[TRUNK_GROUP], scene.likelihood.log_likelihood(&surface, cloud.blocks()));
-/// assert!(logs[1..].iter().all(|log| *log == 0.0));
-/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// // Without limbs, the whole body's weight stands in the trunk's place and all others are zero.
+/// let mut logs: GroupLogs = [0.0; MAX_GROUPS];
+/// logs[TRUNK_GROUP] = -3.5;
+/// assert_eq!(logs.iter().sum::<f32>(), -3.5);
 /// ```
 pub type GroupLogs = [f32; MAX_GROUPS];
 
 /// The expected skin about a block of points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct ExpectedSkin {
-    /// Squared distances from the nearest group's skin, at most tau; squared metres; zero, as in the next, for what is no point.
+    /// Squared distances from the nearest group's skin, at most tau, square metres; zero for
+    /// invalid points.
     nearest: [f32; BLOCK_POINTS],
-    /// From the nearest skin of any other group.
+    /// The same from the nearest skin of any other group.
     other: [f32; BLOCK_POINTS],
     /// The nearest group; as wide as a distance, so that loops over points are loops over vectors.
     owner: [u32; BLOCK_POINTS],
-    /// For each group the greatest distance of a point from all others' skin, metres: beyond it the group adds nothing.
+    /// For each group the greatest distance of a point from all others' skin, metres: beyond it the
+    /// group adds nothing.
     reach_m: [f32; MAX_GROUPS],
 }
 
@@ -77,7 +57,9 @@ struct ExpectedSkin {
 /// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
 /// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
 /// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// # let radii_m = [0.05, 0.04];
+/// # let scene =
+/// #     BodyScene { skeleton, radii_m, camera_m, likelihood, self_penetration: None };
 /// # let points_of = |pose: &[f32; 4]| {
 /// #     let surface = scene.surface(&scene.posture(pose));
 /// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
@@ -98,7 +80,9 @@ struct ExpectedSkin {
 /// body.expect(&scene.likelihood, &surface_of(&expected), cloud.blocks());
 /// // The forearm is a limb of its own: a pose that has it where the points are gains by it.
 /// let forearm = body.limbs().group(FOREARM);
-/// let gain = |pose| body.log_weights(&scene.likelihood, &surface_of(pose), cloud.blocks())[forearm];
+/// let gain = |pose| {
+///     body.log_weights(&scene.likelihood, &surface_of(pose), cloud.blocks())[forearm]
+/// };
 /// assert!(gain(&shown) > gain(&expected) + 1.0, "{} {}", gain(&shown), gain(&expected));
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
@@ -110,7 +94,7 @@ pub struct ExpectedBody<const BONES: usize> {
 }
 
 impl<const BONES: usize> ExpectedBody<BONES> {
-    /// Nothing is expected yet of a body with these limbs.
+    /// A body with these limbs, without an expected pose.
     #[must_use]
     pub const fn new(limbs: Limbs<BONES>) -> Self {
         Self { limbs, skins: Vec::new(), stride: 1 }
@@ -127,7 +111,7 @@ impl<const BONES: usize> ExpectedBody<BONES> {
         self.limbs = limbs;
     }
 
-    /// Takes `surface` as what is expected about `blocks`.
+    /// Sets `surface` as the expected body about `blocks`.
     pub fn expect(&mut self, likelihood: &PointLikelihood, surface: &BodySurface<BONES>, blocks: &[PointBlock]) {
         self.stride = blocks.len().div_ceil(MAX_BLOCKS).max(1);
         self.skins.clear();
@@ -137,8 +121,10 @@ impl<const BONES: usize> ExpectedBody<BONES> {
         }
     }
 
-    /// The log-weights of the pose with `surface`, of the blocks that were expected: its log-likelihood, up to its constant, and for each
-    /// limb by how much it raises that of the other groups' expected skin.
+    /// The log-weights of the pose with `surface` on the blocks of [`Self::expect`].
+    ///
+    /// First the log-likelihood of the pose, up to its constant. Then, for each limb, how much it
+    /// raises the log-likelihood of the other groups' expected skin.
     #[must_use]
     pub fn log_weights(
         &self,
@@ -204,7 +190,8 @@ impl<const BONES: usize> ExpectedBody<BONES> {
     }
 }
 
-/// Squared distances of a block's points from the skin of each group of bones, at most `most`; square metres.
+/// Squared distances of a block's points from the skin of each group of bones, at most `most`;
+/// square metres.
 pub(crate) fn squared_by_group<const BONES: usize>(
     surface: &BodySurface<BONES>,
     limbs: &Limbs<BONES>,
@@ -235,8 +222,12 @@ impl ExpectedSkin {
     ) -> Self {
         let tau = outlier_m * outlier_m;
         let everywhere = [tau; BLOCK_POINTS];
-        let mut skin =
-            Self { nearest: everywhere, other: everywhere, owner: [NOBODY; BLOCK_POINTS], reach_m: [0.0; MAX_GROUPS] };
+        let mut skin = Self {
+            nearest: everywhere,
+            other: everywhere,
+            owner: [NO_GROUP; BLOCK_POINTS],
+            reach_m: [0.0; MAX_GROUPS],
+        };
         for (group, own) in squared_by_group(surface, limbs, block, tau).iter().enumerate().take(limbs.count()) {
             for i in 0..BLOCK_POINTS {
                 let is_nearest = own[i] < skin.nearest[i];
@@ -267,13 +258,15 @@ impl ExpectedSkin {
         others
     }
 
-    /// How far a group's skin may be to add something; nothing is asked of the trunk's, which is weighed with the whole pose.
+    /// Largest distance at which a group's skin adds something, metres; the trunk is weighted with
+    /// the whole pose.
     #[inline]
     fn reach_of(&self, group: usize) -> f32 {
         if group == TRUNK_GROUP { 0.0 } else { self.reach_m.get(group).copied().unwrap_or(0.0) }
     }
 
-    /// By how much squared distances `own` of one group lie below those of all others, summed over the block's points.
+    /// By how much squared distances `own` of one group lie below those of all others, summed over
+    /// the block's points.
     #[inline]
     fn gain(&self, group: usize, own: &[f32; BLOCK_POINTS]) -> f32 {
         let mut nearer = self.others(group);

@@ -51,7 +51,7 @@ fn cloud(surface: &BodySurface<BODY_BONES>, stream: &mut Stream) -> PointCloud<6
     blocks
 }
 
-/// Distance by definition: every point against every capsule of the groups that `counts` says.
+/// Distance by definition: every point against every capsule of the groups in `counts`.
 fn exact(surface: &BodySurface<BODY_BONES>, blocks: &[PointBlock], counts: impl Fn(usize) -> bool) -> StdVec<f64> {
     let mut all = StdVec::new();
     for block in blocks {

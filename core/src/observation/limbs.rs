@@ -1,14 +1,14 @@
-//! Which temporal edge pixels belong to which limb (the arm paper's missing page, decided in DESIGN.md section 4).
+//! Which temporal edge pixels belong to which limb; the arm paper leaves it open.
 //!
-//! A pixel belongs to the limb of the last estimate that is nearer to it in the image, if it lies within a band around
-//! that limb; a pixel far from both is dropped.
+//! A pixel belongs to the limb of the last estimate that is nearer to it in the image, if it lies
+//! within a band around that limb; a pixel far from both is dropped.
 
 use crate::camera::Pixel;
 use crate::math::{abs, sqrt};
 use crate::vision::edges::{EdgePixel, EdgeThinning};
 use heapless::Vec;
 
-/// Most pixels kept for one limb.
+/// Largest number of pixels kept for one limb.
 pub(crate) const MAX_LIMB_PIXELS: usize = 256;
 
 /// Pixels of both limbs.
@@ -41,7 +41,8 @@ impl LimbPixels {
 /// let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
 /// // What to draw over the picture: an arm that hangs before the camera.
 /// let [shoulder_m, elbow_m, hand_m] = [0.0, 0.30, 0.65].map(|y_m| Vec3::new(0.0, y_m, 1.5));
-/// let image = model.image_points(&shoulder_m, &elbow_m, &hand_m).expect("in front of the camera");
+/// let image =
+///     model.image_points(&shoulder_m, &elbow_m, &hand_m).expect("in front of the camera");
 /// assert!(image.shoulder.v_px < image.elbow.v_px && image.elbow.v_px < image.hand.v_px);
 /// assert!((image.hand.u_px - image.shoulder.u_px).abs() < 1e-3, "straight below");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
@@ -65,7 +66,7 @@ struct Segment {
     half_px: f32,
 }
 
-/// What the distances of all pixels of a row have in common: coordinates of its column 0 along and across the segment.
+/// Terms shared by the pixels of a row: coordinates of its column 0 along and across the segment.
 #[derive(Debug, Clone, Copy)]
 struct SegmentRow {
     along_px: f32,
@@ -96,8 +97,10 @@ impl Segment {
     }
 }
 
-/// Sorts `pixels` to the limbs of `arm` within `band_px`, into `result`. Where a limb would get more than [`MAX_LIMB_PIXELS`], every 2^k-th
-/// is kept ([`EdgeThinning`]). Fast where `pixels` come row by row.
+/// Sorts `pixels` to the limbs of `arm` within `band_px`, into `result`.
+///
+/// Where a limb has more than [`MAX_LIMB_PIXELS`], every 2^k-th is kept ([`EdgeThinning`]). Fast
+/// where `pixels` come row by row.
 pub(crate) fn split(pixels: &[EdgePixel], arm: &ArmImagePoints, band_px: f32, result: &mut LimbPixels) {
     let limbs = [Segment::new(arm.shoulder, arm.elbow), Segment::new(arm.elbow, arm.hand)];
     result.upper.clear();

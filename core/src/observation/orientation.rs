@@ -9,7 +9,11 @@
 //! votes[flat.bin_of(0.5)] = 100;
 //! let limb = flat.from_votes(&votes);
 //! assert!(limb.at(0.5) > 10.0 && limb.at(2.0) < 1.0);
-//! assert_eq!(limb.bin_of(0.5 + std::f32::consts::PI), limb.bin_of(0.5), "a line has no direction");
+//! assert_eq!(
+//!     limb.bin_of(0.5 + std::f32::consts::PI),
+//!     limb.bin_of(0.5),
+//!     "a line has no direction"
+//! );
 //! # Ok::<(), sinew_core::error::ParameterError>(())
 //! ```
 
@@ -18,10 +22,11 @@ use crate::math::{clamp, floor, ln, sqrt, wrap_orientation};
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::PI;
 
-/// Most bins of a histogram.
+/// Largest number of bins of a histogram.
 pub const MAX_BINS: usize = 72;
 
-/// Histogram density of an orientation. It is stored relative to the uniform density: 1 everywhere means uniform.
+/// Histogram density of an orientation. It is stored relative to the uniform density: 1 everywhere
+/// means uniform.
 ///
 /// ```
 /// use sinew_core::observation::orientation::OrientationDensity;
@@ -33,7 +38,8 @@ pub const MAX_BINS: usize = 72;
 /// votes[flat.bin_of_line(-0.1, 1.0)] = 25;
 /// let mut density = flat.from_votes(&votes).smoothed();
 /// assert!(density.at(0.1) > 2.0 * density.at(0.1 + core::f32::consts::FRAC_PI_2));
-/// // Nothing was seen for a while: it goes half of the way back to uniform, where every density is 1.
+/// // Nothing was seen for a while: it goes half of the way back to uniform, where every density is
+/// // 1.
 /// let before = density.at(0.1);
 /// density.fade(0.5);
 /// assert!((density.at(0.1) - 0.5 * (before + 1.0)).abs() < 1e-4);
@@ -80,8 +86,8 @@ impl OrientationDensity {
         }
     }
 
-    /// The density with `counts` votes in its bins (normalised to mass one); uniform without a vote. Counts beyond the
-    /// bins are ignored.
+    /// The density with `counts` votes in its bins (normalised to mass one); uniform without a
+    /// vote. Counts beyond the bins are ignored.
     #[must_use]
     pub fn from_votes(&self, counts: &[u16]) -> Self {
         let mut result = *self;
@@ -97,12 +103,6 @@ impl OrientationDensity {
         result
     }
 
-    /// Number of bins.
-    #[must_use]
-    pub fn bin_count(&self) -> usize {
-        self.len
-    }
-
     /// Index of the bin that holds `orientation_rad`.
     #[inline]
     #[must_use]
@@ -111,16 +111,19 @@ impl OrientationDensity {
         (position as usize).min(self.len - 1)
     }
 
-    /// Index of the bin that holds the orientation of a line that goes `du` across and `dv` down; they are not both zero.
+    /// Index of the bin that holds the orientation of a line that goes `du` across and `dv` down;
+    /// they are not both zero.
     ///
-    /// The same bin as [`Self::bin_of`] has for atan2(`dv`, `du`), but for lines within 2e-5 rad of a bin's border.
+    /// The same bin as [`Self::bin_of`] has for atan2(`dv`, `du`), but for lines within 2e-5 rad of
+    /// a bin's border.
     #[inline]
     #[must_use]
     pub fn bin_of_line(&self, du: f32, dv: f32) -> usize {
         ((half_turns(du, dv) * self.len as f32) as usize).min(self.len - 1)
     }
 
-    /// Density at `orientation_rad` relative to uniform, linear between the bins' centres, across the seam too.
+    /// Density at `orientation_rad` relative to uniform, linear between the bins' centres, across
+    /// the seam too.
     #[must_use]
     pub fn at(&self, orientation_rad: f32) -> f32 {
         let position = wrap_orientation(orientation_rad) * (self.len as f32 / PI) - 0.5;
@@ -156,9 +159,11 @@ impl OrientationDensity {
     }
 }
 
-/// Orientation of a line that goes `du` across and `dv` down, in half turns from 0 to 1; within 2e-5 rad.
+/// Orientation of a line that goes `du` across and `dv` down, in half turns from 0 to 1; within
+/// 2e-5 rad.
 ///
-/// atan(q) / pi of a slope q from -1 to 1 is q (1/4 + (1 - q^2) P(q^2)), which is exact at 0 and +-1; P is a minimax fit of third degree.
+/// atan(q) / pi of a slope q from -1 to 1 is q (1/4 + (1 - q^2) P(q^2)), exact at 0 and +-1.
+/// P is a minimax fit of third degree.
 #[inline]
 fn half_turns(du: f32, dv: f32) -> f32 {
     let is_flat = dv * dv <= du * du;
@@ -175,12 +180,14 @@ fn half_turns(du: f32, dv: f32) -> f32 {
 
 /// Running circular variance of orientations, on the doubled angle.
 ///
-/// For small spreads it is the plain variance in square radians: -2 ln R / 4, R the doubled angles' resultant length.
+/// For small spreads it is the plain variance in square radians: -2 ln R / 4, R the doubled angles'
+/// resultant length.
 ///
 /// ```
 /// use sinew_core::observation::orientation::OrientationVariance;
 ///
-/// // Lines a tenth of a radian to both sides of the horizontal; which way they are drawn does not matter.
+/// // Lines a tenth of a radian to both sides of the horizontal; which way they are drawn does not
+/// // matter.
 /// let mut variance = OrientationVariance::default();
 /// for (du, dv) in [(1.0, 0.1), (1.0, -0.1), (-1.0, -0.1), (-1.0, 0.1)] {
 ///     variance.add(du, dv);
@@ -195,8 +202,8 @@ pub struct OrientationVariance {
 }
 
 impl OrientationVariance {
-    /// Adds the orientation of a line that goes `du` across and `dv` down; they are not both zero. The doubled angle's cosine and
-    /// sine are those of the square of du + i dv.
+    /// Adds the orientation of a line that goes `du` across and `dv` down; they are not both zero.
+    /// The doubled angle's cosine and sine are those of the square of du + i dv.
     #[inline]
     pub fn add(&mut self, du: f32, dv: f32) {
         let scale = 1.0 / (du * du + dv * dv);

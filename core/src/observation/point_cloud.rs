@@ -3,14 +3,18 @@
 use crate::math::{Vec3, floor, length, max};
 use heapless::Vec;
 
-/// Points of a block; a block is a few vectors of the processor.
+/// Points of a block: a few vectors of the processor.
 pub const BLOCK_POINTS: usize = 16;
 /// Bits of each coordinate in a Morton key.
 const KEY_BITS: u32 = 10;
-/// Edge of a cell of the Morton order, metres: 1024 of them span 20 m.
+/// Edge of a cell of the Morton order, metres.
+///
+/// Chosen: 1024 cells span 20 m.
 const CELL_M: f32 = 0.02;
 /// A point nearer to the camera than this is an error of the sensor, metres.
-pub const NEAREST_M: f32 = 0.01;
+///
+/// Chosen: sensors code missing points as the camera's centre.
+pub const MIN_RANGE_M: f32 = 0.01;
 
 /// Neighbouring points, coordinate by coordinate.
 ///
@@ -24,7 +28,11 @@ pub const NEAREST_M: f32 = 0.01;
 /// let block = &cloud.blocks()[0];
 /// assert_eq!(block.count, 2, "the rest of its sixteen places repeats the last point");
 /// // A ball that holds them all: whole blocks are judged by it before single points are.
-/// assert!((0..2).all(|index| (block.point_m(index) - block.centre_m).norm() <= block.radius_m + 1e-6));
+/// assert!(
+///     (0..2).all(
+///         |index| (block.point_m(index) - block.centre_m).norm() <= block.radius_m + 1e-6
+///     )
+/// );
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointBlock {
@@ -34,7 +42,7 @@ pub struct PointBlock {
     pub y: [f32; BLOCK_POINTS],
     /// Third coordinates, metres.
     pub z: [f32; BLOCK_POINTS],
-    /// How many are points; the rest repeat the last one and count nothing.
+    /// Number of points; the rest repeat the last one and have no weight.
     pub count: u8,
     /// Centre of a sphere round all of them, metres.
     pub centre_m: Vec3,
@@ -81,7 +89,7 @@ impl PointBlock {
 /// use sinew_core::math::Vec3;
 /// use sinew_core::observation::point_cloud::{LeftOut, PointCloud};
 ///
-/// // A sensor's holes come as numbers that are none, or as points at the camera.
+/// // A sensor codes holes as NaN, or as points at the camera.
 /// let mut points_m = [Vec3::new(0.0, 0.0, 2.0), Vec3::zeros(), Vec3::new(0.1, f32::NAN, 2.0)];
 /// let mut cloud = PointCloud::<1>::new();
 /// let left_out = cloud.set(&mut points_m, &Vec3::zeros());
@@ -90,9 +98,9 @@ impl PointBlock {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeftOut {
-    /// Points with a coordinate that is no number.
+    /// Points with a coordinate that is not finite.
     pub not_finite: u32,
-    /// Points within [`NEAREST_M`] of the camera.
+    /// Points within [`MIN_RANGE_M`] of the camera.
     pub at_camera: u32,
     /// Points beyond the capacity.
     pub over_capacity: u32,
@@ -105,11 +113,19 @@ pub struct LeftOut {
 /// use sinew_core::observation::point_cloud::{BLOCK_POINTS, PointCloud};
 ///
 /// // Forty points on a wall, and room for two blocks of sixteen.
-/// let mut points_m = core::array::from_fn::<Vec3, 40, _>(|i| Vec3::new(0.02 * i as f32, 0.0, 2.0));
+/// let mut points_m =
+///     core::array::from_fn::<Vec3, 40, _>(|i| Vec3::new(0.02 * i as f32, 0.0, 2.0));
 /// let mut cloud = PointCloud::<2>::new();
 /// let left_out = cloud.set(&mut points_m, &Vec3::zeros());
-/// assert_eq!((cloud.len(), left_out.over_capacity), (2 * BLOCK_POINTS, 8), "what has no room is counted");
-/// assert!(cloud.blocks().iter().all(|block| block.radius_m < 0.2), "neighbours share a block");
+/// assert_eq!(
+///     (cloud.len(), left_out.over_capacity),
+///     (2 * BLOCK_POINTS, 8),
+///     "what has no room is counted"
+/// );
+/// assert!(
+///     cloud.blocks().iter().all(|block| block.radius_m < 0.2),
+///     "neighbours share a block"
+/// );
 /// ```
 #[derive(Debug, Clone)]
 pub struct PointCloud<const BLOCKS: usize> {
@@ -130,10 +146,11 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
         Self::default()
     }
 
-    /// Becomes the cloud of `points_m`, which are brought into Morton order in place (those left out come last).
+    /// Becomes the cloud of `points_m`, which are brought into Morton order in place (those left
+    /// out come last).
     ///
-    /// Points that are not finite or at the camera are left out, and those beyond the capacity, the last given first; all
-    /// are counted. No point at all is a frame without evidence.
+    /// Points that are not finite or at the camera are left out, and those beyond the capacity, the
+    /// last given first; all are counted. No point at all is a frame without evidence.
     pub fn set(&mut self, points_m: &mut [Vec3], camera_m: &Vec3) -> LeftOut {
         let mut left_out = LeftOut::default();
         let mut kept = 0;
@@ -142,7 +159,7 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
             let distance = length(&(point - camera_m));
             if !distance.is_finite() {
                 left_out.not_finite += 1;
-            } else if distance < NEAREST_M {
+            } else if distance < MIN_RANGE_M {
                 left_out.at_camera += 1;
             } else if kept == BLOCKS * BLOCK_POINTS {
                 left_out.over_capacity += 1;
@@ -181,7 +198,8 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
     }
 }
 
-/// Bits of the coordinates in turns, then the coordinates themselves, so that the order never depends on the order given.
+/// Bits of the coordinates in turns, then the coordinates themselves, so that the order never
+/// depends on the order given.
 fn morton_key(point_m: &Vec3) -> (u32, [u32; 3]) {
     let cell = |x: f32| {
         let half = (1 << (KEY_BITS - 1)) as f32;

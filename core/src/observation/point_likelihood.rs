@@ -1,4 +1,4 @@
-//! How well a pose explains a cloud of points (PIK paper, eqs. 24 to 29).
+//! How well a pose explains a cloud of points: PIK (24) to (29).
 
 use super::body_surface::{BodySurface, SeenCapsule};
 use super::point_cloud::{BLOCK_POINTS, PointBlock};
@@ -17,18 +17,20 @@ use crate::math::{max, min, sqrt_branch_free};
 /// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
 /// let hanging = posture(&arm, &Vec3::new(0.0, 0.0, 2.0), &[0.0; 4]);
 /// let surface = BodySurface::new(&hanging, &[0.05, 0.04], Vec3::zeros());
-/// // One point a standard deviation before the skin costs a half, one far off no more than an outlier.
+/// // One point a standard deviation before the skin costs a half, one far off no more than an
+/// // outlier.
 /// let likelihood = PointLikelihood { std_m: 0.1, outlier_m: 0.2 };
 /// let mut cloud = PointCloud::<1>::new();
-/// let _ = cloud.set(&mut [Vec3::new(0.0, 0.5, 1.86), Vec3::new(0.9, 0.0, 3.0)], &Vec3::zeros());
+/// let _ =
+///     cloud.set(&mut [Vec3::new(0.0, 0.5, 1.86), Vec3::new(0.9, 0.0, 3.0)], &Vec3::zeros());
 /// assert!((likelihood.log_likelihood(&surface, cloud.blocks()) + 0.5 + 2.0).abs() < 1e-3);
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointLikelihood {
-    /// sigma of eq. (25), metres.
+    /// sigma of PIK (25), metres.
     pub std_m: f32,
-    /// Root of tau of eq. (29): beyond this distance a point is an outlier, metres.
+    /// Root of tau of PIK (29): beyond this distance a point is an outlier, metres.
     pub outlier_m: f32,
 }
 
@@ -65,11 +67,13 @@ impl PointLikelihood {
     }
 }
 
-/// Lowers each entry of `least` to the squared distance of the block's points from one capsule's visible skin, squared metres.
+/// Lowers each entry of `least` to the squared distance of the block's points from one capsule's
+/// visible skin, squared metres.
 ///
-/// A point that is seen from p: (|x-p| - r)^2. A hidden one: |x-p|^2 - 2 r rho + r^2, with rho the part of x - p along v, or
-/// across the line of sight on the round ends; both are one formula in rho. Most points are seen: the hidden case is computed only for blocks
-/// that have a point to which it matters. Loops are branch-free, so that they run on vectors.
+/// A point that is seen from p: (|x-p| - r)^2. A hidden one: |x-p|^2 - 2 r rho + r^2, with rho the
+/// part of x - p along v, or across the line of sight on the round ends; both are one formula in
+/// rho. Most points are seen: the hidden case is computed only for blocks that have a point to
+/// which it matters. Loops are branch-free, so that they run on vectors.
 #[inline(always)]
 pub(super) fn lower_to<const BONES: usize>(
     least: &mut [f32; BLOCK_POINTS],
@@ -149,7 +153,8 @@ impl NearAxis {
 /// A block's points with the capsules whose visible skin is nearest to each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct NearestSkin {
-    /// Squared distances from it, squared metres; the square of the outlier distance where no skin is nearer.
+    /// Squared distances from it, squared metres; the square of the outlier distance where no skin
+    /// is nearer.
     pub squared_m: [f32; BLOCK_POINTS],
     /// Places of the capsules in the surface's list; beyond its end where no skin is near.
     pub capsule: [u8; BLOCK_POINTS],
@@ -199,7 +204,8 @@ impl NearCapsules {
         self.find_or_within(surface, block, outlier_m, |_| 0.0);
     }
 
-    /// As [`Self::find`], and those that can come nearer to a point than what `reach_m` says of their bone, metres.
+    /// As [`Self::find`], and those that can come nearer to a point than `reach_m` of their bone,
+    /// metres.
     pub(super) fn find_or_within<const BONES: usize>(
         &mut self,
         surface: &BodySurface<BONES>,
@@ -210,13 +216,13 @@ impl NearCapsules {
         let bounds = surface.distance_bounds(&block.centre_m, block.radius_m);
         let count = surface.capsules.len();
         let mut bound = outlier_m * outlier_m;
-        for &most in bounds.most_squared.iter().take(count) {
+        for &most in bounds.max_squared_m2.iter().take(count) {
             bound = min(bound, most);
         }
         let bound = sqrt_branch_free(bound);
         self.count = 0;
-        for (index, (&least, seen)) in bounds.least.iter().zip(&surface.capsules).enumerate() {
-            // A hair wider, for rounding.
+        for (index, (&least, seen)) in bounds.min_m.iter().zip(&surface.capsules).enumerate() {
+            // Slightly wider, for rounding.
             if least > max(bound, reach_m(seen.bone)) * 1.0001 + 1.0e-6 {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Which way a cloud of points pulls a pose: the derivatives of the point likelihood (DESIGN.md, section 3: guided proposals).
+//! Derivatives of the point likelihood by a pose, for guided proposals.
 
 use super::body_surface::BodySurface;
 use super::point_cloud::PointBlock;
@@ -7,11 +7,14 @@ use crate::kinematics::body_information::BodyInformation;
 use crate::math::{Vec3, unit};
 
 /// Nearer than this a point lies on the skin, metres: the skin's own normal is taken.
+///
+/// Chosen: far above rounding at a few metres, far below a sensor's noise.
 const TOUCHING_M: f32 = 1.0e-4;
 
-/// Adds to `information` what `blocks` say about the bones of `surface`: each point wants the nearest place of the visible skin
-/// to come to it, along the line between both; outliers want nothing. `share` multiplies every point, for a cloud of which
-/// only a part is looked at.
+/// Adds the information of `blocks` about the bones of `surface`.
+///
+/// Each point has a residual to the nearest place of the visible skin, along the line between both.
+/// Outliers have none. `share` multiplies every point, for a cloud of which only a part is used.
 pub fn add_pull<'b, const BONES: usize>(
     likelihood: &PointLikelihood,
     surface: &BodySurface<BONES>,
@@ -27,7 +30,7 @@ pub fn add_pull<'b, const BONES: usize>(
             let point_m = block.point_m(i);
             let skin_m = seen.capsule.nearest_visible(&surface.camera_m, &point_m);
             let (axis_m, _) = seen.axis_point(&point_m);
-            // At the skin itself the line between both has no direction, but the skin has.
+            // On the skin the line between both has no direction: the skin's normal is taken.
             let way = point_m - skin_m;
             let apart = unit(way).filter(|_| nearest.squared_m[i] > TOUCHING_M * TOUCHING_M);
             let normal = apart.or_else(|| unit(skin_m - axis_m)).unwrap_or_else(Vec3::z);
@@ -75,7 +78,8 @@ mod tests {
             let there = posture(&skeleton, &Vec3::zeros(), angles);
             likelihood.log_likelihood(&BodySurface::new(&there, &radii, Vec3::zeros()), cloud.blocks())
         };
-        // In units of each coordinate's own precision; points that change from one bone to another bend the slope a little.
+        // In units of each coordinate's own precision; points that change from one bone to another
+        // bend the slope a little.
         let (mut product, mut squares) = (0.0, [0.0; 2]);
         for i in 0..BODY_ANGLES {
             let (mut below, mut above) = (angles, angles);

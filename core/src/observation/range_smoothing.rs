@@ -1,27 +1,37 @@
 //! Distances from the camera, averaged over neighbouring lines of sight.
 //!
-//! A stereo camera knows the direction of a point to a pixel, but its distance ever worse: the noise of disparity makes 2 cm at 2.5 m and
-//! 16 cm at 7 m, more than a limb is thick. Neighbouring lines of sight mostly end on the same skin. So each point moves along its own line
-//! towards the mean distance of its neighbours, all the way where noise is large and hardly where it is small. How large it is, neighbours
-//! tell: nothing is assumed about the camera.
+//! The noise of a stereo camera's distances grows with the square of the distance: 2 cm at 2.5 m,
+//! 16 cm at 7 m. That is more than a limb's thickness. Neighbouring lines of sight mostly end on
+//! the same skin, so each point moves along its own line towards the mean distance of its
+//! neighbours. The larger the noise, the further it moves. The noise is estimated from the
+//! neighbours; the camera's model is not needed.
 
 use crate::error::{ParameterError, positive};
 use crate::math::{Vec3, abs, clamp, floor, length, max, min, unit};
 use core::cmp::Ordering;
 use heapless::Vec;
 
-/// Differences between neighbours' distances of which the median is taken; of more pairs every n-th one.
+/// Largest number of differences between neighbours of which the median is taken; of more every
+/// n-th.
 const MAX_DIFFERENCES: usize = 512;
-/// Median of the difference between two normal numbers of standard deviation one, without its sign.
+/// Median of |a - b| for standard normal a and b: the root of 2 times 0.6745.
 const MEDIAN_DIFFERENCE: f32 = 0.953_87;
-/// Neighbours count up to this many standard deviations of a difference; beyond it they lie on something else.
+/// Neighbours count up to this many standard deviations of a difference.
+///
+/// Chosen: the usual gate of 99.7 %; beyond it they lie on another surface.
 const GATE_SIGMAS: f32 = 3.0;
-/// Parts of a metre, and of a direction, that are summed.
-const UNITS: f32 = 1.0e6;
-/// Farther points do not make the mean distance any greater, metres.
+/// Integer units of a metre, and of a unit direction, in sums that do not depend on their order.
+///
+/// Chosen: micrometres, far below a sensor's noise; the sums fit in 64 bits.
+const UNITS_PER_METRE: f32 = 1.0e6;
+/// Largest distance of a point in the mean, metres.
+///
+/// Chosen: bounds the integer sums, far beyond a room.
 const MAX_RANGE_M: f32 = 1.0e3;
-/// Fewest neighbours, the point itself among them, that a mean is taken of.
-const LEAST_NEIGHBOURS: f32 = 4.0;
+/// Smallest number of neighbours in a mean, the point itself included.
+///
+/// Chosen: of fewer the mean is noise itself.
+const MIN_NEIGHBOURS: f32 = 4.0;
 
 /// A point as the camera sees it.
 ///
@@ -29,8 +39,9 @@ const LEAST_NEIGHBOURS: f32 = 4.0;
 /// use sinew_core::math::Vec3;
 /// use sinew_core::observation::range_smoothing::{RangeSmoothing, SightLine};
 ///
-/// // Room for a cloud of any size is the caller's to give; of two hundred points each stays on its line of sight.
-/// let mut points_m = core::array::from_fn::<Vec3, 200, _>(|i| Vec3::new(0.002 * i as f32, 0.0, 3.0));
+/// // The caller gives the working memory; each of two hundred points stays on its line of sight.
+/// let mut points_m =
+///     core::array::from_fn::<Vec3, 200, _>(|i| Vec3::new(0.002 * i as f32, 0.0, 3.0));
 /// let before = points_m;
 /// let mut lines = [SightLine::default(); 200];
 /// RangeSmoothing::new(0.04, 0.03)?.smooth(&mut points_m, &Vec3::zeros(), &mut lines);
@@ -45,7 +56,7 @@ pub struct SightLine {
     tangents: [f32; 2],
     /// Distance from the camera, metres.
     range_m: f32,
-    /// Which point it is.
+    /// Index of the point.
     index: u32,
 }
 
@@ -62,9 +73,15 @@ pub struct SightLine {
 ///     let place_m = Vec3::new(0.015 * (i % 30) as f32, 0.015 * (i / 30) as f32, 6.0);
 ///     place_m * (1.0 + 0.02 * stream.normal())
 /// });
-/// let off_m = |points_m: &[Vec3]| (points_m.iter().map(|p| (p.z - 6.0).powi(2)).sum::<f32>() / 600.0).sqrt();
+/// let off_m = |points_m: &[Vec3]| {
+///     (points_m.iter().map(|p| (p.z - 6.0).powi(2)).sum::<f32>() / 600.0).sqrt()
+/// };
 /// let before_m = off_m(&points_m);
-/// RangeSmoothing::new(0.04, 0.03)?.smooth(&mut points_m, &Vec3::zeros(), &mut [SightLine::default(); 600]);
+/// RangeSmoothing::new(0.04, 0.03)?.smooth(
+///     &mut points_m,
+///     &Vec3::zeros(),
+///     &mut [SightLine::default(); 600],
+/// );
 /// assert!(before_m > 0.1 && off_m(&points_m) < 0.4 * before_m);
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
@@ -85,8 +102,10 @@ struct View {
 }
 
 impl RangeSmoothing {
-    /// Means over `radius_m` metres to each side; where distances scatter by `skin_std_m` metres, as those of a limb's skin do, points go half of
-    /// the way to them.
+    /// Means over `radius_m` metres to each side.
+    ///
+    /// Where distances scatter by `skin_std_m` metres, as those of a limb's skin do, points move
+    /// half of the way.
     ///
     /// # Errors
     /// Both have to be positive.
@@ -99,8 +118,9 @@ impl RangeSmoothing {
 
     /// Moves `points_m`, metres, along their lines of sight from the camera at `camera_m`.
     ///
-    /// `lines` is room to work in; points beyond its length stay, as do those that are not finite, at the camera, or more than a right angle off
-    /// the cloud's middle. The order given does not matter to what becomes of a point.
+    /// `lines` is working memory; points beyond its length stay. So do points that are not finite,
+    /// at the camera, or more than a right angle off the cloud's middle. The result does not depend
+    /// on the order of the points.
     pub fn smooth(&self, points_m: &mut [Vec3], camera_m: &Vec3, lines: &mut [SightLine]) {
         let Some(view) = self.view(points_m, camera_m) else { return };
         let mut count = 0;
@@ -136,9 +156,9 @@ impl RangeSmoothing {
             let range_m = length(&sight);
             if let (true, Some(direction)) = (range_m.is_finite(), unit(sight)) {
                 for (sum, part) in sums.iter_mut().zip(direction.iter()) {
-                    *sum += (UNITS * part) as i64;
+                    *sum += (UNITS_PER_METRE * part) as i64;
                 }
-                range += (UNITS * min(range_m, MAX_RANGE_M)) as i64;
+                range += (UNITS_PER_METRE * min(range_m, MAX_RANGE_M)) as i64;
                 count += 1;
             }
         }
@@ -147,7 +167,7 @@ impl RangeSmoothing {
         // Any axis that is not along the view gives two across it.
         let other = if abs(ahead.x) < 0.8 { Vec3::x() } else { Vec3::y() };
         let across = unit(ahead.cross(&other))?;
-        let reach = self.radius_m * UNITS * count as f32 / max(range as f32, 1.0);
+        let reach = self.radius_m * UNITS_PER_METRE * count as f32 / max(range as f32, 1.0);
         Some(View { camera_m: *camera_m, ahead, along: across.cross(&ahead), across, reach })
     }
 }
@@ -166,7 +186,8 @@ impl View {
 }
 
 impl SightLine {
-    /// Row by row, from one side to the other; by their numbers alone, so that the order given does not matter.
+    /// Row by row, from one side to the other; by their numbers alone, so that the order given does
+    /// not matter.
     fn in_rows(&self, other: &Self) -> Ordering {
         let numbers = |line: &Self| [line.tangents[0], line.tangents[1], line.range_m];
         let by_number = || {
@@ -177,7 +198,8 @@ impl SightLine {
     }
 }
 
-/// Standard deviation of neighbours' distances about each other, from the median of the differences; zero without neighbours.
+/// Standard deviation of neighbours' distances about each other, from the median of the
+/// differences; zero without neighbours.
 fn noise_m(lines: &[SightLine], reach: f32) -> f32 {
     let mut differences: Vec<f32, MAX_DIFFERENCES> = Vec::new();
     let stride = lines.len().div_ceil(MAX_DIFFERENCES).max(1);
@@ -194,9 +216,10 @@ fn noise_m(lines: &[SightLine], reach: f32) -> f32 {
     *differences.select_nth_unstable_by(middle, f32::total_cmp).1 / MEDIAN_DIFFERENCE
 }
 
-/// Mean distance of the neighbours of `line` in its own row and those beside it; `None` where they are few.
+/// Mean distance of the neighbours of `line` in its own row and those beside it; `None` where they
+/// are few.
 ///
-/// `first_in_reach` says for the three rows where the neighbours of the line before began.
+/// `first_in_reach` holds, for the three rows, where the neighbours of the previous line began.
 fn mean_range_m(
     lines: &[SightLine],
     line: &SightLine,
@@ -219,7 +242,7 @@ fn mean_range_m(
             }
         }
     }
-    (count >= LEAST_NEIGHBOURS).then(|| line.range_m + sum_m / count)
+    (count >= MIN_NEIGHBOURS).then(|| line.range_m + sum_m / count)
 }
 
 #[cfg(test)]
@@ -237,7 +260,8 @@ mod tests {
         points_m
     }
 
-    /// `count` points of a wall one metre wide and high, `range_m` away, with noise along their lines of sight.
+    /// `count` points of a wall one metre wide and high, `range_m` away, with noise along their
+    /// lines of sight.
     fn wall(count: usize, range_m: f32, noise_m: f32, stream: &mut Stream) -> std::vec::Vec<Vec3> {
         let mut point = || {
             let (x, y) = (stream.uniform() - 0.5, stream.uniform() - 0.5);

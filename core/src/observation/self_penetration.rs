@@ -1,4 +1,4 @@
-//! Flesh does not pass through flesh: an optional density of poses (the PIK paper names it as future work).
+//! Density of poses against self-penetration, optional; future work in the PIK paper.
 
 use super::body_surface::BodySurface;
 use super::capsule::Capsule;
@@ -8,27 +8,39 @@ use crate::math::{Vec3, max};
 use crate::skeleton::Skeleton;
 use crate::skeleton::limbs::{Limbs, MAX_GROUPS, TRUNK_GROUP};
 
-/// log p(theta) = -1/2 sum over pairs of bones (depth / std)^2, with depth what two capsules lie deeper in one another than at rest.
+/// log p(theta) = -1/2 sum over pairs of bones (depth / std)^2, with the depth of two capsules
+/// beyond that at rest.
 ///
-/// Bones that meet in a joint are no pair: parent and child, and children of one parent.
+/// Bones that share a joint are no pair: parent and child, and children of one parent.
 ///
 /// ```
 /// use sinew_core::kinematics::forward::posture;
 /// use sinew_core::math::Vec3;
-/// use sinew_core::observation::{body_surface::BodySurface, self_penetration::SelfPenetration};
+/// use sinew_core::observation::{
+///     body_surface::BodySurface, self_penetration::SelfPenetration,
+/// };
 /// use sinew_core::skeleton::BodyMeasures;
-/// use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, body_radii_m, full_body};
+/// use sinew_core::skeleton::full_body::{
+///     BODY_ANGLE_NAMES, BODY_ANGLES, body_radii_m, full_body,
+/// };
 ///
 /// let measures = BodyMeasures::of_height(1.75)?;
 /// let (skeleton, radii_m) = (full_body(&measures)?, body_radii_m(&measures));
 /// let density = SelfPenetration::new(&skeleton, &radii_m, 0.02)?;
 /// let log_density = |pose: &[f32; BODY_ANGLES]| {
-///     density.log_density(&BodySurface::new(&posture(&skeleton, &Vec3::zeros(), pose), &radii_m, -Vec3::z()))
+///     density.log_density(&BodySurface::new(
+///         &posture(&skeleton, &Vec3::zeros(), pose),
+///         &radii_m,
+///         -Vec3::z(),
+///     ))
 /// };
-/// // To stand costs nothing, a leg through the other one does.
+/// // A standing pose has no penalty, a leg through the other one has.
 /// let mut pose = [0.0; BODY_ANGLES];
 /// assert_eq!(log_density(&pose), 0.0);
-/// let hip = BODY_ANGLE_NAMES.iter().position(|name| *name == "l_hip_abduction").expect("it has this name");
+/// let hip = BODY_ANGLE_NAMES
+///     .iter()
+///     .position(|name| *name == "l_hip_abduction")
+///     .expect("it has this name");
 /// pose[hip] = -0.5;
 /// assert!(log_density(&pose) < -5.0);
 /// # Ok::<(), sinew_core::error::ParameterError>(())
@@ -36,12 +48,12 @@ use crate::skeleton::limbs::{Limbs, MAX_GROUPS, TRUNK_GROUP};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfPenetration<const BONES: usize> {
     std_m: f32,
-    /// Depth that costs nothing, metres; infinite for what is no pair.
+    /// Depth without penalty, metres; infinite for bones that are no pair.
     free_m: [[f32; BONES]; BONES],
 }
 
 impl<const BONES: usize> SelfPenetration<BONES> {
-    /// The density of a body whose flesh gives way by about `std_m` metres.
+    /// The density of a body whose capsules may penetrate by about `std_m` metres.
     ///
     /// # Errors
     /// `std_m` has to be positive.
@@ -67,7 +79,7 @@ impl<const BONES: usize> SelfPenetration<BONES> {
         Ok(Self { std_m, free_m })
     }
 
-    /// log density of the pose with this surface, up to its constant: zero where no flesh is in other flesh.
+    /// log density of the pose with this surface, up to its constant: zero without penetration.
     #[must_use]
     pub fn log_density(&self, surface: &BodySurface<BONES>) -> f32 {
         self.log_densities(surface, &Limbs::none())[TRUNK_GROUP]
@@ -126,7 +138,8 @@ mod tests {
 
     #[test]
     fn a_forearm_in_the_trunk_and_legs_through_one_another_cost() {
-        // The upper arm hangs, turned inwards, the elbow bent: the forearm goes straight through the trunk.
+        // The upper arm hangs, turned inwards, the elbow bent: the forearm goes straight through
+        // the trunk.
         let arm = [("l_shoulder_rotation", -90.0), ("l_elbow_flexion", 90.0)];
         let other_way = [("l_shoulder_rotation", 90.0), ("l_elbow_flexion", 90.0)];
         let inside = log_density(&arm).min(log_density(&other_way));

@@ -1,4 +1,4 @@
-//! Weighted particles: log-weights, resampling, and groups of particles that agree.
+//! Weighted particles: log-weights, effective sample size, resampling.
 //!
 //! ```
 //! use sinew_core::particle::Weights;

@@ -1,11 +1,13 @@
-//! Systematic resampling, and the permutation that its order calls for.
+//! Systematic resampling, and the permutation of its ordered ancestors.
 
 use crate::random::Stream;
 
-/// Writes the ancestors of a new generation into `ancestors`: systematic resampling with one uniform number.
+/// Writes the ancestors of a new generation into `ancestors`: systematic resampling with one
+/// uniform number.
 ///
-/// `weights` sum to one; `offset` lies in [0, 1). Invariants: the ancestors are in ascending order; an ancestor of weight
-/// w is taken floor(n w) or ceil(n w) times; over a uniform offset it is taken n w times on average.
+/// `weights` sum to one; `offset` lies in [0, 1). Invariants: the ancestors are in ascending order;
+/// an ancestor of weight w is taken floor(n w) or ceil(n w) times; over a uniform offset it is
+/// taken n w times on average.
 ///
 /// ```
 /// use sinew_core::particle::resampling::systematic;
@@ -33,7 +35,8 @@ pub fn systematic(weights: &[f32], offset: f32, ancestors: &mut [u16]) {
     }
 }
 
-/// Shuffles `items` (Fisher and Yates), so that an order left by resampling does not decide who is sent where.
+/// Shuffles `items` (Fisher and Yates), so that the order of resampling does not decide which
+/// particles follow a blob.
 ///
 /// ```
 /// use sinew_core::particle::resampling::permute;
@@ -42,7 +45,11 @@ pub fn systematic(weights: &[f32], offset: f32, ancestors: &mut [u16]) {
 /// let mut ancestors = [0, 0, 1, 1, 1, 1, 2, 2];
 /// permute(&mut ancestors, &mut Stream::new(1, 0, 0));
 /// assert_ne!(ancestors, [0, 0, 1, 1, 1, 1, 2, 2], "another order");
-/// assert_eq!(ancestors.iter().filter(|&&ancestor| ancestor == 1).count(), 4, "of the same numbers");
+/// assert_eq!(
+///     ancestors.iter().filter(|&&ancestor| ancestor == 1).count(),
+///     4,
+///     "of the same numbers"
+/// );
 /// ```
 pub fn permute<T>(items: &mut [T], stream: &mut Stream) {
     for i in (1..items.len()).rev() {

@@ -1,4 +1,4 @@
-//! Log-weights, normalised weights and effective sample size in one type, so that they never disagree.
+//! Log-weights, normalised weights and effective sample size in one type, always consistent.
 //!
 //! ```
 //! use sinew_core::particle::{Degenerate, Weights};
@@ -6,7 +6,7 @@
 //! let mut weights = Weights::<8>::uniform(2)?;
 //! weights.set_log(0, f32::NAN); // counts as zero
 //! weights.set_log(1, f32::NEG_INFINITY);
-//! // No particle fits: the frame has taught nothing, and that is an answer.
+//! // No particle fits: the frame has no information, which is reported.
 //! assert_eq!(weights.normalise(), Err(Degenerate));
 //! assert_eq!(weights.normalised(), [0.5, 0.5]);
 //! # Ok::<(), sinew_core::error::ParameterError>(())
@@ -17,12 +17,12 @@ use crate::math::{exp, ln};
 use crate::saved_state::{SavedState, StateVisitor};
 use heapless::Vec;
 
-/// All weights were zero (or not a number). The set was made uniform; nothing was learned from this frame.
+/// All weights were zero (or not a number). The set is uniform: the frame had no information.
 ///
 /// ```
 /// use sinew_core::particle::{Degenerate, Weights};
 ///
-/// // The hand is where no particle expects it: go on as if nothing had been seen.
+/// // No particle is near the hand: go on as without a measurement.
 /// let mut weights = Weights::<2>::uniform(2)?;
 /// weights.set_log(0, f32::NEG_INFINITY);
 /// weights.set_log(1, f32::NEG_INFINITY);
@@ -35,12 +35,14 @@ pub struct Degenerate;
 
 /// Weights of up to `CAPACITY` particles.
 ///
-/// Invariant after [`Weights::normalise`]: the normalised weights are finite, not negative, and sum to one.
+/// Invariant after [`Weights::normalise`]: the normalised weights are finite, not negative, and sum
+/// to one.
 ///
 /// ```
 /// use sinew_core::particle::Weights;
 ///
-/// // Room for fifty particles, three in use. Only differences of log-weights matter, so nothing underflows.
+/// // Room for fifty particles, three in use. Only differences of log-weights matter, so nothing
+/// // underflows.
 /// let mut weights = Weights::<50>::uniform(3)?;
 /// for (index, log_weight) in [-1000.0, -1000.0, -1000.7].into_iter().enumerate() {
 ///     weights.set_log(index, log_weight);
@@ -81,7 +83,7 @@ impl<const CAPACITY: usize> Weights<CAPACITY> {
         Ok(weights)
     }
 
-    /// No weights; to be made with [`Self::begin`].
+    /// No weights, see [`Self::begin`].
     #[must_use]
     pub const fn none() -> Self {
         Self { log: Vec::new(), normalised: Vec::new() }
@@ -124,7 +126,8 @@ impl<const CAPACITY: usize> Weights<CAPACITY> {
         self.normalised.fill(share);
     }
 
-    /// Sets the log-weight of particle `index`; an index beyond the end is ignored. Call [`Weights::normalise`] after.
+    /// Sets the log-weight of particle `index`; an index beyond the end is ignored. Call
+    /// [`Weights::normalise`] after.
     pub fn set_log(&mut self, index: usize, log_weight: f32) {
         if let Some(slot) = self.log.get_mut(index) {
             *slot = log_weight;
@@ -146,7 +149,8 @@ impl<const CAPACITY: usize> Weights<CAPACITY> {
     /// Normalises and returns ln of the mean weight, a frame's part of the log evidence.
     ///
     /// # Errors
-    /// [`Degenerate`] where no weight is above zero: all weights are equal then. NaN counts as zero.
+    /// [`Degenerate`] where no weight is above zero: all weights are equal then. NaN counts as
+    /// zero.
     pub fn normalise(&mut self) -> Result<f32, Degenerate> {
         let mut greatest = f32::NEG_INFINITY;
         for &value in &self.log {

@@ -4,11 +4,11 @@ use super::{FieldReader, FieldWriter, Kind, Payload, RecordError};
 use crate::camera::{Camera, Pixel};
 use crate::error::ParameterError;
 use crate::math::Vec3;
-use crate::observation::candidate::HandCandidate;
 use crate::skeleton::Side;
 use crate::skeleton::arm::ArmGeometry;
 use crate::tracker::arm::options::{AreaCue, LimbCombination};
 use crate::tracker::arm::{ArmModel, ArmOptions};
+use crate::vision::candidate::HandCandidate;
 use crate::vision::edges::EdgePixel;
 use heapless::Vec;
 
@@ -146,7 +146,7 @@ impl Payload for ArmSetup {
 /// Some of a frame's candidates; their [`ArmInput`] follows.
 ///
 /// ```
-/// use sinew_core::observation::candidate::HandCandidate;
+/// use sinew_core::vision::candidate::HandCandidate;
 /// use sinew_core::record::{CANDIDATES_A_RECORD, CandidateChunk, decode, encode};
 ///
 /// // As many of a frame's candidates as a record holds; more of them take another one.

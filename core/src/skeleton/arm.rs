@@ -1,13 +1,16 @@
-//! An arm: three shoulder angles and one elbow angle, the hand being part of the forearm (arm paper, section 2).
+//! An arm: three shoulder angles and one elbow angle, the hand being part of the forearm (arm
+//! paper, section 2).
 //!
 //! With all angles zero the arm hangs straight down. The shoulder's ball joint turns by
 //!
-//! 1. *elevation* in the scapular plane, 45 degrees in front of the body's side (positive: up and out),
-//! 2. *deviation* out of that plane (positive: inwards to the front, negative: outwards to the back),
+//! 1. *elevation* in the scapular plane, 45 degrees in front of the body's side (positive: up and
+//!    out),
+//! 2. *deviation* out of that plane (positive: inwards to the front, negative: outwards to the
+//!    back),
 //! 3. *axial rotation* of the upper arm (positive: inwards),
 //!
-//! and the elbow by *flexion*. The singular directions of this order (deviation +-90 degrees) point inwards to the front
-//! and outwards to the back, where an arm cannot go: the limits exclude them.
+//! and the elbow by *flexion*. The singular directions of this order (deviation +-90 degrees) point
+//! inwards to the front and outwards to the back, where an arm cannot go: the limits exclude them.
 //!
 //! ```
 //! use sinew_core::kinematics::forward::posture;
@@ -20,7 +23,10 @@
 //! let pose = [0.6, 0.2, 0.1, 1.2];
 //! let places = posture(&arm.skeleton()?, &Vec3::zeros(), &pose).ends;
 //! let found = arm.angles_from_joints(&places[UPPER_ARM], &places[FOREARM], &[0.0; 4]);
-//! assert!(found.iter().zip(pose).all(|(found, wanted)| (found - wanted).abs() < 1e-3), "{found:?}");
+//! assert!(
+//!     found.iter().zip(pose).all(|(found, wanted)| (found - wanted).abs() < 1e-3),
+//!     "{found:?}"
+//! );
 //! assert!((arm.reach_m() - 0.65).abs() < 1e-6);
 //! # Ok::<(), sinew_core::error::ParameterError>(())
 //! ```
@@ -81,6 +87,8 @@ pub const FOREARM: usize = 1;
 pub type ArmAngles = [f32; ARM_ANGLES];
 
 /// The default limits: active range of motion of a healthy adult, rounded outwards to five degrees.
+///
+/// Chosen: wide enough for everyday poses, and they exclude the singular directions.
 pub const ARM_LIMITS: [Limit; ARM_ANGLES] = [
     Limit::from_degrees(-50.0, 175.0),
     Limit::from_degrees(-70.0, 80.0),
@@ -88,7 +96,7 @@ pub const ARM_LIMITS: [Limit; ARM_ANGLES] = [
     Limit::from_degrees(0.0, 150.0),
 ];
 
-/// Limits that only keep an arm's angles unique: what an arm without joint limits is compared with.
+/// Limits that only keep an arm's angles unique, for comparisons without joint limits.
 pub const WIDE_ARM_LIMITS: [Limit; ARM_ANGLES] = [
     Limit::from_degrees(-180.0, 180.0),
     Limit::from_degrees(-89.0, 89.0),
@@ -110,8 +118,11 @@ pub const WIDE_ARM_LIMITS: [Limit; ARM_ANGLES] = [
 /// arm.limits[3] = Limit::from_degrees(20.0, 150.0);
 /// assert!((arm.up() - Vec3::x()).norm() < 1e-6);
 /// assert!(arm.skeleton()?.clamp([0.0; 4])[3] > 0.3);
-/// // What cannot be is refused by its name.
-/// assert_eq!(ArmGeometry::new(Side::Left, 0.0, 0.35).map_err(|error| error.parameter), Err("upper_arm_m"));
+/// // An impossible length is refused by its name.
+/// assert_eq!(
+///     ArmGeometry::new(Side::Left, 0.0, 0.35).map_err(|error| error.parameter),
+///     Err("upper_arm_m")
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,7 +135,8 @@ pub struct ArmGeometry {
     pub forearm_m: f32,
     /// Legal angles.
     pub limits: [Limit; ARM_ANGLES],
-    /// Turns body axes (left, up, front as columns' images) into camera axes; see [`facing_camera`].
+    /// Turns body axes (left, up, front as columns' images) into camera axes; see
+    /// [`facing_camera`].
     pub torso: Mat3,
 }
 
@@ -202,11 +214,12 @@ impl ArmGeometry {
         Skeleton::new(bones, self.limits)
     }
 
-    /// The angles, cut to the limits, whose elbow and hand lie in the given directions: inverse kinematics of an arm
-    /// whose elbow is known.
+    /// The angles, cut to the limits, whose elbow and hand lie in the given directions: inverse
+    /// kinematics of an arm whose elbow is known.
     ///
-    /// `elbow_m` and `hand_m` are relative to the shoulder. Lengths need not fit: the upper arm points to the elbow and
-    /// the forearm from there to the hand. A part without direction keeps the `fallback` angles.
+    /// `elbow_m` and `hand_m` are relative to the shoulder. Lengths need not fit: the upper arm
+    /// points to the elbow and the forearm from there to the hand. A part without direction keeps
+    /// the `fallback` angles.
     #[must_use]
     pub fn angles_from_joints(&self, elbow_m: &Vec3, hand_m: &Vec3, fallback: &ArmAngles) -> ArmAngles {
         let (outward, up, front) = self.directions();

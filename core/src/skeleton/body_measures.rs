@@ -1,4 +1,4 @@
-//! How long a body's segments are, and how thick.
+//! Lengths and girth of a body's segments.
 //!
 //! ```
 //! use sinew_core::skeleton::BodyMeasures;
@@ -50,18 +50,22 @@ pub struct BodyMeasures {
     pub shank_m: f32,
     /// Ankle to the tip of the foot.
     pub foot_m: Vec3,
-    /// Girth of all segments relative to [`crate::skeleton::full_body::BODY_RADII`] of a body 1.75 m tall.
+    /// Girth of all segments relative to [`crate::skeleton::full_body::BODY_RADII_M`] of a body
+    /// 1.75 m tall.
     pub girth: f32,
 }
 
-/// The height that segment radii are given for, metres.
+/// Height of the body of [`crate::skeleton::full_body::BODY_RADII_M`], metres.
+///
+/// Chosen: about the mean stature of adults; radii scale with the stature.
 pub const REFERENCE_HEIGHT_M: f32 = 1.75;
 
 impl BodyMeasures {
-    /// An adult `height_m` tall, by the segment lengths of Drillis and Contini (1966) as fractions of stature.
+    /// An adult `height_m` tall, by the segment lengths of Drillis and Contini (1966) as fractions
+    /// of stature.
     ///
-    /// The hip joints lie closer together than their table's hips, which are measured over the trochanters: 0.05 of
-    /// stature from the middle each.
+    /// The hip joints lie closer together than their table's hips, which are measured over the
+    /// trochanters: 0.05 of stature from the middle each.
     ///
     /// # Errors
     /// The height has to be positive.

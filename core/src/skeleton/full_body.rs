@@ -1,7 +1,8 @@
 //! The whole body: 17 bones, 16 of them with flesh, and 30 coordinates.
 //!
-//! Rest pose: upright, facing the camera, arms and legs hanging. In camera axes left is +x, up -y, front -z. The root is
-//! free: its three shifts and three angles come first. Euler orders and what they leave out:
+//! Rest pose: upright, facing the camera, arms and legs hanging. In camera axes left is +x, up -y,
+//! front -z. The root is free: its three shifts and three angles come first. Euler orders and their
+//! singularities:
 //!
 //! | joint | first | middle, singular at +-90 degrees | last |
 //! |---|---|---|---|
@@ -14,7 +15,9 @@
 //! use sinew_core::kinematics::forward::posture;
 //! use sinew_core::math::Vec3;
 //! use sinew_core::skeleton::BodyMeasures;
-//! use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, FEET, FOREARMS, HEAD, full_body};
+//! use sinew_core::skeleton::full_body::{
+//!     BODY_ANGLE_NAMES, BODY_ANGLES, FEET, FOREARMS, HEAD, full_body,
+//! };
 //!
 //! let person = full_body(&BodyMeasures::of_height(1.75)?)?;
 //! let mut pose = [0.0; BODY_ANGLES];
@@ -22,7 +25,10 @@
 //! let standing = posture(&person, &Vec3::zeros(), &pose).ends;
 //! assert!(standing[HEAD].y < standing[FEET[0]].y, "y points down");
 //!
-//! let elbow = BODY_ANGLE_NAMES.iter().position(|name| *name == "l_elbow_flexion").expect("it has this name");
+//! let elbow = BODY_ANGLE_NAMES
+//!     .iter()
+//!     .position(|name| *name == "l_elbow_flexion")
+//!     .expect("it has this name");
 //! pose[elbow] = 1.5;
 //! let bent = posture(&person, &Vec3::zeros(), &pose).ends;
 //! assert!(bent[FOREARMS[0]].z < standing[FOREARMS[0]].z, "the forearm points to the camera");
@@ -43,12 +49,17 @@ pub const BODY_ANGLES: usize = 30;
 /// A whole body.
 ///
 /// ```
-/// use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BodySkeleton, FEET, FOREARMS, full_body};
 /// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::{
+///     BODY_ANGLE_NAMES, BodySkeleton, FEET, FOREARMS, full_body,
+/// };
 ///
 /// let person: BodySkeleton = full_body(&BodyMeasures::of_height(1.75)?)?;
 /// // Coordinates are found by name; this one moves the left foot and no hand.
-/// let knee = BODY_ANGLE_NAMES.iter().position(|name| *name == "l_knee_flexion").expect("it has this name");
+/// let knee = BODY_ANGLE_NAMES
+///     .iter()
+///     .position(|name| *name == "l_knee_flexion")
+///     .expect("it has this name");
 /// assert!(person.angle_moves(knee, FEET[0]) && !person.angle_moves(knee, FOREARMS[0]));
 /// assert_eq!(person.limits()[knee].low_rad, 0.0, "a knee does not bend forwards");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
@@ -132,11 +143,13 @@ pub const BODY_ANGLE_NAMES: [&str; BODY_ANGLES] = [
 ];
 
 /// Radii of the bones' capsules for a girth of one, metres; the pelvis has none.
-pub const BODY_RADII: [f32; BODY_BONES] = [
+///
+/// Chosen: half-widths of an adult of [`super::body_measures::REFERENCE_HEIGHT_M`].
+pub const BODY_RADII_M: [f32; BODY_BONES] = [
     0.0, 0.125, 0.095, 0.060, 0.050, 0.042, 0.060, 0.050, 0.042, 0.090, 0.080, 0.055, 0.042, 0.090, 0.080, 0.055, 0.042,
 ];
 
-/// Index of the bone that each bone hangs on; the pelvis hangs on nothing.
+/// Index of each bone's parent; the pelvis has none.
 pub const BODY_PARENTS: [Option<u8>; BODY_BONES] = [
     None,
     Some(0),
@@ -161,14 +174,19 @@ const LEFT: Vec3 = Vec3::new(1.0, 0.0, 0.0);
 const UP: Vec3 = Vec3::new(0.0, -1.0, 0.0);
 const FRONT: Vec3 = Vec3::new(0.0, 0.0, -1.0);
 
-/// A shift may be anywhere within this distance of the camera, metres.
-const FARTHEST_M: f32 = 100.0;
-/// Turning on the spot may go on for this many degrees.
-const MOST_TURN_DEG: f32 = 36_000.0;
+/// Largest shift of the root from the camera, metres.
+///
+/// Chosen: a box that no recording reaches.
+const MAX_SHIFT_M: f32 = 100.0;
+/// Largest turn about the vertical, degrees.
+///
+/// Chosen: a hundred turns, which no recording reaches.
+const MAX_TURN_DEG: f32 = 36_000.0;
 
-/// Ranges of motion of a healthy adult, rounded outwards, since a hip or a trunk of one joint stands for several.
+/// Ranges of motion of a healthy adult, rounded outwards, since a hip or a trunk of one joint
+/// stands for several.
 const LIMITS: [Limit; BODY_ANGLES] = {
-    let shift = Limit { low_rad: -FARTHEST_M, high_rad: FARTHEST_M };
+    let shift = Limit { low_rad: -MAX_SHIFT_M, high_rad: MAX_SHIFT_M };
     let degrees = Limit::from_degrees;
     let shoulder = super::arm::ARM_LIMITS;
     let hip = [degrees(-45.0, 140.0), degrees(-45.0, 75.0), degrees(-70.0, 70.0)];
@@ -177,7 +195,7 @@ const LIMITS: [Limit; BODY_ANGLES] = {
         shift,
         shift,
         shift,
-        degrees(-MOST_TURN_DEG, MOST_TURN_DEG),
+        degrees(-MAX_TURN_DEG, MAX_TURN_DEG),
         degrees(-80.0, 80.0),
         degrees(-180.0, 180.0),
         degrees(-45.0, 100.0),
@@ -221,7 +239,10 @@ const LIMITS: [Limit; BODY_ANGLES] = {
 /// pose[2] = 3.0;
 /// let standing = posture(&person, &Vec3::zeros(), &pose).ends;
 /// let from_toe_to_head_m = standing[FEET[0]].y - standing[HEAD].y;
-/// assert!((1.55..1.75).contains(&from_toe_to_head_m), "a head ends above its middle: {from_toe_to_head_m}");
+/// assert!(
+///     (1.55..1.75).contains(&from_toe_to_head_m),
+///     "a head ends above its middle: {from_toe_to_head_m}"
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 ///
@@ -257,17 +278,17 @@ pub fn full_body(measures: &BodyMeasures) -> Result<BodySkeleton, ParameterError
 ///
 /// ```
 /// use sinew_core::skeleton::BodyMeasures;
-/// use sinew_core::skeleton::full_body::{BODY_RADII, PELVIS, THIGHS, body_radii_m};
+/// use sinew_core::skeleton::full_body::{BODY_RADII_M, PELVIS, THIGHS, body_radii_m};
 ///
 /// let slim = BodyMeasures { girth: 0.9, ..BodyMeasures::of_height(1.75)? };
 /// let radii_m = body_radii_m(&slim);
-/// assert!((radii_m[THIGHS[0]] - 0.9 * BODY_RADII[THIGHS[0]]).abs() < 1e-6);
+/// assert!((radii_m[THIGHS[0]] - 0.9 * BODY_RADII_M[THIGHS[0]]).abs() < 1e-6);
 /// assert_eq!(radii_m[PELVIS], 0.0, "no flesh of its own");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[must_use]
 pub fn body_radii_m(measures: &BodyMeasures) -> [f32; BODY_BONES] {
-    BODY_RADII.map(|radius| radius * measures.girth)
+    BODY_RADII_M.map(|radius| radius * measures.girth)
 }
 
 #[cfg(test)]
@@ -320,7 +341,7 @@ mod tests {
             let side = rest.ends[i].dot(&LEFT);
             assert_eq!(name.starts_with("l_"), side > 0.02, "{name}");
             assert_eq!(name.starts_with("r_"), side < -0.02, "{name}");
-            assert_eq!(BODY_RADII[i] > 0.0, i != PELVIS);
+            assert_eq!(BODY_RADII_M[i] > 0.0, i != PELVIS);
         }
         assert!(rest.ends[HEAD].dot(&UP) > rest.ends[TRUNK].dot(&UP));
         assert!(rest.ends[FEET[0]].dot(&FRONT) > rest.ends[SHANKS[0]].dot(&FRONT) + 0.1);

@@ -1,14 +1,16 @@
-//! Which bones make up a limb: those that hang on the trunk in a chain of their own.
+//! Which bones make up a limb: chains that branch off the trunk.
 
-use super::Skeleton;
+use super::tree::Skeleton;
 
-/// Groups of bones at most: the trunk and seven limbs. Limbs beyond that count as trunk.
+/// Largest number of groups of bones: the trunk and seven limbs. Limbs beyond that count as trunk.
 pub const MAX_GROUPS: usize = 8;
 /// The group of the bones that are in no limb.
 pub const TRUNK_GROUP: usize = 0;
 
-/// The group of each bone: 0 for the trunk (the root and every bone from which chains branch off), then one for each chain that ends without
-/// branching: arms, legs, a head.
+/// The group of each bone: 0 for the trunk, then one for each chain that ends without branching.
+///
+/// The trunk is the root and every bone from which chains branch off; the chains are arms, legs, a
+/// head.
 ///
 /// ```
 /// use sinew_core::skeleton::full_body::{FEET, FOREARMS, HEAD, THIGHS, TRUNK, full_body};

@@ -1,9 +1,10 @@
-//! What a body is: rigid bones in a tree, their joints and limits. Immutable; poses are small arrays of angles.
+//! Skeletons: rigid bones in a tree, their joints and limits. Immutable; poses are small arrays of
+//! angles.
 //!
 //! ```
 //! use sinew_core::math::Vec3;
 //! use sinew_core::skeleton::full_body::{HEAD, full_body};
-//! use sinew_core::skeleton::{Bone, BodyMeasures, Joint, Limit, Skeleton};
+//! use sinew_core::skeleton::{BodyMeasures, Bone, Joint, Limit, Skeleton};
 //!
 //! // A person of 1.75 m, as a tree of rigid bones.
 //! let person = full_body(&BodyMeasures::of_height(1.75)?)?;
@@ -15,7 +16,10 @@
 //!     joint: Joint::Hinge(Vec3::z()),
 //!     offset_m: Vec3::new(0.0, -length_m, 0.0),
 //! };
-//! let lamp = Skeleton::new([hinge(None, 0.4), hinge(Some(0), 0.3)], [Limit::from_degrees(-90.0, 90.0); 2])?;
+//! let lamp = Skeleton::new(
+//!     [hinge(None, 0.4), hinge(Some(0), 0.3)],
+//!     [Limit::from_degrees(-90.0, 90.0); 2],
+//! )?;
 //! assert_eq!(lamp.bone_of_angle(1), 1);
 //! assert_eq!(lamp.clamp([0.0, 3.0])[1], 90.0_f32.to_radians());
 //! # Ok::<(), sinew_core::error::ParameterError>(())

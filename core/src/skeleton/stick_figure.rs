@@ -1,8 +1,10 @@
-//! A 2D stick figure: joints in a tree, each posed by the image angle of the line from its parent (cyclic paper, 2.1).
+//! A 2D stick figure: joints in a tree, each posed by the image angle of the line from its parent
+//! (cyclic paper, section 2.1).
 //!
-//! Axes are the image's: x right, y down, in pixels. The angle of a joint is atan2(dy, dx) of the vector parent -> joint,
-//! relative to the image and not to the parent's own direction. The root has no angle: angle `i` belongs to joint `i + 1`.
-//! The tree is data, so figures with other joints work alike; [`HUMAN`] is the one of the paper.
+//! Axes are the image's: x right, y down, in pixels. The angle of a joint is atan2(dy, dx) of the
+//! vector parent -> joint, relative to the image and not to the parent's own direction. The root
+//! has no angle: angle `i` belongs to joint `i + 1`. The tree is data, so figures with other joints
+//! work alike; [`HUMAN`] is the one of the paper.
 //!
 //! ```
 //! use sinew_core::skeleton::stick_figure::{HUMAN, HUMAN_ANGLES, HUMAN_JOINTS};
@@ -24,7 +26,7 @@ use crate::error::{ParameterError, Rule};
 use crate::math::{atan2, sin_cos, sqrt, wrap_angle};
 use core::f32::consts::PI;
 
-/// Most joints of a figure.
+/// Largest number of joints of a figure.
 pub const MAX_JOINTS: usize = 64;
 /// Joints of [`HUMAN`].
 pub const HUMAN_JOINTS: usize = 14;
@@ -36,7 +38,7 @@ pub const HUMAN_ANGLES: usize = HUMAN_JOINTS - 1;
 /// ```
 /// use sinew_core::skeleton::stick_figure::{HUMAN, HUMAN_JOINTS, ImagePoint};
 ///
-/// // A recording that saw hips and neck only.
+/// // A recording of hips and neck only.
 /// let mut joints_px: [Option<ImagePoint>; HUMAN_JOINTS] = [None; HUMAN_JOINTS];
 /// joints_px[0] = Some([320.0, 240.0]);
 /// joints_px[1] = Some([320.0, 140.0]);
@@ -51,13 +53,20 @@ pub type ImagePoint = [f32; 2];
 /// use sinew_core::skeleton::{StickFigure, StickJoint};
 ///
 /// let joint = |name, parent, mirror| StickJoint { name, parent, mirror };
-/// // Left and right name each other; what lies in the middle names itself.
-/// let shoulders = [joint("neck", None, 0), joint("l_shoulder", Some(0), 2), joint("r_shoulder", Some(0), 1)];
+/// // Left and right refer to each other; a joint of the midline refers to itself.
+/// let shoulders = [
+///     joint("neck", None, 0),
+///     joint("l_shoulder", Some(0), 2),
+///     joint("r_shoulder", Some(0), 1),
+/// ];
 /// let figure = StickFigure::new(&shoulders)?;
 /// let mut angles_rad = [Some(0.2), None];
 /// figure.mirror(&mut angles_rad);
 /// assert_eq!(angles_rad[0], None, "the right one was not seen");
-/// assert!((angles_rad[1].expect("it was the left one") - (core::f32::consts::PI - 0.2)).abs() < 1e-6);
+/// assert!(
+///     (angles_rad[1].expect("it was the left one") - (core::f32::consts::PI - 0.2)).abs()
+///         < 1e-6
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,27 +75,37 @@ pub struct StickJoint<'a> {
     pub name: &'a str,
     /// Index of the joint that this one hangs on; `None` at the root.
     pub parent: Option<u8>,
-    /// Index of the same joint of the other body side; the joint's own index where it lies on the midline.
+    /// Index of the same joint of the other body side; the joint's own index where it lies on the
+    /// midline.
     pub mirror: u8,
 }
 
 /// A tree of joints.
 ///
-/// Invariants: joint 0 is the root and the only one; parents stand before their children; `mirror` is its own inverse
-/// and maps parents to parents.
+/// Invariants: joint 0 is the root and the only one; parents stand before their children; `mirror`
+/// is its own inverse and maps parents to parents.
 ///
 /// ```
 /// use sinew_core::skeleton::{StickFigure, StickJoint};
 ///
 /// // A finger: three joints in a row, all on the midline.
 /// let joint = |name, parent, mirror| StickJoint { name, parent, mirror };
-/// let joints = [joint("knuckle", None, 0), joint("middle", Some(0), 1), joint("tip", Some(1), 2)];
+/// let joints =
+///     [joint("knuckle", None, 0), joint("middle", Some(0), 1), joint("tip", Some(1), 2)];
 /// let finger = StickFigure::new(&joints)?;
 /// assert_eq!(finger.angle_index("tip"), Some(1));
 /// let mut places_px = [[0.0; 2]; 3];
-/// finger.joint_positions([100.0, 100.0], &[30.0, 20.0], &[0.0, core::f32::consts::FRAC_PI_2], &mut places_px);
+/// finger.joint_positions(
+///     [100.0, 100.0],
+///     &[30.0, 20.0],
+///     &[0.0, core::f32::consts::FRAC_PI_2],
+///     &mut places_px,
+/// );
 /// assert_eq!(places_px[1], [130.0, 100.0]);
-/// assert!((places_px[2][1] - 120.0).abs() < 1e-4, "angles are the image's, and y points down");
+/// assert!(
+///     (places_px[2][1] - 120.0).abs() < 1e-4,
+///     "angles are the image's, and y points down"
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -123,8 +142,8 @@ impl<'a> StickFigure<'a> {
     /// Checks and borrows a tree.
     ///
     /// # Errors
-    /// From 2 to [`MAX_JOINTS`] joints; the first and no other without a parent; parents before their children;
-    /// `mirror` its own inverse, with the parents mirrored alike.
+    /// From 2 to [`MAX_JOINTS`] joints; the first and no other without a parent; parents before
+    /// their children; `mirror` its own inverse, with the parents mirrored alike.
     pub fn new(joints: &'a [StickJoint<'a>]) -> Result<Self, ParameterError> {
         if joints.len() < 2 {
             return Err(ParameterError::new("joints", Rule::NotEmpty));
@@ -160,12 +179,6 @@ impl<'a> StickFigure<'a> {
         self.joints
     }
 
-    /// Number of joints.
-    #[must_use]
-    pub const fn joint_count(&self) -> usize {
-        self.joints.len()
-    }
-
     /// Number of angles: one for each joint but the root.
     #[must_use]
     pub const fn angle_count(&self) -> usize {
@@ -189,10 +202,11 @@ impl<'a> StickFigure<'a> {
         self.joint_index(name)?.checked_sub(1)
     }
 
-    /// Writes where the joints lie, pixels, given the root, the length of each segment and the angle of each joint.
+    /// Writes where the joints lie, pixels, given the root, the length of each segment and the
+    /// angle of each joint.
     ///
-    /// `lengths_px` and `angles_rad` have an entry for each joint but the root. Joints for which an entry or a place in
-    /// `joints_px` is missing are left out.
+    /// `lengths_px` and `angles_rad` have an entry for each joint but the root. Joints for which an
+    /// entry or a place in `joints_px` is missing are left out.
     pub fn joint_positions(
         &self,
         root_px: ImagePoint,
@@ -230,10 +244,12 @@ impl<'a> StickFigure<'a> {
         Some(Segment { length_px, angle_rad })
     }
 
-    /// Turns the pose into that of the mirror image: theta -> pi - theta, and the sides change places.
+    /// Turns the pose into that of the mirror image: theta -> pi - theta, and the sides change
+    /// places.
     ///
-    /// A person who faces left is so turned into one who faces right. `None` (not seen) stays `None`. Twice is once back,
-    /// up to rounding. Entries beyond the figure's angles are left alone.
+    /// A person who faces left is so turned into one who faces right. `None` (not seen) stays
+    /// `None`. Twice is once back, up to rounding. Entries beyond the figure's angles are left
+    /// alone.
     pub fn mirror(&self, angles_rad: &mut [Option<f32>]) {
         for (index, joint) in self.joints.iter().enumerate().skip(1) {
             let other = usize::from(joint.mirror);
@@ -257,7 +273,10 @@ impl<'a> StickFigure<'a> {
 /// joints_px[1] = Some([130.0, 160.0]);
 /// let trunk = HUMAN.segment(&joints_px, 0).expect("both of its ends were seen");
 /// assert_eq!(trunk.length_px, 50.0);
-/// assert!((trunk.angle_rad.expect("it has a length") + 0.9273).abs() < 1e-4, "up and to the right");
+/// assert!(
+///     (trunk.angle_rad.expect("it has a length") + 0.9273).abs() < 1e-4,
+///     "up and to the right"
+/// );
 /// // Where both ends fall together there is a length, zero, and no angle.
 /// joints_px[1] = joints_px[0];
 /// assert_eq!(HUMAN.segment(&joints_px, 0).and_then(|trunk| trunk.angle_rad), None);

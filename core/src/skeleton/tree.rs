@@ -1,4 +1,4 @@
-//! A tree of rigid bones with hinge and ball joints and box limits (PIK paper, sections 2 and 2.2).
+//! A tree of rigid bones with hinge and ball joints and box limits, PIK (2).
 
 use crate::error::{ParameterError, Rule};
 use crate::math::{Vec3, abs, clamp, length};
@@ -11,9 +11,14 @@ use crate::math::{Vec3, abs, clamp, length};
 ///
 /// let knee = Joint::Hinge(Vec3::x());
 /// let hip = Joint::Ball([Vec3::x(), Vec3::z(), Vec3::y()]);
-/// let pelvis = Joint::Free([Vec3::x(), Vec3::y(), Vec3::z(), Vec3::y(), Vec3::z(), Vec3::x()]);
+/// let pelvis =
+///     Joint::Free([Vec3::x(), Vec3::y(), Vec3::z(), Vec3::y(), Vec3::z(), Vec3::x()]);
 /// assert_eq!([knee, hip, pelvis].map(|joint| joint.angle_count()), [1, 3, 6]);
-/// assert_eq!([hip, pelvis].map(|joint| joint.shift_count()), [0, 3], "only the root goes anywhere");
+/// assert_eq!(
+///     [hip, pelvis].map(|joint| joint.shift_count()),
+///     [0, 3],
+///     "only the root goes anywhere"
+/// );
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Joint {
@@ -21,11 +26,11 @@ pub enum Joint {
     Fixed,
     /// One angle about a unit axis, given in the bone's own rest axes.
     Hinge(Vec3),
-    /// Three angles about unit axes, applied as R(axis 0) R(axis 1) R(axis 2); singular where the middle angle
-    /// reaches +-pi/2, which the limits should exclude.
+    /// Three angles about unit axes, applied as R(axis 0) R(axis 1) R(axis 2); singular where the
+    /// middle angle reaches +-pi/2, which the limits should exclude.
     Ball([Vec3; 3]),
-    /// Goes anywhere, at the root only: three shifts along the first three axes, metres, that stand before the angles,
-    /// and three angles about the last three, as those of a ball.
+    /// Goes anywhere, at the root only: three shifts along the first three axes, metres, that stand
+    /// before the angles, and three angles about the last three, as those of a ball.
     Free([Vec3; 6]),
 }
 
@@ -75,7 +80,11 @@ impl Joint {
 ///
 /// // A leg that stands still at the hip and bends at the knee; y points down.
 /// let thigh = Bone { parent: None, joint: Joint::Fixed, offset_m: Vec3::new(0.0, 0.43, 0.0) };
-/// let shank = Bone { parent: Some(0), joint: Joint::Hinge(Vec3::x()), offset_m: Vec3::new(0.0, 0.42, 0.0) };
+/// let shank = Bone {
+///     parent: Some(0),
+///     joint: Joint::Hinge(Vec3::x()),
+///     offset_m: Vec3::new(0.0, 0.42, 0.0),
+/// };
 /// let leg = Skeleton::new([thigh, shank], [Limit::from_degrees(0.0, 150.0)])?;
 /// assert!(leg.angle_moves(0, 1) && !leg.angle_moves(0, 0));
 /// // Parents come first.
@@ -115,6 +124,7 @@ impl Limit {
     /// An interval in degrees.
     #[must_use]
     pub const fn from_degrees(low_deg: f32, high_deg: f32) -> Self {
+        /// Radians of a degree, by definition.
         const RADIANS: f32 = core::f32::consts::PI / 180.0;
         Self { low_rad: low_deg * RADIANS, high_rad: high_deg * RADIANS }
     }
@@ -129,14 +139,19 @@ impl Limit {
 
 /// A tree of `BONES` bones with `ANGLES` angles.
 ///
-/// Invariants: a parent stands before its children; the angles of the bones follow one another in the bones' order.
+/// Invariants: a parent stands before its children; the angles of the bones follow one another in
+/// the bones' order.
 ///
 /// ```
 /// use sinew_core::math::Vec3;
 /// use sinew_core::skeleton::{Bone, Joint, Limit, Skeleton};
 ///
 /// // A head on a neck: one bone of three angles, one of none.
-/// let neck = Bone { parent: None, joint: Joint::Ball([Vec3::x(), Vec3::z(), Vec3::y()]), offset_m: -Vec3::y() * 0.1 };
+/// let neck = Bone {
+///     parent: None,
+///     joint: Joint::Ball([Vec3::x(), Vec3::z(), Vec3::y()]),
+///     offset_m: -Vec3::y() * 0.1,
+/// };
 /// let head = Bone { parent: Some(0), joint: Joint::Fixed, offset_m: -Vec3::y() * 0.2 };
 /// let skeleton = Skeleton::new([neck, head], [Limit::from_degrees(-60.0, 60.0); 3])?;
 /// assert_eq!(skeleton.root_coordinates(), 0, "this root does not move");
@@ -159,8 +174,8 @@ impl<const BONES: usize, const ANGLES: usize> Skeleton<BONES, ANGLES> {
     /// Checks and stores a tree.
     ///
     /// # Errors
-    /// At most 32 bones; parents before children; only the first bone free; axes of length one; limits finite and ordered;
-    /// `ANGLES` angles in all.
+    /// At most 32 bones; parents before children; only the first bone free; axes of length one;
+    /// limits finite and ordered; `ANGLES` angles in all.
     pub fn new(bones: [Bone; BONES], limits: [Limit; ANGLES]) -> Result<Self, ParameterError> {
         if BONES > 32 {
             return Err(ParameterError::new("bones", Rule::Capacity { capacity: 32 }));
@@ -232,7 +247,7 @@ impl<const BONES: usize, const ANGLES: usize> Skeleton<BONES, ANGLES> {
         &self.bones
     }
 
-    /// The box of legal angles (PIK paper, eq. 2).
+    /// The box of legal angles, PIK (2).
     #[must_use]
     pub fn limits(&self) -> &[Limit; ANGLES] {
         &self.limits

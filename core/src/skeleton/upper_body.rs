@@ -1,7 +1,8 @@
-//! The upper body of a person whose legs are not seen: 9 bones, 8 of them with flesh, and 17 coordinates.
+//! The upper body of a person whose legs are not seen: 9 bones, 8 of them with flesh, and 17
+//! coordinates.
 //!
-//! Its bones are the first of [`super::full_body`] under the same indices. The trunk does not turn against the pelvis: without legs nothing tells
-//! both apart, so the root turns both.
+//! Its bones are the first of [`super::full_body`] under the same indices. The trunk does not turn
+//! against the pelvis: without legs nothing separates both apart, so the root turns both.
 //!
 //! ```
 //! use sinew_core::skeleton::BodyMeasures;
@@ -17,7 +18,7 @@
 //! ```
 
 use super::body_measures::BodyMeasures;
-use super::full_body::{BODY_ANGLES, BODY_BONES, BODY_RADII, TRUNK, full_body};
+use super::full_body::{BODY_ANGLES, BODY_BONES, BODY_RADII_M, TRUNK, full_body};
 use super::tree::{Joint, Skeleton};
 use crate::error::ParameterError;
 
@@ -84,7 +85,7 @@ pub fn upper_bones<T: Copy>(whole: &[T; BODY_BONES]) -> [T; UPPER_BONES] {
 /// use sinew_core::skeleton::upper_body::{UPPER_ANGLES, upper_body};
 ///
 /// let desk = upper_body(&BodyMeasures::of_height(1.75)?)?;
-/// // Somebody at a desk, 0.8 m before the camera, leans to the front: the head comes nearer.
+/// // A person at a desk, 0.8 m before the camera, bends forward: the head comes nearer.
 /// let mut pose = [0.0; UPPER_ANGLES];
 /// pose[2] = 0.8;
 /// let upright = posture(&desk, &Vec3::zeros(), &pose).ends;
@@ -103,22 +104,23 @@ pub fn upper_body(measures: &BodyMeasures) -> Result<UpperSkeleton, ParameterErr
     Skeleton::new(bones, upper_coordinates(whole.limits()))
 }
 
-/// Radii of the capsules of an upper body with the given measures, metres; zero for a bone without flesh.
+/// Radii of the capsules of an upper body with the given measures, metres; zero for a bone without
+/// flesh.
 ///
 /// ```
 /// use sinew_core::skeleton::BodyMeasures;
-/// use sinew_core::skeleton::full_body::{BODY_RADII, TRUNK};
+/// use sinew_core::skeleton::full_body::{BODY_RADII_M, TRUNK};
 /// use sinew_core::skeleton::upper_body::upper_radii_m;
 ///
 /// // Of a body as tall as the reference the radii are those of the table.
 /// let radii_m = upper_radii_m(&BodyMeasures::of_height(1.75)?);
-/// assert_eq!(radii_m[TRUNK], BODY_RADII[TRUNK]);
+/// assert_eq!(radii_m[TRUNK], BODY_RADII_M[TRUNK]);
 /// assert_eq!(radii_m.iter().filter(|radius| **radius > 0.0).count(), 8, "all but the pelvis");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[must_use]
 pub fn upper_radii_m(measures: &BodyMeasures) -> [f32; UPPER_BONES] {
-    upper_bones(&BODY_RADII).map(|radius| radius * measures.girth)
+    upper_bones(&BODY_RADII_M).map(|radius| radius * measures.girth)
 }
 
 #[cfg(test)]

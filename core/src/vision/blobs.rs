@@ -6,10 +6,13 @@ use super::features::{Blob, BlobMeter};
 use super::hand_likelihood::HandLikelihood;
 use super::mask::Mask;
 use super::runs::{Run, RunPool};
-use crate::observation::candidate::HandCandidate;
+use crate::vision::candidate::HandCandidate;
 use heapless::Vec;
 
-/// Smallest component that becomes a blob, as a part of the image's area (24 pixels of 640 x 480).
+/// Smallest component that becomes a blob, as a fraction of the image's area.
+///
+/// Chosen: 24 pixels of 640 x 480, far below the area of a hand
+/// ([`super::hand_likelihood::DEFAULT_AREA_FRACTIONS`]).
 pub const DEFAULT_MIN_AREA_FRACTION: f32 = 8.0e-5;
 
 /// A blob and its likelihood of being a hand.
@@ -24,13 +27,17 @@ pub const DEFAULT_MIN_AREA_FRACTION: f32 = 8.0e-5;
 /// # rows[20..36].fill(0x00ff_ff00);
 /// # let mask = Mask::new(&rows, 32, 64)?;
 /// let meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
-/// let mut finder = BlobFinder::<16, 16>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
+/// let mut finder =
+///     BlobFinder::<16, 16>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
 /// let mut list = BlobList::<4>::new();
 /// finder.find(&mask, &mut [Run::default(); 64], &mut list);
-/// // What the tracker gets of a blob: its place, its extent and how likely it is a hand.
+/// // The tracker's input: the blob's place, its extent and its likelihood.
 /// let entry = &list.as_slice()[0];
 /// let candidate = entry.candidate();
-/// assert_eq!((candidate.centre, candidate.likelihood), (entry.blob.centroid, entry.likelihood));
+/// assert_eq!(
+///     (candidate.centre, candidate.likelihood),
+///     (entry.blob.centroid, entry.likelihood)
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,11 +49,11 @@ pub struct LikelyBlob {
     pub likelihood: f32,
 }
 
-/// A blob that can be put in order and shown to a tracker.
+/// A blob that can be ranked and passed to a tracker.
 ///
 /// ```
-/// use sinew_core::observation::candidate::HandCandidate;
 /// use sinew_core::vision::blobs::{BlobList, Ranked};
+/// use sinew_core::vision::candidate::HandCandidate;
 ///
 /// // What another detector found: a place and a score.
 /// struct Detection(HandCandidate);
@@ -71,7 +78,7 @@ pub trait Ranked {
     /// Likelihood of being a hand, 0 to 1.
     fn likelihood(&self) -> f32;
 
-    /// What the trackers need to know of it.
+    /// The trackers' input for it.
     fn candidate(&self) -> HandCandidate;
 }
 
@@ -85,7 +92,7 @@ impl Ranked for LikelyBlob {
     }
 }
 
-/// The most likely blobs of a frame, most likely first, and what found no room.
+/// The most likely blobs of a frame, most likely first, and counts of those without room.
 ///
 /// ```
 /// use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION};
@@ -98,12 +105,13 @@ impl Ranked for LikelyBlob {
 /// # rows[60..64].fill(0x0000_0f00);
 /// # let mask = Mask::new(&rows, 32, 96)?;
 /// # let meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
-/// # let mut finder = BlobFinder::<16, 16>::new(meter, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
+/// # let likelihood = HandLikelihood::default();
+/// # let mut finder = BlobFinder::<16, 16>::new(meter, likelihood, DEFAULT_MIN_AREA_FRACTION);
 /// // A mask with three squares, and room for two.
 /// let mut list = BlobList::<2>::new();
 /// finder.find(&mask, &mut [Run::default(); 64], &mut list);
-/// assert!(list.as_slice()[0].likelihood >= list.as_slice()[1].likelihood, "the most likely comes first");
-/// assert_eq!((list.as_slice().len(), list.dropped_blobs), (2, 1), "what found no room is counted");
+/// assert!(list.as_slice()[0].likelihood >= list.as_slice()[1].likelihood);
+/// assert_eq!((list.as_slice().len(), list.dropped_blobs), (2, 1));
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -111,7 +119,8 @@ pub struct BlobList<const N: usize, B = LikelyBlob> {
     blobs: Vec<B, N>,
     /// Blobs that were less likely than all that were kept.
     pub dropped_blobs: u32,
-    /// Components that found no room while the mask was scanned, see [`ComponentScanner::dropped_components`].
+    /// Components that found no room while the mask was scanned, see
+    /// [`ComponentScanner::dropped_components`].
     pub dropped_components: u32,
     /// Components too small to become a blob.
     pub specks: u32,
@@ -136,7 +145,7 @@ impl<const N: usize, B: Ranked> BlobList<N, B> {
         &self.blobs
     }
 
-    /// What the trackers need to know of them, most likely first.
+    /// The trackers' input for each blob, most likely first.
     pub fn candidates(&self) -> impl Iterator<Item = HandCandidate> + '_ {
         self.blobs.iter().map(Ranked::candidate)
     }
@@ -187,7 +196,11 @@ impl<const N: usize, B: Ranked> BlobList<N, B> {
 /// let mut finder = BlobFinder::<16, 16>::new(meter, HandLikelihood::default(), 0.01);
 /// let mut list = BlobList::<4>::new();
 /// finder.find(&Mask::new(&rows, 32, 64)?, &mut [Run::default(); 64], &mut list);
-/// assert_eq!((list.as_slice().len(), list.specks), (1, 1), "less than a hundredth of the image is no blob");
+/// assert_eq!(
+///     (list.as_slice().len(), list.specks),
+///     (1, 1),
+///     "less than a hundredth of the image is no blob"
+/// );
 /// assert_eq!(list.as_slice()[0].blob.area_px, 256);
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
@@ -200,7 +213,8 @@ pub struct BlobFinder<const RUNS: usize, const OPEN: usize> {
 }
 
 impl<const RUNS: usize, const OPEN: usize> BlobFinder<RUNS, OPEN> {
-    /// A finder that leaves out components below `min_area_fraction` of the image's area (a NaN leaves out all).
+    /// A finder that leaves out components below `min_area_fraction` of the image's area (a NaN
+    /// leaves out all).
     #[must_use]
     pub fn new(meter: BlobMeter, likelihood: HandLikelihood, min_area_fraction: f32) -> Self {
         Self { scanner: ComponentScanner::new(), meter, likelihood, min_area_fraction }
@@ -208,8 +222,8 @@ impl<const RUNS: usize, const OPEN: usize> BlobFinder<RUNS, OPEN> {
 
     /// Replaces the contents of `list` by the most likely blobs of `mask`.
     ///
-    /// `runs` is working memory for the runs of the components that grow at the same time. Where it is too short, blobs come
-    /// with `shape_complete` false.
+    /// `runs` is working memory for the runs of the components that grow at the same time. Where it
+    /// is too short, blobs come with `shape_complete` false.
     pub fn find<const N: usize>(&mut self, mask: &Mask<'_>, runs: &mut [Run], list: &mut BlobList<N>) {
         list.clear();
         let image_area_px = (mask.width() * mask.height()) as f32;

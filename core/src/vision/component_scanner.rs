@@ -15,22 +15,25 @@ enum Slot {
     Merged { into: u16 },
 }
 
-/// Finds components line by line; keeps only the last line's runs and the components that are still growing.
+/// Finds components line by line; keeps only the last line's runs and the components that are still
+/// growing.
 ///
-/// `RUNS` is the number of runs a line may have (half of the width, rounded up, always suffices), `OPEN` the number
-/// of components that may grow at the same time (at most 65534; again half of the width always suffices). Where a line has more
-/// runs, its shortest are left out; where more components grow, the smallest is dropped. Both are counted.
-/// While both counts are zero the result is exact. Work for a line: its runs, times at most `OPEN` + 2 `RUNS` for each component dropped.
+/// `RUNS` is the number of runs a line may have; half of the width, rounded up, always suffices.
+/// `OPEN` is the number of components that may grow at the same time, at most 65534; half of the
+/// width always suffices. Where a line has more runs, its shortest are left out; where more
+/// components grow, the smallest is dropped. Both are counted, and while both counts are zero the
+/// result is exact. Work for a line: its runs, times at most `OPEN` + 2 `RUNS` for each component
+/// dropped.
 ///
-/// Invariant between lines: every run of the last line points at a root, or at nothing when it was dropped, and every
-/// root is pointed at.
+/// Invariant between lines: every run of the last line points at a root, or at nothing when it was
+/// dropped, and every root is pointed at.
 ///
 /// ```
 /// use sinew_core::vision::component_scanner::ComponentScanner;
 /// use sinew_core::vision::mask::Mask;
 /// use sinew_core::vision::runs::RunPool;
 ///
-/// // Two fingers that meet in the third line are one component; what touches nothing is another.
+/// // Two fingers that join in the third line are one component; the separate pixels are another.
 /// let mask = Mask::new(&[0b0_1001, 0b0_1001, 0b0_1111, 0, 0b1_1000], 32, 5)?;
 /// let mut scanner = ComponentScanner::<16, 16>::new();
 /// let (mut areas_px, mut count) = ([0; 4], 0);
@@ -108,7 +111,8 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
         self.dropped_px
     }
 
-    /// Scans all rows of `mask` and gives each component to `sink`, in the order of their last rows.
+    /// Scans all rows of `mask` and gives each component to `sink`, in the order of their last
+    /// rows.
     pub fn scan(&mut self, mask: &Mask<'_>, pool: &mut RunPool<'_>, sink: &mut impl FnMut(&Component, &RunPool<'_>)) {
         self.restart();
         for row in mask.rows() {
@@ -117,7 +121,8 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
         self.finish(pool, sink);
     }
 
-    /// Reads the next line of bits (those beyond the width zero) and gives the components that it ends to `sink`.
+    /// Reads the next line of bits (those beyond the width zero) and gives the components that it
+    /// ends to `sink`.
     ///
     /// At most [`super::mask::MAX_SIDE_PX`] pixels and lines are read, the rest is ignored.
     pub fn line(&mut self, bits: &[u32], pool: &mut RunPool<'_>, sink: &mut impl FnMut(&Component, &RunPool<'_>)) {
@@ -151,7 +156,7 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
     /// Gives each run of the new line a slot, and merges what it connects.
     fn connect(&mut self, pool: &mut RunPool<'_>) {
         let (above, here) = (self.last & 1, (self.last + 1) & 1);
-        // Counts never exceed the capacity; said here, it lets no index be checked.
+        // Counts never exceed the capacity; the explicit bound removes the checks of indices.
         let (count_above, count) = (self.counts[above].min(RUNS), self.counts[here].min(RUNS));
         let mut first = 0;
         for i in 0..count {
@@ -228,7 +233,9 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
         }
     }
 
-    /// A free slot for a new component of `area_px`, taken from the smallest one if need be; nothing if none is smaller.
+    /// A free slot for a new component of `area_px`, taken from the smallest one if need be.
+    ///
+    /// [`NO_SLOT`] if none is smaller.
     fn take_slot(&mut self, area_px: u32, counted: bool, pool: &mut RunPool<'_>) -> u16 {
         if self.free == NO_SLOT && area_px > self.smallest_px {
             self.drop_smallest_below(area_px, pool);
@@ -287,7 +294,8 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
         }
     }
 
-    /// Ends the components of line `above` that the current row did not continue, and frees merged slots.
+    /// Ends the components of line `above` that the current row did not continue, and frees merged
+    /// slots.
     fn close_ended(&mut self, above: usize, pool: &mut RunPool<'_>, sink: &mut impl FnMut(&Component, &RunPool<'_>)) {
         let above = above & 1;
         for i in 0..self.counts[above].min(RUNS) {

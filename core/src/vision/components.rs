@@ -39,7 +39,7 @@ impl BoundingBox {
     }
 }
 
-/// What is known of a component after its last line: exact integer sums, from which the features follow.
+/// Exact integer sums of a component after its last line, from which the features follow.
 ///
 /// Sums hold for masks of up to [`super::mask::MAX_SIDE_PX`] squared.
 ///
@@ -98,11 +98,14 @@ impl Component {
         component
     }
 
-    /// Adds the run `start..end` (not empty) of line `row`, no earlier one than before, and its `pairs` with runs of the line above
-    /// it, see [`overlaps`].
+    /// Adds the run `start..end` (not empty) of line `row`, and its `pairs` with runs of the line
+    /// above, see [`overlaps`].
+    ///
+    /// Lines must not go backwards.
     pub(super) fn add_run(&mut self, start: u16, end: u16, row: u16, pairs: [u32; 3]) {
-        // No product of two factors exceeds 32 bits: sides are at most 8192 pixels. About its middle m = s / 2 a run of n has the sums
-        // n m and n m^2 + n (n^2 - 1) / 12, which twice and twelve times are whole.
+        // No product of two factors exceeds 32 bits: sides are at most 8192 pixels. A run of n
+        // pixels with the middle m = s / 2 has the sums n m and n m^2 + n (n^2 - 1) / 12. Twice the
+        // first and twelve times the second are whole.
         let (first, next, v) = (u32::from(start), u32::from(end), u32::from(row));
         let (area, s) = (next - first, first + next - 1);
         let (twice_sum_u, sum_v) = (area * s, area * v);
@@ -176,7 +179,8 @@ impl Component {
         let (su, sv) = ((self.twice_sum_u / 2) as i64, self.sum_v as i64);
         let (suu, suv) = ((self.twelve_sum_uu / 12) as i64, (self.twice_sum_uv / 2) as i64);
         let (cu, cv) = (su / area, sv / area);
-        // Exact about a whole pixel near the centroid, then moved by the fraction of a pixel that is left.
+        // Exact about a whole pixel near the centroid, then moved by the fraction of a pixel that
+        // is left.
         let (du, dv) = ((su % area) as f32 / area as f32, (sv % area) as f32 / area as f32);
         let uu = suu - 2 * cu * su + area * cu * cu;
         let vv = self.sum_vv as i64 - 2 * cv * sv + area * cv * cv;
@@ -185,7 +189,7 @@ impl Component {
         [uu as f32 / n - du * du, uv as f32 / n - du * dv, vv as f32 / n - dv * dv]
     }
 
-    /// Length of the outline (holes' outlines too) by Crofton's formula over four directions, see [`crofton_perimeter`].
+    /// Length of the outline (holes' outlines too), pixels; see [`crofton_perimeter`].
     #[must_use]
     pub fn perimeter_px(&self) -> f32 {
         crofton_perimeter(self.area_px, self.run_count, self.pairs)
@@ -203,7 +207,8 @@ impl Component {
     }
 }
 
-/// Pairs of pixels (u, v), (u + d, v + 1), d = -1, 0, 1, of two runs of lines on end, columns from and to.
+/// Pairs of pixels (u, v), (u + d, v + 1), d = -1, 0, 1, of two runs of successive lines, columns
+/// from and to.
 #[inline]
 pub(super) fn overlaps(above: (u16, u16), below: (u16, u16)) -> [u32; 3] {
     let (a0, a1, b0, b1) = (i32::from(above.0), i32::from(above.1), i32::from(below.0), i32::from(below.1));
@@ -214,19 +219,26 @@ pub(super) fn overlaps(above: (u16, u16), below: (u16, u16)) -> [u32; 3] {
     [left, common, right].map(|pairs| pairs.max(0) as u32)
 }
 
-/// Perimeter of a set of pixels from how often lines in four directions cross its outline (Cauchy-Crofton).
+/// Perimeter of a set of pixels from how often lines in four directions cross its outline
+/// (Cauchy-Crofton).
 ///
-/// Rows cross it twice a run; columns and diagonals twice for each pixel without a set neighbour in that direction, which follows
-/// from the area and the `pairs` (u, v), (u + d, v + 1), d = -1, 0, 1, of set pixels. With diagonals 1/sqrt 2 apart,
-/// P = pi/8 (rows + columns + (both diagonals) / sqrt 2). Unbiased over directions: a straight edge reads from 5.2 % too
-/// short (upright and at 45 degrees) to 2.7 % too long (between), a disc right.
+/// Rows cross the outline twice a run. Columns and diagonals cross it twice for each pixel without
+/// a set neighbour in that direction. These counts follow from the area and the `pairs` (u, v), (u
+/// + d, v + 1), d = -1, 0, 1, of set pixels. With diagonals 1/sqrt 2 apart, P = pi/8 (rows +
+/// columns + (both diagonals) / sqrt 2).
+///
+/// The mean over directions is unbiased. A straight edge reads from 5.2 % too short (upright and at
+/// 45 degrees) to 2.7 % too long (between), a disc right (asserted by tests).
 ///
 /// ```
 /// use sinew_core::vision::components::crofton_perimeter;
 ///
 /// // A square of ten pixels: 90 of them have one below, 81 one to the left or right below.
 /// let perimeter_px = crofton_perimeter(100, 10, [81, 90, 81]);
-/// assert!((perimeter_px - 36.8).abs() < 0.1, "upright edges read 5 % short, and corners are cut");
+/// assert!(
+///     (perimeter_px - 36.8).abs() < 0.1,
+///     "upright edges read 5 % short, and corners are cut"
+/// );
 /// ```
 #[must_use]
 pub fn crofton_perimeter(area_px: u32, run_count: u32, pairs: [u32; 3]) -> f32 {

@@ -1,6 +1,7 @@
-//! Distance transform of small masks: two passes of the 5-7-11 chamfer, and the cell where it is greatest.
+//! Distance transform of small masks: two passes of the 5-7-11 chamfer, and the cell where it is
+//! greatest.
 
-/// Columns of a [`CellRow`].
+/// Columns of a [`CellRow`]: the bits of its integer.
 pub const MAX_COLUMNS: usize = 128;
 /// Distance of two cells side by side, in the unit of [`transform`].
 pub const UNIT: i16 = 5;
@@ -23,30 +24,38 @@ const FAR: i16 = 16_000;
 /// let plus: [CellRow; 3] = [0b010, 0b111, 0b010];
 /// let mut distances = [EMPTY_ROW; 3];
 /// transform(&plus, 3, true, &mut distances);
-/// assert_eq!(at(&distances, 1, 1), 7, "from the middle to a corner: one diagonal, in fifths of a cell");
+/// assert_eq!(
+///     at(&distances, 1, 1),
+///     7,
+///     "from the middle to a corner: one diagonal, in fifths of a cell"
+/// );
 /// ```
 pub type CellRow = u128;
 
 /// Distances of one row of cells, with a border on both sides.
 ///
 /// ```
-/// use sinew_core::vision::distance::{DistanceRow, EMPTY_ROW, MAX_COLUMNS, UNIT, at, transform};
+/// use sinew_core::vision::distance::{
+///     DistanceRow, EMPTY_ROW, MAX_COLUMNS, UNIT, at, transform,
+/// };
 ///
-/// // Working memory for a grid of twenty rows: as many rows of distances, each with room for all columns and a border.
+/// // Working memory for a grid of twenty rows: a row of distances each, with a border.
 /// let mut distances: [DistanceRow; 20] = [EMPTY_ROW; 20];
 /// transform(&[1; 20], MAX_COLUMNS, false, &mut distances);
 /// assert_eq!(at(&distances, 100, 19), 100 * UNIT, "from column 0 to column 100");
 /// ```
 pub type DistanceRow = [i16; MAX_COLUMNS + 2 * BORDER];
 
-/// A row of distances before anything is known.
+/// A row of distances before the transform.
 pub const EMPTY_ROW: DistanceRow = [0; MAX_COLUMNS + 2 * BORDER];
 
-/// Writes for each cell of the first `columns` of each row the distance to the nearest cell of the other colour.
+/// Writes for each cell of the first `columns` of each row the distance to the nearest cell of the
+/// other colour.
 ///
-/// With `inside` the set cells get their distance to the nearest unset cell, all outside of the grid counts as unset. Without, the unset
-/// cells get their distance to the nearest set cell, all outside counts as unset too. Cells of the colour that is
-/// measured to get 0. The unit is a fifth of a cell. Rows beyond the shorter of both slices are left out.
+/// With `inside` the set cells get their distance to the nearest unset cell, without it the unset
+/// cells get theirs to the nearest set cell. All cells outside of the grid count as unset. Cells of
+/// the colour that is measured to get 0. The unit is a fifth of a cell. Rows beyond the shorter of
+/// both slices are left out.
 ///
 /// ```
 /// use sinew_core::vision::distance::{EMPTY_ROW, UNIT, at, transform};
@@ -139,12 +148,14 @@ pub(super) fn interior(line: &DistanceRow) -> &[i16; MAX_COLUMNS] {
     line[BORDER..].first_chunk().unwrap_or(EMPTY)
 }
 
-/// The greatest distance and its cell (column, row); of several the one nearest to the point (`u`, `v`).
+/// The greatest distance and its cell (column, row); of several the one nearest to the point (`u`,
+/// `v`).
 ///
 /// ```
 /// use sinew_core::vision::distance::{EMPTY_ROW, UNIT, greatest, transform};
 ///
-/// // All of the middle row of a bar is as far from the outside; the cell nearest to (5.2, 0) is taken.
+/// // All of the middle row of a bar is as far from the outside; the cell nearest to (5.2, 0) is
+/// // taken.
 /// let mut distances = [EMPTY_ROW; 3];
 /// transform(&[0x1ff; 3], 9, true, &mut distances);
 /// assert_eq!(greatest(&distances, 9, 5.2, 0.0), (2 * UNIT, (5, 1)));

@@ -1,4 +1,4 @@
-//! Temporal edge pixels: where the luminance has an edge and has changed since the frame before.
+//! Temporal edge pixels: edges of the luminance that changed since the previous frame.
 //!
 //! ```
 //! use sinew_core::vision::edges::{EdgeDetector, EdgeList};
@@ -7,14 +7,19 @@
 //! // A bright bar that moves by three pixels.
 //! const SIZE: (usize, usize) = (64, 32);
 //! let frame = |left: usize| -> Vec<u8> {
-//!     (0..SIZE.0 * SIZE.1).map(|i| if (left..left + 10).contains(&(i % SIZE.0)) { 200 } else { 40 }).collect()
+//!     (0..SIZE.0 * SIZE.1)
+//!         .map(|i| if (left..left + 10).contains(&(i % SIZE.0)) { 200 } else { 40 })
+//!         .collect()
 //! };
 //! let mut bits = [0; words_per_row(SIZE.0) * SIZE.1];
 //! EdgeDetector::default().find(&frame(23), &frame(20), SIZE.0, SIZE.1, &mut bits)?;
 //! let mut edges = EdgeList::<500>::new();
 //! edges.take_mask(&bits, SIZE.0);
 //! assert!(!edges.as_slice().is_empty() && edges.dropped == 0);
-//! assert!(edges.as_slice().iter().all(|pixel| (18..37).contains(&pixel.u)), "only where the bar is or was");
+//! assert!(
+//!     edges.as_slice().iter().all(|pixel| (18..37).contains(&pixel.u)),
+//!     "only where the bar is or was"
+//! );
 //! # Ok::<(), sinew_core::error::ParameterError>(())
 //! ```
 
@@ -27,7 +32,7 @@ const BLOCK: usize = 32;
 /// A block and its neighbours on both sides.
 const WINDOW: usize = BLOCK + 2;
 
-/// A pixel that is an edge and moving.
+/// A temporal edge pixel: an edge of the luminance that has changed since the previous frame.
 ///
 /// ```
 /// use sinew_core::vision::edges::{EdgeList, EdgePixel};
@@ -85,7 +90,8 @@ impl<const N: usize> EdgeList<N> {
         self.dropped = 0;
     }
 
-    /// Takes the set pixels of a mask; of more than fit every n-th, n a fraction, in the order of rows.
+    /// Takes the set pixels of a mask; of more than fit every n-th, n a fraction, in the order of
+    /// rows.
     pub fn take_mask(&mut self, bits: &[u32], width: usize) {
         self.clear();
         let total: u32 = bits.iter().map(|word| word.count_ones()).sum();
@@ -109,20 +115,25 @@ impl<const N: usize> EdgeList<N> {
     }
 }
 
-/// Thins edge pixels that come one by one, their number not known beforehand: every 2^k-th is kept, in the order in which they come.
+/// Thins a stream of edge pixels of unknown length: keeps every 2^k-th, in the order of the stream.
 ///
-/// Invariant: the list holds the pixels number 0, `stride`, 2 `stride` ... of those offered so far. A full list is thus at least half full again.
+/// Invariant: the list holds the pixels number 0, `stride`, 2 `stride` ... of those offered so far.
+/// After thinning, a full list is half full.
 ///
 /// ```
 /// use sinew_core::vision::edges::{EdgeList, EdgePixel, EdgeThinning};
 ///
-/// // Ten pixels come, nobody knows how many more, and there is room for four.
+/// // A stream of ten pixels, its length unknown at the start, and room for four.
 /// let (mut thinning, mut list) = (EdgeThinning::new(), EdgeList::<4>::new());
 /// for u in 0..10 {
 ///     thinning.offer(EdgePixel { u, v: 0 }, &mut list);
 /// }
 /// let sum: u16 = list.as_slice().iter().map(|pixel| pixel.u).sum();
-/// assert_eq!((list.as_slice().len(), sum), (3, 12), "0, 4 and 8: every fourth is kept by now");
+/// assert_eq!(
+///     (list.as_slice().len(), sum),
+///     (3, 12),
+///     "0, 4 and 8: every fourth is kept by now"
+/// );
 /// assert_eq!(list.dropped, 7);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -167,7 +178,7 @@ impl EdgeThinning {
     #[cold]
     #[inline(never)]
     fn offer_to_full<const N: usize>(&mut self, pixel: EdgePixel, list: &mut Vec<EdgePixel, N>) -> u32 {
-        let before = list.len();
+        let len_before = list.len();
         if self.stride < 1 << 31 {
             keep_every_second(list);
             self.stride *= 2;
@@ -176,7 +187,7 @@ impl EdgeThinning {
             // A list without any room stays empty.
             let _ = list.push(pixel);
         }
-        (before + 1 - list.len()) as u32
+        (len_before + 1 - list.len()) as u32
     }
 }
 
@@ -209,18 +220,25 @@ pub fn luminance_line(rgb: &[u8], luminance: &mut [u8]) {
 
 /// Finds temporal edges; both thresholds are in grey levels, 0 to 255.
 ///
-/// The gradient is Sobel's, divided by 8 so that a step of one grey level a pixel has length 1; the change between frames is weighted over
-/// 3x3 pixels by 1-2-1 in both directions, which takes most of a webcam's or JPEG's noise away.
+/// The gradient is Sobel's, divided by 8: a slope of one grey level a pixel has length 1. The
+/// change between frames is weighted over 3x3 pixels by 1-2-1 in both directions, which suppresses
+/// noise.
 ///
 /// ```
 /// use sinew_core::vision::edges::{DEFAULT_MIN_GRADIENT, DEFAULT_MIN_MOTION, EdgeDetector};
 ///
 /// // Bright from column `left` on, in 16 x 16 pixels.
-/// let frame = |left: usize| core::array::from_fn::<u8, 256, _>(|i| if i % 16 >= left { 200 } else { 40 });
+/// let frame = |left: usize| {
+///     core::array::from_fn::<u8, 256, _>(|i| if i % 16 >= left { 200 } else { 40 })
+/// };
 /// let detector = EdgeDetector::new(DEFAULT_MIN_GRADIENT, DEFAULT_MIN_MOTION)?;
 /// let mut bits = [0; 16];
 /// detector.find(&frame(10), &frame(7), 16, 16, &mut bits)?;
-/// assert_eq!((bits[0], bits[8]), (0, 0b11 << 9), "the edge has moved to columns 9 and 10; the border has none");
+/// assert_eq!(
+///     (bits[0], bits[8]),
+///     (0, 0b11 << 9),
+///     "the edge has moved to columns 9 and 10; the border has none"
+/// );
 /// detector.find(&frame(10), &frame(10), 16, 16, &mut bits)?;
 /// assert_eq!(bits, [0; 16], "what stands still is no temporal edge");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
@@ -234,9 +252,14 @@ pub struct EdgeDetector {
     motion: i16,
 }
 
-/// Default of the smallest gradient, grey levels a pixel: a soft edge of 40 levels over five pixels passes.
+/// Default of the smallest gradient, grey levels a pixel.
+///
+/// Chosen: a soft edge of 40 levels over five pixels passes.
 pub const DEFAULT_MIN_GRADIENT: f32 = 8.0;
-/// Default of the smallest smoothed change, grey levels: about five standard deviations of a webcam's noise of 5 levels (smoothed: 2.7).
+/// Default of the smallest smoothed change, grey levels.
+///
+/// Chosen: four to five standard deviations of the smoothed difference of two frames, which is 2.7
+/// levels for a webcam's noise of 5 levels (tested).
 pub const DEFAULT_MIN_MOTION: f32 = 12.0;
 
 impl Default for EdgeDetector {
@@ -246,7 +269,8 @@ impl Default for EdgeDetector {
 }
 
 impl EdgeDetector {
-    /// A detector for gradients of at least `min_gradient` and changes of at least `min_motion`, grey levels.
+    /// A detector for gradients of at least `min_gradient` and changes of at least `min_motion`,
+    /// grey levels.
     ///
     /// # Errors
     /// Both have to lie from 0 to 255.
@@ -256,7 +280,8 @@ impl EdgeDetector {
         Ok(Self { gradient_square: (gradient * gradient) as i32, motion: motion as i16 })
     }
 
-    /// Sets the bits of the temporal edge pixels of two luminance frames in `bits` ([`words_per_row`] words a row).
+    /// Sets the bits of the temporal edge pixels of two luminance frames in `bits`
+    /// ([`words_per_row`] words a row).
     ///
     /// Pixels on the image's border are never edges.
     ///

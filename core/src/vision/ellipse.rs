@@ -1,4 +1,4 @@
-//! The ellipse of a blob's area and perimeter, and how well it covers the blob: eq. (9) of the arm paper.
+//! The ellipse of a blob's area and perimeter, and how well it covers the blob: arm (9).
 //!
 //! ```
 //! use sinew_core::vision::ellipse::semi_axes;
@@ -18,7 +18,8 @@ const COARSE_ROTATIONS: usize = 8;
 /// Halvings of the angle about the best rotation, two new rotations each.
 const REFINEMENTS: usize = 3;
 
-/// Semi-axes a >= b of the ellipse with the given area and perimeter, P = 2 pi sqrt((a^2 + b^2) / 2).
+/// Semi-axes a >= b of the ellipse with the given area and perimeter, P = 2 pi sqrt((a^2 + b^2) /
+/// 2).
 ///
 /// The circle of that area where P^2 < 4 pi A, which no ellipse has but a digital perimeter may.
 ///
@@ -30,7 +31,7 @@ const REFINEMENTS: usize = 3;
 /// // Area and perimeter of an ellipse of 12 by 5 give both back.
 /// let (a, b) = semi_axes(PI * 12.0 * 5.0, 2.0 * PI * sqrt((144.0 + 25.0) / 2.0));
 /// assert!((a - 12.0).abs() < 1e-3 && (b - 5.0).abs() < 1e-3);
-/// // No outline is shorter than a circle's; a digital one that reads so is taken for one.
+/// // No outline is shorter than a circle's; a shorter digital one counts as a circle.
 /// assert_eq!(semi_axes(PI * 4.0, 1.0), (2.0, 2.0));
 /// ```
 #[must_use]
@@ -45,19 +46,25 @@ pub fn semi_axes(area: f32, perimeter: f32) -> (f32, f32) {
     (0.5 * (sum + difference), 0.5 * (sum - difference))
 }
 
-/// Greatest intersection over union of the cells with an ellipse around (`centre_u`, `centre_v`), and the rotation of its long
-/// axis from the u axis towards the v axis, in [0, pi).
+/// Greatest intersection over union of the cells with an ellipse of semi-axes (`a`, `b`), and its
+/// rotation.
 ///
-/// Rotations are refined from coarse to fine: 14 in all, each at the price of a square root and a bit count a row.
+/// The ellipse's centre is (`centre_u`, `centre_v`). The rotation is that of its long axis from the
+/// u axis towards the v axis, in [0, pi). Rotations are refined from coarse to fine: 14 in all,
+/// each with a square root and a bit count a row.
 ///
 /// ```
 /// use sinew_core::vision::ellipse::{best_overlap, semi_axes};
 ///
 /// // A bar of twenty by six cells that stands upright.
 /// let (area, perimeter) = (120.0, 52.0);
-/// let (overlap, rotation_rad) = best_overlap(&[0b11_1111; 20], area, (2.5, 9.5), semi_axes(area, perimeter));
+/// let (overlap, rotation_rad) =
+///     best_overlap(&[0b11_1111; 20], area, (2.5, 9.5), semi_axes(area, perimeter));
 /// assert!(overlap > 0.8, "an ellipse covers most of a bar: {overlap}");
-/// assert!((rotation_rad - core::f32::consts::FRAC_PI_2).abs() < 0.1, "its long axis is upright, too");
+/// assert!(
+///     (rotation_rad - core::f32::consts::FRAC_PI_2).abs() < 0.1,
+///     "its long axis is upright, too"
+/// );
 /// ```
 #[must_use]
 pub fn best_overlap(cells: &[CellRow], area: f32, (centre_u, centre_v): (f32, f32), (a, b): (f32, f32)) -> (f32, f32) {

@@ -8,12 +8,14 @@ use super::shape::{CellGrid, MAX_PADDING, MAX_ROWS};
 use crate::camera::Pixel;
 use crate::error::{ParameterError, within};
 use crate::math::{clamp, min, round, sqrt};
-use crate::observation::candidate::HandCandidate;
+use crate::vision::candidate::HandCandidate;
 
-/// Radius of the disc that closes the gaps between fingers, as a part of the radius of the circle of the blob's area.
+/// Radius of the disc that closes the gaps between fingers, relative to that of the circle of the
+/// blob's area.
 ///
-/// For an open hand that is about the palm's radius: gaps up to two palm radii wide are filled, which are those between spread fingers. The area is a
-/// steadier measure of the hand than DTmax, since DTmax of a hand whose mask has holes is that of a finger.
+/// Chosen: about the palm's radius of an open hand, so that gaps between spread fingers are filled.
+/// Measured: `cargo test -p sinew --test hand_likelihood_roc`; `docs/hand_likelihood.md` compares
+/// it with DTmax.
 pub const DEFAULT_FILL_RATIO: f32 = 0.75;
 
 /// Shape features of a set of pixels.
@@ -21,7 +23,7 @@ pub const DEFAULT_FILL_RATIO: f32 = 0.75;
 /// ```
 /// use sinew_core::vision::features::ShapeFeatures;
 ///
-/// // An arm with a hand at its end: the mass lies where it is thin, which speaks against a hand.
+/// // An arm with a hand at its end: the mass lies where it is thin, which makes a hand unlikely.
 /// let arm = ShapeFeatures { dt_max_px: 20.0, dt_at_centroid_px: 8.0, ..ShapeFeatures::default() };
 /// let fist = ShapeFeatures { dt_at_centroid_px: 19.0, ..arm };
 /// assert!(fist.centrality() > 0.9 && (arm.centrality() - 0.4).abs() < 1e-6);
@@ -35,18 +37,21 @@ pub struct ShapeFeatures {
     pub perimeter_px: f32,
     /// Centre of gravity.
     pub centroid: Pixel,
-    /// Greatest value of the distance transform, pixels (DTmax of eq. 8).
+    /// Greatest value of the distance transform, pixels (DTmax of arm (8)).
     pub dt_max_px: f32,
-    /// Where the distance transform is greatest; of several such places the one nearest to the centroid.
+    /// Where the distance transform is greatest; of several such places the one nearest to the
+    /// centroid.
     pub dt_max_at: Pixel,
-    /// Distance transform at the centroid, pixels, 0 where the centroid lies outside (d(CoG) of eq. 8).
+    /// Distance transform at the centroid, pixels, 0 where the centroid lies outside (d(CoG) of arm
+    /// (8)).
     pub dt_at_centroid_px: f32,
-    /// Intersection over union with the best rotation of the ellipse of the same area and perimeter, 0 to 1 (eq. 9).
+    /// Intersection over union with the best rotation of the ellipse of the same area and
+    /// perimeter, 0 to 1; arm (9).
     pub ellipse_iou: f32,
 }
 
 impl ShapeFeatures {
-    /// d(CoG) / DTmax, which is what eq. (8) comes to; in [0, 1].
+    /// d(CoG) / DTmax, to which arm (8) reduces; in [0, 1].
     #[must_use]
     pub fn centrality(&self) -> f32 {
         if self.dt_max_px > 0.0 { clamp(self.dt_at_centroid_px / self.dt_max_px, 0.0, 1.0) } else { 0.0 }
@@ -67,12 +72,19 @@ impl ShapeFeatures {
 /// let mut meter = BlobMeter::new(DEFAULT_FILL_RATIO)?;
 /// let mut storage = [Run::default(); 64];
 /// # let mask = Mask::new(&rows, 32, 20)?;
-/// ComponentScanner::<8, 8>::new().scan(&mask, &mut RunPool::new(&mut storage), &mut |component, pool| {
-///     let blob = meter.measure(component, pool);
-///     assert_eq!((blob.area_px, blob.shape_complete), (12 * 12 + 8 * 4, true));
-///     assert!(blob.filled.area_px > blob.plain.area_px, "the gap between the fingers counts");
-///     assert!(blob.palm_centre().v_px > 8.0, "the palm is where there is most room");
-/// });
+/// ComponentScanner::<8, 8>::new().scan(
+///     &mask,
+///     &mut RunPool::new(&mut storage),
+///     &mut |component, pool| {
+///         let blob = meter.measure(component, pool);
+///         assert_eq!((blob.area_px, blob.shape_complete), (12 * 12 + 8 * 4, true));
+///         assert!(
+///             blob.filled.area_px > blob.plain.area_px,
+///             "the gap between the fingers counts"
+///         );
+///         assert!(blob.palm_centre().v_px > 8.0, "the palm is where there is most room");
+///     },
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,7 +100,9 @@ pub struct Blob {
     pub bounding_box: BoundingBox,
     /// Features of the component as it is.
     pub plain: ShapeFeatures,
-    /// Features of the component closed by a disc in proportion to the root of its area: fingers and the gaps between them become one area.
+    /// Features of the component closed by a disc in proportion to the root of its area.
+    ///
+    /// Fingers and the gaps between them become one area.
     pub filled: ShapeFeatures,
     /// False where some runs were lost, so that the shape features see only a part.
     pub shape_complete: bool,
@@ -101,13 +115,8 @@ impl Blob {
         self.filled.dt_max_at
     }
 
-    /// Radius of the palm: the greatest distance transform of the filled blob, pixels.
-    #[must_use]
-    pub fn palm_radius_px(&self) -> f32 {
-        self.filled.dt_max_px
-    }
-
-    /// What the trackers need to know, with the centre of gravity as centre (the arm paper's section 3.2).
+    /// The trackers' input for this blob; its centre is the centre of gravity (arm paper, section
+    /// 3.2).
     #[must_use]
     pub fn candidate(&self, likelihood: f32) -> HandCandidate {
         HandCandidate { centre: self.centroid, moments_px2: self.moments_px2, area_px: self.area_px as f32, likelihood }
@@ -116,8 +125,8 @@ impl Blob {
 
 /// Measures blobs; holds the working memory for one blob (about 38 KiB).
 ///
-/// Large components are measured on a grid of at most 80 x 80 cells, so the work for a blob is bounded: four distance
-/// transforms and 28 ellipses on at most 128 x 128 cells, and its runs.
+/// Large components are measured on a grid of at most 80 x 80 cells, so the work for a blob is
+/// bounded: four distance transforms and 28 ellipses on at most 128 x 128 cells, and its runs.
 ///
 /// ```
 /// use sinew_core::vision::component_scanner::ComponentScanner;
@@ -150,7 +159,10 @@ pub struct BlobMeter {
 }
 
 impl BlobMeter {
-    /// A meter that fills gaps by a disc of `fill_ratio` times the radius of the circle of the blob's area, see [`DEFAULT_FILL_RATIO`]; 0 fills nothing.
+    /// A meter that fills gaps by a disc of `fill_ratio` times the radius of the circle of the
+    /// blob's area.
+    ///
+    /// See [`DEFAULT_FILL_RATIO`]; 0 fills nothing.
     ///
     /// # Errors
     /// The ratio has to lie from 0 to 2.
@@ -178,7 +190,8 @@ impl BlobMeter {
         }
     }
 
-    /// Closes the plain grid by a disc: dilation and erosion by thresholds of two distance transforms.
+    /// Closes the plain grid by a disc: dilation and erosion by thresholds of two distance
+    /// transforms.
     fn fill(&mut self, circle_radius_px: f32) {
         let radius = min(self.fill_ratio * circle_radius_px / self.plain.step_px(), (MAX_PADDING - 1) as f32);
         let reach = round(radius * f32::from(UNIT)) as i16;
@@ -287,7 +300,7 @@ mod tests {
             assert!(open.filled.ellipse_iou > 0.62, "{open:?}");
             assert!(open.filled.area_px > 1.2 * open.plain.area_px);
             assert!(open.palm_centre().distance_px(Pixel::new(centre.0, centre.1)) < 1.2 * r, "{open:?}");
-            assert!((0.9..1.9).contains(&(open.palm_radius_px() / r)), "{open:?}");
+            assert!((0.9..1.9).contains(&(open.filled.dt_max_px / r)), "{open:?}");
         }
     }
 
@@ -307,7 +320,7 @@ mod tests {
             (speck.area_px, speck.centroid, speck.palm_centre()),
             (1, Pixel::new(7.0, 9.0), Pixel::new(7.0, 9.0))
         );
-        assert_eq!(speck.palm_radius_px(), 1.0);
+        assert_eq!(speck.filled.dt_max_px, 1.0);
         assert_eq!(speck.candidate(0.25).likelihood, 0.25);
     }
 

@@ -1,4 +1,4 @@
-//! How likely a blob is a hand: eqs. (6) to (9) of the arm paper, as printed or made fit for open hands.
+//! How likely a blob is a hand: arm (6) to (9), as printed or adapted to open hands.
 //!
 //! ```
 //! use sinew_core::vision::hand_likelihood::HandLikelihood;
@@ -20,20 +20,23 @@ use crate::math::{clamp, exp, ln, max};
 /// ```
 /// use sinew_core::vision::hand_likelihood::{HandLikelihood, LikelihoodForm};
 ///
-/// // A good shape, a little smaller than the smallest hand: the paper's gate shuts, the default only doubts.
+/// // A good shape, a little smaller than the smallest hand: the paper's gate rejects it, the
+/// // default lowers its likelihood.
 /// let filled = HandLikelihood::default();
 /// let paper = filled.with_form(LikelihoodForm::Paper);
-/// let [paper, filled] = [paper, filled].map(|form| form.of_features(300.0, 640.0 * 480.0, 0.9, 0.8));
+/// let [paper, filled] =
+///     [paper, filled].map(|form| form.of_features(300.0, 640.0 * 480.0, 0.9, 0.8));
 /// assert_eq!(paper, 0.0);
 /// assert!((0.1..0.5).contains(&filled), "{filled}");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum LikelihoodForm {
-    /// Eqs. (6) to (9) as printed: an area gate, features of the plain blob, weights as factors.
+    /// arm (6) to (9) as printed: an area gate, features of the plain blob, weights as factors.
     Paper,
-    /// A smooth area term times the geometric mean of both features of the finger-filled blob; weights are exponents, so that a weight of
-    /// zero leaves its feature out.
+    /// A smooth area term times the geometric mean of both features of the finger-filled blob.
+    ///
+    /// Weights are exponents, so that a weight of zero leaves its feature out.
     #[default]
     Filled,
 }
@@ -41,15 +44,28 @@ pub enum LikelihoodForm {
 /// Turns a blob's features into p(hand | blob).
 ///
 /// ```
-/// use sinew_core::vision::hand_likelihood::{DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE, HandLikelihood, LikelihoodForm};
+/// use sinew_core::vision::hand_likelihood::{
+///     DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE, HandLikelihood, LikelihoodForm,
+/// };
 ///
 /// // Gloves change the outline: leave the ellipse out, by a weight of zero.
 /// let weights = [1.0, 1.0, 0.0];
-/// let gloved = HandLikelihood::new(LikelihoodForm::Filled, weights, DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE)?;
-/// let of = |likelihood: &HandLikelihood| likelihood.of_features(5000.0, 640.0 * 480.0, 0.9, 0.1);
+/// let gloved = HandLikelihood::new(
+///     LikelihoodForm::Filled,
+///     weights,
+///     DEFAULT_AREA_FRACTIONS,
+///     DEFAULT_SCALE,
+/// )?;
+/// let of =
+///     |likelihood: &HandLikelihood| likelihood.of_features(5000.0, 640.0 * 480.0, 0.9, 0.1);
 /// assert!(of(&gloved) > 0.9 && of(&gloved) > of(&HandLikelihood::default()));
 /// // A wrong parameter is refused by its name.
-/// let wrong = HandLikelihood::new(LikelihoodForm::Filled, [-1.0; 3], DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE);
+/// let wrong = HandLikelihood::new(
+///     LikelihoodForm::Filled,
+///     [-1.0; 3],
+///     DEFAULT_AREA_FRACTIONS,
+///     DEFAULT_SCALE,
+/// );
 /// assert_eq!(wrong.map_err(|error| error.parameter), Err("weights"));
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
@@ -62,21 +78,30 @@ pub struct HandLikelihood {
     scale: f32,
 }
 
-/// Weights of the area, centrality and ellipse features.
+/// Weights of the area, centrality and ellipse features; w_j = 1 of arm (6).
 pub const DEFAULT_WEIGHTS: [f32; 3] = [1.0; 3];
-/// Smallest and largest area of a hand (TH_min, TH_max) as parts of the image's area, as conservative as the paper wants them.
+/// Smallest and largest area of a hand as fractions of the image's area; TH_min and TH_max of arm
+/// (7).
 ///
-/// A webcam of 60 degrees at 4:3 sees a fist of 60 square centimetres at 0.1 % of the image from 2.5 m, an open hand of 150
-/// at 15 % from 0.3 m.
+/// Chosen: a webcam of 60 degrees at 4:3 sees a fist of 60 cm^2 at 0.1 % of the image from 2.5 m.
+/// It sees an open hand of 150 cm^2 at 15 % from 0.3 m.
 pub const DEFAULT_AREA_FRACTIONS: [f32; 2] = [0.001, 0.15];
-/// The factor in F(x) = 1 - exp(-5 x).
+/// The factor in F(x) = 1 - exp(-5 x) of arm (6).
 pub const DEFAULT_SCALE: f32 = 5.0;
 
-/// The smooth area term is a half at this many times TH_min (a hand at arm's length from a desk's camera has ten to thirty times), and at TH_max.
+/// The smooth area term is a half at this many times TH_min, and at TH_max.
+///
+/// Chosen: a hand at arm's length from a desk's camera has ten to thirty times TH_min.
+/// Measured with the other area parameters: `cargo test -p sinew --test hand_likelihood_roc`.
 const HALF_AT_TIMES_MIN: f32 = 5.0;
 /// Far below that, the term goes as the area to this power.
+///
+/// Chosen with `HALF_AT_TIMES_MIN`: a hand 30 pixels wide in 640 reaches 0.65, a speck of 100
+/// pixels 0.07.
 const LOW_AREA_POWER: f32 = 1.5;
 /// Far beyond TH_max, the term goes as one over the area to this power.
+///
+/// Chosen: a smooth fall in place of the gate of arm (7).
 const HIGH_AREA_POWER: f32 = 2.0;
 
 impl Default for HandLikelihood {
@@ -91,8 +116,11 @@ impl Default for HandLikelihood {
 }
 
 impl HandLikelihood {
-    /// A likelihood of the given `form`, with a weight for each of the area, centrality and ellipse features, the smallest and
-    /// largest usual area (TH_min, TH_max) as parts of the image's area, and the `scale` of F(x) = 1 - exp(-scale x).
+    /// A likelihood of the given `form`.
+    ///
+    /// `weights` belong to the area, centrality and ellipse features. `area_fractions` are the
+    /// smallest and largest usual area (TH_min, TH_max), as fractions of the image's area. `scale`
+    /// is that of F(x) = 1 - exp(-scale x).
     ///
     /// # Errors
     /// Weights must not be negative, areas and scale positive, the areas in order.
@@ -130,19 +158,19 @@ impl HandLikelihood {
         self.of_features(blob.area_px as f32, image_area_px, shape.centrality(), shape.ellipse_iou)
     }
 
-    /// Eq. (6) for an area and two shape features in [0, 1], wherever they come from.
+    /// arm (6) for an area and two shape features in [0, 1] from any source.
     #[must_use]
     pub fn of_features(&self, area_px: f32, image_area_px: f32, centrality: f32, ellipse_iou: f32) -> f32 {
         self.scaled([self.area_term(area_px, image_area_px), centrality, ellipse_iou])
     }
 
-    /// The most that a blob of this area can reach, whatever its shape.
+    /// Upper bound of the likelihood of a blob of this area, for any shape.
     #[must_use]
     pub fn upper_bound(&self, area_px: f32, image_area_px: f32) -> f32 {
         self.of_features(area_px, image_area_px, 1.0, 1.0)
     }
 
-    /// Eq. (6), or its default form.
+    /// arm (6), or its default form.
     fn scaled(&self, features: [f32; 3]) -> f32 {
         let [area, centrality, ellipse] = features;
         let [w_area, w_centrality, w_ellipse] = self.weights;
@@ -155,7 +183,7 @@ impl HandLikelihood {
         clamp(1.0 - exp(-self.scale * product), 0.0, 1.0)
     }
 
-    /// Eq. (7), or two logistic curves in the logarithm of the area, a rising and a falling one.
+    /// arm (7), or two logistic curves in the logarithm of the area, a rising and a falling one.
     fn area_term(&self, area_px: f32, image_area_px: f32) -> f32 {
         let [low, high] = self.area_fractions;
         let fraction = area_px / max(image_area_px, 1.0);

@@ -1,4 +1,5 @@
-//! Opening and closing by the 3x3 square line by line: the same pixels as [`super::morphology`], four lines later.
+//! Opening and closing by the 3x3 square line by line: the same pixels as [`super::morphology`],
+//! four lines later.
 
 use super::mask::last_word_bits;
 use super::morphology::{join, spread};
@@ -6,9 +7,10 @@ use super::morphology::{join, spread};
 /// One erosion or dilation of lines: keeps two of them.
 #[derive(Debug, Clone)]
 struct LineSweep<const ERODE: bool, const WORDS: usize> {
-    /// The last two lines; number `lines - 1` is in place `(lines - 1) % 2`. Before the first line: what decides nothing.
+    /// The last two lines; number `lines - 1` is in place `(lines - 1) % 2`. Before the first line:
+    /// the operation's neutral element.
     kept: [[u32; WORDS]; 2],
-    /// Whether a kept line has pixels, or decides nothing and may have.
+    /// Whether a kept line may have pixels; true for the neutral element of an erosion.
     occupied: [bool; 2],
     lines: u32,
 }
@@ -32,7 +34,8 @@ impl<const ERODE: bool, const WORDS: usize> LineSweep<ERODE, WORDS> {
         *self = Self::new();
     }
 
-    /// Takes a line and puts the result of the line before it in its place; false where there was none.
+    /// Takes a line and puts the result of the line before it in its place; false where there was
+    /// none.
     fn push(&mut self, line: &mut Line<WORDS>, width: usize) -> bool {
         let earlier = (self.lines & 1) as usize;
         let all = [line.occupied, self.occupied[0], self.occupied[1]];
@@ -59,8 +62,9 @@ impl<const ERODE: bool, const WORDS: usize> LineSweep<ERODE, WORDS> {
         any
     }
 
-    /// Joins `bits` with both kept lines and all with their neighbours to both sides, keeps `bits` in place of the earlier line, and says
-    /// whether the result has pixels.
+    /// Joins `bits` with both kept lines and all with their neighbours to both sides.
+    ///
+    /// Keeps `bits` in place of the earlier line and returns whether the result has pixels.
     fn join(&mut self, earlier: usize, bits: &mut [u32; WORDS], width: usize) -> bool {
         let outside = if ERODE { u32::MAX } else { 0 };
         let last = width.div_ceil(32).min(WORDS).saturating_sub(1);
@@ -75,7 +79,7 @@ impl<const ERODE: bool, const WORDS: usize> LineSweep<ERODE, WORDS> {
             let after = if ERODE && i == last { column | !pixels } else { column };
             *old = word;
             if i > 0 {
-                // Most words are empty, and so is what becomes of them.
+                // Most words are empty, and so are their results.
                 let empty = if ERODE { here == 0 } else { before | here | after == 0 };
                 let done = if empty { 0 } else { spread::<ERODE>(before, here, after) };
                 bits[i - 1] = done;
@@ -92,9 +96,11 @@ impl<const ERODE: bool, const WORDS: usize> LineSweep<ERODE, WORDS> {
     }
 }
 
-/// Opening and then closing by the 3x3 square for lines of up to 32 `WORDS` pixels; keeps eight lines.
+/// Opening and then closing by the 3x3 square for lines of up to 32 `WORDS` pixels; keeps eight
+/// lines.
 ///
-/// As [`super::morphology::open`] and [`super::morphology::close`], with the same rule for the border. Lines without pixels cost next to nothing.
+/// As [`super::morphology::open`] and [`super::morphology::close`], with the same rule for the
+/// border. Lines without pixels take almost no time.
 ///
 /// ```
 /// use sinew_core::vision::line_morphology::LineMorphology;
@@ -146,7 +152,8 @@ impl<const WORDS: usize> LineMorphology<WORDS> {
         self.second_erosion.restart();
     }
 
-    /// Takes the next line of an image of `width` pixels (bits beyond are zero) and gives a finished one to `sink`, if there is one.
+    /// Takes the next line of an image of `width` pixels (bits beyond are zero) and gives a
+    /// finished one, if any, to `sink`.
     pub fn line(&mut self, bits: &[u32; WORDS], width: usize, sink: impl FnMut(&[u32; WORDS])) {
         let occupied = bits.iter().fold(0, |any, word| any | word) != 0;
         let mut line = Line { bits: *bits, occupied };

@@ -67,7 +67,10 @@ fn checked_len(len: usize, width: usize, height: usize) -> Result<usize, Paramet
 /// assert!(mask.get(8, 5) && mask.get(15, 5) && !mask.get(16, 5));
 /// assert_eq!(mask.count(), 8);
 /// // A view as narrow as 12 pixels would hide some of them.
-/// assert_eq!(Mask::new(&words, 12, 24).map_err(|error| error.parameter).err(), Some("bits beyond the width"));
+/// assert_eq!(
+///     Mask::new(&words, 12, 24).map_err(|error| error.parameter).err(),
+///     Some("bits beyond the width")
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
@@ -201,7 +204,8 @@ impl<'a> MaskMut<'a> {
         self.words.fill(0);
     }
 
-    /// Lets `write` fill each row's words, given the row's number; bits beyond the width are cleared afterwards.
+    /// Lets `write` fill each row's words, given the row's number; bits beyond the width are
+    /// cleared afterwards.
     pub fn write_rows(&mut self, mut write: impl FnMut(usize, &mut [u32])) {
         for (v, row) in self.words.chunks_exact_mut(words_per_row(self.width).max(1)).enumerate() {
             write(v, row);
@@ -209,7 +213,7 @@ impl<'a> MaskMut<'a> {
         self.clear_padding();
     }
 
-    /// For code of this crate that keeps the invariant by itself.
+    /// All words, for code of this crate that keeps the invariant.
     pub(super) fn words_mut(&mut self) -> &mut [u32] {
         self.words
     }

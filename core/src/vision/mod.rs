@@ -1,10 +1,12 @@
-//! What a camera's lines can give without a frame buffer.
+//! From a camera's pixels to blobs that may be hands and to temporal edge pixels.
 //!
 //! ```
 //! use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION};
 //! use sinew_core::vision::edges::{EdgeDetector, EdgeList};
 //! use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
-//! use sinew_core::vision::frame::{FrameAnalyser, FrameBuffers, mask_words, runs_that_suffice};
+//! use sinew_core::vision::frame::{
+//!     FrameAnalyser, FrameBuffers, mask_words, runs_that_suffice,
+//! };
 //! use sinew_core::vision::hand_likelihood::HandLikelihood;
 //! use sinew_core::vision::morphology::scratch_words;
 //! use sinew_core::vision::runs::Run;
@@ -15,8 +17,12 @@
 //!
 //! // A square of skin before a blue wall; it moves by six pixels.
 //! let frame = |left: usize| -> Vec<u8> {
-//!     let skin = |i: usize| (left..left + 30).contains(&(i % SIZE.0)) && (50..80).contains(&(i / SIZE.0));
-//!     (0..SIZE.0 * SIZE.1).flat_map(|i| if skin(i) { [200, 140, 110] } else { [20, 40, 90] }).collect()
+//!     let skin = |i: usize| {
+//!         (left..left + 30).contains(&(i % SIZE.0)) && (50..80).contains(&(i / SIZE.0))
+//!     };
+//!     (0..SIZE.0 * SIZE.1)
+//!         .flat_map(|i| if skin(i) { [200, 140, 110] } else { [20, 40, 90] })
+//!         .collect()
 //! };
 //!
 //! // All memory is the caller's.
@@ -47,6 +53,7 @@
 //! ```
 
 pub mod blobs;
+pub mod candidate;
 pub mod component_scanner;
 pub mod components;
 pub mod distance;
@@ -62,3 +69,4 @@ pub mod morphology;
 pub mod runs;
 pub(crate) mod shape;
 pub mod skin;
+pub mod white_balance;

@@ -1,8 +1,8 @@
 //! Erosion, dilation, opening and closing by the 3x3 square, 32 pixels at a time and in place.
 //!
-//! Border rule: what lies outside of the image counts as background for dilation and as foreground for erosion, that is,
-//! it decides nothing. Erosion and dilation are then adjoint: an opening never adds a pixel, a closing never removes
-//! one, and both change nothing when they are repeated.
+//! Border rule: what lies outside of the image counts as background for dilation and as foreground
+//! for erosion, that is, it has no influence. Erosion and dilation are then adjoint: an opening
+//! never adds a pixel, a closing never removes one, and both are idempotent.
 //!
 //! ```
 //! use sinew_core::vision::mask::{MaskMut, words_per_row};
@@ -146,13 +146,14 @@ pub(super) fn join<const ERODE: bool>(a: u32, b: u32) -> u32 {
     if ERODE { a & b } else { a | b }
 }
 
-/// A word joined with itself moved by one pixel to either side, given the words before and after it.
+/// Joins a word with its copies shifted by one pixel to either side, given the words before and
+/// after it.
 #[inline]
 pub(super) fn spread<const ERODE: bool>(before: u32, word: u32, after: u32) -> u32 {
     join::<ERODE>(join::<ERODE>(word, word << 1 | before >> 31), word >> 1 | after << 31)
 }
 
-/// One row joined with itself moved by one pixel to either side.
+/// Joins a row with its copies shifted by one pixel to either side.
 fn spread_row<const ERODE: bool>(row: &[u32], padding: u32, to: &mut [u32]) {
     let outside = if ERODE { u32::MAX } else { 0 };
     let last = row.len().saturating_sub(1);

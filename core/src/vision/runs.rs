@@ -5,7 +5,7 @@ pub(super) const NO_RUN: u32 = u32::MAX;
 /// Marks a run whose component was dropped.
 pub(super) const NO_SLOT: u16 = u16::MAX;
 
-/// Pixels `start..end` of one line, and the slot of the component they belong to.
+/// Pixels `start..end` of one line, and the slot of their component.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LineRun {
     pub start: u16,
@@ -13,9 +13,11 @@ pub(super) struct LineRun {
     pub slot: u16,
 }
 
-/// Finds the runs of a line of bits and returns how many there are, and how many pixels found no room.
+/// Finds the runs of a line of bits and returns how many there are, and how many pixels found no
+/// room.
 ///
-/// When there are more runs than `runs` holds, only those of at least 2, 4, 8 ... pixels are taken, until they fit.
+/// When there are more runs than `runs` holds, only those of at least 2, 4, 8 ... pixels are taken,
+/// until they fit.
 pub(super) fn find_runs(bits: &[u32], runs: &mut [LineRun]) -> (usize, u32) {
     let mut shortest = 1_u16;
     loop {
@@ -102,7 +104,7 @@ pub struct Run {
 /// use sinew_core::vision::mask::Mask;
 /// use sinew_core::vision::runs::{Run, RunPool};
 ///
-/// // Room for two runs, and a component of three: its sums are whole, its shape lacks four pixels and says so.
+/// // Room for two runs, and a component of three: its sums are exact, its shape lacks four pixels.
 /// let mut storage = [Run::default(); 2];
 /// let mut seen = (0, 0);
 /// ComponentScanner::<8, 8>::new().scan(
@@ -120,7 +122,8 @@ pub struct RunPool<'a> {
 }
 
 impl<'a> RunPool<'a> {
-    /// An empty pool for as many runs as the slice holds; with an empty slice components have statistics but no shape.
+    /// An empty pool for as many runs as the slice holds; with an empty slice components have
+    /// statistics but no shape.
     #[must_use]
     pub fn new(runs: &'a mut [Run]) -> Self {
         let len = runs.len().min(NO_RUN as usize);
@@ -141,7 +144,7 @@ impl<'a> RunPool<'a> {
         true
     }
 
-    /// Hangs the list `other` behind `list`.
+    /// Appends the list `other` to `list`.
     pub(super) fn join(&mut self, list: &mut RunList, other: RunList) {
         match self.runs.get_mut(list.tail as usize) {
             None => *list = other,

@@ -8,6 +8,9 @@ use crate::camera::Pixel;
 /// Rows of a grid.
 pub const MAX_ROWS: usize = MAX_COLUMNS;
 /// Longest side of a component on the grid, cells.
+///
+/// Chosen: bounds the work for a blob; the rest of the grid is padding for the disc that fills
+/// gaps.
 pub const MAX_CELLS: usize = 80;
 /// Free cells that fit around it on every side.
 pub const MAX_PADDING: usize = (MAX_COLUMNS - MAX_CELLS) / 2;
@@ -29,8 +32,8 @@ impl CellGrid {
     /// A grid without cells.
     pub const EMPTY: Self = Self { rows: [0; MAX_ROWS], row_count: 0, columns: 0, padding: 0, step: 1, corner: (0, 0) };
 
-    /// Draws a component at the smallest whole step at which it fits. A cell is set when at least half of its pixels are;
-    /// if none would be, when any is.
+    /// Draws a component at the smallest whole step at which it fits. A cell is set when at least
+    /// half of its pixels are; if none would be, when any is.
     pub fn draw(&mut self, component: &Component, pool: &RunPool<'_>) {
         let bounds = component.bounding_box();
         let step = bounds.width_px().max(bounds.height_px()).div_ceil(MAX_CELLS as u32).max(1);

@@ -1,11 +1,13 @@
 //! Skin-coloured or not: a Gaussian in chromaticity, or a table over colours.
 //!
-//! Both classifiers turn a line of interleaved RGB bytes into bits, 32 pixels a word, pixel 0 in the lowest bit.
+//! Both classifiers turn a line of interleaved RGB bytes into bits, 32 pixels a word, pixel 0 in
+//! the lowest bit.
 //!
 //! ```
 //! use sinew_core::vision::skin::GaussianSkin;
 //!
-//! // Mean and covariance of r = R / (R + G + B) and g, three standard deviations, and not darker than 60.
+//! // Mean and covariance of r = R / (R + G + B) and g, three standard deviations, and not darker
+//! // than 60.
 //! let skin = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 3.0, 60)?;
 //! let of_a_hand = skin.distance([200, 140, 110]).expect("bright enough to judge");
 //! let of_a_wall = skin.distance([20, 40, 90]).expect("bright enough to judge");
@@ -38,7 +40,8 @@ pub const CUBE_WORDS: usize = CUBE_SIDE * CUBE_SIDE;
 ///     fn classify_line(&self, rgb: &[u8], bits: &mut [u32]) {
 ///         bits.fill(0);
 ///         for (u, pixel) in rgb.chunks_exact(3).enumerate() {
-///             let is_red = pixel[0] > 120 && pixel[0] / 2 > pixel[1] && pixel[0] / 2 > pixel[2];
+///             let is_red =
+///                 pixel[0] > 120 && pixel[0] / 2 > pixel[1] && pixel[0] / 2 > pixel[2];
 ///             if let Some(word) = bits.get_mut(u / 32) {
 ///                 *word |= u32::from(is_red) << (u % 32);
 ///             }
@@ -51,13 +54,16 @@ pub const CUBE_WORDS: usize = CUBE_SIDE * CUBE_SIDE;
 /// assert_eq!(bits, [0b101]);
 /// ```
 pub trait SkinClassifier {
-    /// Writes one bit a pixel of `rgb` (three bytes a pixel) into `bits`, lowest bit first, 1 = skin.
+    /// Writes one bit a pixel of `rgb` (three bytes a pixel) into `bits`, lowest bit first, 1 =
+    /// skin.
     ///
-    /// Judges as many whole pixels as `rgb` holds and `bits` has room for; all other bits of `bits` become zero.
+    /// Judges as many whole pixels as `rgb` holds and `bits` has room for; all other bits of `bits`
+    /// become zero.
     fn classify_line(&self, rgb: &[u8], bits: &mut [u32]);
 }
 
-/// Skin as a normal distribution of chromaticity r = R/(R+G+B), g = G/(R+G+B), the arm paper's section 3.1.
+/// Skin as a normal distribution of chromaticity r = R/(R+G+B), g = G/(R+G+B), arm paper, section
+/// 3.1.
 ///
 /// ```
 /// use sinew_core::vision::skin::{GaussianSkin, SkinClassifier};
@@ -67,8 +73,11 @@ pub trait SkinClassifier {
 /// let mut bits = [0];
 /// skin.classify_line(&[200, 140, 110, 20, 40, 90, 100, 70, 55], &mut bits);
 /// assert_eq!(bits, [0b101]);
-/// // A covariance that is none is refused.
-/// assert_eq!(GaussianSkin::new(0.44, 0.31, [-1.0, 0.0, 1.0], 2.0, 60).map_err(|e| e.parameter), Err("covariance"));
+/// // A matrix that is not positive definite is refused.
+/// assert_eq!(
+///     GaussianSkin::new(0.44, 0.31, [-1.0, 0.0, 1.0], 2.0, 60).map_err(|e| e.parameter),
+///     Err("covariance")
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,11 +92,15 @@ pub struct GaussianSkin {
 }
 
 impl GaussianSkin {
-    /// Skin is what lies within the Mahalanobis distance `threshold` of (`mean_r`, `mean_g`), given the `covariance`
-    /// (rr, rg, gg). Pixels darker than `min_sum` = R+G+B (0 to 765) have no usable chromaticity and are not skin.
+    /// Skin within the Mahalanobis distance `threshold` of (`mean_r`, `mean_g`), with `covariance`
+    /// (rr, rg, gg).
+    ///
+    /// Pixels darker than `min_sum` = R+G+B (0 to 765) have no usable chromaticity and are not
+    /// skin.
     ///
     /// # Errors
-    /// Means within 0 to 1, a finite, positive definite covariance, a positive threshold, `min_sum` at most 765.
+    /// Means within 0 to 1, a finite, positive definite covariance, a positive threshold, `min_sum`
+    /// at most 765.
     pub fn new(
         mean_r: f32,
         mean_g: f32,
@@ -127,27 +140,20 @@ impl GaussianSkin {
         self.covariance
     }
 
-    /// Largest Mahalanobis distance that counts as skin.
+    /// Largest Mahalanobis distance of skin.
     #[must_use]
     pub fn threshold(&self) -> f32 {
         self.threshold
     }
 
-    /// Smallest R+G+B that is judged at all.
+    /// Smallest R+G+B of skin, 0 to 765.
     #[must_use]
     pub fn min_sum(&self) -> u16 {
         self.min_sum
     }
 
-    /// The same distribution with another `threshold`.
-    ///
-    /// # Errors
-    /// The threshold has to be positive.
-    pub fn with_threshold(self, threshold: f32) -> Result<Self, ParameterError> {
-        Ok(Self { threshold: positive("threshold", threshold)?, ..self })
-    }
-
-    /// Mahalanobis distance of a colour's chromaticity from the mean; `None` for a colour darker than `min_sum` (or black).
+    /// Mahalanobis distance of a colour's chromaticity from the mean; `None` for a colour darker
+    /// than `min_sum` (or black).
     #[must_use]
     pub fn distance(&self, rgb: [u8; 3]) -> Option<f32> {
         let sum = rgb.iter().map(|&c| f32::from(c)).sum::<f32>();
@@ -200,7 +206,8 @@ impl SkinClassifier for GaussianSkin {
 
 /// Skin as a table over 32 x 32 x 32 colours, a decision bit each.
 ///
-/// The bit of a colour is bit `B >> 3` of word `(R >> 3) * 32 + (G >> 3)`: see [`HistogramSkin::bit_of`].
+/// The bit of a colour is bit `B >> 3` of word `(R >> 3) * 32 + (G >> 3)`: see
+/// [`HistogramSkin::bit_of`].
 ///
 /// ```
 /// use sinew_core::vision::skin::{CUBE_WORDS, HistogramSkin, SkinClassifier};

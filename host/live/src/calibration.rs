@@ -1,11 +1,11 @@
 //! A click on the hand: the skin model adapted to a box around it.
 
 use crate::skin_model::BalancedSkin;
-use crate::tint::Gains;
 use sinew_core::error::{ParameterError, Rule};
 use sinew_core::vision::components::BoundingBox;
 use sinew_core::vision::front_end::calibration::SkinSample;
 use sinew_core::vision::front_end::pixel_format::Rgb565;
+use sinew_core::vision::white_balance::Gains;
 
 /// Half the side of the box, as a part of the picture's longer side: 16 of 640 pixels.
 const HALF_SIDE_PART: usize = 40;

@@ -10,12 +10,12 @@
 use crate::frame::Frame;
 use crate::person::Shoulder;
 use crate::session::{Choice, Session};
-use crate::slot::Slot;
 use core::fmt::Write;
 use heapless::String;
 use sinew_core::camera::Pixel;
 use sinew_core::error::ParameterError;
 use sinew_core::skeleton::Side;
+use sinew_core::slot::Slot;
 use spin::mutex::{SpinMutex, SpinMutexGuard};
 
 /// Colour of the painted skin mask: red, green, blue, opacity.

@@ -13,8 +13,6 @@ pub mod frame;
 pub mod person;
 pub mod session;
 pub mod skin_model;
-pub mod slot;
-pub mod tint;
 
 #[cfg(target_arch = "wasm32")]
 #[panic_handler]

@@ -5,18 +5,18 @@ use crate::calibration::{adapted, box_around};
 use crate::frame::{Frame, checked_size};
 use crate::person::{Shoulder, arm};
 use crate::skin_model::{BalancedSkin, SHIPPED};
-use crate::tint::Gains;
 use heapless::Vec;
 use sinew_core::error::{ParameterError, Rule};
 use sinew_core::math::Vec3;
-use sinew_core::observation::candidate::HandCandidate;
 use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmTracker};
 use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION};
+use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::edges::{EdgeDetector, EdgeList};
 use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
 use sinew_core::vision::frame::FrameAnalyser;
 use sinew_core::vision::hand_likelihood::HandLikelihood;
+use sinew_core::vision::white_balance::Gains;
 
 /// Particles that there is room for.
 pub const MAX_PARTICLES: usize = 512;

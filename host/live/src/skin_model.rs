@@ -1,8 +1,8 @@
 //! The shipped skin model, and how it follows a picture's light.
 
-use crate::tint::Gains;
 use sinew_core::error::ParameterError;
 use sinew_core::vision::skin::GaussianSkin;
+use sinew_core::vision::white_balance::Gains;
 
 /// A normal distribution of the chromaticities r = R/(R+G+B) and g = G/(R+G+B) of skin, after [`Gains::quarter_grey_world`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +41,8 @@ impl BalancedSkin {
     /// # Errors
     /// None in practice: a small change of tint keeps all numbers usable.
     pub fn for_picture(&self, gains: &Gains) -> Result<GaussianSkin, ParameterError> {
-        gains.raw_model(self).classifier()
+        let (mean, covariance) = gains.raw_moments(self.mean, self.covariance);
+        Self { mean, covariance, ..*self }.classifier()
     }
 
     /// The numbers of a classifier for balanced colours.

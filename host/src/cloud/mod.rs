@@ -24,7 +24,7 @@ use std::path::Path;
 /// Most points of a frame that a tracker is given; [`PointCloud::limit`] draws them from a larger cloud.
 pub const MAX_POINTS: usize = 20_000;
 /// Radius around the camera's centre in which no point can be: matching that failed is often written as the origin.
-pub const CENTRE_RADIUS_M: f32 = point_cloud::NEAREST_M;
+pub const CENTRE_RADIUS_M: f32 = point_cloud::MIN_RANGE_M;
 /// Distance beyond which no point can be: far more than a stereo camera measures, and its square is an ordinary number.
 pub const MAX_DISTANCE_M: f32 = 1_000.0;
 /// Largest file that is read, and largest content of a compressed one.

@@ -1,4 +1,4 @@
-//! A one-bit image that owns its words, laid out as the core's masks.
+//! The words of a one-bit image; the image itself is the core's mask.
 
 use anyhow::Result;
 use image::{GrayImage, Luma};
@@ -6,7 +6,7 @@ use sinew_core::vision::frame::{DEFAULT_CLOSING_FRACTION, closing_steps};
 use sinew_core::vision::mask::{Mask, MaskMut, words_per_row};
 use sinew_core::vision::morphology::{close_by, open, scratch_words};
 
-/// A one-bit image, 32 pixels a word; see [`sinew_core::vision::mask`].
+/// A one-bit image that owns its words; pixels are read and written by the views of [`sinew_core::vision::mask`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BitImage {
     words: Vec<u32>,
@@ -31,25 +31,12 @@ impl BitImage {
     /// As [`BitImage::new`].
     pub fn from_gray(mask: &GrayImage, above: u8) -> Result<Self> {
         let mut bits = Self::new(mask.width() as usize, mask.height() as usize)?;
-        let row_len = words_per_row(bits.width).max(1);
-        for (row, pixels) in bits.words.chunks_exact_mut(row_len).zip(mask.rows()) {
-            for (u, pixel) in pixels.enumerate() {
-                row[u / 32] |= u32::from(pixel.0[0] > above) << (u % 32);
+        bits.view_mut()?.write_rows(|v, row| {
+            for u in 0..mask.width() {
+                row[u as usize / 32] |= u32::from(mask.get_pixel(u, v as u32).0[0] > above) << (u % 32);
             }
-        }
+        });
         Ok(bits)
-    }
-
-    /// Width, pixels.
-    #[must_use]
-    pub fn width(&self) -> usize {
-        self.width
-    }
-
-    /// Height, pixels.
-    #[must_use]
-    pub fn height(&self) -> usize {
-        self.height
     }
 
     /// The packed words, row by row.
@@ -58,17 +45,20 @@ impl BitImage {
         &self.words
     }
 
-    /// The packed words of each row, to be filled; bits beyond the width have to stay zero.
-    pub(super) fn rows_mut(&mut self) -> std::slice::ChunksExactMut<'_, u32> {
-        self.words.chunks_exact_mut(words_per_row(self.width).max(1))
-    }
-
-    /// The core's view of it.
+    /// The core's view of it, to be read.
     ///
     /// # Errors
     /// None in practice: the sizes were checked when it was made.
     pub fn view(&self) -> Result<Mask<'_>> {
         Ok(Mask::new(&self.words, self.width, self.height)?)
+    }
+
+    /// The core's view of it, to be written.
+    ///
+    /// # Errors
+    /// None in practice: the sizes were checked when it was made.
+    pub fn view_mut(&mut self) -> Result<MaskMut<'_>> {
+        Ok(MaskMut::new(&mut self.words, self.width, self.height)?)
     }
 
     /// Opening by the 3x3 square, then a closing in proportion to the width: the morphology of the tracker.
@@ -77,9 +67,10 @@ impl BitImage {
     /// None in practice: the scratch memory fits.
     pub fn clean(&mut self) -> Result<()> {
         let mut scratch = vec![0; scratch_words(self.width)];
-        let mut mask = MaskMut::new(&mut self.words, self.width, self.height)?;
+        let steps = closing_steps(self.width, DEFAULT_CLOSING_FRACTION);
+        let mut mask = self.view_mut()?;
         open(&mut mask, &mut scratch)?;
-        close_by(&mut mask, closing_steps(self.width, DEFAULT_CLOSING_FRACTION), &mut scratch)?;
+        close_by(&mut mask, steps, &mut scratch)?;
         Ok(())
     }
 
@@ -87,10 +78,8 @@ impl BitImage {
     #[must_use]
     pub fn to_gray(&self) -> GrayImage {
         let row_len = words_per_row(self.width);
-        GrayImage::from_fn(self.width as u32, self.height as u32, |u, v| {
-            let word = self.words[v as usize * row_len + u as usize / 32];
-            Luma([if word >> (u % 32) & 1 == 1 { 255 } else { 0 }])
-        })
+        let is_set = |u: u32, v: u32| self.words[v as usize * row_len + u as usize / 32] >> (u % 32) & 1 == 1;
+        GrayImage::from_fn(self.width as u32, self.height as u32, |u, v| Luma([if is_set(u, v) { 255 } else { 0 }]))
     }
 }
 

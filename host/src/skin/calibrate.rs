@@ -4,10 +4,10 @@ use super::colour_cube::{CELLS, cell_of, relit, smooth};
 use super::gaussian::{GaussianModel, Moments, chromaticity};
 use super::histogram::{HistogramModel, SMOOTHING_STD_CELLS};
 use super::model::{ModelNumbers, SkinModel};
-use super::white_balance::Gains;
 use anyhow::{Result, bail, ensure};
 use image::RgbImage;
 use serde::Serialize;
+use sinew_core::vision::white_balance::Gains;
 use std::str::FromStr;
 
 /// Pixels' worth of evidence that the trained Gaussian counts against the rectangle's pixels.
@@ -82,11 +82,9 @@ impl SkinModel {
     pub fn calibrated(&self, image: &RgbImage, rectangle: Rectangle) -> Result<Self> {
         let colours = rectangle.colours(image)?;
         let numbers = match self.numbers() {
-            ModelNumbers::Gaussian(gaussian) => ModelNumbers::Gaussian(adapt_gaussian(
-                gaussian,
-                &colours,
-                Gains::of_image(gaussian.white_balance, image),
-            )?),
+            ModelNumbers::Gaussian(gaussian) => {
+                ModelNumbers::Gaussian(adapt_gaussian(gaussian, &colours, gaussian.white_balance.gains(image))?)
+            }
             ModelNumbers::Histogram(histogram) => ModelNumbers::Histogram(adapt_histogram(histogram, &colours)?),
         };
         Self::new(numbers, self.trained_on.clone())

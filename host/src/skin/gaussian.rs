@@ -2,10 +2,11 @@
 
 use super::threshold::{Choice, ColourLevels, cross_validate};
 use super::training_set::{Source, TrainingSet, Unit};
-use super::white_balance::{Gains, WhiteBalance};
+use super::white_balance::WhiteBalance;
 use anyhow::{Result, bail};
 use serde::{Deserialize, Serialize};
 use sinew_core::vision::skin::GaussianSkin;
+use sinew_core::vision::white_balance::Gains;
 
 /// Step between two threshold levels, Mahalanobis distance.
 pub const THRESHOLD_STEP: f64 = 0.05;

@@ -4,11 +4,12 @@ use super::bit_image::BitImage;
 use super::gaussian::GaussianModel;
 use super::histogram::HistogramModel;
 use super::model_file::{self, TrainedOn};
-use super::white_balance::{Gains, WhiteBalance};
+use super::white_balance::WhiteBalance;
 use anyhow::{Result, bail};
 use clap::ValueEnum;
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
+use sinew_core::vision::frame::segment;
 use sinew_core::vision::skin::{CUBE_WORDS, GaussianSkin, HistogramSkin, SkinClassifier};
 use std::borrow::Cow;
 use std::path::Path;
@@ -108,7 +109,7 @@ impl SkinModel {
     pub fn for_image(&self, image: &RgbImage) -> Result<Cow<'_, Self>> {
         match &self.numbers {
             ModelNumbers::Gaussian(gaussian) if gaussian.white_balance == WhiteBalance::QuarterGreyWorld => {
-                let raw = Gains::of_image(gaussian.white_balance, image).raw_model(gaussian);
+                let raw = gaussian.before_balance(&gaussian.white_balance.gains(image));
                 let raw = GaussianModel { white_balance: WhiteBalance::None, ..raw };
                 Ok(Cow::Owned(Self::new(ModelNumbers::Gaussian(raw), self.trained_on.clone())?))
             }
@@ -123,10 +124,7 @@ impl SkinModel {
     pub fn classify(&self, image: &RgbImage) -> Result<BitImage> {
         let model = self.for_image(image)?;
         let mut bits = BitImage::new(image.width() as usize, image.height() as usize)?;
-        let row_bytes = 3 * image.width() as usize;
-        for (pixels, words) in image.as_raw().chunks_exact(row_bytes).zip(bits.rows_mut()) {
-            model.classify_line(pixels, words);
-        }
+        segment(image.as_raw(), model.as_ref(), &mut bits.view_mut()?);
         Ok(bits)
     }
 }

@@ -5,7 +5,7 @@ use crate::body::BodyRecording;
 use anyhow::Result;
 use sinew_core::kinematics::inverse::Goal;
 use sinew_core::math::{Mat3, Vec3, axis_rotation, sin_cos};
-use sinew_core::skeleton::full_body::{BODY_RADII, FEET, FOREARMS, HEAD, PELVIS, SHANKS, THIGHS, TRUNK};
+use sinew_core::skeleton::full_body::{BODY_RADII_M, FEET, FOREARMS, HEAD, PELVIS, SHANKS, THIGHS, TRUNK};
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// How often the pelvis goes up and down.
@@ -55,7 +55,7 @@ pub fn pelvic_lift(rate_hz: f32, camera_height_m: f32, distance_m: f32) -> Resul
 /// A first guess: on the back, knees bent, arms beside the body.
 fn lying(camera_height_m: f32, distance_m: f32) -> Result<AnimatedBody> {
     let mut body = AnimatedBody::new(&[
-        ("root_y", camera_height_m - BODY_RADII[TRUNK]),
+        ("root_y", camera_height_m - BODY_RADII_M[TRUNK]),
         ("root_z", distance_m),
         ("root_turn", DIRECTION_RAD),
         ("root_pitch", -FRAC_PI_2),
@@ -92,14 +92,14 @@ impl Places {
             turn * Vec3::new(left, 0.0, headward) + Vec3::new(0.0, floor_m - above_floor, distance_m)
         };
         let measures = &body.measures;
-        let (sole, trunk) = (BODY_RADII[FEET[0]], BODY_RADII[TRUNK]);
-        let mut fixed = [(HEAD, place(0.0, BODY_RADII[HEAD] + 0.01, measures.trunk_m + measures.head_m)); 7];
+        let (sole, trunk) = (BODY_RADII_M[FEET[0]], BODY_RADII_M[TRUNK]);
+        let mut fixed = [(HEAD, place(0.0, BODY_RADII_M[HEAD] + 0.01, measures.trunk_m + measures.head_m)); 7];
         for (side, sign) in [1.0, -1.0].into_iter().enumerate() {
             let [feetward, apart] = ANKLES_M;
             let ankle_above = sole - measures.foot_m.y;
             fixed[1 + side] = (SHANKS[side], place(sign * apart, ankle_above, -feetward));
             fixed[3 + side] = (FEET[side], place(sign * apart, sole, -feetward - measures.foot_m.z));
-            fixed[5 + side] = (FOREARMS[side], place(sign * WRISTS_M[1], BODY_RADII[FOREARMS[0]], WRISTS_M[0]));
+            fixed[5 + side] = (FOREARMS[side], place(sign * WRISTS_M[1], BODY_RADII_M[FOREARMS[0]], WRISTS_M[0]));
         }
         let knees = [1.0, -1.0].map(|sign| place(sign * KNEES_M, 0.0, 0.0));
         Self { fixed, knees, neck: place(0.0, trunk, measures.trunk_m), pelvis: place(0.0, trunk, 0.0) }

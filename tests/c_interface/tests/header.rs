@@ -16,7 +16,7 @@ const SOURCES: [&str; 12] = [
     "c_api/vision.rs",
     "c_api/model.rs",
     "camera.rs",
-    "observation/candidate.rs",
+    "vision/candidate.rs",
     "vision/edges.rs",
 ];
 

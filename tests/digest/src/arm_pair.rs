@@ -6,10 +6,10 @@ use core::f32::consts::TAU;
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::error::ParameterError;
 use sinew_core::math::{Vec3, sin_cos};
-use sinew_core::observation::candidate::HandCandidate;
 use sinew_core::random::Stream;
 use sinew_core::skeleton::{ArmGeometry, Side};
 use sinew_core::tracker::arm::{ArmEstimate, ArmImage, ArmModel, ArmOptions, ArmPair, PairFrame, Status};
+use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::edges::EdgePixel;
 
 const PARTICLES: usize = 50;

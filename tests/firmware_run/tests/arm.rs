@@ -3,12 +3,12 @@
 use sinew::record::StreamWriter;
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
-use sinew_core::observation::candidate::HandCandidate;
 use sinew_core::record::{
     ArmInput, ArmResult, ArmSetup, CandidateChunk, Failure, Kind, RecordError, RecordStream, VisionResult,
 };
 use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::Status;
+use sinew_core::vision::candidate::HandCandidate;
 use sinew_firmware_run::host_port::HostPort;
 use sinew_firmware_run::{expected, inputs};
 use sinew_firmware_sim::arm::{ArmApp, CANDIDATES};

@@ -20,7 +20,7 @@ const CLEARLY_MORE: f32 = 1.0 + 1.0e-6;
 /// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, Status};
 /// # use sinew_core::camera::{Camera, Pixel};
 /// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::vision::candidate::HandCandidate;
 /// # use sinew_core::skeleton::{ArmGeometry, Side};
 /// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
 /// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
@@ -88,7 +88,7 @@ pub struct ArmJoints {
 /// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker};
 /// # use sinew_core::camera::{Camera, Pixel};
 /// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::vision::candidate::HandCandidate;
 /// # use sinew_core::skeleton::{ArmGeometry, Side};
 /// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
 /// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;

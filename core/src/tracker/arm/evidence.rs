@@ -6,9 +6,9 @@ use super::propose::{FrameContext, Proposed};
 use super::step::Particle;
 use crate::camera::Pixel;
 use crate::math::{Vec3, atan2, exp, ln, max, unit};
-use crate::observation::candidate::HandCandidate;
 use crate::observation::limbs::ArmImagePoints;
 use crate::observation::orientation::OrientationDensity;
+use crate::vision::candidate::HandCandidate;
 
 /// A limb whose image is shorter than this has no orientation.
 const MIN_LIMB_IMAGE_PX: f32 = 6.0;

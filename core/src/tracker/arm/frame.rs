@@ -1,7 +1,7 @@
 //! What goes into a step.
 
 use crate::math::Vec3;
-use crate::observation::candidate::HandCandidate;
+use crate::vision::candidate::HandCandidate;
 use crate::vision::edges::EdgePixel;
 use heapless::Vec;
 
@@ -17,7 +17,7 @@ pub const LEAST_LIKELIHOOD: f32 = 0.05;
 /// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, MAX_CANDIDATES};
 /// # use sinew_core::camera::{Camera, Pixel};
 /// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::vision::candidate::HandCandidate;
 /// # use sinew_core::skeleton::{ArmGeometry, Side};
 /// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
 /// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
@@ -48,7 +48,7 @@ pub struct ArmImage<'a> {
 /// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker};
 /// # use sinew_core::camera::{Camera, Pixel};
 /// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::vision::candidate::HandCandidate;
 /// # use sinew_core::skeleton::{ArmGeometry, Side};
 /// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
 /// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;

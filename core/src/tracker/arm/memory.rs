@@ -9,7 +9,7 @@ use super::frame::MAX_CANDIDATES;
 use super::options::BlobMemoryOptions;
 use crate::camera::Pixel;
 use crate::math::{exp, max};
-use crate::observation::candidate::HandCandidate;
+use crate::vision::candidate::HandCandidate;
 use heapless::Vec;
 
 /// A blob of the last frame.

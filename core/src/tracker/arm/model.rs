@@ -6,10 +6,10 @@ use crate::correction::hand::ReachableShell;
 use crate::error::ParameterError;
 use crate::kinematics::forward::posture;
 use crate::math::{Vec3, max, sin_cos, sqrt};
-use crate::observation::candidate::HandCandidate;
 use crate::observation::limbs::ArmImagePoints;
 use crate::skeleton::arm::{ARM_ANGLES, ARM_BONES, ArmAngles, ArmGeometry, FOREARM, UPPER_ARM};
 use crate::skeleton::{Side, Skeleton};
+use crate::vision::candidate::HandCandidate;
 
 /// Camera, arm and options of one arm tracker; immutable.
 ///

@@ -116,7 +116,7 @@ pub struct Gate {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AreaCue {
     /// Length-weighted area of the image of a hand seen from the side of its forearm (see
-    /// [`crate::observation::candidate::HandCandidate::length_weighted_area_px`]) times squared depth over
+    /// [`crate::vision::candidate::HandCandidate::length_weighted_area_px`]) times squared depth over
     /// squared focal length, square metres.
     pub hand_area_m2: f32,
     /// Weight of the image's long axis in that area; the short axis has the rest.
@@ -170,7 +170,7 @@ pub struct BlobMemoryOptions {
 /// use sinew_core::tracker::arm::{ArmModel, ArmOptions, options::EstimateRule};
 /// # use sinew_core::camera::{Camera, Pixel};
 /// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::vision::candidate::HandCandidate;
 /// # use sinew_core::skeleton::{ArmGeometry, Side};
 /// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
 /// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;

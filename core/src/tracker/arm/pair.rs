@@ -3,7 +3,7 @@
 //! ```
 //! use sinew_core::camera::{Camera, Pixel};
 //! use sinew_core::math::Vec3;
-//! use sinew_core::observation::candidate::HandCandidate;
+//! use sinew_core::vision::candidate::HandCandidate;
 //! use sinew_core::skeleton::{ArmGeometry, Side};
 //! use sinew_core::tracker::arm::{ArmImage, ArmModel, ArmOptions, ArmPair, PairFrame, Status};
 //!
@@ -42,7 +42,7 @@ use super::step::ArmTracker;
 use crate::camera::Pixel;
 use crate::error::ParameterError;
 use crate::math::{Vec3, abs, atan2, exp, ln, max, min, sin_cos, sqrt};
-use crate::observation::candidate::HandCandidate;
+use crate::vision::candidate::HandCandidate;
 use heapless::Vec;
 
 /// What a hand without any blob is as likely as; compared with a blob's odds times its nearness.
@@ -64,7 +64,7 @@ const SPLIT_REACH: f32 = 3.0;
 /// use sinew_core::tracker::arm::{ArmImage, ArmModel, ArmOptions, ArmPair, PairFrame, Status};
 /// # use sinew_core::camera::{Camera, Pixel};
 /// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::vision::candidate::HandCandidate;
 /// # use sinew_core::skeleton::{ArmGeometry, Side};
 /// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
 /// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
@@ -103,7 +103,7 @@ pub struct PairFrame<'a> {
 /// use sinew_core::tracker::arm::{ArmImage, ArmModel, ArmOptions, ArmPair, PairFrame};
 /// # use sinew_core::camera::{Camera, Pixel};
 /// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::vision::candidate::HandCandidate;
 /// # use sinew_core::skeleton::{ArmGeometry, Side};
 /// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
 /// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;

@@ -10,11 +10,11 @@ use crate::correction::elbow::nearest_elbow;
 use crate::correction::hand::{HandSpread, ReachableShell, draw_on_ray};
 use crate::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
 use crate::math::{Mat3, Vec3, clamp, length, max, sqrt, unit};
-use crate::observation::candidate::HandCandidate;
 use crate::pik::goal::LinearExtrapolation;
 use crate::pik::proposal::{LaplaceProposal, LimitMass};
 use crate::random::Stream;
 use crate::skeleton::arm::{ARM_ANGLES, FOREARM, UPPER_ARM};
+use crate::vision::candidate::HandCandidate;
 use heapless::Vec;
 
 /// Greatest part of a paid weight that the importance ratio of the pose may decide. The expansion's tails are thinner than

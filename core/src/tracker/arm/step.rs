@@ -10,12 +10,12 @@ use crate::camera::Ray;
 use crate::correction::allocation::allot;
 use crate::error::ParameterError;
 use crate::math::{Vec3, clamp, exp, length, max, unit};
-use crate::observation::candidate::HandCandidate;
 use crate::observation::orientation::OrientationDensity;
 use crate::particle::Weights;
 use crate::particle::resampling::{permute, systematic};
 use crate::random::Stream;
 use crate::skeleton::arm::ArmAngles;
+use crate::vision::candidate::HandCandidate;
 use heapless::Vec;
 
 /// Spread of the angles around the waiting pose before anything was seen, radians.
@@ -45,7 +45,7 @@ const LIMB_STREAMS: u32 = u32::MAX - 64;
 /// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker};
 /// # use sinew_core::camera::{Camera, Pixel};
 /// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::vision::candidate::HandCandidate;
 /// # use sinew_core::skeleton::{ArmGeometry, Side};
 /// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
 /// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
@@ -92,7 +92,7 @@ impl Particle {
 /// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, Status};
 /// # use sinew_core::camera::{Camera, Pixel};
 /// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::candidate::HandCandidate;
+/// # use sinew_core::vision::candidate::HandCandidate;
 /// # use sinew_core::skeleton::{ArmGeometry, Side};
 /// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
 /// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;

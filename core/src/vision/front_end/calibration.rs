@@ -1,4 +1,5 @@
-//! Skin calibration at run time: a sample of a box of pixels that shows only skin adapts a Gaussian model.
+//! Skin calibration at run time: a sample of a box of pixels that shows only skin adapts a Gaussian
+//! model.
 //!
 //! ```
 //! use sinew_core::vision::components::BoundingBox;
@@ -17,7 +18,9 @@
 //! }
 //! assert_eq!(sample.len(), 128, "what is outside of the box does not count");
 //! let adapted = sample.adapted(&trained)?;
-//! let far = |skin: &GaussianSkin| skin.distance(hand.map(|value| value as u8)).expect("bright enough");
+//! let far = |skin: &GaussianSkin| {
+//!     skin.distance(hand.map(|value| value as u8)).expect("bright enough")
+//! };
 //! assert!(far(&adapted) < far(&trained));
 //! # Ok::<(), sinew_core::error::ParameterError>(())
 //! ```
@@ -29,21 +32,30 @@ use crate::vision::components::BoundingBox;
 use crate::vision::skin::GaussianSkin;
 use core::marker::PhantomData;
 
-/// Pixels' worth of evidence that the trained model counts against the sample's.
+/// Weight of the trained model in the blend, in pixels of the sample.
+///
+/// Chosen: a small sample barely moves the model; the host's `--calibrate` has the same number.
 const TRAINED_PIXELS: f32 = 30.0;
-/// Largest part that the sample gets: one patch of skin does not show all its shades.
+/// Largest weight of the sample in the blend, 0 to 1.
+///
+/// Chosen: one patch of skin does not show all shades; the host's `--calibrate` has the same
+/// number.
 const MAX_SAMPLE_PART: f32 = 0.8;
-/// Rounds of trimming.
+/// Rounds of trimming; the bound of the work.
 const TRIMMING_ROUNDS: usize = 5;
-/// Squared Mahalanobis distance beyond which a pixel is trimmed: 99 % of a two-dimensional normal distribution.
+/// Squared Mahalanobis distance beyond which a pixel is trimmed: -2 ln 0.01.
+///
+/// The 99 % quantile of chi-squared with two degrees of freedom.
 const TRIM_SQUARED: f32 = 9.21;
-/// Variance of a chromaticity that a table's cells cannot resolve.
+/// Variance added to each chromaticity.
+///
+/// Chosen: a standard deviation of 0.003, below which a table's cells resolve nothing.
 const CELL_VARIANCE: f32 = 1.0e-5;
 
 /// An even sample of the pixels of a box, `N` at most; feed it the lines of one frame.
 ///
-/// The same steps as the host's `--calibrate`: mean and covariance of the chromaticities, trimmed of what is not skin (rings, glare,
-/// background), are blended with the trained ones.
+/// The same steps as the host's `--calibrate`: mean and covariance of the chromaticities, trimmed
+/// of rings, glare and background, are blended with the trained ones.
 ///
 /// ```
 /// use sinew_core::vision::components::BoundingBox;
@@ -51,7 +63,8 @@ const CELL_VARIANCE: f32 = 1.0e-5;
 /// use sinew_core::vision::skin::GaussianSkin;
 ///
 /// let trained = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?;
-/// let mut sample = SkinSample::<Rgb565, 50>::new(BoundingBox { min_u: 0, min_v: 0, max_u: 15, max_v: 7 });
+/// let mut sample =
+///     SkinSample::<Rgb565, 50>::new(BoundingBox { min_u: 0, min_v: 0, max_u: 15, max_v: 7 });
 /// // Before the frame came there is nothing to learn from.
 /// assert_eq!(sample.adapted(&trained).map_err(|error| error.parameter), Err("skin sample"));
 /// for v in 0..8 {
@@ -112,8 +125,8 @@ impl<F: PixelFormat, const N: usize> SkinSample<F, N> {
         }
     }
 
-    /// `trained` adapted to the sample. Its part is n / (n + 30) for n pixels, at most 0.8; the darkest accepted sum falls to half of the
-    /// sample's tenth percentile if that is lower.
+    /// `trained` adapted to the sample. Its part is n / (n + 30) for n pixels, at most 0.8; the
+    /// darkest accepted sum falls to half of the sample's tenth percentile if that is lower.
     ///
     /// # Errors
     /// A sample without colours; and as [`GaussianSkin::new`].
@@ -152,7 +165,8 @@ impl Colour {
     }
 }
 
-/// The number that `k` others come before in order; `u32::MAX` of too few. Decides one bit after the other by counting, so that nothing is sorted or kept.
+/// The number that `k` others come before in order; `u32::MAX` of too few. Decides one bit after
+/// the other by counting, so that nothing is sorted or kept.
 fn kth_smallest(numbers: &(impl Iterator<Item = u32> + Clone), k: usize) -> u32 {
     let mut found = 0;
     for bit in (0..u32::BITS).rev() {
@@ -206,7 +220,8 @@ impl Moments {
     }
 }
 
-/// Moments of the half that is nearest to the median, with what is as near as its farthest; then, a few times, of what lies close to the last ones.
+/// Moments of the half that is nearest to the median, with what is as near as its farthest; then, a
+/// few times, of what lies close to the last ones.
 fn trimmed(colours: &(impl Iterator<Item = Colour> + Clone)) -> Option<Moments> {
     let count = colours.clone().count();
     let median_r = kth_smallest_real(colours.clone().map(|colour| colour.r), count / 2);
@@ -238,7 +253,8 @@ mod tests {
         GaussianSkin::new(0.45, 0.316, [0.0017, 0.0, 0.0002], 2.25, 215).unwrap()
     }
 
-    /// Bluish skin in the box, which the trained model does not take for skin, a third of it glare; green around it.
+    /// Bluish skin in the box, which the trained model does not take for skin, a third of it glare;
+    /// green around it.
     fn line(v: usize) -> Vec<u16> {
         let colour = |u: usize| match u {
             5..=36 if (u + v).is_multiple_of(3) => [31, 63, 31],

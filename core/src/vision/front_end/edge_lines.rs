@@ -21,10 +21,12 @@ type Cells<const WORDS: usize> = [[u32; BLOCK_WORDS]; WORDS];
 /// How steep an edge has to be; grey levels are those of a camera from 0 to 255.
 ///
 /// ```
-/// use sinew_core::vision::front_end::edge_lines::{DEFAULT_KNOWN_STEP, DEFAULT_NEW_STEP, EdgeSteps};
+/// use sinew_core::vision::front_end::edge_lines::EdgeSteps;
+/// use sinew_core::vision::front_end::edge_lines::{DEFAULT_KNOWN_STEP, DEFAULT_NEW_STEP};
 ///
 /// assert_eq!(EdgeSteps::new(DEFAULT_NEW_STEP, DEFAULT_KNOWN_STEP)?, EdgeSteps::default());
-/// // The map has to remember what is as steep as a new edge, else one that stands still would be new for ever.
+/// // The map has to remember what is as steep as a new edge, else one that stands still would be
+/// // new for ever.
 /// assert_eq!(EdgeSteps::new(14.0, 28.0).map_err(|error| error.parameter), Err("known_step"));
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
@@ -35,7 +37,8 @@ pub struct EdgeSteps {
     known: Limit,
 }
 
-/// A limit for half of a difference of luminances, 1 to 63, made ready for four bytes at once; see [`Limit::reached`].
+/// A limit for half of a difference of luminances, 1 to 63, made ready for four bytes at once; see
+/// [`Limit::reached`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Limit {
@@ -49,7 +52,8 @@ impl Limit {
         Self { rise: (64 - limit) * ONES, fall: (192 - limit) * ONES }
     }
 
-    /// Sets the highest bit of each byte that is at least the limit away from 64; bytes from 0 to 127.
+    /// Sets the highest bit of each byte that is at least the limit away from 64; bytes from 0 to
+    /// 127.
     #[inline]
     fn reached(self, halves: u32) -> u32 {
         // No byte carries or borrows: sums lie from 1 to 190, differences from 2 to 191.
@@ -58,10 +62,16 @@ impl Limit {
 }
 
 /// Default of the smallest step over four pixels that makes an edge, grey levels.
+///
+/// Chosen: agrees with the host's edges; measured by `cargo test --release -p sinew --test
+/// front_end` (`docs/front_end.md`).
 pub const DEFAULT_NEW_STEP: f32 = 28.0;
 /// Default of the smallest step that the map remembers as an edge, grey levels.
+///
+/// Chosen: half of [`DEFAULT_NEW_STEP`], so that noise makes no edges of gradients near that limit.
 pub const DEFAULT_KNOWN_STEP: f32 = 14.0;
-/// Grey levels of one unit of half a difference of luminances: (255 / 109) x 2.
+/// Grey levels of one unit of half a difference of luminances: (255 / 109) x 2, see
+/// [`PixelFormat::luminances`].
 const LEVELS_PER_UNIT: f32 = 510.0 / 109.0;
 
 impl Default for EdgeSteps {
@@ -71,8 +81,10 @@ impl Default for EdgeSteps {
 }
 
 impl EdgeSteps {
-    /// An edge pixel has a step of at least `new_step` grey levels from two pixels before to two pixels behind it, across or down, where the
-    /// frame before had none of at least `known_step`. Both are rounded to steps of 4.7 levels.
+    /// Thresholds of an edge pixel, grey levels; both are rounded to steps of 4.7 levels.
+    ///
+    /// An edge pixel has a step of at least `new_step`, across or down, from two pixels before to
+    /// two pixels behind it. The previous frame has none of at least `known_step` there.
     ///
     /// # Errors
     /// From 5 to 255, `known_step` not above `new_step`.
@@ -84,13 +96,15 @@ impl EdgeSteps {
     }
 }
 
-/// The edges of the frame before, a bit a cell: for 320 x 240 pixels (`WORDS` 10, `ROWS` 120) 2400 bytes.
+/// The edges of the previous frame, a bit a cell: for 320 x 240 pixels (`WORDS` 10, `ROWS` 120)
+/// 2400 bytes.
 #[derive(Debug, Clone)]
 struct EdgeMap<const WORDS: usize, const ROWS: usize> {
     rows: [[u16; WORDS]; ROWS],
 }
 
-/// Finds the temporal edge pixels of lines; keeps three lines of luminances and the map of the frame before.
+/// Finds the temporal edge pixels of lines; keeps three lines of luminances and the previous
+/// frame's map.
 ///
 /// Lines have up to 32 `WORDS` pixels, frames up to 2 `ROWS` lines; what lies beyond has no edges.
 ///
@@ -105,19 +119,23 @@ struct EdgeMap<const WORDS: usize, const ROWS: usize> {
 /// for left in [10, 16] {
 ///     lines.begin_frame(&mut edges);
 ///     for v in 0..32 {
-///         let line = core::array::from_fn::<u16, 32, _>(|u| if u >= left { 0xffff } else { 0 });
+///         let line =
+///             core::array::from_fn::<u16, 32, _>(|u| if u >= left { 0xffff } else { 0 });
 ///         lines.line::<Rgb565, 64>(v, &line, 32, &mut edges);
 ///     }
 ///     lines.end_frame();
 /// }
 /// assert!(!edges.as_slice().is_empty());
-/// assert!(edges.as_slice().iter().all(|pixel| (14..=16).contains(&pixel.u)), "where the edge is now");
+/// assert!(
+///     edges.as_slice().iter().all(|pixel| (14..=16).contains(&pixel.u)),
+///     "where the edge is now"
+/// );
 /// ```
 #[derive(Debug, Clone)]
 pub struct EdgeLines<const WORDS: usize, const ROWS: usize> {
     cells: [Cells<WORDS>; 3],
     map: EdgeMap<WORDS, ROWS>,
-    /// Whether `map` is that of the frame before.
+    /// Whether `map` is that of the previous frame.
     known: bool,
     thinning: EdgeThinning,
     steps: EdgeSteps,
@@ -139,7 +157,7 @@ impl<const WORDS: usize, const ROWS: usize> EdgeLines<WORDS, ROWS> {
         }
     }
 
-    /// Forgets the frame before: the next one has no temporal edges.
+    /// Forgets the previous frame: the next one has no temporal edges.
     pub fn forget_last_frame(&mut self) {
         self.known = false;
     }
@@ -150,7 +168,7 @@ impl<const WORDS: usize, const ROWS: usize> EdgeLines<WORDS, ROWS> {
         self.thinning = EdgeThinning::new();
     }
 
-    /// Ends a frame; the map is now that of the frame before.
+    /// Ends a frame; its map becomes that of the previous frame.
     pub fn end_frame(&mut self) {
         self.known = true;
     }
@@ -173,7 +191,8 @@ impl<const WORDS: usize, const ROWS: usize> EdgeLines<WORDS, ROWS> {
         }
     }
 
-    /// Finds the edges of a row of cells from its luminances and those of the rows above and below it.
+    /// Finds the edges of a row of cells from its luminances and those of the rows above and below
+    /// it.
     fn judge<const EDGES: usize>(&mut self, row: usize, columns: usize, edges: &mut EdgeList<EDGES>) {
         let [above, here, below] = [row + 2, row, row + 1].map(|r| &self.cells[r % 3]);
         let Some(map) = self.map.rows.get_mut(row) else { return };
@@ -185,7 +204,7 @@ impl<const WORDS: usize, const ROWS: usize> EdgeLines<WORDS, ROWS> {
             if i + 1 >= blocks {
                 inner &= inner_of_last(columns);
             }
-            // Where the frame before is not known nothing is new.
+            // Without a previous frame nothing is new.
             let old = if self.known { u32::from(*map) } else { u32::MAX };
             let (new, known) = steep(steps, [above, here_block, below], [before, next], old);
             before = here_block[BLOCK_WORDS - 1];
@@ -236,7 +255,9 @@ fn block_luminances<F: PixelFormat>(pixels: &[u16; BLOCK_PX]) -> [u32; BLOCK_WOR
     block
 }
 
-/// Bits of the cells of a block whose steps reach the two limits; the first ones are right only for cells that are not in `old`.
+/// Bits of the cells of a block whose steps reach the two limits.
+///
+/// The first ones are right only for cells that are not in `old`.
 #[inline]
 fn steep(
     steps: EdgeSteps,
@@ -271,7 +292,7 @@ fn half_difference(a: u32, b: u32) -> u32 {
 /// The highest bits of four bytes, all other bits zero, as four bits.
 #[inline]
 fn nibble(tops: u32) -> u32 {
-    // Bits 7, 15, 23 and 31 move to 28 to 31; no two of the sixteen products meet.
+    // Bits 7, 15, 23 and 31 move to 28 to 31; no two of the sixteen products overlap.
     tops.wrapping_mul(1 << 21 | 1 << 14 | 1 << 7 | 1) >> 28
 }
 
@@ -349,7 +370,8 @@ mod tests {
         }
     }
 
-    /// A texture of 16-pixel stripes with a sensor's noise of standard deviation 5, moved by `shift` pixels.
+    /// A texture of 16-pixel stripes with a sensor's noise of standard deviation 5, moved by
+    /// `shift` pixels.
     fn stripes(seed: u64, shift: usize) -> Vec<u16> {
         use rand_core::{Rng, SeedableRng};
         let mut random = rand_xoshiro::Xoshiro128PlusPlus::seed_from_u64(seed);

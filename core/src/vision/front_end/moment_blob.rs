@@ -1,14 +1,16 @@
-//! A blob as one pass over its lines knows it, and how likely it is a hand.
+//! A blob measured in one pass over its lines, and its likelihood of being a hand.
 
 use crate::camera::Pixel;
 use crate::math::{clamp, max, sqrt};
-use crate::observation::candidate::HandCandidate;
 use crate::vision::blobs::Ranked;
+use crate::vision::candidate::HandCandidate;
 use crate::vision::components::{BoundingBox, Component};
 use crate::vision::hand_likelihood::HandLikelihood;
 use core::f32::consts::PI;
 
-/// A connected component's sums, made into features; the same numbers as [`crate::vision::features::Blob`] has of the same pixels.
+/// Features from a connected component's sums.
+///
+/// The same numbers as those of [`crate::vision::features::Blob`] for the same pixels.
 ///
 /// ```
 /// use sinew_core::vision::component_scanner::ComponentScanner;
@@ -21,11 +23,18 @@ use core::f32::consts::PI;
 /// let mut rows = [0x0f; 32];
 /// rows[28..].fill(u32::MAX);
 /// let mask = Mask::new(&rows, 32, 32)?;
-/// ComponentScanner::<8, 8>::new().scan(&mask, &mut RunPool::new(&mut []), &mut |component, _| {
-///     let bracket = MomentBlob::of(component, &HandLikelihood::default(), 32.0 * 32.0);
-///     assert_eq!(bracket.area_px, 28 * 4 + 4 * 32);
-///     assert!(bracket.ellipse_fill() < 0.6 && bracket.roundness() < 0.5, "neither an ellipse nor round");
-/// });
+/// ComponentScanner::<8, 8>::new().scan(
+///     &mask,
+///     &mut RunPool::new(&mut []),
+///     &mut |component, _| {
+///         let bracket = MomentBlob::of(component, &HandLikelihood::default(), 32.0 * 32.0);
+///         assert_eq!(bracket.area_px, 28 * 4 + 4 * 32);
+///         assert!(
+///             bracket.ellipse_fill() < 0.6 && bracket.roundness() < 0.5,
+///             "neither an ellipse nor round"
+///         );
+///     },
+/// );
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +46,8 @@ pub struct MomentBlob {
     pub centroid: Pixel,
     /// Second central moments of the pixels: uu, uv, vv, square pixels.
     pub moments_px2: [f32; 3],
-    /// Length of the outline, holes' outlines too, pixels; see [`crate::vision::components::crofton_perimeter`].
+    /// Length of the outline, holes' outlines too, pixels; see
+    /// [`crate::vision::components::crofton_perimeter`].
     pub perimeter_px: f32,
     /// Smallest upright rectangle around all pixels.
     pub bounding_box: BoundingBox,
@@ -61,11 +71,11 @@ impl MomentBlob {
         blob
     }
 
-    /// Area as a part of that of the ellipse with the same second moments, 0 to 1: one for an ellipse, 0.95 for a rectangle, less
-    /// for what is bent, branched or hollow.
+    /// Area as a part of that of the ellipse with the same second moments, 0 to 1: one for an
+    /// ellipse, 0.95 for a rectangle, less for what is bent, branched or hollow.
     #[must_use]
     pub fn ellipse_fill(&self) -> f32 {
-        // A pixel is itself a twelfth wide in both directions.
+        // The variance of one pixel's square is 1/12 in both directions.
         let [uu, uv, vv] = self.moments_px2;
         let (uu, vv) = (max(uu, 0.0) + 1.0 / 12.0, max(vv, 0.0) + 1.0 / 12.0);
         let area = 4.0 * PI * sqrt(max(uu * vv - uv * uv, 1.0 / 144.0));
@@ -80,12 +90,13 @@ impl MomentBlob {
     }
 }
 
-/// The hand likelihood of one pass, the *moment likelihood*: F of the area term of `likelihood` and of shape features without a
-/// distance transform and without a rotated ellipse.
+/// The *moment likelihood*: p(hand | blob) from one pass, without a distance transform and a
+/// rotated ellipse.
 ///
-/// [`MomentBlob::ellipse_fill`] stands in for both: what fills the ellipse of its own moments has its mass about its centre, and is covered by an
-/// ellipse. The perimeter does not count: the host's shape features are those of a blob with its fingers filled, and an
-/// open hand's outline before that is long.
+/// It is F of the area term of `likelihood` and of [`MomentBlob::ellipse_fill`], which replaces
+/// both shape features. A blob that fills the ellipse of its own moments has its mass about its
+/// centre and is covered by an ellipse. The perimeter has no influence: an open hand's outline is
+/// long unless its fingers are filled.
 ///
 /// ```
 /// use core::f32::consts::PI;
@@ -94,7 +105,7 @@ impl MomentBlob {
 /// use sinew_core::vision::front_end::moment_blob::{MomentBlob, moment_likelihood};
 /// use sinew_core::vision::hand_likelihood::HandLikelihood;
 ///
-/// // A disc of radius 30, and a ring as heavy as it that reaches from 40 to 50.
+/// // A disc of radius 30, and a ring of the same area from radius 40 to 50.
 /// let disc = MomentBlob {
 ///     area_px: 2827,
 ///     centroid: Pixel::new(160.0, 120.0),

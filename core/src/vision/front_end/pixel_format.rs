@@ -1,4 +1,4 @@
-//! How a camera codes a line's pixels in 16 bits each: RGB565, or luminance and chrominance in turns (YUYV).
+//! Pixel formats of 16 bits: RGB565, or luminance and alternating chrominance (YUYV).
 
 /// A coding of pixels in 16 bits, read in pairs of neighbours.
 ///
@@ -24,20 +24,26 @@
 ///     }
 /// }
 ///
-/// assert_eq!(Grey::luminances(&[0, 9, 100, 9, 254, 9, 20, 9]).to_le_bytes(), [0, 50, 127, 10]);
+/// assert_eq!(
+///     Grey::luminances(&[0, 9, 100, 9, 254, 9, 20, 9]).to_le_bytes(),
+///     [0, 50, 127, 10]
+/// );
 /// ```
 pub trait PixelFormat {
     /// The keys of two neighbours, the left one at an even column.
     fn keys(pair: [u16; 2]) -> [u16; 2];
 
-    /// Luminances of every second one of eight pixels, from the first, a byte each and the first in the lowest: from 0 to 127, 109 apart for black and white.
+    /// Luminances of every second one of eight pixels, from the first, a byte each and the first in
+    /// the lowest.
+    ///
+    /// They lie from 0 to 127; black and white are 109 apart.
     fn luminances(pixels: &[u16; 8]) -> u32;
 
     /// The colour in the middle of a key's cell, R, G, B.
     fn rgb(key: u16) -> [u8; 3];
 }
 
-/// What halving four bytes at once leaves of each.
+/// Mask of the bits that remain when four bytes are halved at once.
 const HALVES: u32 = 0x7f7f_7f7f;
 
 /// 5 bits of red (the highest), 6 of green, 5 of blue; the key is the pixel.
@@ -53,7 +59,8 @@ const HALVES: u32 = 0x7f7f_7f7f;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rgb565;
 
-/// RGB565 with both bytes swapped, as cameras with an 8-bit port and a little-endian processor have it.
+/// RGB565 with both bytes swapped, as cameras with an 8-bit port send it to a little-endian
+/// processor.
 ///
 /// ```
 /// use sinew_core::vision::front_end::pixel_format::{PixelFormat, Rgb565, SwappedRgb565};
@@ -67,7 +74,8 @@ pub struct Rgb565;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SwappedRgb565;
 
-/// Y in the low byte; in the high byte U of the pair in the left pixel, V in the right one (Rec. 601).
+/// Y in the low byte; in the high byte U of the pair in the left pixel, V in the right one (Rec.
+/// 601).
 ///
 /// The key holds 6 bits of V (the highest), 6 of U, 4 of Y.
 ///
@@ -78,7 +86,10 @@ pub struct SwappedRgb565;
 /// let pair = [u16::from_le_bytes([128, 128]); 2];
 /// let [left, right] = Yuyv::keys(pair);
 /// assert_eq!(left, right, "both have the pair's chrominance");
-/// assert!(Yuyv::rgb(left).iter().all(|channel| channel.abs_diff(128) < 14), "the middle of a cell");
+/// assert!(
+///     Yuyv::rgb(left).iter().all(|channel| channel.abs_diff(128) < 14),
+///     "the middle of a cell"
+/// );
 /// assert_eq!(Yuyv::luminances(&[pair[0]; 8]).to_le_bytes(), [64; 4], "half of Y");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -90,7 +101,8 @@ impl PixelFormat for Rgb565 {
         pair
     }
 
-    /// (2 R + 2 G + B) / 2 of R and B in 5 and G in 6 bits, which weighs them by 0.28, 0.58 and 0.14.
+    /// (2 R + 2 G + B) / 2 of R and B in 5 and G in 6 bits, which weighs them by 0.28, 0.58 and
+    /// 0.14.
     #[inline]
     fn luminances(pixels: &[u16; 8]) -> u32 {
         let two = |first: usize| {
@@ -130,7 +142,8 @@ impl PixelFormat for Yuyv {
         [left, right].map(|pixel| chrominance | pixel >> 4 & 0xf)
     }
 
-    /// Half of Y: black and white of video range (16 to 235) are 109 apart, those of full range 127.
+    /// Half of Y: black and white of video range (16 to 235) are 109 apart, those of full range
+    /// 127.
     #[inline]
     fn luminances(pixels: &[u16; 8]) -> u32 {
         let both = |first: usize| u32::from(pixels[first]) & 0xff | (u32::from(pixels[first + 4]) & 0xff) << 16;
@@ -146,7 +159,8 @@ impl PixelFormat for Yuyv {
     }
 }
 
-/// The pair whose left pixel is the last one of a line of odd length: its chrominance comes from its left neighbour.
+/// The pair whose left pixel is the last one of a line of odd length: its chrominance comes from
+/// its left neighbour.
 #[inline]
 pub(super) fn odd_pair(line: &[u16]) -> Option<[u16; 2]> {
     match line {

@@ -8,9 +8,11 @@ use core::ops::Range;
 /// Words of a table: one bit a key, 8 KiB.
 pub const TABLE_WORDS: usize = 1 << 11;
 
-/// One decision bit for each of the 65536 keys of a [`PixelFormat`]: bit `key % 32` of word `key / 32`.
+/// One decision bit for each of the 65536 keys of a [`PixelFormat`]: bit `key % 32` of word `key /
+/// 32`.
 ///
-/// Made from a skin model when the program starts, and again whenever the model changes; or by a program and put in flash.
+/// Learned from a skin model when the program starts or the model changes, or generated and put in
+/// flash.
 ///
 /// ```
 /// use sinew_core::vision::front_end::{pixel_format::Rgb565, skin_table::SkinTable};
@@ -18,7 +20,8 @@ pub const TABLE_WORDS: usize = 1 << 11;
 ///
 /// let mut table = SkinTable::<Rgb565>::new();
 /// table.learn(&GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?);
-/// let (hand, wall) = (200 >> 3 << 11 | 140 >> 2 << 5 | 110 >> 3, 20 >> 3 << 11 | 40 >> 2 << 5 | 90 >> 3);
+/// let (hand, wall) =
+///     (200 >> 3 << 11 | 140 >> 2 << 5 | 110 >> 3, 20 >> 3 << 11 | 40 >> 2 << 5 | 90 >> 3);
 /// let mut bits = [0];
 /// table.classify_line(&[wall, hand, hand, wall], &mut bits);
 /// assert_eq!(bits, [0b0110]);
@@ -40,13 +43,13 @@ impl<F: PixelFormat> Default for SkinTable<F> {
 }
 
 impl<F: PixelFormat> SkinTable<F> {
-    /// A table by which nothing is skin.
+    /// A table without skin.
     #[must_use]
     pub const fn new() -> Self {
         Self::from_words([0; TABLE_WORDS])
     }
 
-    /// A table that was made before.
+    /// A table from stored words.
     #[must_use]
     pub const fn from_words(words: [u32; TABLE_WORDS]) -> Self {
         Self { words, format: PhantomData }
@@ -69,7 +72,9 @@ impl<F: PixelFormat> SkinTable<F> {
         self.learn_words(skin, 0..TABLE_WORDS);
     }
 
-    /// Takes over a part of the decisions, the `words` of [`TABLE_WORDS`], so that a new model can be taken over in the pauses of several frames.
+    /// Takes over a part of the decisions, the `words` of [`TABLE_WORDS`].
+    ///
+    /// A new model can thus be learned in the pauses of several frames.
     pub fn learn_words(&mut self, skin: &impl SkinClassifier, words: Range<usize>) {
         let from = words.start.min(TABLE_WORDS);
         let to = words.end.clamp(from, TABLE_WORDS);
@@ -90,7 +95,8 @@ impl<F: PixelFormat> SkinTable<F> {
         self.at(key) & 1 == 1
     }
 
-    /// Writes one bit a pixel of `line` into `bits`, lowest bit first; bits beyond the line become zero.
+    /// Writes one bit a pixel of `line` into `bits`, lowest bit first; bits beyond the line become
+    /// zero.
     pub fn classify_line(&self, line: &[u16], bits: &mut [u32]) {
         let (whole, rest) = line.as_chunks::<PIXELS_PER_WORD>();
         let count = whole.len().min(bits.len());
@@ -116,7 +122,7 @@ impl<F: PixelFormat> SkinTable<F> {
     #[inline]
     fn classify_block(&self, block: &[u16; PIXELS_PER_WORD]) -> u32 {
         let [a, b, c, d, e, f, g, h] = block.as_chunks::<4>().0 else { return 0 };
-        // Written out: with its place known, four pixels without skin cost nothing but the look at them.
+        // Unrolled: with a constant place, four pixels without skin take only the look-up.
         let bits = self.with_four(0, a, 0);
         let bits = self.with_four(bits, b, 4);
         let bits = self.with_four(bits, c, 8);
@@ -127,7 +133,9 @@ impl<F: PixelFormat> SkinTable<F> {
         self.with_four(bits, h, 28)
     }
 
-    /// `bits` with those of four pixels from `place` on. Most words of a table are zero, so most often their union decides all four.
+    /// `bits` with those of four pixels from `place` on.
+    ///
+    /// Most words of a table are zero, so most often their union decides all four.
     #[inline]
     fn with_four(&self, bits: u32, four: &[u16; 4], place: u32) -> u32 {
         let &[left, right] = four.as_chunks::<2>().0 else { return bits };

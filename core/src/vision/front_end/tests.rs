@@ -1,12 +1,21 @@
 //! The front end against the host's chain on the same skin bits.
 
+use super::edge_lines::EdgeSteps;
+use super::moment_blob::MomentBlob;
 use super::pixel_format::{Rgb565, Yuyv};
+use super::skin_table::{self, SkinTable};
 use super::*;
+use crate::error::{ParameterError, Rule};
+use crate::vision::blobs::BlobList;
+use crate::vision::component_scanner::ComponentScanner;
+use crate::vision::edges::EdgePixel;
+use crate::vision::hand_likelihood::HandLikelihood;
 use crate::vision::mask::{Mask, MaskMut, words_per_row};
 use crate::vision::morphology::{close, open, scratch_words};
+use crate::vision::runs::RunPool;
 use proptest::prelude::*;
 
-/// A pixel of each kind and a table that tells them apart.
+/// A pixel of each kind and a table that separates them.
 const SKIN: u16 = 0xb4c8;
 const OTHER: u16 = 0x1234;
 

@@ -8,7 +8,7 @@ use sinew_core::c_api::arm_frame::*;
 use sinew_core::c_api::arm_pair::*;
 use sinew_core::c_api::status::SinewStatus;
 use sinew_core::camera::Pixel;
-use sinew_core::observation::candidate::HandCandidate;
+use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::edges::EdgePixel;
 use std::mem::MaybeUninit;
 use std::ptr::null_mut;

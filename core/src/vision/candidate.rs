@@ -1,48 +1,50 @@
-//! A blob that may be a hand, as the trackers see it.
+//! A blob that may be a hand: the trackers' input from vision.
 
 use crate::camera::Pixel;
 use crate::math::{exp, ln, max, sqrt};
 use core::f32::consts::PI;
 
-/// The part of a blob that an arm tracker uses: a few numbers, so that a frame's list is small state.
+/// The part of a blob that an arm tracker uses: a few numbers, so that a frame's list is small
+/// state.
 ///
 /// ```
-/// use sinew_core::observation::candidate::HandCandidate;
+/// use sinew_core::vision::candidate::HandCandidate;
 ///
 /// // An ellipse of 40 by 20 pixels has its own area; turned edge on it is half as wide.
 /// let flat = HandCandidate { moments_px2: [100.0, 0.0, 25.0], ..HandCandidate::default() };
 /// let edge = HandCandidate { moments_px2: [100.0, 0.0, 6.25], ..flat };
 /// assert!((flat.length_weighted_area_px(0.5) - 628.3).abs() < 0.1);
-/// // What leans on the length keeps more of it, and so says better how far the hand is.
-/// let kept = |length_share| edge.length_weighted_area_px(length_share) / flat.length_weighted_area_px(length_share);
+/// // A size weighted towards the length keeps more of it: a better measure of the hand's distance.
+/// let kept = |share| edge.length_weighted_area_px(share) / flat.length_weighted_area_px(share);
 /// assert!((kept(0.5) - 0.5).abs() < 1e-3 && kept(0.65) > 0.6);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 pub struct HandCandidate {
-    /// Where the hand's centre is taken to be.
+    /// Assumed centre of the hand.
     pub centre: Pixel,
     /// Second central moments of the blob's pixels: uu, uv, vv, in square pixels.
     pub moments_px2: [f32; 3],
     /// Number of pixels of the blob.
     pub area_px: f32,
-    /// p(hand | blob) in [0, 1], eq. (6) of the arm paper or the default form.
+    /// p(hand | blob) in [0, 1]: arm (6) or the default form.
     pub likelihood: f32,
 }
 
 impl HandCandidate {
-    /// Area of the ellipse with the blob's second moments, its long axis counting `length_share` and its short axis the
-    /// rest, square pixels; at one half it is the ellipse's own area.
+    /// Area of the ellipse with the blob's second moments, its axes weighted by exponents, square
+    /// pixels.
     ///
-    /// A hand that turns its edge to the camera loses width and keeps its length, so a size that leans on the length says
-    /// better how far the hand is.
+    /// The long axis has the exponent 2 `length_share`, the short axis the rest; one half gives the
+    /// ellipse's own area. A hand turned edge on loses width and keeps its length, so weighting the
+    /// length gives a better depth.
     #[must_use]
     pub fn length_weighted_area_px(&self, length_share: f32) -> f32 {
         let [uu, uv, vv] = self.moments_px2;
         let (middle, half) = (0.5 * (uu + vv), 0.5 * (uu - vv));
         let radius = sqrt(half * half + uv * uv);
-        // A pixel is itself a twelfth wide, so nothing is narrower.
+        // The variance of one pixel's square is 1/12, so nothing is narrower.
         let [long, short] = [middle + radius, middle - radius].map(|variance| max(variance, 1.0 / 12.0));
         4.0 * PI * exp(length_share * ln(long) + (1.0 - length_share) * ln(short))
     }
