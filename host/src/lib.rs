@@ -22,4 +22,4 @@ pub mod track;
 pub mod viewer;
 pub mod wording;
 
-pub use sinew_formats::{cloud, images, motion};
+pub use sinew_formats::{cloud, images, motion, registry};

@@ -4,3 +4,4 @@
 pub mod cloud;
 pub mod images;
 pub mod motion;
+pub mod registry;

@@ -1,6 +1,6 @@
 //! Clouds as tables: a header that names `x_m`, `y_m` and `z_m` (or `x`, `y` and `z`), then a row for each point.
 
-use super::PointCloud;
+use super::point_cloud::PointCloud;
 use csv::{ByteRecord, ReaderBuilder, Trim};
 use sinew_core::math::Vec3;
 

@@ -1,6 +1,7 @@
 //! What is wrong with a cloud's file or folder.
 
-use super::{EXTENSIONS, MAX_FILE_BYTES};
+use super::file_size::MAX_FILE_BYTES;
+use crate::registry::{Kind, extensions};
 use std::path::PathBuf;
 
 /// A cloud, or a folder of clouds, that cannot be read.
@@ -76,6 +77,6 @@ pub enum CloudError {
     },
 }
 
-pub(super) fn extension_list() -> String {
-    EXTENSIONS.map(|extension| format!(".{extension}")).join(", ")
+fn extension_list() -> String {
+    extensions(&[Kind::Cloud])
 }

@@ -2,7 +2,7 @@
 
 use super::error::CloudError;
 use super::frame_number::frame_numbers;
-use super::{EXTENSIONS, extension};
+use crate::registry::{Kind, endings, find};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ impl CloudFolder {
                 continue;
             }
             *kinds.entry(kind_in_words(&path)).or_default() += 1;
-            if path.is_file() && extension(&path).is_some() {
+            if path.is_file() && find(&path, &[Kind::Cloud]).is_some() {
                 files.push(path);
             }
         }
@@ -79,7 +79,7 @@ fn kind_in_words(path: &Path) -> String {
 fn check_kinds(folder: &Path, kinds: &BTreeMap<String, usize>) -> Result<(), CloudError> {
     let in_words = |(kind, count): (&String, &usize)| format!("{count} {kind}");
     let is_cloud =
-        |(kind, _): &(&String, &usize)| EXTENSIONS.iter().any(|known| **kind == format!("*.{known} file(s)"));
+        |(kind, _): &(&String, &usize)| endings(&[Kind::Cloud]).any(|known| **kind == format!("*.{known} file(s)"));
     let clouds: Vec<String> = kinds.iter().filter(is_cloud).map(in_words).collect();
     let folder = folder.to_path_buf();
     match clouds.len() {

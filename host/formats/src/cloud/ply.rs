@@ -1,6 +1,6 @@
 //! Clouds in PLY files (Turk, The PLY polygon file format, 1994): the `x`, `y` and `z` of the element `vertex`.
 
-use super::PointCloud;
+use super::point_cloud::PointCloud;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType};
 use sinew_core::math::Vec3;

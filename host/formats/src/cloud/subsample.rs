@@ -1,6 +1,6 @@
 //! Fewer points from a cloud that has too many.
 
-use super::PointCloud;
+use super::point_cloud::PointCloud;
 use sinew_core::random::Stream;
 
 /// Index of the stream that draws points: the last one, far from those of a frame's particles.

@@ -1,8 +1,11 @@
 //! What holds for all kinds of files.
 
+use super::point_cloud::CENTRE_RADIUS_M;
 use super::*;
 use proptest::prelude::*;
+use sinew_core::math::Vec3;
 use std::fs;
+use std::path::Path;
 
 fn written(points: &[Vec3]) -> Vec<u8> {
     let mut bytes = Vec::new();

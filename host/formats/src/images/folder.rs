@@ -1,20 +1,15 @@
 //! Image files of a folder in natural order, and one file as 8-bit RGB.
 
 use super::jpeg::reaches_end_of_image;
+use super::side::MAX_SIDE_PX;
 use super::video::is_video;
+use crate::registry::{Kind, extensions, find};
 use image::{ImageFormat, ImageReader, Limits, RgbImage};
 use std::collections::BTreeMap;
-use std::ffi::OsStr;
 use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
-
-/// Extensions that are read, in lower case; a file's own may be in any case.
-pub const EXTENSIONS: [&str; 7] = ["png", "jpg", "jpeg", "ppm", "pgm", "pnm", "pbm"];
-
-/// Largest width or height that is decoded, pixels: what a mask of the core can hold.
-pub const MAX_SIDE_PX: u32 = sinew_core::vision::mask::MAX_SIDE_PX as u32;
 
 /// Largest memory that decoding one image may take, bytes.
 const MAX_DECODE_BYTES: u64 = 1 << 30;
@@ -154,12 +149,10 @@ pub fn load_rgb(path: &Path) -> Result<RgbImage, ImageFileError> {
     Ok(image)
 }
 
-/// Whether the name ends in one of [`EXTENSIONS`], in any case.
+/// Whether the name ends as that of an image, in any case.
 #[must_use]
 pub fn has_image_extension(path: &Path) -> bool {
-    path.extension()
-        .and_then(OsStr::to_str)
-        .is_some_and(|extension| EXTENSIONS.iter().any(|known| extension.eq_ignore_ascii_case(known)))
+    find(path, &[Kind::Image]).is_some()
 }
 
 fn natural_order(a: &Path, b: &Path) -> std::cmp::Ordering {
@@ -182,7 +175,7 @@ fn kind_in_words(path: &Path) -> String {
 }
 
 fn extension_list() -> String {
-    EXTENSIONS.map(|extension| format!(".{extension}")).join(", ")
+    extensions(&[Kind::Image])
 }
 
 #[cfg(test)]

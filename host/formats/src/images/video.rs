@@ -1,6 +1,7 @@
 //! Frames of a video file, through a pipe from the installed `ffmpeg`: no frame is written to disk.
 
-use super::folder::MAX_SIDE_PX;
+use super::side::MAX_SIDE_PX;
+use crate::registry::{Kind, find};
 use image::RgbImage;
 use serde_json::Value;
 use std::ffi::OsString;
@@ -9,10 +10,6 @@ use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
 use thiserror::Error;
-
-/// Extensions by which a video is known, in lower case; a file's own may be in any case.
-pub const VIDEO_EXTENSIONS: [&str; 11] =
-    ["mp4", "m4v", "mov", "avi", "mkv", "webm", "mpg", "mpeg", "wmv", "mts", "ogv"];
 
 /// A video that cannot be read.
 #[derive(Debug, Error)]
@@ -53,9 +50,7 @@ pub enum VideoError {
 /// Whether `path` is a file that is named like a video.
 #[must_use]
 pub fn is_video(path: &Path) -> bool {
-    let extension = path.extension().and_then(|extension| extension.to_str());
-    let is_known = |extension: &str| VIDEO_EXTENSIONS.iter().any(|known| extension.eq_ignore_ascii_case(known));
-    extension.is_some_and(is_known) && path.is_file()
+    find(path, &[Kind::Video]).is_some() && path.is_file()
 }
 
 /// Name of a frame, as a picture beside the video would have it: `clip_000012.png`.

@@ -3,9 +3,10 @@
 //! A bone turns by C R C^-1 with C from its `axis` and R = Rz Ry Rx of its degrees of freedom; its end is the parent's
 //! end + global rotation * direction * length.
 
-use super::Motion;
-use super::asf::{Skeleton, about, rotation_axis};
+use super::asf::{self, Skeleton, about, rotation_axis};
 use super::error::{MotionError, number, read_text};
+use super::read_options::ReadOptions;
+use super::recording::Motion;
 use sinew_core::math::{Mat3, Vec3};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,6 +17,18 @@ use std::path::Path;
 /// Names the file, the line and the rule that it broke.
 pub fn read(path: &Path, skeleton: &Skeleton, frames_per_second: f32) -> Result<Motion, MotionError> {
     parse(&read_text(path)?, path, skeleton, frames_per_second)
+}
+
+/// Reads a motion of the skeleton that `options` names, or of the only one in the motion's folder.
+///
+/// # Errors
+/// Names the file, the line and the rule that it broke; or the folder without a skeleton.
+pub fn read_with_skeleton(path: &Path, options: &ReadOptions<'_>) -> Result<Motion, MotionError> {
+    let skeleton = match options.skeleton {
+        Some(skeleton) => asf::read(skeleton)?,
+        None => asf::read(&asf::beside(path)?)?,
+    };
+    read(path, &skeleton, options.rate())
 }
 
 /// Parses the text of a motion; `path` is for messages only. The joints are `root` and the ends of all bones.
@@ -152,7 +165,6 @@ impl Reader<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::asf;
     use super::*;
 
     const ASF: &str = ":units\n length 0.45\n angle deg\n:root\n order TX TY TZ RX RY RZ\n axis XYZ\n position 0 0 0\n orientation 0 0 0\n\
@@ -236,14 +248,5 @@ mod tests {
             let found = asf::parse(&ASF.replacen(from, to, 1), Path::new("s.asf")).unwrap_err().to_string();
             assert!(found.starts_with(message), "{found} does not start with {message}");
         }
-    }
-
-    #[test]
-    fn without_a_skeleton_in_the_folder_the_option_is_named() {
-        let folder = tempfile::tempdir().unwrap();
-        let motion = folder.path().join("m.amc");
-        std::fs::write(&motion, "1\n").unwrap();
-        let message = super::super::read(&motion, &super::super::ReadOptions::default()).unwrap_err().to_string();
-        assert!(message.contains("0 .asf files") && message.contains("--skeleton FILE.asf"), "{message}");
     }
 }

@@ -1,7 +1,8 @@
 //! Motion of the arms alone, as directions in the torso's frame, ready for a body with other segment lengths.
 
+use super::error::MotionError;
 use super::landmarks::{Arm, Torso};
-use super::{Motion, MotionError};
+use super::recording::Motion;
 use sinew_core::math::{Vec3, floor, unit};
 use std::path::Path;
 

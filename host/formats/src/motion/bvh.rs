@@ -1,11 +1,11 @@
 //! BVH motions. Position channels replace a joint's OFFSET; rotation channels multiply in the order they are listed.
 
-use super::Motion;
-use super::arm_motion::ArmSide;
 use super::asf::{CMU_METRES_PER_UNIT, about};
 use super::error::{MotionError, number, read_text};
 use super::landmarks::Arm;
+use super::recording::Motion;
 use sinew_core::math::{Mat3, Vec3, abs, ln};
+use sinew_core::skeleton::Side as ArmSide;
 use std::iter::Enumerate;
 use std::path::Path;
 use std::str::Lines;

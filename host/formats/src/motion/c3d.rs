@@ -7,7 +7,7 @@ use std::panic::catch_unwind;
 use std::path::Path;
 
 /// Second byte of every C3D file.
-const MAGIC: u8 = 0x50;
+pub const MAGIC: u8 = 0x50;
 /// A C3D file is made of blocks of this size; the header is the first.
 const BLOCK_BYTES: usize = 512;
 

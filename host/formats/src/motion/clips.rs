@@ -1,6 +1,9 @@
 //! Recorded clips with busy arms, for evaluation on rendered scenes where the recordings are at hand.
 
-use super::{ArmMotion, ArmSide, MotionError, ReadOptions, read};
+use super::arm_motion::{ArmMotion, ArmSide};
+use super::error::MotionError;
+use super::read_options::ReadOptions;
+use super::reading::read;
 use std::path::Path;
 
 /// A part of a recording.

@@ -24,10 +24,12 @@ pub enum MotionError {
         rule: String,
     },
     /// The file ending is none of those that are read.
-    #[error("motion `{}` is of no known kind; give a .bvh, a .amc (with its .asf), a .txt of exponential maps, or for a whole body a .trc or .c3d", path.display())]
+    #[error("motion `{}` is of no known kind; give {known}", path.display())]
     UnknownKind {
         /// The file.
         path: PathBuf,
+        /// What to give instead, in words.
+        known: String,
     },
     /// An AMC file holds no skeleton and none was found beside it.
     #[error("motion `{}` needs a skeleton: {found} in its folder; name one with --skeleton FILE.asf", path.display())]

@@ -6,8 +6,9 @@
 //! arms hang and thighs point down. Row 1 is a rest pose and is left out.
 
 use super::anthropometry as fraction;
+use super::asf;
 use super::error::{MotionError, number, read_text};
-use super::{Motion, asf};
+use super::recording::Motion;
 use sinew_core::math::{Mat3, Vec3, axis_rotation, length};
 use std::path::Path;
 
@@ -165,7 +166,7 @@ fn place(values: &[f32], table: &[Joint], unit_m: f32, positions_m: &mut Vec<Vec
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ArmMotion, ArmSide};
+    use super::super::arm_motion::{ArmMotion, ArmSide};
     use super::*;
     use core::f32::consts::FRAC_PI_2;
 

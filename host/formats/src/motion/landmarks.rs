@@ -1,9 +1,10 @@
 //! Where shoulders, elbows, wrists and hips are in a motion, by the names that skeletons usually give them, and the
 //! torso's frame.
 
-use super::arm_motion::ArmSide;
-use super::{Motion, MotionError};
+use super::error::MotionError;
+use super::recording::Motion;
 use sinew_core::math::{Mat3, Vec3, unit};
+use sinew_core::skeleton::Side as ArmSide;
 use std::path::Path;
 
 /// Names of one skeleton convention; `{}` stands for the side.

@@ -1,6 +1,6 @@
 //! Named points in space over time, some of them missing: marker files (TRC, C3D), and motions seen as such.
 
-use super::Motion;
+use super::recording::Motion;
 use sinew_core::math::Vec3;
 
 /// Positions of named points over time.

@@ -4,9 +4,9 @@
 //! within reach; between reaches there may be a pause. The elbow's swivel about the line from shoulder to hand drifts
 //! slowly. Lengths are fractions of body height, so the directions fit any body of these proportions.
 
-use super::MotionError;
 use super::anthropometry::{ELBOW_TO_HAND_CENTRE, UPPER_ARM};
 use super::arm_motion::{ArmDirections, ArmMotion, ArmSide};
+use super::error::MotionError;
 use sinew_core::math::{Vec3, clamp, sin_cos, sqrt, unit};
 use sinew_core::random::Stream;
 
