@@ -1,11 +1,12 @@
-//! Clouds as tables: a header that names `x_m`, `y_m` and `z_m` (or `x`, `y` and `z`), then a row for each point.
+//! Clouds as tables: a header that names `x_m`, `y_m` and `z_m` (or `x`, `y` and `z`), then a row
+//! for each point.
 
 use super::point_cloud::PointCloud;
 use csv::{ByteRecord, ReaderBuilder, Trim};
 use sinew_core::math::Vec3;
 
-/// Reads the points of a CSV file's content. Further columns are passed over; an empty or NaN cell is a coordinate that was
-/// not measured, so its point is counted as skipped.
+/// Reads the points of a CSV file's content. Further columns are passed over; an empty or NaN cell
+/// is a coordinate that was not measured, so its point is counted as skipped.
 ///
 /// # Errors
 /// The rule that the content breaks.

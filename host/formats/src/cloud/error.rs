@@ -62,7 +62,7 @@ pub enum CloudError {
         /// How many of which, in words.
         found: String,
     },
-    /// The names do not say which frame is which.
+    /// The names hold no frame number.
     #[error(
         "the names in `{}` do not number the frames: `{name}` {rule}; name the files like frame_000001.ply",
         folder.display()

@@ -16,7 +16,8 @@ pub struct CloudFrame {
     pub path: PathBuf,
 }
 
-/// The frames of a folder: at least one, in natural order (`frame_2` before `frame_10`), their numbers strictly growing.
+/// The frames of a folder: at least one, in natural order (`frame_2` before `frame_10`), their
+/// numbers strictly growing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CloudFolder {
     /// The frames.
@@ -24,11 +25,12 @@ pub struct CloudFolder {
 }
 
 impl CloudFolder {
-    /// Lists the clouds directly in `folder`. Hidden files, folders and files with other endings are passed over.
+    /// Lists the clouds directly in `folder`. Hidden files, folders and files with other endings
+    /// are passed over.
     ///
     /// # Errors
-    /// If the folder is missing, is a file, is empty, holds no cloud or clouds of several kinds, or if the names do not
-    /// number the frames.
+    /// The folder is missing, is a file, is empty, or holds no cloud or clouds of several kinds.
+    /// The names do not number the frames.
     pub fn open(folder: &Path) -> Result<Self, CloudError> {
         let unreadable = |reason| CloudError::Unreadable { path: folder.to_path_buf(), reason };
         if folder.is_file() {

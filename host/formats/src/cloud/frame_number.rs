@@ -2,8 +2,9 @@
 
 /// Frame numbers of `stems`, file names without ending in natural order.
 ///
-/// A name may hold several numbers (`take2_frame_000017_cam1`). Counted from the end of the name, the first place whose
-/// numbers grow strictly from file to file is the frame's number. `None` if there is no such place.
+/// A name may hold several numbers (`take2_frame_000017_cam1`). Counted from the end of the name,
+/// the first place whose numbers grow strictly from file to file is the frame's number. `None` if
+/// there is no such place.
 #[must_use]
 pub fn frame_numbers(stems: &[&str]) -> Option<Vec<u64>> {
     let numbers: Vec<Vec<Option<u64>>> = stems.iter().map(|stem| numbers_from_the_end(stem)).collect();

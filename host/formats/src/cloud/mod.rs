@@ -1,7 +1,7 @@
 //! Clouds of points in space, one file a frame: PLY, PCD and CSV are read, PLY is written.
 //!
-//! Coordinates are metres in the camera's axes (x right, y down, z forward; the camera's centre is the origin) and are
-//! taken as they stand: a PCD file's `VIEWPOINT` is not applied.
+//! Coordinates are metres in the camera's axes: x right, y down, z forward, the camera's centre is
+//! the origin. They are used as they are; a PCD file's `VIEWPOINT` is not applied.
 
 pub mod blocks;
 pub mod csv;

@@ -1,4 +1,5 @@
-//! Clouds in PCD files, the format of the Point Cloud Library: the fields `x`, `y` and `z`; ascii, binary or compressed.
+//! Clouds in PCD files, the format of the Point Cloud Library: the fields `x`, `y` and `z`; ascii,
+//! binary or compressed.
 
 use super::file_size::MAX_FILE_BYTES;
 use super::point_cloud::PointCloud;
@@ -37,7 +38,8 @@ fn place_of_coordinates(meta: &PcdMeta) -> Result<[usize; 3], String> {
     Ok(places)
 }
 
-/// Refuses a header that promises more than there is, before memory is asked for: `data` is what follows it.
+/// Refuses a header whose counts exceed the file, before memory is allocated. `data` is what
+/// follows the header.
 fn check_size(meta: &PcdMeta, data: &[u8]) -> Result<(), String> {
     let is_ascii = meta.data == DataKind::Ascii;
     let record_bytes = meta.field_defs.iter().try_fold(0_u64, |sum, field| {
@@ -55,7 +57,7 @@ fn check_size(meta: &PcdMeta, data: &[u8]) -> Result<(), String> {
     Err(format!("its header promises {} points, and {held} bytes of data cannot hold them", meta.num_points))
 }
 
-/// Bytes that the compressed `data` says to hold. LZF makes at most 264 bytes of 3.
+/// Uncompressed size by the header of the compressed `data`. LZF makes at most 264 bytes of 3.
 fn compressed_content(data: &[u8]) -> Result<u64, String> {
     let word = |at: usize| data.get(at..at + 4).and_then(|four| four.try_into().ok()).map(u32::from_le_bytes);
     let (Some(packed), Some(content)) = (word(0), word(4)) else {

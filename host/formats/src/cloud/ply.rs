@@ -1,4 +1,5 @@
-//! Clouds in PLY files (Turk, The PLY polygon file format, 1994): the `x`, `y` and `z` of the element `vertex`.
+//! Clouds in PLY files (Turk, The PLY polygon file format, 1994): the `x`, `y` and `z` of the
+//! element `vertex`.
 
 use super::point_cloud::PointCloud;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -21,7 +22,7 @@ impl PropertyAccess for Vertex {
             "z" => 2,
             _ => return PropertyAccessResult::Ignored,
         };
-        // Lists come here too, of elements that are no vertices.
+        // Lists of other elements come here too.
         value.to_f32_lossy().map_or(PropertyAccessResult::Ignored, |coordinate| {
             self.0[axis] = coordinate;
             PropertyAccessResult::Set
@@ -29,7 +30,8 @@ impl PropertyAccess for Vertex {
     }
 }
 
-/// Reads the points of a PLY file's content: ascii, little or big endian. Further properties and elements are passed over.
+/// Reads the points of a PLY file's content: ascii, little or big endian. Further properties and
+/// elements are passed over.
 ///
 /// # Errors
 /// The rule that the content breaks.
@@ -44,7 +46,7 @@ pub fn parse(bytes: &[u8]) -> Result<PointCloud, String> {
     {
         numbers = spelled;
         reader = Reader::new(&numbers);
-        // Once more, so that lines are counted.
+        // The header again, so that line numbers in errors are right.
         parser.read_header(&mut reader).map_err(|error| one_line(&error))?;
     }
     for element in header.elements.values() {
@@ -57,8 +59,9 @@ pub fn parse(bytes: &[u8]) -> Result<PointCloud, String> {
     Err("it has no element `vertex`".to_owned())
 }
 
-/// An ascii file in which, from the byte `start` on, words like `nan` and `inf` are numbers beyond all range: the parser knows
-/// none but digits, and most programs write those words for points that were not measured. `None` where there is nothing to do.
+/// Replaces words like `nan` and `inf` from the byte `start` on by a number out of range. Most
+/// programs write these words for points that were not measured, but the parser knows digits only.
+/// `None` if there is no such word.
 fn spell_numbers(bytes: &[u8], start: usize) -> Option<Vec<u8>> {
     let (header, body) = bytes.split_at(start);
     if !body.iter().any(|byte| byte.eq_ignore_ascii_case(&b'n')) {
@@ -82,7 +85,8 @@ fn check_header(header: &Header, bytes: usize) -> Result<(), String> {
             return Err(format!("its element `vertex` has no number `{axis}`"));
         }
     }
-    // Every property takes a byte at least, so a larger count is a lie, and one of elements without any would never end.
+    // Each property takes at least a byte, so a larger count is false. A count of elements without
+    // properties would have no bound.
     let is_false = |element: &&ElementDef| {
         element.count > 0 && (element.properties.is_empty() || element.count > bytes / element.properties.len())
     };

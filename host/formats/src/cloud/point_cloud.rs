@@ -3,20 +3,23 @@
 use sinew_core::math::Vec3;
 use sinew_core::observation::point_cloud::NEAREST_M;
 
-/// Most points of a frame that a tracker is given; [`PointCloud::limit`] draws them from a larger cloud.
+/// Most points of a frame that a tracker is given; [`PointCloud::limit`] draws them from a larger
+/// cloud.
 pub const MAX_POINTS: usize = 20_000;
-/// Radius around the camera's centre in which no point can be: matching that failed is often written as the origin.
+/// Radius around the camera's centre in which no point can be: matching that failed is often
+/// written as the origin.
 pub const CENTRE_RADIUS_M: f32 = NEAREST_M;
-/// Distance beyond which no point can be: far more than a stereo camera measures, and its square is an ordinary number.
+/// Distance beyond which no point can be: far more than a stereo camera measures, and its square is
+/// an ordinary number.
 pub const MAX_DISTANCE_M: f32 = 1_000.0;
 
 /// The points of one frame.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PointCloud {
-    /// Points in metres in the order of the file: finite, between [`CENTRE_RADIUS_M`] and [`MAX_DISTANCE_M`] from the
-    /// camera's centre.
+    /// Points in metres in the order of the file: finite, between [`CENTRE_RADIUS_M`] and
+    /// [`MAX_DISTANCE_M`] from the camera's centre.
     pub points_m: Vec<Vec3>,
-    /// Points of the file that were left out, because they are not so.
+    /// Number of points of the file that were left out as unusable.
     pub skipped: usize,
 }
 

@@ -7,9 +7,9 @@ use sinew_core::random::Stream;
 const STREAM_INDEX: u32 = u32::MAX;
 
 impl PointCloud {
-    /// Keeps `max_points` of the points, drawn without replacement, each subset as likely as any other (selection sampling:
-    /// Knuth, volume 2, algorithm 3.4.2 S). The order stays; the draw depends on `seed` and `frame` only. Returns how many
-    /// points there were.
+    /// Keeps `max_points` of the points, drawn without replacement, each subset as likely as any
+    /// other (selection sampling: Knuth, volume 2, algorithm 3.4.2 S). The order stays; the draw
+    /// depends on `seed` and `frame` only. Returns how many points there were.
     pub fn limit(&mut self, max_points: usize, seed: u64, frame: u64) -> usize {
         let before = self.points_m.len();
         if before <= max_points {

@@ -73,7 +73,8 @@ fn millions_of_points_are_cut_to_the_stated_number() {
 }
 
 proptest! {
-    /// Cut anywhere and with bytes changed, a file is read or refused; what is read keeps the cloud's invariant.
+    /// Cut anywhere and with bytes changed, a file is read or refused; what is read keeps the
+    /// cloud's invariant.
     #[test]
     fn damaged_files_never_panic(
         kind in 0_usize..3,

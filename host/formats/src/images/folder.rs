@@ -90,7 +90,8 @@ impl ImageInput {
 /// Hidden files, folders and files with other extensions are passed over.
 ///
 /// # Errors
-/// [`InputError`] if the folder is missing, not a folder, empty, cannot be listed, or holds no image.
+/// [`InputError`] if the folder is missing, not a folder, empty, cannot be listed, or holds no
+/// image.
 pub fn list_images(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     if !folder.exists() {
         return Err(InputError::Missing(folder.to_path_buf()));
@@ -125,10 +126,11 @@ pub fn list_images(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
 
 /// Decodes one image to 8-bit RGB; 16-bit samples are scaled, grey is spread, alpha is dropped.
 ///
-/// The format is told by the file's content, so that a JPEG named `.png` is read too.
+/// The format is found from the file's content, so a JPEG named `.png` is read too.
 ///
 /// # Errors
-/// [`ImageFileError`] if the file cannot be opened, is truncated, is not an image, or is larger than [`MAX_SIDE_PX`].
+/// [`ImageFileError`] if the file cannot be opened, is truncated, is not an image, or is larger
+/// than [`MAX_SIDE_PX`].
 pub fn load_rgb(path: &Path) -> Result<RgbImage, ImageFileError> {
     let failed = |reason: String| ImageFileError { path: path.to_path_buf(), reason };
     let bytes = fs::read(path).map_err(|error| failed(error.to_string()))?;

@@ -1,4 +1,5 @@
-//! Whether a JPEG file reaches its end: decoders fill what is missing with grey, which a tracker must not take for a picture.
+//! Whether a JPEG file reaches its end: decoders fill what is missing with grey, which a tracker
+//! must not take for a picture.
 
 /// Start of image, ITU-T T.81 table B.1.
 const START_OF_IMAGE: u8 = 0xD8;
@@ -7,7 +8,7 @@ const END_OF_IMAGE: u8 = 0xD9;
 /// Start of scan: entropy-coded data follow its header.
 const START_OF_SCAN: u8 = 0xDA;
 
-/// Walks the markers of a JPEG stream (ITU-T T.81 annex B) and tells whether the end-of-image marker is reached.
+/// Whether the markers of a JPEG stream (ITU-T T.81 annex B) reach the end-of-image marker.
 ///
 /// Thumbnails inside application segments are stepped over; bytes after the end are allowed.
 #[must_use]
@@ -29,7 +30,8 @@ pub fn reaches_end_of_image(bytes: &[u8]) -> bool {
     false
 }
 
-/// Index of the code byte of the first marker at or after `at`; stuffed zeros and restart markers are data.
+/// Index of the code byte of the first marker at or after `at`; stuffed zeros and restart markers
+/// are data.
 fn next_marker(bytes: &[u8], at: usize) -> Option<usize> {
     let code_is_marker = |code: u8| code != 0 && code != 0xFF && !(0xD0..=0xD7).contains(&code);
     (at..bytes.len().saturating_sub(1)).find(|&i| bytes[i] == 0xFF && code_is_marker(bytes[i + 1])).map(|i| i + 1)

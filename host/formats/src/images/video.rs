@@ -27,7 +27,7 @@ pub enum VideoError {
         /// What the operating system said.
         reason: String,
     },
-    /// Not a single frame can be had.
+    /// No frame can be read.
     #[error("`{}` cannot be read as a video: {reason}; play it to see whether it is whole", .file.display())]
     Unreadable {
         /// The video.
@@ -35,7 +35,7 @@ pub enum VideoError {
         /// What ffmpeg said.
         reason: String,
     },
-    /// The video is broken behind some frames.
+    /// The video is broken after some frames.
     #[error("`{}` is broken after {frames} frames: {reason}", .file.display())]
     Broken {
         /// The video.
@@ -53,18 +53,18 @@ pub fn is_video(path: &Path) -> bool {
     find(path, &[Kind::Video]).is_some() && path.is_file()
 }
 
-/// Name of a frame, as a picture beside the video would have it: `clip_000012.png`.
+/// File name for the picture of a frame: `clip_000012.png`.
 #[must_use]
 pub fn frame_name(video: &Path, frame: usize) -> String {
     format!("{}_{frame:06}.png", video.file_stem().unwrap_or_default().to_string_lossy())
 }
 
-/// What a video says of itself.
+/// Rate and length of a video, from its header and its packets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VideoFacts {
     /// Frames per second, the mean.
     pub rate_hz: f64,
-    /// Number of frames by what the file says and holds; what can be decoded may be less.
+    /// Number of frames by header and packets; fewer may be decodable.
     pub frames: usize,
 }
 
@@ -92,7 +92,7 @@ impl VideoFacts {
         let rate = |name: &str| stream[name].as_str().and_then(fraction).filter(|rate| rate.is_finite() && *rate > 0.0);
         match rate("avg_frame_rate").or_else(|| rate("r_frame_rate")) {
             Some(rate_hz) if packets > 0.0 => {
-                // The heading of a file that was cut still tells how long it was.
+                // The header of a cut file still gives the full duration.
                 let told = (number(&json["format"]["duration"]) * rate_hz).round();
                 Ok(Self { rate_hz, frames: packets.max(told) as usize })
             }
@@ -116,8 +116,8 @@ pub struct VideoFrames {
 }
 
 impl VideoFrames {
-    /// Opens a video and decodes its first frame. Where the video's own rate is another, or is not constant, frames are repeated or
-    /// left out, so that frame k is what was seen at the time k / `rate_hz`.
+    /// Opens a video and decodes its first frame. Frame k is the picture at time k / `rate_hz`. For
+    /// this, frames are repeated or dropped where the video's own rate differs or varies.
     ///
     /// # Errors
     /// There is no ffmpeg, or no frame can be decoded.
@@ -132,7 +132,7 @@ impl VideoFrames {
         #[cfg(unix)]
         {
             use std::os::unix::process::CommandExt;
-            // Ctrl-C is for this program, which ends the other one itself.
+            // Ctrl-C goes to this program only, which stops ffmpeg.
             command.process_group(0);
         }
         let mut child = command.spawn().map_err(|error| no_program(file, "ffmpeg", &error))?;
@@ -161,7 +161,7 @@ impl VideoFrames {
         &self.file
     }
 
-    /// How many frames the video says that it has, at the rate that was asked for.
+    /// Number of frames by the video's header, at the requested rate.
     #[must_use]
     pub fn expected(&self) -> usize {
         self.expected
@@ -195,12 +195,12 @@ impl VideoFrames {
         }
     }
 
-    /// The pipe has ended: as it should, or why not.
+    /// Handles the end of the pipe: the video's end, or an error.
     fn end(&mut self, reason: Option<String>) -> Result<Option<RgbImage>, VideoError> {
         let succeeded = reason.is_none() && self.child.wait().is_ok_and(|status| status.success());
         let mut told = String::new();
         let _ = self.complaints.seek(SeekFrom::Start(0)).and_then(|_| self.complaints.read_to_string(&mut told));
-        // Complaints about a video that is as long as it says are about blemishes.
+        // Messages about a video of full length are about minor defects.
         if succeeded && (told.trim().is_empty() || self.read >= self.expected) {
             return Ok(None);
         }

@@ -1,7 +1,7 @@
 //! Acclaim motions (AMC): per frame a line of angles for each bone of an ASF skeleton.
 //!
-//! A bone turns by C R C^-1 with C from its `axis` and R = Rz Ry Rx of its degrees of freedom; its end is the parent's
-//! end + global rotation * direction * length.
+//! A bone turns by C R C^-1, with C from its `axis` and R = Rz Ry Rx of its degrees of freedom. Its
+//! end is the parent's end + global rotation * direction * length.
 
 use super::asf::{self, Skeleton, about, rotation_axis};
 use super::error::{MotionError, number, read_text};
@@ -31,7 +31,8 @@ pub fn read_with_skeleton(path: &Path, options: &ReadOptions<'_>) -> Result<Moti
     read(path, &skeleton, options.rate())
 }
 
-/// Parses the text of a motion; `path` is for messages only. The joints are `root` and the ends of all bones.
+/// Parses the text of a motion; `path` is for messages only. The joints are `root` and the ends of
+/// all bones.
 ///
 /// # Errors
 /// Names the file, the line and the rule that it broke.
@@ -195,8 +196,9 @@ mod tests {
         assert!(close(frame[3], [0.0508, -0.762, 0.0]));
     }
 
-    /// C = Rz(90): a turn by 90 degrees about the bone's own x is one about world y, which leaves (0, -1, 0) alone and
-    /// turns the tip from x to -z; then the lower bone's 90 degrees about x turn (0, -1, 0) to (0, 0, -1) before that.
+    /// C = Rz(90): a turn by 90 degrees about the bone's own x is one about world y. It keeps (0,
+    /// -1, 0) and turns the tip from x to -z. The lower bone's 90 degrees about x turn (0, -1, 0)
+    /// to (0, 0, -1) before that.
     #[test]
     fn a_bone_turns_about_its_own_axes() {
         let motion = positions("1\nroot 0 0 0 0 0 0\nupper 90 0 0\nlower 90\n").unwrap();

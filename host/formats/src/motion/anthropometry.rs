@@ -1,5 +1,5 @@
-//! Segment lengths as fractions of body height: Drillis and Contini (1966), in the form of D. A. Winter,
-//! "Biomechanics and Motor Control of Human Movement", figure 4.1.
+//! Segment lengths as fractions of body height: Drillis and Contini (1966), in the form of D. A.
+//! Winter, "Biomechanics and Motor Control of Human Movement", figure 4.1.
 
 /// Shoulder to elbow.
 pub const UPPER_ARM: f32 = 0.186;
@@ -7,7 +7,8 @@ pub const UPPER_ARM: f32 = 0.186;
 pub const FOREARM: f32 = 0.146;
 /// Wrist to finger tips.
 pub const HAND: f32 = 0.108;
-/// Elbow to the middle of the hand: the forearm and half a hand. The hand's centre lies on the forearm's extension.
+/// Elbow to the middle of the hand: the forearm and half a hand. The hand's centre lies on the
+/// forearm's extension.
 pub const ELBOW_TO_HAND_CENTRE: f32 = FOREARM + 0.5 * HAND;
 /// Middle of the body to the shoulder joint, sideways.
 pub const SHOULDER_HALF_WIDTH: f32 = 0.129;

@@ -1,4 +1,5 @@
-//! Motion of the arms alone, as directions in the torso's frame, ready for a body with other segment lengths.
+//! Motion of the arms alone, as directions in the torso's frame, ready for a body with other
+//! segment lengths.
 
 use super::error::MotionError;
 use super::landmarks::{Arm, Torso};
@@ -41,7 +42,7 @@ pub struct ArmMotion {
 }
 
 impl ArmMotion {
-    /// Arms given frame by frame.
+    /// Builds the motion from directions of each frame.
     ///
     /// # Errors
     /// If the sides differ in length, are empty, or the rate is not above zero.
@@ -58,8 +59,8 @@ impl ArmMotion {
         Ok(Self { frames_per_second, left, right })
     }
 
-    /// The arms of a whole-body `motion`. An arm that goes by no known name, or a frame that gives no direction, hangs
-    /// down; `path` is for messages only.
+    /// The arms of a whole-body `motion`. An arm without a known name hangs down, as does an arm in
+    /// a frame that gives no direction. `path` is for messages only.
     ///
     /// # Errors
     /// If the torso is not found, or neither arm.
@@ -107,8 +108,8 @@ impl ArmMotion {
         }
     }
 
-    /// Seen at `frames_per_second`: at each instant the directions between the two nearest frames. No low-pass filter: a
-    /// camera, too, samples instants.
+    /// Seen at `frames_per_second`: at each instant the directions between the two nearest frames.
+    /// No low-pass filter: a camera, too, samples instants.
     ///
     /// # Errors
     /// If the rate is not above zero.
@@ -186,7 +187,8 @@ mod tests {
     const NAMES: [&str; 8] =
         ["lclavicle", "lhumerus", "lradius", "lhipjoint", "rclavicle", "rhumerus", "rradius", "rhipjoint"];
 
-    /// A body that looks along world +x, its left hand stretched out to the front, its right one hanging.
+    /// A body that looks along world +x, its left hand stretched out to the front, its right one
+    /// hanging.
     fn looking_along_x() -> Motion {
         let positions_m = [
             [0.0, 1.4, -0.2],

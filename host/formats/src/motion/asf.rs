@@ -8,7 +8,8 @@ const METRES_PER_INCH: f32 = 0.0254;
 /// Metres per length unit of the CMU collection, whose files have `length 0.45`.
 pub const CMU_METRES_PER_UNIT: f32 = METRES_PER_INCH / 0.45;
 
-/// One degree of freedom of a bone: a rotation about the axis with this index (0 = x, 1 = y, 2 = z).
+/// One degree of freedom of a bone: a rotation about the axis with this index (0 = x, 1 = y, 2 =
+/// z).
 pub type RotationAxis = usize;
 
 /// A bone; its end is a joint of the motion.

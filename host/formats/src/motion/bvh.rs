@@ -1,4 +1,5 @@
-//! BVH motions. Position channels replace a joint's OFFSET; rotation channels multiply in the order they are listed.
+//! BVH motions. Position channels replace a joint's OFFSET; rotation channels multiply in the order
+//! they are listed.
 
 use super::asf::{CMU_METRES_PER_UNIT, about};
 use super::error::{MotionError, number, read_text};
@@ -10,7 +11,8 @@ use std::iter::Enumerate;
 use std::path::Path;
 use std::str::Lines;
 
-/// Length units that occur: metre, centimetre, millimetre, inch, and the CMU collection's inch / 0.45.
+/// Length units that occur: metre, centimetre, millimetre, inch, and the CMU collection's inch /
+/// 0.45.
 const UNITS_M: [f32; 5] = [1.0, 0.01, 0.001, 0.0254, CMU_METRES_PER_UNIT];
 /// Shoulder to wrist of an adult, metres: (0.186 + 0.146) times 1.7 m, after Drillis and Contini.
 const SHOULDER_TO_WRIST_M: f32 = 0.332 * 1.7;
@@ -37,10 +39,11 @@ pub fn read(path: &Path, metres_per_unit: Option<f32>) -> Result<Motion, MotionE
     parse(&read_text(path)?, path, metres_per_unit)
 }
 
-/// Parses the text of a BVH file; `path` is for messages only. An End Site is a joint called `PARENT_end`.
+/// Parses the text of a BVH file; `path` is for messages only. An End Site is a joint called
+/// `PARENT_end`.
 ///
-/// Without `metres_per_unit` the unit is the one of metre, cm, mm, inch and inch / 0.45 that makes the arms most like
-/// an adult's; a file without arms is taken to be in centimetres.
+/// Without `metres_per_unit` the unit is metre, cm, mm, inch or inch / 0.45: the one that makes the
+/// arms most like an adult's. A file without arms is in centimetres.
 ///
 /// # Errors
 /// Names the file, the line and the rule that it broke.
@@ -219,9 +222,9 @@ mod tests {
         parse(text, Path::new("m.bvh"), Some(0.01))
     }
 
-    /// Root at (1, 2, 3) instead of its offset, turned 90 degrees about y: x -> -z. Arm: at -10 z, its own 90 degrees
-    /// about z turn x to y. Hand: 30 instead of 20, along y; its 90 degrees about x turn the end's y to z, which Arm
-    /// leaves and the root turns to x.
+    /// Root at (1, 2, 3) instead of its offset, turned 90 degrees about y: x -> -z. Arm: at -10 z,
+    /// its own 90 degrees about z turn x to y. Hand: 30 instead of 20, along y. Its 90 degrees
+    /// about x turn the end's y to z, which the root turns to x.
     #[test]
     fn positions_replace_offsets_and_rotations_chain() {
         let motion = parsed(BVH).unwrap();

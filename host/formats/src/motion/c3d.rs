@@ -11,7 +11,8 @@ pub const MAGIC: u8 = 0x50;
 /// A C3D file is made of blocks of this size; the header is the first.
 const BLOCK_BYTES: usize = 512;
 
-/// Reads the markers of a C3D file; points with a negative residual, or exactly at the origin, were not seen.
+/// Reads the markers of a C3D file; points with a negative residual, or exactly at the origin, were
+/// not seen.
 ///
 /// # Errors
 /// The file cannot be read, is no C3D file, is damaged, or names no unit that is known.

@@ -1,4 +1,4 @@
-//! Recorded clips with busy arms, for evaluation on rendered scenes where the recordings are at hand.
+//! Recorded clips with moving arms, for evaluation on rendered scenes.
 
 use super::arm_motion::{ArmMotion, ArmSide};
 use super::error::MotionError;
@@ -15,7 +15,7 @@ pub struct Clip {
     pub file: &'static str,
     /// Skeleton of an AMC file, relative to the same folder.
     pub skeleton: Option<&'static str>,
-    /// The arm that does most.
+    /// The arm that moves most.
     pub side: ArmSide,
     /// First and last second that are used; all of it where there is none.
     pub between_s: Option<[f32; 2]>,
@@ -33,8 +33,9 @@ const fn clip(
     Clip { name, file, skeleton, side, between_s }
 }
 
-/// The clips, in the order of tables. Arm circles and jumping jacks are cut by the labels that come with subject 13,
-/// whose own skeleton is missing: that of subject 35 stands in, of which only directions are used.
+/// The clips, in the order of tables. Arm circles and jumping jacks are cut by the labels of
+/// subject 13. The skeleton of subject 13 is not published; that of subject 35 replaces it, since
+/// only directions are used.
 pub const CLIPS: [Clip; 10] = [
     clip("wave-right-1", "bandai/dataset-2_wave-right-hand_normal_001.bvh", None, ArmSide::Right, None),
     clip("wave-right-2", "bandai/dataset-2_wave-right-hand_normal_002.bvh", None, ArmSide::Right, None),

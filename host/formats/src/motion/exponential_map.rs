@@ -1,9 +1,11 @@
-//! CMU motions as text of exponential maps: a row holds the root's position and 38 joints' rotation vectors.
+//! CMU motions as text of exponential maps: a row holds the root's position and 38 joints' rotation
+//! vectors.
 //!
-//! The format, as shared with work on motion prediction, holds no skeleton: the bones here are those of a standard body
-//! (`anthropometry`) in the T-pose that all zeros mean, with arms along x and the front along z. A rotation vector
-//! belongs to the transposed rotation (the matrices of its makers multiply row vectors), which walking shows: only so do
-//! arms hang and thighs point down. Row 1 is a rest pose and is left out.
+//! The format comes with work on motion prediction and holds no skeleton. The bones here are those
+//! of a standard body (`anthropometry`). All zeros are the T-pose, with arms along x and the front
+//! along z. A rotation vector belongs to the transposed rotation, as in matrices that multiply row
+//! vectors. Recordings of walking confirm it: arms hang and thighs point down. Row 1 is a rest pose
+//! and is left out.
 
 use super::anthropometry as fraction;
 use super::asf;
@@ -18,8 +20,8 @@ pub const COLUMNS: usize = 117;
 const HEIGHT_M: f32 = 1.75;
 const ROOT: usize = usize::MAX;
 
-/// A joint that is kept: its name, its number among the file's 38, its parent in this table, and its rest position from
-/// the parent in body heights (left, up, front).
+/// A joint that is kept. `number` is its place among the file's 38, `parent` its parent's place in
+/// this table. `offset` is its rest position from the parent in body heights (left, up, front).
 struct Joint {
     name: &'static str,
     number: usize,
@@ -58,14 +60,15 @@ const JOINTS: [Joint; 16] = [
     joint("RightHand", 32, 14, [-fraction::FOREARM, 0.0, 0.0]),
 ];
 
-/// One joint of the whole body: its name, number and parent as above, and its rest position from the parent in the length
-/// units of the CMU collection (0.0254 / 0.45 m).
+/// One joint of the whole body. Its offset is in length units of the CMU collection (0.0254 / 0.45
+/// m).
 const fn cmu(name: &'static str, number: usize, parent: usize, offset: [f32; 3]) -> Joint {
     Joint { name, number, parent, offset }
 }
 
-/// Trunk, head, arms and legs with the bones of an adult of the CMU collection (subject 35, sides averaged): there the legs of the
-/// rest pose stand 20 degrees apart, the collar bones rise, and the hips lie below the root.
+/// Trunk, head, arms and legs with the bones of an adult of the CMU collection (subject 35, sides
+/// averaged). In its rest pose the legs are 20 degrees apart, the collar bones rise, and the hips
+/// are below the root.
 const WHOLE_BODY: [Joint; 25] = [
     cmu("Hips", 0, ROOT, [0.0; 3]),
     cmu("LHipJoint", 1, 0, [0.0; 3]),
@@ -102,8 +105,8 @@ pub fn read(path: &Path, frames_per_second: f32) -> Result<Motion, MotionError> 
     parse(&read_text(path)?, path, frames_per_second)
 }
 
-/// Reads the whole body of a motion, recorded at `frames_per_second`: legs too, with the bones of an adult of the CMU
-/// collection.
+/// Reads the whole body of a motion, recorded at `frames_per_second`: legs too, with the bones of
+/// an adult of the CMU collection.
 ///
 /// # Errors
 /// Names the file, the line and the rule that it broke.
@@ -111,7 +114,8 @@ pub fn read_whole_body(path: &Path, frames_per_second: f32) -> Result<Motion, Mo
     parse_joints(&read_text(path)?, path, frames_per_second, &WHOLE_BODY, asf::CMU_METRES_PER_UNIT)
 }
 
-/// Parses the text of a motion; `path` is for messages only. The joints are those that place torso and arms.
+/// Parses the text of a motion; `path` is for messages only. The joints are those that place torso
+/// and arms.
 ///
 /// # Errors
 /// Names the file, the line and the rule that it broke.
@@ -192,7 +196,8 @@ mod tests {
         assert!((motion.frame(0)[0] - Vec3::y()).norm() < 1.0e-5, "the root is 1 m high");
     }
 
-    /// A vector (0, 0, pi/2) of the left upper arm belongs to the turn by -pi/2 about z: x -> -y, the arm hangs.
+    /// A vector (0, 0, pi/2) of the left upper arm belongs to the turn by -pi/2 about z: x -> -y,
+    /// the arm hangs.
     #[test]
     fn a_vector_belongs_to_the_transposed_rotation() {
         let left_arm = 3 + 3 * 21;

@@ -1,6 +1,8 @@
-//! The 14 joints of the stick figure in recordings of many makers, by the names that they usually give.
+//! The 14 joints of the stick figure in recordings of many makers, by the names that they usually
+//! give.
 //!
-//! Names are compared without case, without what stands before a colon, and without `_`, `.`, `-` and spaces.
+//! Names are compared without case, without what stands before a colon, and without `_`, `.`, `-`
+//! and spaces.
 
 use super::error::MotionError;
 use super::markers::MarkerMotion;
@@ -18,11 +20,11 @@ pub const SHOULDERS: [usize; 2] = [2, 5];
 /// Positions of the left and the right hip.
 pub const HIPS: [usize; 2] = [8, 11];
 
-/// Names of one limb joint: each entry is a choice, `+` asks for the middle of two points; `{L}` stands for left or right,
-/// `{l}` for l or r. The first choice that is in the file is taken.
+/// Names of one limb joint. Each entry is an alternative; `+` is the middle of two points. `{L}`
+/// stands for left or right, `{l}` for l or r. The first choice that is in the file is taken.
 ///
-/// Order matters: where a file has both `LeftArm` and `LeftShoulder`, the latter is where the collar bone begins; where it
-/// has both `LeftUpLeg` and `LHipJoint`, the latter lies in the middle of the pelvis.
+/// Order matters. Beside `LeftArm`, `LeftShoulder` is where the collar bone begins. Beside
+/// `LeftUpLeg`, `LHipJoint` is the middle of the pelvis.
 const LIMBS: [(&str, &[&str]); 6] = [
     (
         "shoulder",
@@ -80,8 +82,8 @@ const NECKS: &[&str] = &["neck", "thorax", "c7+clav", "leftshoulder+rightshoulde
 const PELVIS_FRONT: &[&str] = &["{l}asi", "{l}asis", "{l}fwt"];
 const PELVIS_BACK: &[&str] = &["{l}psi", "{l}psis", "{l}bwt"];
 
-/// Hip joint centre from the middle of the front of the pelvis, in units of its width: behind, below, to the side
-/// (A. L. Bell, R. A. Brand, D. R. Pedersen, Human Movement Science 8, 1989).
+/// Hip joint centre from the middle of the front of the pelvis, in units of its width: behind,
+/// below, to the side (A. L. Bell, R. A. Brand, D. R. Pedersen, Human Movement Science 8, 1989).
 const HIP_FROM_FRONT: [f32; 3] = [0.22, 0.30, 0.36];
 
 /// Where a joint comes from.
@@ -91,7 +93,8 @@ enum Source {
     Points(Vec<usize>),
     /// The middle of two joints of the figure, found before.
     Joints([usize; 2]),
-    /// Hip joint from front left, front right, back left, back right of the pelvis; +1 is the left one.
+    /// Hip joint from front left, front right, back left, back right of the pelvis; +1 is the left
+    /// one.
     Pelvis([usize; 4], f32),
 }
 
@@ -120,8 +123,8 @@ fn points_called(known: &[String], patterns: &[&str], left: bool) -> Option<Vec<
     patterns.iter().find_map(|pattern| sided(pattern, left).split('+').map(point).collect())
 }
 
-/// Which points make up one joint more, by `patterns` as those of the limbs: a choice an entry, `+` for the middle of points,
-/// `{L}` and `{l}` for the side. `None` where no choice is among `names`.
+/// The points of one more joint, by `patterns` as for the limbs. Each entry is an alternative; `+`
+/// is the middle of points, `{L}` and `{l}` the side. `None` where no choice is among `names`.
 #[must_use]
 pub fn named_points(names: &[String], patterns: &[&str], left: bool) -> Option<Vec<usize>> {
     let known: Vec<String> = names.iter().map(|name| plain(name)).collect();
@@ -129,7 +132,8 @@ pub fn named_points(names: &[String], patterns: &[&str], left: bool) -> Option<V
 }
 
 impl JointSources {
-    /// Finds the joints among `names`. Without `partial` every limb joint has to be there; `path` is for the message.
+    /// Finds the joints among `names`. Without `partial` every limb joint has to be there; `path`
+    /// is for the message.
     ///
     /// # Errors
     /// Lists the joints that go by no name that is known, and the names that are there.
@@ -159,7 +163,8 @@ impl JointSources {
             }
         }
         sources[HIP_CENTER] = choose(ROOT, true).or(Some(Source::Joints(HIPS)));
-        // Both collar bones begin at the neck; but where no `LeftArm` is there, `LeftShoulder` is the shoulder itself.
+        // Both collar bones begin at the neck; but where no `LeftArm` is there, `LeftShoulder` is
+        // the shoulder itself.
         let collar_names_shoulder = point("leftarm").is_none();
         let necks: Vec<&str> =
             NECKS.iter().copied().filter(|name| !(collar_names_shoulder && name.contains("shoulder"))).collect();
@@ -245,7 +250,7 @@ mod tests {
         list.split_whitespace().map(str::to_owned).collect()
     }
 
-    /// Every point lies at (its number, 0, 0), so that a joint tells which points it was made of.
+    /// Each point is at (its number, 0, 0), so a joint's place shows its points.
     fn found(list: &str) -> [Option<f32>; JOINTS] {
         let names = names(list);
         let sources = JointSources::find(&names, false, Path::new("m")).unwrap();

@@ -1,5 +1,5 @@
-//! Where shoulders, elbows, wrists and hips are in a motion, by the names that skeletons usually give them, and the
-//! torso's frame.
+//! Where shoulders, elbows, wrists and hips are in a motion, by the names that skeletons usually
+//! give them, and the torso's frame.
 
 use super::error::MotionError;
 use super::recording::Motion;
@@ -20,8 +20,8 @@ struct Convention {
     hip: &'static str,
 }
 
-/// CMU and HDM05 (a joint is the end of the bone with its name), the usual BVH exporters, Bandai Namco, older BVH,
-/// SMPL.
+/// CMU and HDM05 (a joint is the end of the bone with its name), the usual BVH exporters, Bandai
+/// Namco, older BVH, SMPL.
 const CONVENTIONS: [Convention; 5] = [
     convention("l", "r", ["{}clavicle", "{}humerus", "{}radius", "{}hipjoint"]),
     convention("Left", "Right", ["{}Arm", "{}ForeArm", "{}Hand", "{}UpLeg"]),
@@ -98,9 +98,10 @@ impl Torso {
         })
     }
 
-    /// Torso frame of one frame's joint `positions`: rows left, up, front, so that the matrix turns a vector into torso
-    /// axes. Up runs from the middle of the hips to the middle of the shoulders, left from the right shoulder to the
-    /// left one, made square to up. `None` where these have no direction.
+    /// Torso frame of one frame's joint `positions`: rows left, up, front, so that the matrix turns
+    /// a vector into torso axes. Up runs from the middle of the hips to the middle of the
+    /// shoulders. Left runs from the right shoulder to the left one, orthogonal to up. `None` where
+    /// these have no direction.
     #[must_use]
     pub fn axes(&self, positions: &[Vec3]) -> Option<Mat3> {
         let [left, right] = self.shoulders.map(|joint| positions[joint]);

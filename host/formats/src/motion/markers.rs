@@ -1,4 +1,5 @@
-//! Named points in space over time, some of them missing: marker files (TRC, C3D), and motions seen as such.
+//! Named points in space over time, some of them missing: marker files (TRC, C3D), and motions seen
+//! as such.
 
 use super::recording::Motion;
 use sinew_core::math::Vec3;

@@ -1,7 +1,8 @@
-//! Recorded and generated human motion: readers (BVH, ASF/AMC, exponential maps) and what an arm tracker needs of it.
+//! Recorded and generated human motion: readers (BVH, ASF/AMC, exponential maps) and what an arm
+//! tracker needs of it.
 //!
-//! A reader gives a [`Motion`], joint positions in metres over time. [`ArmMotion`] keeps of it the directions of upper
-//! arm and forearm in the torso's frame, so that another body can perform it.
+//! A reader gives a [`Motion`], joint positions in metres over time. [`ArmMotion`] keeps of it the
+//! directions of upper arm and forearm in the torso's frame, so that another body can perform it.
 
 pub mod amc;
 pub mod anthropometry;

@@ -1,8 +1,9 @@
 //! The built-in motion: the hand reaches for random targets in front of the body.
 //!
-//! Each reach follows the minimum-jerk profile 10 s^3 - 15 s^4 + 6 s^5 (Flash and Hogan, 1985) on a straight line, kept
-//! within reach; between reaches there may be a pause. The elbow's swivel about the line from shoulder to hand drifts
-//! slowly. Lengths are fractions of body height, so the directions fit any body of these proportions.
+//! Each reach is a straight line with the minimum-jerk profile 10 s^3 - 15 s^4 + 6 s^5 (Flash and
+//! Hogan, 1985). A pause may follow. The elbow's swivel about the line from shoulder to hand drifts
+//! slowly. Lengths are fractions of body height, so the directions fit any body of these
+//! proportions.
 
 use super::anthropometry::{ELBOW_TO_HAND_CENTRE, UPPER_ARM};
 use super::arm_motion::{ArmDirections, ArmMotion, ArmSide};
@@ -31,10 +32,11 @@ const SWIVELS_RAD: [f32; 2] = [0.1, 1.2];
 /// Draws of a target before the last one is taken as it is, moved to the nearest allowed distance.
 const TARGET_TRIES: usize = 32;
 
-/// Frames per second that can be had.
+/// Frames per second that are accepted.
 pub const RATES_HZ: [f32; 2] = [0.1, 10_000.0];
 
-/// `frames` frames of random reaches of both arms at `frames_per_second`; the same seed gives the same motion.
+/// `frames` frames of random reaches of both arms at `frames_per_second`; the same seed gives the
+/// same motion.
 ///
 /// # Errors
 /// If the rate is not in [`RATES_HZ`] or `frames` is zero.
@@ -58,7 +60,8 @@ fn between(stream: &mut Stream, [low, high]: [f32; 2]) -> f32 {
     low + (high - low) * stream.uniform()
 }
 
-/// One reach with the pause after it; positions in stretched arms, relative to the shoulder, outwards-up-front.
+/// One reach with the pause after it; positions in stretched arms, relative to the shoulder,
+/// outwards-up-front.
 #[derive(Debug, Clone, Copy)]
 struct Reach {
     from: Vec3,
@@ -144,7 +147,8 @@ fn minimum_jerk(time: f32) -> f32 {
     s * s * s * (10.0 + s * (-15.0 + 6.0 * s))
 }
 
-/// Elbow on the circle round the line from shoulder to hand, turned outwards by `swivel_rad` from its lowest point.
+/// Elbow on the circle round the line from shoulder to hand, turned outwards by `swivel_rad` from
+/// its lowest point.
 fn elbow(hand: &Vec3, swivel_rad: f32) -> Vec3 {
     let (upper, fore) = (UPPER_ARM / REACH, ELBOW_TO_HAND_CENTRE / REACH);
     let distance = hand.norm();

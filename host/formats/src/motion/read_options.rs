@@ -7,19 +7,19 @@ use std::path::Path;
 pub struct ReadOptions<'a> {
     /// Skeleton of an AMC file; the only .asf of its folder where there is none.
     pub skeleton: Option<&'a Path>,
-    /// Frames in a second of a file that does not say (AMC, exponential maps); 120 where there is none.
+    /// Frames per second of a file that does not store it; [`DEFAULT_FRAMES_PER_SECOND`] if `None`.
     pub frames_per_second: Option<f32>,
     /// Metres per length unit of a BVH file; inferred from the arms where there is none.
     pub metres_per_unit: Option<f32>,
 }
 
 impl ReadOptions<'_> {
-    /// Frames in a second of a file that does not say.
+    /// Frames per second of a file that does not store its rate.
     #[must_use]
     pub fn rate(&self) -> f32 {
         self.frames_per_second.unwrap_or(DEFAULT_FRAMES_PER_SECOND)
     }
 }
 
-/// Frames in a second of the formats that do not say: what the CMU and HDM05 collections were recorded at.
+/// Frames per second of formats that do not store it: the rate of the CMU and HDM05 collections.
 pub const DEFAULT_FRAMES_PER_SECOND: f32 = 120.0;

@@ -13,7 +13,8 @@ pub fn read(path: &Path) -> Result<MarkerMotion, MotionError> {
     parse(&read_text(path)?, path)
 }
 
-/// Parses the text of a TRC file; `path` is for messages only. Empty or NaN cells are points that were not seen.
+/// Parses the text of a TRC file; `path` is for messages only. Empty or NaN cells are points that
+/// were not seen.
 ///
 /// # Errors
 /// Names the file, the line and the rule that it broke.

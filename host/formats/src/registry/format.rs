@@ -80,13 +80,13 @@ pub enum Reader {
     Joints(JointReader),
     /// Reads markers over time.
     Markers(MarkerReader),
-    /// Skeletons are read by [`asf::read`](crate::motion::asf::read).
+    /// Skeletons are read by `motion::asf::read`.
     Skeleton,
     /// Parses the content of a point cloud's file.
     Cloud(fn(&[u8]) -> Result<PointCloud, String>),
-    /// Images are read by [`load_rgb`](crate::images::load_rgb), which goes by the content.
+    /// Images are read by `images::load_rgb`, which goes by the content.
     Image,
-    /// Videos are read by [`VideoFrames`](crate::images::VideoFrames), through ffmpeg.
+    /// Videos are read by `images::VideoFrames`, through ffmpeg.
     Video,
     /// Keypoints are read by the crate `sinew`.
     Keypoints,

@@ -1,8 +1,8 @@
 //! BVH files of any skeleton.
 //!
-//! Lengths are centimetres, as in most collections of motion (in Blender, import with scale 0.01). Axes are those of
-//! the layout and the frames: y up is what programs expect. Every joint has the channels `Zrotation Xrotation Yrotation`, the
-//! root before them `Xposition Yposition Zposition`.
+//! Lengths are centimetres, as in most collections of motion (in Blender, import with scale 0.01).
+//! Axes are those of the layout and the frames: y up is what programs expect. Every joint has the
+//! channels `Zrotation Xrotation Yrotation`, the root before them `Xposition Yposition Zposition`.
 
 use super::error::ExportError;
 use super::euler::zxy_rad;
@@ -18,16 +18,17 @@ const ROTATIONS: &str = "Zrotation Xrotation Yrotation";
 pub struct BvhFrame {
     /// Place of the root in the world, metres. It takes the place of the root's offset.
     pub root_position_m: Vec3,
-    /// Rotation of each joint relative to its parent, in the layout's order; the identity is the rest. Together with those of
-    /// its ancestors it turns the joint's children about the joint.
+    /// Rotation of each joint relative to its parent, in the layout's order; the identity is the
+    /// rest. Together with those of its ancestors it turns the joint's children about the joint.
     pub local_rotations: Vec<Mat3>,
 }
 
-/// Writes frames of `layout`, `rate_hz` of them a second. Joints without children get an `End Site`.
+/// Writes frames of `layout`, `rate_hz` of them a second. Joints without children get an `End
+/// Site`.
 ///
 /// # Errors
-/// If there is no frame, a frame has another number of joints or numbers that are not finite, the rate is not above zero, or
-/// `out` refuses.
+/// There is no frame, or the rate is not above zero. A frame has another number of joints, or
+/// numbers that are not finite. `out` refuses.
 pub fn write_bvh(
     layout: &SkeletonLayout,
     frames: &[BvhFrame],
@@ -78,7 +79,8 @@ fn check(layout: &SkeletonLayout, frames: &[BvhFrame], rate_hz: f64) -> Result<(
     Ok(())
 }
 
-/// Writes a joint without its children, and the closing braces that come before a joint of `next_depth`.
+/// Writes a joint without its children, and the closing braces that come before a joint of
+/// `next_depth`.
 fn write_joint(
     layout: &SkeletonLayout,
     index: usize,

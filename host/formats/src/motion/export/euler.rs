@@ -2,13 +2,15 @@
 
 use sinew_core::math::{Mat3, abs, atan2, sqrt};
 
-/// Cosine of the middle angle below which the first angle is set to zero: there it and the last turn about one axis.
+/// Cosine of the middle angle below which the first angle is set to zero: there it and the last
+/// turn about one axis.
 const GIMBAL_COS: f32 = 1.0e-6;
 
-/// Angles (z, x, y), radians, with `rotation` = Rz Rx Ry; the middle one is within +-pi/2. Exact to rounding everywhere.
+/// Angles (z, x, y), radians, with `rotation` = Rz Rx Ry; the middle one is within +-pi/2. Exact to
+/// rounding everywhere.
 ///
-/// The first angle brings the matrix to Rx Ry, in which both others stand alone. So an error of the first, which is large
-/// near a middle angle of +-pi/2, is made good by the last.
+/// The first angle brings the matrix to Rx Ry, in which both others stand alone. So the last angle
+/// compensates the first one's error, which is large near a middle angle of +-pi/2.
 #[must_use]
 pub fn zxy_rad(rotation: &Mat3) -> [f32; 3] {
     // `0.0 -` leaves no negative zero, which would be written as -0.

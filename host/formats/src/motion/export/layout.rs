@@ -13,8 +13,8 @@ pub struct LayoutJoint {
     pub parent: Option<usize>,
     /// Place relative to the parent's joint at rest, metres, y up.
     pub offset_m: Vec3,
-    /// Of a joint without children, where its bone ends: relative to the joint at rest, metres. Of no use elsewhere. `None`
-    /// is the joint itself.
+    /// Of a joint without children, where its bone ends: relative to the joint at rest, metres. Of
+    /// no use elsewhere. `None` is the joint itself.
     pub end_m: Option<Vec3>,
 }
 
@@ -25,7 +25,8 @@ pub struct SkeletonLayout {
 }
 
 impl SkeletonLayout {
-    /// Checks that `joints` are a tree with one root, the first; that names are words of their own; that numbers are finite.
+    /// Checks that `joints` are a tree with one root, the first; that names are words of their own;
+    /// that numbers are finite.
     ///
     /// # Errors
     /// [`ExportError::Layout`] names the joint and the rule.
@@ -61,8 +62,8 @@ impl SkeletonLayout {
         &self.joints
     }
 
-    /// Indices of all joints with their depth (0 for the root), each one followed by all that hangs from it; siblings keep
-    /// their order.
+    /// Indices of all joints with their depth (0 for the root), each one followed by all that hangs
+    /// from it; siblings keep their order.
     #[must_use]
     pub fn depth_first(&self) -> Vec<(usize, usize)> {
         let mut children = vec![Vec::new(); self.joints.len()];

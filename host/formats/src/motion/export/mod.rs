@@ -1,4 +1,5 @@
-//! Motions for other programs: BVH (angles of joints; animation) and TRC (places of joints; biomechanics).
+//! Motions for other programs: BVH (angles of joints; animation) and TRC (places of joints;
+//! biomechanics).
 
 pub mod bvh;
 pub mod error;

@@ -1,4 +1,4 @@
-//! TRC files: places of named points over time, which OpenSim and its kin open.
+//! TRC files: places of named points over time, for OpenSim and similar programs.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ pub enum TrcUnit {
     Millimetre,
 }
 
-/// What a file says before its frames.
+/// The header of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrcHeading<'a> {
     /// Name of the motion.
@@ -33,8 +33,9 @@ pub struct TrcFrame {
     pub positions_m: Vec<Option<[f64; 3]>>,
 }
 
-/// The text of a TRC file. Axes are those of the frames: y up is what OpenSim expects. Unknown places are empty cells, so
-/// are the last ones of a frame with fewer places than there are names; surplus places are left out.
+/// The text of a TRC file. Axes are those of the frames: y up is what OpenSim expects. Unknown
+/// places are empty cells, so are the last ones of a frame with fewer places than there are names;
+/// surplus places are left out.
 #[must_use]
 pub fn to_trc(heading: &TrcHeading<'_>, frames: &[TrcFrame]) -> String {
     let (unit, per_metre, decimals) = match heading.unit {
