@@ -2,17 +2,14 @@
 
 pub mod body;
 pub mod cli;
-pub mod cloud;
 pub mod config;
 pub mod cyclic;
 pub mod doctor;
 pub mod draw;
 pub mod evaluate;
 pub mod frames;
-pub mod images;
 pub mod keypoints;
 pub mod model_text;
-pub mod motion;
 pub mod output;
 pub mod record;
 pub mod report;
@@ -24,3 +21,5 @@ pub mod track;
 #[cfg(feature = "rerun")]
 pub mod viewer;
 pub mod wording;
+
+pub use sinew_formats::{cloud, images, motion, registry};

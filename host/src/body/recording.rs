@@ -5,7 +5,7 @@ use super::placing::Placement;
 use crate::cyclic::projection::upwards;
 use crate::motion::joint_names::JointSources;
 use crate::motion::markers::MarkerMotion;
-use crate::motion::{self, ReadOptions};
+use crate::motion::{self, ReadOptions, has_skin_markers};
 use anyhow::{Context, Result, ensure};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::full_body::BODY_BONES;
@@ -59,7 +59,7 @@ impl Default for BodyRecordingOptions<'_> {
 }
 
 impl BodyRecording {
-    /// Reads a .bvh, .amc, .txt of exponential maps, .trc or .c3d.
+    /// Reads any motion in space.
     ///
     /// # Errors
     /// Names the file and the line, joint or rate that cannot be used.
@@ -153,7 +153,7 @@ fn resampled<T: Clone>(frames: &[T], from_hz: f32, to_hz: f32, mix: impl Fn(&T, 
 
 /// The markers of a .c3d with a name.
 fn labelled(path: &Path, motion: &MarkerMotion) -> MarkerFrames {
-    if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("c3d")) {
+    if !has_skin_markers(path) {
         return Vec::new();
     }
     let has_name: Vec<bool> = motion.names.iter().map(|name| !name.starts_with('*') && !name.is_empty()).collect();

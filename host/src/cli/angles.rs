@@ -5,6 +5,7 @@ use crate::cyclic::projection::{UpAxis, View};
 use crate::cyclic::recording::{RecordingOptions, angles};
 use crate::keypoints::{DEFAULT_MIN_CONFIDENCE, Facing};
 use crate::output::check_writable_file;
+use crate::registry::{MOTION, described};
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde_json::json;
@@ -17,8 +18,11 @@ use std::path::PathBuf;
   sinew track cyclic measured.csv --model walking --out est.csv --report run
   sinew angles run/joints.trc --rate 60 --out walk.csv")]
 pub struct AnglesArgs {
-    /// Motion in space (.bvh, .amc, .trc, .c3d, .txt of exponential maps) or 2D keypoints (a folder of OpenPose JSON, a COCO
-    /// .json, a .csv).
+    /// Motion in space or 2D keypoints.
+    #[arg(help = format!(
+        "Motion in space ({}) or 2D keypoints (a folder of OpenPose JSON, a COCO .json, a .csv)",
+        described(MOTION)
+    ))]
     pub motion: PathBuf,
     /// Skeleton of an AMC file [default: the only .asf in its folder].
     #[arg(long, value_name = "FILE.asf")]

@@ -11,6 +11,7 @@ use crate::evaluate::body::{
     BodyReport, BodyResult, Measured, MotionChoice, figures::figures, motions::ReadMotion, prediction,
 };
 use crate::output::OutputDir;
+use crate::registry::{MOTION, choice};
 use crate::resume::{Begun, Cells, Stop};
 use crate::stereo::Hidden;
 use anyhow::{Result, ensure};
@@ -28,9 +29,11 @@ use std::sync::atomic::Ordering;
   sinew evaluate body --motion pelvic-lift --models guided --particles 20 \\
       --trials 1 --out body")]
 pub struct EvaluateBodyArgs {
-    /// Motions: .bvh, .amc, .txt (exponential maps), .trc or .c3d files, FILE@START-END for a part in seconds, or stick-wave and
-    /// pelvic-lift, which are built in.
-    #[arg(long, value_name = "FILE", num_args = 1.., required = true)]
+    /// Motions: files, parts of files, or built-in ones.
+    #[arg(long, value_name = "FILE", num_args = 1.., required = true, help = format!(
+        "Motions: {} files, FILE@START-END for a part in seconds, or stick-wave and pelvic-lift, which are built in",
+        choice(MOTION)
+    ))]
     pub motion: Vec<MotionChoice>,
     /// Skeleton of the .amc files that have none in their folder.
     #[arg(long, value_name = "FILE.asf")]

@@ -5,6 +5,7 @@ use super::simulate_cyclic::{self, SimulateCyclicArgs};
 use super::simulate_stereo::{self, SimulateStereoArgs};
 use crate::motion::{self, ArmMotion, ArmSide, ReadOptions, reach};
 use crate::output::OutputDir;
+use crate::registry::{Kind, choice};
 use crate::scene::{Scene, SceneOptions, Sides};
 use crate::track::SideChoice;
 use anyhow::{Context, Result, bail};
@@ -53,14 +54,20 @@ impl From<SideChoice> for Sides {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  sinew simulate arm --motion builtin --frames 30 --out scene")]
 pub struct SimulateArmArgs {
-    /// Motion: a .bvh, .amc or .txt (exponential maps) file, or `builtin` for random reaches.
-    #[arg(long, value_name = "FILE|builtin")]
+    /// Motion: a file, or `builtin` for random reaches.
+    #[arg(long, value_name = "FILE|builtin", help = format!(
+        "Motion: a {} file, or `builtin` for random reaches",
+        choice(&[Kind::JointMotion])
+    ))]
     pub motion: PathBuf,
     /// Skeleton of a .amc motion [default: the only .asf beside it].
     #[arg(long, value_name = "FILE.asf")]
     pub skeleton: Option<PathBuf>,
-    /// Frames per second of a motion file that does not say (.amc, .txt).
-    #[arg(long, value_name = "HZ", default_value_t = motion::DEFAULT_FRAMES_PER_SECOND)]
+    /// Frames per second of a motion file that does not say.
+    #[arg(long, value_name = "HZ", default_value_t = motion::DEFAULT_FRAMES_PER_SECOND, help = format!(
+        "Frames per second of a motion file that does not say ({})",
+        motion::endings_without_rate()
+    ))]
     pub motion_rate: f32,
     /// Part of the motion that is used, in seconds from its beginning.
     #[arg(long, value_name = "START,END", value_parser = pair::<f32>)]

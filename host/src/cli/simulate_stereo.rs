@@ -4,7 +4,9 @@ use super::console::Console;
 use super::simulate::{clear_frames, pair};
 use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::{BodyPart, BodyRecording, BodyRecordingOptions, Placement};
+use crate::motion::{DEFAULT_FRAMES_PER_SECOND, endings_without_rate};
 use crate::output::OutputDir;
+use crate::registry::{MOTION, choice};
 use crate::stereo::stick_wave::StickEnds;
 use crate::stereo::{Hidden, StereoOptions, StereoScene, pelvic_lift, stick_wave};
 use anyhow::{Context, Result, bail, ensure};
@@ -21,14 +23,21 @@ const PELVIC_LIFT: &str = "pelvic-lift";
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  sinew simulate stereo --motion pelvic-lift --points 300 --out points")]
 pub struct SimulateStereoArgs {
-    /// Motion: a .bvh, .amc, .txt (exponential maps), .trc or .c3d file, or one that is built in.
-    #[arg(long, value_name = "FILE|stick-wave|pelvic-lift")]
+    /// Motion: a file, or one that is built in.
+    #[arg(long, value_name = "FILE|stick-wave|pelvic-lift", help = format!(
+        "Motion: a {} file, or one that is built in",
+        choice(MOTION)
+    ))]
     pub motion: PathBuf,
     /// Skeleton of a .amc motion [default: the only .asf beside it].
     #[arg(long, value_name = "FILE.asf")]
     pub skeleton: Option<PathBuf>,
-    /// Frames per second of a motion file that does not say (.amc, .txt) [default: 120].
-    #[arg(long, value_name = "HZ")]
+    /// Frames per second of a motion file that does not say.
+    #[arg(long, value_name = "HZ", help = format!(
+        "Frames per second of a motion file that does not say ({}) [default: {}]",
+        endings_without_rate(),
+        DEFAULT_FRAMES_PER_SECOND
+    ))]
     pub motion_rate: Option<f32>,
     /// Part of the motion that is used, in seconds from its beginning.
     #[arg(long, value_name = "START,END", value_parser = pair::<f32>)]

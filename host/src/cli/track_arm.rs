@@ -6,6 +6,7 @@ use super::skin_args::SkinArgs;
 use super::viewer_args::ViewerArgs;
 use crate::config::{Config, DEFAULT_FILE, MAX_PARTICLES, VariantName};
 use crate::images::{VideoFacts, is_video};
+use crate::registry::{Kind, extensions};
 use crate::track::{Event, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
 use anyhow::{Context, Result};
 use clap::Args;
@@ -21,9 +22,13 @@ const DEFAULT_RATE_HZ: f64 = 15.0;
   sinew simulate arm --motion builtin --frames 30 --out scene
   sinew track arm scene/frames --config scene/camera.toml --out run --overlay")]
 pub struct TrackArmArgs {
-    /// Folder of video frames (PNG, JPEG, PPM), all of one size, tracked in natural order of their names; or a video (MP4, MOV, AVI,
-    /// MKV, WebM, ...), which the installed ffmpeg reads.
-    #[arg(value_name = "FOLDER|VIDEO", required_unless_present = "print_config")]
+    /// Folder of video frames, or a video.
+    #[arg(value_name = "FOLDER|VIDEO", required_unless_present = "print_config", help = format!(
+        "Folder of video frames ({}), all of one size, tracked in natural order of their names; or a video ({}), which \
+         the installed ffmpeg reads",
+        extensions(&[Kind::Image]),
+        extensions(&[Kind::Video])
+    ))]
     pub folder: Option<PathBuf>,
     /// Folder for track.csv, run.json, hand.png and what else is asked for; files of these names are replaced, each as a
     /// whole, when the run ends.

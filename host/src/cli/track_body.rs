@@ -7,6 +7,7 @@ use crate::body::BodyPart;
 use crate::body::run::{BodyEvent, BodyRunReport, BodyTrackOptions, BodyTrackRun, tuning_file};
 use crate::body::tracking::{BodyModelKind, BodyTuning};
 use crate::cloud::MAX_POINTS;
+use crate::registry::{Kind, MEASURABLE, choice, extensions};
 use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::json;
@@ -18,9 +19,13 @@ use std::path::PathBuf;
   sinew simulate stereo --motion pelvic-lift --points 300 --out points
   sinew track body points --particles 20 --out run --pictures")]
 pub struct TrackBodyArgs {
-    /// Folder of point clouds (PLY, PCD or CSV), one file a frame; or a folder that holds them in points/, as `simulate stereo` writes it.
-    /// What it holds of body.json, first_pose.json, stick.csv, truth.csv and run.json (rate, camera, floor) is used.
-    #[arg(value_name = "DIR", required_unless_present = "print_config")]
+    /// Folder of point clouds.
+    #[arg(value_name = "DIR", required_unless_present = "print_config", help = format!(
+        "Folder of point clouds ({}), one file a frame; or a folder that holds them in points/, as `simulate stereo` \
+         writes it. What it holds of body.json, first_pose.json, stick.csv, truth.csv and run.json (rate, camera, \
+         floor) is used",
+        choice(&[Kind::Cloud])
+    ))]
     pub folder: Option<PathBuf>,
     /// Folder for track.csv, track.bvh, track.trc, run.json and what else is asked for; files of these names are replaced.
     #[arg(long, value_name = "DIR", required_unless_present = "print_config")]
@@ -34,8 +39,11 @@ pub struct TrackBodyArgs {
     /// Number of particles [default: 50 of guided, 500 of the others].
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub particles: Option<usize>,
-    /// The person: a body.json, or a motion or skeleton to measure (.bvh, .amc, .asf, .trc, .c3d) [default: DIR/body.json].
-    #[arg(long, value_name = "FILE", conflicts_with = "height")]
+    /// The person: measures, or a motion or skeleton to measure.
+    #[arg(long, value_name = "FILE", conflicts_with = "height", help = format!(
+        "The person: a body.json, or a motion or skeleton to measure ({}) [default: DIR/body.json]",
+        extensions(MEASURABLE)
+    ))]
     pub skeleton: Option<PathBuf>,
     /// Height of a person who is not measured, metres.
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]

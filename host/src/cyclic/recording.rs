@@ -8,6 +8,7 @@ use crate::keypoints::{self, Facing};
 use crate::motion::joint_names::JointSources;
 use crate::motion::markers::MarkerMotion;
 use crate::motion::{self, ReadOptions};
+use crate::registry::{Kind, MOTION, choice, described, find};
 use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 
@@ -45,8 +46,7 @@ pub struct RecordedAngles {
     pub notes: Vec<String>,
 }
 
-/// Reads a motion in space (.bvh, .amc, .txt of exponential maps, .trc, .c3d) or keypoints (a folder, .json, .csv) and gives
-/// its angles.
+/// Reads a motion in space or keypoints, and gives its angles.
 ///
 /// # Errors
 /// Names the file or option, the rule that it broke, and the remedy.
@@ -56,13 +56,8 @@ pub fn angles(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
             ensure!(rate > 0.0 && rate.is_finite(), "`{name} {rate}`: a rate has to be greater than zero");
         }
     }
-    let is_2d = path.is_dir() || has_extension(path, &["json", "csv"]);
+    let is_2d = path.is_dir() || find(path, &[Kind::Keypoints]).is_some();
     if is_2d { from_keypoints(path, options) } else { from_space(path, options) }
-}
-
-fn has_extension(path: &Path, extensions: &[&str]) -> bool {
-    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
-    extensions.iter().any(|other| extension.eq_ignore_ascii_case(other))
 }
 
 /// Reads any motion in space.
@@ -71,9 +66,11 @@ fn has_extension(path: &Path, extensions: &[&str]) -> bool {
 /// Names the file, the line and the rule that it broke.
 pub fn read_space(path: &Path, options: &RecordingOptions) -> Result<MarkerMotion> {
     ensure!(
-        has_extension(path, &["bvh", "amc", "txt", "trc", "c3d"]),
-        "`{}` is of no known kind; give a .bvh, .amc, .txt (exponential maps), .trc, .c3d, a .json or .csv of keypoints, or a folder of OpenPose files",
-        path.display()
+        find(path, MOTION).is_some(),
+        "`{}` is of no known kind; give a {}, a {} of keypoints, or a folder of OpenPose files",
+        path.display(),
+        described(MOTION),
+        choice(&[Kind::Keypoints])
     );
     let read = ReadOptions {
         skeleton: options.skeleton.as_deref(),
@@ -144,7 +141,8 @@ fn rounded_rate(rate_hz: f64) -> f64 {
 fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
     ensure!(
         options.view != View::Space,
-        "`--view space` needs a motion in space (.bvh, .amc, .trc, .c3d); keypoints of a picture have one angle a joint"
+        "`--view space` needs a motion in space ({}); keypoints of a picture have one angle a joint",
+        described(MOTION)
     );
     let frames = keypoints::read(path)?;
     let track = keypoints::track(&frames, options.min_confidence, path)?;

@@ -7,6 +7,7 @@ use crate::config::Config;
 use crate::cyclic::angle_table::{ANGLES, COLUMNS};
 use crate::cyclic::{AngleTable, CyclicModel};
 use crate::images::{VideoFacts, VideoFrames, is_video, load_rgb};
+use crate::registry::{Kind, find};
 use crate::skin::SkinModel;
 use image::RgbImage;
 use serde_json::Value;
@@ -22,7 +23,7 @@ pub(super) fn examine(path: &Path) -> Diagnosis {
         "json" => json(path),
         "csv" => table(path),
         _ if is_video(path) => video(path),
-        "png" | "jpg" | "jpeg" | "ppm" => {
+        _ if find(path, &[Kind::Image]).is_some() => {
             let mut diagnosis = Diagnosis::new(path, "image");
             let size = load_rgb(path).map(|image| format!("{}x{} pixels", image.width(), image.height()));
             diagnosis.add_result(size.map_err(Into::into));

@@ -16,6 +16,7 @@ pub use facing::Facing;
 pub use layout::Keypoint;
 
 use crate::cyclic::image_joints::{ImageJoints, JointFrame};
+use crate::registry::{Kind, extensions};
 use layout::stick_joints;
 use std::path::Path;
 
@@ -45,7 +46,10 @@ pub fn read(path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
         "csv" => table::read(path),
         _ => Err(KeypointError::unusable(
             path,
-            "is of no known kind; give a folder of OpenPose files, a .json, or a .csv",
+            format!(
+                "is of no known kind; give a folder of OpenPose files, a {}",
+                extensions(&[Kind::Keypoints]).replace(", ", ", or a ")
+            ),
         )),
     }
 }

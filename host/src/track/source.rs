@@ -1,8 +1,9 @@
 //! Where the frames of a run come from: a folder of images, or a video.
 
 use super::input::{FrameFolder, SkippedImage};
-use crate::images::video::{VIDEO_EXTENSIONS, frame_name};
+use crate::images::video::frame_name;
 use crate::images::{VideoError, VideoFrames, is_video};
+use crate::registry::{Kind, extensions};
 use anyhow::{Result, ensure};
 use image::RgbImage;
 use rayon::prelude::*;
@@ -39,7 +40,7 @@ impl FrameSource {
             is_video(path) || !path.is_file(),
             "`{}` is not a folder; give the folder that holds the images, or a video ({})",
             path.display(),
-            VIDEO_EXTENSIONS.map(|extension| format!(".{extension}")).join(", ")
+            extensions(&[Kind::Video])
         );
         if !is_video(path) {
             return Ok(Self::Folder(FrameFolder::open(path, strict)?));

@@ -3,6 +3,7 @@
 use crate::body::recording::BodyRecording;
 use crate::body::{BodyFile, BodySources, measure};
 use crate::motion::{self, DEFAULT_FRAMES_PER_SECOND, MarkerMotion, ReadOptions, amc, asf};
+use crate::registry::{Kind, MEASURABLE, extensions, find};
 use anyhow::{Context, Result, bail, ensure};
 use sinew_core::kinematics::forward::posture;
 use sinew_core::math::Vec3;
@@ -13,9 +14,6 @@ use std::path::Path;
 /// Farthest joint from the pelvis of a standing person, metres.
 const MOST_REACH_M: f32 = 2.0;
 
-/// Files that are measured.
-const MOTIONS: [&str; 6] = ["bvh", "amc", "asf", "txt", "trc", "c3d"];
-
 /// Reads measures from a .json as `simulate stereo` writes it, or measures the person of a motion. Of a .asf without motion the rest pose
 /// is measured.
 ///
@@ -25,13 +23,13 @@ pub fn read_measures(path: &Path) -> Result<BodyMeasures> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let measures = match extension.as_str() {
         "json" => BodyFile::read(path)?,
-        known if MOTIONS.contains(&known) => {
-            measured(path, known).with_context(|| format!("the person of `{}` cannot be measured", path.display()))?
+        _ if find(path, MEASURABLE).is_some() => {
+            measured(path).with_context(|| format!("the person of `{}` cannot be measured", path.display()))?
         }
         _ => bail!(
-            "`{}` is no skeleton that can be read; give a body.json, or a motion to measure (.{})",
+            "`{}` is no skeleton that can be read; give a body.json, or a motion to measure ({})",
             path.display(),
-            MOTIONS.join(", .")
+            extensions(MEASURABLE)
         ),
     };
     let skeleton = full_body(&measures).with_context(|| format!("`{}` is no person's skeleton", path.display()))?;
@@ -45,8 +43,8 @@ pub fn read_measures(path: &Path) -> Result<BodyMeasures> {
     Ok(measures)
 }
 
-fn measured(path: &Path, extension: &str) -> Result<BodyMeasures> {
-    let motion = if extension == "asf" {
+fn measured(path: &Path) -> Result<BodyMeasures> {
+    let motion = if find(path, &[Kind::Skeleton]).is_some() {
         let skeleton = asf::read(path)?;
         MarkerMotion::from(&amc::parse(&rest_pose(&skeleton), path, &skeleton, DEFAULT_FRAMES_PER_SECOND)?)
     } else {

@@ -3,7 +3,7 @@
 use super::trial::SeenMotion;
 use crate::body::recording::{DEFAULT_RATE_HZ, MarkerFrames};
 use crate::body::{BodyPart, BodyRecording, BodyRecordingOptions, Placement};
-use crate::motion::asf;
+use crate::motion::{asf, needs_skeleton};
 use crate::stereo::{Hidden, StereoOptions, StereoScene, pelvic_lift, stick_wave};
 use anyhow::{Context, Result, bail, ensure};
 use sinew_core::pik::processes::stick::StickSight;
@@ -83,8 +83,7 @@ impl MotionChoice {
             Self::StickWave => return Ok(ReadMotion { name: self.name(), recording: None, markers_m }),
             Self::PelvicLift => pelvic_lift(DEFAULT_RATE_HZ, placement.camera_height_m, placement.mean_distance_m)?,
             Self::File { path, between_s } => {
-                let is_amc = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("amc"));
-                let skeleton = skeleton.filter(|_| is_amc && asf::beside(path).is_err());
+                let skeleton = skeleton.filter(|_| needs_skeleton(path) && asf::beside(path).is_err());
                 let between_s = *between_s;
                 let options =
                     BodyRecordingOptions { skeleton, between_s, placement, ..BodyRecordingOptions::default() };

@@ -1,0 +1,252 @@
+//! Image files of a folder in natural order, and one file as 8-bit RGB.
+
+use super::jpeg::reaches_end_of_image;
+use super::side::MAX_SIDE_PX;
+use super::video::is_video;
+use crate::registry::{Kind, extensions, find};
+use image::{ImageFormat, ImageReader, Limits, RgbImage};
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Largest memory that decoding one image may take, bytes.
+const MAX_DECODE_BYTES: u64 = 1 << 30;
+
+/// A folder or file that cannot be an input of a run.
+#[derive(Debug, Error)]
+pub enum InputError {
+    /// Nothing is there.
+    #[error("`{}`: there is no such folder or file; give a folder of images ({})", .0.display(), extension_list())]
+    Missing(PathBuf),
+    /// A file stands where a folder was needed.
+    #[error("`{}` is not a folder; give the folder that holds the images", .0.display())]
+    NotAFolder(PathBuf),
+    /// The folder holds nothing at all.
+    #[error("`{}` is empty; put images there ({})", .0.display(), extension_list())]
+    Empty(PathBuf),
+    /// The folder holds files, but none with an extension that is read.
+    #[error("`{}` holds no image; files that end in {} are read, and it holds {found}", .folder.display(), extension_list())]
+    NoImage {
+        /// The folder.
+        folder: PathBuf,
+        /// What was found instead, in words.
+        found: String,
+    },
+    /// A single file whose extension is not read.
+    #[error("`{}` is not an image that can be read; give one ({}), a folder of them, or a video", .0.display(), extension_list())]
+    NotAnImage(PathBuf),
+    /// The operating system refused to list the folder.
+    #[error("`{}` cannot be listed: {source}; check its permissions", .folder.display())]
+    Unlistable {
+        /// The folder.
+        folder: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+}
+
+/// One image file that could not be read.
+#[derive(Debug, Error)]
+#[error("`{}` cannot be read as an image: {reason}", .path.display())]
+pub struct ImageFileError {
+    /// The file.
+    pub path: PathBuf,
+    /// Why.
+    pub reason: String,
+}
+
+/// What a command was given.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ImageInput {
+    /// A folder of images or one image: the files in natural order; never empty.
+    Files(Vec<PathBuf>),
+    /// A video.
+    Video(PathBuf),
+}
+
+impl ImageInput {
+    /// Accepts a folder (its images), a single image file, or a video.
+    ///
+    /// # Errors
+    /// [`InputError`] as for [`list_images`], or if a single file's extension is not read.
+    pub fn open(path: &Path) -> Result<Self, InputError> {
+        if is_video(path) {
+            return Ok(Self::Video(path.to_path_buf()));
+        }
+        if path.is_file() {
+            if !has_image_extension(path) {
+                return Err(InputError::NotAnImage(path.to_path_buf()));
+            }
+            return Ok(Self::Files(vec![path.to_path_buf()]));
+        }
+        Ok(Self::Files(list_images(path)?))
+    }
+}
+
+/// Lists the images directly in `folder` in natural order (`frame_2` before `frame_10`).
+///
+/// Hidden files, folders and files with other extensions are passed over.
+///
+/// # Errors
+/// [`InputError`] if the folder is missing, not a folder, empty, cannot be listed, or holds no
+/// image.
+pub fn list_images(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
+    if !folder.exists() {
+        return Err(InputError::Missing(folder.to_path_buf()));
+    }
+    if !folder.is_dir() {
+        return Err(InputError::NotAFolder(folder.to_path_buf()));
+    }
+    let unlistable = |source| InputError::Unlistable { folder: folder.to_path_buf(), source };
+    let mut images = Vec::new();
+    let mut others: BTreeMap<String, usize> = BTreeMap::new();
+    for entry in fs::read_dir(folder).map_err(unlistable)? {
+        let path = entry.map_err(unlistable)?.path();
+        if is_hidden(&path) {
+            continue;
+        }
+        if path.is_file() && has_image_extension(&path) {
+            images.push(path);
+        } else {
+            *others.entry(kind_in_words(&path)).or_default() += 1;
+        }
+    }
+    if !images.is_empty() {
+        images.sort_by(|a, b| natural_order(a, b));
+        return Ok(images);
+    }
+    if others.is_empty() {
+        return Err(InputError::Empty(folder.to_path_buf()));
+    }
+    let found = others.iter().map(|(kind, count)| format!("{count} {kind}")).collect::<Vec<_>>().join(", ");
+    Err(InputError::NoImage { folder: folder.to_path_buf(), found })
+}
+
+/// Decodes one image to 8-bit RGB; 16-bit samples are scaled, grey is spread, alpha is dropped.
+///
+/// The format is found from the file's content, so a JPEG named `.png` is read too.
+///
+/// # Errors
+/// [`ImageFileError`] if the file cannot be opened, is truncated, is not an image, or is larger
+/// than [`MAX_SIDE_PX`].
+pub fn load_rgb(path: &Path) -> Result<RgbImage, ImageFileError> {
+    let failed = |reason: String| ImageFileError { path: path.to_path_buf(), reason };
+    let bytes = fs::read(path).map_err(|error| failed(error.to_string()))?;
+    let mut reader =
+        ImageReader::new(Cursor::new(&bytes)).with_guessed_format().map_err(|error| failed(error.to_string()))?;
+    if reader.format() == Some(ImageFormat::Jpeg) && !reaches_end_of_image(&bytes) {
+        return Err(failed("it is truncated: its end-of-image marker is missing".to_owned()));
+    }
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE_PX);
+    limits.max_image_height = Some(MAX_SIDE_PX);
+    limits.max_alloc = Some(MAX_DECODE_BYTES);
+    reader.limits(limits);
+    let image = reader.decode().map_err(|error| failed(error.to_string()))?.into_rgb8();
+    if image.width() == 0 || image.height() == 0 {
+        return Err(failed("it has no pixels".to_owned()));
+    }
+    Ok(image)
+}
+
+/// Whether the name ends as that of an image, in any case.
+#[must_use]
+pub fn has_image_extension(path: &Path) -> bool {
+    find(path, &[Kind::Image]).is_some()
+}
+
+fn natural_order(a: &Path, b: &Path) -> std::cmp::Ordering {
+    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    natord::compare(&name(a), &name(b)).then_with(|| a.cmp(b))
+}
+
+fn is_hidden(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'))
+}
+
+fn kind_in_words(path: &Path) -> String {
+    if path.is_dir() {
+        return "folder(s)".to_owned();
+    }
+    path.extension().map_or_else(
+        || "file(s) without extension".to_owned(),
+        |extension| format!("*.{} file(s)", extension.to_string_lossy()),
+    )
+}
+
+fn extension_list() -> String {
+    extensions(&[Kind::Image])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Rgba, RgbaImage};
+
+    fn names(files: &[PathBuf]) -> Vec<String> {
+        files.iter().map(|file| file.file_name().unwrap().to_string_lossy().into_owned()).collect()
+    }
+
+    #[test]
+    fn order_is_natural_and_other_files_are_passed_over() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["frame_10.png", "frame_2.PNG", "frame_1.jpeg", ".hidden.png", "notes.txt", "a.PpM"] {
+            fs::write(folder.path().join(name), b"").unwrap();
+        }
+        fs::create_dir(folder.path().join("folder.png")).unwrap();
+        let files = list_images(folder.path()).unwrap();
+        assert_eq!(names(&files), ["a.PpM", "frame_1.jpeg", "frame_2.PNG", "frame_10.png"]);
+    }
+
+    #[test]
+    fn each_bad_folder_says_what_is_wrong() {
+        let folder = tempfile::tempdir().unwrap();
+        let message = |path: &Path| list_images(path).unwrap_err().to_string();
+        assert!(message(&folder.path().join("nowhere")).contains("no such folder"));
+        assert!(message(folder.path()).contains("is empty"));
+        let text = folder.path().join("notes.TXT");
+        fs::write(&text, b"words").unwrap();
+        assert!(message(&text).contains("not a folder"));
+        let found = message(folder.path());
+        assert!(found.contains("1 *.TXT file(s)") && found.contains(".jpeg"), "{found}");
+        assert!(ImageInput::open(&text).unwrap_err().to_string().contains("not an image"));
+    }
+
+    #[test]
+    fn sixteen_bits_grey_and_alpha_become_rgb8() {
+        let folder = tempfile::tempdir().unwrap();
+        let deep: ImageBuffer<Luma<u16>, Vec<u16>> = ImageBuffer::from_pixel(3, 2, Luma([0x8080]));
+        let cases = [
+            ("deep.png", DynamicImage::ImageLuma16(deep), [128, 128, 128]),
+            ("grey.pgm", DynamicImage::ImageLuma8(GrayImage::from_pixel(3, 2, Luma([7]))), [7, 7, 7]),
+            ("clear.png", DynamicImage::ImageRgba8(RgbaImage::from_pixel(3, 2, Rgba([1, 2, 3, 0]))), [1, 2, 3]),
+        ];
+        for (name, image, expected) in cases {
+            let path = folder.path().join(name);
+            image.save(&path).unwrap();
+            let rgb = load_rgb(&path).unwrap();
+            assert_eq!(rgb.dimensions(), (3, 2));
+            assert!(rgb.pixels().all(|pixel| pixel.0 == expected), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_truncated_file_is_an_error_that_names_it() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["cut.png", "cut.jpg"] {
+            let path = folder.path().join(name);
+            let noisy = RgbImage::from_fn(64, 64, |x, y| image::Rgb([(x * y) as u8, (x * 7) as u8, (y * 13) as u8]));
+            noisy.save(&path).unwrap();
+            let bytes = fs::read(&path).unwrap();
+            fs::write(&path, &bytes[..bytes.len() / 3]).unwrap();
+            match load_rgb(&path) {
+                Err(error) => assert!(error.to_string().contains(name)),
+                Ok(_) => panic!("{name} was read in spite of missing bytes"),
+            }
+        }
+        fs::write(folder.path().join("empty.png"), b"").unwrap();
+        assert!(load_rgb(&folder.path().join("empty.png")).is_err());
+    }
+}
