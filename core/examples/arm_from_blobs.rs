@@ -1,4 +1,4 @@
-//! One arm from the blob of its hand: 50 particles, a made-up wave, and two frames without an image.
+//! One arm from the blob of its hand: 50 particles, a made-up wave, two frames without an image.
 //!
 //!     cargo run --release -p sinew-core --example arm_from_blobs
 
@@ -43,7 +43,7 @@ fn look(camera: &Camera, cue: &AreaCue, elbow_m: Vec3, hand_m: Vec3) -> HandCand
 }
 
 fn main() -> Result<(), ParameterError> {
-    // What stays the same: a webcam of 60 degrees and the person's left arm, 0.30 m and 0.35 m long.
+    // What stays the same: a webcam of 60 degrees and the left arm, 0.30 m and 0.35 m long.
     let camera = Camera::from_field_of_view(640, 480, 1.05)?;
     let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
     let options = ArmOptions::default();

@@ -1,4 +1,4 @@
-//! A whole body from 3D points as a stereo camera gives them: somebody bends the right elbow, 3 m away.
+//! A whole body from 3D points of a stereo camera: somebody bends the right elbow, 3 m away.
 //!
 //!     cargo run --release -p sinew-core --example body_from_points
 

@@ -1,4 +1,4 @@
-//! As firmware places it: the tracker in static memory, begun in place, no heap and nothing large on the stack.
+//! As firmware places it: the tracker in static memory, begun in place, and no heap.
 //!
 //!     cargo run --release -p sinew-core --example static_placement
 //!

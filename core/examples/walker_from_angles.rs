@@ -1,4 +1,4 @@
-//! Pose, position in the cycle and cadence of a walker from noisy joint angles, through a gap of half a second.
+//! Pose, phase and cadence of a walker from noisy joint angles, through a gap of half a second.
 //!
 //!     cargo run --release -p sinew-core --features walking-model --example walker_from_angles
 

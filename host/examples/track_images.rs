@@ -1,4 +1,4 @@
-//! Images in memory to an arm: a person is rendered with known truth, tracked by the library, and compared.
+//! Images in memory to an arm: a person is rendered with known truth, tracked, and compared.
 //!
 //!     cargo run --release -p sinew --example track_images
 
