@@ -7,9 +7,9 @@
 //!   the object is as before; where a function says otherwise it says what is left.
 //! - Structures are read and written whole; the caller owns all memory.
 //!
-//! This is the only folder of the project with `unsafe` code: it turns the caller's pointers into references, after checking what
-//! can be checked. What cannot be checked is the caller's duty: that a pointer which is not null points at memory of the size that was said, and that
-//! no other thread uses the same object meanwhile.
+//! This folder has `unsafe` code: it turns the caller's pointers into references, after checking what can be checked. The rest is
+//! the caller's duty: that a pointer which is not null points at memory of the size that was said, and that no other thread uses
+//! the same object meanwhile.
 #![allow(unsafe_code)]
 
 pub mod arm;

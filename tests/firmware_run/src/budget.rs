@@ -29,7 +29,7 @@ const LIMITS: [(&str, u64); 10] = [
     ("camera arm step, worst", 1_500_000),
     ("camera, flash, bytes", 256 * 1024),
 ];
-/// Lines of README between which the table stands.
+/// Lines of docs/firmware.md between which the table stands.
 const MARKS: [&str; 2] = ["<!-- budget -->", "<!-- end of budget -->"];
 
 /// Sizes of one image, bytes, and what its parts cost.
@@ -85,14 +85,14 @@ impl Budget {
         text
     }
 
-    /// Writes the table into README.
+    /// Writes the table into docs/firmware.md.
     ///
     /// # Errors
-    /// README has no place for it, or cannot be written.
+    /// The page has no place for it, or cannot be written.
     pub fn write(&self) -> Result<()> {
-        let readme = fs::read_to_string(readme())?;
-        let (before, _, after) = parts(&readme)?;
-        fs::write(self::readme(), format!("{before}{}\n\n{}\n{}{after}", MARKS[0], self.to_markdown(), MARKS[1]))?;
+        let page = fs::read_to_string(page())?;
+        let (before, _, after) = parts(&page)?;
+        fs::write(self::page(), format!("{before}{}\n\n{}\n{}{after}", MARKS[0], self.to_markdown(), MARKS[1]))?;
         Ok(())
     }
 
@@ -106,21 +106,21 @@ impl Budget {
         Ok(())
     }
 
-    /// Compares with the table in README.
+    /// Compares with the table in docs/firmware.md.
     ///
     /// # Errors
     /// Names every cell that grew by more than a twentieth, and every one that the table lacks.
     pub fn check(&self) -> Result<String> {
         self.check_limits()?;
-        let readme = fs::read_to_string(readme())?;
-        let (_, table, _) = parts(&readme)?;
+        let page = fs::read_to_string(page())?;
+        let (_, table, _) = parts(&page)?;
         if !table.contains(&self.compiler) {
             return Ok(format!("the table is of another compiler than {}: not compared", self.compiler));
         }
         let (wanted, found) = (cells(table), cells(&self.to_markdown()));
         ensure!(
             wanted.keys().eq(found.keys()),
-            "the table in README has other rows; `sinew-firmware-run budget` writes it anew"
+            "the table in docs/firmware.md has other rows; `sinew-firmware-run budget` writes it anew"
         );
         let mut grown = String::new();
         for (name, (&value, &limit)) in found.iter().map(|(name, value)| (name, (value, &wanted[name]))) {
@@ -133,21 +133,21 @@ impl Budget {
                 "grown by more than 5 %:\n{grown}after a wanted change: `sinew-firmware-run budget` writes the table anew"
             );
         }
-        Ok(format!("{} cells are within 5 % of the table in README", found.len()))
+        Ok(format!("{} cells are within 5 % of the table in docs/firmware.md", found.len()))
     }
 }
 
-fn readme() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md")
+fn page() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/firmware.md")
 }
 
 /// What stands before the marks, between them, and behind them.
-fn parts(readme: &str) -> Result<(&str, &str, &str)> {
-    let cut = readme.split_once(MARKS[0]).and_then(|(before, rest)| {
+fn parts(page: &str) -> Result<(&str, &str, &str)> {
+    let cut = page.split_once(MARKS[0]).and_then(|(before, rest)| {
         let (table, after) = rest.split_once(MARKS[1])?;
         Some((before, table, after))
     });
-    cut.with_context(|| format!("README.md has to hold the lines `{}` and `{}`", MARKS[0], MARKS[1]))
+    cut.with_context(|| format!("docs/firmware.md has to hold the lines `{}` and `{}`", MARKS[0], MARKS[1]))
 }
 
 /// Cells with a number, by the names of row and column.
@@ -240,8 +240,8 @@ mod tests {
     }
 
     #[test]
-    fn readme_has_a_place_for_the_table() {
-        let text = fs::read_to_string(readme()).unwrap();
+    fn the_page_has_a_place_for_the_table() {
+        let text = fs::read_to_string(page()).unwrap();
         assert!(cells(parts(&text).unwrap().1).len() > 10);
     }
 }

@@ -32,7 +32,7 @@ enum Command {
         #[arg(long)]
         out: PathBuf,
     },
-    /// Measure every image and write the table in README, or compare with it.
+    /// Measure every image and write the table in docs/firmware.md, or compare with it.
     Budget {
         /// Compare; a cell that grew by more than 5 % is an error.
         #[arg(long)]
