@@ -7,7 +7,6 @@ pub mod config;
 pub mod cyclic;
 pub mod doctor;
 pub mod draw;
-pub mod evaluate;
 pub mod frames;
 pub mod images;
 pub mod keypoints;

@@ -10,6 +10,7 @@ pub mod heading;
 pub mod image_joints;
 pub mod model;
 pub mod model_file;
+pub mod noise;
 pub mod pictures;
 pub mod projection;
 pub mod recording;
