@@ -1,11 +1,14 @@
 //! Host side of Sinew: image folders, skin models, scenes, plots and reports around [`sinew_core`].
 
 pub mod body;
+#[cfg(feature = "command")]
 pub mod cli;
 pub mod cloud;
 pub mod config;
 pub mod cyclic;
+#[cfg(feature = "report")]
 pub mod doctor;
+#[cfg(feature = "plots")]
 pub mod draw;
 pub mod frames;
 pub mod images;
@@ -14,6 +17,7 @@ pub mod model_text;
 pub mod motion;
 pub mod output;
 pub mod record;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod resume;
 pub mod scene;

@@ -11,6 +11,7 @@ pub mod image_joints;
 pub mod model;
 pub mod model_file;
 pub mod noise;
+#[cfg(feature = "plots")]
 pub mod pictures;
 pub mod projection;
 pub mod recording;
