@@ -219,9 +219,9 @@ fn entries(tracks: &[Track]) -> Vec<(Key, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sinew_core::math::Vec3;
     use crate::draw::colour::{LEFT, RIGHT};
     use proptest::prelude::*;
+    use sinew_core::math::Vec3;
 
     fn sample(time_s: f32, side: Side, status: Status) -> HandSample {
         HandSample {
