@@ -1,17 +1,20 @@
 //! Host side of Sinew: image folders, skin models, scenes, plots and reports around [`sinew_core`].
 
 pub mod body;
+#[cfg(feature = "command")]
 pub mod cli;
 pub mod config;
 pub mod cyclic;
+#[cfg(feature = "report")]
 pub mod doctor;
+#[cfg(feature = "plots")]
 pub mod draw;
-pub mod evaluate;
 pub mod frames;
 pub mod keypoints;
 pub mod model_text;
 pub mod output;
 pub mod record;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod resume;
 pub mod scene;

@@ -1,5 +1,6 @@
 //! Instruments that the tests of this package share.
 
+use clap::{CommandFactory, Parser};
 use std::collections::BTreeMap;
 use std::env;
 use std::fs;
@@ -33,12 +34,43 @@ fn build_sinew() -> PathBuf {
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
         .current_dir(workspace_root())
-        .args(["build", "--quiet", "--workspace", "--bin", "sinew", "--profile", profile, "--target-dir"])
+        .args([
+            "build",
+            "--quiet",
+            "--workspace",
+            "--bin",
+            "sinew",
+            "--bin",
+            "sinew-lab",
+            "--profile",
+            profile,
+            "--target-dir",
+        ])
         .arg(target_folder)
         .output()
         .expect("cargo runs");
     assert!(output.status.success(), "sinew cannot be built: {}", String::from_utf8_lossy(&output.stderr));
     profile_folder.join(format!("sinew{}", env::consts::EXE_SUFFIX))
+}
+
+/// All commands of `sinew`, with those below `evaluate`, which the program `sinew-lab` has.
+#[must_use]
+pub fn command_tree() -> clap::Command {
+    let lab = sinew_lab::cli::Cli::command();
+    let evaluate = lab.find_subcommand("evaluate").expect("the lab evaluates").clone();
+    sinew::cli::Cli::command().mut_subcommand("evaluate", |_| evaluate)
+}
+
+/// Reads a command line as `sinew` or, where it begins with `evaluate`, as `sinew-lab` does; `words` begin after the program.
+///
+/// # Errors
+/// What clap says of words that are not understood.
+pub fn parse<'a>(words: impl IntoIterator<Item = &'a str>) -> Result<(), clap::Error> {
+    let words: Vec<&str> = std::iter::once("sinew").chain(words).collect();
+    if words.get(1) == Some(&"evaluate") {
+        return sinew_lab::cli::Cli::try_parse_from(words).map(drop);
+    }
+    sinew::cli::Cli::try_parse_from(words).map(drop)
 }
 
 /// Every file below `folder`, by its path from there; the numbers in `run.json` that `times` names are left out, which differ from run to run.

@@ -1,9 +1,7 @@
 //! `--quiet` and `--json` of every command, and what only a terminal gets to see.
 
-use clap::CommandFactory;
 use image::{Rgb, RgbImage};
-use sinew::cli::Cli;
-use sinew_tests::sinew_command;
+use sinew_tests::{command_tree, sinew_command};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -83,7 +81,7 @@ fn leaves() -> Vec<String> {
         below.into_iter().for_each(|below| walk(below, &format!("{name} {}", below.get_name()), found));
     }
     let mut found = Vec::new();
-    walk(&Cli::command(), "", &mut found);
+    walk(&command_tree(), "", &mut found);
     found
 }
 

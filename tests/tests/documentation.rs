@@ -1,8 +1,6 @@
 //! README's commands exist, and the links of all Markdown pages lead somewhere.
 
-use clap::Parser;
-use sinew::cli::Cli;
-use sinew_tests::workspace_root;
+use sinew_tests::{parse, workspace_root};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -40,7 +38,7 @@ fn every_sinew_command_of_the_readme_is_understood() {
     for line in code_blocks(&page).concat() {
         let Some(arguments) = line.strip_prefix("cargo run --release -- ") else { continue };
         let words = arguments.split_whitespace().take_while(|word| !matches!(*word, "#" | ">"));
-        Cli::try_parse_from(std::iter::once("sinew").chain(words)).unwrap_or_else(|error| panic!("{line}\n{error}"));
+        parse(words).unwrap_or_else(|error| panic!("{line}\n{error}"));
         count += 1;
     }
     assert!(count >= 6, "only {count} commands");
@@ -64,8 +62,8 @@ fn every_sinew_command_of_the_pages_for_users_is_understood() {
         let commands: Vec<&str> = page.lines().filter_map(|line| line.strip_prefix("    sinew ")).collect();
         assert!(commands.len() >= least, "{name}: only {} commands", commands.len());
         for command in commands {
-            let words = std::iter::once("sinew").chain(command.split_whitespace().take_while(|word| *word != "|"));
-            Cli::try_parse_from(words).unwrap_or_else(|error| panic!("{name}: {command}\n{error}"));
+            let words = command.split_whitespace().take_while(|word| *word != "|");
+            parse(words).unwrap_or_else(|error| panic!("{name}: {command}\n{error}"));
         }
     }
 }

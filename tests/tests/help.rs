@@ -1,8 +1,7 @@
 //! What `--help` says: it fits a screen, and its examples run.
 
-use clap::{Command, CommandFactory};
-use sinew::cli::Cli;
-use sinew_tests::sinew_command;
+use clap::Command;
+use sinew_tests::{command_tree, sinew_command};
 use std::collections::BTreeSet;
 
 /// The words of every command below `sinew`, groups too: `[["demo"], ["track"], ["track", "arm"], ...]`, and of `sinew` itself.
@@ -14,7 +13,7 @@ fn commands() -> Vec<Vec<String>> {
         }
     }
     let mut found = Vec::new();
-    walk(&Cli::command(), &[], &mut found);
+    walk(&command_tree(), &[], &mut found);
     found
 }
 

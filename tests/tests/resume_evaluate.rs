@@ -2,9 +2,8 @@
 
 use clap::Parser;
 use serde_json::Value;
-use sinew::cli::evaluate::Evaluate;
-use sinew::cli::{Cli, Command, evaluate_arm, evaluate_body, evaluate_cyclic};
 use sinew::resume::{CELLS_FOLDER, Interrupted, Stop};
+use sinew_lab::cli::{Cli, Command, Evaluate, arm, body, cyclic};
 use sinew_tests::{files_below, sinew_command};
 use std::collections::BTreeMap;
 use std::fs;
@@ -45,10 +44,11 @@ impl Folder {
         let cli = Cli::try_parse_from(std::iter::once("sinew").chain(words.iter().map(String::as_str))).unwrap();
         let asked = AtomicUsize::new(0);
         let stop: Stop<'_> = &|| asked.fetch_add(1, Ordering::Relaxed) >= most;
-        let ended = match &cli.command {
-            Command::Evaluate(Evaluate::Arm(args)) => evaluate_arm::run_until(args, &cli.console, stop),
-            Command::Evaluate(Evaluate::Body(args)) => evaluate_body::run_until(args, &cli.console, stop),
-            Command::Evaluate(Evaluate::Cyclic(args)) => evaluate_cyclic::run_until(args, &cli.console, stop),
+        let Command::Evaluate(evaluate) = &cli.command;
+        let ended = match evaluate {
+            Evaluate::Arm(args) => arm::run_until(args, &cli.console, stop),
+            Evaluate::Body(args) => body::run_until(args, &cli.console, stop),
+            Evaluate::Cyclic(args) => cyclic::run_until(args, &cli.console, stop),
             other => panic!("{other:?}"),
         };
         assert_eq!(ended.unwrap_err().downcast::<Interrupted>().unwrap().unit, "cells");

@@ -1,13 +1,13 @@
 //! How much of a body is seen and tracked: all of it, or what a camera behind a desk sees.
 
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use sinew_core::skeleton::BodyMeasures;
 use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, body_radii_m};
 use sinew_core::skeleton::upper_body::{UPPER_BONES, UPPER_COORDINATES};
 
 /// A whole body, or its upper part.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum BodyPart {
     /// 17 bones, 16 capsules, 30 coordinates.

@@ -25,6 +25,11 @@ pub struct Console {
 }
 
 impl Console {
+    /// The options that were given, for a program that has the same.
+    pub fn flags(&self) -> impl Iterator<Item = &'static str> {
+        [(self.quiet, "--quiet"), (self.json, "--json")].into_iter().filter_map(|(is_set, flag)| is_set.then_some(flag))
+    }
+
     /// Tells on standard error what a user should know and a script need not, unless `--quiet` was given.
     pub fn note(&self, text: impl Display) {
         if !self.quiet {

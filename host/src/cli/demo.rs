@@ -6,13 +6,13 @@ use crate::config::Config;
 use crate::motion::{ArmSide, reach};
 use crate::output::OutputDir;
 use crate::scene::{Scene, SceneOptions, Sides};
+use crate::skin::confusion::median;
 use crate::skin::model::DEFAULT_SKIN;
 use crate::track::{RunOutcome, SideChoice, TrackOptions, TrackRun};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use serde::Serialize;
 use serde_json::json;
-use statrs::statistics::{Data, Distribution, OrderStatistics};
 use std::path::{Path, PathBuf};
 
 /// Frames of the scene: eight seconds.
@@ -126,16 +126,21 @@ fn compare(scene: &Scene, outcome: &RunOutcome) -> Result<DemoError> {
         Some((error_m, sample.hand_px.map_or(width_px, |pixel| f64::from(pixel.distance_px(true_px)))))
     });
     let (errors_m, errors_px): (Vec<f64>, Vec<f64>) = errors.unzip();
-    let (mut metres, mut pixels) = (Data::new(errors_m), Data::new(errors_px));
     let nothing = "no frame can be compared with the truth";
     Ok(DemoError {
         first_frame: FIRST_SCORED_FRAME,
         last_frame: scene.len() - 1,
-        mean_error_m: metres.mean().context(nothing)?,
-        median_error_m: metres.median(),
-        mean_error_px: pixels.mean().context(nothing)?,
-        median_error_px: pixels.median(),
+        mean_error_m: mean(&errors_m).context(nothing)?,
+        median_error_m: median(errors_m).context(nothing)?,
+        mean_error_px: mean(&errors_px).context(nothing)?,
+        median_error_px: median(errors_px).context(nothing)?,
     })
+}
+
+/// Mean by Welford's update, `None` of nothing.
+fn mean(values: &[f64]) -> Option<f64> {
+    let step = |mean: f64, (count, value): (usize, &f64)| mean + (value - mean) / count as f64;
+    (!values.is_empty()).then(|| (1..).zip(values).fold(0.0, step))
 }
 
 /// What a newcomer reads at the end.

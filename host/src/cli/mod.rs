@@ -12,11 +12,6 @@ pub mod cut;
 pub mod demo;
 pub mod doctor;
 pub mod evaluate;
-pub mod evaluate_arm;
-pub mod evaluate_body;
-pub mod evaluate_cyclic;
-pub mod evaluate_hands;
-pub mod evaluate_skin;
 pub mod export;
 pub mod image_run;
 pub mod record;
@@ -36,8 +31,10 @@ pub mod train_cyclic;
 pub mod train_skin;
 pub mod viewer_args;
 
+use crate::resume::Interrupted;
 use clap::{Parser, Subcommand};
 use console::Console;
+use std::process::ExitCode;
 
 /// Estimates how a human body moves, from a camera.
 #[derive(Debug, Parser)]
@@ -91,12 +88,7 @@ pub enum Command {
     )]
     Train(train::Train),
     /// Measure how well something works.
-    #[command(
-        subcommand,
-        after_help = "Examples:
-  sinew evaluate cyclic --model walking --seeds 1 --particles none --out cyclic"
-    )]
-    Evaluate(evaluate::Evaluate),
+    Evaluate(evaluate::EvaluateArgs),
     /// Tell what is wrong with a folder, a configuration, a model.
     Doctor(doctor::DoctorArgs),
     /// Print a shell's completions of this command.
@@ -123,10 +115,26 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
         Command::Segment(args) => segment::run(args, console),
         Command::Blobs(args) => blobs::run(args, console),
         Command::Train(train) => train::run(train, console),
-        Command::Evaluate(evaluate) => evaluate::run(evaluate, console),
+        Command::Evaluate(args) => evaluate::run(args, console),
         Command::Doctor(args) => doctor::run(args, console),
         Command::Completions(args) => completions::completions(args, console),
         Command::Man(args) => completions::man(args, console),
+    }
+}
+
+/// How the program ends: an error is printed on standard error.
+pub fn exit_code(ended: anyhow::Result<()>) -> ExitCode {
+    match ended {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if error.is::<Interrupted>() => {
+            eprintln!("{error}");
+            // 128 + SIGINT, what shells expect of a program that Ctrl-C ended.
+            ExitCode::from(130)
+        }
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
     }
 }
 

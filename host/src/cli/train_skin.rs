@@ -80,7 +80,7 @@ fn read_pairs(args: &TrainSkinArgs, console: &Console) -> Result<TrainingSet> {
 }
 
 /// Counts and names the images without a mask on standard error.
-pub(super) fn report_unmasked(list: &PairList, console: &Console) {
+pub fn report_unmasked(list: &PairList, console: &Console) {
     if !list.without_mask.is_empty() {
         let names: Vec<String> = list.without_mask.iter().map(|path| path.display().to_string()).collect();
         console.note(format!("{} images have no mask and are left out: {}", names.len(), names.join(", ")));

@@ -1,6 +1,5 @@
 //! Section `[tracker]`.
 
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use sinew_core::error::{ParameterError, Rule, not_negative, positive, within};
 use sinew_core::observation::hough::HoughSettings;
@@ -17,7 +16,8 @@ pub const MAX_PARTICLES: usize = 5000;
 const GUESSED_AREA_DOUBT: f32 = 3.0;
 
 /// Which tracker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum VariantName {
     /// Blobs drive goals, inverse kinematics turns goals into poses.

@@ -10,6 +10,8 @@ pub mod heading;
 pub mod image_joints;
 pub mod model;
 pub mod model_file;
+pub mod noise;
+#[cfg(feature = "plots")]
 pub mod pictures;
 pub mod projection;
 pub mod recording;

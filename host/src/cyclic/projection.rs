@@ -7,7 +7,8 @@ use anyhow::{Context, Result, bail};
 use sinew_core::math::Vec3;
 
 /// From where the person is seen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 pub enum View {
     /// `side`, but `path` for a person who turns.
     #[default]
@@ -23,7 +24,8 @@ pub enum View {
 }
 
 /// A coordinate axis that points up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 pub enum UpAxis {
     /// The first coordinate.
     X,

@@ -2,10 +2,9 @@
 
 use super::colour::SHADE;
 use super::stroke::tint_rectangle;
-use ab_glyph::{FontRef, PxScale};
+use ab_glyph::{Font, FontRef, GlyphId, OutlinedGlyph, PxScale, ScaleFont, point};
 use epaint_default_fonts::HACK_REGULAR;
-use image::{Rgb, RgbImage};
-use imageproc::drawing::{draw_text_mut, text_size};
+use image::{Pixel, Rgb, RgbImage};
 use std::sync::OnceLock;
 
 /// Letters of one size.
@@ -27,7 +26,7 @@ impl Lettering {
 
     /// Width of `text`, pixels.
     pub fn width_px(self, text: &str) -> u32 {
-        font().map_or(0, |font| text_size(PxScale::from(self.size_px), font, text).0)
+        self.lay_out(text, |_| {})
     }
 
     /// `text` cut with an ellipsis where it is wider than `room_px`.
@@ -47,9 +46,40 @@ impl Lettering {
 
     /// Draws `text` with its top left corner at (x, y), cut off at the image's rim.
     pub fn draw(self, image: &mut RgbImage, (x, y): (i32, i32), text: &str, colour: Rgb<u8>) {
-        if let Some(font) = font() {
-            draw_text_mut(image, colour, x, y, PxScale::from(self.size_px), font, text);
+        self.lay_out(text, |glyph| {
+            let bounds = glyph.px_bounds();
+            let (left, top) = (x + bounds.min.x.round() as i32, y + bounds.min.y.round() as i32);
+            glyph.draw(|glyph_x, glyph_y, coverage| {
+                let (Ok(x), Ok(y)) = (u32::try_from(glyph_x as i32 + left), u32::try_from(glyph_y as i32 + top)) else {
+                    return;
+                };
+                if let Some(pixel) = image.get_pixel_mut_checked(x, y) {
+                    let share = coverage.clamp(0.0, 1.0);
+                    pixel.apply2(&colour, |below, ink| {
+                        (f32::from(below) * (1.0 - share) + f32::from(ink) * share) as u8
+                    });
+                }
+            });
+        });
+    }
+
+    /// Gives `draw` each glyph of `text` at its place beside the ones before it; returns the width of all, pixels.
+    fn lay_out(self, text: &str, mut draw: impl FnMut(&OutlinedGlyph)) -> u32 {
+        let Some(font) = font().filter(|_| !text.is_empty()) else { return 0 };
+        let scale = PxScale::from(self.size_px);
+        let scaled = font.as_scaled(scale);
+        let (mut width, mut before): (f32, Option<GlyphId>) = (0.0, None);
+        for letter in text.chars() {
+            let id = scaled.glyph_id(letter);
+            let glyph = id.with_scale_and_position(scale, point(width, scaled.ascent()));
+            width += scaled.h_advance(id);
+            if let Some(outlined) = scaled.outline_glyph(glyph) {
+                width += before.map_or(0.0, |before| scaled.kern(id, before));
+                before = Some(id);
+                draw(&outlined);
+            }
         }
+        1 + width.ceil() as u32
     }
 
     /// Draws `text` on a dark plate, moved so that all of it lies inside of the image if it can.

@@ -5,7 +5,8 @@ use crate::cyclic::image_joints::{ImageJoints, Point};
 use crate::motion::joint_names::{HIP_CENTER, JOINTS, NECK};
 
 /// Direction in the image.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 pub enum Facing {
     /// Towards smaller u.
     Left,

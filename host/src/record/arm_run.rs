@@ -4,8 +4,8 @@ use crate::config::Config;
 use crate::skin::{Rectangle, SkinModel};
 use crate::track::{ArmSet, FrameSource, SideChoice};
 use anyhow::{Context, Result, ensure};
-use clap::ValueEnum;
 use image::RgbImage;
+use serde::Deserialize;
 use serde_json::Value;
 use sinew_core::record::ArmSetup;
 use sinew_core::skeleton::Side;
@@ -56,7 +56,7 @@ impl ArmRun {
         let json: Value = serde_json::from_str(&fs::read_to_string(report)?).context("run.json is not JSON")?;
         let options = &json["options"];
         let text = |name: &str| options[name].as_str().with_context(|| format!("run.json has no option `{name}`"));
-        let side = SideChoice::from_str(text("side")?, true).unwrap_or_default();
+        let side = SideChoice::deserialize(Value::from(text("side")?)).unwrap_or_default();
         ensure!(
             side != SideChoice::Both,
             "both arms were tracked; firmware plays one: `--side left` or `--side right`"

@@ -8,13 +8,14 @@ use crate::cyclic::report::document::FORMAT as CYCLIC_FORMAT;
 use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates};
 use crate::cyclic::{AngleTable, CyclicModel};
 use anyhow::{Context, Result, bail, ensure};
-use clap::ValueEnum;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What of a run is recorded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 pub enum Form {
     /// What the tracker was given: blobs and edges, or angles.
     #[default]
@@ -72,9 +73,8 @@ fn cyclic_run(summary: &Path) -> Result<Recorded> {
 
 /// The options as a report's summary has them.
 fn tracking_options(json: &Value) -> Result<TrackingOptions> {
-    fn named<T: ValueEnum>(json: &Value, name: &str) -> Result<T> {
-        let value = json[name].as_str().unwrap_or_default();
-        T::from_str(value, true).map_err(|_| anyhow::anyhow!("summary.json has no option `{name}` that is known"))
+    fn named<T: DeserializeOwned>(json: &Value, name: &str) -> Result<T> {
+        T::deserialize(&json[name]).map_err(|_| anyhow::anyhow!("summary.json has no option `{name}` that is known"))
     }
     let updates = match (json["update_every"].as_u64(), json["update_at"].as_array()) {
         (Some(every), _) => Updates::Every(every),

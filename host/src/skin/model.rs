@@ -6,7 +6,6 @@ use super::histogram::HistogramModel;
 use super::model_file::{self, TrainedOn};
 use super::white_balance::WhiteBalance;
 use anyhow::{Result, bail};
-use clap::ValueEnum;
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use sinew_core::vision::frame::segment;
@@ -21,7 +20,8 @@ const SHIPPED_GAUSSIAN: &str = include_str!("../../models/skin_gaussian.json");
 const SHIPPED_HISTOGRAM: &str = include_str!("../../models/skin_histogram.json");
 
 /// The two kinds of model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum ModelKind {
     /// A normal distribution of chromaticity.

@@ -4,8 +4,7 @@ use crate::config::{BodyConfig, Config};
 use crate::frames::FrameView;
 use crate::resume::{from_text, to_text};
 use anyhow::Result;
-use clap::ValueEnum;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::Vec3;
 use sinew_core::saved_state::StateKind;
@@ -14,7 +13,8 @@ use sinew_core::skeleton::arm::WIDE_ARM_LIMITS;
 use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmPair, ArmTracker, PairFrame, Particle};
 
 /// Which arms are tracked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum SideChoice {
     /// The person's left arm.

@@ -3,10 +3,15 @@
 mod arms;
 mod input;
 mod particles;
+#[cfg(feature = "plots")]
 pub(crate) mod pictures;
+#[cfg(not(feature = "plots"))]
+#[path = "no_pictures.rs"]
+mod pictures;
 mod report;
 mod resume;
 mod run;
+mod sample;
 mod source;
 mod table;
 
@@ -14,5 +19,6 @@ pub use arms::{ArmSet, ArmView, SideChoice};
 pub use input::{FrameFolder, SkippedImage};
 pub use report::{Inputs, REPORT_VERSION, RunReport, StatusCounts};
 pub use run::{Event, RATES_HZ, RunOutcome, TrackOptions, TrackRun};
+pub use sample::HandSample;
 pub use source::{FrameSource, VideoSource};
 pub use table::{HEADER, TrackRow};

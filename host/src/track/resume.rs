@@ -2,7 +2,7 @@
 
 use super::input::SkippedImage;
 use super::run::{TrackOptions, TrackRun};
-use crate::draw::plot::HandSample;
+use super::sample::HandSample;
 use crate::output::OutputDir;
 use crate::resume::{Begun, Left, List, ResumeFile, from_text, optional, real, reals, text_crc32, to_text};
 use crate::skin::model_file;

@@ -6,10 +6,10 @@ use super::particles::{PARTICLE_HEADER, particle_rows};
 use super::pictures::{Pictures, Shot};
 use super::report::RunReport;
 use super::resume;
+use super::sample::HandSample;
 use super::source::FrameSource;
 use super::table::{HEADER, TrackRow};
 use crate::config::Config;
-use crate::draw::plot::{HandSample, hand_plot};
 use crate::frames::{FrameReader, FrameView};
 use crate::output::{OutputDir, PendingFile};
 use crate::resume::Interrupted;
@@ -294,7 +294,11 @@ impl TrackRun {
         results.extend(particles.map(finish));
         let json = serde_json::to_string_pretty(&report)? + "\n";
         results.push(out.write("run.json", |writer| Ok(writer.write_all(json.as_bytes())?)));
-        results.push(hand_plot(&samples, report.image_size_px).and_then(|plot| out.write_png("hand.png", &plot)));
+        #[cfg(feature = "plots")]
+        results.push(
+            crate::draw::plot::hand_plot(&samples, report.image_size_px)
+                .and_then(|plot| out.write_png("hand.png", &plot)),
+        );
         results.extend(pictures.map(|pictures| out.write_png("contact_sheet.png", &pictures.contact_sheet())));
         results.into_iter().collect::<Result<()>>()?;
         resume::put(left, &report.options, &out)?;

@@ -8,7 +8,7 @@ use sinew_core::observation::point_cloud::MIN_RANGE_M;
 pub const MAX_POINTS: usize = 20_000;
 /// Radius around the camera's centre in which no point can be: matching that failed is often
 /// written as the origin.
-pub const CENTRE_RADIUS_M: f32 = NEAREST_M;
+pub const CENTRE_RADIUS_M: f32 = MIN_RANGE_M;
 /// Distance beyond which no point can be: far more than a stereo camera measures, and its square is
 /// an ordinary number.
 pub const MAX_DISTANCE_M: f32 = 1_000.0;

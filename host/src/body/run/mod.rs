@@ -4,6 +4,10 @@ pub mod inputs;
 pub mod measures_source;
 pub mod options;
 pub mod particles;
+#[cfg(feature = "plots")]
+pub mod pictures;
+#[cfg(not(feature = "plots"))]
+#[path = "no_pictures.rs"]
 pub mod pictures;
 pub mod report;
 mod resume;

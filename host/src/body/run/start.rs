@@ -101,7 +101,6 @@ mod tests {
     use super::*;
     use crate::body::tracking::BodyTuning;
     use crate::cloud::blocks_of;
-    use crate::evaluate::body::trial::SeenMotion;
     use crate::stereo::{StereoOptions, StereoScene, stick_wave};
     use sinew_core::kinematics::forward::posture;
 
@@ -110,14 +109,13 @@ mod tests {
         let mut recording = stick_wave(1, 15.0, 1.0, 3.0).unwrap().recording;
         recording.joints_m.truncate(1);
         let scene = StereoScene::new(recording, StereoOptions::default()).unwrap();
-        let seen = SeenMotion::of_scene(&scene).unwrap();
         let tuning = BodyTuning::default().guided_points;
         let blocks = blocks_of(&mut scene.points_m(0), None);
-        let pose = pose_from_points(BodyPart::Whole, &seen.measures, &tuning, &scene.points_m(0), &blocks).unwrap();
-        let skeleton = full_body(&seen.measures).unwrap();
+        let pose = pose_from_points(BodyPart::Whole, scene.measures(), &tuning, &scene.points_m(0), &blocks).unwrap();
+        let skeleton = full_body(scene.measures()).unwrap();
         assert_eq!(skeleton.clamp(pose), pose);
         let ends = posture(&skeleton, &Vec3::zeros(), &pose).ends;
-        let off: Vec<f32> = ends.iter().zip(&seen.joints_m[0]).map(|(a, b)| (a - b.unwrap()).norm()).collect();
+        let off: Vec<f32> = ends.iter().zip(scene.joints_m(0)).map(|(a, b)| (a - b.unwrap()).norm()).collect();
         let mean = off.iter().sum::<f32>() / off.len() as f32;
         assert!(mean < 0.15, "mean {mean}: {off:?}");
     }

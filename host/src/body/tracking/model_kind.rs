@@ -1,10 +1,10 @@
 //! The motion models that the command knows by name.
 
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
 /// How particles move from frame to frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, ValueEnum, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum BodyModelKind {
     /// Goals of head, hands and feet go on linearly; poses by probabilistic inverse kinematics.

@@ -4,6 +4,7 @@ pub mod body;
 pub mod document;
 pub mod joints;
 pub mod measured;
+#[cfg(feature = "plots")]
 pub mod plots;
 pub mod series;
 
@@ -103,6 +104,7 @@ impl Report {
         if body.is_in_pixels() {
             text("joints_px.csv", joints::to_csv_px(&positions, table, &body))?;
         }
+        #[cfg(feature = "plots")]
         for (name, picture) in plots::plots(self, table, tracked, &origin.options.updates)? {
             output.write_png(&name, &picture)?;
         }

@@ -2,8 +2,6 @@ use super::*;
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::tracking::{FilterName, Tracked, TrackingOptions, track};
 use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
-use crate::evaluate::cyclic::Protocol;
-use crate::evaluate::cyclic::protocol::measurements;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use sinew_core::cyclic::{
@@ -137,7 +135,7 @@ fn phase_error(tracked: &Tracked, frame: usize, truth: f64) -> f64 {
 /// Likelihood, flags, rows and the last estimate are those of the forward pass.
 #[test]
 fn what_looks_back_only_stays() {
-    let noisy = measurements(&walk(150, 150, 0.0), Protocol::Noisy, 0.1, 3);
+    let noisy = walk(150, 150, 0.0).with_noise(0.1, 3);
     for filter in [FilterName::Coupled, FilterName::Paper, FilterName::PaperCut] {
         let [forward, back] = [false, true].map(|smooth| tracked(&noisy, filter, smooth, 60.0));
         assert_ne!(forward, back);
@@ -161,7 +159,7 @@ fn what_looks_back_only_stays() {
 /// before: those frames are answered to the bit as if the recording ended there.
 #[test]
 fn a_position_found_anew_does_not_drag_the_frames_before_it() {
-    let mut rows = measurements(&walk(550, 400, 0.4), Protocol::Noisy, 0.05, 9).rows().to_vec();
+    let mut rows = walk(550, 400, 0.4).with_noise(0.05, 9).rows().to_vec();
     for row in &mut rows[100..400] {
         row.angles_rad = [None; ANGLES];
     }
@@ -183,7 +181,7 @@ fn a_position_found_anew_does_not_drag_the_frames_before_it() {
 #[test]
 fn a_gap_is_bridged_from_both_sides() {
     let truth = walk(240, 240, 0.0);
-    let mut rows = measurements(&truth, Protocol::Noisy, 0.1, 4).rows().to_vec();
+    let mut rows = truth.with_noise(0.1, 4).rows().to_vec();
     for row in &mut rows[100..160] {
         row.angles_rad = [None; ANGLES];
     }
@@ -216,7 +214,7 @@ proptest! {
     /// Any pattern of gaps and rates: finite, on the circle, no surer of the cycle without the later frames than with them.
     #[test]
     fn it_stays_sound(seed in 0_u64..1000, sigma in 0.02_f64..1.5, drop in 1_u64..9, slow in 1_u64..3) {
-        let noisy = measurements(&walk(120, 80, 0.3), Protocol::Noisy, sigma, seed);
+        let noisy = walk(120, 80, 0.3).with_noise(sigma, seed);
         let rows = noisy.rows().iter().filter(|row| row.frame == 0 || !(row.frame * seed).is_multiple_of(drop + 1)).cloned();
         let table = AngleTable::new(rows.collect(), Vec::new()).unwrap();
         for filter in [FilterName::Coupled, FilterName::Paper, FilterName::PaperCut] {

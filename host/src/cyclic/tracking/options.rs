@@ -1,11 +1,11 @@
 //! How a recording is tracked.
 
 use crate::cyclic::CyclicError;
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
 /// Which filter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum FilterName {
     /// The phase-coupled filter: measurements correct the position in the cycle too.
@@ -39,7 +39,8 @@ impl FilterName {
 }
 
 /// What is known of the first state.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum StartName {
     /// The first row's angles, the model's velocities, the best matching (or given) position in the cycle.

@@ -3,12 +3,12 @@
 use super::axis::{Axis, plottable};
 use super::figure::{Area, Chart, INK, Key, Names, ZOOM, band, broken_line, chart, legend, paint, px, render};
 use crate::draw::colour::of_side;
+use crate::track::HandSample;
 use crate::wording::side_name;
 use anyhow::Result;
 use image::RgbImage;
 use plotters::prelude::*;
 use sinew_core::camera::Pixel;
-use sinew_core::math::Vec3;
 use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::Status;
 
@@ -19,27 +19,6 @@ const PATH_WIDTH_PX: u32 = 640;
 const LEGEND_HEIGHT_PX: u32 = 210;
 /// What axes and margins of the path take of width and height, pixels.
 const PATH_RIM_PX: (u32, u32) = (84, 80);
-
-/// One row of a tracker's table: one arm in one frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HandSample {
-    /// Time of the frame, seconds.
-    pub time_s: f32,
-    /// The person's own side.
-    pub side: Side,
-    /// How the estimate came about; nothing but shading is drawn where lost.
-    pub status: Status,
-    /// Image of the hand.
-    pub hand_px: Option<Pixel>,
-    /// The hand, metres in camera axes.
-    pub hand_m: Option<Vec3>,
-    /// Likelihood of the blob that carries the estimate, 0..=1.
-    pub likelihood: f32,
-    /// Standard deviation of the hand, metres.
-    pub hand_std_m: f32,
-    /// Effective sample size.
-    pub effective_sample_size: f32,
-}
 
 /// The samples of one side in the order of time.
 type Track = (Side, Vec<HandSample>);
@@ -242,6 +221,7 @@ mod tests {
     use super::*;
     use crate::draw::colour::{LEFT, RIGHT};
     use proptest::prelude::*;
+    use sinew_core::math::Vec3;
 
     fn sample(time_s: f32, side: Side, status: Status) -> HandSample {
         HandSample {

@@ -11,5 +11,5 @@ mod matrix;
 
 pub use bars::bars_plot;
 pub use curves::{Curve, curves_plot};
-pub use hand::{HandSample, hand_plot};
+pub use hand::hand_plot;
 pub use matrix::matrix_plot;

@@ -1,0 +1,81 @@
+//! `sinew evaluate ...`
+
+pub mod arm;
+pub mod body;
+pub mod cyclic;
+pub mod hands;
+pub mod skin;
+
+use arm::EvaluateArmArgs;
+use body::EvaluateBodyArgs;
+use clap::{Parser, Subcommand};
+use cyclic::EvaluateCyclicArgs;
+use hands::EvaluateHandsArgs;
+use sinew::cli::console::Console;
+use skin::EvaluateSkinArgs;
+
+/// What `sinew evaluate ARGS...` starts, as `sinew-lab evaluate ARGS...`: its help names the former.
+#[derive(Debug, Parser)]
+#[command(name = "sinew-lab", bin_name = "sinew", version, arg_required_else_help = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// How results are printed.
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// The commands of `sinew-lab`.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Measure how well something works.
+    #[command(
+        subcommand,
+        after_help = "Examples:
+  sinew evaluate cyclic --model walking --seeds 1 --particles none --out cyclic"
+    )]
+    Evaluate(Evaluate),
+}
+
+/// What can be evaluated.
+#[derive(Debug, Subcommand)]
+pub enum Evaluate {
+    /// Compare the trackers on rendered scenes with known truth.
+    Arm(EvaluateArmArgs),
+    /// Make the PIK paper's comparison of motion models on real motion before a simulated stereo camera.
+    Body(EvaluateBodyArgs),
+    /// Make the cyclic paper's tables and figures on cut cycles with known angles.
+    Cyclic(EvaluateCyclicArgs),
+    /// Track both hands on real frames and compare with reference boxes.
+    Hands(EvaluateHandsArgs),
+    /// Score a skin model on images with masks.
+    Skin(EvaluateSkinArgs),
+}
+
+/// Runs one parsed command line.
+///
+/// # Errors
+/// As the chosen evaluation.
+pub fn run(cli: &Cli) -> anyhow::Result<()> {
+    let console = &cli.console;
+    let Command::Evaluate(evaluate) = &cli.command;
+    match evaluate {
+        Evaluate::Arm(args) => arm::run(args, console),
+        Evaluate::Body(args) => body::run(args, console),
+        Evaluate::Cyclic(args) => cyclic::run(args, console),
+        Evaluate::Hands(args) => hands::run(args, console),
+        Evaluate::Skin(args) => skin::run(args, console),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Cli;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_tree_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,194 @@
+//! `sinew evaluate skin`: pixel scores of a skin model on images with masks.
+
+use anyhow::{Result, bail, ensure};
+use clap::Args;
+use rayon::prelude::*;
+use serde::Serialize;
+use sinew::cli::console::Console;
+use sinew::cli::train_skin::report_unmasked;
+use sinew::output::OutputDir;
+use sinew::skin::SkinModel;
+use sinew::skin::confusion::{Confusion, median};
+use sinew::skin::folds;
+use sinew::skin::model::{DEFAULT_SKIN, ModelKind};
+use sinew::skin::pairs::{self, Pair, PairList};
+use sinew::skin::training::{TrainingOptions, pairs_set, train};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Options of `sinew evaluate skin`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  sinew simulate arm --motion builtin --frames 20 --out scene
+  sinew segment scene/frames --out masks
+  sinew evaluate skin --images scene/frames --masks masks --out skin")]
+pub struct EvaluateSkinArgs {
+    /// Folder of images; may be given several times, each with its --masks.
+    #[arg(long, value_name = "DIR", required = true)]
+    pub images: Vec<PathBuf>,
+    /// Folder of masks, brighter than 127 = skin, named like their images (or NAME_skin_NAME).
+    #[arg(long, value_name = "DIR", required = true)]
+    pub masks: Vec<PathBuf>,
+    /// Skin model: gaussian or histogram (shipped), or a FILE made by `sinew train skin`.
+    #[arg(long, value_name = "gaussian|histogram|FILE", default_value = DEFAULT_SKIN)]
+    pub skin: String,
+    /// Train anew on K folds of these images, and score each image by a model that was not trained on it.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=1000), conflicts_with = "skin")]
+    pub cross_validate: Option<u32>,
+    /// Kind of model that --cross-validate trains.
+    #[arg(long, value_enum, default_value = "histogram", requires = "cross_validate")]
+    pub kind: ModelKind,
+    /// Seed of the folds.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Score masks after the tracker's opening and closing; without it, each pixel by its own colour.
+    #[arg(long)]
+    pub morphology: bool,
+    /// Folder for the scores as skin.csv and skin.json.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Scores of one folder pair.
+#[derive(Debug, Serialize)]
+struct Row {
+    images_folder: String,
+    images: usize,
+    precision: f64,
+    recall: f64,
+    f1: f64,
+    median_image_f1: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Report<'a> {
+    format: &'static str,
+    version: u32,
+    sinew_version: &'static str,
+    model: &'a str,
+    cross_validated: bool,
+    morphology: bool,
+    rows: Vec<Row>,
+    skipped: Vec<String>,
+}
+
+/// Scores the model and prints a table.
+///
+/// # Errors
+/// Bad input, or no image that can be read.
+pub fn run(args: &EvaluateSkinArgs, console: &Console) -> Result<()> {
+    let list = pairs::find(&args.images, &args.masks)?;
+    let output = args.out.as_deref().map(OutputDir::create).transpose()?;
+    report_unmasked(&list, console);
+    let (judged, model) = match args.cross_validate {
+        Some(count) => {
+            (cross_validated(&list, count as usize, args)?, format!("{:?}, cross-validated", args.kind).to_lowercase())
+        }
+        None => {
+            let model = SkinModel::from_option(&args.skin)?;
+            warn_if_trained_on(&model, &list, console);
+            (judge(&list.pairs, |_| &model, args.morphology)?, args.skin.clone())
+        }
+    };
+    let skipped: Vec<String> = judged.iter().filter_map(|image| image.as_ref().err().cloned()).collect();
+    skipped.iter().for_each(|reason| console.note(format!("skipped: {reason}")));
+    let rows = table(&list, &judged)?;
+    let cross_validated = args.cross_validate.is_some();
+    let report = Report {
+        format: "sinew-evaluate-skin",
+        version: 1,
+        sinew_version: env!("CARGO_PKG_VERSION"),
+        model: &model,
+        cross_validated,
+        morphology: args.morphology,
+        rows,
+        skipped,
+    };
+    if let Some(output) = output {
+        output.write("skin.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
+        output.write("skin.csv", |writer| {
+            let mut table = csv::Writer::from_writer(writer);
+            report.rows.iter().try_for_each(|row| table.serialize(row))?;
+            Ok(table.flush()?)
+        })?;
+    }
+    console.answer(&told(&report), &report)
+}
+
+/// A training image's score says nothing about other images.
+fn warn_if_trained_on(model: &SkinModel, list: &PairList, console: &Console) {
+    for name in list.groups.iter().filter(|name| model.trained_on.sources.contains(name)) {
+        let remedy = "if it is this one, use --cross-validate";
+        console.note(format!("note: the model was trained on a folder named {name}; {remedy}"));
+    }
+}
+
+/// Decisions on each image, or why it could not be read.
+type Judged = Vec<Result<Confusion, String>>;
+
+fn judge<'m>(pairs: &[Pair], model_of: impl Fn(usize) -> &'m SkinModel + Sync, morphology: bool) -> Result<Judged> {
+    let one = |(index, pair): (usize, &Pair)| -> Result<Result<Confusion, String>> {
+        let (image, truth) = match pair.load()? {
+            Ok(loaded) => loaded,
+            Err(unreadable) => return Ok(Err(unreadable.to_string())),
+        };
+        let mut found = model_of(index).classify(&image)?;
+        if morphology {
+            found.clean()?;
+        }
+        Ok(Ok(Confusion::of(&found, &truth)))
+    };
+    pairs.par_iter().enumerate().map(one).collect()
+}
+
+fn cross_validated(list: &PairList, count: usize, args: &EvaluateSkinArgs) -> Result<Judged> {
+    let (set, skipped) = pairs_set(list, args.seed)?;
+    if let Some((path, reason)) = skipped.first() {
+        bail!("`{}`: {reason}; remove the pair before a cross-validation", path.display());
+    }
+    ensure!(count <= set.units.len(), "--cross-validate {count} needs as many images; there are {}", set.units.len());
+    let fold_of = folds::assign(set.units.len(), count, args.seed);
+    let train_fold = |fold: usize| {
+        let rest = set.subset(|index| fold_of[index] != fold);
+        Ok(train(&rest, TrainingOptions { kind: args.kind, folds: 10, seed: args.seed })?.0)
+    };
+    let models: Vec<SkinModel> = (0..count).into_par_iter().map(train_fold).collect::<Result<_>>()?;
+    judge(&list.pairs, |index| &models[fold_of[index]], args.morphology)
+}
+
+fn table(list: &PairList, judged: &Judged) -> Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for (group, name) in list.groups.iter().enumerate() {
+        let of_group = list.pairs.iter().zip(judged).filter(|(pair, _)| pair.group == group);
+        let confusions: Vec<&Confusion> = of_group.filter_map(|(_, image)| image.as_ref().ok()).collect();
+        let mut pooled = Confusion::default();
+        confusions.iter().for_each(|confusion| pooled.merge(confusion));
+        let Some(median_image_f1) = median(confusions.iter().map(|confusion| confusion.scores().f1).collect()) else {
+            bail!("no image-mask pair of {name} can be read");
+        };
+        let scores = pooled.scores();
+        rows.push(Row {
+            images_folder: name.clone(),
+            images: confusions.len(),
+            precision: scores.precision,
+            recall: scores.recall,
+            f1: scores.f1,
+            median_image_f1,
+        });
+    }
+    Ok(rows)
+}
+
+fn told(report: &Report<'_>) -> String {
+    let mut text = format!("model: {}\n", report.model);
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{:<24} images  precision  recall  F1     median image F1", "folder");
+    for row in &report.rows {
+        let _ = writeln!(
+            text,
+            "{:<24} {:>6}  {:>9.3}  {:>6.3}  {:.3}  {:>15.3}",
+            row.images_folder, row.images, row.precision, row.recall, row.f1, row.median_image_f1
+        );
+    }
+    text
+}

@@ -1,0 +1,187 @@
+//! The comparisons of `evaluate arm`: variants against particle counts, each option's own effect, the trackers as the arm
+//! paper prints them, and recovery after the hand was away.
+
+use super::clips::Clip;
+use super::observed::{ObservedScene, observe_all};
+use super::score::{FrameError, Spread, run_all, track};
+use anyhow::Result;
+use rayon::prelude::*;
+use serde::Serialize;
+use serde_json::json;
+use sinew::config::{CombinationName, Config, EstimateName, TrackerConfig, VariantName};
+use sinew::resume::Cells;
+use sinew::scene::SceneOptions;
+use sinew::skin::SkinModel;
+
+/// Errors of one tracker over all scenes.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// What was tracked with.
+    pub name: String,
+    /// Number of particles.
+    pub particles: usize,
+    /// Mean 3D error of a run, median over runs with quartiles, metres.
+    pub error_m: Spread,
+    /// Mean 2D error of a run, median over runs with quartiles, pixels.
+    pub error_px: Spread,
+    /// Every run's mean errors, in the scenes' order: metres, pixels.
+    pub runs: Vec<(f64, f64)>,
+}
+
+/// Tracks all scenes with one configuration.
+///
+/// # Errors
+/// As [`run_all`].
+pub fn row(name: &str, scenes: &[ObservedScene], tracker: &TrackerConfig, cells: &Cells<'_>) -> Result<Row> {
+    let runs: Vec<(f64, f64)> = run_all(scenes, tracker, cells)?.iter().map(|run| (run.mean_m, run.mean_px)).collect();
+    let spread = |value: fn(&(f64, f64)) -> f64| Spread::of(&runs.iter().map(value).collect::<Vec<_>>());
+    Ok(Row {
+        name: name.to_owned(),
+        particles: tracker.particles,
+        error_m: spread(|run| run.0),
+        error_px: spread(|run| run.1),
+        runs,
+    })
+}
+
+/// Every variant with every particle count, variants first.
+///
+/// # Errors
+/// As [`row`].
+pub fn variants(
+    scenes: &[ObservedScene],
+    names: &[VariantName],
+    particles: &[usize],
+    cells: &Cells<'_>,
+) -> Result<Vec<Row>> {
+    let jobs = names.iter().flat_map(|&variant| particles.iter().map(move |&particles| (variant, particles)));
+    jobs.map(|(variant, particles)| {
+        let tracker = TrackerConfig { variant, particles, ..TrackerConfig::default() };
+        row(variant_name(variant), scenes, &tracker, cells)
+    })
+    .collect()
+}
+
+/// The name of a variant on the command line.
+#[must_use]
+pub const fn variant_name(variant: VariantName) -> &'static str {
+    match variant {
+        VariantName::Pik => "pik",
+        VariantName::PikPaid => "pik-paid",
+        VariantName::Bootstrap => "bootstrap",
+        VariantName::Corrected => "corrected",
+        VariantName::Standard => "standard",
+    }
+}
+
+/// A tracker as the arm paper prints it: mean of both limbs, no gate, no area cue, no memory, mean of all particles.
+#[must_use]
+pub fn as_printed(variant: VariantName, particles: usize) -> TrackerConfig {
+    TrackerConfig {
+        variant,
+        particles,
+        combination: CombinationName::Mean,
+        gate: false,
+        area_cue: false,
+        depth_from_area: false,
+        blob_memory: false,
+        estimate: EstimateName::Mean,
+        ..TrackerConfig::default()
+    }
+}
+
+/// Each option of `variant` changed on its own, with 50 particles; the unchanged tracker first.
+///
+/// # Errors
+/// As [`row`].
+pub fn options(scenes: &[ObservedScene], variant: VariantName, cells: &Cells<'_>) -> Result<Vec<Row>> {
+    let base = || TrackerConfig { variant, ..TrackerConfig::default() };
+    let changed = [
+        ("default", base()),
+        ("no gate", TrackerConfig { gate: false, ..base() }),
+        ("no area cue", TrackerConfig { area_cue: false, ..base() }),
+        ("depth from area", TrackerConfig { depth_from_area: true, ..base() }),
+        ("no joint limits", TrackerConfig { joint_limits: false, ..base() }),
+        ("area not foreshortened", TrackerConfig { area_foreshortening: 0.0, ..base() }),
+        ("no blob memory", TrackerConfig { blob_memory: false, ..base() }),
+        ("mean of all particles", TrackerConfig { estimate: EstimateName::Mean, ..base() }),
+        ("mean of both limbs", TrackerConfig { combination: CombinationName::Mean, ..base() }),
+    ];
+    let named = |name: &str| format!("{}: {name}", variant_name(variant));
+    changed.iter().map(|(name, tracker)| row(&named(name), scenes, tracker, cells)).collect()
+}
+
+/// Frames in which the hand is away in the recovery scenes.
+pub const AWAY: std::ops::Range<usize> = 120..150;
+/// Frames after the return within which it counts as found again.
+pub const RECOVERY_FRAMES: usize = 5;
+/// Frames on end with a small error that make a recovery.
+pub const STEADY_FRAMES: usize = 3;
+/// The small error, as a share of the image's width.
+pub const RECOVERED_SHARE: f64 = 0.05;
+
+/// Share of runs that recovered in time.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Recovery {
+    /// Runs without a skin-coloured face.
+    pub without_false_blob: f64,
+    /// Runs with one in all frames.
+    pub with_false_blob: f64,
+    /// Runs of each kind.
+    pub runs: usize,
+}
+
+/// Whether the error was small for [`STEADY_FRAMES`] on end, beginning within [`RECOVERY_FRAMES`] after the return.
+fn recovered(errors: &[FrameError], width_px: u32) -> bool {
+    let small = |error: &FrameError| error.error_px < RECOVERED_SHARE * f64::from(width_px);
+    let after = errors.get(AWAY.end..).unwrap_or(&[]);
+    after.windows(STEADY_FRAMES).take(RECOVERY_FRAMES).any(|frames| frames.iter().all(small))
+}
+
+/// Sends the hand away and sees whether the default tracker finds it again.
+///
+/// # Errors
+/// As [`observe_all`], [`track`] and [`Cells::cell`].
+pub fn recovery(clips: &[Clip], seeds: &[u64], base: &Config, skin: &SkinModel, cells: &Cells<'_>) -> Result<Recovery> {
+    let share = |false_blob_fraction: f32| -> Result<f64> {
+        let options = SceneOptions {
+            frames: AWAY.end + 15,
+            away: Some(AWAY),
+            hidden_fraction: 0.0,
+            false_blob_fraction,
+            ..SceneOptions::default()
+        };
+        let scenes = observe_all(clips, seeds, &options, base, skin, cells)?;
+        let found: Vec<bool> = scenes
+            .par_iter()
+            .map(|scene| {
+                let key = json!(["recovery", scene.key(), f64::from(false_blob_fraction)]);
+                cells.cell(&key, || Ok(recovered(&track(scene, &base.tracker, scene.seed)?, scene.size_px.0)))
+            })
+            .collect::<Result<_>>()?;
+        Ok(found.iter().filter(|found| **found).count() as f64 / found.len().max(1) as f64)
+    };
+    Ok(Recovery { without_false_blob: share(0.0)?, with_false_blob: share(1.0)?, runs: clips.len() * seeds.len() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn recovery_needs_three_small_errors_on_end_soon_enough() {
+        let frame = |error_px| FrameError { error_m: 0.0, error_px };
+        let mut errors = vec![frame(100.0); AWAY.end + 15];
+        assert!(!recovered(&errors, 640));
+        for error in &mut errors[AWAY.end + 4..AWAY.end + 7] {
+            *error = frame(5.0);
+        }
+        assert!(recovered(&errors, 640));
+        errors[AWAY.end + 5] = frame(50.0);
+        assert!(!recovered(&errors, 640));
+        for error in &mut errors[AWAY.end + 6..] {
+            *error = frame(5.0);
+        }
+        assert!(!recovered(&errors, 640), "too late");
+    }
+}

@@ -1,0 +1,82 @@
+//! Does the hand likelihood rank hands above other blobs on real frames? The area under the ROC curve.
+
+use super::hands::ReferenceBox;
+use anyhow::Result;
+use image::RgbImage;
+use serde::Serialize;
+use sinew::frames::FrameReader;
+use sinew::skin::SkinModel;
+use sinew_core::vision::blobs::LikelyBlob;
+use sinew_core::vision::edges::EdgeDetector;
+use sinew_core::vision::hand_likelihood::{
+    DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE, DEFAULT_WEIGHTS, HandLikelihood, LikelihoodForm,
+};
+
+/// A blob outside of all boxes counts from this area on, pixels.
+pub const OTHER_MIN_AREA_PX: u32 = 300;
+
+/// Areas under the ROC curve of both forms of the likelihood; `None` where a class is empty.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct HandRanking {
+    /// Boxes with a blob: the largest one is the hand.
+    pub hands: usize,
+    /// Blobs over [`OTHER_MIN_AREA_PX`] in no box.
+    pub others: usize,
+    /// Area under the curve of the default form.
+    pub filled_area: Option<f64>,
+    /// Area under the curve of the form as printed in the arm paper.
+    pub paper_area: Option<f64>,
+}
+
+/// Finds the blobs of all `frames`, sorts them by `boxes` into hands and others, and ranks them by both forms.
+///
+/// # Errors
+/// As [`FrameReader::read`].
+pub fn rank(frames: &[RgbImage], boxes: &[ReferenceBox], skin: &SkinModel) -> Result<HandRanking> {
+    let filled = HandLikelihood::default();
+    let paper = HandLikelihood::new(LikelihoodForm::Paper, DEFAULT_WEIGHTS, DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE)?;
+    let mut reader = FrameReader::new(filled, EdgeDetector::default())?;
+    // Scores of both forms, of hands and of others.
+    let (mut hands, mut others) = (Vec::new(), Vec::new());
+    for (index, frame) in frames.iter().enumerate() {
+        let image_area_px = (frame.width() * frame.height()) as f32;
+        let blobs = reader.read(frame, &*skin.for_image(frame)?)?.blobs;
+        let scores = |blob: &LikelyBlob| [filled, paper].map(|form| form.evaluate(&blob.blob, image_area_px));
+        let here: Vec<&ReferenceBox> = boxes.iter().filter(|b| b.frame == index).collect();
+        for wanted in &here {
+            let inside = blobs.iter().filter(|blob| wanted.contains(blob.blob.centroid));
+            hands.extend(inside.max_by_key(|blob| blob.blob.area_px).map(scores));
+        }
+        let is_other = |blob: &&LikelyBlob| {
+            blob.blob.area_px > OTHER_MIN_AREA_PX && !here.iter().any(|b| b.contains(blob.blob.centroid))
+        };
+        others.extend(blobs.iter().filter(is_other).map(scores));
+    }
+    let area = |form: usize| {
+        let of = |scores: &[[f32; 2]]| -> Vec<f32> { scores.iter().map(|score| score[form]).collect() };
+        area_under_curve(&of(&hands), &of(&others))
+    };
+    Ok(HandRanking { hands: hands.len(), others: others.len(), filled_area: area(0), paper_area: area(1) })
+}
+
+/// Part of all pairs in which the hand has the greater score, ties by half; `None` where there is no pair.
+#[must_use]
+pub fn area_under_curve(hands: &[f32], others: &[f32]) -> Option<f64> {
+    let pairs = hands.iter().flat_map(|h| others.iter().map(move |o| h.total_cmp(o)));
+    let wins: f64 = pairs.map(|order| 0.5 * f64::from(order as i8 + 1)).sum();
+    let count = hands.len() * others.len();
+    (count > 0).then(|| wins / count as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::area_under_curve;
+
+    #[test]
+    fn the_area_counts_pairs_and_halves_ties() {
+        assert_eq!(area_under_curve(&[0.9, 0.8], &[0.1, 0.2]), Some(1.0));
+        assert_eq!(area_under_curve(&[0.1], &[0.9]), Some(0.0));
+        assert_eq!(area_under_curve(&[0.5, 0.5], &[0.5, 0.1]), Some(0.75));
+        assert_eq!(area_under_curve(&[], &[0.5]), None);
+    }
+}

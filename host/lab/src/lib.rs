@@ -1,0 +1,12 @@
+//! Measuring the trackers where the truth is known.
+
+pub mod body;
+pub mod cli;
+pub mod clips;
+pub mod cyclic;
+pub mod experiments;
+pub mod hand_ranking;
+pub mod hands;
+pub mod hands_report;
+pub mod observed;
+pub mod score;

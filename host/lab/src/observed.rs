@@ -1,0 +1,117 @@
+//! A rendered scene after the front end: what the trackers see, beside the truth. Rendered once, tracked many times.
+
+use super::clips::Clip;
+use anyhow::Result;
+use rayon::prelude::*;
+use serde_json::{Value, json};
+use sinew::config::Config;
+use sinew::frames::{FrameReader, FrameView};
+use sinew::motion::ArmSide;
+use sinew::resume::{Cells, crc32_of};
+use sinew::scene::{Scene, SceneOptions, Sides};
+use sinew::skin::SkinModel;
+use sinew::track::SideChoice;
+use sinew_core::camera::Pixel;
+use sinew_core::math::Vec3;
+
+/// Truth of one frame of the tracked arm.
+#[derive(Debug, Clone, Copy)]
+pub struct HandTruth {
+    /// Hand, metres.
+    pub hand_m: Vec3,
+    /// Its pixel, also where it is hidden.
+    pub hand_px: Pixel,
+    /// Whether its skin can be seen.
+    pub visible: bool,
+    /// Whether a skin-coloured face is shown.
+    pub false_blob: bool,
+}
+
+/// All frames of one scene as blobs and edges.
+#[derive(Debug, Clone)]
+pub struct ObservedScene {
+    /// Name of the clip.
+    pub clip: String,
+    /// Seed of the scene.
+    pub seed: u64,
+    /// Camera and body, as a user would give them.
+    pub config: Config,
+    /// Image size.
+    pub size_px: (u32, u32),
+    /// Tracked arm.
+    pub side: SideChoice,
+    /// Time between frames, microseconds.
+    pub frame_us: u64,
+    /// What the front end found.
+    pub views: Vec<FrameView>,
+    /// The truth.
+    pub truth: Vec<HandTruth>,
+}
+
+impl ObservedScene {
+    /// What tells this scene from others that the same options and skin model make.
+    #[must_use]
+    pub fn key(&self) -> Value {
+        json!([self.clip, self.seed, crc32_of(&self.truth)])
+    }
+}
+
+/// Renders the scene of `clip` and sends every frame through the front end.
+///
+/// # Errors
+/// A clip that cannot be read, an option out of range.
+pub fn observe(clip: &Clip, options: &SceneOptions, base: &Config, skin: &SkinModel) -> Result<ObservedScene> {
+    let options = SceneOptions { sides: Sides::One(clip.side), ..options.clone() };
+    let motion = clip.load(options.frames_per_second, options.frames)?;
+    let scene = Scene::new(&motion, &options)?;
+    let told = Config::parse(&scene.config_toml())?;
+    let config = Config { camera: told.camera, body: told.body, ..base.clone() };
+    let mut reader = FrameReader::new(config.likelihood.build()?, config.edges.build()?)?;
+    let mut read = |frame| {
+        let image = scene.render(frame);
+        reader.read(&image, &*skin.for_image(&image)?)
+    };
+    let views = (0..scene.len()).map(&mut read).collect::<Result<_>>()?;
+    let camera = scene.camera();
+    let truth = (0..scene.len()).map(|frame| {
+        let truth = scene.truth(frame);
+        let side = truth.sides[0];
+        HandTruth {
+            hand_m: side.joints.hand_m,
+            hand_px: side.hand_px(&camera).unwrap_or(Pixel::new(f32::NAN, f32::NAN)),
+            visible: side.hand_visible,
+            false_blob: truth.false_blob,
+        }
+    });
+    Ok(ObservedScene {
+        clip: clip.name.clone(),
+        seed: options.seed,
+        config,
+        size_px: (options.width_px, options.height_px),
+        side: if clip.side == ArmSide::Left { SideChoice::Left } else { SideChoice::Right },
+        frame_us: (1.0e6 / f64::from(options.frames_per_second)) as u64,
+        views,
+        truth: truth.collect(),
+    })
+}
+
+/// All clips with all seeds, in parallel; the order does not depend on the threads.
+///
+/// # Errors
+/// As [`observe`] and [`Cells::go_on`].
+pub fn observe_all(
+    clips: &[Clip],
+    seeds: &[u64],
+    options: &SceneOptions,
+    base: &Config,
+    skin: &SkinModel,
+    cells: &Cells<'_>,
+) -> Result<Vec<ObservedScene>> {
+    let jobs: Vec<(&Clip, u64)> = clips.iter().flat_map(|clip| seeds.iter().map(move |&seed| (clip, seed))).collect();
+    jobs.into_par_iter()
+        .map(|(clip, seed)| {
+            cells.go_on()?;
+            observe(clip, &SceneOptions { seed, ..options.clone() }, base, skin)
+        })
+        .collect()
+}
