@@ -1,6 +1,6 @@
 //! A body tracker's state as it is saved.
 
-use super::step::BodyTracker;
+use super::state::BodyTracker;
 use super::velocity::Velocity;
 use crate::math::Vec3;
 use crate::pik::motion::BodyParticle;

@@ -1,9 +1,10 @@
 //! Weights: what the image says of one arm.
 
+use super::context::FrameContext;
 use super::limbs::{LimbDensities, LimbHypotheses};
 use super::options::{LimbCombination, Variant};
-use super::propose::{FrameContext, Proposed};
-use super::step::Particle;
+use super::particle::Particle;
+use super::propose::Proposed;
 use crate::camera::Pixel;
 use crate::math::{Vec3, atan2, exp, ln, max, unit};
 use crate::observation::candidate::HandCandidate;
@@ -118,10 +119,11 @@ impl FrameContext<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::model::ArmModel;
+    use super::super::options::ArmOptions;
     use super::*;
     use crate::camera::Camera;
     use crate::skeleton::{ArmGeometry, Side};
-    use crate::tracker::arm::{ArmModel, ArmOptions};
 
     fn only(upper: OrientationDensity, fore: OrientationDensity) -> LimbHypotheses {
         LimbHypotheses { estimate: LimbDensities { upper, fore }, blobs: heapless::Vec::new() }
