@@ -34,6 +34,7 @@ pub mod track_cyclic;
 pub mod train;
 pub mod train_cyclic;
 pub mod train_skin;
+mod variant_arg;
 pub mod viewer_args;
 
 use clap::{Parser, Subcommand};

@@ -158,7 +158,7 @@ impl FrameContext<'_> {
                 (heaviest, most) = (index, mass);
             }
         }
-        let all = self.model.options().estimate == EstimateRule::MeanOfAll;
+        let all = self.model.options().estimate == EstimateRule::Mean;
         let members = particles.iter().zip(weights).filter(|(p, _)| all || slot(at(p)) == heaviest);
         let candidate = (heaviest < MAX_CANDIDATES).then_some(heaviest);
         let mut cluster = self.mean_pose(members.map(|(p, w)| (p, *w)), candidate);

@@ -19,12 +19,16 @@ mod resample;
 mod saved;
 mod state;
 mod step;
+#[cfg(feature = "serde")]
+mod switch;
+mod variant;
 mod weigh;
 
 pub use estimate::{ArmEstimate, ArmJoints, Status};
 pub use frame::{ArmFrame, ArmImage, LEAST_LIKELIHOOD, MAX_CANDIDATES};
 pub use model::ArmModel;
-pub use options::{ArmOptions, Variant};
+pub use options::ArmOptions;
 pub use pair::{ArmPair, PairFrame};
 pub use particle::Particle;
 pub use state::ArmTracker;
+pub use variant::{PoseRule, Variant, VariantTraits};

@@ -2,8 +2,8 @@
 
 use super::context::FrameContext;
 use super::importance;
-use super::options::Variant;
 use super::particle::Particle;
+use super::variant::PoseRule;
 use crate::camera::Ray;
 use crate::correction::elbow::nearest_elbow;
 use crate::correction::hand::draw_on_ray;
@@ -14,7 +14,7 @@ use crate::pik::proposal::{LaplaceProposal, LimitMass};
 use crate::random::Stream;
 use crate::skeleton::arm::{ARM_ANGLES, FOREARM, UPPER_ARM};
 
-/// Greatest part of a paid weight that the importance ratio of the pose may decide. The expansion's tails are thinner than
+/// Greatest part of a corrected weight that the importance ratio of the pose may decide. The expansion's tails are thinner than
 /// those of the density, so rare draws would otherwise take the whole weight, the more so the more particles there are.
 const MAX_LOG_RATIO: f32 = 3.0;
 
@@ -25,17 +25,18 @@ pub(super) struct Proposed {
     pub jump_m: f32,
     /// Where the forearm was thought to point when the depth was drawn, a unit vector.
     pub supposed_forearm: Vec3,
-    /// ln of what the weight owes for the proposal (`pik-paid`), else zero.
-    pub log_payment: f32,
+    /// ln of the importance ratio of goal and pose where the weight is corrected (`pik-weighted`), else zero.
+    pub log_importance: f32,
 }
 
 impl FrameContext<'_> {
     /// Moves `ancestor` on; `driver` is the candidate that its hand is sent to.
     pub fn propose(&self, ancestor: &Particle, driver: Option<usize>, stream: &mut Stream) -> Proposed {
-        let mut proposed = match self.model.options().variant {
-            Variant::Standard | Variant::Corrected => self.propose_by_joints(ancestor, driver, stream),
-            Variant::PikPaid => self.propose_paid(ancestor, driver, stream),
-            Variant::Pik | Variant::Bootstrap => self.propose_by_goal(ancestor, driver, stream),
+        let traits = self.model.options().variant.traits();
+        let mut proposed = match traits.pose {
+            PoseRule::NearestElbow => self.propose_by_joints(ancestor, driver, stream),
+            PoseRule::InverseKinematics if traits.corrects_weight => self.propose_weighted(ancestor, driver, stream),
+            PoseRule::InverseKinematics => self.propose_by_goal(ancestor, driver, stream),
         };
         proposed.particle.driver = driver.map(|index| index as u8);
         proposed
@@ -68,7 +69,7 @@ impl FrameContext<'_> {
             &(hand_m - self.shoulder_m),
             &ancestor.angles_rad,
         );
-        Proposed { particle: self.particle(angles_rad), jump_m, supposed_forearm: fore, log_payment: 0.0 }
+        Proposed { particle: self.particle(angles_rad), jump_m, supposed_forearm: fore, log_importance: 0.0 }
     }
 
     /// PIK with the goal of a blob, or of the goal process.
@@ -81,16 +82,16 @@ impl FrameContext<'_> {
             let drawn = process.draw(&ancestor.hand_m, &self.hand_velocity_m_per_s, self.dt_s, stream);
             let goal = self.free_goal(self.reachable.nearest(&drawn));
             let (particle, _) = self.pose_for(ancestor, &goal, stream);
-            return Proposed { particle, jump_m: 0.0, supposed_forearm: ancestor.forearm(), log_payment: 0.0 };
+            return Proposed { particle, jump_m: 0.0, supposed_forearm: ancestor.forearm(), log_importance: 0.0 };
         };
         let goal_m = self.reachable.along_ray(&draw_on_ray(&mean_m, &ray, &spread, stream), &ray);
         let (particle, _) = self.pose_for(ancestor, &self.driven_goal(goal_m, &ray), stream);
         let jump_m = length(&(particle.hand_m - extrapolated_m));
-        Proposed { particle, jump_m, supposed_forearm: ancestor.forearm(), log_payment: 0.0 }
+        Proposed { particle, jump_m, supposed_forearm: ancestor.forearm(), log_importance: 0.0 }
     }
 
-    /// As [`Self::propose_by_goal`], but goals stay as drawn and the weight pays for them.
-    fn propose_paid(&self, ancestor: &Particle, driver: Option<usize>, stream: &mut Stream) -> Proposed {
+    /// As [`Self::propose_by_goal`], but goals stay as drawn and the weight has their importance ratio.
+    fn propose_weighted(&self, ancestor: &Particle, driver: Option<usize>, stream: &mut Stream) -> Proposed {
         let process = self.hand_process();
         let extrapolated_m = process.mean(&ancestor.hand_m, &self.hand_velocity_m_per_s, self.dt_s);
         let goal_m = match driver.and_then(|index| self.corrected_hand(&extrapolated_m, &ancestor.forearm(), index)) {
@@ -99,9 +100,9 @@ impl FrameContext<'_> {
         };
         let log_goal = importance::log_transition(self, &extrapolated_m, &goal_m)
             - importance::log_proposal(self, &extrapolated_m, &ancestor.forearm(), &goal_m);
-        let (particle, log_ratio) = self.pose_for(ancestor, &self.paid_goal(goal_m), stream);
-        let log_payment = log_goal + clamp(log_ratio, -MAX_LOG_RATIO, MAX_LOG_RATIO);
-        Proposed { particle, jump_m: 0.0, supposed_forearm: ancestor.forearm(), log_payment }
+        let (particle, log_ratio) = self.pose_for(ancestor, &self.weighted_goal(goal_m), stream);
+        let log_importance = log_goal + clamp(log_ratio, -MAX_LOG_RATIO, MAX_LOG_RATIO);
+        Proposed { particle, jump_m: 0.0, supposed_forearm: ancestor.forearm(), log_importance }
     }
 
     /// A goal that is wanted alike in all directions.
@@ -112,7 +113,7 @@ impl FrameContext<'_> {
 
     /// A goal of a blob or of the transition alike, so that both have the same pose density. It is reached with the
     /// geometric mean of both spreads: much wider than a blob's error, and the blob term would let hardly a draw live.
-    fn paid_goal(&self, position_m: Vec3) -> Goal {
+    fn weighted_goal(&self, position_m: Vec3) -> Goal {
         let options = self.model.options();
         let precision = Mat3::identity() / (options.reach_std_m * options.reach_across_std_m);
         Goal { bone: FOREARM, position_m, precision }
@@ -128,7 +129,7 @@ impl FrameContext<'_> {
         Goal { bone: FOREARM, position_m, precision }
     }
 
-    /// Mode and Laplace draw for one goal, with the log importance ratio of the draw where the weight pays for it.
+    /// Mode and Laplace draw for one goal, with the log importance ratio of the draw where the weight is corrected.
     fn pose_for(&self, ancestor: &Particle, goal: &Goal, stream: &mut Stream) -> (Particle, f32) {
         let options = self.model.options();
         let jump_rad = length(&(goal.position_m - ancestor.hand_m)) / self.model.geometry().reach_m();
@@ -143,8 +144,8 @@ impl FrameContext<'_> {
             held: 0,
         };
         let mut mode = density.mode_from(&self.starts(ancestor, &goal.position_m), options.solver_steps);
-        let pays = options.variant == Variant::PikPaid;
-        if !pays {
+        let corrects_weight = options.variant.traits().corrects_weight;
+        if !corrects_weight {
             // The draw spreads as far as a frame's stiffness lets it: wider, the expansion would leave the goal.
             for (i, variance) in variances.iter().enumerate() {
                 mode.hessian[i][i] += 1.0 / variance - density.stiffness[i];
@@ -161,7 +162,7 @@ impl FrameContext<'_> {
             hand_m: there.ends[FOREARM],
             driver: None,
         };
-        if !pays {
+        if !corrects_weight {
             return (particle, 0.0);
         }
         let log_density = density.log_density(&draw.angles_rad, &there);

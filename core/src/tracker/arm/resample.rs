@@ -1,7 +1,6 @@
 //! Who goes on: ancestors by weight, and which candidate drives each one's hand.
 
 use super::context::FrameContext;
-use super::options::Variant;
 use super::particle::Particle;
 use crate::particle::resampling::{permute, systematic};
 use crate::random::Stream;
@@ -26,11 +25,11 @@ impl FrameContext<'_> {
         &self,
         ancestors: impl Iterator<Item = Option<&'p Particle>>,
     ) -> Vec<Option<usize>, CAPACITY> {
-        let is_paid = self.model.options().variant == Variant::PikPaid;
+        let corrects_weight = self.model.options().variant.traits().corrects_weight;
         let mut left = self.counts;
         let mut drivers: Vec<Option<usize>, CAPACITY> = Vec::new();
         for ancestor in ancestors {
-            let place = ancestor.filter(|_| !is_paid).and_then(|p| self.model.camera().project(&p.hand_m));
+            let place = ancestor.filter(|_| !corrects_weight).and_then(|p| self.model.camera().project(&p.hand_m));
             let own = self.candidate_at(place).filter(|&index| left.get(index).is_some_and(|&n| n > 0));
             if let Some(count) = own.and_then(|index| left.get_mut(index)) {
                 *count -= 1;

@@ -96,7 +96,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             *belief = self.belief(model, candidate);
         }
         let mut chances = beliefs;
-        if model.options().variant.is_blob_driven() {
+        if model.options().variant.traits().drives_hands {
             for (chance, ray) in chances.iter_mut().zip(&rays) {
                 *chance *= self.nearness(model, ray, dt_s);
             }
