@@ -35,9 +35,9 @@ where
         }
         let expected_rad = scene.skeleton.clamp(expected_rad);
         let Some(mut alignment) = self.options.alignment else { return expected_rad };
-        alignment.looks_afar &= self.noise.is_any_fast(limbs.count());
+        alignment.coarse_to_fine &= self.noise.is_any_fast(limbs.count());
         let unseen = core::array::from_fn(|i| self.noise.is_let_loose(limbs.group(scene.skeleton.bone_of_angle(i))));
-        alignment.laid(scene, blocks, (&expected_rad, &unseen), dt_s)
+        alignment.fit_root(scene, blocks, (&expected_rad, &unseen), dt_s)
     }
 
     /// What every particle's root changes by, and its trunk where that is laid onto the points.
@@ -47,10 +47,10 @@ where
         expected_rad: &[f32; ANGLES],
     ) -> [Option<f32>; ANGLES] {
         let skeleton = &scene.skeleton;
-        let lays_trunk = self.options.alignment.is_some_and(|alignment| alignment.lays_trunk);
+        let fit_trunk = self.options.alignment.is_some_and(|alignment| alignment.fit_trunk);
         core::array::from_fn(|index| {
             let is_trunk = limbs.group(skeleton.bone_of_angle(index)) == TRUNK_GROUP;
-            let is_shared = index < skeleton.root_coordinates() || (lays_trunk && is_trunk);
+            let is_shared = index < skeleton.root_coordinates() || (fit_trunk && is_trunk);
             is_shared.then(|| expected_rad[index] - self.before.angles_rad[index])
         })
     }

@@ -68,6 +68,7 @@
 //! ```
 
 mod alignment;
+mod deadband;
 mod estimate;
 mod expect;
 mod frame;
@@ -79,7 +80,6 @@ mod propose;
 mod resample;
 mod saved;
 mod state;
-mod steady;
 mod step;
 mod tempering;
 #[cfg(test)]
@@ -92,6 +92,6 @@ pub use estimate::BodyEstimate;
 pub use frame::BodyFrame;
 pub use mean_rotation::{angles_of_rotation, mean_rotation};
 pub use options::{BodyOptions, DEFAULT_BODY_OPTIONS};
-pub use pace::PaceNoise;
+pub use pace::SpeedScaledNoise;
 pub use propose::Advance;
 pub use state::BodyTracker;

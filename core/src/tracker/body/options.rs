@@ -1,7 +1,7 @@
 //! Options of the filter itself.
 
 use super::alignment::RootAlignment;
-use super::pace::PaceNoise;
+use super::pace::SpeedScaledNoise;
 use crate::error::{ParameterError, Rule};
 
 /// Options of the filter itself.
@@ -65,7 +65,7 @@ pub struct BodyOptions {
     /// How far it trembles beyond that, however many particles there are, metres. Both zero tell each frame's mean.
     pub tremble_m: f32,
     /// How the noise of a limb follows its pace; `None` leaves every limb the motion model's own.
-    pub pace: Option<PaceNoise>,
+    pub pace: Option<SpeedScaledNoise>,
     /// Share of the velocity's last change that goes on, in [0, 1]: motion models are given a velocity that changes on as it did. Zero is the
     /// velocity of the last two frames.
     pub acceleration_share: f32,
@@ -100,7 +100,7 @@ impl BodyOptions {
                 return Err(ParameterError::new(name, Rule::NotNegative));
             }
         }
-        self.pace.map(PaceNoise::checked).transpose()?;
+        self.pace.map(SpeedScaledNoise::checked).transpose()?;
         Ok(())
     }
 }

@@ -53,8 +53,8 @@ where
         }
         places(&mut self.first_m, visitor);
         self.before.visit(visitor);
-        self.steady.told.visit(visitor);
-        places(&mut self.steady.off_m, visitor);
+        self.deadband.reported.visit(visitor);
+        places(&mut self.deadband.off_m, visitor);
         self.velocity.last.visit(visitor);
         self.velocity.change.visit(visitor);
         visitor.flag(&mut self.velocity.is_known);

@@ -1,8 +1,8 @@
 //! State of the body tracker: how it begins and what it holds between frames.
 
+use super::deadband::Deadband;
 use super::options::BodyOptions;
 use super::pace::LimbNoise;
-use super::steady::SteadyPose;
 use super::velocity::EstimateVelocity;
 use crate::error::{ParameterError, Rule};
 use crate::math::Vec3;
@@ -68,7 +68,7 @@ pub struct BodyTracker<const BONES: usize, const ANGLES: usize, const N: usize, 
     pub(super) options: BodyOptions,
     pub(super) first_m: [Vec3; BONES],
     pub(super) before: BodyParticle<BONES, ANGLES>,
-    pub(super) steady: SteadyPose<BONES, ANGLES>,
+    pub(super) deadband: Deadband<BONES, ANGLES>,
     pub(super) noise: LimbNoise,
     pub(super) velocity: EstimateVelocity<BONES, ANGLES>,
     pub(super) seed: u64,
@@ -108,7 +108,7 @@ where
             options,
             first_m: first.ends_m,
             before: *first,
-            steady: SteadyPose::new(*first),
+            deadband: Deadband::new(*first),
             noise: LimbNoise::FULL,
             velocity: EstimateVelocity::REST,
             seed,

@@ -115,12 +115,13 @@ where
         if let Some(pace) = &self.options.pace {
             self.noise.follow((pace, limbs), &self.velocity.last.ends_m_per_s, (&observed, &scene.radii_m), dt_s);
         }
-        let tremble_m = standard_error_m.map(|error_m| self.options.tremble_m + self.options.tremble_errors * error_m);
-        let told = *self.steady.tell((scene, limbs), &mean, &tremble_m, dt_s);
+        let jitter_std_m =
+            standard_error_m.map(|error_m| self.options.tremble_m + self.options.tremble_errors * error_m);
+        let reported = *self.deadband.filter((scene, limbs), &mean, &jitter_std_m, dt_s);
         self.before = mean;
         BodyEstimate {
-            angles_rad: told.angles_rad,
-            ends_m: told.ends_m,
+            angles_rad: reported.angles_rad,
+            ends_m: reported.ends_m,
             spread_m,
             observed,
             effective_sample_size,

@@ -57,8 +57,8 @@ fn particles_take_over_the_trunk_as_it_was_laid() {
     let mut angle_std_rad_per_sqrt_s = [0.6; BODY_ANGLES];
     angle_std_rad_per_sqrt_s[TRUNK_TILT] = 1.0e-3;
     let motion = AngularMotion { angle_std_rad_per_sqrt_s, ..ANGULAR };
-    let [laid_m, held_m] = [true, false].map(|lays_trunk| {
-        let alignment = OPTIONS.alignment.map(|alignment| RootAlignment { lays_trunk, ..alignment });
+    let [laid_m, held_m] = [true, false].map(|fit_trunk| {
+        let alignment = OPTIONS.alignment.map(|alignment| RootAlignment { fit_trunk, ..alignment });
         let mut tracker = tracker_of(&scene, 60, 3, BodyOptions { alignment, ..LIMB_BY_LIMB });
         let mut off_m = 0.0;
         for frame in 1..=10 {

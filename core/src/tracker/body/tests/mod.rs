@@ -114,13 +114,13 @@ fn guided(process: &LinearGoals) -> GuidedMotion<'_, LinearGoals, BODY_ANGLES> {
 const ANGULAR: AngularMotion<BODY_ANGLES> =
     AngularMotion { root: ROOT, persistence: 0.5, angle_std_rad_per_sqrt_s: [0.6; BODY_ANGLES], own_velocity: false };
 
-const PACE: PaceNoise = PaceNoise {
+const PACE: SpeedScaledNoise = SpeedScaledNoise {
     rest_share: 0.4,
     full_speed_m_per_s: 1.3,
-    swing_most: 1.0,
+    max_scale_seen: 1.0,
     fade_s: 0.3,
     unseen_growth_s: 0.5,
-    unseen_most: 2.0,
+    max_scale_unseen: 2.0,
 };
 
 const OPTIONS: BodyOptions = BodyOptions {
@@ -128,12 +128,12 @@ const OPTIONS: BodyOptions = BodyOptions {
     limb_by_limb: false,
     alignment: Some(RootAlignment {
         steps: 2,
-        looks_afar: false,
+        coarse_to_fine: false,
         shift_std_m_per_sqrt_s: 0.3,
         turn_std_rad_per_sqrt_s: 0.6,
         angle_std_rad_per_sqrt_s: 1.0,
         pulling_blocks: 64,
-        lays_trunk: true,
+        fit_trunk: true,
     }),
     tremble_errors: 0.0,
     tremble_m: 0.0,
