@@ -81,7 +81,8 @@ mod tests {
     fn the_printed_file_names_every_key() {
         for key in known_keys::all().into_iter().filter(|key| key.contains('.')) {
             let name = key.rsplit('.').next().unwrap();
-            assert!(DEFAULT_FILE.contains(&format!("{name} =")), "`{key}` is missing");
+            let is_there = DEFAULT_FILE.contains(&format!("{name} =")) || DEFAULT_FILE.contains(&format!("[{key}]"));
+            assert!(is_there, "`{key}` is missing");
         }
     }
 
