@@ -6,10 +6,10 @@ use core::f32::consts::TAU;
 use sinew_core::camera::Camera;
 use sinew_core::error::ParameterError;
 use sinew_core::math::{Vec3, sin_cos};
-use sinew_core::observation::candidate::HandCandidate;
 use sinew_core::skeleton::{ArmGeometry, Side};
 use sinew_core::tracker::arm::options::AreaCue;
 use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, Status};
+use sinew_core::vision::candidate::HandCandidate;
 
 const FRAMES: u32 = 90;
 const RATE_HZ: f32 = 15.0;

@@ -8,9 +8,9 @@ use core::mem::size_of;
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::error::ParameterError;
 use sinew_core::math::Vec3;
-use sinew_core::observation::candidate::HandCandidate;
 use sinew_core::skeleton::{ArmGeometry, Side};
 use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, Status};
+use sinew_core::vision::candidate::HandCandidate;
 use static_cell::{ConstStaticCell, StaticCell};
 
 /// Time from one frame to the next, microseconds.

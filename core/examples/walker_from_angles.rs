@@ -2,7 +2,7 @@
 //!
 //!     cargo run --release -p sinew-core --features walking-model --example walker_from_angles
 
-use sinew_core::cyclic::models::walking::WALKING;
+use sinew_core::cyclic::model::walking::WALKING;
 use sinew_core::cyclic::{AngleMeasurement, ModelError};
 use sinew_core::random::Stream;
 use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;

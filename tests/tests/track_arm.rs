@@ -124,7 +124,7 @@ fn both_sides_are_two_rows_a_frame_left_first() {
 #[test]
 fn every_variant_answers_every_frame() {
     let (_root, input, out) = scene(3);
-    for variant in ["pik", "pik-paid", "bootstrap", "corrected", "standard"] {
+    for variant in ["pik", "pik-weighted", "bootstrap", "corrected", "standard"] {
         track(&input, &out).args(["--variant", variant]).assert().success();
         assert_eq!(rows(&out).len(), 3, "{variant}");
     }

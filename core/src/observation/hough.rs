@@ -28,6 +28,7 @@ pub const MAX_WINDOW: usize = 32;
 /// assert_eq!(wrong.check().map_err(|error| error.parameter), Err("hough.window"));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct HoughSettings {
     /// Bins of the histogram over pi.
     pub bins: usize,

@@ -72,11 +72,13 @@ impl ArmSetup {
     /// The options that it stands for.
     #[must_use]
     pub fn options(&self) -> ArmOptions {
+        let defaults = ArmOptions::default();
         ArmOptions {
             particles: usize::from(self.particles),
-            combination: self.product_floor.map_or(LimbCombination::Mean, |floor| LimbCombination::Product { floor }),
+            combination: self.product_floor.map_or(LimbCombination::Mean, |_| LimbCombination::Product),
+            product_floor: self.product_floor.unwrap_or(defaults.product_floor),
             area_cue: self.area_cue,
-            ..ArmOptions::default()
+            ..defaults
         }
     }
 

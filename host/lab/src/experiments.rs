@@ -8,10 +8,12 @@ use anyhow::Result;
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
-use sinew::config::{CombinationName, Config, EstimateName, TrackerConfig, VariantName};
+use sinew::config::Config;
 use sinew::resume::Cells;
 use sinew::scene::SceneOptions;
 use sinew::skin::SkinModel;
+use sinew_core::tracker::arm::options::{AreaCue, DEFAULT_AREA_CUE, EstimateRule, LimbCombination};
+use sinew_core::tracker::arm::{ArmOptions, Variant};
 
 /// Errors of one tracker over all scenes.
 #[derive(Debug, Clone, Serialize)]
@@ -32,7 +34,7 @@ pub struct Row {
 ///
 /// # Errors
 /// As [`run_all`].
-pub fn row(name: &str, scenes: &[ObservedScene], tracker: &TrackerConfig, cells: &Cells<'_>) -> Result<Row> {
+pub fn row(name: &str, scenes: &[ObservedScene], tracker: &ArmOptions, cells: &Cells<'_>) -> Result<Row> {
     let runs: Vec<(f64, f64)> = run_all(scenes, tracker, cells)?.iter().map(|run| (run.mean_m, run.mean_px)).collect();
     let spread = |value: fn(&(f64, f64)) -> f64| Spread::of(&runs.iter().map(value).collect::<Vec<_>>());
     Ok(Row {
@@ -50,43 +52,31 @@ pub fn row(name: &str, scenes: &[ObservedScene], tracker: &TrackerConfig, cells:
 /// As [`row`].
 pub fn variants(
     scenes: &[ObservedScene],
-    names: &[VariantName],
+    names: &[Variant],
     particles: &[usize],
     cells: &Cells<'_>,
 ) -> Result<Vec<Row>> {
     let jobs = names.iter().flat_map(|&variant| particles.iter().map(move |&particles| (variant, particles)));
     jobs.map(|(variant, particles)| {
-        let tracker = TrackerConfig { variant, particles, ..TrackerConfig::default() };
-        row(variant_name(variant), scenes, &tracker, cells)
+        let tracker = ArmOptions { variant, particles, ..ArmOptions::default() };
+        row(variant.traits().name, scenes, &tracker, cells)
     })
     .collect()
 }
 
-/// The name of a variant on the command line.
-#[must_use]
-pub const fn variant_name(variant: VariantName) -> &'static str {
-    match variant {
-        VariantName::Pik => "pik",
-        VariantName::PikPaid => "pik-paid",
-        VariantName::Bootstrap => "bootstrap",
-        VariantName::Corrected => "corrected",
-        VariantName::Standard => "standard",
-    }
-}
-
 /// A tracker as the arm paper prints it: mean of both limbs, no gate, no area cue, no memory, mean of all particles.
 #[must_use]
-pub fn as_printed(variant: VariantName, particles: usize) -> TrackerConfig {
-    TrackerConfig {
+pub fn as_printed(variant: Variant, particles: usize) -> ArmOptions {
+    ArmOptions {
         variant,
         particles,
-        combination: CombinationName::Mean,
-        gate: false,
-        area_cue: false,
+        combination: LimbCombination::Mean,
+        gate: None,
+        area_cue: None,
         depth_from_area: false,
-        blob_memory: false,
-        estimate: EstimateName::Mean,
-        ..TrackerConfig::default()
+        blob_memory: None,
+        estimate: EstimateRule::Mean,
+        ..ArmOptions::default()
     }
 }
 
@@ -94,20 +84,23 @@ pub fn as_printed(variant: VariantName, particles: usize) -> TrackerConfig {
 ///
 /// # Errors
 /// As [`row`].
-pub fn options(scenes: &[ObservedScene], variant: VariantName, cells: &Cells<'_>) -> Result<Vec<Row>> {
-    let base = || TrackerConfig { variant, ..TrackerConfig::default() };
+pub fn options(scenes: &[ObservedScene], variant: Variant, cells: &Cells<'_>) -> Result<Vec<Row>> {
+    let base = || ArmOptions { variant, ..ArmOptions::default() };
     let changed = [
         ("default", base()),
-        ("no gate", TrackerConfig { gate: false, ..base() }),
-        ("no area cue", TrackerConfig { area_cue: false, ..base() }),
-        ("depth from area", TrackerConfig { depth_from_area: true, ..base() }),
-        ("no joint limits", TrackerConfig { joint_limits: false, ..base() }),
-        ("area not foreshortened", TrackerConfig { area_foreshortening: 0.0, ..base() }),
-        ("no blob memory", TrackerConfig { blob_memory: false, ..base() }),
-        ("mean of all particles", TrackerConfig { estimate: EstimateName::Mean, ..base() }),
-        ("mean of both limbs", TrackerConfig { combination: CombinationName::Mean, ..base() }),
+        ("no gate", ArmOptions { gate: None, ..base() }),
+        ("no area cue", ArmOptions { area_cue: None, ..base() }),
+        ("depth from area", ArmOptions { depth_from_area: true, ..base() }),
+        ("no joint limits", ArmOptions { joint_limits: false, ..base() }),
+        (
+            "area not foreshortened",
+            ArmOptions { area_cue: Some(AreaCue { foreshortening: 0.0, ..DEFAULT_AREA_CUE }), ..base() },
+        ),
+        ("no blob memory", ArmOptions { blob_memory: None, ..base() }),
+        ("mean of all particles", ArmOptions { estimate: EstimateRule::Mean, ..base() }),
+        ("mean of both limbs", ArmOptions { combination: LimbCombination::Mean, ..base() }),
     ];
-    let named = |name: &str| format!("{}: {name}", variant_name(variant));
+    let named = |name: &str| format!("{}: {name}", variant.traits().name);
     changed.iter().map(|(name, tracker)| row(&named(name), scenes, tracker, cells)).collect()
 }
 

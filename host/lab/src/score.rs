@@ -5,9 +5,9 @@ use anyhow::Result;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use sinew::config::TrackerConfig;
 use sinew::resume::Cells;
 use sinew::track::ArmSet;
+use sinew_core::tracker::arm::ArmOptions;
 use statrs::statistics::{Data, OrderStatistics};
 
 /// First frame that counts: the paper looks at its trackers after 100 frames.
@@ -55,9 +55,9 @@ impl Spread {
 ///
 /// # Errors
 /// Names the parameter that cannot be used.
-pub fn track(scene: &ObservedScene, tracker: &TrackerConfig, seed: u64) -> Result<Vec<FrameError>> {
+pub fn track(scene: &ObservedScene, tracker: &ArmOptions, seed: u64) -> Result<Vec<FrameError>> {
     let mut config = scene.config.clone();
-    config.tracker = tracker.clone();
+    config.tracker = *tracker;
     let mut arms = ArmSet::new(&config, scene.size_px, scene.side, seed)?;
     let camera = *arms.models()[0].camera();
     let diagonal = f64::from(scene.size_px.0).hypot(f64::from(scene.size_px.1));
@@ -85,7 +85,7 @@ pub fn summarise(errors: &[FrameError]) -> RunError {
 ///
 /// # Errors
 /// As [`track`] and [`Cells::cell`].
-pub fn run_all(scenes: &[ObservedScene], tracker: &TrackerConfig, cells: &Cells<'_>) -> Result<Vec<RunError>> {
+pub fn run_all(scenes: &[ObservedScene], tracker: &ArmOptions, cells: &Cells<'_>) -> Result<Vec<RunError>> {
     let run = |scene: &ObservedScene| {
         let key = json!(["run", scene.key(), tracker]);
         cells.cell(&key, || Ok(summarise(&track(scene, tracker, scene.seed)?)))

@@ -3,11 +3,12 @@
 
 mod shared_data;
 
-use sinew::config::{Config, TrackerConfig};
+use sinew::config::Config;
 use sinew::resume::Cells;
 use sinew::scene::SceneOptions;
 use sinew::skin::SkinModel;
 use sinew::skin::model::DEFAULT_SKIN;
+use sinew_core::tracker::arm::ArmOptions;
 use sinew_lab::score::{Spread, run_all};
 use sinew_lab::{clips, observed::observe_all};
 
@@ -24,7 +25,7 @@ fn the_default_tracker_is_as_accurate_as_the_book_says() {
     let skin = SkinModel::from_option(DEFAULT_SKIN).unwrap();
     let scenes =
         observe_all(&clips, &[1, 2], &SceneOptions::default(), &Config::default(), &skin, &Cells::not_kept()).unwrap();
-    let runs = run_all(&scenes, &TrackerConfig::default(), &Cells::not_kept()).unwrap();
+    let runs = run_all(&scenes, &ArmOptions::default(), &Cells::not_kept()).unwrap();
     let metres = Spread::of(&runs.iter().map(|run| run.mean_m).collect::<Vec<_>>()).median;
     let pixels = Spread::of(&runs.iter().map(|run| run.mean_px).collect::<Vec<_>>()).median;
     println!("{metres:.3} m, {pixels:.1} px over {} runs", runs.len());

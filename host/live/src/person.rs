@@ -4,7 +4,7 @@ use sinew_core::camera::{Camera, Pixel};
 use sinew_core::error::{ParameterError, finite, positive};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::{ArmGeometry, Side};
-use sinew_core::tracker::arm::options::{AreaCue, LimbCombination};
+use sinew_core::tracker::arm::options::AreaCue;
 use sinew_core::tracker::arm::{ArmModel, ArmOptions};
 
 /// Horizontal field of view of a webcam, degrees.
@@ -17,8 +17,6 @@ const UPPER_ARM: f32 = 0.186;
 const ELBOW_TO_HAND_CENTRE: f32 = 0.146 + 0.5 * 0.108;
 /// Area of a half-open hand's image at one metre, over squared height.
 const HAND_AREA: f32 = 0.00632;
-/// How much less the area tells of the depth where the shoulders are guessed.
-const GUESSED_AREA_DOUBT: f32 = 3.0;
 /// Distance of a seated adult's shoulders from a laptop's camera, metres.
 pub const DISTANCE_M: f32 = 0.9;
 /// Sideways place of the left shoulder of somebody who sits in the middle, at the height of the camera, metres.
@@ -69,17 +67,10 @@ pub fn arm(
     let camera = Camera::from_field_of_view(size_px.0, size_px.1, FIELD_OF_VIEW_DEG.to_radians())?;
     let geometry = ArmGeometry::new(side, UPPER_ARM * HEIGHT_M, ELBOW_TO_HAND_CENTRE * HEIGHT_M)?;
     let defaults = ArmOptions::default();
-    let (doubt, combination) = match shoulder {
-        Shoulder::At { .. } => (1.0, defaults.combination),
-        // The limbs' edges are elsewhere than expected: orientations count by their mean, not their product.
-        Shoulder::Guessed { .. } => (GUESSED_AREA_DOUBT, LimbCombination::Mean),
-    };
-    let area_cue = defaults.area_cue.map(|cue| AreaCue {
-        hand_area_m2: HAND_AREA * HEIGHT_M * HEIGHT_M,
-        log_std: cue.log_std * doubt,
-        ..cue
-    });
-    let options = ArmOptions { particles, area_cue, combination, ..defaults };
+    let hand_area_m2 = HAND_AREA * HEIGHT_M * HEIGHT_M;
+    let area_cue = defaults.area_cue.map(|cue| AreaCue { hand_area_m2, ..cue });
+    let is_known = matches!(shoulder, Shoulder::At { .. });
+    let options = ArmOptions { particles, area_cue, ..defaults }.for_shoulder(is_known);
     let (Shoulder::Guessed { distance_m } | Shoulder::At { distance_m, .. }) = shoulder;
     positive("distance_m", distance_m)?;
     if let Shoulder::At { pixel, .. } = shoulder {

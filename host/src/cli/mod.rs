@@ -29,6 +29,7 @@ pub mod track_cyclic;
 pub mod train;
 pub mod train_cyclic;
 pub mod train_skin;
+pub mod variant_arg;
 pub mod viewer_args;
 
 use crate::resume::Interrupted;

@@ -3,14 +3,16 @@
 use super::console::Console;
 use super::ctrl_c::stop_flag;
 use super::skin_args::SkinArgs;
+use super::variant_arg::variant_parser;
 use super::viewer_args::ViewerArgs;
-use crate::config::{Config, DEFAULT_FILE, MAX_PARTICLES, VariantName};
+use crate::config::{Config, DEFAULT_FILE, MAX_PARTICLES};
 use crate::images::{VideoFacts, is_video};
 use crate::registry::{Kind, extensions};
 use crate::track::{Event, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
 use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::json;
+use sinew_core::tracker::arm::Variant;
 use std::path::PathBuf;
 
 /// Rate of a folder of frames that does not say, Hz.
@@ -44,8 +46,8 @@ pub struct TrackArmArgs {
     #[arg(long, value_enum, default_value_t = SideChoice::Right)]
     pub side: SideChoice,
     /// Which tracker [default: pik].
-    #[arg(long, value_enum)]
-    pub variant: Option<VariantName>,
+    #[arg(long, value_parser = variant_parser())]
+    pub variant: Option<Variant>,
     /// Number of particles of each arm [default: 50].
     #[arg(long, value_name = "N", value_parser = particle_count, allow_negative_numbers = true)]
     pub particles: Option<usize>,

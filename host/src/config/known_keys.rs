@@ -2,17 +2,47 @@
 
 use super::Config;
 
-/// Every key with its section, as `section.key`: those of the defaults and those that have none.
+/// Keys of `[tracker]` in files of version 0.1, and where their values are now.
+pub const FORMER: [(&str, &str); 20] = [
+    ("gate_std_m", "gate.std_m"),
+    ("gate_growth_m_per_s", "gate.growth_m_per_s"),
+    ("gate_floor", "gate.floor"),
+    ("gate_missed_share", "gate.missed_share"),
+    ("gate_allotment_reach", "gate.allotment_reach"),
+    ("area_length_share", "area_cue.length_share"),
+    ("area_foreshortening", "area_cue.foreshortening"),
+    ("area_log_std", "area_cue.log_std"),
+    ("blob_fall_time_s", "blob_memory.fall_time_s"),
+    ("blob_rise_time_s", "blob_memory.rise_time_s"),
+    ("blob_floor", "blob_memory.floor"),
+    ("blob_rest_share", "blob_memory.rest_share"),
+    ("blob_rest_time_s", "blob_memory.rest_time_s"),
+    ("hough_bins", "hough.bins"),
+    ("hough_window", "hough.window"),
+    ("hough_gamma", "hough.gamma"),
+    ("hough_max_pairs", "hough.max_pairs"),
+    ("hough_min_separation_px", "hough.min_separation_px"),
+    ("hough_min_pixels", "hough.min_pixels"),
+    ("hough_doubt_pixels", "hough.doubt_pixels"),
+];
+
+/// Every key with its sections, as `section.key`: those of the defaults and those that have none.
 pub fn all() -> Vec<String> {
     let mut keys = Vec::new();
-    let complete = toml::Value::try_from(complete()).ok();
-    let sections = complete.as_ref().and_then(toml::Value::as_table).into_iter().flatten();
-    for (section, table) in sections {
-        keys.push(section.clone());
-        let inner = table.as_table().into_iter().flatten();
-        keys.extend(inner.map(|(key, _)| format!("{section}.{key}")));
+    if let Ok(toml::Value::Table(sections)) = toml::Value::try_from(complete()) {
+        add_keys("", &sections, &mut keys);
     }
     keys
+}
+
+fn add_keys(prefix: &str, table: &toml::Table, keys: &mut Vec<String>) {
+    for (key, value) in table {
+        let full = format!("{prefix}{key}");
+        if let toml::Value::Table(inner) = value {
+            add_keys(&format!("{full}."), inner, keys);
+        }
+        keys.push(full);
+    }
 }
 
 /// A configuration in which every optional value is set, so that serialising it shows all keys.
@@ -25,6 +55,9 @@ fn complete() -> Config {
 
 /// What is said of an unknown `key`.
 pub fn unknown_key_message(key: &str) -> String {
+    if let Some((_, now)) = FORMER.iter().find(|(former, _)| key.strip_prefix("tracker.") == Some(former)) {
+        return format!("`{key}` is now `tracker.{now}` (`sinew track arm --print-config` lists all keys)");
+    }
     let depth = key.matches('.').count();
     let nearest = all()
         .into_iter()

@@ -7,23 +7,12 @@ use sinew_core::vision::hand_likelihood::{
     DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE, DEFAULT_WEIGHTS, HandLikelihood, LikelihoodForm,
 };
 
-/// Form of the hand likelihood.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LikelihoodName {
-    /// Finger-filled blob and smooth area.
-    #[default]
-    Filled,
-    /// As printed in the arm paper.
-    Paper,
-}
-
-/// From a blob's features to p(hand | blob), eqs. (6) to (9) of the arm paper.
+/// From a blob's features to p(hand | blob), arm (6) to arm (9).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct LikelihoodConfig {
     /// Which form.
-    pub form: LikelihoodName,
+    pub form: LikelihoodForm,
     /// Weights of area, centrality and ellipse.
     pub weights: [f32; 3],
     /// Smallest and largest usual area of a hand as shares of the image's area.
@@ -35,7 +24,7 @@ pub struct LikelihoodConfig {
 impl Default for LikelihoodConfig {
     fn default() -> Self {
         Self {
-            form: LikelihoodName::Filled,
+            form: LikelihoodForm::Filled,
             weights: DEFAULT_WEIGHTS,
             area_fractions: DEFAULT_AREA_FRACTIONS,
             scale: DEFAULT_SCALE,
@@ -49,11 +38,7 @@ impl LikelihoodConfig {
     /// # Errors
     /// Names the value that is out of its range.
     pub fn build(&self) -> Result<HandLikelihood, ParameterError> {
-        let form = match self.form {
-            LikelihoodName::Filled => LikelihoodForm::Filled,
-            LikelihoodName::Paper => LikelihoodForm::Paper,
-        };
-        HandLikelihood::new(form, self.weights, self.area_fractions, self.scale)
+        HandLikelihood::new(self.form, self.weights, self.area_fractions, self.scale)
     }
 }
 

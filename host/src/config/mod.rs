@@ -8,11 +8,12 @@ mod tracker;
 
 pub use body::BodyConfig;
 pub use camera::CameraConfig;
-pub use likelihood::{EdgeConfig, LikelihoodConfig, LikelihoodName};
-pub use tracker::{CombinationName, EstimateName, MAX_PARTICLES, TrackerConfig, VariantName};
+pub use likelihood::{EdgeConfig, LikelihoodConfig};
+pub use tracker::{MAX_PARTICLES, options_for};
 
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
+use sinew_core::tracker::arm::ArmOptions;
 use std::path::Path;
 
 /// The defaults as a commented file: what `--print-config` writes.
@@ -27,7 +28,7 @@ pub struct Config {
     /// The person.
     pub body: BodyConfig,
     /// The tracker.
-    pub tracker: TrackerConfig,
+    pub tracker: ArmOptions,
     /// From blobs to the likelihood of a hand.
     pub likelihood: LikelihoodConfig,
     /// Temporal edges.
@@ -60,7 +61,7 @@ impl Config {
         }
         config.camera.check()?;
         config.body.check()?;
-        config.tracker.check()?;
+        tracker::check(&config.tracker)?;
         config.likelihood.build()?;
         config.edges.build()?;
         Ok(config)
@@ -80,7 +81,8 @@ mod tests {
     fn the_printed_file_names_every_key() {
         for key in known_keys::all().into_iter().filter(|key| key.contains('.')) {
             let name = key.rsplit('.').next().unwrap();
-            assert!(DEFAULT_FILE.contains(&format!("{name} =")), "`{key}` is missing");
+            let is_there = DEFAULT_FILE.contains(&format!("{name} =")) || DEFAULT_FILE.contains(&format!("[{key}]"));
+            assert!(is_there, "`{key}` is missing");
         }
     }
 
@@ -93,10 +95,31 @@ mod tests {
     }
 
     #[test]
+    fn a_key_of_older_files_is_refused_with_the_present_one() {
+        for (old, new) in known_keys::FORMER {
+            let message = format!("{:#}", Config::parse(&format!("[tracker]\n{old} = 1\n")).unwrap_err());
+            assert!(message.contains(&format!("`tracker.{old}` is now `tracker.{new}`")), "{message}");
+            assert!(known_keys::all().contains(&format!("tracker.{new}")), "{new}");
+        }
+    }
+
+    #[test]
+    fn parts_of_the_tracker_are_switched_off_and_set_in_sections() {
+        let tracker = |text: &str| Config::parse(text).unwrap().tracker;
+        let off = tracker("[tracker]\ngate = false\narea_cue = true\nvariant = \"pik-paid\"\n");
+        assert!(off.gate.is_none() && off.area_cue == ArmOptions::default().area_cue);
+        assert_eq!(off.variant, sinew_core::tracker::arm::Variant::PikWeighted);
+        let set = tracker("[tracker.gate]\nstd_m = 0.8\n[tracker.hough]\nbins = 18\n");
+        assert_eq!((set.gate.unwrap().std_m, set.gate.unwrap().floor, set.hough.bins), (0.8, 0.02, 18));
+        let message = format!("{:#}", Config::parse("[tracker.gate]\nstd = 0.8\n").unwrap_err());
+        assert!(message.contains("`tracker.gate.std`") && message.contains("`tracker.gate.std_m`"), "{message}");
+    }
+
+    #[test]
     fn a_value_out_of_range_is_refused_by_name() {
         for (text, name) in [
             ("[tracker]\nparticles = 0\n", "particles"),
-            ("[tracker]\ngate_std_m = -1.0\n", "gate_std_m"),
+            ("[tracker.gate]\nstd_m = -1.0\n", "gate.std_m"),
             ("[camera]\nhorizontal_field_of_view_deg = 200.0\n", "horizontal_field_of_view_deg"),
             ("[body]\nupper_arm_m = nan\n", "upper_arm_m"),
             ("[body]\nheight_m = \"tall\"\n", "height_m"),

@@ -106,7 +106,7 @@ fn setup(config: &Config, size_px: (u32, u32), side: SideChoice, seed: u64) -> R
         particles: u16::try_from(options.particles)?,
         product_floor: match options.combination {
             LimbCombination::Mean => None,
-            LimbCombination::Product { floor } => Some(floor),
+            LimbCombination::Auto | LimbCombination::Product => Some(options.product_floor),
         },
         area_cue: options.area_cue,
         seed,

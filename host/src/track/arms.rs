@@ -1,6 +1,6 @@
 //! One arm or both, with their models: what `track arm`, `demo` and `evaluate arm` step through.
 
-use crate::config::{BodyConfig, Config};
+use crate::config::{BodyConfig, Config, options_for};
 use crate::frames::FrameView;
 use crate::resume::{from_text, to_text};
 use anyhow::Result;
@@ -9,7 +9,6 @@ use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::Vec3;
 use sinew_core::saved_state::StateKind;
 use sinew_core::skeleton::Side;
-use sinew_core::skeleton::arm::WIDE_ARM_LIMITS;
 use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmPair, ArmTracker, PairFrame, Particle};
 
 /// Which arms are tracked.
@@ -135,12 +134,8 @@ fn shoulder_m(body: &BodyConfig, side: Side) -> Vec3 {
 }
 
 fn model(config: &Config, camera: Camera, size_px: (u32, u32), side: Side) -> Result<ArmModel> {
-    let options = config.tracker.options(config.body.knows_shoulders(), config.body.hand_area_m2());
-    let mut geometry = config.body.arm(side)?;
-    if !config.tracker.joint_limits {
-        geometry.limits = WIDE_ARM_LIMITS;
-    }
-    Ok(ArmModel::new(camera, size_px, geometry, options)?)
+    let options = options_for(&config.tracker, &config.body);
+    Ok(ArmModel::new(camera, size_px, config.body.arm(side)?, options)?)
 }
 
 impl<const CAPACITY: usize> Trackers<CAPACITY> {

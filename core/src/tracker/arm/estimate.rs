@@ -1,18 +1,14 @@
 //! The estimate: the mean of the heaviest cluster of particles, made a pose again.
 
+use super::context::FrameContext;
 use super::frame::MAX_CANDIDATES;
 use super::options::EstimateRule;
-use super::propose::FrameContext;
-use super::step::Particle;
+use super::particle::Particle;
 use crate::angle::CircularSum;
-use crate::camera::Pixel;
 use crate::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
 use crate::math::{Mat3, Vec3, max, sqrt};
 use crate::skeleton::Side;
 use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
-
-/// A square that exceeds another one this many times has the greater root, however both are rounded.
-const CLEARLY_MORE: f32 = 1.0 + 1.0e-6;
 
 /// How the estimate came about.
 ///
@@ -147,24 +143,6 @@ pub(super) struct Cluster {
 }
 
 impl FrameContext<'_> {
-    /// The candidate whose centre lies nearest to `hand`, if within the cluster radius.
-    pub fn candidate_at(&self, hand: Option<Pixel>) -> Option<usize> {
-        let hand = hand?;
-        let mut best = (None, f32::INFINITY);
-        for (index, (candidate, &radius_px)) in self.candidates.iter().zip(&self.radii_px).enumerate() {
-            let (du, dv) = (candidate.centre.u_px - hand.u_px, candidate.centre.v_px - hand.v_px);
-            // Most blobs are so far off that no root has to be taken to see it.
-            if du * du + dv * dv > CLEARLY_MORE * (radius_px * radius_px) {
-                continue;
-            }
-            let distance = candidate.centre.distance_px(hand);
-            if distance < best.1 && distance < radius_px {
-                best = (Some(index), distance);
-            }
-        }
-        best.0
-    }
-
     /// Mean of the heaviest cluster (or of all particles).
     pub fn heaviest_cluster(&self, particles: &[Particle], weights: &[f32]) -> Cluster {
         let at = |particle: &Particle| self.candidate_at(self.model.camera().project(&particle.hand_m));
@@ -180,7 +158,7 @@ impl FrameContext<'_> {
                 (heaviest, most) = (index, mass);
             }
         }
-        let all = self.model.options().estimate == EstimateRule::MeanOfAll;
+        let all = self.model.options().estimate == EstimateRule::Mean;
         let members = particles.iter().zip(weights).filter(|(p, _)| all || slot(at(p)) == heaviest);
         let candidate = (heaviest < MAX_CANDIDATES).then_some(heaviest);
         let mut cluster = self.mean_pose(members.map(|(p, w)| (p, *w)), candidate);

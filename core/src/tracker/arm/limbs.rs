@@ -4,9 +4,9 @@
 //! sent to gives another (the last estimate with its hand corrected to the blob). So a blob whose arm moves is
 //! preferred to one at which nothing moves, also when the last estimate was wrong.
 
+use super::context::FrameContext;
 use super::estimate::ArmJoints;
 use super::frame::ArmImage;
-use super::propose::FrameContext;
 use crate::correction::elbow::nearest_elbow;
 use crate::math::{Vec3, max, unit};
 use crate::observation::hough::dynamic_hough;

@@ -4,22 +4,31 @@
 //! [`ArmPair`] that of two arms that share one list of blobs. A frame goes in as an [`ArmFrame`], an [`ArmEstimate`] comes out, for
 //! every frame.
 
+mod context;
 mod estimate;
-mod evidence;
 mod frame;
+mod importance;
 mod limbs;
 mod memory;
 mod model;
 pub mod options;
 mod pair;
-mod payment;
+mod particle;
 mod propose;
+mod resample;
 mod saved;
+mod state;
 mod step;
+#[cfg(feature = "serde")]
+mod switch;
+mod variant;
+mod weigh;
 
 pub use estimate::{ArmEstimate, ArmJoints, Status};
 pub use frame::{ArmFrame, ArmImage, LEAST_LIKELIHOOD, MAX_CANDIDATES};
 pub use model::ArmModel;
-pub use options::{ArmOptions, Variant};
+pub use options::ArmOptions;
 pub use pair::{ArmPair, PairFrame};
-pub use step::{ArmTracker, Particle};
+pub use particle::Particle;
+pub use state::ArmTracker;
+pub use variant::{PoseRule, Variant, VariantTraits};

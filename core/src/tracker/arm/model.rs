@@ -7,7 +7,7 @@ use crate::error::ParameterError;
 use crate::kinematics::forward::posture;
 use crate::math::{Vec3, max, sin_cos, sqrt};
 use crate::observation::limbs::ArmImagePoints;
-use crate::skeleton::arm::{ARM_ANGLES, ARM_BONES, ArmAngles, ArmGeometry, FOREARM, UPPER_ARM};
+use crate::skeleton::arm::{ARM_ANGLES, ARM_BONES, ArmAngles, ArmGeometry, FOREARM, UPPER_ARM, WIDE_ARM_LIMITS};
 use crate::skeleton::{Side, Skeleton};
 use crate::vision::candidate::HandCandidate;
 
@@ -56,6 +56,8 @@ impl ArmModel {
     ) -> Result<Self, ParameterError> {
         options.check()?;
         let image_area_px = crate::error::positive("image_size_px", image_size_px.0 as f32 * image_size_px.1 as f32)?;
+        let limits = if options.joint_limits { geometry.limits } else { WIDE_ARM_LIMITS };
+        let geometry = ArmGeometry { limits, ..geometry };
         Ok(Self { camera, image_area_px, skeleton: geometry.skeleton()?, geometry, options })
     }
 
@@ -123,8 +125,8 @@ impl ArmModel {
     #[must_use]
     pub fn least_cluster_radius_px(&self) -> f32 {
         let radius_per_focal = match self.options.estimate {
-            EstimateRule::HeaviestCluster { radius_per_focal } => radius_per_focal,
-            EstimateRule::MeanOfAll => DEFAULT_RADIUS_PER_FOCAL,
+            EstimateRule::Cluster => self.options.cluster_radius_per_focal,
+            EstimateRule::Mean => DEFAULT_RADIUS_PER_FOCAL,
         };
         radius_per_focal * self.camera.focal_px()
     }

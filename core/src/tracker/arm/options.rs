@@ -1,56 +1,10 @@
 //! Options of the arm tracker, each with its default and its reason.
 
+use super::variant::Variant;
 use crate::error::{ParameterError, Rule, not_negative, positive, within};
 use crate::math::exp;
 use crate::observation::hough::HoughSettings;
 use crate::skeleton::arm::ARM_ANGLES;
-
-/// Which tracker: the rows of the table in DESIGN.md section 4.
-///
-/// ```
-/// use sinew_core::tracker::arm::{ArmOptions, Variant};
-///
-/// // The arm paper's own tracker, and its baseline that does not look at blobs.
-/// let paper = ArmOptions { variant: Variant::Corrected, ..ArmOptions::default() };
-/// assert!(paper.check().is_ok());
-/// assert!(paper.variant.is_blob_driven() && !paper.variant.uses_inverse_kinematics());
-/// assert!(!Variant::Standard.is_blob_driven() && Variant::default().uses_inverse_kinematics());
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Variant {
-    /// Blobs drive goals, PIK turns goals into poses; not paid for.
-    #[default]
-    Pik,
-    /// As `Pik`, with a blob likelihood and every goal paid for exactly.
-    PikPaid,
-    /// Goals from the goal process only, blobs in the likelihood.
-    Bootstrap,
-    /// The arm paper: blobs correct hands, the elbow goes to the circle's nearest point; not paid for.
-    Corrected,
-    /// The arm paper's baseline: sequential Monte Carlo without blobs.
-    Standard,
-}
-
-impl Variant {
-    /// Whether blobs send some particles' hands somewhere.
-    #[must_use]
-    pub const fn is_blob_driven(self) -> bool {
-        matches!(self, Self::Pik | Self::PikPaid | Self::Corrected)
-    }
-
-    /// Whether poses come from PIK (otherwise from the arm paper's elbow and hand).
-    #[must_use]
-    pub const fn uses_inverse_kinematics(self) -> bool {
-        matches!(self, Self::Pik | Self::PikPaid | Self::Bootstrap)
-    }
-
-    /// Whether the likelihood has the blob term p(blobs | hand).
-    #[must_use]
-    pub const fn has_blob_term(self) -> bool {
-        matches!(self, Self::PikPaid | Self::Bootstrap)
-    }
-}
 
 /// How the orientation densities of both limbs become one weight.
 ///
@@ -61,18 +15,22 @@ impl Variant {
 /// let paper = ArmOptions { combination: LimbCombination::Mean, ..ArmOptions::default() };
 /// assert!(paper.check().is_ok());
 /// // A product without a floor would let one empty bin decide alone.
-/// let wrong = ArmOptions { combination: LimbCombination::Product { floor: 0.0 }, ..paper };
-/// assert_eq!(wrong.check().map_err(|error| error.parameter), Err("combination.floor"));
+/// let wrong = ArmOptions { combination: LimbCombination::Product, product_floor: 0.0, ..paper };
+/// assert_eq!(wrong.check().map_err(|error| error.parameter), Err("product_floor"));
+/// // A guessed shoulder puts the edges elsewhere than expected: their mean counts, not their product.
+/// let guessed = ArmOptions::default().for_shoulder(false);
+/// assert_eq!(guessed.combination, LimbCombination::Mean);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum LimbCombination {
-    /// Half of the sum, eq. (3) of the arm paper.
+    /// The product where the shoulder's place is known, else the mean ([`ArmOptions::for_shoulder`]).
+    #[default]
+    Auto,
+    /// Half of the sum, arm (3).
     Mean,
     /// Product of (density + floor); uniform is 1 + floor.
-    Product {
-        /// What keeps one empty bin from deciding alone.
-        floor: f32,
-    },
+    Product,
 }
 
 /// Continuity gate: exp(-d^2 / 2 s^2) + floor, d from the corrected hand to the particle's own prediction.
@@ -88,6 +46,7 @@ pub enum LimbCombination {
 /// assert_eq!(wrong.check().map_err(|error| error.parameter), Err("gate.floor"));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Gate {
     /// s while the hand is seen, metres.
     pub std_m: f32,
@@ -114,10 +73,12 @@ pub struct Gate {
 /// assert_eq!(cue.expected_area_m2(-1.0), cue.expected_area_m2(1.0), "away from it is the same");
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct AreaCue {
     /// Length-weighted area of the image of a hand seen from the side of its forearm (see
     /// [`crate::vision::candidate::HandCandidate::length_weighted_area_px`]) times squared depth over
     /// squared focal length, square metres.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub hand_area_m2: f32,
     /// Weight of the image's long axis in that area; the short axis has the rest.
     pub length_share: f32,
@@ -149,6 +110,7 @@ impl AreaCue {
 /// assert_eq!(wrong.check().map_err(|error| error.parameter), Err("blob_memory.rest_share"));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct BlobMemoryOptions {
     /// Time in which belief in a blob falls by 1/e while the hand is at another, seconds.
     pub fall_time_s: f32,
@@ -183,19 +145,18 @@ pub struct BlobMemoryOptions {
 /// assert!((model.least_cluster_radius_px() - 0.045 * model.camera().focal_px()).abs() < 1e-3);
 /// assert!(model.cluster_radius_px(&hand) > model.least_cluster_radius_px());
 /// // The plain mean of all particles lies between two hands where both are likely: this rule is for comparisons.
-/// let plain = ArmOptions { estimate: EstimateRule::MeanOfAll, ..ArmOptions::default() };
+/// let plain = ArmOptions { estimate: EstimateRule::Mean, ..ArmOptions::default() };
 /// assert!(plain.check().is_ok());
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum EstimateRule {
-    /// Weighted mean of all particles.
-    MeanOfAll,
     /// Weighted mean of the heaviest cluster: the particles whose hand lies near one blob's centre, or near none.
-    HeaviestCluster {
-        /// Radius around a blob's centre as a share of the focal length.
-        radius_per_focal: f32,
-    },
+    #[default]
+    Cluster,
+    /// Weighted mean of all particles.
+    Mean,
 }
 
 /// Default of the gate.
@@ -210,8 +171,32 @@ pub const DEFAULT_BLOB_MEMORY: BlobMemoryOptions = BlobMemoryOptions {
     rest_time_s: 1.5,
     moved_per_radius: 0.25,
 };
-/// Default of [`EstimateRule::HeaviestCluster`]'s radius: 25 pixels of a 640 pixel image with 60 degrees.
+/// Default of the area cue: the hand of an adult of 1.75 m.
+pub const DEFAULT_AREA_CUE: AreaCue =
+    AreaCue { hand_area_m2: 0.0194, length_share: 0.65, foreshortening: 0.85, log_std: 0.3 };
+/// Default of the cluster's radius: 25 pixels of a 640 pixel image with 60 degrees.
 pub const DEFAULT_RADIUS_PER_FOCAL: f32 = 0.045;
+/// How much less the area tells of the depth where the shoulder is guessed: the depth that fits the arm may be far from
+/// the one that the area says.
+const GUESSED_AREA_DOUBT: f32 = 3.0;
+
+impl Default for Gate {
+    fn default() -> Self {
+        DEFAULT_GATE
+    }
+}
+
+impl Default for AreaCue {
+    fn default() -> Self {
+        DEFAULT_AREA_CUE
+    }
+}
+
+impl Default for BlobMemoryOptions {
+    fn default() -> Self {
+        DEFAULT_BLOB_MEMORY
+    }
+}
 
 /// All options of one arm tracker.
 ///
@@ -226,6 +211,7 @@ pub const DEFAULT_RADIUS_PER_FOCAL: f32 = 0.045;
 /// assert_eq!(small.check().map_err(|error| error.parameter), Err("velocity_gain"));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct ArmOptions {
     /// Which tracker.
     pub variant: Variant,
@@ -233,17 +219,26 @@ pub struct ArmOptions {
     pub particles: usize,
     /// Combination of both limbs' orientation densities.
     pub combination: LimbCombination,
+    /// What keeps one empty bin from deciding a product of both limbs' densities alone.
+    pub product_floor: f32,
     /// Continuity gate, or none.
+    #[cfg_attr(feature = "serde", serde(with = "super::switch"))]
     pub gate: Option<Gate>,
     /// Area cue, or none.
+    #[cfg_attr(feature = "serde", serde(with = "super::switch"))]
     pub area_cue: Option<AreaCue>,
-    /// Whether an unpaid goal is drawn along the ray from prediction and area together (needs the area cue), which then
+    /// Whether a goal of a weight without correction is drawn along the ray from prediction and area together (needs the area cue), which then
     /// does not stand in the weight again.
     pub depth_from_area: bool,
     /// Memory of blobs that are not the hand, or none.
+    #[cfg_attr(feature = "serde", serde(with = "super::switch"))]
     pub blob_memory: Option<BlobMemoryOptions>,
     /// What is reported.
     pub estimate: EstimateRule,
+    /// Radius around a blob's centre of its cluster, as a share of the focal length.
+    pub cluster_radius_per_focal: f32,
+    /// Whether the pose keeps the arm's joint limits; without them it may bend as no arm does, for comparisons.
+    pub joint_limits: bool,
     /// Share of the estimated velocity that goes on.
     pub velocity_persistence: f32,
     /// Share of a new velocity in the running one.
@@ -272,9 +267,9 @@ pub struct ArmOptions {
     pub hough: HoughSettings,
     /// Time in which a limb's old orientation density fades by 1/e while the limb shows no moving edges, seconds.
     pub orientation_memory_s: f32,
-    /// Share of the goal process that is uniform over the reachable space (`pik-paid`).
+    /// Share of the goal process that is uniform over the reachable space (`pik-weighted`).
     pub teleport_share: f32,
-    /// Share of the blob likelihood that is uniform over the image (`pik-paid`, `bootstrap`).
+    /// Share of the blob likelihood that is uniform over the image (`pik-weighted`, `bootstrap`).
     pub clutter_share: f32,
     /// Without a blob for longer than this the arm counts as lost, seconds.
     pub lost_after_s: f32,
@@ -285,12 +280,15 @@ impl Default for ArmOptions {
         Self {
             variant: Variant::Pik,
             particles: 50,
-            combination: LimbCombination::Product { floor: 0.1 },
+            combination: LimbCombination::Auto,
+            product_floor: 0.1,
             gate: Some(DEFAULT_GATE),
-            area_cue: Some(AreaCue { hand_area_m2: 0.0194, length_share: 0.65, foreshortening: 0.85, log_std: 0.3 }),
+            area_cue: Some(DEFAULT_AREA_CUE),
             depth_from_area: false,
             blob_memory: Some(DEFAULT_BLOB_MEMORY),
-            estimate: EstimateRule::HeaviestCluster { radius_per_focal: DEFAULT_RADIUS_PER_FOCAL },
+            estimate: EstimateRule::Cluster,
+            cluster_radius_per_focal: DEFAULT_RADIUS_PER_FOCAL,
+            joint_limits: true,
             velocity_persistence: 0.9,
             velocity_gain: 0.8,
             hand_std_m_per_sqrt_s: 0.15,
@@ -313,6 +311,19 @@ impl Default for ArmOptions {
 }
 
 impl ArmOptions {
+    /// The options for a shoulder whose place is known, or only guessed: settles [`LimbCombination::Auto`] and widens the
+    /// area cue of a guessed one.
+    #[must_use]
+    pub fn for_shoulder(mut self, is_known: bool) -> Self {
+        if self.combination == LimbCombination::Auto {
+            self.combination = if is_known { LimbCombination::Product } else { LimbCombination::Mean };
+        }
+        if let Some(cue) = self.area_cue.as_mut().filter(|_| !is_known) {
+            cue.log_std *= GUESSED_AREA_DOUBT;
+        }
+        self
+    }
+
     /// Checks every value.
     ///
     /// # Errors
@@ -321,9 +332,7 @@ impl ArmOptions {
         if self.particles == 0 {
             return Err(ParameterError::new("particles", Rule::NotEmpty));
         }
-        if let LimbCombination::Product { floor } = self.combination {
-            within("combination.floor", floor, 1.0e-6, 10.0)?;
-        }
+        within("product_floor", self.product_floor, 1.0e-6, 10.0)?;
         if let Some(gate) = self.gate {
             positive("gate.std_m", gate.std_m)?;
             not_negative("gate.growth_m_per_s", gate.growth_m_per_s)?;
@@ -345,9 +354,7 @@ impl ArmOptions {
             positive("blob_memory.moved_per_radius", memory.moved_per_radius)?;
             within("blob_memory.floor", memory.floor, 1.0e-6, 1.0)?;
         }
-        if let EstimateRule::HeaviestCluster { radius_per_focal } = self.estimate {
-            positive("estimate.radius_per_focal", radius_per_focal)?;
-        }
+        positive("cluster_radius_per_focal", self.cluster_radius_per_focal)?;
         within("velocity_persistence", self.velocity_persistence, 0.0, 1.0)?;
         within("velocity_gain", self.velocity_gain, 0.0, 1.0)?;
         positive("hand_std_m_per_sqrt_s", self.hand_std_m_per_sqrt_s)?;
@@ -385,15 +392,5 @@ mod tests {
         let gate = Gate { std_m: -1.0, ..DEFAULT_GATE };
         let wrong = ArmOptions { gate: Some(gate), ..ArmOptions::default() };
         assert_eq!(wrong.check().unwrap_err(), ParameterError::new("gate.std_m", Rule::Positive));
-    }
-
-    #[test]
-    fn the_table_of_variants_is_that_of_the_design() {
-        let row = |v: Variant| (v.is_blob_driven(), v.uses_inverse_kinematics(), v.has_blob_term());
-        assert_eq!(row(Variant::Standard), (false, false, false));
-        assert_eq!(row(Variant::Corrected), (true, false, false));
-        assert_eq!(row(Variant::Bootstrap), (false, true, true));
-        assert_eq!(row(Variant::Pik), (true, true, false));
-        assert_eq!(row(Variant::PikPaid), (true, true, true));
     }
 }

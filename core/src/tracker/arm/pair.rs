@@ -38,7 +38,7 @@
 use super::estimate::ArmEstimate;
 use super::frame::{ArmFrame, ArmImage, MAX_CANDIDATES, most_likely};
 use super::model::ArmModel;
-use super::step::ArmTracker;
+use super::state::ArmTracker;
 use crate::camera::Pixel;
 use crate::error::ParameterError;
 use crate::math::{Vec3, abs, atan2, exp, ln, max, min, sin_cos, sqrt};

@@ -5,7 +5,8 @@ use super::frame::MAX_CANDIDATES;
 use super::limbs::LimbDensities;
 use super::memory::BlobMemory;
 use super::pair::ArmPair;
-use super::step::{ArmTracker, Particle};
+use super::particle::Particle;
+use super::state::ArmTracker;
 use crate::math::Vec3;
 use crate::saved_state::{FINITE, NOT_NEGATIVE, SavedState, StateVisitor};
 

@@ -40,17 +40,17 @@ use crate::skeleton::tree::SHIFTS;
 ///
 /// let alignment = RootAlignment {
 ///     steps: 10,
-///     looks_afar: false,
+///     coarse_to_fine: false,
 ///     shift_std_m_per_sqrt_s: 1.0,
 ///     turn_std_rad_per_sqrt_s: 1.0,
 ///     angle_std_rad_per_sqrt_s: 1.0,
 ///     pulling_blocks: 32,
-///     lays_trunk: true,
+///     fit_trunk: true,
 /// };
 /// // A body of one bone, three metres away, whose points show it ten centimetres farther to the right.
 /// let before = [0.0, 0.0, 3.0, 0.0, 0.0, 0.0];
 /// let cloud = points_of(&[0.1, 0.0, 3.0, 0.0, 0.0, 0.0]);
-/// let laid = alignment.laid(&scene, cloud.blocks(), (&before, &[false; 6]), 1.0 / 15.0);
+/// let laid = alignment.fit_root(&scene, cloud.blocks(), (&before, &[false; 6]), 1.0 / 15.0);
 /// assert!((laid[0] - 0.1).abs() < 0.02 && (laid[2] - 3.0).abs() < 0.02, "{laid:?}");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
@@ -59,7 +59,7 @@ pub struct RootAlignment {
     /// Most steps of the solver.
     pub steps: usize,
     /// Whether the pose is looked for from afar too, for limbs that are farther off than points reach ([`GuidedDensity::mode_from_afar`]).
-    pub looks_afar: bool,
+    pub coarse_to_fine: bool,
     /// How far the root is believed to get off its expected place, metres by root second.
     pub shift_std_m_per_sqrt_s: f32,
     /// How far it is believed to turn, radians by root second.
@@ -70,14 +70,14 @@ pub struct RootAlignment {
     /// Most blocks of points that pull.
     pub pulling_blocks: usize,
     /// Whether particles take over the trunk as it was laid, and not the root alone: limbs then hang where the points show the trunk.
-    pub lays_trunk: bool,
+    pub fit_trunk: bool,
 }
 
 impl RootAlignment {
     /// The pose `expected_rad` laid onto the points `blocks`, `dt_s` seconds after the last one. In a look from afar the angles of limbs that
     /// are `unseen` hold still: points of whatever hides a limb are not its own.
     #[must_use]
-    pub fn laid<const BONES: usize, const ANGLES: usize>(
+    pub fn fit_root<const BONES: usize, const ANGLES: usize>(
         &self,
         scene: &BodyScene<BONES, ANGLES>,
         blocks: &[PointBlock],
@@ -100,7 +100,7 @@ impl RootAlignment {
         };
         let stride = blocks.len().div_ceil(self.pulling_blocks.max(1)).max(1);
         let density = GuidedDensity { prior, scene, blocks, stride, reach: 1.0 };
-        if !self.looks_afar {
+        if !self.coarse_to_fine {
             return density.mode(self.steps).angles_rad;
         }
         let mut far_prior = prior;

@@ -68,21 +68,30 @@
 //! ```
 
 mod alignment;
+mod deadband;
 mod estimate;
-mod limb_by_limb;
+mod expect;
+mod frame;
 mod mean_rotation;
 mod observed;
+mod options;
 mod pace;
+mod propose;
+mod resample;
 mod saved;
-mod steady;
+mod state;
 mod step;
 mod tempering;
 #[cfg(test)]
 mod tests;
 mod velocity;
+mod weigh;
 
 pub use alignment::RootAlignment;
 pub use estimate::BodyEstimate;
+pub use frame::BodyFrame;
 pub use mean_rotation::{angles_of_rotation, mean_rotation};
-pub use pace::PaceNoise;
-pub use step::{Advance, BodyFrame, BodyOptions, BodyTracker, DEFAULT_BODY_OPTIONS};
+pub use options::{BodyOptions, DEFAULT_BODY_OPTIONS};
+pub use pace::SpeedScaledNoise;
+pub use propose::Advance;
+pub use state::BodyTracker;

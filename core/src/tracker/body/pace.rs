@@ -10,22 +10,22 @@ use crate::skeleton::Limbs;
 use crate::skeleton::limbs::{MAX_GROUPS, TRUNK_GROUP};
 
 /// A limb is unseen if fewer than this share of its bones with flesh are observed.
-const LEAST_OBSERVED: f32 = 0.5;
+const MIN_OBSERVED: f32 = 0.5;
 /// Nobody may ask for more than this many times the noise of a motion model.
-const MOST_NOISE: f32 = 100.0;
+const MAX_SCALE: f32 = 100.0;
 
 /// How the noise of a limb follows its pace; the trunk's is always the motion model's own.
 ///
 /// ```
-/// use sinew_core::tracker::body::PaceNoise;
+/// use sinew_core::tracker::body::SpeedScaledNoise;
 ///
-/// let noise = PaceNoise {
+/// let noise = SpeedScaledNoise {
 ///     rest_share: 0.4,
 ///     full_speed_m_per_s: 1.3,
-///     swing_most: 2.5,
+///     max_scale_seen: 2.5,
 ///     fade_s: 0.3,
 ///     unseen_growth_s: 0.5,
-///     unseen_most: 2.0,
+///     max_scale_unseen: 2.0,
 /// };
 /// assert!(noise.checked().is_ok());
 /// // At rest two fifths of the model's noise, in full swing all of it, and two and a half times that of a runner's foot.
@@ -35,22 +35,23 @@ const MOST_NOISE: f32 = 100.0;
 /// assert_eq!(noise.share(5.0), 2.5);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PaceNoise {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+pub struct SpeedScaledNoise {
     /// Noise of a limb at rest, as a share of the motion model's; in (0, 1].
     pub rest_share: f32,
     /// Speed that would alone make all of the noise, metres a second: root mean square over the ends of a limb's bones, against the root.
     pub full_speed_m_per_s: f32,
     /// The noise of a limb that is seen is no more than this many times the model's; 1 to 100.
-    pub swing_most: f32,
+    pub max_scale_seen: f32,
     /// Time in which the noise of a limb that comes to rest falls to its e-th part, seconds.
     pub fade_s: f32,
     /// Time in which the noise of a limb that is not seen grows by the model's own, seconds.
     pub unseen_growth_s: f32,
     /// It grows no further than this many times the model's; 1 to 100.
-    pub unseen_most: f32,
+    pub max_scale_unseen: f32,
 }
 
-impl PaceNoise {
+impl SpeedScaledNoise {
     /// Itself.
     ///
     /// # Errors
@@ -62,9 +63,9 @@ impl PaceNoise {
         positive("full_speed_m_per_s", self.full_speed_m_per_s)?;
         positive("fade_s", self.fade_s)?;
         positive("unseen_growth_s", self.unseen_growth_s)?;
-        for (name, most) in [("swing_most", self.swing_most), ("unseen_most", self.unseen_most)] {
-            if !(1.0..=MOST_NOISE).contains(&most) {
-                return Err(ParameterError::new(name, Rule::Within { low: 1.0, high: MOST_NOISE }));
+        for (name, most) in [("max_scale_seen", self.max_scale_seen), ("max_scale_unseen", self.max_scale_unseen)] {
+            if !(1.0..=MAX_SCALE).contains(&most) {
+                return Err(ParameterError::new(name, Rule::Within { low: 1.0, high: MAX_SCALE }));
             }
         }
         Ok(self)
@@ -74,13 +75,13 @@ impl PaceNoise {
     #[must_use]
     pub fn share(&self, speed_m_per_s: f32) -> f32 {
         let swing = speed_m_per_s / self.full_speed_m_per_s;
-        min(self.swing_most, sqrt(self.rest_share * self.rest_share + swing * swing))
+        min(self.max_scale_seen, sqrt(self.rest_share * self.rest_share + swing * swing))
     }
 
     /// The share one frame on: at once what a faster limb asks for, by and by what a slower one does; of an unseen limb, more.
     fn follow(&self, share: f32, speed_m_per_s: Option<f32>, dt_s: f32) -> f32 {
         let Some(speed_m_per_s) = speed_m_per_s else {
-            return min(max(share, self.unseen_most), share + dt_s / self.unseen_growth_s);
+            return min(max(share, self.max_scale_unseen), share + dt_s / self.unseen_growth_s);
         };
         let now = self.share(speed_m_per_s);
         max(now, now + (share - now) * exp(-dt_s / self.fade_s))
@@ -118,7 +119,7 @@ impl LimbNoise {
     /// Follows the limbs through a frame: how fast their bones' ends went, and which bones were observed of those that have flesh.
     pub(super) fn follow<const BONES: usize>(
         &mut self,
-        (noise, limbs): (&PaceNoise, &Limbs<BONES>),
+        (noise, limbs): (&SpeedScaledNoise, &Limbs<BONES>),
         velocity_m_per_s: &[Vec3; BONES],
         (observed, radii_m): (&[bool; BONES], &[f32; BONES]),
         dt_s: f32,
@@ -136,7 +137,7 @@ impl LimbNoise {
                     seen += if observed[bone] { 1.0 } else { 0.0 };
                 }
             }
-            *is_unseen = seen < LEAST_OBSERVED * fleshed;
+            *is_unseen = seen < MIN_OBSERVED * fleshed;
             let speed_m_per_s = (!*is_unseen).then(|| sqrt(squared / max(bones, 1.0)));
             *share = noise.follow(*share, speed_m_per_s, dt_s);
         }
@@ -150,13 +151,13 @@ mod tests {
     use crate::skeleton::full_body::{BODY_BONES, FEET, FOREARMS, PELVIS, TRUNK, UPPER_ARMS, body_radii_m, full_body};
     use proptest::prelude::*;
 
-    const NOISE: PaceNoise = PaceNoise {
+    const NOISE: SpeedScaledNoise = SpeedScaledNoise {
         rest_share: 0.4,
         full_speed_m_per_s: 1.3,
-        swing_most: 1.5,
+        max_scale_seen: 1.5,
         fade_s: 0.3,
         unseen_growth_s: 0.5,
-        unseen_most: 2.0,
+        max_scale_unseen: 2.0,
     };
     const DT_S: f32 = 1.0 / 15.0;
 
@@ -223,13 +224,13 @@ mod tests {
 
     #[test]
     fn numbers_out_of_range_are_named() {
-        let broken = |noise: PaceNoise| noise.checked().unwrap_err().parameter;
-        assert_eq!(broken(PaceNoise { rest_share: 0.0, ..NOISE }), "rest_share");
-        assert_eq!(broken(PaceNoise { full_speed_m_per_s: f32::NAN, ..NOISE }), "full_speed_m_per_s");
-        assert_eq!(broken(PaceNoise { swing_most: 0.9, ..NOISE }), "swing_most");
-        assert_eq!(broken(PaceNoise { fade_s: 0.0, ..NOISE }), "fade_s");
-        assert_eq!(broken(PaceNoise { unseen_growth_s: -1.0, ..NOISE }), "unseen_growth_s");
-        assert_eq!(broken(PaceNoise { unseen_most: 0.5, ..NOISE }), "unseen_most");
+        let broken = |noise: SpeedScaledNoise| noise.checked().unwrap_err().parameter;
+        assert_eq!(broken(SpeedScaledNoise { rest_share: 0.0, ..NOISE }), "rest_share");
+        assert_eq!(broken(SpeedScaledNoise { full_speed_m_per_s: f32::NAN, ..NOISE }), "full_speed_m_per_s");
+        assert_eq!(broken(SpeedScaledNoise { max_scale_seen: 0.9, ..NOISE }), "max_scale_seen");
+        assert_eq!(broken(SpeedScaledNoise { fade_s: 0.0, ..NOISE }), "fade_s");
+        assert_eq!(broken(SpeedScaledNoise { unseen_growth_s: -1.0, ..NOISE }), "unseen_growth_s");
+        assert_eq!(broken(SpeedScaledNoise { max_scale_unseen: 0.5, ..NOISE }), "max_scale_unseen");
     }
 
     proptest! {

@@ -1,6 +1,6 @@
 //! A body tracker's state as it is saved.
 
-use super::step::BodyTracker;
+use super::state::BodyTracker;
 use super::velocity::Velocity;
 use crate::math::Vec3;
 use crate::pik::motion::BodyParticle;
@@ -53,8 +53,8 @@ where
         }
         places(&mut self.first_m, visitor);
         self.before.visit(visitor);
-        self.steady.told.visit(visitor);
-        places(&mut self.steady.off_m, visitor);
+        self.deadband.reported.visit(visitor);
+        places(&mut self.deadband.off_m, visitor);
         self.velocity.last.visit(visitor);
         self.velocity.change.visit(visitor);
         visitor.flag(&mut self.velocity.is_known);

@@ -2,11 +2,12 @@
 //! hypothesis) and without, by variant. Prints medians over all frames, then runs criterion on the default.
 
 use criterion::Criterion;
-use sinew::config::{Config, VariantName};
+use sinew::config::Config;
 use sinew::frames::FrameView;
 use sinew::scene::SceneOptions;
 use sinew::skin::SkinModel;
 use sinew::track::ArmSet;
+use sinew_core::tracker::arm::Variant;
 use sinew_lab::clips;
 use sinew_lab::observed::{ObservedScene, observe};
 use std::hint::black_box;
@@ -14,8 +15,6 @@ use std::time::Instant;
 
 /// Passes over the scene.
 const PASSES: u64 = 9;
-const VARIANTS: [VariantName; 5] =
-    [VariantName::Pik, VariantName::PikPaid, VariantName::Bootstrap, VariantName::Corrected, VariantName::Standard];
 
 fn scene() -> ObservedScene {
     let skin = SkinModel::from_option("gaussian").expect("a shipped model");
@@ -30,7 +29,7 @@ fn without_edges(scene: &ObservedScene) -> ObservedScene {
 }
 
 /// Microseconds of each step of one pass.
-fn pass_us(scene: &ObservedScene, variant: VariantName, seed: u64) -> Vec<f64> {
+fn pass_us(scene: &ObservedScene, variant: Variant, seed: u64) -> Vec<f64> {
     let mut config = scene.config.clone();
     config.tracker.variant = variant;
     let mut arms = ArmSet::new(&config, scene.size_px, scene.side, seed).expect("a usable configuration");
@@ -42,7 +41,7 @@ fn pass_us(scene: &ObservedScene, variant: VariantName, seed: u64) -> Vec<f64> {
     scene.views.iter().enumerate().map(step).collect()
 }
 
-fn median_us(scene: &ObservedScene, variant: VariantName) -> f64 {
+fn median_us(scene: &ObservedScene, variant: Variant) -> f64 {
     let mut times: Vec<f64> = (1..=PASSES).flat_map(|seed| pass_us(scene, variant, seed)).collect();
     times.sort_by(f64::total_cmp);
     times[times.len() / 2]
@@ -51,13 +50,13 @@ fn median_us(scene: &ObservedScene, variant: VariantName) -> f64 {
 fn main() {
     let (moving, still) = (scene(), without_edges(&scene()));
     println!("one step, 50 particles, median microseconds: {:>14} {:>14}", "without Hough", "with Hough");
-    for variant in VARIANTS {
+    for variant in Variant::ALL {
         let name = format!("{variant:?}");
         println!("{name:<45}{:>14.1} {:>14.1}", median_us(&still, variant), median_us(&moving, variant));
     }
     let mut criterion = Criterion::default().configure_from_args();
     for (name, scene) in [("pass without Hough", &still), ("pass with Hough", &moving)] {
-        criterion.bench_function(name, |bencher| bencher.iter(|| pass_us(scene, VariantName::Pik, 1)));
+        criterion.bench_function(name, |bencher| bencher.iter(|| pass_us(scene, Variant::Pik, 1)));
     }
     criterion.final_summary();
 }

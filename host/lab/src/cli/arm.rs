@@ -1,7 +1,7 @@
 //! `sinew evaluate arm`
 
 use crate::clips::{builtin, recorded};
-use crate::experiments::{self, Recovery, Row, as_printed, row, variant_name};
+use crate::experiments::{self, Recovery, Row, as_printed, row};
 use crate::observed::{ObservedScene, observe_all};
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -10,12 +10,14 @@ use serde_json::json;
 use sinew::cli::console::Console;
 use sinew::cli::ctrl_c::stop_flag;
 use sinew::cli::skin_args::SkinArgs;
-use sinew::config::{Config, VariantName};
+use sinew::cli::variant_arg::variant_parser;
+use sinew::config::Config;
 use sinew::draw::plot::{Curve, bars_plot, curves_plot};
 use sinew::output::OutputDir;
 use sinew::resume::{Begun, Cells, Stop, text_crc32};
 use sinew::scene::SceneOptions;
 use sinew::skin::{SkinModel, model_file};
+use sinew_core::tracker::arm::Variant;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
@@ -43,8 +45,9 @@ pub struct EvaluateArmArgs {
     #[arg(long, value_delimiter = ',', default_value = "10,25,50,100,250,1000,5000")]
     pub particles: Vec<usize>,
     /// Variants of the tracker.
-    #[arg(long, value_delimiter = ',', default_value = "pik,pik-paid,bootstrap,corrected,standard")]
-    pub variants: Vec<VariantName>,
+    #[arg(long, value_delimiter = ',', value_parser = variant_parser(),
+        default_values = Variant::ALL.map(|variant| variant.traits().name))]
+    pub variants: Vec<Variant>,
     /// Skin model.
     #[command(flatten)]
     pub skin: SkinArgs,
@@ -109,7 +112,7 @@ pub fn run_until(args: &EvaluateArmArgs, console: &Console, stop: Stop<'_>) -> R
 
 /// What the cells depend on, beside the scenes.
 fn begun(args: &EvaluateArmArgs, skin: &SkinModel) -> Result<Begun> {
-    let variants: Vec<&str> = args.variants.iter().map(|variant| variant_name(*variant)).collect();
+    let variants: Vec<&str> = args.variants.iter().map(|variant| variant.traits().name).collect();
     let options = json!({
         "mocap": args.mocap,
         "clips": args.clips,
@@ -133,9 +136,9 @@ fn measure(args: &EvaluateArmArgs, skin: &SkinModel, cells: &Cells<'_>) -> Resul
     let base = Config::default();
     let options = SceneOptions { frames: args.frames, ..SceneOptions::default() };
     let scenes: Vec<ObservedScene> = observe_all(&clips, &seeds, &options, &base, skin, cells)?;
-    let mut effects = experiments::options(&scenes, VariantName::Pik, cells)?;
-    effects.extend(experiments::options(&scenes, VariantName::Corrected, cells)?);
-    let printed = [(VariantName::Corrected, 50), (VariantName::Standard, 50), (VariantName::Standard, 1000)];
+    let mut effects = experiments::options(&scenes, Variant::Pik, cells)?;
+    effects.extend(experiments::options(&scenes, Variant::Corrected, cells)?);
+    let printed = [(Variant::Corrected, 50), (Variant::Standard, 50), (Variant::Standard, 1000)];
     Ok(Report {
         format: "sinew-evaluate-arm",
         version: 1,
@@ -147,7 +150,7 @@ fn measure(args: &EvaluateArmArgs, skin: &SkinModel, cells: &Cells<'_>) -> Resul
         as_printed: printed
             .into_iter()
             .map(|(variant, n)| {
-                let name = format!("{} as printed", variant_name(variant));
+                let name = format!("{} as printed", variant.traits().name);
                 row(&name, &scenes, &as_printed(variant, n), cells)
             })
             .collect::<Result<_>>()?,

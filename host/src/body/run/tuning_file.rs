@@ -19,6 +19,10 @@ const MAY_BE_ZERO: [&str; 6] = [
     "steady.tremble_m",
 ];
 
+/// Keys of files of version 0.1, and their present names.
+const FORMER: [(&str, &str); 2] =
+    [("pace.swing_most", "pace.max_scale_seen"), ("pace.unseen_most", "pace.max_scale_unseen")];
+
 /// Reads a configuration.
 ///
 /// # Errors
@@ -88,6 +92,9 @@ fn overlay(prefix: &str, all: &mut Table, given: Table, known: &[String]) -> Res
 }
 
 fn unknown(key: &str, known: &[String]) -> String {
+    if let Some((_, now)) = FORMER.iter().find(|(former, _)| *former == key) {
+        return format!("`{key}` is now `{now}` (`sinew track body --print-config` lists all keys)");
+    }
     let nearest = known
         .iter()
         .max_by(|a, b| strsim::jaro_winkler(a, key).total_cmp(&strsim::jaro_winkler(b, key)))
@@ -155,6 +162,8 @@ mod tests {
                 "[guided.joint_std]\nelbwo = 1.0\n",
                 "no key `guided.joint_std.elbwo`; the nearest one is `guided.joint_std.elbow`",
             ),
+            ("[pace]\nswing_most = 5.0\n", "`pace.swing_most` is now `pace.max_scale_seen`"),
+            ("[pace]\nunseen_most = 2.5\n", "`pace.unseen_most` is now `pace.max_scale_unseen`"),
             ("[gided]\nreach_std_m = 1.0\n", "no key `gided`; the nearest one is `guided`"),
             ("[guided]\nreach_std_m = -1.0\n", "`guided.reach_std_m` has to be from"),
             ("self_penetration_std_m = -0.01\n", "`self_penetration_std_m` has to be from 0 to"),

@@ -59,7 +59,7 @@ pub(super) struct SizedFilter<const BONES: usize, const ANGLES: usize> {
     scene: BodyScene<BONES, ANGLES>,
     coordinates: [usize; ANGLES],
     goals: LinearGoals,
-    lays_trunk: bool,
+    fit_trunk: bool,
     tracker: Tracker<BONES, ANGLES>,
 }
 
@@ -93,10 +93,10 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             .swinging_about(&JOINTS, BONES)?;
         let first = BodyParticle::at(&scene.skeleton, first_rad);
         let options = tuning.options(kind);
-        let lays_trunk = options.alignment.is_some_and(|alignment| alignment.lays_trunk);
+        let fit_trunk = options.alignment.is_some_and(|alignment| alignment.fit_trunk);
         let set = vec![first; particles];
         let tracker = Tracker::new(&first, (set.clone(), set), options, seed)?;
-        Ok(Self { kind, tuning, scene, coordinates: body.coordinates, goals, lays_trunk, tracker })
+        Ok(Self { kind, tuning, scene, coordinates: body.coordinates, goals, fit_trunk, tracker })
     }
 
     /// The particles after the last step.
@@ -178,7 +178,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
 
     /// The noise of each coordinate; the trunk's own where it is laid onto the points.
     fn angle_std(&self, joints: &JointStd) -> [f32; ANGLES] {
-        let trunk = if self.lays_trunk { self.tuning.root.trunk_std_rad } else { joints.trunk };
+        let trunk = if self.fit_trunk { self.tuning.root.trunk_std_rad } else { joints.trunk };
         let per_angle = JointStd { trunk, ..*joints }.per_angle();
         self.coordinates.map(|index| per_angle[index])
     }

@@ -8,7 +8,7 @@ use sinew_core::observation::range_smoothing::RangeSmoothing;
 use sinew_core::pik::goal::LinearExtrapolation;
 use sinew_core::pik::root::{NO_PLANES, RootProcess};
 use sinew_core::skeleton::full_body::BODY_ANGLES;
-use sinew_core::tracker::body::{BodyOptions, PaceNoise, RootAlignment};
+use sinew_core::tracker::body::{BodyOptions, RootAlignment, SpeedScaledNoise};
 
 /// Standard deviations of angles after one second, by the joint they belong to; radians by root second.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -92,12 +92,12 @@ impl RootTuning {
     pub fn alignment(&self) -> Option<RootAlignment> {
         self.aligned.then_some(RootAlignment {
             steps: ALIGNMENT_STEPS,
-            looks_afar: self.aligned_from_afar,
+            coarse_to_fine: self.aligned_from_afar,
             shift_std_m_per_sqrt_s: self.aligned_shift_std_m,
             turn_std_rad_per_sqrt_s: self.aligned_turn_std_rad,
             angle_std_rad_per_sqrt_s: self.aligned_angle_std_rad,
             pulling_blocks: usize::MAX,
-            lays_trunk: self.aligned_trunk,
+            fit_trunk: self.aligned_trunk,
         })
     }
 
@@ -222,34 +222,6 @@ pub struct SteadyTuning {
     pub tremble_m: f32,
 }
 
-/// How the noise of a limb follows its pace, in all models but the printed ones. A `rest_share`, a `swing_most` and an `unseen_most` of one
-/// leave every limb the model's own.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PaceTuning {
-    /// Noise of a limb at rest, as a share of the model's.
-    pub rest_share: f32,
-    /// Speed against the root that would alone make all of the noise, metres a second.
-    pub full_speed_m_per_s: f32,
-    /// The noise of a limb that is seen is no more than this many times the model's.
-    pub swing_most: f32,
-    /// Time in which the noise of a limb that comes to rest falls to its e-th part, seconds.
-    pub fade_s: f32,
-    /// Time in which the noise of a limb that nobody sees grows by the model's own, seconds.
-    pub unseen_growth_s: f32,
-    /// Up to so many times the model's.
-    pub unseen_most: f32,
-}
-
-impl PaceTuning {
-    /// For the core.
-    #[must_use]
-    pub fn noise(&self) -> PaceNoise {
-        let Self { rest_share, full_speed_m_per_s, swing_most, fade_s, unseen_growth_s, unseen_most } = *self;
-        PaceNoise { rest_share, full_speed_m_per_s, swing_most, fade_s, unseen_growth_s, unseen_most }
-    }
-}
-
 /// Everything that a body tracker's results depend on, but the number of particles and the seed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -268,8 +240,9 @@ pub struct BodyTuning {
     pub angular: AngularTuning,
     /// Points of all models but the printed ones, before they are weighed.
     pub smoothing: SmoothingTuning,
-    /// How far limbs may stray from where their motion takes them.
-    pub pace: PaceTuning,
+    /// How the noise of a limb follows its speed, in all models but the printed ones. A `rest_share`, a `max_scale_seen` and
+    /// a `max_scale_unseen` of one leave every limb the model's own.
+    pub pace: SpeedScaledNoise,
     /// What is told of the particles' mean.
     pub steady: SteadyTuning,
     /// Points of the models that draw from the motion alone.
@@ -303,7 +276,7 @@ impl BodyTuning {
         if kind.is_printed() {
             self.smoothing.radius_m = 0.0;
             self.end_effector.reach_std_m = PAPER_REACH_STD_M;
-            (self.pace.rest_share, self.pace.swing_most, self.pace.unseen_most) = (1.0, 1.0, 1.0);
+            (self.pace.rest_share, self.pace.max_scale_seen, self.pace.max_scale_unseen) = (1.0, 1.0, 1.0);
             (self.end_effector.acceleration_share, self.angular.acceleration_share) = (0.0, 0.0);
             self.steady = SteadyTuning { tremble_errors: 0.0, tremble_m: 0.0 };
             self.self_penetration_std_m = 0.0;
@@ -337,7 +310,7 @@ impl BodyTuning {
             alignment: self.root.alignment().filter(|_| is_aligned),
             tremble_errors: self.steady.tremble_errors,
             tremble_m: self.steady.tremble_m,
-            pace: Some(self.pace.noise()),
+            pace: Some(self.pace),
             acceleration_share,
         }
     }
@@ -405,13 +378,13 @@ impl Default for BodyTuning {
             guided: GUIDED_GOALS,
             pulling_blocks: 64,
             angular: AngularTuning { persistence: 0.55, acceleration_share: 0.35, joint_std: ANGULAR_JOINTS },
-            pace: PaceTuning {
+            pace: SpeedScaledNoise {
                 rest_share: 0.4,
                 full_speed_m_per_s: 1.6,
-                swing_most: 5.0,
+                max_scale_seen: 5.0,
                 fade_s: 0.3,
                 unseen_growth_s: 0.5,
-                unseen_most: 2.5,
+                max_scale_unseen: 2.5,
             },
             steady: SteadyTuning { tremble_errors: 3.0, tremble_m: 0.0075 },
             smoothing: SmoothingTuning { radius_m: 0.04, skin_std_m: 0.015 },

@@ -1,6 +1,6 @@
-//! What `pik-paid` pays for a goal: the goal transition over the proposal that was really used (DESIGN.md section 4).
+//! Importance ratio of a goal (`pik-weighted`): the goal transition over the proposal it was drawn from.
 
-use super::propose::FrameContext;
+use super::context::FrameContext;
 use crate::correction::hand::log_density_on_ray;
 use crate::math::{Vec3, exp, length, ln, max};
 use crate::random::Stream;

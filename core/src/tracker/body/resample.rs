@@ -3,7 +3,7 @@
 //! A limb that the points like lives on whatever became of the particle's other limbs, so a hundred particles hold a hundred guesses about
 //! each of them. What is lost is how a limb's angles go together with its trunk's: after the root is laid onto the points trunks differ little.
 
-use super::step::BodyTracker;
+use super::state::BodyTracker;
 use crate::particle::resampling::{permute, systematic};
 use crate::pik::motion::{BodyParticle, BodyScene};
 use crate::random::Stream;

@@ -1,9 +1,10 @@
 //! Weights: what the image says of one arm.
 
+use super::context::FrameContext;
 use super::limbs::{LimbDensities, LimbHypotheses};
-use super::options::{LimbCombination, Variant};
-use super::propose::{FrameContext, Proposed};
-use super::step::Particle;
+use super::options::LimbCombination;
+use super::particle::Particle;
+use super::propose::Proposed;
 use crate::camera::Pixel;
 use crate::math::{Vec3, atan2, exp, ln, max, unit};
 use crate::observation::limbs::ArmImagePoints;
@@ -24,12 +25,13 @@ impl FrameContext<'_> {
         let image = self.image_of(&proposed.particle);
         let place =
             proposed.particle.driver.map(usize::from).or_else(|| self.candidate_at(image.map(|points| points.hand)));
-        let mut log_weight = proposed.log_payment + self.log_orientation(image.as_ref(), limbs.at(place));
+        let mut log_weight = proposed.log_importance + self.log_orientation(image.as_ref(), limbs.at(place));
         log_weight += self.log_gate(proposed);
         let hand = image.map(|points| points.hand);
-        if self.model.options().variant.has_blob_term() {
+        let traits = self.model.options().variant.traits();
+        if traits.has_blob_term {
             log_weight += self.log_blob_term(&proposed.particle, hand);
-        } else if self.model.options().variant.is_blob_driven() {
+        } else if traits.has_area_cue {
             log_weight += self.log_area_cue(proposed, hand);
         }
         log_weight
@@ -38,9 +40,7 @@ impl FrameContext<'_> {
     /// Continuity: what a jump to a blob costs, and what it costs to ignore one that is likely the hand.
     fn log_gate(&self, proposed: &Proposed) -> f32 {
         let options = self.model.options();
-        // What is paid for needs no gate: the transition says what a jump costs.
-        let gated = options.variant.is_blob_driven() && options.variant != Variant::PikPaid;
-        let Some(gate) = options.gate.filter(|_| gated) else { return 0.0 };
+        let Some(gate) = options.gate.filter(|_| options.variant.traits().has_gate) else { return 0.0 };
         if proposed.particle.driver.is_none() {
             return ln(max(1.0 - self.best_chance * (1.0 - gate.missed_share), 1.0e-6));
         }
@@ -58,7 +58,10 @@ impl FrameContext<'_> {
         });
         match self.model.options().combination {
             LimbCombination::Mean => ln(max(0.5 * (upper + fore), 1.0e-6)),
-            LimbCombination::Product { floor } => ln((upper + floor) * (fore + floor)),
+            LimbCombination::Auto | LimbCombination::Product => {
+                let floor = self.model.options().product_floor;
+                ln((upper + floor) * (fore + floor))
+            }
         }
     }
 
@@ -74,7 +77,7 @@ impl FrameContext<'_> {
         deviation * deviation
     }
 
-    /// The area cue of an unpaid variant: the blob that drove the particle, or the one its hand lies on.
+    /// The area cue where the likelihood has no blob term: the blob that drove the particle, or the one its hand lies on.
     ///
     /// A particle at no blob gets what a fitting one has on average. With `depth_from_area` the area already placed the
     /// driven hands and is not counted again.
@@ -118,10 +121,11 @@ impl FrameContext<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::model::ArmModel;
+    use super::super::options::ArmOptions;
     use super::*;
     use crate::camera::Camera;
     use crate::skeleton::{ArmGeometry, Side};
-    use crate::tracker::arm::{ArmModel, ArmOptions};
 
     fn only(upper: OrientationDensity, fore: OrientationDensity) -> LimbHypotheses {
         LimbHypotheses { estimate: LimbDensities { upper, fore }, blobs: heapless::Vec::new() }
@@ -156,7 +160,7 @@ mod tests {
         let angles_rad = [0.0, 0.0, 1.57, 1.57];
         let (elbow_m, hand_m) = model.elbow_and_hand(&context.shoulder_m, &angles_rad);
         let particle = Particle { angles_rad, elbow_m, hand_m, driver: None };
-        let proposed = Proposed { particle, jump_m: 0.0, supposed_forearm: Vec3::zeros(), log_payment: 0.0 };
+        let proposed = Proposed { particle, jump_m: 0.0, supposed_forearm: Vec3::zeros(), log_importance: 0.0 };
         let uniform = OrientationDensity::uniform(36).unwrap();
         let flat = only(uniform, uniform);
         let image = context.image_of(&proposed.particle).unwrap();

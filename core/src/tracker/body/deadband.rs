@@ -1,7 +1,7 @@
-//! The pose that is told: still where the body rests, and where the particles say as soon as it moves.
+//! The pose that is reported: still where the body rests, and where the particles say as soon as it moves.
 //!
 //! The mean of a hundred particles trembles by a centimetre or two about a limb at rest. An ordinary low pass that takes this away is late
-//! whenever the limb moves. Two frames in a row tell the two apart: trembling is to the one side of what was told and then to the other, and a
+//! whenever the limb moves. Two frames in a row tell the two apart: trembling is to the one side of what was reported and then to the other, and a
 //! limb on its way is found ahead of it twice. How far a limb trembles its particles tell, by the standard error of their mean.
 
 use super::estimate::mean_of_group;
@@ -15,7 +15,7 @@ const REST_S: f32 = 2.0;
 /// A way counts this much of itself if the frame before was not off to the same side: a limb that starts at once is not waited for.
 const ALONE: f32 = 0.7;
 /// Particles that all are in one place still have some trembling, metres.
-const LEAST_TREMBLE_M: f32 = 1.0e-6;
+const MIN_JITTER_STD_M: f32 = 1.0e-6;
 /// Of the place of a bone's end: known to a centimetre, inverse square metres.
 const PRECISION: f32 = 1.0e4;
 /// Of an angle: known to 0.3 rad, inverse square radians.
@@ -23,47 +23,47 @@ const STIFFNESS: f32 = 11.0;
 /// Steps of the solver.
 const SOLVER_STEPS: usize = 3;
 
-/// What is told of a body, frame after frame.
+/// What is reported of a body, frame after frame.
 #[derive(Debug, Clone)]
-pub(super) struct SteadyPose<const BONES: usize, const ANGLES: usize> {
-    /// The pose that was told last.
-    pub(super) told: BodyParticle<BONES, ANGLES>,
-    /// How far from the pose told before it the particles found the ends of all bones, metres.
+pub(super) struct Deadband<const BONES: usize, const ANGLES: usize> {
+    /// The pose that was reported last.
+    pub(super) reported: BodyParticle<BONES, ANGLES>,
+    /// How far from the pose reported before it the particles found the ends of all bones, metres.
     pub(super) off_m: [Vec3; BONES],
 }
 
-impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
-    /// Nothing was told yet of a body at `first`.
+impl<const BONES: usize, const ANGLES: usize> Deadband<BONES, ANGLES> {
+    /// Nothing was reported yet of a body at `first`.
     pub(super) const fn new(first: BodyParticle<BONES, ANGLES>) -> Self {
-        Self { told: first, off_m: [Vec3::new(0.0, 0.0, 0.0); BONES] }
+        Self { reported: first, off_m: [Vec3::new(0.0, 0.0, 0.0); BONES] }
     }
 
-    /// The pose to tell where the particles' mean is `now`: the ends of each limb's bones go from where they were told to where they are now,
-    /// the whole way if the limb moves by much more than its ends tremble, `tremble_m`. The pose is the one between the two that has its ends
+    /// The pose to tell where the particles' mean is `now`: the ends of each limb's bones go from where they were reported to where they are now,
+    /// the whole way if the limb moves by much more than its ends tremble, `jitter_std_m`. The pose is the one between the two that has its ends
     /// there: were angles alone mixed, a hand would tremble with the trunk's angles, for which the arm's no longer make up.
-    pub(super) fn tell(
+    pub(super) fn filter(
         &mut self,
         (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
         now: &BodyParticle<BONES, ANGLES>,
-        tremble_m: &[f32; BONES],
+        jitter_std_m: &[f32; BONES],
         dt_s: f32,
     ) -> &BodyParticle<BONES, ANGLES> {
-        if !tremble_m.iter().any(|&end_m| end_m > 0.0) {
-            self.told = *now;
-            return &self.told;
+        if !jitter_std_m.iter().any(|&end_m| end_m > 0.0) {
+            self.reported = *now;
+            return &self.reported;
         }
         let groups: [usize; BONES] = core::array::from_fn(|bone| group_of_end((&scene.skeleton, limbs), bone));
-        let off_m: [Vec3; BONES] = core::array::from_fn(|bone| now.ends_m[bone] - self.told.ends_m[bone]);
-        let mut between_rad = self.told.angles_rad;
-        let mut goals = self.told.ends_m.map(|position_m| Goal {
+        let off_m: [Vec3; BONES] = core::array::from_fn(|bone| now.ends_m[bone] - self.reported.ends_m[bone]);
+        let mut between_rad = self.reported.angles_rad;
+        let mut goals = self.reported.ends_m.map(|position_m| Goal {
             bone: 0,
             position_m,
             precision: Mat3::from_diagonal_element(PRECISION),
         });
         for group in 0..limbs.count() {
-            let trembles_m = root_mean((&groups, group), |bone| tremble_m[bone] * tremble_m[bone]);
-            let share = share(self.moved_m((&groups, group), &off_m) / max(trembles_m, LEAST_TREMBLE_M), dt_s);
-            let (poses, weights) = ([self.told, *now], [1.0 - share, share]);
+            let trembles_m = root_mean((&groups, group), |bone| jitter_std_m[bone] * jitter_std_m[bone]);
+            let share = share(self.moved_m((&groups, group), &off_m) / max(trembles_m, MIN_JITTER_STD_M), dt_s);
+            let (poses, weights) = ([self.reported, *now], [1.0 - share, share]);
             mean_of_group(&scene.skeleton, (&poses, &weights), (limbs, group), &mut between_rad);
             for (bone, goal) in goals.iter_mut().enumerate().filter(|(bone, _)| groups[*bone] == group) {
                 goal.bone = bone;
@@ -80,8 +80,8 @@ impl<const BONES: usize, const ANGLES: usize> SteadyPose<BONES, ANGLES> {
         };
         let angles_rad = nearest.mode(SOLVER_STEPS).angles_rad;
         self.off_m = off_m;
-        self.told = BodyParticle { angles_rad, ends_m: scene.posture(&angles_rad).ends, ..*now };
-        &self.told
+        self.reported = BodyParticle { angles_rad, ends_m: scene.posture(&angles_rad).ends, ..*now };
+        &self.reported
     }
 
     /// How far the ends of a group's bones went, metres: root mean of the products of how far they are off with how far they were in the frame
@@ -141,7 +141,7 @@ mod tests {
 
     type Scene = BodyScene<BODY_BONES, BODY_ANGLES>;
     type Pose = BodyParticle<BODY_BONES, BODY_ANGLES>;
-    const TREMBLE_M: f32 = 0.03;
+    const JITTER_STD_M: f32 = 0.03;
     const DT_S: f32 = 1.0 / 15.0;
     const FRAMES: usize = 10;
 
@@ -162,20 +162,21 @@ mod tests {
         BodyParticle::at(&scene.skeleton, scene.skeleton.clamp(angles_rad))
     }
 
-    /// How far the right wrist goes from frame to frame on the mean: as estimated and as told; and how far behind it is told at last.
+    /// How far the right wrist goes from frame to frame on the mean: as estimated and as reported; and how far behind it is reported at last.
     fn followed(speed_rad_per_s: f32, noise_rad: f32) -> (f32, f32, f32) {
         let (scene, mut stream) = (scene(), Stream::new(5, 0, 0));
         let mut before = seen(&scene, 0.5, 0.0, &mut stream);
-        let mut steady = SteadyPose::new(before);
+        let mut steady = Deadband::new(before);
         let (mut way_m, mut told_way_m, mut behind_m) = (0.0, 0.0, 0.0);
         let wrist = FOREARMS[1];
         for frame in 1..=FRAMES {
             let now = seen(&scene, 0.5 + speed_rad_per_s * DT_S * frame as f32, noise_rad, &mut stream);
-            let told = steady.told.ends_m[wrist];
-            let next =
-                steady.tell((&scene, &Limbs::of(&scene.skeleton)), &now, &[TREMBLE_M; BODY_BONES], DT_S).ends_m[wrist];
+            let reported = steady.reported.ends_m[wrist];
+            let next = steady
+                .filter((&scene, &Limbs::of(&scene.skeleton)), &now, &[JITTER_STD_M; BODY_BONES], DT_S)
+                .ends_m[wrist];
             way_m += (now.ends_m[wrist] - before.ends_m[wrist]).norm() / FRAMES as f32;
-            told_way_m += (next - told).norm() / FRAMES as f32;
+            told_way_m += (next - reported).norm() / FRAMES as f32;
             behind_m = (next - now.ends_m[wrist]).norm();
             before = now;
         }
@@ -203,15 +204,15 @@ mod tests {
     #[test]
     fn a_waving_arm_does_not_take_the_trunk_along() {
         let (scene, mut stream) = (scene(), Stream::new(6, 0, 0));
-        let mut steady = SteadyPose::new(seen(&scene, 0.5, 0.0, &mut stream));
+        let mut steady = Deadband::new(seen(&scene, 0.5, 0.0, &mut stream));
         let (mut neck_m, mut told_neck_m) = (0.0, 0.0);
-        let mut before = steady.told;
+        let mut before = steady.reported;
         for frame in 1..=FRAMES {
             let bend_rad = if frame % 2 == 0 { 0.5 } else { 1.5 };
             let now = seen(&scene, bend_rad, 0.01, &mut stream);
-            let told = steady.told.ends_m[TRUNK];
-            let next = steady.tell((&scene, &Limbs::of(&scene.skeleton)), &now, &[TREMBLE_M; BODY_BONES], DT_S);
-            told_neck_m += (next.ends_m[TRUNK] - told).norm();
+            let reported = steady.reported.ends_m[TRUNK];
+            let next = steady.filter((&scene, &Limbs::of(&scene.skeleton)), &now, &[JITTER_STD_M; BODY_BONES], DT_S);
+            told_neck_m += (next.ends_m[TRUNK] - reported).norm();
             assert!((next.ends_m[FOREARMS[1]] - now.ends_m[FOREARMS[1]]).norm() < 0.03, "the wrist is where it is");
             neck_m += (now.ends_m[TRUNK] - before.ends_m[TRUNK]).norm();
             before = now;
@@ -234,14 +235,14 @@ mod tests {
     proptest! {
         #[test]
         fn what_is_told_keeps_the_limits_and_lies_between(
-            seed in 0_u64..1000, noise_rad in 0.0_f32..0.1, tremble_m in 0.0_f32..0.2,
+            seed in 0_u64..1000, noise_rad in 0.0_f32..0.1, jitter_std_m in 0.0_f32..0.2,
         ) {
             let (scene, mut stream) = (scene(), Stream::new(seed, 0, 0));
             let [first, second, third] = core::array::from_fn(|_| seen(&scene, 0.8, noise_rad, &mut stream));
-            let mut steady = SteadyPose::new(first);
-            steady.tell((&scene, &Limbs::of(&scene.skeleton)), &second, &[tremble_m; BODY_BONES], DT_S);
-            let before = steady.told;
-            let next = *steady.tell((&scene, &Limbs::of(&scene.skeleton)), &third, &[tremble_m; BODY_BONES], DT_S);
+            let mut steady = Deadband::new(first);
+            steady.filter((&scene, &Limbs::of(&scene.skeleton)), &second, &[jitter_std_m; BODY_BONES], DT_S);
+            let before = steady.reported;
+            let next = *steady.filter((&scene, &Limbs::of(&scene.skeleton)), &third, &[jitter_std_m; BODY_BONES], DT_S);
             prop_assert_eq!(next.angles_rad, scene.skeleton.clamp(next.angles_rad));
             prop_assert_eq!(next.ends_m, scene.posture(&next.angles_rad).ends);
             for bone in 0..BODY_BONES {
@@ -249,7 +250,7 @@ mod tests {
                 // Where an angle has no room the ends need not be on the line between the two.
                 prop_assert!((at - from).norm() + (to - at).norm() < (to - from).norm() + 0.04, "bone {}", bone);
             }
-            if tremble_m == 0.0 {
+            if jitter_std_m == 0.0 {
                 prop_assert_eq!(next.angles_rad, third.angles_rad);
             }
         }
