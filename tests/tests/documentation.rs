@@ -143,7 +143,7 @@ const MAX_PAGE_LINES: usize = 200;
 /// Greatest width of a line of prose, characters.
 const MAX_PROSE_COLUMNS: usize = 100;
 /// Private metaphors, and words of a diary, which the book does without.
-const AVOIDED_WORDS: [&str; 16] = [
+const AVOIDED_WORDS: [&str; 15] = [
     "tells",
     "told",
     "lean on",
@@ -158,11 +158,10 @@ const AVOIDED_WORDS: [&str; 16] = [
     "since then",
     "as it was",
     "no longer",
-    "was tried",
     "used to be",
 ];
 
-/// Pages of the book with their names, the list of pages left out.
+/// Pages of the book with their names; the list of pages is left out.
 fn book() -> Vec<(String, String)> {
     let pages = pages(&workspace_root().join("docs")).into_iter();
     let named =
@@ -170,14 +169,16 @@ fn book() -> Vec<(String, String)> {
     named.filter(|(name, _)| name != "SUMMARY.md").collect()
 }
 
-/// Lines of a page outside of code blocks, with their numbers.
+/// Lines of a page outside of code blocks and of what commands write, with their numbers.
 fn prose(page: &str) -> Vec<(usize, &str)> {
-    let mut inside = false;
+    let (mut in_code, mut in_marks) = (false, false);
     let mut kept = Vec::new();
     for (index, line) in page.lines().enumerate() {
         if line.starts_with("```") {
-            inside = !inside;
-        } else if !inside && !line.starts_with("    ") {
+            in_code = !in_code;
+        } else if line.starts_with("<!-- ") {
+            in_marks = !line.starts_with("<!-- end of ");
+        } else if !in_code && !in_marks && !line.starts_with("    ") {
             kept.push((index + 1, line));
         }
     }
@@ -230,7 +231,6 @@ fn marks_of_tables_come_in_pairs_with_a_table_between() {
             assert!(names.insert(name.to_owned()), "{file}: {name} stands twice");
             rest = after;
         }
-        assert_eq!(page.matches("<!-- end of ").count(), page.matches("<!-- table ").count(), "{file}");
     }
     assert!(names.len() >= 15, "only {names:?}");
 }
