@@ -135,3 +135,100 @@ fn every_public_module_of_the_core_has_a_compiled_example() {
         assert!(fs::read_to_string(core.join(format!("{main}.rs"))).unwrap().contains("//! ```\n"), "{main}");
     }
 }
+
+/// Greatest number of lines of a page of the book.
+const MAX_PAGE_LINES: usize = 200;
+/// Greatest width of a line of prose, characters.
+const MAX_PROSE_COLUMNS: usize = 100;
+/// Private metaphors, and words of a diary, which the book does without.
+const AVOIDED_WORDS: [&str; 15] = [
+    "tells",
+    "told",
+    "lean on",
+    "leans on",
+    "let loose",
+    "laid onto",
+    "pays for",
+    "nobody",
+    "from afar",
+    "otherwise",
+    "at first it",
+    "since then",
+    "as it was",
+    "no longer",
+    "used to be",
+];
+
+/// Pages of the book with their names; the list of pages is left out.
+fn book() -> Vec<(String, String)> {
+    let pages = pages(&workspace_root().join("docs")).into_iter();
+    let named =
+        pages.map(|path| (path.file_name().unwrap().to_str().unwrap().to_owned(), fs::read_to_string(&path).unwrap()));
+    named.filter(|(name, _)| name != "SUMMARY.md").collect()
+}
+
+/// Lines of a page outside of code blocks and of what commands write, with their numbers.
+fn prose(page: &str) -> Vec<(usize, &str)> {
+    let (mut in_code, mut in_marks) = (false, false);
+    let mut kept = Vec::new();
+    for (index, line) in page.lines().enumerate() {
+        if line.starts_with("```") {
+            in_code = !in_code;
+        } else if line.starts_with("<!-- ") {
+            in_marks = !line.starts_with("<!-- end of ");
+        } else if !in_code && !in_marks && !line.starts_with("    ") {
+            kept.push((index + 1, line));
+        }
+    }
+    kept
+}
+
+#[test]
+fn every_page_of_the_book_is_short() {
+    for (name, page) in book() {
+        let lines = page.lines().count();
+        assert!(lines <= MAX_PAGE_LINES, "{name} has {lines} lines");
+    }
+}
+
+/// Tables, headings, marks and pictures are free, and so is a line of one word, which no break makes shorter.
+#[test]
+fn prose_of_the_book_is_wrapped() {
+    for (name, page) in book() {
+        for (number, line) in prose(&page) {
+            let free = line.trim_start().starts_with(['|', '#', '<', '!']) || !line.trim().contains(' ');
+            let width = line.chars().count();
+            assert!(free || width <= MAX_PROSE_COLUMNS, "{name}:{number} has {width} columns");
+        }
+    }
+}
+
+#[test]
+fn the_book_uses_the_terms_of_the_field_and_the_present() {
+    for (name, page) in book() {
+        let text = prose(&page).iter().map(|(_, line)| line.trim()).collect::<Vec<_>>().join(" ").to_lowercase();
+        let text: String = text.chars().map(|c| if c.is_alphanumeric() || c == '_' { c } else { ' ' }).collect();
+        let words = format!(" {} ", text.split_whitespace().collect::<Vec<_>>().join(" "));
+        let found: Vec<&str> = AVOIDED_WORDS.into_iter().filter(|word| words.contains(&format!(" {word} "))).collect();
+        assert!(found.is_empty(), "{name}: {found:?}");
+    }
+}
+
+/// Tables that a command writes stand between `<!-- table NAME -->` and `<!-- end of NAME -->`.
+#[test]
+fn marks_of_tables_come_in_pairs_with_a_table_between() {
+    let mut names = std::collections::BTreeSet::new();
+    for (file, page) in book() {
+        let mut rest = page.as_str();
+        while let Some((_, after)) = rest.split_once("\n<!-- table ") {
+            let (name, after) = after.split_once(" -->\n").unwrap_or_else(|| panic!("{file}: an open mark"));
+            let end = format!("\n<!-- end of {name} -->\n");
+            let (table, after) = after.split_once(&end).unwrap_or_else(|| panic!("{file}: {name} has no end"));
+            let lines = table.lines().filter(|line| !line.is_empty());
+            assert!(lines.clone().count() > 2 && lines.clone().all(|line| line.starts_with('|')), "{file}: {name}");
+            assert!(names.insert(name.to_owned()), "{file}: {name} stands twice");
+            rest = after;
+        }
+    }
+    assert!(names.len() >= 15, "only {names:?}");
+}
