@@ -16,7 +16,6 @@ pub mod observation;
 pub mod particle;
 pub mod pik;
 pub mod random;
-pub mod record;
 pub mod saved_state;
 pub mod skeleton;
 pub mod slot;

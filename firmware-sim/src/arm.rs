@@ -4,11 +4,11 @@ use crate::log::debug;
 use crate::player::{Answers, Application, Refusal, play};
 use crate::port::{Part, Port, counted};
 use heapless::Vec;
-use sinew_core::record::{ArmInput, ArmResult, ArmSetup, CandidateChunk, Cost, EdgeChunk, Kind, Record, RecordError};
 use sinew_core::slot::Slot;
 use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmTracker};
 use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::edges::EdgePixel;
+use sinew_record::{ArmInput, ArmResult, ArmSetup, CandidateChunk, Cost, EdgeChunk, Kind, Record, RecordError};
 use static_cell::ConstStaticCell;
 
 /// Particles that there is room for.

@@ -5,7 +5,6 @@ use crate::cyclic::CyclicApp;
 use crate::player::{Answers, Application, Refusal, play};
 use crate::port::{Part, Port, counted};
 use sinew_core::checksum::Crc32;
-use sinew_core::record::{ArmInput, CameraLine, CameraSetup, Cost, Kind, Record, RecordError, VisionResult};
 use sinew_core::slot::Slot;
 use sinew_core::tracker::arm::ArmImage;
 use sinew_core::vision::front_end::edge_lines::EdgeSteps;
@@ -13,6 +12,7 @@ use sinew_core::vision::front_end::pixel_format::Rgb565;
 use sinew_core::vision::front_end::skin_table::SkinTable;
 use sinew_core::vision::front_end::{FrameLines, LineFrontEnd, QvgaFrontEnd};
 use sinew_core::vision::hand_likelihood::HandLikelihood;
+use sinew_record::{ArmInput, CameraLine, CameraSetup, Cost, Kind, Record, RecordError, VisionResult};
 use static_cell::ConstStaticCell;
 
 /// Everything that a camera's firmware keeps.

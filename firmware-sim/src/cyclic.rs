@@ -5,10 +5,10 @@ use crate::player::{Answers, Application, Refusal, play};
 use crate::port::{Part, Port, counted};
 use sinew_core::cyclic::MotionModel;
 use sinew_core::cyclic::model::walking::WALKING;
-use sinew_core::record::{Cost, CyclicInput, CyclicResult, CyclicSetup, Kind, Record, RecordError, model_checksum};
 use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
 use sinew_core::slot::Slot;
 use sinew_core::tracker::cyclic::{CoupledTracker, FirstPhase};
+use sinew_record::{Cost, CyclicInput, CyclicResult, CyclicSetup, Kind, Record, RecordError, model_checksum};
 use static_cell::ConstStaticCell;
 
 /// The tracker with what it needs between records.

@@ -2,7 +2,7 @@
 
 use crate::port::{Port, Sink};
 use core::hint::black_box;
-use sinew_core::record::RecordError;
+use sinew_record::RecordError;
 
 /// Panics.
 ///

@@ -4,7 +4,7 @@ use crate::log::info;
 use crate::port::{MAX_RECORD_BYTES, Port, Sink, put};
 use sinew_core::cyclic::ModelError;
 use sinew_core::error::ParameterError;
-use sinew_core::record::{Cost, End, Failure, Payload, Record, RecordError, RecordStream};
+use sinew_record::{Cost, End, Failure, Payload, Record, RecordError, RecordStream};
 
 /// Why a record was not answered.
 #[derive(Debug, Clone, Copy, PartialEq)]

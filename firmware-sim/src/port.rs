@@ -1,6 +1,6 @@
 //! What an image needs of the machine under it: input, output, and what a piece of work cost.
 
-use sinew_core::record::{Cost, HEADER_BYTES, Payload, RecordError, Source, encode};
+use sinew_record::{Cost, HEADER_BYTES, Payload, RecordError, Source, encode};
 
 /// Power of two of the nanoseconds that the emulator lets pass for an instruction; its timer then tells instructions.
 pub const ICOUNT_SHIFT: u32 = 6;

@@ -63,7 +63,7 @@ fn a_folder_without_a_run_is_refused() {
 
 #[test]
 fn a_tracked_arm_is_recorded_as_blobs_or_as_lines() {
-    use sinew_core::record::{ArmInput, CameraLine, CameraSetup, Kind, RecordStream};
+    use sinew_record::{ArmInput, CameraLine, CameraSetup, Kind, RecordStream};
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
     sinew(&["simulate", "arm", "--motion", "builtin", "--frames", "3", "--out", &path("scene")]).unwrap();

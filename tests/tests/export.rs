@@ -6,7 +6,7 @@ use predicates::str::contains;
 use sinew::cyclic::CyclicModel;
 use sinew_core::cyclic::model::bytes::{HEADER_BYTES, ModelHeader};
 use sinew_core::cyclic::model::walking::WALKING;
-use sinew_core::record::model_checksum;
+use sinew_record::model_checksum;
 use sinew_tests::sinew_command;
 use std::fs;
 use std::path::Path;

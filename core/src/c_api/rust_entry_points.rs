@@ -4,7 +4,6 @@
 use crate::cyclic::recognition::bank::MotionBank;
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::error::ParameterError;
-use crate::record::{ArmInput, ArmSetup, CameraLine, CyclicInput, CyclicResult, Record, RecordError, decode, encode};
 use crate::skeleton::stick_figure::{HUMAN, ImagePoint};
 use crate::tracker::cyclic::{CyclicFrame, CyclicFrameInput, CyclicTracker, CyclicTrackerOptions, FirstPhase};
 use crate::vision::front_end::calibration::SkinSample;
@@ -81,32 +80,4 @@ pub extern "C" fn sinew_proof_skin_adapted(
     adapted: &mut [Result<GaussianSkin, ParameterError>; 2],
 ) {
     *adapted = [samples.0.adapted(trained), samples.1.adapted(trained)];
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn sinew_proof_decode<'a>(bytes: &&'a [u8], record: &mut Result<(Record<'a>, usize), RecordError>) {
-    *record = decode(bytes);
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn sinew_proof_read(
-    record: &Record<'_>,
-    cyclic: &mut Result<CyclicInput, RecordError>,
-    setup: &mut Result<ArmSetup, RecordError>,
-    arm: &mut Result<ArmInput, RecordError>,
-    line: &mut Result<CameraLine, RecordError>,
-) {
-    *cyclic = record.read();
-    *setup = record.read();
-    *arm = record.read();
-    *line = record.read();
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn sinew_proof_encode(
-    result: &CyclicResult,
-    bytes: &mut &mut [u8],
-    len: &mut Result<usize, RecordError>,
-) {
-    *len = encode(result, bytes);
 }

@@ -4,7 +4,7 @@
 
 use crate::port::Sink;
 use cortex_m_semihosting::syscall;
-use sinew_core::record::Source;
+use sinew_record::Source;
 
 /// Modes of the call OPEN: `rb` and `wb`.
 const READ: usize = 1;

@@ -12,7 +12,7 @@ mod stop;
 use crate::port::{COSTS_FILE, INPUT_FILE, Part, Port, RESULTS_FILE, put};
 use cortex_m_semihosting::debug::{EXIT_FAILURE, EXIT_SUCCESS, exit};
 use files::{File, InputFile};
-use sinew_core::record::{Cost, RecordError};
+use sinew_record::{Cost, RecordError};
 
 /// The board as images see it.
 #[derive(Debug)]

@@ -5,7 +5,7 @@ use super::arm_run::ArmRun;
 use crate::frames::{FrameReader, FrameView};
 use anyhow::Result;
 use sinew_core::math::Vec3;
-use sinew_core::record::{ArmInput, CANDIDATES_A_RECORD, CandidateChunk, EDGES_A_RECORD, EdgeChunk};
+use sinew_record::{ArmInput, CANDIDATES_A_RECORD, CandidateChunk, EDGES_A_RECORD, EdgeChunk};
 
 /// The stream of a run and its number of frames: the host's vision, firmware's tracker.
 pub(super) fn tracker_stream(run: &mut ArmRun) -> Result<(Vec<u8>, usize)> {

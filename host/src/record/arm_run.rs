@@ -7,9 +7,9 @@ use anyhow::{Context, Result, ensure};
 use image::RgbImage;
 use serde::Deserialize;
 use serde_json::Value;
-use sinew_core::record::ArmSetup;
 use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::options::LimbCombination;
+use sinew_record::ArmSetup;
 use std::fs;
 use std::path::Path;
 

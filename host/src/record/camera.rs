@@ -6,7 +6,7 @@ use crate::skin::model::ModelNumbers;
 use anyhow::{Context, Result, bail};
 use image::RgbImage;
 use sinew_core::camera::Pixel;
-use sinew_core::record::{ArmInput, ArmSetup, CameraLine, CameraSetup, LINE_PIXELS};
+use sinew_record::{ArmInput, ArmSetup, CameraLine, CameraSetup, LINE_PIXELS};
 
 /// The stream of a run's images and their number. Wider ones than firmware's lines are made smaller by the mean of square blocks. Skin is what the run's
 /// Gaussian says in the light of the first image.
@@ -87,7 +87,7 @@ fn rgb565([red, green, blue]: [u8; 3]) -> u16 {
 /// # Errors
 /// A stream that is broken.
 pub fn interleaved(camera: &[u8], cyclic: &[u8]) -> Result<Vec<u8>> {
-    use sinew_core::record::{CyclicInput, CyclicSetup, Kind, Record, RecordStream};
+    use sinew_record::{CyclicInput, CyclicSetup, Kind, Record, RecordStream};
     let mut stream = StreamWriter::default();
     let mut angles = RecordStream::<_, 1024>::new(cyclic);
     let mut next = || -> Result<Option<Result<CyclicSetup, CyclicInput>>> {

@@ -5,8 +5,8 @@ use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::tracking::{FilterName, Measurements, StartName, TrackingOptions};
 use crate::cyclic::{AngleTable, CyclicModel};
 use anyhow::{Context, Result, ensure};
-use sinew_core::record::{CyclicInput, CyclicSetup, model_checksum};
 use sinew_core::tracker::cyclic::FirstPhase;
+use sinew_record::{CyclicInput, CyclicSetup, model_checksum};
 
 /// The measurements of `table` as `sinew track cyclic` gives them to the phase-coupled filter with `model`. The tracker begins with the
 /// first of them.

@@ -1,7 +1,7 @@
 //! Puts records one after the other.
 
 use anyhow::{Context, Result};
-use sinew_core::record::{End, HEADER_BYTES, Payload, encode};
+use sinew_record::{End, HEADER_BYTES, Payload, encode};
 
 /// A stream that grows.
 #[derive(Debug, Clone, Default)]

@@ -80,21 +80,23 @@ fn rustc() -> std::ffi::OsString {
     std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into())
 }
 
-/// Builds the static library as a user does, and gives its path. `target` is a triple, or `None` for this machine; `opt_level` is `3` or `s`.
+/// Builds the static library of `package` as a user does, and gives its path.
+///
+/// `target` is a triple, or `None` for this machine; `opt_level` is `3` or `s`.
 ///
 /// # Panics
 /// If it cannot be built.
 #[must_use]
-pub fn static_library(target: Option<&str>, opt_level: &str, features: &str) -> PathBuf {
+pub fn static_library(package: &str, target: Option<&str>, opt_level: &str, features: &str) -> PathBuf {
     // A folder of its own: the build that runs this test holds the lock of the other one.
-    let folder = target_folder().join(format!("c_interface-{opt_level}-{}", features.replace(',', "-")));
+    let folder = target_folder().join(format!("{package}-{opt_level}-{}", features.replace(',', "-")));
     let mut command = cargo("rustc", target);
-    command.current_dir(workspace_root()).args(["--quiet", "--locked", "-p", "sinew-core"]);
+    command.current_dir(workspace_root()).args(["--quiet", "--locked", "-p", package]);
     command.args(["--profile", "firmware", "--crate-type", "staticlib", "--features", features]);
     command.env("CARGO_PROFILE_FIRMWARE_OPT_LEVEL", opt_level).env("CARGO_PROFILE_FIRMWARE_DEBUG", "0");
     command.arg("--target-dir").arg(&folder);
     expect_success(&mut command);
-    folder.join(target.unwrap_or("")).join("firmware/libsinew_core.a")
+    folder.join(target.unwrap_or("")).join(format!("firmware/lib{}.a", package.replace('-', "_")))
 }
 
 fn target_folder() -> PathBuf {

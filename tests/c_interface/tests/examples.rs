@@ -45,7 +45,7 @@ fn the_examples_run_on_this_computer_under_the_sanitizers() {
     if !has_tool("gcc") {
         return;
     }
-    let library = static_library(None, "3", "c-api,walking-model,panic-handler");
+    let library = static_library("sinew-core", None, "3", "c-api,walking-model,panic-handler");
     let scratch = tempfile::tempdir().unwrap();
     for example in EXAMPLES {
         for standard in ["c99", "c11"] {
@@ -76,7 +76,7 @@ fn the_examples_run_on_an_emulated_cortex_m4f() {
         return;
     }
     // Linked with the library in which a panic would be missing at link time: the link itself is a proof.
-    let library = static_library(Some(TARGET), "3", "c-api,walking-model,prove-no-panic");
+    let library = static_library("sinew-core", Some(TARGET), "3", "c-api,walking-model,prove-no-panic");
     let scratch = tempfile::tempdir().unwrap();
     for example in EXAMPLES {
         let program = scratch.path().join(example);

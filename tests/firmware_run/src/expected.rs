@@ -1,7 +1,7 @@
 //! What images have to answer: files of the folder `firmware-sim/expected`, one an image.
 
 use anyhow::{Context, Result, bail, ensure};
-use sinew_core::record::{ArmResult, CyclicResult, Failure, Kind, Record, RecordStream, VisionResult};
+use sinew_record::{ArmResult, CyclicResult, Failure, Kind, Record, RecordStream, VisionResult};
 use std::fs;
 use std::path::{Path, PathBuf};
 

@@ -4,8 +4,8 @@ use crate::emulator::{self, Machine};
 use crate::expected::{self, Expected};
 use crate::{inputs, log};
 use anyhow::{Context, Result, bail, ensure};
-use sinew_core::record::{Cost, RecordStream};
 use sinew_firmware_sim::port::Part;
+use sinew_record::{Cost, RecordStream};
 use std::fs;
 use std::path::Path;
 

@@ -3,9 +3,6 @@
 use sinew::record::StreamWriter;
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
-use sinew_core::record::{
-    ArmInput, ArmResult, ArmSetup, CandidateChunk, Failure, Kind, RecordError, RecordStream, VisionResult,
-};
 use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::Status;
 use sinew_core::vision::candidate::HandCandidate;
@@ -14,6 +11,9 @@ use sinew_firmware_run::{expected, inputs};
 use sinew_firmware_sim::arm::{ArmApp, CANDIDATES};
 use sinew_firmware_sim::camera::CameraApp;
 use sinew_firmware_sim::player::{Application, play};
+use sinew_record::{
+    ArmInput, ArmResult, ArmSetup, CandidateChunk, Failure, Kind, RecordError, RecordStream, VisionResult,
+};
 
 /// What an image's code answers on this machine.
 fn answers(input: &[u8], mut application: impl Application) -> Vec<u8> {

@@ -5,14 +5,12 @@ use sinew::cyclic::tracking::{TrackingOptions, track};
 use sinew::record::StreamWriter;
 use sinew_core::cyclic::AngleMeasurement;
 use sinew_core::cyclic::model::walking::WALKING;
-use sinew_core::record::{
-    CyclicInput, CyclicResult, CyclicSetup, Failure, Kind, RecordError, RecordStream, model_checksum,
-};
 use sinew_core::tracker::cyclic::FirstPhase;
 use sinew_firmware_run::host_port::HostPort;
 use sinew_firmware_run::{expected, inputs};
 use sinew_firmware_sim::cyclic::CyclicApp;
 use sinew_firmware_sim::player::play;
+use sinew_record::{CyclicInput, CyclicResult, CyclicSetup, Failure, Kind, RecordError, RecordStream, model_checksum};
 
 /// What the image's code answers on this machine.
 fn answers(input: &[u8]) -> Vec<u8> {

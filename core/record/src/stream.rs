@@ -1,7 +1,7 @@
 //! Records one after the other, from any source of bytes.
 //!
 //! ```
-//! use sinew_core::record::{Cost, End, Failure, Kind, RecordStream, encode};
+//! use sinew_record::{Cost, End, Failure, Kind, RecordStream, encode};
 //!
 //! // Two records and the end, which counts them.
 //! let mut bytes = [0; 256];
@@ -16,13 +16,16 @@
 //! assert!(stream.next_record().is_none(), "the count is right");
 //! ```
 
-use super::header::{MARK, announced_len};
-use super::{End, Kind, Record, RecordError, decode};
+use crate::end::End;
+use crate::error::RecordError;
+use crate::header::{MARK, announced_len};
+use crate::header::{Record, decode};
+use crate::kind::Kind;
 
 /// Where bytes come from.
 ///
 /// ```
-/// use sinew_core::record::{Cost, RecordStream, Source, encode};
+/// use sinew_record::{Cost, RecordStream, Source, encode};
 ///
 /// /// A serial port that has a few bytes at a time.
 /// struct Port<'a>(&'a [u8]);
@@ -39,7 +42,7 @@ use super::{End, Kind, Record, RecordError, decode};
 /// let mut stream = RecordStream::<_, 64>::new(Port(&bytes[..length]));
 /// let record = stream.next_record().expect("there is one")?;
 /// assert_eq!(record.read::<Cost>()?.worst, 70_000);
-/// # Ok::<(), sinew_core::record::RecordError>(())
+/// # Ok::<(), sinew_record::RecordError>(())
 /// ```
 pub trait Source {
     /// Fills the start of `bytes` and tells how many bytes it filled; none at the end.
@@ -69,7 +72,7 @@ impl<S: Source + ?Sized> Source for &mut S {
 /// Every broken record gives one error or more, then reading goes on at the next sound one.
 ///
 /// ```
-/// use sinew_core::record::{Cost, Failure, RecordError, RecordStream, encode};
+/// use sinew_record::{Cost, Failure, RecordError, RecordStream, encode};
 ///
 /// // The first record is broken, the second is sound.
 /// let mut bytes = [0; 64];

@@ -1,16 +1,19 @@
 //! What the arm tracker is given: the arm once, then candidates, edges and the frame that they belong to.
 
-use super::{FieldReader, FieldWriter, Kind, Payload, RecordError};
-use crate::camera::{Camera, Pixel};
-use crate::error::ParameterError;
-use crate::math::Vec3;
-use crate::skeleton::Side;
-use crate::skeleton::arm::ArmGeometry;
-use crate::tracker::arm::options::{AreaCue, LimbCombination};
-use crate::tracker::arm::{ArmModel, ArmOptions};
-use crate::vision::candidate::HandCandidate;
-use crate::vision::edges::EdgePixel;
+use crate::error::RecordError;
+use crate::fields::{FieldReader, FieldWriter};
+use crate::kind::Kind;
+use crate::payload::Payload;
 use heapless::Vec;
+use sinew_core::camera::{Camera, Pixel};
+use sinew_core::error::ParameterError;
+use sinew_core::math::Vec3;
+use sinew_core::skeleton::Side;
+use sinew_core::skeleton::arm::ArmGeometry;
+use sinew_core::tracker::arm::options::{AreaCue, LimbCombination};
+use sinew_core::tracker::arm::{ArmModel, ArmOptions};
+use sinew_core::vision::candidate::HandCandidate;
+use sinew_core::vision::edges::EdgePixel;
 
 /// Candidates of a record.
 pub const CANDIDATES_A_RECORD: usize = 8;
@@ -23,7 +26,7 @@ pub const EDGES_A_RECORD: usize = 64;
 /// ```
 /// use sinew_core::camera::Pixel;
 /// use sinew_core::math::Vec3;
-/// use sinew_core::record::ArmSetup;
+/// use sinew_record::ArmSetup;
 /// use sinew_core::skeleton::Side;
 ///
 /// let setup = ArmSetup {
@@ -149,7 +152,7 @@ impl Payload for ArmSetup {
 ///
 /// ```
 /// use sinew_core::vision::candidate::HandCandidate;
-/// use sinew_core::record::{CANDIDATES_A_RECORD, CandidateChunk, decode, encode};
+/// use sinew_record::{CANDIDATES_A_RECORD, CandidateChunk, decode, encode};
 ///
 /// // As many of a frame's candidates as a record holds; more of them take another one.
 /// let mut chunk = CandidateChunk::default();
@@ -157,7 +160,7 @@ impl Payload for ArmSetup {
 /// let mut bytes = [0; 256];
 /// encode(&chunk, &mut bytes)?;
 /// assert_eq!(decode(&bytes)?.0.read::<CandidateChunk>()?.0.len(), CANDIDATES_A_RECORD);
-/// # Ok::<(), sinew_core::record::RecordError>(())
+/// # Ok::<(), sinew_record::RecordError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CandidateChunk(pub Vec<HandCandidate, CANDIDATES_A_RECORD>);
@@ -191,7 +194,7 @@ impl Payload for CandidateChunk {
 /// Some of a frame's edge pixels; their [`ArmInput`] follows.
 ///
 /// ```
-/// use sinew_core::record::{EdgeChunk, HEADER_BYTES, encode};
+/// use sinew_record::{EdgeChunk, HEADER_BYTES, encode};
 /// use sinew_core::vision::edges::EdgePixel;
 ///
 /// let mut chunk = EdgeChunk::default();
@@ -229,7 +232,7 @@ impl Payload for EdgeChunk {
 ///
 /// ```
 /// use sinew_core::math::Vec3;
-/// use sinew_core::record::{ArmInput, CandidateChunk, Kind, RecordStream, encode};
+/// use sinew_record::{ArmInput, CandidateChunk, Kind, RecordStream, encode};
 ///
 /// // A frame with one candidate: first the candidate, then the frame that it belongs to.
 /// let input = ArmInput {
@@ -249,7 +252,7 @@ impl Payload for EdgeChunk {
 /// assert!(stream.next_record().is_some_and(|first| first.is_ok_and(|first| first.kind == Kind::CandidateChunk)));
 /// let last = stream.next_record().expect("there is another")?;
 /// assert_eq!(last.read::<ArmInput>()?, input);
-/// # Ok::<(), sinew_core::record::RecordError>(())
+/// # Ok::<(), sinew_record::RecordError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmInput {

@@ -5,7 +5,7 @@ use core::fmt;
 /// Why a record cannot be used. [`Self::code`] is the number that firmware reports.
 ///
 /// ```
-/// use sinew_core::record::{Cost, End, RecordError, decode, encode};
+/// use sinew_record::{Cost, End, RecordError, decode, encode};
 ///
 /// let mut bytes = [0; 64];
 /// let length = encode(&Cost::zero(), &mut bytes)?;
@@ -19,7 +19,7 @@ use core::fmt;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum RecordError {
-    /// The bytes end within a record, or before [`super::End`].
+    /// The bytes end within a record, or before [`crate::End`].
     Truncated,
     /// The bytes do not begin with the mark of a record.
     NoRecord,
@@ -81,7 +81,7 @@ impl fmt::Display for RecordError {
             Self::Truncated => formatter.write_str("the records end too early"),
             Self::NoRecord => formatter.write_str("there are bytes that are no record"),
             Self::WrongVersion { found } => {
-                write!(formatter, "the record has version {found}, but this program reads version {}", super::VERSION)
+                write!(formatter, "the record has version {found}, but this program reads version {}", crate::VERSION)
             }
             Self::UnknownKind { found } => write!(formatter, "there is no kind {found} of records"),
             Self::TooLong => formatter.write_str("the record is longer than any of its kind"),

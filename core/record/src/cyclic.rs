@@ -1,15 +1,18 @@
 //! What the cyclic tracker is given.
 
-use super::{FieldReader, FieldWriter, Kind, Payload, RecordError};
-use crate::checksum::Crc32;
-use crate::cyclic::{AngleMeasurement, MotionModel};
-use crate::skeleton::stick_figure::HUMAN_ANGLES;
-use crate::tracker::cyclic::FirstPhase;
+use crate::error::RecordError;
+use crate::fields::{FieldReader, FieldWriter};
+use crate::kind::Kind;
+use crate::payload::Payload;
+use sinew_core::checksum::Crc32;
+use sinew_core::cyclic::{AngleMeasurement, MotionModel};
+use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
+use sinew_core::tracker::cyclic::FirstPhase;
 
 /// Begins the recording of a motion: which model, and what is known of the first state.
 ///
 /// ```
-/// use sinew_core::record::{CyclicSetup, decode, encode};
+/// use sinew_record::{CyclicSetup, decode, encode};
 /// use sinew_core::tracker::cyclic::FirstPhase;
 ///
 /// // The position in the cycle is to be found; the person is said to walk a cycle in 64 frames.
@@ -17,7 +20,7 @@ use crate::tracker::cyclic::FirstPhase;
 /// let mut bytes = [0; 64];
 /// encode(&CyclicSetup { model_checksum: 0x1234_5678, first }, &mut bytes)?;
 /// assert_eq!(decode(&bytes)?.0.read::<CyclicSetup>()?.first, first);
-/// # Ok::<(), sinew_core::record::RecordError>(())
+/// # Ok::<(), sinew_record::RecordError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicSetup {
@@ -33,7 +36,7 @@ pub struct CyclicSetup {
 /// # #[cfg(feature = "walking-model")] {
 /// use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::cyclic::{ModelParts, MotionModel};
-/// use sinew_core::record::model_checksum;
+/// use sinew_record::model_checksum;
 ///
 /// // Another rate, another model.
 /// let model = WALKING.model()?;
@@ -73,7 +76,7 @@ impl Payload for CyclicSetup {
 ///
 /// ```
 /// use sinew_core::cyclic::AngleMeasurement;
-/// use sinew_core::record::{CyclicInput, decode, encode};
+/// use sinew_record::{CyclicInput, decode, encode};
 ///
 /// // One of the angles was not seen; that survives, too.
 /// let mut angles_rad = [Some(0.2); 13];
@@ -84,7 +87,7 @@ impl Payload for CyclicSetup {
 /// let played = decode(&bytes)?.0.read::<CyclicInput>()?;
 /// assert_eq!((played.frame, played.angles.angle_rad(4)), (8, None));
 /// assert_eq!(played.angles, angles);
-/// # Ok::<(), sinew_core::record::RecordError>(())
+/// # Ok::<(), sinew_record::RecordError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicInput {

@@ -1,6 +1,6 @@
 //! Numbers of a payload, one after the other.
 
-use super::RecordError;
+use crate::error::RecordError;
 
 /// Bits of the one NaN that records hold: which NaN an operation gives differs from processor to processor.
 const NAN_BITS: u32 = 0x7fc0_0000;
@@ -8,7 +8,7 @@ const NAN_BITS: u32 = 0x7fc0_0000;
 /// Writes fields into a slice; what finds no room is left out and [`Self::finish`] says so.
 ///
 /// ```
-/// use sinew_core::record::FieldWriter;
+/// use sinew_record::FieldWriter;
 ///
 /// let mut bytes = [0; 8];
 /// let mut fields = FieldWriter::new(&mut bytes);
@@ -90,7 +90,7 @@ impl<'a> FieldWriter<'a> {
 /// Reads fields from a slice.
 ///
 /// ```
-/// use sinew_core::record::{FieldReader, RecordError};
+/// use sinew_record::{FieldReader, RecordError};
 ///
 /// let mut fields = FieldReader::new(&[2, 1, 7]);
 /// assert_eq!(fields.u16()?, 0x0102);

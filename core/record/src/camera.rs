@@ -1,9 +1,12 @@
 //! What a camera delivers: lines, and the end of each frame.
 
-use super::{FieldReader, FieldWriter, Kind, Payload, RecordError};
-use crate::error::ParameterError;
-use crate::vision::skin::GaussianSkin;
+use crate::error::RecordError;
+use crate::fields::{FieldReader, FieldWriter};
+use crate::kind::Kind;
+use crate::payload::Payload;
 use heapless::Vec;
+use sinew_core::error::ParameterError;
+use sinew_core::vision::skin::GaussianSkin;
 
 /// Most pixels of a line.
 pub const LINE_PIXELS: usize = 320;
@@ -11,7 +14,7 @@ pub const LINE_PIXELS: usize = 320;
 /// Begins the recording of a camera: size of its frames, and which colours are skin.
 ///
 /// ```
-/// use sinew_core::record::CameraSetup;
+/// use sinew_record::CameraSetup;
 ///
 /// let setup = CameraSetup {
 ///     size_px: [320, 240],
@@ -76,7 +79,7 @@ impl Payload for CameraSetup {
 /// One line of a frame in RGB565.
 ///
 /// ```
-/// use sinew_core::record::{CameraLine, LINE_PIXELS, decode, encode};
+/// use sinew_record::{CameraLine, LINE_PIXELS, decode, encode};
 ///
 /// // A red line of a QVGA picture.
 /// let mut line = CameraLine { row: 17, pixels: Default::default() };
@@ -85,7 +88,7 @@ impl Payload for CameraSetup {
 /// encode(&line, &mut bytes)?;
 /// let received = decode(&bytes)?.0.read::<CameraLine>()?;
 /// assert_eq!((received.row, received.pixels.len()), (17, 320));
-/// # Ok::<(), sinew_core::record::RecordError>(())
+/// # Ok::<(), sinew_record::RecordError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraLine {
@@ -118,7 +121,7 @@ impl Payload for CameraLine {
 /// What the front end answers to a frame.
 ///
 /// ```
-/// use sinew_core::record::VisionResult;
+/// use sinew_record::VisionResult;
 ///
 /// // Firmware's answer has to be the host's: the same blobs and edges bit for bit, and as few of them lost.
 /// let expected = VisionResult { frame: 7, blobs: 2, edges: 310, checksum: 0x1234_5678, losses: [0; 6] };
@@ -135,7 +138,7 @@ pub struct VisionResult {
     pub edges: u16,
     /// CRC-32 of the candidates' bits and the edge pixels.
     pub checksum: u32,
-    /// Components, blobs, edges and lines that were lost, as in [`crate::vision::front_end::FrameLosses`].
+    /// Components, blobs, edges and lines that were lost, as in [`sinew_core::vision::front_end::FrameLosses`].
     pub losses: [u32; 6],
 }
 

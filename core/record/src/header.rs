@@ -1,7 +1,10 @@
 //! One record: header, payload, checksum.
 
-use super::{FieldReader, Payload, RecordError};
-use crate::checksum::Crc32;
+use crate::error::RecordError;
+use crate::fields::{FieldReader, FieldWriter};
+use crate::kind::Kind;
+use crate::payload::Payload;
+use sinew_core::checksum::Crc32;
 
 /// Version of the format that this library writes and reads.
 pub const VERSION: u16 = 1;
@@ -12,81 +15,10 @@ pub(super) const MARK: [u8; 4] = *b"SNWR";
 /// Bytes of the header that the checksum covers.
 const COVERED_BYTES: usize = 12;
 
-/// What a record holds. The numbers never change their meaning.
-///
-/// ```
-/// use sinew_core::record::Kind;
-///
-/// // The number stands in the header; those of later versions are unknown.
-/// assert_eq!(Kind::of(17), Some(Kind::CyclicInput));
-/// assert_eq!(Kind::CyclicInput as u16, 17);
-/// assert_eq!(Kind::of(9999), None);
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(u16)]
-#[non_exhaustive]
-pub enum Kind {
-    /// [`super::End`].
-    End = 1,
-    /// [`super::CyclicSetup`].
-    CyclicSetup = 16,
-    /// [`super::CyclicInput`].
-    CyclicInput = 17,
-    /// [`super::ArmSetup`].
-    ArmSetup = 32,
-    /// [`super::CandidateChunk`].
-    CandidateChunk = 33,
-    /// [`super::EdgeChunk`].
-    EdgeChunk = 34,
-    /// [`super::ArmInput`].
-    ArmInput = 35,
-    /// [`super::CameraSetup`].
-    CameraSetup = 48,
-    /// [`super::CameraLine`].
-    CameraLine = 49,
-    /// [`super::CyclicResult`].
-    CyclicResult = 128,
-    /// [`super::ArmResult`].
-    ArmResult = 129,
-    /// [`super::VisionResult`].
-    VisionResult = 130,
-    /// [`super::Failure`].
-    Failure = 144,
-    /// [`super::Cost`].
-    Cost = 160,
-}
-
-impl Kind {
-    /// All kinds.
-    pub const ALL: [Self; 14] = [
-        Self::End,
-        Self::CyclicSetup,
-        Self::CyclicInput,
-        Self::ArmSetup,
-        Self::CandidateChunk,
-        Self::EdgeChunk,
-        Self::ArmInput,
-        Self::CameraSetup,
-        Self::CameraLine,
-        Self::CyclicResult,
-        Self::ArmResult,
-        Self::VisionResult,
-        Self::Failure,
-        Self::Cost,
-    ];
-
-    /// The kind with this number.
-    #[must_use]
-    pub fn of(number: u16) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| *kind as u16 == number)
-    }
-}
-
 /// A record whose checksum is right.
 ///
 /// ```
-/// use sinew_core::record::{Cost, Failure, Kind, Record, decode, encode};
+/// use sinew_record::{Cost, Failure, Kind, Record, decode, encode};
 ///
 /// let mut bytes = [0; 64];
 /// encode(&Failure { frame: 3, code: 6 }, &mut bytes)?;
@@ -97,7 +29,7 @@ impl Kind {
 ///     _ => unreachable!("nothing else was written"),
 /// }
 /// assert!(record.read::<Cost>().is_err());
-/// # Ok::<(), sinew_core::record::RecordError>(())
+/// # Ok::<(), sinew_record::RecordError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Record<'a> {
@@ -126,7 +58,7 @@ impl Record<'_> {
 /// Writes a record with header and checksum to the start of `bytes`; gives its length.
 ///
 /// ```
-/// use sinew_core::record::{Cost, End, RecordError, encode};
+/// use sinew_record::{Cost, End, RecordError, encode};
 ///
 /// // Two records one after the other.
 /// let mut bytes = [0; 64];
@@ -142,10 +74,10 @@ impl Record<'_> {
 pub fn encode<P: Payload>(payload: &P, bytes: &mut [u8]) -> Result<usize, RecordError> {
     const NO_ROOM: RecordError = RecordError::Capacity { list: "bytes" };
     let (header, rest) = bytes.split_first_chunk_mut::<HEADER_BYTES>().ok_or(NO_ROOM)?;
-    let mut fields = super::FieldWriter::new(rest);
+    let mut fields = FieldWriter::new(rest);
     payload.write(&mut fields);
     let length = fields.finish().ok_or(NO_ROOM)?;
-    let mut fields = super::FieldWriter::new(header);
+    let mut fields = FieldWriter::new(header);
     MARK.iter().for_each(|&byte| fields.u8(byte));
     fields.u16(VERSION);
     fields.u16(P::KIND as u16);
@@ -185,7 +117,7 @@ pub(super) fn announced_len(bytes: &[u8]) -> Result<usize, RecordError> {
 /// Reads the record that `bytes` begin with; gives its length, too, header included.
 ///
 /// ```
-/// use sinew_core::record::{End, RecordError, decode, encode};
+/// use sinew_record::{End, RecordError, decode, encode};
 ///
 /// let mut bytes = [0; 32];
 /// let length = encode(&End { records: 12 }, &mut bytes)?;

@@ -1,7 +1,7 @@
 use super::*;
-use crate::cyclic::AngleMeasurement;
-use crate::tracker::cyclic::FirstPhase;
 use proptest::prelude::*;
+use sinew_core::cyclic::AngleMeasurement;
+use sinew_core::tracker::cyclic::FirstPhase;
 
 fn input(frame: u32, angles: [f32; 13], seen: u16, std: f32) -> CyclicInput {
     let angles_rad = core::array::from_fn(|i| Some(angles[i]).filter(|_| seen >> i & 1 == 1));
@@ -118,7 +118,7 @@ fn a_sound_record_of_an_unknown_kind_is_left_out() {
     let (bytes, starts) = stream(2);
     let mut foreign = bytes[..starts[1]].to_vec();
     foreign[6..8].copy_from_slice(&9_u16.to_le_bytes());
-    let checksum = crate::checksum::crc32(&[&foreign[..12], &foreign[16..]].concat());
+    let checksum = sinew_core::checksum::crc32(&[&foreign[..12], &foreign[16..]].concat());
     foreign[12..16].copy_from_slice(&checksum.to_le_bytes());
     let mut all = bytes[..starts[1]].to_vec();
     all.extend(foreign);
@@ -173,7 +173,7 @@ fn results_and_costs_come_back() {
     assert_eq!(decode(&bytes).unwrap().0.read::<Cost>().unwrap(), Cost { part: 3, frames: 3, total: 21, worst: 9 });
     let result = CyclicResult {
         frame: 4,
-        estimate: crate::cyclic::CyclicEstimate {
+        estimate: sinew_core::cyclic::CyclicEstimate {
             angles_rad: [0.5; 13],
             turns: [-3; 13],
             angle_variance_rad2: [0.1; 13],

@@ -1,12 +1,15 @@
 //! What firmware answers.
 
-use super::{FieldReader, FieldWriter, Kind, Payload, RecordError};
-use crate::cyclic::CyclicEstimate;
-use crate::math::Vec3;
-use crate::skeleton::Side;
-use crate::skeleton::stick_figure::HUMAN_ANGLES;
-use crate::tracker::arm::{ArmEstimate, ArmJoints, Status};
-use crate::tracker::cyclic::CyclicFrame;
+use crate::error::RecordError;
+use crate::fields::{FieldReader, FieldWriter};
+use crate::kind::Kind;
+use crate::payload::Payload;
+use sinew_core::cyclic::CyclicEstimate;
+use sinew_core::math::Vec3;
+use sinew_core::skeleton::Side;
+use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
+use sinew_core::tracker::arm::{ArmEstimate, ArmJoints, Status};
+use sinew_core::tracker::cyclic::CyclicFrame;
 
 /// The cyclic tracker's answer to one frame.
 ///
@@ -14,7 +17,7 @@ use crate::tracker::cyclic::CyclicFrame;
 /// # #[cfg(feature = "walking-model")] {
 /// use sinew_core::cyclic::AngleMeasurement;
 /// use sinew_core::cyclic::model::walking::WALKING;
-/// use sinew_core::record::{CyclicResult, decode, encode};
+/// use sinew_record::{CyclicResult, decode, encode};
 /// use sinew_core::tracker::cyclic::{CyclicTracker, CyclicTrackerOptions, FirstPhase};
 ///
 /// let model = WALKING.model()?;
@@ -101,7 +104,7 @@ impl Payload for CyclicResult {
 /// ```
 /// use sinew_core::camera::Camera;
 /// use sinew_core::math::Vec3;
-/// use sinew_core::record::{ArmResult, decode, encode};
+/// use sinew_record::{ArmResult, decode, encode};
 /// use sinew_core::skeleton::{ArmGeometry, Side};
 /// use sinew_core::tracker::arm::{ArmFrame, ArmModel, ArmOptions, ArmTracker};
 ///
@@ -189,7 +192,7 @@ impl Payload for ArmResult {
 /// A record that could not be used; the tracker goes on with the next one.
 ///
 /// ```
-/// use sinew_core::record::{Failure, RecordError};
+/// use sinew_record::{Failure, RecordError};
 ///
 /// // Frame 11 was answered, then a record came with a wrong checksum.
 /// let failure = Failure { frame: 11, code: RecordError::Checksum.code() };
@@ -227,7 +230,7 @@ impl Payload for Failure {
 /// What a part of the work cost over all frames.
 ///
 /// ```
-/// use sinew_core::record::Cost;
+/// use sinew_record::Cost;
 ///
 /// // Instructions of three frames, one of them much dearer.
 /// let mut cost = Cost { part: 1, ..Cost::zero() };
