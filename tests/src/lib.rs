@@ -1,6 +1,8 @@
 //! Instruments that the tests of this package share.
 
 use clap::{CommandFactory, Parser};
+pub mod imports;
+
 use std::collections::BTreeMap;
 use std::env;
 use std::fs;

@@ -2,12 +2,10 @@
 
 use crate::error::RecordError;
 use crate::fields::{FieldReader, FieldWriter};
-use crate::kind::Kind;
+use crate::kind::{Kind, VERSION};
 use crate::payload::Payload;
 use sinew_core::checksum::Crc32;
 
-/// Version of the format that this library writes and reads.
-pub const VERSION: u16 = 1;
 /// Bytes of a header.
 pub const HEADER_BYTES: usize = 16;
 /// First bytes of every record.

@@ -1,4 +1,7 @@
-//! Kinds of records.
+//! Version and kinds of records.
+
+/// Version of the format that this library writes and reads.
+pub const VERSION: u16 = 1;
 
 /// What a record holds. The numbers never change their meaning.
 ///

@@ -8,6 +8,12 @@ use core::f32::consts::TAU;
 const POSITIONS: usize = 100;
 
 /// Mean pose at a cycle position: two angles that swing at different phases, rad.
+///
+/// ```
+/// use sinew_core::cyclic::example::swing_pose_rad;
+///
+/// assert_eq!(swing_pose_rad(0.0), [0.0, 0.3]);
+/// ```
 #[must_use]
 pub fn swing_pose_rad(position: f32) -> [f32; 2] {
     let (sine, cosine) = sin_cos(TAU * position);
