@@ -10,10 +10,12 @@
 
 use crate::angle::angle_difference;
 use crate::cyclic::AngleMeasurement;
-use crate::cyclic::kalman::covariance::{KinematicCovariance, MARGIN, SEVERE, SQUARE, half, mirror};
+use crate::cyclic::kalman::covariance::{
+    CANCELLATION_RATIO, KinematicCovariance, ROUNDING_MARGIN, SQUARE, half, mirror,
+};
 use crate::numeric::log_product::LogProduct;
 
-/// The angles that a frame shows, in front, and what it says about them.
+/// The measured angles of a frame, in front, with their innovations.
 ///
 /// Invariant: `order` has each number below N once, and `count` is at most N.
 #[derive(Debug, Clone, Copy)]
@@ -65,7 +67,7 @@ impl<const N: usize> SeenAngles<N> {
     }
 }
 
-/// What an update says about the mean.
+/// Update of the mean.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MeanShift<const N: usize> {
     /// To be added to the angles.
@@ -83,14 +85,14 @@ const AHEAD: usize = 0;
 const VELOCITY: usize = 1;
 const INNOVATION: usize = 2;
 
-/// What the columns of the covariance that the angles seen call for need beside its own place. A row is a column there; angles are in
-/// the order of [`SeenAngles`].
+/// Working memory for the measured columns of the covariance. A row here is a column there; angles
+/// are in the order of [`SeenAngles`].
 ///
 /// The covariance's own blocks hold, as `aheads`, each angle's covariances with itself and those after it when its measurement is taken
 /// in (what stands before has no meaning), and as `velocities` those with the velocities; its new entries are made from them there.
 struct Columns<const N: usize> {
-    /// Covariances with the angles measured before, less the measurement's variance at the angle itself, and those with the angles
-    /// never seen.
+    /// Covariances with the angles measured before, minus the measurement's variance at the angle
+    /// itself, and those with the angles never seen.
     settled: [[f32; N]; N],
     /// The covariances with the last angle and the last velocity, then the innovation, given what was measured before: all go through
     /// the same sums, and four numbers are one register where thirteen are three and a bit. The fourth is nothing. The last column of
@@ -98,10 +100,10 @@ struct Columns<const N: usize> {
     last: [[f32; SQUARE]; N],
     /// One over the variance of each innovation.
     inverse_variance: [f32; N],
-    /// Part of the angle's covariances that the measurement leaves.
+    /// Share of the angle's covariances after the measurement, r / s.
     left: [f32; N],
-    /// Whether a measurement takes nearly all of an angle's variance away.
-    is_severe: [bool; N],
+    /// Whether a measurement's variance is below [`CANCELLATION_RATIO`] of the innovation's.
+    cancels: [bool; N],
 }
 
 impl<const N: usize> KinematicCovariance<N> {
@@ -124,8 +126,8 @@ impl<const N: usize> KinematicCovariance<N> {
             shift.squared += innovation_rad * innovation_rad * columns.inverse_variance[place];
             shift.determinant.multiply(variance);
         }
-        let is_any_severe = columns.is_severe.contains(&true);
-        let margins = is_any_severe.then(|| columns.margins(aheads, velocities, count));
+        let any_cancels = columns.cancels.contains(&true);
+        let margins = any_cancels.then(|| columns.margins(aheads, velocities, count));
         if !keeps_velocities {
             shift.velocities = columns.reduce_velocities(velocities, covariance, count);
         }
@@ -172,7 +174,7 @@ impl<const N: usize> Columns<N> {
             last: [[0.0; SQUARE]; N],
             inverse_variance: [0.0; N],
             left: [0.0; N],
-            is_severe: [false; N],
+            cancels: [false; N],
         };
         for place in 0..count.min(N) {
             columns.settled[place][place] = -seen.noise_variance[place];
@@ -223,7 +225,7 @@ impl<const N: usize> Columns<N> {
         let inverse_variance = 1.0 / variance;
         self.inverse_variance[place] = inverse_variance;
         self.left[place] = noise_variance * inverse_variance;
-        self.is_severe[place] = noise_variance < SEVERE * variance;
+        self.cancels[place] = noise_variance < CANCELLATION_RATIO * variance;
         (self.settled[place], velocities[place], self.last[place]) = (settled, velocity, last);
         for j in count..N {
             self.settled[place][j] = aheads[place][j];
@@ -236,7 +238,7 @@ impl<const N: usize> Columns<N> {
     /// corrected angles to the measurements, or where an angle is not seen, to where it was.
     #[inline(always)]
     fn reduce_angles(&self, aheads: &mut [[f32; N]; N], velocities: &mut [[f32; N]; N], count: usize) -> [f32; N] {
-        // It is no more; said here, it lets no index be checked.
+        // Never smaller: this lets the compiler drop the bounds checks.
         let count = count.min(N);
         let mut innovation_left = [0.0; N];
         // The angles not seen call for all columns, of which each angle seen then takes away its own.
@@ -274,8 +276,9 @@ impl<const N: usize> Columns<N> {
         innovation_left
     }
 
-    /// Takes what measurements at `later` places say off the covariances of the angle at `place` with angles and velocities and off its
-    /// innovation; returns what they take off its variance. Of the angles those of the first half alone, if asked.
+    /// Subtracts the updates by measurements at `later` places from the covariances of the angle at
+    /// `place` with angles and velocities, and from its innovation. Returns the decrease of its
+    /// variance. With `FIRST_HALF` only the first half of the angles changes.
     #[inline(always)]
     fn take_off<const FIRST_HALF: bool>(
         &self,
@@ -300,16 +303,16 @@ impl<const N: usize> Columns<N> {
         taken
     }
 
-    /// What rounding may take off the variances of angles and velocities where a measurement takes nearly all of an angle's variance
-    /// away.
+    /// Bounds on the rounding of the variances of angles and velocities, where a measurement is far
+    /// more precise than the prediction.
     #[cold]
     fn margins(&self, aheads: &[[f32; N]; N], velocities: &[[f32; N]; N], count: usize) -> ([f32; N], [f32; N]) {
         let mut margins = ([0.0; N], [0.0; N]);
         for place in 0..count.min(N) {
-            if !self.is_severe[place] {
+            if !self.cancels[place] {
                 continue;
             }
-            let margin = MARGIN * self.inverse_variance[place];
+            let margin = ROUNDING_MARGIN * self.inverse_variance[place];
             for j in 0..N {
                 let angle = if j < place { self.settled[place][j] } else { aheads[place][j] };
                 let velocity = if j < N - 1 { velocities[place][j] } else { self.last[place][VELOCITY] };
@@ -324,7 +327,7 @@ impl<const N: usize> Columns<N> {
     /// to the velocities.
     #[inline(always)]
     fn reduce_velocities(&self, velocities: &[[f32; N]; N], covariance: &mut [[f32; N]; N], count: usize) -> [f32; N] {
-        // It is no more; said here, it lets no index be checked.
+        // Never smaller: this lets the compiler drop the bounds checks.
         let count = count.min(N);
         let Some((last_row, rows)) = covariance.split_last_mut() else { return [0.0; N] };
         let (row_blocks, rest) = rows.as_chunks_mut::<SQUARE>();

@@ -111,7 +111,7 @@ impl MotionModel<'_> {
     /// # #[cfg(feature = "walking-model")] {
     /// use sinew_core::cyclic::model::walking::WALKING;
     ///
-    /// // An elbow (the angle of l_wrist) swings otherwise in every walker, a neck hardly.
+    /// // The swing of an elbow (the angle of l_wrist) differs between walkers, that of a neck hardly.
     /// let velocity_std = WALKING.model()?.deviation_velocity_std::<13>();
     /// assert!(velocity_std[3] > 2.0 * velocity_std[0]);
     /// # }

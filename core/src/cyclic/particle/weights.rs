@@ -36,7 +36,8 @@ pub(super) fn greatest(log_weights: &[f32]) -> f32 {
     log_weights.iter().fold(f32::NEG_INFINITY, |best, &value| max(value, best))
 }
 
-/// How much some particles weigh: the greatest of their log-weights, and the sum of their weights relative to it.
+/// Weights of a set of particles: the greatest log-weight, and the sum of all weights relative to
+/// it.
 ///
 /// ```
 /// use core::f32::consts::LN_2;
@@ -53,7 +54,7 @@ pub(super) fn greatest(log_weights: &[f32]) -> f32 {
 pub struct WeightShare {
     /// Negative infinity of no particle.
     pub greatest_log_weight: f32,
-    /// At least 1 of any particle that weighs something.
+    /// At least 1 where any particle has a weight.
     pub weight: f32,
 }
 
