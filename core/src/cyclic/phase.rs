@@ -4,13 +4,13 @@
 //! use sinew_core::cyclic::phase::{position_difference, wrap_position};
 //!
 //! assert!((wrap_position(1.25) - 0.25).abs() < 1e-6);
-//! // From 0.9 to 0.1 of a cycle the short way leads on.
+//! // From 0.9 to 0.1 of a cycle the shorter arc is forward.
 //! assert!((position_difference(0.1, 0.9) - 0.2).abs() < 1e-6);
 //! ```
 
 use crate::math::floor;
 
-/// What [`wrap_position`] gives.
+/// Range of [`wrap_position`].
 pub(crate) const POSITIONS_IN_CYCLE: core::ops::RangeInclusive<f32> = 0.0..=1.0_f32.next_down();
 
 /// `position` moved by whole cycles into [0, 1); 0 for NaN and infinity.

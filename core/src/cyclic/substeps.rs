@@ -6,7 +6,7 @@
 use crate::cyclic::measurement::MAX_STEP_FRAMES;
 use crate::math::{clamp, max, min};
 
-/// The parts of a step: whole ones first, then what is left.
+/// Substeps: equal ones first, then the remainder.
 ///
 /// ```
 /// use sinew_core::cyclic::substeps::Substeps;

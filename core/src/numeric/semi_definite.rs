@@ -46,8 +46,8 @@ pub const RELATIVE_TOLERANCE: f32 = 1.0e-4;
 /// Relative inflation of the diagonal of the acceleration's covariance, cyclic (7).
 ///
 /// Chosen: ten training cycles give a matrix of rank nine, in which four directions never vary.
-/// 1e-4 gives them one hundredth of the standard deviation and changes the tables by less than 0.1
-/// %.
+/// 1e-4 gives them one hundredth of the standard deviation. It changes the tables by less than
+/// 0.1 %.
 pub const DIAGONAL_EXCESS: f32 = 1.0e-4;
 
 /// Whether the matrix with lower triangle `packed` has no eigenvalue below zero by more than rounding.

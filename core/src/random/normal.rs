@@ -120,7 +120,7 @@ pub fn log_density(x: f32) -> f32 {
 ///
 /// // Two thirds lie within one standard deviation.
 /// assert!((exp(log_interval_mass(-1.0, 1.0)) - 0.6827).abs() < 1e-4);
-/// // What limits of a joint leave, though the mean is thirty standard deviations beyond them.
+/// // Finite for limits of a joint at thirty standard deviations from the mean.
 /// assert!(log_interval_mass(30.0, 31.0).is_finite());
 /// ```
 #[must_use]

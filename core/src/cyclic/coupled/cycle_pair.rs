@@ -39,7 +39,7 @@ pub(super) struct Information {
 }
 
 impl Information {
-    /// Nothing.
+    /// No information.
     pub(super) const NONE: Self = Self { matrix: [0.0; 3], vector: [0.0; 2] };
 
     /// Adds a residual with derivatives `gradient` by (c, v).

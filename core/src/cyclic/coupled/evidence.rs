@@ -68,8 +68,7 @@ impl PhaseEvidence {
         }
     }
 
-    /// Adds an angle to likelihood and NIS; `variance`, rad^2, is that of the innovation given (c,
-    /// v).
+    /// Adds an angle to likelihood and NIS; `variance`, rad^2, is the innovation's given (c, v).
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn add(&mut self, gradient: &[f32; 2], variance: f32, residual: f32) {
         self.all.add(gradient, 1.0 / variance, residual);

@@ -15,7 +15,8 @@ const STEPS: f32 = 256.0;
 ///
 /// Chosen: half a turn is then 4.3 standard deviations of the difference of two measurements.
 const MAX_STD_RAD: f32 = 0.52;
-/// Longest interval between two measurements, frames. Chosen: beyond it the arc may exceed half a turn.
+/// Longest interval between two measurements, frames. Chosen: beyond it the arc may exceed half a
+/// turn.
 const MAX_INTERVAL_FRAMES: f32 = 4.0;
 
 /// Last measurement of each angle.

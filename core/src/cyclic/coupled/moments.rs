@@ -40,7 +40,7 @@ pub struct BlockTransition {
 /// use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
 ///
-/// // What a step of two frames adds to the uncertainty of position and velocity, whatever is known of them.
+/// // The process noise of position and velocity in a step of two frames.
 /// let model = WALKING.model()?;
 /// let filter = CoupledFilter::<13>::new(&model, &AngleMeasurement::nothing(), Some(0.0), None)?;
 /// let transition = filter.transition(&model, 2.0);
@@ -159,7 +159,7 @@ mod tests {
         filter
     }
 
-    /// What predict does to means and, where no regression on (c, v) is left, to covariances.
+    /// The effect of predict on means and, without regression on (c, v), on covariances.
     #[test]
     fn the_transition_is_that_of_predict() {
         let table = table(0.001, 9);

@@ -16,7 +16,7 @@ const TABLE: usize = 64;
 const LANES: usize = 8;
 /// Speeds of the grid, relative to the model's mean speed. Chosen: from standing to twice the mean,
 /// in factors of about the root of 2.
-pub const SPEED_RATIOS: [f32; 6] = [0.0, 0.5, 0.7, 1.0, 1.4, 2.0];
+const SPEED_RATIOS: [f32; 6] = [0.0, 0.5, 0.7, 1.0, 1.4, 2.0];
 pub(super) const SPEEDS: usize = SPEED_RATIOS.len();
 /// Share of the weight that moves to each neighbouring speed in a frame. Chosen: speeds change
 /// over seconds, not frames.

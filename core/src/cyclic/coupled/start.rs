@@ -1,4 +1,4 @@
-//! Where the phase-coupled filter begins: at the first row, or anywhere in the cycle.
+//! Start of the phase-coupled filter: at the first row, or anywhere in the cycle.
 
 use crate::cyclic::coupled::block::AngleBlock;
 use crate::cyclic::coupled::cycle_pair::CyclePair;

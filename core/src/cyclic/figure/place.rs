@@ -91,7 +91,8 @@ impl PlaceOptions {
     }
 }
 
-/// Root and segment lengths over time, each with its own filter. What was never seen is `None`.
+/// Root and segment lengths over time, each with its own filter. `None` before the first
+/// measurement.
 ///
 /// ```
 /// use sinew_core::cyclic::{FigurePlace, PlaceOptions};
@@ -136,7 +137,8 @@ impl<const N: usize> FigurePlace<N> {
         Ok(place)
     }
 
-    /// One step of `step_frames` (frames of the rate that the options are for). What is missing or not finite is bridged.
+    /// One step of `step_frames` (frames of the rate that the options are for). Missing and
+    /// non-finite values are bridged.
     pub fn step(&mut self, step_frames: f32, root_px: Option<ImagePoint>, lengths_px: &[Option<f32>; N]) {
         let options = self.options;
         let root_px = root_px.filter(|root| root.iter().all(|value| value.is_finite()));

@@ -134,8 +134,9 @@ impl<const N: usize> KinematicCovariance<N> {
     }
 }
 
-/// Makes `matrix`, all zeros, the symmetric one whose packed lower triangle is `scale` times what lies between `before` and `after`,
-/// its diagonal raised by [`DIAGONAL_EXCESS`]; zeros stay where the triangles end.
+/// Fills `matrix`, all zeros, with the symmetric matrix whose packed lower triangle is `scale`
+/// times the interpolation between `before` and `after`, its diagonal inflated by
+/// [`DIAGONAL_EXCESS`]. Zeros stay beyond the triangles.
 #[inline(always)]
 fn interpolate<const N: usize>(matrix: &mut [[f32; N]; N], before: &[f32], after: &[f32], fraction: f32, scale: f32) {
     let between = |(a, b): (&f32, &f32)| scale * (a + fraction * (b - a));

@@ -281,7 +281,7 @@ pub(super) fn advance<const N: usize>(
     }
     let temporal = streams.normal();
     let temporal_scale = temporal_std * noise_factor;
-    // All places in the model first: a processor can fetch what stands there while it works on the particles before.
+    // All points of the model first, so that a processor prefetches them.
     let mut points = [model.point(0.0); LANES];
     for (point, particle) in points.iter_mut().zip(particles.iter()) {
         *point = model.point(particle.cycle_position);

@@ -2,7 +2,8 @@
 
 use crate::math::{exp, exp_small, max};
 
-/// Turns log-weights into weights relative to `greatest` and returns their sum, taken in eight parts; NaN weighs nothing.
+/// Turns log-weights into weights relative to `greatest` and returns their sum, taken in eight
+/// parts; NaN has no weight.
 #[inline(always)]
 pub(super) fn exponentiate(greatest: f32, weights: &mut [f32]) -> f32 {
     let mut sums = [0.0; 8];
@@ -21,7 +22,7 @@ pub(super) fn exponentiate(greatest: f32, weights: &mut [f32]) -> f32 {
     sums.iter().fold(sum, |all, part| all + part)
 }
 
-/// The weight beside one of weight 1 and log-weight `greatest`; zero for NaN and below exp(-40).
+/// Weight relative to the `greatest`; zero for NaN and below exp(-40).
 #[inline(always)]
 pub(super) fn relative_weight(log_weight: f32, greatest: f32) -> f32 {
     let below = log_weight - greatest;
@@ -62,7 +63,7 @@ impl WeightShare {
     /// No particle.
     pub const NOTHING: Self = Self { greatest_log_weight: f32::NEG_INFINITY, weight: 0.0 };
 
-    /// What the weights are multiplied by to be relative to `greatest_log_weight`.
+    /// Factor of the weights that makes them relative to `greatest_log_weight`.
     #[must_use]
     pub fn scale(&self, greatest_log_weight: f32) -> f32 {
         if self.greatest_log_weight > f32::NEG_INFINITY {
@@ -78,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nan_weighs_nothing_and_the_greatest_weighs_one() {
+    fn nan_has_no_weight_and_the_greatest_weight_is_one() {
         let mut weights = [-3.0, f32::NAN, -1.0, -200.0, f32::NEG_INFINITY];
         let best = greatest(&weights);
         assert_eq!(best, -1.0);

@@ -1,4 +1,4 @@
-//! A step of the cyclic tracker: filter, count, follow root and lengths.
+//! Step of the cyclic tracker: filter, cycle count, root and lengths.
 
 use super::estimate::CyclicFrame;
 use super::frame::CyclicFrameInput;

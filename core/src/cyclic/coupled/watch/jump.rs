@@ -38,7 +38,8 @@ const MAX_UNEXPLAINED_SHARE: f32 = 0.9;
 const MIN_SWING_SHARE: f32 = 0.15;
 /// Smallest filled part of the swing's memory from which a lock can be spurious. Chosen: a third of a cycle.
 const MIN_FILLED_SHARE: f32 = 0.28;
-/// Positions at which the cycle's own variance is computed. Chosen: few, since each update checks it.
+/// Positions at which the cycle's own variance is computed. Chosen: few, since each update checks
+/// it.
 const CYCLE_POSITIONS: u8 = 8;
 /// Most frames for which one measurement counts in the grid. Chosen: as its `REPEATED_FRAMES`.
 const MAX_GRID_FRAMES: f32 = 4.0;

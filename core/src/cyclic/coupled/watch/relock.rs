@@ -1,4 +1,4 @@
-//! What a jump does: the filter goes on from the grid's phase, or fuses it with its own.
+//! Effect of a jump: the filter continues from the grid's phase, or fuses it with its own.
 
 use crate::cyclic::coupled::block::PARTS;
 use crate::cyclic::coupled::cycle_pair::{CyclePair, Information};
