@@ -1,11 +1,14 @@
-//! Position and velocity in the cycle with their covariance: eqs. (4), (5) and (10) of the cyclic paper.
+//! Position and velocity in the cycle with their covariance: cyclic (4), cyclic (5) and cyclic
+//! (10).
 
 use crate::cyclic::phase::wrap_position;
 use crate::math::{min, sqrt};
 
-/// Greatest variance of the cycle position, cycles^2: one cycle of standard deviation is no knowledge at all.
+/// Largest variance of the cycle position, cycles^2. Chosen: a standard deviation of one cycle, at
+/// which the phase is unknown.
 const MAX_POSITION_VARIANCE: f32 = 1.0;
-/// Greatest variance of the cycle velocity, (cycles per frame)^2.
+/// Largest variance of the cycle velocity, (cycles per frame)^2. Chosen: the square of
+/// [`crate::cyclic::start::MAX_CYCLE_VELOCITY`].
 const MAX_VELOCITY_VARIANCE: f32 = 0.25;
 
 /// c, v and their covariance.
@@ -20,7 +23,7 @@ const MAX_VELOCITY_VARIANCE: f32 = 0.25;
 ///     covariance: 0.0,
 ///     velocity_variance: 1.0e-6,
 /// };
-/// // Ten frames without a measurement: a velocity that is 0.001 off may have led 0.01 astray.
+/// // Ten frames without a measurement: a velocity that is 0.001 off makes the position 0.01 off.
 /// cycle.advance(10.0, 0.0);
 /// assert!((cycle.position - 0.1).abs() < 1e-6);
 /// assert!((cycle.position_variance - 0.01 * 0.01).abs() < 1e-8);
@@ -40,7 +43,8 @@ pub struct CycleState {
 }
 
 impl CycleState {
-    /// Constant velocity over `step` frames, with a temporal acceleration of zero mean and the variance given.
+    /// Propagates over `step` frames at constant velocity, with process noise by
+    /// `acceleration_variance`, cycles^2 per frame^4: cyclic (4), cyclic (5) and cyclic (10).
     #[inline]
     pub fn advance(&mut self, step: f32, acceleration_variance: f32) {
         let square = step * step;
@@ -53,7 +57,8 @@ impl CycleState {
         self.saturate();
     }
 
-    /// Shrinks row and column of what has grown beyond all knowledge.
+    /// Scales row and column of a variance above its limit, which keeps the covariance positive
+    /// semi-definite.
     fn saturate(&mut self) {
         if self.position_variance > MAX_POSITION_VARIANCE {
             self.covariance *= sqrt(MAX_POSITION_VARIANCE / self.position_variance);
@@ -73,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_spread_of_the_position_grows_as_the_kinematics_say() {
+    fn the_variance_of_the_position_grows_by_the_kinematics() {
         let mut state = CycleState {
             position: 0.9,
             velocity: 0.05,
@@ -90,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn it_stays_a_covariance_for_ever() {
+    fn the_covariance_stays_valid_over_many_frames() {
         let mut state = CycleState {
             position: 0.0,
             velocity: 0.01,

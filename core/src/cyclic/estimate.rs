@@ -1,6 +1,7 @@
-//! What every cyclic filter answers after a frame.
+//! Estimate of every cyclic filter after a frame.
 
-/// Pose, phase and how sure they are. `N` is a capacity; entries beyond the model's angles are zero.
+/// Pose and phase with their variances. `N` is a capacity; entries beyond the model's angles are
+/// zero.
 ///
 /// ```
 /// # use sinew_core::cyclic::CycleStart;
@@ -39,7 +40,7 @@ pub struct CyclicEstimate<const N: usize> {
     pub cycle_velocity_variance: f32,
     /// Natural logarithm of the density of this frame's measurement given those before; 0 without a measurement.
     pub log_likelihood: f32,
-    /// Whether this frame's measurement is too far from the prediction to belong to it (innovation gate).
+    /// Whether this frame's measurement lies beyond the innovation gate.
     pub outlier: bool,
 }
 

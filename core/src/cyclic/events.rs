@@ -24,7 +24,7 @@ use crate::saved_state::{SavedState, StateVisitor};
 /// ```
 /// use sinew_core::cyclic::events::CycleCounter;
 ///
-/// // Three cycles went by unseen; the velocity tells how many they were.
+/// // Three cycles passed without a measurement: the velocity gives their number.
 /// let mut counter = CycleCounter::new(0.25);
 /// counter.advance(0.27, 0.02, 150.0);
 /// assert_eq!(counter.completed(), 3);
@@ -37,7 +37,7 @@ pub struct CycleCounter {
     laps: i32,
 }
 
-/// The way through the cycle between two frames.
+/// Progress through the cycle between two frames.
 ///
 /// ```
 /// use sinew_core::cyclic::events::CycleCounter;
@@ -84,9 +84,9 @@ impl CycleCounter {
         Self { start: position, position, laps: 0 }
     }
 
-    /// Goes on to `position`, reached after `step_frames` at about `velocity_per_frame`.
+    /// Advances to `position`, reached after `step_frames` at about `velocity_per_frame`.
     ///
-    /// Which lap it is of follows from the velocity: the way is the one nearest to velocity times time.
+    /// The number of laps is the one whose advance is nearest to velocity times time.
     pub fn advance(&mut self, position: f32, velocity_per_frame: f32, step_frames: f32) -> CycleStep {
         let position = wrap_position(position);
         let expected = velocity_per_frame * step_frames;
@@ -111,8 +111,8 @@ impl CycleCounter {
         self.laps as f32 + (self.position - self.start)
     }
 
-    /// The same in two parts, so that the second stays as fine as the position however many cycles there are: passages of
-    /// position 0, and the position less the first one.
+    /// The same in two parts, of which the second stays exact over any number of cycles: passages
+    /// of position 0, and the position minus the first one.
     #[must_use]
     pub fn laps_and_part(&self) -> (i32, f32) {
         (self.laps, self.position - self.start)
@@ -120,7 +120,7 @@ impl CycleCounter {
 }
 
 impl CycleStep {
-    /// No way at `position`, in no time.
+    /// A step of zero length at `position`.
     #[must_use]
     pub fn none(position: f32) -> Self {
         let position = wrap_position(position);
@@ -129,8 +129,9 @@ impl CycleStep {
 
     /// When `phase` was passed forwards, frames after the earlier estimate, in (0, step]; `None` if it was not.
     ///
-    /// Linear between both estimates; the first passage where a long step holds several. Whether it was passed is told by the
-    /// two positions and the laps, not by the way, whose rounding would count a phase at the border of two steps twice or never.
+    /// Linear between both estimates; the first passage where a long step holds several. The two
+    /// positions and the laps decide whether it was passed. By the rounded advance, a phase at the
+    /// border of two steps could count twice or never.
     #[must_use]
     pub fn passed(&self, phase: f32) -> Option<f32> {
         let phase = wrap_position(phase);
@@ -148,7 +149,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn cycles_are_counted_whatever_the_velocity_and_the_start(
+        fn cycles_are_counted_at_any_velocity_and_start(
             start in 0.0_f32..1.0, velocity in -0.3_f32..0.3, step in 0.3_f32..8.0,
         ) {
             let mut counter = CycleCounter::new(start);

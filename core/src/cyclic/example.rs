@@ -1,4 +1,4 @@
-//! A made-up motion of two angles, for examples and tests.
+//! A synthetic motion of two angles, for examples and tests.
 
 use super::model::ModelTable;
 use crate::math::sin_cos;

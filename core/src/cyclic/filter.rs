@@ -1,11 +1,11 @@
-//! The filters that need no cloud of particles, behind one type.
+//! The phase-coupled filter and the Kalman filter behind one type.
 
 use crate::cyclic::{
     AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel,
 };
 use crate::error::ParameterError;
 
-/// Which filter, with what may be chosen in it.
+/// Choice of filter with its options.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -18,7 +18,7 @@ use crate::error::ParameterError;
 /// let options = CyclicTrackerOptions { filter, ..CyclicTrackerOptions::default() };
 /// let (model, unseen) = (WALKING.model()?, AngleMeasurement::nothing().into());
 /// let mut tracker = CyclicTracker::<13>::new(&model, options, &unseen, FirstPhase::default())?;
-/// // Its speed is the first one for ever; the default learns it from the angles.
+/// // Its speed stays the first one. The default estimates it from the angles.
 /// assert_eq!(tracker.step(&model, &unseen).estimate.cycle_velocity_per_frame, model.mean_cycle_velocity());
 /// assert_ne!(FilterChoice::default(), filter);
 /// # }
@@ -89,8 +89,8 @@ impl<const N: usize> CyclicFilter<N> {
         }
     }
 
-    /// One frame: predict over the measurement's step, then correct. `choice` is that of [`Self::new`]; the options of another
-    /// filter are not looked at.
+    /// One frame: predict over the measurement's step, then correct. `choice` is that of
+    /// [`Self::new`]; the options of another filter are ignored.
     pub fn step(
         &mut self,
         model: &MotionModel<'_>,

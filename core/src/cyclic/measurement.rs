@@ -1,4 +1,4 @@
-//! What a frame says about the pose: any subset of the angles, each with its standard deviation.
+//! Measurement of a frame: any subset of the angles, each with its standard deviation.
 //!
 //! ```
 //! use sinew_core::cyclic::AngleMeasurement;
@@ -12,7 +12,8 @@
 
 use crate::error::{ParameterError, positive};
 
-/// Longest step, frames at the model's rate: beyond it a tracker has forgotten the pose anyway, and work stays bounded.
+/// Longest step, frames at the model's rate. Chosen: ten seconds at 60 Hz, after which the pose is
+/// unknown; it bounds the work.
 pub const MAX_STEP_FRAMES: f32 = 600.0;
 
 /// One frame's measured angles; `N` is a capacity, angles beyond the model's are ignored.
@@ -22,7 +23,7 @@ pub const MAX_STEP_FRAMES: f32 = 600.0;
 /// ```
 /// use sinew_core::cyclic::AngleMeasurement;
 ///
-/// // A short segment's angle is less sure than a long one's. What is no number counts as not seen.
+/// // A short segment's angle has more noise than a long one's. NaN counts as missing.
 /// let angles_rad = [Some(0.3), Some(-0.1), Some(f32::NAN)];
 /// let seen = AngleMeasurement::with_std(&angles_rad, &[0.05, 0.2, 0.05])?.after(3.0)?;
 /// assert_eq!((seen.angle_rad(2), seen.present(3)), (None, 2));
@@ -126,7 +127,7 @@ mod tests {
     use crate::error::Rule;
 
     #[test]
-    fn what_is_not_a_number_counts_as_missing() {
+    fn nan_and_infinity_count_as_missing() {
         let measurement = AngleMeasurement::new(&[Some(f32::NAN), Some(f32::INFINITY), Some(9.0), None], 0.1).unwrap();
         assert_eq!(measurement.angles_rad(), &[None, None, Some(9.0), None]);
         assert_eq!(measurement.present(4), 1);

@@ -1,4 +1,5 @@
-//! Cyclic motion of a stick figure (the cyclic paper): a motion model learned from a few cycles, and what tracks with it.
+//! Cyclic motion of a stick figure (the cyclic paper): a motion model learned from a few cycles,
+//! and the filters that track with it.
 //!
 //! ```
 //! use sinew_core::cyclic::{AngleMeasurement, CoupledFilter, ModelTable};
@@ -31,7 +32,7 @@
 //! }
 //! let model = table.model().expect("the numbers agree");
 //!
-//! // Somebody who moves a tenth faster than the mean; now and then an angle, or all, are not seen.
+//! // A person who moves a tenth faster than the mean. Some measurements miss an angle, some all.
 //! let seen = |frame: usize| {
 //!     let angles = pose(frame as f32 / 54.0).map(Some);
 //!     match frame % 7 {

@@ -4,13 +4,13 @@
 //! use sinew_core::cyclic::phase::{position_difference, wrap_position};
 //!
 //! assert!((wrap_position(1.25) - 0.25).abs() < 1e-6);
-//! // From 0.9 to 0.1 of a cycle the short way leads on.
+//! // From 0.9 to 0.1 of a cycle the shorter arc is forward.
 //! assert!((position_difference(0.1, 0.9) - 0.2).abs() < 1e-6);
 //! ```
 
 use crate::math::floor;
 
-/// What [`wrap_position`] gives.
+/// Range of [`wrap_position`].
 pub(crate) const POSITIONS_IN_CYCLE: core::ops::RangeInclusive<f32> = 0.0..=1.0_f32.next_down();
 
 /// `position` moved by whole cycles into [0, 1); 0 for NaN and infinity.
@@ -29,7 +29,7 @@ pub fn wrap_position(position: f32) -> f32 {
     if (0.0..1.0).contains(&wrapped) { wrapped } else { 0.0 }
 }
 
-/// The way from `from` to `to` by the shorter arc, in (-0.5, 0.5] cycles.
+/// Signed shorter arc from `from` to `to`, in (-0.5, 0.5] cycles.
 ///
 /// ```
 /// use sinew_core::cyclic::phase::position_difference;
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn the_seam_is_no_edge() {
+    fn positions_wrap_across_the_seam() {
         assert!((position_difference(0.02, 0.98) - 0.04).abs() < 1.0e-6);
         assert!((position_difference(0.98, 0.02) + 0.04).abs() < 1.0e-6);
         assert_eq!(wrap_position(1.0), 0.0);

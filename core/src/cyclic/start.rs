@@ -1,15 +1,19 @@
-//! Where a filter begins: pose, velocities, cycle position and velocity (cyclic paper, sections 3.2 and 3.3).
+//! First state of a filter: pose, velocities, cycle position and velocity (cyclic paper, sections
+//! 3.2 and 3.3).
 
 use crate::angle::{angle_difference, split_turns};
 use crate::cyclic::phase::wrap_position;
 use crate::cyclic::{CyclicEstimate, MotionModel};
 use crate::error::{ParameterError, finite};
 
-/// Variance of an angle that the first frame does not show and about whose spread the model says nothing, rad^2.
+/// First variance of a missing angle in a model without deviation, rad^2. Chosen: a standard
+/// deviation of half a radian.
 const UNSEEN_VARIANCE: f32 = 0.25;
-/// Least spread that an angle is given when poses are compared, rad: so that no single angle decides alone.
-pub(super) const LEAST_SPREAD_RAD: f32 = 0.05;
-/// Greatest cycle velocity that makes sense, cycles per frame: two frames a cycle.
+/// Smallest spread of an angle when poses are compared, rad. Chosen: so that no single angle
+/// decides.
+pub(super) const MIN_SPREAD_RAD: f32 = 0.05;
+/// Largest cycle velocity, cycles per frame. Chosen: two frames a cycle, the limit of the sampling
+/// theorem.
 pub const MAX_CYCLE_VELOCITY: f32 = 0.5;
 
 /// First state of a filter.
@@ -19,7 +23,7 @@ pub const MAX_CYCLE_VELOCITY: f32 = 0.5;
 /// use sinew_core::cyclic::CycleStart;
 /// use sinew_core::cyclic::model::walking::WALKING;
 ///
-/// // The first picture shows all angles but one; that one is taken from the mean cycle, and is less sure.
+/// // The first frame shows all angles but one, which starts at the mean cycle with more variance.
 /// let model = WALKING.model()?;
 /// let mut first_rad = model.mean_pose_rad::<13>(model.point(0.3)).map(Some);
 /// first_rad[5] = None;
@@ -118,8 +122,8 @@ impl<const N: usize> CycleStart<N> {
     }
 }
 
-/// The stored position whose mean pose is nearest to the angles seen, each difference relative to the angle's spread;
-/// 0 where nothing is seen.
+/// The stored position whose mean pose is nearest to the measured angles, each difference relative
+/// to the angle's spread; 0 without measured angles.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -145,7 +149,7 @@ pub fn best_position<const N: usize>(model: &MotionModel<'_>, angles_rad: &[Opti
         let mut distance = 0.0;
         for i in 0..N.min(model.angle_count()) {
             if let Some(angle) = angles_rad[i].filter(|angle| angle.is_finite()) {
-                let scaled = angle_difference(angle, pose[i]) / crate::math::max(spread[i], LEAST_SPREAD_RAD);
+                let scaled = angle_difference(angle, pose[i]) / crate::math::max(spread[i], MIN_SPREAD_RAD);
                 distance += scaled * scaled;
             }
         }

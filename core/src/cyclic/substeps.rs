@@ -1,10 +1,12 @@
-//! A step of any length in parts: of at most one frame, as the noise of eqs. (9) and (10) is defined for those, or in few parts where
-//! the work of a step has a limit.
+//! Substeps of a step of any length.
+//!
+//! They are at most one frame long, for which the noise of cyclic (9) and cyclic (10) is defined,
+//! or longer where their number is limited.
 
 use crate::cyclic::measurement::MAX_STEP_FRAMES;
 use crate::math::{clamp, max, min};
 
-/// The parts of a step: whole ones first, then what is left.
+/// Substeps: equal ones first, then the remainder.
 ///
 /// ```
 /// use sinew_core::cyclic::substeps::Substeps;
@@ -39,15 +41,15 @@ impl Substeps {
     }
 }
 
-/// What is left below this part of a frame is rounding.
-const LEAST_STEP_FRAMES: f32 = 1.0e-3;
+/// Shortest substep, frames. Chosen: a shorter remainder is rounding of the longest step.
+const MIN_STEP_FRAMES: f32 = 1.0e-3;
 
 impl Iterator for Substeps {
     type Item = f32;
 
     #[inline]
     fn next(&mut self) -> Option<f32> {
-        if self.left_frames < LEAST_STEP_FRAMES {
+        if self.left_frames < MIN_STEP_FRAMES {
             return None;
         }
         let step = min(self.left_frames, self.part_frames);

@@ -1,4 +1,5 @@
-//! A made-up motion for the tests of the filters: every angle swings or winds, correlated noise.
+//! A synthetic motion for the tests of the filters: every angle swings or winds, with correlated
+//! noise.
 
 use crate::cyclic::HumanModelTable;
 use crate::numeric::semi_definite::{packed_index, packed_len};

@@ -1,4 +1,4 @@
-//! A number in two bytes, for state that has little room.
+//! bfloat16: a number in two bytes, for small states.
 
 /// The upper half of an `f32`: its whole range, eight binary digits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,7 +24,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_kept_is_within_a_256th(value in prop_oneof![-1.0e30_f32..1.0e30, -1.0_f32..1.0, 1.0e-30_f32..1.0e-20]) {
+        fn rounding_changes_a_number_by_at_most_a_256th(value in prop_oneof![-1.0e30_f32..1.0e30, -1.0_f32..1.0, 1.0e-30_f32..1.0e-20]) {
             let kept = Bf16::new(value).get();
             prop_assert!((kept - value).abs() <= value.abs() / 256.0, "{value}, {kept}");
             prop_assert_eq!(Bf16::new(kept).get(), kept, "once rounded it stays");

@@ -1,8 +1,9 @@
-//! The innovation gate: is a measurement too far from its prediction to belong to the motion?
+//! The innovation gate: chi-square test of the normalised innovation squared (NIS).
 
 use crate::math::sqrt;
 
-/// Standard normal quantile of the default gate: one sound measurement in a thousand is flagged.
+/// Default gate, as a quantile of the standard normal. Chosen: it flags one valid measurement in a
+/// thousand.
 pub const DEFAULT_GATE_SIGMAS: f32 = 3.09;
 
 /// Value that a chi-square variable with `degrees` degrees of freedom exceeds as often as a standard normal exceeds
@@ -53,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_seen_is_no_outlier_and_nonsense_is_one() {
+    fn an_empty_measurement_is_no_outlier_and_nan_is_one() {
         assert!(!is_outlier(0.0, 0, 3.0));
         assert!(is_outlier(f32::NAN, 3, 3.0));
         assert!(is_outlier(40.0, 13, DEFAULT_GATE_SIGMAS) && !is_outlier(30.0, 13, DEFAULT_GATE_SIGMAS));

@@ -22,14 +22,14 @@ impl LogProduct {
     pub(crate) fn multiply(&mut self, factor: f32) {
         self.product *= factor;
         if !(1.0e-18..1.0e18).contains(&self.product) {
-            self.begin_anew();
+            self.flush();
         }
     }
 
-    /// Takes the logarithm so far, which is rare: said once, not wherever a factor comes in.
+    /// Moves the product into the logarithm, which is rare.
     #[cold]
     #[inline(never)]
-    fn begin_anew(&mut self) {
+    fn flush(&mut self) {
         self.logarithm += ln(self.product);
         self.product = 1.0;
     }

@@ -37,12 +37,17 @@ pub const fn packed_index(row: usize, column: usize) -> usize {
     if row >= column { row * (row + 1) / 2 + column } else { column * (column + 1) / 2 + row }
 }
 
-/// What a pivot has to exceed to count as above zero, relative to a matrix scaled to a diagonal of ones. Ten cycles give
-/// a covariance of rank nine; rounding to `f32` or to six decimals in a file leaves its other eigenvalues within this.
+/// Smallest pivot that counts as positive, in a matrix scaled to a diagonal of ones.
+///
+/// Chosen: ten cycles give a covariance of rank nine, and rounding to `f32` or to six decimals in a
+/// file leaves its other eigenvalues within this.
 pub const RELATIVE_TOLERANCE: f32 = 1.0e-4;
 
-/// Part by which the diagonal of the acceleration's covariance is raised. Ten training cycles give a matrix of rank nine,
-/// which would claim that four directions of acceleration never vary; 1e-4 gives them one hundredth of the spread.
+/// Relative inflation of the diagonal of the acceleration's covariance, cyclic (7).
+///
+/// Chosen: ten training cycles give a matrix of rank nine, in which four directions never vary.
+/// 1e-4 gives them one hundredth of the standard deviation. It changes the tables by less than
+/// 0.1 %.
 pub const DIAGONAL_EXCESS: f32 = 1.0e-4;
 
 /// Whether the matrix with lower triangle `packed` has no eigenvalue below zero by more than rounding.
@@ -159,7 +164,8 @@ pub(crate) fn semi_cholesky(packed: &[f32], rows: usize, factor: &mut [f32]) {
     }
 }
 
-/// Part of an angle's variance below which what the angles before it leave unexplained counts as rounding.
+/// Share of an angle's variance below which its variance given the angles before counts as
+/// rounding. Chosen: about eight units of the last place of `f32`, far below [`DIAGONAL_EXCESS`].
 const VANISHED_PIVOT: f32 = 1.0e-6;
 
 #[cfg(test)]
@@ -215,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_a_covariance_is_refused() {
+    fn a_matrix_that_is_no_covariance_is_refused() {
         assert!(!is_positive_semi_definite(&[1.0, 2.0, 1.0], 2));
         assert!(!is_positive_semi_definite(&[1.0, 0.5, -1.0], 2));
         assert!(!is_positive_semi_definite(&[0.0, 0.5, 1.0], 2));

@@ -79,6 +79,7 @@ impl StreamLanes {
 #[cfg(test)]
 mod tests {
     use super::super::Stream;
+    use super::super::normal::upper_tail;
     use super::*;
 
     #[test]
@@ -89,5 +90,42 @@ mod tests {
             assert_eq!(lanes.bits().to_vec(), single.iter_mut().map(Stream::bits).collect::<Vec<_>>());
             assert_eq!(lanes.uniform().to_vec(), single.iter_mut().map(Stream::uniform).collect::<Vec<_>>());
         }
+    }
+
+    #[test]
+    fn draws_have_the_moments_and_tails_of_a_normal() {
+        const STREAMS: u32 = 100_000;
+        const DRAWS: usize = 8;
+        let (mut sums, mut beyond) = ([0.0_f64; 4], [0_u32; 5]);
+        let mut product = 0.0_f64;
+        for first in (0..STREAMS).step_by(LANES) {
+            let mut lanes = StreamLanes::new(3, 1, first);
+            let mut last = [0.0; LANES];
+            for _ in 0..DRAWS {
+                let draws = lanes.normal();
+                for (lane, &draw) in draws.iter().enumerate() {
+                    for (power, sum) in sums.iter_mut().enumerate() {
+                        *sum += f64::from(draw).powi(power as i32 + 1);
+                    }
+                    for (limit, count) in beyond.iter_mut().enumerate() {
+                        *count += u32::from(draw.abs() > limit as f32);
+                    }
+                    product += f64::from(draw * last[lane]) + f64::from(draw * draws[(lane + 1) % LANES]);
+                }
+                last = draws;
+            }
+        }
+        let n = f64::from(STREAMS) * DRAWS as f64;
+        let exact = [(0.0, 1.0), (1.0, 2.0), (0.0, 15.0), (3.0, 96.0)];
+        for (power, (sum, (mean, variance))) in sums.into_iter().zip(exact).enumerate() {
+            let off = (sum / n - mean) / (variance / n).sqrt();
+            assert!(off.abs() < 4.0, "moment {}: {off} standard errors off", power + 1);
+        }
+        for (limit, &count) in beyond.iter().enumerate().skip(1) {
+            let share = 2.0 * f64::from(upper_tail(limit as f32));
+            let off = (f64::from(count) / n - share) / (share / n).sqrt();
+            assert!(off.abs() < 4.0, "beyond {limit}: {off} standard errors off");
+        }
+        assert!((product / (2.0 * n).sqrt()).abs() < 5.0, "neighbouring draws are correlated: {product}");
     }
 }

@@ -7,7 +7,7 @@ use super::Stream;
 use crate::math::{Vec3, erfc, exp, ln, sqrt};
 use core::f32::consts::FRAC_1_SQRT_2;
 
-/// ln sqrt(2 pi).
+/// ln sqrt(2 pi), of the normal density.
 pub const LOG_SQRT_TAU: f32 = 0.918_938_5;
 
 /// z > 0 with upper tail probability `tail` in (0, 0.5].
@@ -25,7 +25,8 @@ pub fn upper_quantile(tail: f32) -> f32 {
     if q <= NEAR_MIDDLE { quantile_near_middle(q) } else { quantile_in_tail(sqrt(-ln(tail))) }
 }
 
-/// Distance from the median, as a probability, up to which [`quantile_near_middle`] holds.
+/// Distance from the median, as a probability, up to which [`quantile_near_middle`] holds: AS 241
+/// (Wichura 1988), `SPLIT1` of PPND7.
 pub(super) const NEAR_MIDDLE: f32 = 0.425;
 
 /// z with probability `q` in [0, 0.425] between it and the median.
@@ -61,15 +62,16 @@ pub fn upper_tail(x: f32) -> f32 {
     0.5 * erfc(x * FRAC_1_SQRT_2)
 }
 
-/// Beyond this many standard deviations a tail adds nothing to a probability near one (1e-9).
-const NO_TAIL: f32 = 6.0;
+/// Standard deviations beyond which a tail does not change a probability near one. Derived: the
+/// tail is 1e-9, below half a unit of the last place of `f32` at one, 3e-8.
+const NEGLIGIBLE_TAIL_SIGMAS: f32 = 6.0;
 
-/// As [`upper_tail`], but zero where the tail is too small to change a probability near one: limits that are far away cost
-/// nothing.
+/// As [`upper_tail`], but zero where the tail does not change a probability near one, so that
+/// distant limits cost nothing.
 #[must_use]
 #[inline]
 pub(super) fn tail_beside_one(x: f32) -> f32 {
-    if x > NO_TAIL { 0.0 } else { upper_tail(x) }
+    if x > NEGLIGIBLE_TAIL_SIGMAS { 0.0 } else { upper_tail(x) }
 }
 
 /// Natural logarithm of [`upper_tail`], without underflow: for large `x` by Laplace's continued fraction.
@@ -118,7 +120,7 @@ pub fn log_density(x: f32) -> f32 {
 ///
 /// // Two thirds lie within one standard deviation.
 /// assert!((exp(log_interval_mass(-1.0, 1.0)) - 0.6827).abs() < 1e-4);
-/// // What limits of a joint leave, though the mean is thirty standard deviations beyond them.
+/// // Finite for limits of a joint at thirty standard deviations from the mean.
 /// assert!(log_interval_mass(30.0, 31.0).is_finite());
 /// ```
 #[must_use]
@@ -156,7 +158,7 @@ impl Stream {
     }
 }
 
-/// Largest relative error of [`upper_quantile`] seen through the tail (asserted by a test).
+/// Largest relative error of the tail of [`upper_quantile`]. Measured: asserted by a test.
 pub const QUANTILE_MAX_TAIL_ERROR: f32 = 2.0e-4;
 
 #[cfg(test)]

@@ -25,9 +25,10 @@ fn scramble(mut z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
+/// 2^64 over the golden ratio: the increment of `SplitMix64` (Steele, Lea and Flood 2014).
 const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// What all streams of a frame have in common.
+/// Key of all streams of a frame.
 pub(super) fn frame_key(seed: u64, frame: u64) -> u64 {
     scramble(scramble(seed.wrapping_add(GOLDEN)) ^ frame.wrapping_mul(GOLDEN))
 }
@@ -44,7 +45,7 @@ pub(super) fn first_state(frame_key: u64, index: u32) -> [u64; 2] {
 /// ```
 /// use sinew_core::random::Stream;
 ///
-/// // Whoever draws for particle 7 in frame 42, and when: the numbers are the same.
+/// // The numbers of particle 7 in frame 42 are always the same.
 /// let (seed, frame) = (1, 42);
 /// let mut stream = Stream::new(seed, frame, 7);
 /// let (side, noise) = (stream.uniform(), stream.normal());

@@ -17,7 +17,8 @@ use super::Stream;
 use super::normal::{log_upper_tail, tail_beside_one, upper_quantile, upper_tail};
 use crate::math::{clamp, exp, ln, max, min, sqrt};
 
-/// Where the probability itself would leave the range of `f32` soon and logarithms take over.
+/// Lower limit, standard deviations, from which the tail is inverted in log space. Chosen: well
+/// below 12.9, beyond which the probability leaves the normal range of `f32`.
 pub const FAR_TAIL: f32 = 9.0;
 
 impl Stream {
@@ -129,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_interval_gives_its_lower_end() {
+    fn an_empty_interval_gives_its_lower_limit() {
         let mut stream = Stream::new(1, 0, 0);
         assert_eq!(stream.truncated_normal(2.0, 2.0), 2.0);
         assert_eq!(stream.truncated_normal(3.0, -3.0), 3.0);

@@ -1,4 +1,5 @@
-//! One angle's deviation from the mean cycle in the phase-coupled filter: five numbers, known given the cycle's state.
+//! One angle's deviation from the mean cycle in the phase-coupled filter: five coefficients given
+//! (c, v).
 //!
 //! The five are a, p, q of `a + p cos 2 pi c + q sin 2 pi c`, the rest d and its slope per cycle. Their density given
 //! z = (c, v) is normal with mean `mean + regression (z - z_mean)` and covariance `covariance`: angles are independent of
@@ -14,19 +15,21 @@ pub const PARTS: usize = 5;
 const REST: usize = 3;
 const SLOPE: usize = 4;
 
-/// Part of a variance that is added to it in every step. Rounding changes entry (i, j) by no more than 2^-23 of the root of both
-/// variances; five times that on the diagonal of five rows keeps the matrix positive semi-definite.
+/// Relative increase of each variance in every step. Derived: rounding changes entry (i, j) by at
+/// most 2^-23 of the root of both variances, and five times that on the diagonal of five rows keeps
+/// the matrix positive semi-definite.
 const ROUNDING: f32 = 5.0 / 8_388_608.0;
 
-/// Variance of the swing of an angle that is held otherwise, as a part of the squared distance: it swings otherwise by a sixth of that.
-const OTHERWISE_SWING_SHARE: f32 = 0.03;
+/// Variance of the swing of an angle with an unusual offset, as a share of the squared offset.
+/// Chosen: such an angle's swing differs by about a sixth of its offset.
+const UNUSUAL_SWING_SHARE: f32 = 0.03;
 
 /// Direction in which an angle depends on its parts at a cycle position.
 ///
 /// ```
 /// use sinew_core::cyclic::coupled::block::Basis;
 ///
-/// // Somebody who leans 0.1 rad more than the mean and swings 0.2 rad wider: a quarter of a cycle in, both add up.
+/// // An offset of 0.1 rad and a swing of 0.2 rad: they add up at a quarter of a cycle.
 /// let parts = [0.1, 0.0, 0.2, 0.0, 0.0];
 /// let basis = Basis::at(0.25);
 /// let deviation_rad: f32 = basis.value.iter().zip(parts).map(|(value, part)| value * part).sum();
@@ -49,7 +52,7 @@ impl Basis {
         Self { value: [1.0, cosine, sine, 1.0, 0.0], slope: [0.0, -TAU * sine, TAU * cosine, 0.0, 0.0] }
     }
 
-    /// `first` and the parts' sum in this direction, of which two are taken whole and the last one not at all.
+    /// `first` plus the product of `value` and `parts`.
     #[inline(always)]
     fn along(&self, first: f32, parts: &[f32; PARTS]) -> f32 {
         first + parts[0] + self.value[1] * parts[1] + self.value[2] * parts[2] + parts[REST]
@@ -76,9 +79,9 @@ impl Spread {
     }
 }
 
-/// Gain-free view of a measured angle: what it says about z.
+/// Prediction of a measured angle: its derivative by z and its covariances given z.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Outlook {
+pub(super) struct AnglePrediction {
     /// Derivative of the angle by (c, v).
     pub(super) gradient: [f32; 2],
     /// Covariance of the parts with the angle, given z.
@@ -87,9 +90,9 @@ pub(super) struct Outlook {
     pub(super) variance: f32,
 }
 
-impl Outlook {
-    /// What it becomes where the block's constant is loosened by `variance`.
-    pub(super) fn loosen_offset(&mut self, variance: f32) {
+impl AnglePrediction {
+    /// The same where the offset's variance is inflated by `variance`, rad^2.
+    pub(super) fn inflate_offset(&mut self, variance: f32) {
         self.column[0] += variance;
         self.variance += variance;
     }
@@ -102,19 +105,19 @@ impl Outlook {
 /// # use sinew_core::cyclic::model::walking::WALKING;
 /// # use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
 /// # let model = WALKING.model()?;
-/// # let leaning = |frame: u8| {
+/// # let with_offset = |frame: u8| {
 /// #     let mut pose_rad = model.mean_pose_rad::<13>(model.point(f32::from(frame) * model.mean_cycle_velocity()));
 /// #     pose_rad[0] += 0.1;
 /// #     AngleMeasurement::new(&pose_rad.map(Some), 0.05)
 /// # };
-/// # let mut filter = CoupledFilter::new(&model, &leaning(0)?, Some(0.0), None)?;
-/// // After four seconds of somebody whose first angle is always 0.1 rad more than the mean:
+/// # let mut filter = CoupledFilter::new(&model, &with_offset(0)?, Some(0.0), None)?;
+/// // Four seconds of a person whose first angle is always 0.1 rad above the mean.
 /// for frame in 1..=240 {
-///     filter.step(&model, &leaning(frame)?);
+///     filter.step(&model, &with_offset(frame)?);
 /// }
 /// let block = &filter.blocks()[0];
-/// assert!((block.mean[0] - 0.1).abs() < 0.03, "the constant is known");
-/// assert!(block.mean[1].abs() < 0.03 && block.mean[2].abs() < 0.03, "and there is no swing");
+/// assert!((block.mean[0] - 0.1).abs() < 0.03, "the offset is learned");
+/// assert!(block.mean[1].abs() < 0.03 && block.mean[2].abs() < 0.03, "and there is no swing of its own");
 /// # }
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
@@ -145,7 +148,7 @@ impl SavedState for AngleBlock {
 }
 
 impl AngleBlock {
-    /// Nothing known but the spread between people.
+    /// The prior: the spread between people.
     #[must_use]
     pub(super) fn unknown(spread: &Spread) -> Self {
         let mut covariance = [0.0; PACKED];
@@ -155,7 +158,7 @@ impl AngleBlock {
         Self { mean: [0.0; PARTS], regression: [[0.0; 2]; PARTS], covariance }
     }
 
-    /// Nothing at all, known exactly.
+    /// No deviation, with zero covariance.
     #[must_use]
     pub(super) const fn zero() -> Self {
         Self { mean: [0.0; PARTS], regression: [[0.0; 2]; PARTS], covariance: [0.0; PACKED] }
@@ -174,20 +177,22 @@ impl AngleBlock {
         self.covariance[packed_index(i, j)]
     }
 
-    /// The constant is as uncertain as `variance` more.
-    pub(super) fn loosen_offset(&mut self, variance: f32) {
+    /// Inflates the offset's variance by `variance`, rad^2.
+    pub(super) fn inflate_offset(&mut self, variance: f32) {
         self.covariance[0] += variance;
     }
 
-    /// The angle is held otherwise, by about the root of `square_rad2`: the constant is as uncertain, and the swing by a share.
+    /// Inflates the prior of an angle with an unusual offset by `square_rad2`: the offset by all of
+    /// it, the swing by a share.
     pub(super) fn inflate_offset_prior(&mut self, square_rad2: f32) {
-        self.loosen_offset(square_rad2);
-        self.covariance[packed_index(1, 1)] += OTHERWISE_SWING_SHARE * square_rad2;
-        self.covariance[packed_index(2, 2)] += OTHERWISE_SWING_SHARE * square_rad2;
+        self.inflate_offset(square_rad2);
+        self.covariance[packed_index(1, 1)] += UNUSUAL_SWING_SHARE * square_rad2;
+        self.covariance[packed_index(2, 2)] += UNUSUAL_SWING_SHARE * square_rad2;
     }
 
-    /// Moves on by `phase` cycles: a, p, q keep the part `memory`, d follows its process; `z_map` is the regression of the
-    /// old z on the new one, `z_rest` (cc, cv, vv) what it leaves unexplained.
+    /// Propagates by `phase` cycles: a, p, q decay by `memory`, d follows its Matern process.
+    /// `z_map` is the regression of the old z on the new one, `z_rest` (cc, cv, vv) its residual
+    /// covariance.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn advance(
         &mut self,
@@ -210,9 +215,9 @@ impl AngleBlock {
                 rest_map[1][0] * v[REST] + rest_map[1][1] * v[SLOPE],
             ]
         };
-        self.spread_by(z_rest);
-        self.move_covariance(memory, &rest_map);
-        self.renew(spread, memory, &rest_map);
+        self.add_unexplained(z_rest);
+        self.propagate_covariance(memory, &rest_map);
+        self.add_process_noise(spread, memory, &rest_map);
         self.mean = apply(self.mean);
         let b = &self.regression;
         let column = |k: usize| -> [f32; PARTS] { core::array::from_fn(|i| b[i][k]) };
@@ -221,9 +226,10 @@ impl AngleBlock {
             core::array::from_fn(|i| core::array::from_fn(|k| moved[0][i] * z_map[0][k] + moved[1][i] * z_map[1][k]));
     }
 
-    /// Adds what the parts owe to that in the old z which the new one leaves unexplained, (cc, cv, vv) in `z_rest`.
+    /// Adds the covariance due to the residual `z_rest` (cc, cv, vv) of the old z given the new
+    /// one.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    fn spread_by(&mut self, z_rest: &[f32; 3]) {
+    fn add_unexplained(&mut self, z_rest: &[f32; 3]) {
         let b = &self.regression;
         for i in 0..PARTS {
             let left = [b[i][0] * z_rest[0] + b[i][1] * z_rest[1], b[i][0] * z_rest[1] + b[i][1] * z_rest[2]];
@@ -234,9 +240,10 @@ impl AngleBlock {
         }
     }
 
-    /// Phi C Phi' for the lower triangle: the first three parts are scaled, the rest and its slope mixed.
+    /// Phi C Phi' for the lower triangle: the first three coefficients are scaled, d and its slope
+    /// mixed.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    fn move_covariance(&mut self, memory: f32, rest_map: &[[f32; 2]; 2]) {
+    fn propagate_covariance(&mut self, memory: f32, rest_map: &[[f32; 2]; 2]) {
         let [[a, b], [c, d]] = *rest_map;
         self.covariance.iter_mut().take(packed_len(REST)).for_each(|entry| *entry *= memory * memory);
         for i in 0..REST {
@@ -251,9 +258,9 @@ impl AngleBlock {
         self.covariance[packed_index(SLOPE, SLOPE)] = c * slope[0] + d * slope[1];
     }
 
-    /// Adds the variance that keeps the parts' spread stationary.
+    /// Adds the process noise that keeps the spread stationary.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    fn renew(&mut self, spread: &Spread, memory: f32, rest_map: &[[f32; 2]; 2]) {
+    fn add_process_noise(&mut self, spread: &Spread, memory: f32, rest_map: &[[f32; 2]; 2]) {
         let stationary = spread.diagonal();
         let forget = 1.0 - memory * memory;
         for i in 0..REST {
@@ -277,40 +284,46 @@ impl AngleBlock {
         basis.along(0.0, &self.mean)
     }
 
-    /// What the angle depends on; `mean_slope` is that of the mean cycle, rad per cycle.
+    /// Prediction of the angle; `mean_slope` is that of the mean cycle, rad per cycle.
     #[inline]
     #[must_use]
-    pub(super) fn outlook(&self, basis: &Basis, mean_slope: f32) -> Outlook {
+    pub(super) fn predict_angle(&self, basis: &Basis, mean_slope: f32) -> AnglePrediction {
         let own_slope = mean_slope + (basis.slope[1] * self.mean[1] + basis.slope[2] * self.mean[2]);
         let own = self.regression.map(|[own, _]| own);
         let other = self.regression.map(|[_, other]| other);
         let gradient = [basis.along(own_slope, &own), basis.along(0.0, &other)];
         let column = core::array::from_fn(|i| basis.along(0.0, &core::array::from_fn(|j| self.covariance(i, j))));
-        Outlook { gradient, column, variance: max(basis.along(0.0, &column), 0.0) }
+        AnglePrediction { gradient, column, variance: max(basis.along(0.0, &column), 0.0) }
     }
 
-    /// Takes in a measured angle that lies `residual` off; z has moved by `shift` at the same time.
+    /// Kalman update by an angle with innovation `residual`, rad; `shift` is the update of z.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn correct(&mut self, outlook: &Outlook, noise_variance: f32, residual: f32, shift: [f32; 2]) {
-        let inverse = 1.0 / (outlook.variance + noise_variance);
-        let g = &outlook.gradient;
+    pub(super) fn correct(
+        &mut self,
+        prediction: &AnglePrediction,
+        noise_variance: f32,
+        residual: f32,
+        shift: [f32; 2],
+    ) {
+        let inverse = 1.0 / (prediction.variance + noise_variance);
+        let g = &prediction.gradient;
         let rest = residual - g[0] * shift[0] - g[1] * shift[1];
         for i in 0..PARTS {
-            let gain = outlook.column[i] * inverse;
+            let gain = prediction.column[i] * inverse;
             self.mean[i] += gain * rest;
             self.regression[i][0] -= gain * g[0];
             self.regression[i][1] -= gain * g[1];
             let rounding = ROUNDING * self.covariance(i, i);
             let row = self.covariance.iter_mut().skip(packed_index(i, 0));
-            for (entry, column) in row.zip(outlook.column.iter().take(i + 1)) {
-                *entry -= outlook.column[i] * column * inverse;
+            for (entry, column) in row.zip(prediction.column.iter().take(i + 1)) {
+                *entry -= prediction.column[i] * column * inverse;
             }
             let variance = &mut self.covariance[packed_index(i, i)];
             *variance = max(*variance + rounding, 1.0e-10);
         }
     }
 
-    /// The means follow z by `shift`.
+    /// Moves the means by their regression on the update `shift` of z.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn follow(&mut self, shift: [f32; 2]) {
         for i in 0..PARTS {

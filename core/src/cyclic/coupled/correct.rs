@@ -1,64 +1,70 @@
 //! Correction of the phase-coupled filter: an extended Kalman update of phase and angles.
 
-use crate::cyclic::coupled::block::{Basis, Outlook};
-use crate::cyclic::coupled::evidence::{Judgement, PhaseEvidence};
+use crate::cyclic::coupled::block::{AnglePrediction, Basis};
+use crate::cyclic::coupled::evidence::{FrameInnovation, PhaseEvidence};
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::math::{clamp, sqrt, wrap_angle};
 
-/// An angle this many standard deviations off says nothing about the phase, and its own constant is learned anew.
+/// Gate of a single angle, standard deviations. An angle beyond it does not inform the phase, and
+/// its offset is learned again. Chosen: short links that wind in a side view would drag the phase.
 pub(super) const GATE_SIGMAS: f32 = 4.0;
 
 impl<const N: usize> CoupledFilter<N> {
-    /// The extended Kalman correction about the present position; gives how the measurement fitted the prediction.
+    /// The extended Kalman correction about the present position; returns the innovation.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn correct_phase(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> Judgement {
+    pub(super) fn correct_phase(
+        &mut self,
+        model: &MotionModel<'_>,
+        measurement: &AngleMeasurement<N>,
+    ) -> FrameInnovation {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);
-        let (told_scale, share) = (self.watch.nis.noise_scale(), self.watch.noise.share());
+        let (nis_scale, noise_scale) = (self.watch.nis.noise_scale(), self.watch.noise.scale());
         let mut evidence = PhaseEvidence::none(model.winds(), self.watch.noise.score());
-        let mut seen: [Option<(Outlook, f32, f32)>; N] = [None; N];
+        let mut seen: [Option<(AnglePrediction, f32, f32)>; N] = [None; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
-            let told = told_scale * measurement.std_rad()[i] * measurement.std_rad()[i];
-            let noise = share * told;
+            let stated = nis_scale * measurement.std_rad()[i] * measurement.std_rad()[i];
+            let noise = noise_scale * stated;
             let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
-            let mut outlook = self.blocks[i].outlook(&basis, slope[i]);
-            let given = outlook.variance + noise;
-            let (total, is_believed) = (given + self.pair.along(&outlook.gradient), self.winding.is_believed(i));
-            if is_believed {
-                evidence.add(&outlook.gradient, given, residual);
-                evidence.noise.add(told, total - noise, residual);
+            let mut prediction = self.blocks[i].predict_angle(&basis, slope[i]);
+            let given = prediction.variance + noise;
+            let (total, informs_phase) = (given + self.pair.along(&prediction.gradient), self.winding.informs_phase(i));
+            if informs_phase {
+                evidence.add(&prediction.gradient, given, residual);
+                evidence.noise.add(stated, total - noise, residual);
             } else {
-                evidence.add_apart(total, residual);
+                evidence.add_excluded(total, residual);
             }
             if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total {
-                self.blocks[i].loosen_offset(residual * residual);
-                outlook.loosen_offset(residual * residual);
-            } else if is_believed {
-                evidence.trust(&outlook.gradient, given, residual);
+                self.blocks[i].inflate_offset(residual * residual);
+                prediction.inflate_offset(residual * residual);
+            } else if informs_phase {
+                evidence.add_gated(&prediction.gradient, given, residual);
             }
-            seen[i] = Some((outlook, noise, residual));
+            seen[i] = Some((prediction, noise, residual));
         }
-        self.watch.noise.see(&evidence.noise);
-        let judgement = evidence.judge(&self.pair, told_scale * share);
-        let shift = self.pair.correct(&evidence.trusted);
+        self.watch.noise.update(&evidence.noise);
+        let innovation = evidence.innovation(&self.pair, nis_scale * noise_scale);
+        let shift = self.pair.correct(&evidence.gated);
         for (block, seen) in self.blocks.iter_mut().zip(&seen) {
             block.follow(shift);
-            if let Some((outlook, noise, residual)) = seen {
-                block.correct(outlook, *noise, *residual, shift);
+            if let Some((prediction, noise, residual)) = seen {
+                block.correct(prediction, *noise, *residual, shift);
                 block.mean[0] = wrap_angle(block.mean[0]);
             }
         }
         self.velocity = clamp(self.velocity + shift[1], -0.5, 0.5);
         self.move_by(clamp(shift[0], -0.5, 0.5));
         self.update_angles(model, measurement);
-        judgement
+        innovation
     }
 
-    /// Change of the mean pose with the position, rad per cycle, over as much of the cycle as the position is uncertain by (statistical
-    /// linearisation): where the mean pose jumps its tangent would hold the position there.
+    /// Slope of the mean pose by the position, rad per cycle: the secant over one standard
+    /// deviation of c to either side (statistical linearisation). A tangent would hold the position
+    /// at a jump.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn pose_slope(&self, model: &MotionModel<'_>) -> [f32; N] {
         model.mean_pose_secant(self.position, sqrt(self.pair.cc))
@@ -69,19 +75,19 @@ impl<const N: usize> CoupledFilter<N> {
     fn update_angles(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
         let pose = model.mean_pose_rad::<N>(model.point(self.position));
         let basis = Basis::at(self.position);
-        self.winding.complete(self.cycles);
+        self.winding.count_cycles(self.cycles);
         for i in 0..model.angle_count().min(N) {
             let (before, angle) = (self.angles_rad[i], wrap_angle(pose[i] + self.blocks[i].deviation(&basis)));
             self.turn_to(i, angle);
             let beyond = self.path.turns(i, [before, angle], measurement);
             self.turns[i] = self.turns[i].saturating_add(beyond);
             let turns_a_cycle = model.parts().turns_per_cycle.get(i).map_or(0, |turns| i32::from(*turns));
-            self.winding.see(
+            self.winding.update(
                 i,
                 self.turns[i].wrapping_sub(turns_a_cycle.wrapping_mul(self.cycles)),
                 self.angles_rad[i] - pose[i],
             );
         }
-        self.winding.begin();
+        self.winding.initialise();
     }
 }

@@ -1,9 +1,12 @@
-//! How well cycle position and velocity (c, v) are known: their covariance through prediction and correction.
+//! Covariance of cycle position and velocity (c, v) through prediction and correction.
 
 use crate::math::{clamp, ln, max, min, sqrt};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 
-/// Temporal acceleration, cycles per frame^2: twice the paper's, in whose filter no measurement corrects the velocity.
+/// Standard deviation of the temporal acceleration, cyclic (10), cycles per frame^2.
+///
+/// Chosen between measurements: below it the filter follows changes of speed less well, and with
+/// 3e-4 the cadence of an elderly walker is 1.8 % off (`docs/cyclic_coupled.md`).
 const TEMPORAL_STD: f32 = 2.0e-4;
 
 /// Covariance of (c, v), in cycles and frames.
@@ -27,7 +30,7 @@ impl SavedState for CyclePair {
     }
 }
 
-/// What measurements say about (c, v): the normal equations of their residuals.
+/// Information on (c, v): the normal equations of the innovations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Information {
     /// Matrix: cc, cv, vv.
@@ -36,7 +39,7 @@ pub(super) struct Information {
 }
 
 impl Information {
-    /// Nothing.
+    /// No information.
     pub(super) const NONE: Self = Self { matrix: [0.0; 3], vector: [0.0; 2] };
 
     /// Adds a residual with derivatives `gradient` by (c, v).
@@ -52,8 +55,8 @@ impl Information {
 }
 
 impl CyclePair {
-    /// Moves on by `step` frames. Gives the regression of the old (c, v) on the new one, and the covariance (cc, cv, vv)
-    /// which that leaves unexplained.
+    /// Propagates by `step` frames, cyclic (4), cyclic (5) and cyclic (10). Returns the regression
+    /// of the old (c, v) on the new one, and its residual covariance (cc, cv, vv).
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn advance(&mut self, step: f32) -> ([[f32; 2]; 2], [f32; 3]) {
         let Self { cc, cv, vv } = *self;
@@ -74,7 +77,7 @@ impl CyclePair {
         (map, [rest_cc, rest_cv, rest_vv])
     }
 
-    /// Takes in what was measured; gives the shift of (c, v).
+    /// Updates by `information`; returns the shift of (c, v).
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn correct(&mut self, information: &Information) -> [f32; 2] {
         let [x, y] = information.vector;
@@ -91,8 +94,8 @@ impl CyclePair {
         Self { cc, cv, vv }
     }
 
-    /// Part of the sum of squared residuals that (c, v) explains, and by how much its uncertainty widens the residuals' joint
-    /// normal density: ln det(1 + covariance times information).
+    /// Part of the sum of squared innovations that (c, v) explains, and ln det(1 + covariance times
+    /// information), by which the uncertainty of (c, v) widens their joint density.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
     pub(super) fn explained(&self, information: &Information) -> (f32, f32) {
@@ -111,7 +114,7 @@ impl CyclePair {
         max(g * g * self.cc + 2.0 * g * h * self.cv + h * h * self.vv, 0.0)
     }
 
-    /// Inverse (cc, cv, vv); the correlation is kept within what can be inverted.
+    /// Inverse (cc, cv, vv); the correlation is clamped to 0.999 so that it exists.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
     pub(super) fn inverse(&self) -> [f32; 3] {

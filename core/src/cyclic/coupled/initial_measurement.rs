@@ -1,36 +1,42 @@
-//! What a phase-coupled filter takes the first row for: the paper's is exact, a user's is as noisy as the rest, and a person, or
-//! whoever placed the joints, may hold some angles otherwise than any walker of the training.
+//! First measurement of the phase-coupled filter: its noise, and the angles with an unusual offset.
+//!
+//! The paper's first row is exact (cyclic paper, section 3.2). A user's first row is as noisy as
+//! the rest, and a person or a joint placement may have offsets beyond the spread of the training.
 
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::error::ParameterError;
 use crate::math::{max, min, sqrt, wrap_angle};
 
-/// Least standard deviation of the angles of the first row, rad: the cyclic filters' initial variance of 1e-4 rad^2.
+/// Smallest standard deviation of an angle of the first row, rad. Chosen: the root of the Kalman
+/// filter's first variance (`KalmanOptions::angle_variance`, 1e-4 rad^2).
 const MIN_STD_RAD: f32 = 0.01;
-/// By how much training widens the spread between people (`inflation` of the model files).
+/// Inflation of the spread between people in a model: `inflation` of the model files, by training.
 const SPREAD_INFLATION: f32 = 4.0;
-/// Median of the square of a standard normal.
+/// Median of chi-square with one degree of freedom (tables: 0.454936).
 const MEDIAN_CHI_SQUARE: f32 = 0.454_9;
-/// Noise too small to be seen beside the spread between people, rad.
+/// Noise that the spread between people hides, rad. Chosen: below it the stated noise is halved at
+/// most.
 const SMALL_STD_RAD: f32 = 0.025;
-/// An angle this many standard deviations of spread and noise off the mean pose is held otherwise.
+/// Distance from the mean pose, standard deviations of spread and noise, from which an offset is
+/// unusual. Chosen: a limit of four finds no person of another source.
 const MIN_UNUSUAL_SIGMAS: f32 = 2.0;
 
-/// The first row, judged by the mean pose.
+/// The first row with its noise and its unusual offsets.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct InitialMeasurement<const N: usize> {
-    /// Its angles with the noise that they show.
+    /// Its angles with the noise estimated from the row.
     pub(super) measurement: AngleMeasurement<N>,
-    /// Squared distance from the mean pose of each angle that is held otherwise; zero for all others.
+    /// Squared distance from the mean pose of each angle with an unusual offset, rad^2; zero for
+    /// others.
     pub(super) unusual_offset_rad2: [f32; N],
 }
 
 impl<const N: usize> InitialMeasurement<N> {
-    /// The row `first` of somebody at cycle position `position`.
+    /// The row `first` at cycle position `position`.
     ///
-    /// Its noise is what the distance from the mean pose shows beyond the spread between people: at most its own, that of the rows to
-    /// come; at least half of that where it is small. The middle one of the angles tells, since noise moves them all, and another way
-    /// to hold or place them only some.
+    /// The noise is the distance from the mean pose beyond the spread between people. It is at most
+    /// the stated noise, and at least half of it where that is small. The median over the angles
+    /// decides, since noise moves all of them and an unusual offset only some.
     ///
     /// # Errors
     /// Those of [`AngleMeasurement::with_std`].
@@ -51,8 +57,9 @@ impl<const N: usize> InitialMeasurement<N> {
                 let _ = excess.push(off * off / MEDIAN_CHI_SQUARE - spread[i] * spread[i] / SPREAD_INFLATION);
             }
         }
-        let looks = sqrt(median(&excess));
-        let std_rad = first.std_rad().map(|std| max(min(std, looks), max(min(0.5 * std, SMALL_STD_RAD), MIN_STD_RAD)));
+        let row_std_rad = sqrt(median(&excess));
+        let std_rad =
+            first.std_rad().map(|std| max(min(std, row_std_rad), max(min(0.5 * std, SMALL_STD_RAD), MIN_STD_RAD)));
         let within = MIN_UNUSUAL_SIGMAS * MIN_UNUSUAL_SIGMAS;
         for ((square, spread), std) in unusual_offset_rad2.iter_mut().zip(spread).zip(std_rad) {
             if *square <= within * (spread * spread + std * std) {
@@ -63,7 +70,7 @@ impl<const N: usize> InitialMeasurement<N> {
     }
 }
 
-/// The value with as many below it as above, the greater of two; at least 0.
+/// Median of `values`, the greater of the two middle ones, at least 0.
 fn median(values: &[f32]) -> f32 {
     let below = |&value: &f32| values.iter().filter(|&&other| other < value).count() <= values.len() / 2;
     values.iter().copied().filter(below).fold(0.0, max)
@@ -75,19 +82,20 @@ mod tests {
     use crate::cyclic::synthetic;
     use crate::random::Stream;
 
-    /// Frames of the first row's angles about the mean pose, with `noise_rad` on all of them and the third one `held_rad` away.
-    fn row(noise_rad: f32, held_rad: f32, seed: u64) -> InitialMeasurement<13> {
+    /// First row about the mean pose with noise of `noise_rad`, and an offset of `offset_rad` of
+    /// the third angle.
+    fn row(noise_rad: f32, offset_rad: f32, seed: u64) -> InitialMeasurement<13> {
         let table = synthetic::table(4.0e-3, 9);
         let model = table.model().unwrap();
         let mut stream = Stream::new(seed, 0, 0);
         let pose_rad = model.mean_pose_rad::<13>(model.point(0.0));
         let mut angles_rad = pose_rad.map(|angle| Some(wrap_angle(angle + noise_rad * stream.normal())));
-        angles_rad[2] = Some(wrap_angle(pose_rad[2] + held_rad));
+        angles_rad[2] = Some(wrap_angle(pose_rad[2] + offset_rad));
         InitialMeasurement::of(&model, &AngleMeasurement::new(&angles_rad, 1.0).unwrap(), 0.0).unwrap()
     }
 
     #[test]
-    fn one_angle_held_otherwise_is_no_noise() {
+    fn an_offset_of_one_angle_is_not_taken_for_noise() {
         for seed in 0..20 {
             let row = row(0.02, 1.2, seed);
             assert!(
@@ -100,11 +108,11 @@ mod tests {
     }
 
     #[test]
-    fn a_noisy_row_is_as_noisy_as_it_looks() {
+    fn the_noise_of_a_row_is_estimated_from_it() {
         let rows: [InitialMeasurement<13>; 40] = core::array::from_fn(|seed| row(0.6, 0.6, seed as u64));
         let mean_std_rad = rows.iter().map(|row| row.measurement.std_rad()[0]).sum::<f32>() / 40.0;
         assert!((0.45..0.75).contains(&mean_std_rad), "{mean_std_rad}");
-        let otherwise = rows.iter().flat_map(|row| row.unusual_offset_rad2).filter(|&square| square > 0.0).count();
-        assert!((5..80).contains(&otherwise), "of 520 angles {otherwise} lie beyond two standard deviations");
+        let unusual = rows.iter().flat_map(|row| row.unusual_offset_rad2).filter(|&square| square > 0.0).count();
+        assert!((5..80).contains(&unusual), "of 520 angles {unusual} lie beyond two standard deviations");
     }
 }

@@ -1,24 +1,30 @@
-//! Turns by the measured angles: where an angle moves fast an estimate that lags may take the shorter way round, which is the wrong
-//! one. From one measurement to the next the way is short, unless the noise is wide.
+//! Whole turns of each angle along its measurements.
+//!
+//! An estimate that lags behind a fast angle may take the shorter arc in the wrong direction. The
+//! arc between two measurements is short unless their noise is wide or the interval is long.
 
 use crate::cyclic::AngleMeasurement;
 use crate::math::{round_small, wrap_angle};
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::TAU;
 
-/// Steps of a turn to which a measured angle is kept; as wrapping bytes their differences are the shorter way.
+/// Steps of a turn in which a measured angle is stored. Chosen: one byte, whose wrapping difference
+/// is the shorter arc.
 const STEPS: f32 = 256.0;
-/// Largest standard deviation of a measurement that tells the way, rad: the difference of two goes wrong beyond 4.3 of its own.
-const WIDEST_STD_RAD: f32 = 0.52;
-/// Frames from one measurement to the next beyond which the way may be long.
-const LONGEST_STEP_FRAMES: f32 = 4.0;
+/// Largest standard deviation of a measurement that decides the direction, rad.
+///
+/// Chosen: half a turn is then 4.3 standard deviations of the difference of two measurements.
+const MAX_STD_RAD: f32 = 0.52;
+/// Longest interval between two measurements, frames. Chosen: beyond it the arc may exceed half a
+/// turn.
+const MAX_INTERVAL_FRAMES: f32 = 4.0;
 
-/// Where each angle was measured in the last frame.
+/// Last measurement of each angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MeasuredPath<const N: usize> {
-    /// In parts of a turn, 1 / [`STEPS`] each.
+    /// Angle in steps of a turn, of which a turn has [`STEPS`].
     last: [i8; N],
-    /// A bit for each angle that was measured.
+    /// One bit for each angle measured in the last frame.
     known: u32,
 }
 
@@ -34,13 +40,13 @@ impl<const N: usize> SavedState for MeasuredPath<N> {
 }
 
 impl<const N: usize> MeasuredPath<N> {
-    /// Nothing measured.
+    /// Without measurements.
     pub(super) const fn new() -> Self {
         Self { last: [0; N], known: 0 }
     }
 
-    /// Whole turns that the estimate of an angle went beyond the shorter way from `from_rad` to `to_rad`, so that it stays within half
-    /// a turn of the path of the measurements.
+    /// Whole turns to add to the shorter arc from `from_rad` to `to_rad`, so that the estimate
+    /// stays within half a turn of the measurements.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline)]
     pub(super) fn turns(
@@ -55,8 +61,8 @@ impl<const N: usize> MeasuredPath<N> {
         let (Some(measured_rad), Some(last)) = (measurement.angle_rad(index), self.last.get_mut(index)) else {
             return 0;
         };
-        let is_wide = measurement.std_rad().get(index).is_none_or(|std_rad| *std_rad > WIDEST_STD_RAD);
-        if is_wide || measurement.step_frames() > LONGEST_STEP_FRAMES {
+        let is_noisy = measurement.std_rad().get(index).is_none_or(|std_rad| *std_rad > MAX_STD_RAD);
+        if is_noisy || measurement.step_frames() > MAX_INTERVAL_FRAMES {
             return 0;
         }
         self.known |= bit;
@@ -66,10 +72,10 @@ impl<const N: usize> MeasuredPath<N> {
             return 0;
         }
         let angle_rad = |steps: i8| f32::from(steps) * (TAU / STEPS);
-        let way_rad = wrap_angle(angle_rad(before) - from_rad)
+        let arc_rad = wrap_angle(angle_rad(before) - from_rad)
             + angle_rad(now.wrapping_sub(before))
             + wrap_angle(to_rad - angle_rad(now));
-        round_small((way_rad - wrap_angle(to_rad - from_rad)) / TAU) as i32
+        round_small((arc_rad - wrap_angle(to_rad - from_rad)) / TAU) as i32
     }
 }
 
@@ -84,9 +90,10 @@ mod tests {
         AngleMeasurement::new(&[Some(angle_rad)], std_rad).unwrap()
     }
 
-    /// An angle goes round forwards in three steps; an estimate that lags goes back instead, and meets it on the other side.
+    /// An angle winds forwards in three steps. The lagging estimate turns back and meets it on the
+    /// other side.
     #[test]
-    fn a_lagging_estimate_keeps_the_turns_of_what_is_measured() {
+    fn a_lagging_estimate_keeps_the_turns_of_the_measurements() {
         let mut path = MeasuredPath::new();
         let (mut before_rad, mut turns, mut shorter_turns) = (0.0, 0, 0);
         for (gone_rad, estimate_rad) in [(0.0, 0.0), (2.0, -0.2), (4.0, -1.5), (6.0, -0.4), (8.0, 1.6), (10.0, -2.6)] {
@@ -100,9 +107,10 @@ mod tests {
         assert_eq!([turns, shorter_turns], [2, 1]);
     }
 
-    /// The measurements go round in three steps, the estimate does not, and what lies between says nothing.
+    /// The measurements wind in three steps and the estimate does not. The second measurement
+    /// varies.
     #[test]
-    fn wide_noise_gaps_and_long_steps_leave_the_shorter_way() {
+    fn wide_noise_gaps_and_long_steps_leave_the_shorter_arc() {
         let round = |second: &AngleMeasurement<1>| {
             let mut path = MeasuredPath::new();
             path.turns(0, [0.0, 0.0], &seen(0.0, 0.1))

@@ -1,4 +1,4 @@
-//! What a smoother over a whole recording reads of the phase-coupled filter: moments, and the linear step between two frames.
+//! Moments of the phase-coupled filter and its linear step, for a smoother over a whole recording.
 
 use crate::cyclic::coupled::block::{AngleBlock, Basis, PARTS};
 use crate::cyclic::coupled::correct::GATE_SIGMAS;
@@ -16,11 +16,11 @@ use crate::math::wrap_angle;
 /// # use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
 /// # let model = WALKING.model()?;
 /// # let filter = CoupledFilter::<13>::new(&model, &AngleMeasurement::nothing(), Some(0.0), None)?;
-/// // How a person's constant and the rest of an angle move on in six frames.
+/// // Offset and residual of an angle over six frames.
 /// let knee = filter.transition(&model, 6.0).blocks[5];
-/// assert!(knee.map[0][0] > 0.99, "the constant lasts");
-/// assert!(knee.map[3][3] < knee.map[0][0], "the rest is forgotten sooner");
-/// assert!(knee.noise[3][3] > knee.noise[0][0], "and drawn anew");
+/// assert!(knee.map[0][0] > 0.99, "the offset lasts");
+/// assert!(knee.map[3][3] < knee.map[0][0], "the residual is forgotten sooner");
+/// assert!(knee.noise[3][3] > knee.noise[0][0], "and has more process noise");
 /// # }
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
@@ -40,7 +40,7 @@ pub struct BlockTransition {
 /// use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
 ///
-/// // What a step of two frames adds to the uncertainty of position and velocity, whatever is known of them.
+/// // The process noise of position and velocity in a step of two frames.
 /// let model = WALKING.model()?;
 /// let filter = CoupledFilter::<13>::new(&model, &AngleMeasurement::nothing(), Some(0.0), None)?;
 /// let transition = filter.transition(&model, 2.0);
@@ -75,19 +75,21 @@ impl<const N: usize> CoupledFilter<N> {
         }
     }
 
-    /// The parts of each angle, given the cycle's state; those beyond the model's angles mean nothing.
+    /// Coefficients of each angle given (c, v); those beyond the model's angles are meaningless.
     #[must_use]
     pub const fn blocks(&self) -> &[AngleBlock; N] {
         &self.blocks
     }
 
-    /// How often the position was searched for anew, which a frame before says nothing about (wraps at 65536).
+    /// Number of relocks, after each of which the phase is independent of the frames before (wraps
+    /// at 65536).
     #[must_use]
     pub const fn relocks(&self) -> u16 {
         self.relocks
     }
 
-    /// The step that [`Self::predict`] would take from here: found by letting it move unit vectors, and noise alone.
+    /// The linear step of [`Self::predict`] from here, by its effect on unit vectors and on zero
+    /// covariance.
     #[must_use]
     pub fn transition(&self, model: &MotionModel<'_>, step_frames: f32) -> CoupledTransition<N> {
         let mut still = *self;
@@ -116,26 +118,26 @@ impl<const N: usize> CoupledFilter<N> {
         CoupledTransition { step_frames, cycle_noise: [noise.pair.cc, noise.pair.cv, noise.pair.vv], blocks }
     }
 
-    /// Variance by which [`Self::correct`] opens the constant of each angle that lies beyond the gate, rad^2; 0 for the others.
-    /// Called before it, on the predicted filter.
+    /// Variance by which [`Self::correct`] inflates the offset of each angle beyond the gate,
+    /// rad^2; 0 for the others. To be called before it, on the predicted filter.
     #[must_use]
     pub fn gated_variance_rad2(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> [f32; N] {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);
         let scale = self.watch.noise_scale();
-        let mut opened = [0.0; N];
+        let mut inflation_rad2 = [0.0; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
             let noise = scale * measurement.std_rad()[i] * measurement.std_rad()[i];
             let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
-            let outlook = self.blocks[i].outlook(&basis, slope[i]);
-            let total = outlook.variance + noise + self.pair.along(&outlook.gradient);
+            let prediction = self.blocks[i].predict_angle(&basis, slope[i]);
+            let total = prediction.variance + noise + self.pair.along(&prediction.gradient);
             if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total {
-                opened[i] = residual * residual;
+                inflation_rad2[i] = residual * residual;
             }
         }
-        opened
+        inflation_rad2
     }
 }
 
@@ -157,7 +159,7 @@ mod tests {
         filter
     }
 
-    /// What predict does to means and, where no regression on (c, v) is left, to covariances.
+    /// The effect of predict on means and, without regression on (c, v), on covariances.
     #[test]
     fn the_transition_is_that_of_predict() {
         let table = table(0.001, 9);
@@ -193,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_beyond_the_gate_opens_its_constant() {
+    fn an_angle_beyond_the_gate_inflates_its_offset() {
         let table = table(0.001, 9);
         let model = table.model().unwrap();
         let mut filter = started(&model);

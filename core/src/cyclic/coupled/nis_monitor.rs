@@ -1,32 +1,40 @@
-//! How well a filter predicts what it sees, beside how well it once did: a filter that has lost its place predicts worse, and one
-//! that knows it and still predicts badly was told of too little noise.
+//! Monitor of the normalised innovation squared (NIS) per angle: recent mean and running minimum.
+//!
+//! A recent NIS far above its minimum means that the phase is lost. A high NIS at a phase that the
+//! grid confirms means that the noise is larger than stated. NIS: Bar-Shalom, Li and Kirubarajan,
+//! Estimation with Applications to Tracking and Navigation (2001), section 5.4.
 
-use crate::cyclic::coupled::evidence::Judgement;
+use crate::cyclic::coupled::evidence::FrameInnovation;
 use crate::math::{clamp, min};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 
-/// Share of the newest frame in the recent misfit: about the last twenty frames.
-const NEWEST_SHARE: f32 = 0.05;
-/// Greatest misfit that a single frame counts with.
+/// Gain of the recent NIS in a frame. Chosen: a mean over about twenty frames.
+const RECENT_GAIN: f32 = 0.05;
+/// Largest NIS per angle that a frame counts with. Chosen: three standard deviations of an angle.
 const MAX_FRAME_NIS: f32 = 9.0;
-/// Share by which the least misfit follows the recent one upwards: about ten seconds at 60 Hz.
+/// Gain by which the floor follows a higher recent NIS. Chosen: about ten seconds at 60 Hz.
 const FLOOR_RISE: f32 = 0.002;
-/// The same for each frame of which the filter's place is known to be right: about the last fifty frames.
+/// The same in a frame in which the grid confirms the phase. Chosen: about fifty frames.
 const AGREED_FLOOR_RISE: f32 = 0.02;
-/// Times its least up to which the recent misfit is that of a filter that knows its place. On walks at nine tempos three in four
-/// frames of such a filter have a misfit below 1.1; when it had to be sent elsewhere the median was 1.4.
+/// Recent NIS over its floor up to which the phase counts as right.
+///
+/// Measured on eight walks at nine tempos: 0.9 to 1.1 at a jump away from the right phase, and a
+/// median of 1.4 at a needed jump (`docs/cyclic_coupled.md`).
 const MAX_GOOD_RATIO: f32 = 1.3;
-/// Times its least from which the recent misfit is bad, whatever was said before.
+/// Recent NIS over its floor above which the phase counts as lost, also where the motion runs
+/// backwards. Chosen: above the median of 1.4 at a needed jump.
 const MIN_LOST_RATIO: f32 = 1.6;
-/// Greatest factor by which noise may be larger than told, variances.
+/// Largest inflation of the stated noise variances. Chosen: four times the standard deviation.
 const MAX_NOISE_SCALE: f32 = 16.0;
 
-/// Normalised innovation squared per angle, by the noise that was told, over the last frames and at its best.
+/// NIS per angle by the stated noise: recent mean and running minimum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct NisMonitor {
+    /// Mean over about twenty frames.
     recent: f32,
+    /// Running minimum, which rises slowly.
     floor: f32,
-    /// Frames since the place was last found.
+    /// Frames since the start or the last relock.
     frames: f32,
 }
 
@@ -39,52 +47,55 @@ impl SavedState for NisMonitor {
 }
 
 impl NisMonitor {
-    /// Nothing seen: as it is on the mean where model and noise are right.
+    /// Before the first frame: a NIS of 1, the expected value of a consistent filter.
     pub(super) const fn new() -> Self {
         Self { recent: 1.0, floor: 1.0, frames: 0.0 }
     }
 
-    /// Factor of the noise variances with which the filter predicts as well as its covariances say: at least one.
+    /// Inflation of the stated noise variances that makes the NIS consistent, in [1, 16].
     pub(super) fn noise_scale(&self) -> f32 {
         clamp(self.floor, 1.0, MAX_NOISE_SCALE)
     }
 
-    /// Takes in a frame, `step_frames` after the last one.
-    pub(super) fn see(&mut self, judgement: &Judgement, step_frames: f32) {
+    /// Adds a frame's NIS, `step_frames` after the last one. A frame without angles changes only
+    /// the time.
+    pub(super) fn update(&mut self, innovation: &FrameInnovation, step_frames: f32) {
         self.frames += step_frames;
-        if judgement.present > 0 {
-            let misfit = judgement.noise_scale * min(judgement.squared / judgement.present as f32, MAX_FRAME_NIS);
-            self.recent += NEWEST_SHARE * (misfit - self.recent);
-            let share = if self.recent < self.floor { NEWEST_SHARE } else { FLOOR_RISE };
-            self.floor += share * (self.recent - self.floor);
+        if innovation.present > 0 {
+            let nis = innovation.noise_scale * min(innovation.squared / innovation.present as f32, MAX_FRAME_NIS);
+            self.recent += RECENT_GAIN * (nis - self.recent);
+            let gain = if self.recent < self.floor { RECENT_GAIN } else { FLOOR_RISE };
+            self.floor += gain * (self.recent - self.floor);
         }
     }
 
-    /// Somebody else, who looks every `frames`, finds the filter's place right: what is left of the misfit is noise.
+    /// Raises the floor towards the recent NIS: the grid, updated `frames` ago, confirms the phase,
+    /// so the excess is noise.
     pub(super) fn raise_floor(&mut self, frames: f32) {
         if self.recent > self.floor {
             self.floor += min(AGREED_FLOOR_RISE * frames, 1.0) * (self.recent - self.floor);
         }
     }
 
-    /// The place was found anew: predictions are yet to be judged.
+    /// Restarts the count of frames after a relock.
     pub(super) const fn restart(&mut self) {
         self.frames = 0.0;
     }
 
-    /// Whether the place was found less than so many frames ago.
+    /// Whether the start or the last relock was less than `frames` ago.
     pub(super) fn is_new(&self, frames: f32) -> bool {
         self.frames < frames
     }
 
-    /// Whether the filter predicts far worse than it once did.
+    /// Whether the recent NIS exceeds [`MIN_LOST_RATIO`] times its floor.
     pub(super) fn is_lost(&self) -> bool {
         self.recent > MIN_LOST_RATIO * self.floor
     }
 
-    /// Whether the filter, for `least_frames` at one place, predicts about as well as it ever did.
-    pub(super) fn is_good(&self, least_frames: f32) -> bool {
-        self.frames > least_frames && self.recent < MAX_GOOD_RATIO * self.floor
+    /// Whether the recent NIS is below [`MAX_GOOD_RATIO`] times its floor, at least `min_frames`
+    /// after the last relock.
+    pub(super) fn is_good(&self, min_frames: f32) -> bool {
+        self.frames > min_frames && self.recent < MAX_GOOD_RATIO * self.floor
     }
 }
 
@@ -92,56 +103,56 @@ impl NisMonitor {
 mod tests {
     use super::*;
 
-    fn judgement(squared: f32, present: usize, noise_scale: f32) -> Judgement {
-        Judgement { log_likelihood: 0.0, squared, present, outlier: false, noise_scale }
+    fn innovation(squared: f32, present: usize, noise_scale: f32) -> FrameInnovation {
+        FrameInnovation { log_likelihood: 0.0, squared, present, outlier: false, noise_scale }
     }
 
-    /// Frames whose misfit by the noise told is `misfit`.
-    fn seen(monitor: &mut NisMonitor, misfit: f32, frames: usize) {
+    /// Adds `frames` whose NIS per angle by the stated noise is `nis`.
+    fn seen(monitor: &mut NisMonitor, nis: f32, frames: usize) {
         for _ in 0..frames {
-            let squared = 13.0 * misfit / monitor.noise_scale();
-            monitor.see(&judgement(squared, 13, monitor.noise_scale()), 1.0);
+            let squared = 13.0 * nis / monitor.noise_scale();
+            monitor.update(&innovation(squared, 13, monitor.noise_scale()), 1.0);
         }
     }
 
     #[test]
-    fn noise_is_larger_than_told_where_a_right_place_predicts_badly() {
+    fn a_high_nis_at_a_confirmed_phase_inflates_the_noise() {
         let mut monitor = NisMonitor::new();
         seen(&mut monitor, 4.0, 60);
-        assert!(monitor.noise_scale() < 1.5, "it may be the place that is wrong");
+        assert!(monitor.noise_scale() < 1.5, "the phase may be wrong");
         for _ in 0..60 {
             seen(&mut monitor, 4.0, 3);
             monitor.raise_floor(3.0);
         }
         assert!((3.8..4.01).contains(&monitor.noise_scale()), "{monitor:?}");
         seen(&mut monitor, 0.5, 200);
-        assert!(monitor.noise_scale() == 1.0, "never smaller than told");
+        assert!(monitor.noise_scale() == 1.0, "never below the stated noise");
     }
 
     #[test]
-    fn a_filter_that_predicts_worse_than_it_did_is_not_good_until_it_is_used_to_it() {
-        for usual in [0.02, 1.0, 3.0] {
+    fn a_filter_whose_nis_rises_is_not_good_until_the_floor_has_followed() {
+        for floor in [0.02, 1.0, 3.0] {
             let mut monitor = NisMonitor::new();
-            seen(&mut monitor, usual, 30);
+            seen(&mut monitor, floor, 30);
             assert!(!monitor.is_good(50.0), "too early");
-            seen(&mut monitor, usual, 3000);
+            seen(&mut monitor, floor, 3000);
             assert!(monitor.is_good(50.0));
-            seen(&mut monitor, 1.2 * usual, 100);
+            seen(&mut monitor, 1.2 * floor, 100);
             assert!(monitor.is_good(50.0), "a little worse");
-            seen(&mut monitor, 2.0 * usual, 40);
+            seen(&mut monitor, 2.0 * floor, 40);
             assert!(!monitor.is_good(50.0), "lost");
-            seen(&mut monitor, 2.0 * usual, 3000);
-            assert!(monitor.is_good(50.0), "such is the person");
+            seen(&mut monitor, 2.0 * floor, 3000);
+            assert!(monitor.is_good(50.0), "the floor has followed");
             monitor.restart();
             assert!(!monitor.is_good(50.0));
         }
     }
 
     #[test]
-    fn frames_without_a_measurement_tell_nothing() {
+    fn frames_without_a_measurement_leave_the_nis_unchanged() {
         let mut monitor = NisMonitor::new();
         let before = monitor;
-        monitor.see(&judgement(0.0, 0, 1.0), 7.0);
+        monitor.update(&innovation(0.0, 0, 1.0), 7.0);
         assert_eq!(monitor, NisMonitor { frames: 7.0, ..before });
     }
 }

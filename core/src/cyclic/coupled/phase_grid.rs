@@ -1,32 +1,39 @@
-//! The whole cycle watched on a grid: a histogram filter over position and speed, for a motion whose person is not known.
+//! Histogram filter over position and speed in the cycle, for an unknown person.
 //!
-//! The phase-coupled filter believes in one place of the cycle. This one believes in all of them, each with a weight, knows nothing
-//! of the person, and so cannot be led astray with it. (Histogram filter: Thrun, Burgard, Fox, Probabilistic Robotics, section 4.1.)
+//! The phase-coupled filter has one mode. The grid weights all positions and does not learn the
+//! person, so it cannot follow a wrong phase with it. Histogram filter: Thrun, Burgard and Fox,
+//! Probabilistic Robotics (2005), section 4.1.
 
 use crate::cyclic::phase::{position_difference, wrap_position};
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::math::{abs, exp, exp_small, least_angle, max, min, round};
 
-/// Positions of the grid.
+/// Positions of the grid. Chosen: a cell is about a fifth of [`MODE_REACH`].
 pub const POSITIONS: usize = 32;
 /// Positions at which a measurement's likelihood is computed; between them it is linear.
 const TABLE: usize = 64;
 /// Positions of the table that are computed side by side.
 const LANES: usize = 8;
-/// Speeds of the grid, as parts of the model's mean speed.
-pub const SPEED_RATIOS: [f32; 6] = [0.0, 0.5, 0.7, 1.0, 1.4, 2.0];
+/// Speeds of the grid, relative to the model's mean speed. Chosen: from standing to twice the mean,
+/// in factors of about the root of 2.
+const SPEED_RATIOS: [f32; 6] = [0.0, 0.5, 0.7, 1.0, 1.4, 2.0];
 pub(super) const SPEEDS: usize = SPEED_RATIOS.len();
-/// Part of the weight that goes to each neighbouring speed in a frame at the mean speed.
+/// Share of the weight that moves to each neighbouring speed in a frame. Chosen: speeds change
+/// over seconds, not frames.
 const SPEED_CHANGE: f32 = 0.01;
-/// Part of the weight that goes to each neighbouring position in a frame: speeds lie between those of the grid.
+/// Share of the weight that moves to each neighbouring position in a frame. Chosen: a person's
+/// speed lies between those of the grid.
 const BLUR: f32 = 0.05;
-/// A person differs from the mean in the same way for many frames, so a frame's deviations are evidence for this part only.
+/// Frames that repeat the same evidence. Chosen: a person's deviation from the mean lasts for many
+/// frames, so its variance is inflated by this.
 const REPEATED_FRAMES: f32 = 4.0;
-/// Angles deviate together: what each says counts this many times less.
+/// Inflation of an angle's variance as evidence for the phase. Chosen: angles deviate together, as
+/// in `evidence.rs`.
 const TEMPERING: f32 = 2.5;
-/// Number of angles up to which that holds; more of them say no more together.
+/// Number of angles up to which [`TEMPERING`] holds; more of them carry no more evidence together.
+/// Chosen: the angles of the paper's figure.
 const TEMPERED_ANGLES: f32 = 13.0;
-/// A single angle's distance counts at most this many standard deviations.
+/// Largest distance of a single angle, standard deviations. Chosen: as `GATE_SIGMAS` of the filter.
 const LIMIT_SIGMAS: f32 = 4.0;
 
 /// Weights of position and speed; their sum is one.
@@ -37,7 +44,7 @@ const LIMIT_SIGMAS: f32 = 4.0;
 /// use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::cyclic::coupled::phase_grid::PhaseGrid;
 ///
-/// // Somebody about whom nothing is known walks on from position 0.7: before long the grid believes in one place.
+/// // An unknown person walks on from position 0.7: the grid's weight gathers at one position.
 /// let model = WALKING.model()?;
 /// let mut grid = PhaseGrid::uniform();
 /// assert!(grid.weight_near(0.7) < 0.4);
@@ -58,7 +65,7 @@ pub struct PhaseGrid {
     pub(super) travelled: [f32; SPEEDS],
 }
 
-/// A place of the cycle: means and covariance of position and velocity.
+/// A mode of the grid: means and covariance of position and velocity.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -87,21 +94,21 @@ pub struct PhaseMode {
     pub covariance: [f32; 3],
 }
 
-/// Half the width of a place, cycles.
+/// Half the width of a mode, cycles. Chosen: the filter's `LOST_STD`.
 pub const MODE_REACH: f32 = 0.15;
 /// Cells of one speed that may lie within it.
 const NEAR_CELLS: usize = 12;
 const _: () = assert!(MODE_REACH * (POSITIONS as f32) < 5.0 && TABLE == 2 * POSITIONS && TABLE.is_multiple_of(LANES));
 
 impl PhaseGrid {
-    /// Nothing known.
+    /// All positions and speeds alike.
     #[must_use]
     pub const fn uniform() -> Self {
         let weight = 1.0 / (POSITIONS * SPEEDS) as f32;
         Self { weights: [[weight; POSITIONS]; SPEEDS], travelled: [0.0; SPEEDS] }
     }
 
-    /// About `position`, known to about a twentieth of a cycle, and a speed near the model's mean.
+    /// A normal of a twentieth of a cycle about `position`, all speeds alike.
     #[must_use]
     pub fn near(position: f32) -> Self {
         let mut grid = Self::uniform();
@@ -115,7 +122,7 @@ impl PhaseGrid {
         grid
     }
 
-    /// Scales all weights to a sum of one; nothing is known where they have none.
+    /// Scales all weights to a sum of one; uniform where they have no sum.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn normalise(&mut self) {
         let sum: f32 = self.weights.iter().map(|row| row.iter().sum::<f32>()).sum();
@@ -155,7 +162,7 @@ impl PhaseGrid {
         }
     }
 
-    /// Takes in a measurement of a person about whom nothing but the spread between people is known.
+    /// Updates by a measurement of an unknown person, `frames` after the last one.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn weigh<const N: usize>(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) {
         let likelihood = likelihood_table(model, measurement, frames);
@@ -181,7 +188,8 @@ impl PhaseGrid {
         sum
     }
 
-    /// Shows speed, weight and way from `position` of each cell within [`MODE_REACH`] to `take`.
+    /// Calls `take` with speed, weight and distance from `position` of each cell within
+    /// [`MODE_REACH`].
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn each_near(&self, position: f32, mut take: impl FnMut(usize, f32, f32)) {
         for (speed, (weights, &travelled)) in self.weights.iter().zip(&self.travelled).enumerate() {
@@ -213,7 +221,7 @@ impl PhaseGrid {
         sums
     }
 
-    /// The place with the most weight.
+    /// The mode with the largest weight.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
     pub fn mode(&self, model: &MotionModel<'_>) -> PhaseMode {
@@ -285,7 +293,7 @@ fn likelihood_table<const N: usize>(
     let tempering = max(TEMPERING * measurement.present(count) as f32 / TEMPERED_ANGLES, TEMPERING);
     let seen = |i: usize| if i < count { measurement.angle_rad(i) } else { None };
     let measured: [f32; N] = core::array::from_fn(|i| seen(i).unwrap_or(0.0));
-    // What was not seen says nothing.
+    // A missing angle has no precision.
     let precision: [f32; N] = core::array::from_fn(|i| {
         let std = measurement.std_rad()[i];
         if seen(i).is_some() { 0.5 / (tempering * (repeated * spread[i] * spread[i] + std * std)) } else { 0.0 }

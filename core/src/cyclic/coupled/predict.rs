@@ -6,9 +6,11 @@ use crate::cyclic::coupled::state::{CoupledFilter, LOST_STD, spread};
 use crate::cyclic::substeps::Substeps;
 use crate::math::{abs, exp, max};
 
-/// Rate per cycle at which constant and swing are forgotten.
+/// Rate per cycle at which offset and swing are forgotten. Chosen: they hardly change within a
+/// person.
 const FORGETTING: f32 = 0.02;
-/// Parts of a step over frames that were left out: what a step costs does not grow with the gap before it.
+/// Most substeps of a step. Chosen: bounded work after a gap, with estimates nearly those of a step
+/// a frame.
 pub const MAX_SUBSTEPS: u8 = 6;
 
 impl<const N: usize> CoupledFilter<N> {
@@ -29,7 +31,7 @@ impl<const N: usize> CoupledFilter<N> {
         let lost = self.pair.cc > LOST_STD * LOST_STD;
         for i in 0..model.angle_count().min(N) {
             if lost {
-                // Nothing is a straight line of (c, v) any more.
+                // The linearisation by (c, v) does not hold.
                 self.blocks[i].regression = [[0.0; 2]; PARTS];
             }
             self.blocks[i].advance(&spread(model, i), phase, memory, &map, &rest);

@@ -1,4 +1,4 @@
-//! Where the phase-coupled filter begins: at the first row, or anywhere in the cycle.
+//! Start of the phase-coupled filter: at the first row, or anywhere in the cycle.
 
 use crate::cyclic::coupled::block::AngleBlock;
 use crate::cyclic::coupled::cycle_pair::CyclePair;
@@ -16,12 +16,14 @@ use crate::error::{ParameterError, Rule, finite, within};
 use crate::math::{max, round};
 use core::f32::consts::TAU;
 
-/// Spread of a person's speed about the model's mean, as a part of it.
+/// Standard deviation of a person's speed, relative to the model's mean. Chosen: a tenth, as people
+/// walk.
 const SPEED_SPREAD: f32 = 0.1;
 
 impl<const N: usize> CoupledFilter<N> {
-    /// The standard start: the angles of the first row, which the paper takes as exact. A row that looks noisy beside the mean
-    /// pose is trusted less, down to what its standard deviations say. `position` by best match and `velocity` by the model where absent.
+    /// The standard start from the first row. Its noise is estimated from its distance to the mean
+    /// pose, up to the stated one. Without a `position` the best match is taken, without a
+    /// `velocity`, cycles per frame, the model's mean.
     ///
     /// # Errors
     /// At most `N` angles, a model with a deviation, a finite position, a velocity within +-0.5 cycles a frame.
@@ -56,7 +58,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.forget(model)?;
         self.position = position;
         self.velocity = velocity;
-        self.grid.keep(&PhaseGrid::near(position));
+        self.grid.store(&PhaseGrid::near(position));
         for (block, unusual_offset_rad2) in self.blocks.iter_mut().zip(row.unusual_offset_rad2) {
             block.inflate_offset_prior(unusual_offset_rad2);
         }
@@ -78,7 +80,7 @@ impl<const N: usize> CoupledFilter<N> {
         Ok(filter)
     }
 
-    /// Position 0, the model's mean speed, nothing known of the person.
+    /// Resets to position 0, the model's mean speed and an unknown person.
     fn forget(&mut self, model: &MotionModel<'_>) -> Result<(), ParameterError> {
         if model.angle_count() > N {
             return Err(ParameterError::new("angles of the model", Rule::Capacity { capacity: N }));
@@ -106,8 +108,8 @@ impl<const N: usize> CoupledFilter<N> {
         Ok(())
     }
 
-    /// Counts from here on. Whole turns of the first row (of the mean pose where an angle is missing) are kept, so that nothing
-    /// jumps after it.
+    /// Starts all counts. Whole turns of the first row (of the mean pose for a missing angle) are
+    /// kept, so that no angle jumps after it.
     fn start_counting(&mut self, model: &MotionModel<'_>, first: &AngleMeasurement<N>) {
         let pose = model.mean_pose_rad::<N>(model.point(self.position));
         self.turns = core::array::from_fn(|i| {

@@ -1,4 +1,5 @@
-//! State of the phase-coupled filter: measurements move the cycle position, and each person keeps their own way of moving.
+//! State of the phase-coupled filter: measurements move the cycle position, and a person's
+//! deviation is learned.
 //!
 //! An angle is the mean cycle at c plus its deviation ([`crate::cyclic::Deviation`]). Given (c, v) the angles are taken as
 //! independent of each other: each has a block of five numbers, all together inform (c, v), and (c, v) informs each.
@@ -15,7 +16,9 @@ use crate::cyclic::phase::wrap_position;
 use crate::cyclic::recognition::explained_variance::ExplainedVariance;
 use crate::math::round;
 
-/// Beyond this standard deviation of c, in cycles, the linearisation is void and the position is searched for.
+/// Standard deviation of c, cycles, above which the linearisation does not hold and the filter
+/// searches by the grid. Chosen: about a sixth of a cycle, over which the mean pose is no straight
+/// line.
 pub(super) const LOST_STD: f32 = 0.15;
 
 /// State of the filter `coupled` for models of up to `N` angles.
@@ -26,7 +29,7 @@ pub(super) const LOST_STD: f32 = 0.15;
 /// use sinew_core::cyclic::phase::position_difference;
 /// use sinew_core::cyclic::{AngleMeasurement, CoupledFilter};
 ///
-/// // Somebody walks into view, nobody knows where in the cycle: the filter looks everywhere until it has found it.
+/// // A person walks into view at an unknown phase: the filter searches the whole cycle.
 /// let model = WALKING.model()?;
 /// let position = |frame: u8| 0.7 + f32::from(frame) * model.mean_cycle_velocity();
 /// let seen = |frame| AngleMeasurement::new(&model.mean_pose_rad::<13>(model.point(position(frame))).map(Some), 0.1);
@@ -54,16 +57,17 @@ pub struct CoupledFilter<const N: usize> {
     pub(super) watch: Watch,
     pub(super) winding: Winding<N>,
     pub(super) path: MeasuredPath<N>,
-    /// What the mean cycle, at the filter's position, tells of the swing that is seen.
+    /// Variance that the mean cycle explains at the filter's position.
     pub(super) swing: ExplainedVariance<N>,
-    /// Times that the position was taken from the grid.
+    /// Number of relocks.
     pub(super) relocks: u16,
 }
 
 const _: () = assert!(size_of::<CoupledFilter<13>>() <= 2560, "the state has to fit 2.5 KiB");
 
 impl<const N: usize> CoupledFilter<N> {
-    /// A filter that has not begun, so that one in static memory can begin there; it takes no stack. Its answers mean nothing.
+    /// A filter before [`Self::begin`], for static memory: it takes no stack. Its estimates are
+    /// meaningless.
     #[must_use]
     pub const fn empty() -> Self {
         Self {
@@ -83,7 +87,7 @@ impl<const N: usize> CoupledFilter<N> {
         }
     }
 
-    /// Whether the position in the cycle is unknown at the moment, so that estimates are those of all places together.
+    /// Whether the phase is unknown, so that the estimate is the mean over the grid.
     #[must_use]
     pub const fn is_searching(&self) -> bool {
         self.watch.searching

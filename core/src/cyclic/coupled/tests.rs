@@ -60,8 +60,8 @@ fn it_follows_another_person_at_another_cadence() {
     assert!((0.85..=0.99).contains(&share), "{share} of the truth lies in the 90 % band");
 }
 
-/// Angles of a table are unwrapped and may begin many turns away from zero: the count goes on from there, whichever way the angle winds,
-/// without a jump.
+/// Angles of a table are unwrapped and may begin many turns away from zero. The count continues
+/// from there without a jump, in both directions.
 #[test]
 fn turns_are_counted_from_those_of_the_first_row() {
     let table = table(0.001, 9);
@@ -83,7 +83,7 @@ fn turns_are_counted_from_those_of_the_first_row() {
 
 /// Gaps of random length: blocks stay symmetric with variances above zero, and every number finite.
 #[test]
-fn it_stays_sound_through_random_gaps() {
+fn numbers_stay_finite_and_variances_positive_through_random_gaps() {
     let table = table(0.001, 9);
     let model = table.model().unwrap();
     let first = core::array::from_fn(|i| Some(person(i, 0.0)));
@@ -146,11 +146,11 @@ fn walked(frames: u16, ratio: impl Fn(u16) -> f32) -> Vec<f32> {
 }
 
 #[test]
-fn it_follows_a_person_who_hurries_dawdles_or_stops_and_goes_on() {
+fn it_follows_a_person_who_speeds_up_slows_down_or_stops_and_goes_on() {
     let table = table(0.001, 9);
     let model = table.model().unwrap();
     let first = core::array::from_fn(|i| Some(person(i, 0.0)));
-    for (name, ratio) in [("hurries", 1.5), ("dawdles", 0.6), ("stops", 0.0)] {
+    for (name, ratio) in [("speeds up", 1.5), ("slows down", 0.6), ("stops", 0.0)] {
         for seed in 1..=5 {
             let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
             let positions = walked(400, |frame| if (131..261).contains(&frame) { ratio } else { 1.0 });
@@ -163,15 +163,16 @@ fn it_follows_a_person_who_hurries_dawdles_or_stops_and_goes_on() {
     }
 }
 
-/// Share of the 90 % bands that hold `person`, whose noise of 0.1 rad is told as `told`.
-fn inside_the_band(model: &MotionModel<'_>, person: impl Fn(usize, f32) -> f32, told: f32) -> f64 {
+/// Share of the 90 % bands that hold `person`, with true noise of 0.1 rad and stated noise of
+/// `stated` rad.
+fn inside_the_band(model: &MotionModel<'_>, person: impl Fn(usize, f32) -> f32, stated: f32) -> f64 {
     let first = core::array::from_fn(|i| Some(person(i, 0.0)));
     let mut filter = CoupledFilter::<N>::new(model, &exact(&first), Some(0.0), None).unwrap();
     let mut stream = Stream::new(7, 0, 0);
     let (mut inside, mut all) = (0_u32, 0_u32);
     for (frame, position) in walked(600, |_| 1.0).into_iter().enumerate() {
         let seen = core::array::from_fn(|i| Some(person(i, position) + 0.1 * stream.normal()));
-        let estimate = filter.step(model, &AngleMeasurement::new(&seen, told).unwrap());
+        let estimate = filter.step(model, &AngleMeasurement::new(&seen, stated).unwrap());
         for i in (0..N).filter(|_| frame > 200) {
             let off = wrap_angle(estimate.angles_rad[i] - person(i, position)).abs();
             inside += u32::from(off <= 1.645 * estimate.angle_variance_rad2[i].sqrt());
@@ -181,25 +182,25 @@ fn inside_the_band(model: &MotionModel<'_>, person: impl Fn(usize, f32) -> f32, 
     f64::from(inside) / f64::from(all)
 }
 
-/// Somebody says 3 degrees, and it is 6: the filter finds that out, and its bands hold. A motion that winds allows for a shape of the
-/// person's own, which nobody has here: its bands are wider.
+/// The stated noise is half of the true one, and the bands hold. A winding motion assumes a larger
+/// spread of the cycle's shape, so its bands are wider.
 #[test]
-fn noise_that_is_larger_than_told_is_noticed() {
+fn the_bands_hold_where_the_noise_is_larger_than_stated() {
     let winding = table(0.001, 9);
     let mut swinging = winding.clone();
     // The angle that winds moves as the first one.
     swinging.turns_per_cycle[12] = 0;
     swinging.mean_pose_rad.iter_mut().for_each(|pose| pose[12] = pose[0]);
-    for told in [0.05, 0.1] {
-        let share = inside_the_band(&winding.model().unwrap(), person, told);
-        assert!((0.8..0.99).contains(&share), "told {told} rad: {share} inside the 90 % band, winding");
-        let share = inside_the_band(&swinging.model().unwrap(), |i, position| person(i % 12, position), told);
-        assert!((0.8..0.97).contains(&share), "told {told} rad: {share} inside the 90 % band");
+    for stated in [0.05, 0.1] {
+        let share = inside_the_band(&winding.model().unwrap(), person, stated);
+        assert!((0.8..0.99).contains(&share), "stated {stated} rad: {share} inside the 90 % band, winding");
+        let share = inside_the_band(&swinging.model().unwrap(), |i, position| person(i % 12, position), stated);
+        assert!((0.8..0.97).contains(&share), "stated {stated} rad: {share} inside the 90 % band");
     }
 }
 
 #[test]
-fn somebody_who_walks_backwards_is_not_turned_round() {
+fn a_person_who_walks_backwards_is_followed_backwards() {
     let table = table(0.001, 9);
     let model = table.model().unwrap();
     let first = core::array::from_fn(|i| Some(person(i, 0.0)));
@@ -213,7 +214,7 @@ fn somebody_who_walks_backwards_is_not_turned_round() {
 }
 
 #[test]
-fn a_steady_motion_is_never_searched_for_anew() {
+fn a_steady_motion_is_never_relocked() {
     let table = table(0.001, 9);
     let model = table.model().unwrap();
     let first = core::array::from_fn(|i| Some(person(i, 0.0)));
@@ -255,7 +256,7 @@ fn from_anywhere_the_position_is_found_and_the_bands_hold_meanwhile() {
     assert!(all > 13 && (0.8..=1.0).contains(&share), "{share} of {all} inside the band while searching");
 }
 
-/// A gap costs a few parts and not a part a frame; what is foretold across it is nearly the same.
+/// A gap costs a few substeps, and the prediction is nearly that of one substep a frame.
 #[test]
 fn a_gap_in_few_parts_is_the_gap_frame_by_frame() {
     let table = table(0.001, 9);
@@ -278,8 +279,10 @@ fn a_gap_in_few_parts_is_the_gap_frame_by_frame() {
         for (x, y) in stds {
             assert!(((x / y).sqrt() - 1.0).abs() < 0.03, "{gap}: {a:?} {b:?}");
         }
-        let (pose_a, pose_b) =
-            (few.present(&model, &AngleMeasurement::nothing()), many.present(&model, &AngleMeasurement::nothing()));
+        let (pose_a, pose_b) = (
+            few.current_estimate(&model, &AngleMeasurement::nothing()),
+            many.current_estimate(&model, &AngleMeasurement::nothing()),
+        );
         for i in 0..N {
             let std = pose_b.angle_variance_rad2[i].sqrt();
             assert!(wrap_angle(pose_a.angles_rad[i] - pose_b.angles_rad[i]).abs() < 0.05 * std, "{gap}: angle {i}");

@@ -1,48 +1,50 @@
-//! Angles that go round otherwise than the mean cycle does: a forearm that points at the camera winds in one cycle and swings in the
-//! next, and in one person winds where in the model's people it does not.
+//! Angles that wind unlike the mean cycle, and which of them inform the phase.
 //!
-//! Such an angle gains or loses a whole turn on the mean cycle in each cycle. No deviation of a person says that, and what the
-//! phase-coupled filter makes of it is a wrong speed. So an angle whose distance from the mean cycle passes half a turn tells
-//! nothing about the phase for some cycles.
+//! A forearm that points at the camera winds in one cycle and swings in the next. Such an angle
+//! gains or loses a whole turn on the mean cycle, which no deviation of a person models, so the
+//! filter would estimate a wrong speed. An angle whose distance from the mean cycle passes half a
+//! turn does not inform the phase for [`EXCLUDED_CYCLES`] cycles.
 
 use crate::math::round_small;
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::TAU;
 
-/// Completed cycles for which an angle is not believed after it gained or lost a turn.
-const MISTRUSTED_CYCLES: u8 = 3;
+/// Completed cycles for which an angle that gained or lost a turn does not inform the phase.
+/// Chosen: an angle that winds in one cycle often winds in the next.
+const EXCLUDED_CYCLES: u8 = 3;
 
-/// An angle beside the mean cycle, in a byte: a state has little room.
+/// Turns of an angle relative to the mean cycle, and its exclusion, in one byte of the state.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Lead(u8);
+struct TurnOffset(u8);
 
-impl Lead {
-    /// Turns are kept modulo this: only changes matter.
+impl TurnOffset {
+    /// Modulus of the turns: only changes matter.
     const TURNS: u8 = 4;
 
-    const fn new(turns: u8, mistrusted: u8) -> Self {
-        Self(mistrusted * Self::TURNS + turns % Self::TURNS)
+    const fn new(turns: u8, excluded_cycles: u8) -> Self {
+        Self(excluded_cycles * Self::TURNS + turns % Self::TURNS)
     }
 
-    /// Whole turns ahead of the mean cycle.
+    /// Whole turns ahead of the mean cycle, modulo [`Self::TURNS`].
     const fn turns(self) -> u8 {
         self.0 % Self::TURNS
     }
 
-    /// Cycles to be completed before the angle is believed again.
-    const fn mistrusted(self) -> u8 {
+    /// Cycles to be completed before the angle informs the phase again.
+    const fn excluded_cycles(self) -> u8 {
         self.0 / Self::TURNS
     }
 }
 
-/// Where each angle is beside the mean cycle, and which of them gained or lost a turn of late.
+/// Turns of each angle relative to the mean cycle, and the angles excluded from the phase's
+/// evidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Winding<const N: usize> {
-    leads: [Lead; N],
-    /// Number of the cycle last seen, modulo 256.
+    turn_offsets: [TurnOffset; N],
+    /// Number of the last cycle, modulo 256.
     cycle: i8,
-    /// Whether leads are known, so that they can be seen to change.
-    begun: bool,
+    /// Whether the turn offsets are initialised.
+    initialised: bool,
 }
 
 impl<const N: usize> SavedState for Winding<N> {
@@ -52,80 +54,85 @@ impl<const N: usize> SavedState for Winding<N> {
             visitor.word(&mut word);
             word.to_le_bytes()[0]
         };
-        for lead in &mut self.leads {
-            let saved = Lead(byte(lead.0));
-            *lead = Lead::new(saved.turns(), saved.mistrusted().min(MISTRUSTED_CYCLES));
+        for turn_offset in &mut self.turn_offsets {
+            let saved = TurnOffset(byte(turn_offset.0));
+            *turn_offset = TurnOffset::new(saved.turns(), saved.excluded_cycles().min(EXCLUDED_CYCLES));
         }
         self.cycle = byte(self.cycle.cast_unsigned()).cast_signed();
-        visitor.flag(&mut self.begun);
+        visitor.flag(&mut self.initialised);
     }
 }
 
 impl<const N: usize> Winding<N> {
-    /// Nothing known.
+    /// Before the first frame: every angle informs the phase.
     pub(super) const fn new() -> Self {
-        Self { leads: [Lead(0); N], cycle: 0, begun: false }
+        Self { turn_offsets: [TurnOffset(0); N], cycle: 0, initialised: false }
     }
 
-    /// Whether the angle at `index` winds as the mean cycle does, as far as is known.
+    /// Whether the angle at `index` winds like the mean cycle and so informs the phase.
     #[inline]
-    pub(super) fn is_believed(&self, index: usize) -> bool {
-        self.leads.get(index).is_none_or(|lead| lead.mistrusted() == 0)
+    pub(super) fn informs_phase(&self, index: usize) -> bool {
+        self.turn_offsets.get(index).is_none_or(|turn_offset| turn_offset.excluded_cycles() == 0)
     }
 
-    /// Takes in the number of cycles completed.
-    pub(super) fn complete(&mut self, cycles: i32) {
+    /// Updates the exclusions by the number of completed cycles.
+    pub(super) fn count_cycles(&mut self, cycles: i32) {
         if (cycles as i8).wrapping_sub(self.cycle) > 0 {
-            self.leads = self.leads.map(|lead| Lead::new(lead.turns(), lead.mistrusted().saturating_sub(1)));
+            self.turn_offsets = self.turn_offsets.map(|turn_offset| {
+                TurnOffset::new(turn_offset.turns(), turn_offset.excluded_cycles().saturating_sub(1))
+            });
         }
         self.cycle = cycles as i8;
     }
 
-    /// Takes in where the angle at `index` is, `turns` whole turns and `ahead_rad` ahead of the mean cycle.
+    /// Updates the angle at `index`, which is `turns` whole turns and `ahead_rad` ahead of the mean
+    /// cycle.
     #[inline]
-    pub(super) fn see(&mut self, index: usize, turns: i32, ahead_rad: f32) {
-        let turns = turns.wrapping_add(round_small(ahead_rad / TAU) as i32).rem_euclid(i32::from(Lead::TURNS)) as u8;
-        if let Some(lead) = self.leads.get_mut(index) {
-            let has_turned = self.begun && lead.turns() != turns;
-            *lead = Lead::new(turns, if has_turned { MISTRUSTED_CYCLES } else { lead.mistrusted() });
+    pub(super) fn update(&mut self, index: usize, turns: i32, ahead_rad: f32) {
+        let turns =
+            turns.wrapping_add(round_small(ahead_rad / TAU) as i32).rem_euclid(i32::from(TurnOffset::TURNS)) as u8;
+        if let Some(turn_offset) = self.turn_offsets.get_mut(index) {
+            let has_turned = self.initialised && turn_offset.turns() != turns;
+            *turn_offset =
+                TurnOffset::new(turns, if has_turned { EXCLUDED_CYCLES } else { turn_offset.excluded_cycles() });
         }
     }
 
-    /// All angles have been seen.
-    pub(super) const fn begin(&mut self) {
-        self.begun = true;
+    /// Marks the turn offsets as initialised: from here on a change excludes an angle.
+    pub(super) const fn initialise(&mut self) {
+        self.initialised = true;
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{MISTRUSTED_CYCLES, Winding};
+    use super::{EXCLUDED_CYCLES, Winding};
     use core::f32::consts::TAU;
 
     #[test]
-    fn an_angle_that_gains_a_turn_is_not_believed_until_it_has_kept_to_the_cycle() {
+    fn an_angle_that_gains_a_turn_is_excluded_for_three_cycles() {
         let mut winding = Winding::<2>::new();
         for tenth in 0..100 {
             let cycles = tenth / 10;
-            // Angle 0 swings; angle 1 goes round in the first two cycles, which the mean cycle does not.
+            // Angle 0 swings. Angle 1 winds in the first two cycles, unlike the mean cycle.
             let gone_rad = (0.1 * tenth as f32 + 0.01).min(2.0) * TAU;
-            winding.complete(cycles);
-            winding.see(0, 0, 2.0 * gone_rad.sin());
-            winding.see(1, 0, gone_rad);
-            winding.begin();
-            assert!(winding.is_believed(0));
+            winding.count_cycles(cycles);
+            winding.update(0, 0, 2.0 * gone_rad.sin());
+            winding.update(1, 0, gone_rad);
+            winding.initialise();
+            assert!(winding.informs_phase(0));
             // It passes half a turn in the first cycle, and again in the second.
-            assert_eq!(winding.is_believed(1), tenth < 5 || cycles > i32::from(MISTRUSTED_CYCLES), "{tenth}");
+            assert_eq!(winding.informs_phase(1), tenth < 5 || cycles > i32::from(EXCLUDED_CYCLES), "{tenth}");
         }
-        assert!(winding.is_believed(7), "what is not there does no harm");
+        assert!(winding.informs_phase(7), "beyond the last angle");
     }
 
     #[test]
-    fn where_an_angle_begins_is_no_turn() {
+    fn the_turns_of_the_first_frame_exclude_no_angle() {
         let mut winding = Winding::<1>::new();
-        winding.see(0, -5, 0.3);
-        winding.begin();
-        winding.see(0, -5, 0.5);
-        assert!(winding.is_believed(0));
+        winding.update(0, -5, 0.3);
+        winding.initialise();
+        winding.update(0, -5, 0.5);
+        assert!(winding.informs_phase(0));
     }
 }

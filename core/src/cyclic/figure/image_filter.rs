@@ -1,4 +1,4 @@
-//! What the paper filters beside the pose: a number seen in noise that drifts, such as a segment's length or the root.
+//! Kalman filter of one number in the image: a segment's length or a coordinate of the root.
 
 use crate::error::{ParameterError, not_negative, positive};
 
@@ -16,7 +16,7 @@ use crate::error::{ParameterError, not_negative, positive};
 ///     filter.step(1.0, seen, 1.0);
 /// }
 /// assert!((filter.value() - 180.0).abs() < 0.5 && filter.variance() < 0.5);
-/// // What was not seen is bridged, and less sure.
+/// // A missing measurement is bridged, with more variance.
 /// filter.step(5.0, None, 1.0);
 /// assert!((filter.value() - 190.0).abs() < 1.0 && filter.variance() > 0.5);
 /// # Ok::<(), sinew_core::error::ParameterError>(())
@@ -32,7 +32,8 @@ pub struct ScalarFilter {
     acceleration_variance: f32,
 }
 
-/// Greatest variance, pixels^2: a million pixels of standard deviation say nothing about a place.
+/// Largest variance, pixels^2. Chosen: a million pixels of standard deviation, far beyond any
+/// image.
 const MAX_VARIANCE: f32 = 1.0e12;
 
 impl ScalarFilter {
@@ -103,7 +104,7 @@ mod tests {
     use crate::random::Stream;
 
     #[test]
-    fn a_length_becomes_surer_and_a_walking_root_is_followed_through_a_gap() {
+    fn the_variance_of_a_length_falls_and_a_walking_root_is_followed_through_a_gap() {
         let mut stream = Stream::new(9, 0, 0);
         let mut length = ScalarFilter::new(45.0, 5.0, 0.01, 0.0).unwrap();
         let mut root = ScalarFilter::new(100.0, 3.0, 0.0, 0.05).unwrap();

@@ -1,4 +1,5 @@
-//! Where the figure is and how long its segments are, filtered beside the pose (cyclic paper, section 3), and its joints.
+//! Root position and segment lengths of the figure, filtered beside the pose (cyclic paper, section
+//! 2.2), and its joints.
 //!
 //! ```
 //! use sinew_core::cyclic::{FigurePlace, PlaceOptions};
@@ -22,11 +23,14 @@ use crate::math::sqrt;
 use crate::skeleton::stick_figure::{ImagePoint, StickFigure};
 use core::f32::consts::SQRT_2;
 
-/// Acceleration of the hips of a walker, who rises and sinks by 2.5 cm twice a second.
+/// Acceleration of the root. Derived: 0.025 (4 pi)^2 m/s^2 of a walker's hips, which rise and sink
+/// by 2.5 cm twice a second.
 const ROOT_ACCELERATION_M_PER_S2: f32 = 4.0;
-/// By which part of itself a segment's length in the picture changes in a second, as limbs leave the plane.
+/// Random walk of a segment's length in the image, relative to it, in a second. Chosen: limbs leave
+/// the image plane.
 const LENGTH_WALK_PER_S: f32 = 0.1;
-/// Beyond this standard deviation, in lengths of the trunk, the place of the root is not known any more.
+/// Standard deviation of the root, in lengths of the trunk, above which its position counts as
+/// unknown. Chosen: half a trunk, about the length of a segment.
 const ROOT_LOST_TRUNKS: f32 = 0.5;
 
 /// How root and lengths are filtered; `px` stands for any unit of the picture's plane.
@@ -87,7 +91,8 @@ impl PlaceOptions {
     }
 }
 
-/// Root and segment lengths over time, each with its own filter. What was never seen is `None`.
+/// Root and segment lengths over time, each with its own filter. `None` before the first
+/// measurement.
 ///
 /// ```
 /// use sinew_core::cyclic::{FigurePlace, PlaceOptions};
@@ -96,7 +101,7 @@ impl PlaceOptions {
 /// let mut place = FigurePlace::<2>::new(options)?;
 /// place.step(1.0, Some([300.0, 200.0]), &[Some(80.0), None]);
 /// assert_eq!(place.lengths_px(), [Some(80.0), None], "the second segment was never seen");
-/// // A second behind a pillar, and nobody knows where the person is; limbs keep their length.
+/// // After a second behind a pillar the root is unknown. Segments keep their length.
 /// place.step(30.0, None, &[None; 2]);
 /// assert_eq!(place.root_px(), None);
 /// assert!(place.lengths_px()[0].is_some());
@@ -110,7 +115,7 @@ pub struct FigurePlace<const N: usize> {
 }
 
 impl<const N: usize> FigurePlace<N> {
-    /// Nothing known yet.
+    /// Without measurements.
     ///
     /// # Errors
     /// Those of [`PlaceOptions::check`].
@@ -119,7 +124,7 @@ impl<const N: usize> FigurePlace<N> {
         Ok(Self { options, root: None, lengths: [None; N] })
     }
 
-    /// Lengths known beforehand about as well as one measurement tells them, px.
+    /// With first lengths, px, that have the variance of one measurement.
     ///
     /// # Errors
     /// As [`Self::new`]; each length positive.
@@ -132,7 +137,8 @@ impl<const N: usize> FigurePlace<N> {
         Ok(place)
     }
 
-    /// One step of `step_frames` (frames of the rate that the options are for). What is missing or not finite is bridged.
+    /// One step of `step_frames` (frames of the rate that the options are for). Missing and
+    /// non-finite values are bridged.
     pub fn step(&mut self, step_frames: f32, root_px: Option<ImagePoint>, lengths_px: &[Option<f32>; N]) {
         let options = self.options;
         let root_px = root_px.filter(|root| root.iter().all(|value| value.is_finite()));
@@ -153,7 +159,8 @@ impl<const N: usize> FigurePlace<N> {
         }
     }
 
-    /// The root, px; `None` where it was never seen, or not for so long that nobody knows.
+    /// The root, px; `None` before its first measurement and where its standard deviation exceeds
+    /// [`PlaceOptions::lost_std_px`].
     #[must_use]
     pub fn root_px(&self) -> Option<ImagePoint> {
         let filters = self.root?;
@@ -212,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn joints_of_a_walker_are_nearer_than_the_keypoints_and_a_lost_root_is_given_up() {
+    fn joints_of_a_walker_are_nearer_than_the_keypoints_and_a_lost_root_is_unknown() {
         let angles: [f32; HUMAN_ANGLES] = core::array::from_fn(|i| 0.4 * i as f32 - 2.0);
         let lengths = [40.0_f32; HUMAN_ANGLES];
         let mut place = FigurePlace::<HUMAN_ANGLES>::new(options()).unwrap();
@@ -243,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn what_hangs_on_an_unknown_length_is_missing() {
+    fn joints_behind_an_unknown_length_are_missing() {
         let mut place = FigurePlace::<HUMAN_ANGLES>::new(options()).unwrap();
         let mut lengths = [Some(30.0); HUMAN_ANGLES];
         lengths[8] = None;
@@ -256,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_none_are_refused() {
+    fn options_that_are_not_positive_are_refused() {
         assert_eq!(PlaceOptions::of_person(0.0, 1.0, 1.0, 1.0).unwrap_err().parameter, "trunk_px");
         assert_eq!(PlaceOptions::of_person(1.0, 1.0, f32::NAN, 1.0).unwrap_err().parameter, "sigma_rad");
         let bad = PlaceOptions { lost_std_px: -1.0, ..options() };

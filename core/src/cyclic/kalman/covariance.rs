@@ -1,23 +1,27 @@
-//! Covariance of angles and angular velocities in the block form that the kinematics of the cyclic paper gives it.
+//! Covariance of angles and angular velocities in the block form that the kinematics give it.
 //!
-//! With the angles first and the velocities second, A of eq. (6) is [I, dt I; 0, I], K of eq. (8) is [dt^2/2 I; dt I] and
-//! the measurement selects angles. So the covariance is three N x N blocks and no step needs a general matrix product.
+//! With the angles first and the velocities second, the matrix A of cyclic (6) is [I, dt I; 0, I]
+//! and K of cyclic (8) is [dt^2/2 I; dt I]. The measurement selects angles. So the covariance is
+//! three N x N blocks, and no step needs a general matrix product.
 //!
-//! Rounding: an update takes w w' off the covariance. Row and column of the measured angle are set to r / s of what they
-//! were instead, so that a precise measurement after a long gap leaves no difference of large numbers; and the noise has
-//! full rank ([`DIAGONAL_EXCESS`]), so that no direction's variance sinks below what `f32` resolves. A test runs ten
-//! million frames with gaps and finds no eigenvalue below zero.
+//! Rounding: an update subtracts w w' from the covariance. Row and column of the measured angle are
+//! set to r / s of their values instead, so that a precise measurement after a long gap subtracts
+//! no large numbers. The noise has full rank ([`DIAGONAL_EXCESS`]), so that no direction's variance
+//! sinks below the resolution of `f32`. A test runs ten million frames with gaps and finds no
+//! eigenvalue below zero.
 
 use crate::math::sqrt;
 use crate::numeric::semi_definite::{DIAGONAL_EXCESS, packed_index};
 
-/// What rounding may do to an entry, relative to the variances, where numbers nearly cancel or correlations reach one.
-pub(super) const MARGIN: f32 = 4.0e-6;
-/// A measurement with less than this part of the innovation's variance comes after a gap: differences nearly cancel.
-pub(super) const SEVERE: f32 = 1.0e-3;
-/// Greatest variance of an angle, rad^2: (4 pi)^2. Beyond it the angle is unknown, and the squares stay within `f32`.
+/// Bound on the rounding of an entry, relative to the variances, where numbers nearly cancel or
+/// correlations reach one. Chosen: about 32 units of the last place of `f32`.
+pub(super) const ROUNDING_MARGIN: f32 = 4.0e-6;
+/// Share of the innovation's variance below which a measurement's variance makes differences nearly
+/// cancel, as after a gap. Chosen: three of the seven digits of `f32` are lost there.
+pub(super) const CANCELLATION_RATIO: f32 = 1.0e-3;
+/// Largest variance of an angle, rad^2. Chosen: (4 pi)^2, at which the angle is unknown.
 pub(super) const MAX_ANGLE_VARIANCE: f32 = 158.0;
-/// Greatest variance of an angular velocity, (rad per frame)^2: pi^2, half a turn between two frames.
+/// Largest variance of an angular velocity, (rad per frame)^2. Chosen: pi^2, half a turn a frame.
 pub(super) const MAX_VELOCITY_VARIANCE: f32 = 9.87;
 
 /// Rows and columns of the squares that the velocities' covariance is worked on in: sixteen sums stay in registers.
@@ -84,8 +88,8 @@ impl<const N: usize> KinematicCovariance<N> {
         }
     }
 
-    /// P <- A P A' + K Sigma K' over `step` frames (eqs. 6 and 9), Sigma being `scale` times the packed lower triangle
-    /// between `before` and `after`.
+    /// P <- A P A' + K Sigma K' over `step` frames, cyclic (6) and cyclic (9). Sigma is `scale`
+    /// times the packed lower triangle between `before` and `after`.
     ///
     /// Only as many rows of noise are added as the triangles hold.
     #[inline(always)]
@@ -107,19 +111,19 @@ impl<const N: usize> KinematicCovariance<N> {
         }
     }
 
-    /// Shrinks what has grown beyond all knowledge in a long gap: row and column of an angle or a velocity are scaled, which
-    /// keeps the matrix positive semi-definite.
+    /// Scales row and column of a variance above its limit, which keeps the matrix positive
+    /// semi-definite.
     #[inline(always)]
     pub(super) fn saturate(&mut self) {
         for i in 0..N {
             if self.angle[i][i] > MAX_ANGLE_VARIANCE {
-                let scale = (1.0 - MARGIN) * sqrt(MAX_ANGLE_VARIANCE / self.angle[i][i]);
+                let scale = (1.0 - ROUNDING_MARGIN) * sqrt(MAX_ANGLE_VARIANCE / self.angle[i][i]);
                 scale_symmetric(&mut self.angle, i, scale);
                 self.cross[i] = self.cross[i].map(|covariance| scale * covariance);
                 self.angle[i][i] = MAX_ANGLE_VARIANCE;
             }
             if self.velocity[i][i] > MAX_VELOCITY_VARIANCE {
-                let scale = (1.0 - MARGIN) * sqrt(MAX_VELOCITY_VARIANCE / self.velocity[i][i]);
+                let scale = (1.0 - ROUNDING_MARGIN) * sqrt(MAX_VELOCITY_VARIANCE / self.velocity[i][i]);
                 scale_symmetric(&mut self.velocity, i, scale);
                 for row in &mut self.cross {
                     row[i] *= scale;
@@ -130,8 +134,9 @@ impl<const N: usize> KinematicCovariance<N> {
     }
 }
 
-/// Makes `matrix`, all zeros, the symmetric one whose packed lower triangle is `scale` times what lies between `before` and `after`,
-/// its diagonal raised by [`DIAGONAL_EXCESS`]; zeros stay where the triangles end.
+/// Fills `matrix`, all zeros, with the symmetric matrix whose packed lower triangle is `scale`
+/// times the interpolation between `before` and `after`, its diagonal inflated by
+/// [`DIAGONAL_EXCESS`]. Zeros stay beyond the triangles.
 #[inline(always)]
 fn interpolate<const N: usize>(matrix: &mut [[f32; N]; N], before: &[f32], after: &[f32], fraction: f32, scale: f32) {
     let between = |(a, b): (&f32, &f32)| scale * (a + fraction * (b - a));

@@ -1,7 +1,9 @@
-//! The Kalman filter of the cyclic paper, eqs. (2) to (12), in the structure that its kinematics have.
+//! The Kalman filter of the cyclic paper, cyclic (2) to cyclic (12), in the block form of its
+//! kinematics.
 //!
-//! The measured angles are taken in one after the other, which for independent noise is the same as all at once. Position
-//! and velocity in the cycle are never corrected: no measurement bears on them in this model (see the phase-coupled filter).
+//! The update by one measured angle after the other equals the joint update for independent noise.
+//! Position and velocity in the cycle are never corrected, since the paper's measurement does not
+//! update them (section 3). The phase-coupled filter corrects them.
 
 use crate::angle::split_turns;
 use crate::cyclic::cycle_state::CycleState;
@@ -33,7 +35,7 @@ use core::f32::consts::PI;
 /// for frame in 1..=20 {
 ///     filter.step(&model, &options, &AngleMeasurement::new(&pose_rad(frame).map(Some), 0.1)?);
 /// }
-/// // Ten frames without a picture: on along the mean cycle, and less sure.
+/// // Ten frames without a measurement: along the mean cycle, with more variance.
 /// let seen_variance = filter.covariance().angle_variances()[0];
 /// let bridged = filter.step(&model, &options, &AngleMeasurement::nothing().after(10.0)?);
 /// assert!((bridged.angles_rad[0] - pose_rad(30)[0]).abs() < 0.1);
@@ -52,7 +54,7 @@ pub struct KalmanFilter<const N: usize> {
 
 const _: () = assert!(size_of::<KalmanFilter<HUMAN_ANGLES>>() <= 2560, "the state has to fit 2.5 KiB");
 
-/// What a frame's measurement was like, seen from the prediction.
+/// Innovation of a frame's measurement.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -140,7 +142,8 @@ impl<const N: usize> KalmanFilter<N> {
         self.estimate(&innovation, outlier)
     }
 
-    /// The state transition of eqs. (11) and (12) over `step_frames`, in substeps of at most one frame.
+    /// The state transition of cyclic (11) and cyclic (12) over `step_frames`, in substeps of at
+    /// most one frame.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn predict(&mut self, model: &MotionModel<'_>, options: &KalmanOptions, step_frames: f32) {
         let temporal_variance = options.temporal_acceleration_std * options.temporal_acceleration_std;
@@ -164,7 +167,7 @@ impl<const N: usize> KalmanFilter<N> {
         }
     }
 
-    /// Eqs. (2) and (3) for one angle.
+    /// One angle by cyclic (2), its velocity by cyclic (3).
     #[inline]
     fn move_angle(&mut self, index: usize, step: f32, acceleration: f32) {
         let moved = self.angles_rad[index] + step * self.velocities[index] + 0.5 * step * step * acceleration;

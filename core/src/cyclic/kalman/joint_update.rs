@@ -1,19 +1,22 @@
 //! The measurement update by all angles seen in a frame, for independent noise.
 //!
-//! It is the update by one angle after the other, P <- P - w w' / s with w the measured column and s the innovation's
-//! variance, in another order of the same sums: first all columns w, which continue the factor L of the innovation's
-//! covariance L D L' to the rest of the state, then each entry of P at once. No root stands between one angle and the next.
-//! The angles seen come first, in `order`.
+//! It equals the update by one angle after the other, P <- P - w w' / s, with the measured column w
+//! and the innovation's variance s. The sums have another order: first all columns w, which
+//! continue the factor L of the innovation's covariance L D L' to the rest of the state, then each
+//! entry of P once. No square root separates two angles. The measured angles come first, in
+//! `order`.
 //!
-//! Once an angle is measured with variance r, row and column become r / s of what they were before that measurement; later
-//! columns are taken off that. So a precise measurement after a long gap leaves no difference of large numbers.
+//! A measurement of variance r scales row and column of its angle by r / s. The later columns are
+//! subtracted from that, so a precise measurement after a long gap subtracts no large numbers.
 
 use crate::angle::angle_difference;
 use crate::cyclic::AngleMeasurement;
-use crate::cyclic::kalman::covariance::{KinematicCovariance, MARGIN, SEVERE, SQUARE, half, mirror};
+use crate::cyclic::kalman::covariance::{
+    CANCELLATION_RATIO, KinematicCovariance, ROUNDING_MARGIN, SQUARE, half, mirror,
+};
 use crate::numeric::log_product::LogProduct;
 
-/// The angles that a frame shows, in front, and what it says about them.
+/// The measured angles of a frame, in front, with their innovations.
 ///
 /// Invariant: `order` has each number below N once, and `count` is at most N.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +32,7 @@ pub(super) struct SeenAngles<const N: usize> {
 }
 
 impl<const N: usize> SeenAngles<N> {
-    /// What a measurement shows of the first `angle_count` angles, relative to those predicted: the shorter way round.
+    /// From the first `angle_count` angles of a measurement; innovations are wrapped.
     #[inline(always)]
     #[must_use]
     pub(super) fn of(measurement: &AngleMeasurement<N>, predicted_rad: &[f32; N], angle_count: usize) -> Self {
@@ -65,7 +68,7 @@ impl<const N: usize> SeenAngles<N> {
     }
 }
 
-/// What an update says about the mean.
+/// Update of the mean.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MeanShift<const N: usize> {
     /// To be added to the angles.
@@ -83,25 +86,26 @@ const AHEAD: usize = 0;
 const VELOCITY: usize = 1;
 const INNOVATION: usize = 2;
 
-/// What the columns of the covariance that the angles seen call for need beside its own place. A row is a column there; angles are in
-/// the order of [`SeenAngles`].
+/// Working memory for the measured columns of the covariance. A row here is a column there; angles
+/// are in the order of [`SeenAngles`].
 ///
-/// The covariance's own blocks hold, as `aheads`, each angle's covariances with itself and those after it when its measurement is taken
-/// in (what stands before has no meaning), and as `velocities` those with the velocities; its new entries are made from them there.
+/// The covariance's own blocks hold the rest, and its new entries are computed there. `aheads` has
+/// each angle's covariances with itself and the later angles at its measurement (earlier entries
+/// are meaningless), `velocities` those with the velocities.
 struct Columns<const N: usize> {
-    /// Covariances with the angles measured before, less the measurement's variance at the angle itself, and those with the angles
-    /// never seen.
-    settled: [[f32; N]; N],
-    /// The covariances with the last angle and the last velocity, then the innovation, given what was measured before: all go through
-    /// the same sums, and four numbers are one register where thirteen are three and a bit. The fourth is nothing. The last column of
-    /// `velocities` has no meaning meanwhile.
+    /// Covariances with the angles measured before, minus the measurement's variance at the angle
+    /// itself, and those with the missing angles.
+    past: [[f32; N]; N],
+    /// The covariances with the last angle and the last velocity, and the innovation, given the
+    /// angles measured before. All have the same sums, and four numbers fill a register. The fourth
+    /// is unused. The last column of `velocities` is meaningless meanwhile.
     last: [[f32; SQUARE]; N],
     /// One over the variance of each innovation.
     inverse_variance: [f32; N],
-    /// Part of the angle's covariances that the measurement leaves.
-    left: [f32; N],
-    /// Whether a measurement takes nearly all of an angle's variance away.
-    is_severe: [bool; N],
+    /// Share of the angle's covariances after the measurement, r / s.
+    kept: [f32; N],
+    /// Whether a measurement's variance is below [`CANCELLATION_RATIO`] of the innovation's.
+    cancels: [bool; N],
 }
 
 impl<const N: usize> KinematicCovariance<N> {
@@ -124,8 +128,8 @@ impl<const N: usize> KinematicCovariance<N> {
             shift.squared += innovation_rad * innovation_rad * columns.inverse_variance[place];
             shift.determinant.multiply(variance);
         }
-        let is_any_severe = columns.is_severe.contains(&true);
-        let margins = is_any_severe.then(|| columns.margins(aheads, velocities, count));
+        let any_cancels = columns.cancels.contains(&true);
+        let margins = any_cancels.then(|| columns.margins(aheads, velocities, count));
         if !keeps_velocities {
             shift.velocities = columns.reduce_velocities(velocities, covariance, count);
         }
@@ -164,18 +168,18 @@ impl<const N: usize> KinematicCovariance<N> {
 }
 
 impl<const N: usize> Columns<N> {
-    /// Nothing found yet.
+    /// Before the first measurement.
     #[inline(always)]
     fn of(seen: &SeenAngles<N>, (aheads, velocities): (&[[f32; N]; N], &[[f32; N]; N]), count: usize) -> Self {
         let mut columns = Self {
-            settled: [[0.0; N]; N],
+            past: [[0.0; N]; N],
             last: [[0.0; SQUARE]; N],
             inverse_variance: [0.0; N],
-            left: [0.0; N],
-            is_severe: [false; N],
+            kept: [0.0; N],
+            cancels: [false; N],
         };
         for place in 0..count.min(N) {
-            columns.settled[place][place] = -seen.noise_variance[place];
+            columns.past[place][place] = -seen.noise_variance[place];
             columns.last[place] =
                 [aheads[place][const { N - 1 }], velocities[place][const { N - 1 }], seen.innovation_rad[place], 0.0];
         }
@@ -191,13 +195,13 @@ impl<const N: usize> Columns<N> {
         count: usize,
         noise_variance: f32,
     ) -> f32 {
-        let (mut ahead, mut settled, mut velocity) = (aheads[place], self.settled[place], velocities[place]);
+        let (mut ahead, mut past, mut velocity) = (aheads[place], self.past[place], velocities[place]);
         let mut last = self.last[place];
         if place < half::<N>() {
             for earlier in 0..place {
                 let factor = self.inverse_variance[earlier] * aheads[earlier][place];
                 subtract_but_last(&mut ahead, factor, &aheads[earlier]);
-                subtract_first_half(&mut settled, factor, &self.settled[earlier]);
+                subtract_first_half(&mut past, factor, &self.past[earlier]);
                 subtract_but_last(&mut velocity, factor, &velocities[earlier]);
                 subtract_scaled(&mut last, factor, &self.last[earlier]);
             }
@@ -205,14 +209,14 @@ impl<const N: usize> Columns<N> {
             for earlier in 0..half::<N>() {
                 let factor = self.inverse_variance[earlier] * aheads[earlier][place];
                 subtract_second_half(&mut ahead, factor, &aheads[earlier]);
-                subtract_first_half(&mut settled, factor, &self.settled[earlier]);
+                subtract_first_half(&mut past, factor, &self.past[earlier]);
                 subtract_but_last(&mut velocity, factor, &velocities[earlier]);
                 subtract_scaled(&mut last, factor, &self.last[earlier]);
             }
             for earlier in half::<N>()..place {
                 let factor = self.inverse_variance[earlier] * aheads[earlier][place];
                 subtract_second_half(&mut ahead, factor, &aheads[earlier]);
-                subtract_but_last(&mut settled, factor, &self.settled[earlier]);
+                subtract_but_last(&mut past, factor, &self.past[earlier]);
                 subtract_but_last(&mut velocity, factor, &velocities[earlier]);
                 subtract_scaled(&mut last, factor, &self.last[earlier]);
             }
@@ -222,47 +226,49 @@ impl<const N: usize> Columns<N> {
         let variance = aheads[place][place] + noise_variance;
         let inverse_variance = 1.0 / variance;
         self.inverse_variance[place] = inverse_variance;
-        self.left[place] = noise_variance * inverse_variance;
-        self.is_severe[place] = noise_variance < SEVERE * variance;
-        (self.settled[place], velocities[place], self.last[place]) = (settled, velocity, last);
+        self.kept[place] = noise_variance * inverse_variance;
+        self.cancels[place] = noise_variance < CANCELLATION_RATIO * variance;
+        (self.past[place], velocities[place], self.last[place]) = (past, velocity, last);
         for j in count..N {
-            self.settled[place][j] = aheads[place][j];
+            self.past[place][j] = aheads[place][j];
         }
         variance
     }
 
-    /// Rows of the angles after all measurements: up to the diagonal at least, the rest from the rows below. A row begins as it is
-    /// right after its own measurement, or as it was where its angle is not seen. Returns what is left of the innovations: from the
-    /// corrected angles to the measurements, or where an angle is not seen, to where it was.
+    /// Rows of the angles after all measurements, at least up to the diagonal; the rest follows
+    /// from the rows below. A row starts as it is right after its own measurement, or unchanged
+    /// where its angle is missing. Returns the residuals: from the corrected angles to the
+    /// measurements, or to the predictions where an angle is missing.
     #[inline(always)]
     fn reduce_angles(&self, aheads: &mut [[f32; N]; N], velocities: &mut [[f32; N]; N], count: usize) -> [f32; N] {
-        // It is no more; said here, it lets no index be checked.
+        // Changes nothing, since `count` is at most N, and lets the compiler drop the bounds
+        // checks.
         let count = count.min(N);
-        let mut innovation_left = [0.0; N];
-        // The angles not seen call for all columns, of which each angle seen then takes away its own.
+        let mut residual = [0.0; N];
+        // The missing angles need all columns.
         for place in count..N {
             let (mut angle, mut velocity) = (aheads[place], velocities[place]);
             angle.iter_mut().take(count).for_each(|covariance| *covariance = 0.0);
             let mut last = [0.0, velocity[const { N - 1 }], 0.0, 0.0];
-            self.take_off::<false>(place, 0..count, (&mut angle, &mut velocity, &mut last), velocities);
+            self.subtract_updates::<false>(place, 0..count, (&mut angle, &mut velocity, &mut last), velocities);
             velocity[const { N - 1 }] = last[VELOCITY];
-            innovation_left[place] = last[INNOVATION];
+            residual[place] = last[INNOVATION];
             (aheads[place], velocities[place]) = (angle, velocity);
         }
         for place in 0..count {
-            let left = self.left[place];
-            let mut angle = self.settled[place].map(|covariance| left * covariance);
-            let mut velocity = velocities[place].map(|covariance| left * covariance);
-            let mut last = self.last[place].map(|covariance| left * covariance);
+            let kept = self.kept[place];
+            let mut angle = self.past[place].map(|covariance| kept * covariance);
+            let mut velocity = velocities[place].map(|covariance| kept * covariance);
+            let mut last = self.last[place].map(|covariance| kept * covariance);
             let (rows, later) = ((&mut angle, &mut velocity, &mut last), place + 1..count);
             let taken = if place < half::<N>() {
-                self.take_off::<true>(place, later, rows, velocities)
+                self.subtract_updates::<true>(place, later, rows, velocities)
             } else {
-                self.take_off::<false>(place, later, rows, velocities)
+                self.subtract_updates::<false>(place, later, rows, velocities)
             };
             velocity[const { N - 1 }] = last[VELOCITY];
-            innovation_left[place] = last[INNOVATION];
-            let variance = left * aheads[place][place] - taken;
+            residual[place] = last[INNOVATION];
+            let variance = kept * aheads[place][place] - taken;
             (aheads[place], velocities[place]) = (angle, velocity);
             aheads[place][place] = variance;
         }
@@ -271,13 +277,14 @@ impl<const N: usize> Columns<N> {
                 aheads[i][j] = aheads[j][i];
             }
         }
-        innovation_left
+        residual
     }
 
-    /// Takes what measurements at `later` places say off the covariances of the angle at `place` with angles and velocities and off its
-    /// innovation; returns what they take off its variance. Of the angles those of the first half alone, if asked.
+    /// Subtracts the updates by measurements at `later` places from the covariances of the angle at
+    /// `place` with angles and velocities, and from its innovation. Returns the decrease of its
+    /// variance. With `FIRST_HALF` only the first half of the angles changes.
     #[inline(always)]
-    fn take_off<const FIRST_HALF: bool>(
+    fn subtract_updates<const FIRST_HALF: bool>(
         &self,
         place: usize,
         later: core::ops::Range<usize>,
@@ -286,13 +293,13 @@ impl<const N: usize> Columns<N> {
     ) -> f32 {
         let mut taken = 0.0;
         for later in later {
-            let covariance = self.settled[later][place];
+            let covariance = self.past[later][place];
             let factor = self.inverse_variance[later] * covariance;
             taken += factor * covariance;
             if FIRST_HALF {
-                subtract_first_half(angle, factor, &self.settled[later]);
+                subtract_first_half(angle, factor, &self.past[later]);
             } else {
-                subtract_scaled(angle, factor, &self.settled[later]);
+                subtract_scaled(angle, factor, &self.past[later]);
             }
             subtract_but_last(velocity, factor, &velocities[later]);
             subtract_scaled(last, factor, &self.last[later]);
@@ -300,18 +307,18 @@ impl<const N: usize> Columns<N> {
         taken
     }
 
-    /// What rounding may take off the variances of angles and velocities where a measurement takes nearly all of an angle's variance
-    /// away.
+    /// Bounds on the rounding of the variances of angles and velocities, where a measurement is far
+    /// more precise than the prediction.
     #[cold]
     fn margins(&self, aheads: &[[f32; N]; N], velocities: &[[f32; N]; N], count: usize) -> ([f32; N], [f32; N]) {
         let mut margins = ([0.0; N], [0.0; N]);
         for place in 0..count.min(N) {
-            if !self.is_severe[place] {
+            if !self.cancels[place] {
                 continue;
             }
-            let margin = MARGIN * self.inverse_variance[place];
+            let margin = ROUNDING_MARGIN * self.inverse_variance[place];
             for j in 0..N {
-                let angle = if j < place { self.settled[place][j] } else { aheads[place][j] };
+                let angle = if j < place { self.past[place][j] } else { aheads[place][j] };
                 let velocity = if j < N - 1 { velocities[place][j] } else { self.last[place][VELOCITY] };
                 margins.0[j] += margin * angle * angle;
                 margins.1[j] += margin * velocity * velocity;
@@ -320,11 +327,12 @@ impl<const N: usize> Columns<N> {
         margins
     }
 
-    /// Takes the sum of w w' / s off the velocities' covariance, in squares of four rows and columns; returns what the innovations add
-    /// to the velocities.
+    /// Subtracts the sum of w w' / s from the velocities' covariance, in squares of four rows and
+    /// columns; returns the update of the velocities.
     #[inline(always)]
     fn reduce_velocities(&self, velocities: &[[f32; N]; N], covariance: &mut [[f32; N]; N], count: usize) -> [f32; N] {
-        // It is no more; said here, it lets no index be checked.
+        // Changes nothing, since `count` is at most N, and lets the compiler drop the bounds
+        // checks.
         let count = count.min(N);
         let Some((last_row, rows)) = covariance.split_last_mut() else { return [0.0; N] };
         let (row_blocks, rest) = rows.as_chunks_mut::<SQUARE>();

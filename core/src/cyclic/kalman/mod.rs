@@ -1,4 +1,4 @@
-//! The paper's Kalman filter (cyclic (2) to (12)).
+//! The paper's Kalman filter (cyclic (2) to cyclic (12)).
 
 pub mod covariance;
 pub mod filter;

@@ -1,4 +1,4 @@
-//! What may be chosen in the Kalman filters of the cyclic paper.
+//! Options of the Kalman filters of the cyclic paper.
 
 use crate::error::{ParameterError, not_negative, positive};
 use crate::numeric::chi_square::DEFAULT_GATE_SIGMAS;
@@ -58,7 +58,7 @@ pub enum GainReach {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CovarianceScaling {
-    /// By k^4, as the algebra has it: the acceleration scales by k^2.
+    /// By k^4, the square of the acceleration's factor k^2 (cyclic paper, section 2.3).
     #[default]
     FourthPower,
     /// By k^2 like the mean, which is the paper's wording.
@@ -83,7 +83,7 @@ pub struct KalmanOptions {
     pub gain: GainReach,
     /// How the acceleration's covariance scales with speed.
     pub scaling: CovarianceScaling,
-    /// Standard deviation of the temporal acceleration, cycles per frame^2 (eq. 10).
+    /// Standard deviation of the temporal acceleration, cycles per frame^2: cyclic (10).
     pub temporal_acceleration_std: f32,
     /// First variance of each angle, rad^2.
     pub angle_variance: f32,

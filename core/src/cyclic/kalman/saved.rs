@@ -31,7 +31,7 @@ mod tests {
     use crate::saved_state::{StateError, StateKind, restore, save};
 
     #[test]
-    fn a_filter_goes_on_from_its_saved_state_as_if_nothing_had_been() {
+    fn a_restored_filter_equals_the_saved_one() {
         let table = synthetic::table(4.0e-3, 9);
         let model = table.model().unwrap();
         let seen = |frame: u16| -> [Option<f32>; 13] {

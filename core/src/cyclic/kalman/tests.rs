@@ -15,7 +15,7 @@ use proptest::prelude::*;
 
 const N: usize = 13;
 
-/// Eqs. (1) to (12) word by word with dense matrices in `f64`, Joseph's form, all angles at once.
+/// cyclic (1) to cyclic (12) with dense matrices in `f64`, Joseph's form, all angles at once.
 struct Dense {
     x: DVector<f64>,
     p: DMatrix<f64>,
@@ -101,7 +101,7 @@ fn first_pose() -> [Option<f32>; N] {
     core::array::from_fn(|i| Some(synthetic::mean_angle(i, 0.0)))
 }
 
-/// A noisy look at the synthetic motion with a share of the angles missing.
+/// A noisy measurement of the synthetic motion with a share of the angles missing.
 fn seen(frame: u32, std: f32, missing: f32, stream: &mut Stream) -> AngleMeasurement<N> {
     let angles = core::array::from_fn(|i| {
         let angle = synthetic::mean_angle(i, frame as f32 / 65.0) + std * stream.normal();
@@ -243,7 +243,7 @@ proptest! {
 }
 
 #[test]
-fn half_steps_lead_to_where_whole_steps_lead() {
+fn half_steps_give_the_state_of_whole_steps() {
     let table = synthetic::table(4.0e-3, 9);
     let model = table.model().unwrap();
     let options = KalmanOptions::default();

@@ -68,7 +68,7 @@ impl fmt::Display for ModelBytesError {
 
 impl core::error::Error for ModelBytesError {}
 
-/// What the header of a model says.
+/// Header of a model.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_comes_back_from_its_bytes() {
+    fn a_table_survives_its_bytes() {
         let mut table = synthetic::table(4.0e-3, 9);
         table.turns_per_cycle[3] = -1;
         let bytes = bytes_of(&table);
@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_are_no_model_are_refused() {
+    fn invalid_bytes_are_refused() {
         let good = bytes_of(&synthetic::table(4.0e-3, 9));
         let wrong = |index: usize, to: u8| {
             let mut bytes = good.clone();

@@ -1,18 +1,22 @@
-//! How the pose of a person differs from the mean cycle: a constant, a swing with the cycle, and a smooth rest.
+//! Deviation of a person's pose from the mean cycle: an offset, a swing with the cycle, and a
+//! smooth residual.
 //!
-//! What differs between people lasts: their trunk leans otherwise, their arms swing wider or earlier. So the deviation of
-//! an angle at cycle position c is `a + p cos 2 pi c + q sin 2 pi c + d`, with a, p and q that hardly change while a
-//! person moves on, and a rest d that follows a smooth random process along the cycle (Matern, order 3/2).
+//! Differences between people last: the inclination of the trunk, a wider or earlier swing of the
+//! arms. So the deviation of an angle at cycle position c is `a + p cos 2 pi c + q sin 2 pi c + d`.
+//! The offset a and the swing p, q hardly change within a person. The residual d follows a Matern
+//! process of order 3/2 along the cycle (Rasmussen and Williams, Gaussian Processes for Machine
+//! Learning, (4.17)).
 
-/// Spread of the deviation's parts, as the phase-coupled filter needs it. Borrowed, like the whole model; n numbers each.
+/// Spread of the deviation's parts, for the phase-coupled filter. Borrowed, like the whole model; n
+/// numbers each.
 ///
-/// A model without it (empty slices) still serves the other filters.
+/// A model without it (empty slices) serves the other filters only.
 ///
 /// ```
 /// use sinew_core::cyclic::Deviation;
 /// use sinew_core::math::exp;
 ///
-/// // One angle: people hold it about 5 degrees otherwise, and swing it 3 degrees wider or less.
+/// // One angle: offsets of about 5 degrees between people, and a swing that differs by 3 degrees.
 /// let deviation = Deviation {
 ///     offset_std_rad: &[0.08],
 ///     swing_std_rad: &[0.05],
@@ -20,7 +24,7 @@
 ///     rest_rate_per_cycle: &[6.0],
 /// };
 /// assert!(!deviation.is_absent() && Deviation::default().is_absent());
-/// // What is left over is half forgotten after a quarter of a cycle.
+/// // The residual's correlation is about a half after a quarter of a cycle.
 /// let scaled = deviation.rest_rate_per_cycle[0] * 0.25;
 /// assert!(((1.0 + scaled) * exp(-scaled) - 0.56).abs() < 0.01);
 /// ```
@@ -37,7 +41,7 @@ pub struct Deviation<'a> {
 }
 
 impl Deviation<'_> {
-    /// Whether the model says nothing about the deviation.
+    /// Whether the model has no deviation.
     #[must_use]
     pub const fn is_absent(&self) -> bool {
         self.offset_std_rad.is_empty()

@@ -111,7 +111,7 @@ impl MotionModel<'_> {
     /// # #[cfg(feature = "walking-model")] {
     /// use sinew_core::cyclic::model::walking::WALKING;
     ///
-    /// // An elbow (the angle of l_wrist) swings otherwise in every walker, a neck hardly.
+    /// // The swing of an elbow (the angle of l_wrist) differs between walkers, that of a neck hardly.
     /// let velocity_std = WALKING.model()?.deviation_velocity_std::<13>();
     /// assert!(velocity_std[3] > 2.0 * velocity_std[0]);
     /// # }
@@ -130,14 +130,14 @@ impl MotionModel<'_> {
         std
     }
 
-    /// Change of the mean pose from `reach` cycles before `position` to `reach` behind it, rad per cycle; `reach` is at least half the
-    /// way between two stored positions.
+    /// Slope of the secant of the mean pose from `reach` cycles before `position` to `reach` behind
+    /// it, rad per cycle; `reach` is at least half the way between two stored positions.
     ///
     /// ```
     /// # #[cfg(feature = "walking-model")] {
     /// use sinew_core::cyclic::model::walking::WALKING;
     ///
-    /// // The right knee, just ahead and over half a cycle: what bends is stretched again.
+    /// // The right knee, just ahead and over half a cycle: the knee bends and stretches again.
     /// let model = WALKING.model()?;
     /// let [ahead, far] = [0.01, 0.25].map(|reach| model.mean_pose_secant::<13>(0.1, reach)[11]);
     /// assert!(far.abs() < ahead.abs());

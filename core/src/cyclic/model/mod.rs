@@ -1,4 +1,4 @@
-//! Motion models: what is learned of a cyclic motion, as numbers in flash.
+//! Motion models: the learned moments of a cyclic motion, as numbers in flash.
 
 pub mod bytes;
 pub mod deviation;

@@ -1,4 +1,5 @@
-//! The motion model: what a few training cycles say about every position of the cycle (cyclic paper, section 2.3).
+//! The motion model: moments of the training cycles at every position of the cycle (cyclic paper,
+//! section 2.3).
 //!
 //! Immutable and borrowed: the numbers lie in flash (a `static` [`crate::cyclic::ModelTable`]) or in a host's vectors, the filters
 //! only read them. All derivatives are per frame of the reference cycle, in which the cycle takes l frames; a person who
@@ -18,7 +19,7 @@ pub const MAX_ANGLES: usize = MAX_ROWS;
 /// # #[cfg(feature = "walking-model")] {
 /// use sinew_core::cyclic::model::walking::WALKING;
 ///
-/// // It says where among thousands of numbers the one is that cannot be.
+/// // The error names the place of the invalid number.
 /// let mut table = WALKING.clone();
 /// table.mean_pose_rad[17][3] = f32::NAN;
 /// let refused = table.model().unwrap_err();
@@ -84,9 +85,10 @@ impl core::error::Error for ModelError {}
 pub struct ModelParts<'a> {
     /// Number n of angles.
     pub angle_count: usize,
-    /// Mean angular acceleration, rad per reference frame squared: l rows of n (eq. 7).
+    /// Mean angular acceleration, rad per reference frame squared: l rows of n, cyclic (7).
     pub mean_acceleration: &'a [f32],
-    /// Covariance of the acceleration, rad^2 per reference frame^4: l packed lower triangles of n (n + 1) / 2 (eq. 7).
+    /// Covariance of the acceleration, rad^2 per reference frame^4: l packed lower triangles of n
+    /// (n + 1) / 2, cyclic (7).
     pub acceleration_covariance: &'a [f32],
     /// Mean angles, radians, unwrapped along the cycle: l rows of n.
     pub mean_pose_rad: &'a [f32],
@@ -130,7 +132,7 @@ impl<'a> ModelParts<'a> {
 ///
 /// let model = WALKING.model()?;
 /// assert_eq!((model.angle_count(), model.position_count()), (13, 100));
-/// // Somebody at half the mean speed has half the velocities at the same poses.
+/// // A person at half the reference speed has half the velocities at the same poses.
 /// let point = model.point(0.3);
 /// let ratio = model.speed_ratio(0.5 * model.reference_velocity());
 /// let (pose_rad, velocity) = (model.mean_pose_rad::<13>(point), model.mean_velocity::<13>(point).map(|v| ratio * v));
@@ -330,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_none_are_named_with_their_place() {
+    fn nan_and_infinity_are_reported_with_their_place() {
         let mut pose = ACCELERATION;
         pose[5] = f32::NAN;
         let error = MotionModel::new(ModelParts { mean_pose_rad: &pose, ..parts() }).unwrap_err();

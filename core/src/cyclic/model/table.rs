@@ -5,7 +5,7 @@ use crate::cyclic::model::motion_model::{ModelError, ModelParts, MotionModel};
 use crate::numeric::semi_definite::packed_len;
 use crate::skeleton::stick_figure::HUMAN_ANGLES;
 
-/// Positions of the reference cycle in the paper.
+/// Positions l of the reference cycle: cyclic paper, section 3.1.
 pub const PAPER_POSITIONS: usize = 100;
 
 /// A motion model of `ANGLES` angles and `POSITIONS` positions, `PACKED` = `ANGLES` (`ANGLES` + 1) / 2, as plain arrays.

@@ -1,4 +1,5 @@
-//! What a particle's step needs of the model at each stored position, laid out so that several angles are worked on at once.
+//! Mean acceleration and Cholesky factor at each stored position, laid out for steps of several
+//! angles at once.
 //!
 //! The angles are cut into blocks of eight, the last one filled up with zeros. A position holds its mean acceleration, block
 //! after block, then its covariance's Cholesky factor in squares of eight rows and eight columns, those on and below the diagonal
@@ -9,7 +10,7 @@ use crate::cyclic::model::motion_model::MAX_ANGLES;
 use crate::cyclic::particle::angle_blocks::{AngleBlocks, BLOCK};
 use crate::numeric::semi_definite::{packed_index, packed_len, semi_cholesky};
 
-/// Blocks of 4 x 4 numbers below and on the diagonal.
+/// Squares of 8 x 8 numbers below and on the diagonal.
 const fn squares_of(blocks: usize) -> usize {
     blocks * (blocks + 1) / 2
 }

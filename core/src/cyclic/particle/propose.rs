@@ -8,7 +8,7 @@ use crate::cyclic::MotionModel;
 use crate::cyclic::particle::angle_blocks::{AngleBlocks, BLOCK, blocks_of, used_blocks, write_back};
 use crate::cyclic::particle::factors::ParticleTable;
 use crate::cyclic::phase::wrap_position;
-use crate::cyclic::start::{CycleStart, LEAST_SPREAD_RAD};
+use crate::cyclic::start::{CycleStart, MIN_SPREAD_RAD};
 use crate::math::{clamp, max, sqrt, wrap_angle, wrap_angle_small};
 use crate::random::lanes::LANES;
 use crate::random::{Stream, StreamLanes};
@@ -16,7 +16,7 @@ use core::f32::consts::PI;
 
 pub use crate::cyclic::particle::factors::{factors_len, fill_factors};
 
-/// Greatest number of angles that a particle holds.
+/// Most angles of a particle.
 const MAX_ANGLES: usize = crate::cyclic::model::motion_model::MAX_ANGLES;
 
 /// One hypothesis: the paper's state vector.
@@ -92,10 +92,10 @@ pub enum Spread {
 /// use sinew_core::cyclic::KalmanOptions;
 /// use sinew_core::cyclic::particle::propose::{ParticleOptions, Spread};
 ///
-/// // By default as sure of the first angles as the Kalman filters.
+/// // By default the first angles have the variance of the Kalman filters.
 /// let (particles, kalman) = (ParticleOptions::default(), KalmanOptions::default());
 /// assert!((particles.start_std * particles.start_std / kalman.angle_variance - 1.0).abs() < 1e-5);
-/// // A person of whom nothing is known but the first picture: anywhere that it allows, at a speed 20 % off or less.
+/// // An unknown phase: positions by the first frame, with a standard deviation of 20 % in speed.
 /// let anywhere = ParticleOptions { spread: Spread::UniformPosition, velocity_std: 0.2 / 64.0, ..particles };
 /// assert!(anywhere.velocity_std > particles.velocity_std);
 /// ```
@@ -103,8 +103,8 @@ pub enum Spread {
 pub struct ParticleOptions {
     /// How the first particles are spread.
     pub spread: Spread,
-    /// First standard deviation of each angle (rad), and of the velocity (rad per frame) of an angle about whose deviation the
-    /// model says nothing.
+    /// First standard deviation of each angle (rad), and of the velocity (rad per frame) of an
+    /// angle without deviation in the model.
     pub start_std: f32,
     /// First standard deviation of each other velocity, as a share of [`MotionModel::deviation_velocity_std`].
     pub deviation_velocity_share: f32,
@@ -117,7 +117,8 @@ pub struct ParticleOptions {
 }
 
 impl Default for ParticleOptions {
-    /// The first angles as sure as the Kalman filters', the rest as unsure as people are about it (docs/cyclic_tracker.md).
+    /// The angles' first variance is the Kalman filters', the other spreads are those between
+    /// people (`docs/cyclic_tracker.md`).
     fn default() -> Self {
         Self {
             spread: Spread::Standard,
@@ -141,7 +142,8 @@ impl ParticleOptions {
 
 /// Particle number `index` of the first generation.
 ///
-/// `positions` says where in the cycle a uniform start may be, as [`fill_positions`] wrote it; the other starts do not read it.
+/// `positions` holds the running sums of [`fill_positions`] for a uniform start; the other starts
+/// ignore it.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -151,7 +153,7 @@ impl ParticleOptions {
 ///
 /// let model = WALKING.model()?;
 /// let start = CycleStart::<13>::standard(&model, &[Some(0.2); 13], Some(0.5), None)?;
-/// // Particle 7 under seed 1, whoever draws it and in which order.
+/// // Particle 7 under seed 1 does not depend on the order of the draws.
 /// let draw = |seed, index| first_particle(&model, &[], &start, &ParticleOptions::default(), (seed, index));
 /// assert_eq!(draw(1, 7), draw(1, 7));
 /// assert!(draw(1, 7) != draw(1, 8) && draw(1, 7) != draw(2, 7));
@@ -230,7 +232,7 @@ pub fn fill_positions<const N: usize>(model: &MotionModel<'_>, start: &CycleStar
         let pose = model.mean_pose_rad::<N>(model.point(index as f32 / count));
         let mut squared = 0.0;
         for i in (0..N.min(model.angle_count())).filter(|&i| start.extra_variance_rad2[i] == 0.0 && spread[i] > 0.0) {
-            let scaled = angle_difference(start.angles_rad[i], pose[i]) / max(spread[i], LEAST_SPREAD_RAD);
+            let scaled = angle_difference(start.angles_rad[i], pose[i]) / max(spread[i], MIN_SPREAD_RAD);
             squared += scaled * scaled;
         }
         *value = -0.5 * squared;
@@ -255,7 +257,8 @@ fn drawn_position(sums: &[f32], uniform: f32) -> f32 {
     wrap_position((index as f32 + part - 0.5) / sums.len() as f32)
 }
 
-/// A draw for each of up to [`LANES`] particles from the transition of eq. (11) over `step` <= 1 frame.
+/// A draw for each of up to [`LANES`] particles from the transition of cyclic (11) over `step` <= 1
+/// frame.
 ///
 /// Between two stored positions the noise is that of one of them, drawn with the probabilities of linear
 /// interpolation: the covariance is then exactly the interpolated one.
@@ -278,7 +281,7 @@ pub(super) fn advance<const N: usize>(
     }
     let temporal = streams.normal();
     let temporal_scale = temporal_std * noise_factor;
-    // All places in the model first: a processor can fetch what stands there while it works on the particles before.
+    // All points of the model first, so that a processor prefetches them.
     let mut points = [model.point(0.0); LANES];
     for (point, particle) in points.iter_mut().zip(particles.iter()) {
         *point = model.point(particle.cycle_position);
@@ -352,9 +355,10 @@ mod tests {
         }
     }
 
-    /// The transition's mean and spread are those of eq. (11): a cloud that starts at one point.
+    /// The transition's mean and spread are those of cyclic (11): particles that starts at one
+    /// point.
     #[test]
-    fn a_cloud_moves_with_the_mean_acceleration_and_spreads_with_the_models_covariance() {
+    fn particles_move_with_the_mean_acceleration_and_spread_with_the_models_covariance() {
         const COUNT: usize = 4096;
         let table = synthetic::table(4.0e-3, 9);
         let model = table.model().unwrap();

@@ -56,7 +56,7 @@ pub struct ChunkTeeth {
     pub count: usize,
     /// Sum of all weights before the chunk.
     below: f32,
-    /// What the chunk's weights are multiplied by to be added to it.
+    /// Factor of the chunk's weights relative to all.
     scale: f32,
 }
 

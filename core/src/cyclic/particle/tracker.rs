@@ -13,10 +13,10 @@ use crate::random::normal::LOG_SQRT_TAU;
 /// Stream that the resampling of a frame draws from; particles have the numbers below.
 const RESAMPLING_STREAM: u32 = u32::MAX;
 
-/// Most chunks of particles; more than 8192 particles are for the host.
-const MOST_CHUNKS: usize = 8;
+/// Most chunks of particles, of 1024 each. Chosen: more particles are for the host.
+const MAX_CHUNKS: usize = 8;
 
-/// What the model holds ready for the particles, in the caller's memory.
+/// Tables of the model for the particles, in the caller's memory.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -93,7 +93,7 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
         start: &CycleStart<N>,
         seed: u64,
     ) -> Self {
-        const { assert!(P > 0 && P <= MOST_CHUNKS * CHUNK, "at least one particle, at most 8192") };
+        const { assert!(P > 0 && P <= MAX_CHUNKS * CHUNK, "at least one particle, at most 8192") };
         let draw = |index| first_particle(model, tables.positions, start, &options, (seed, index as u32));
         let particles = core::array::from_fn(draw);
         Self { options, seed, frame: 0, next: particles, particles, weights: [0.0; P], last: start.estimate() }
@@ -125,16 +125,16 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
         &self.particles
     }
 
-    /// Moves and weighs all particles; returns their sums, and how much each chunk weighs.
+    /// Moves and weighs all particles; returns their sums and each chunk's share of the weights.
     fn sweep(
         &mut self,
         model: &MotionModel<'_>,
         factors: &[f32],
         target: &ParticleTarget<N>,
         step_frames: f32,
-    ) -> (ParticleMoments<N>, [WeightShare; MOST_CHUNKS]) {
+    ) -> (ParticleMoments<N>, [WeightShare; MAX_CHUNKS]) {
         let mut all = ParticleMoments::nothing();
-        let mut shares = [WeightShare::NOTHING; MOST_CHUNKS];
+        let mut shares = [WeightShare::NOTHING; MAX_CHUNKS];
         let chunks = self.particles.chunks_mut(CHUNK).zip(self.weights.chunks_mut(CHUNK));
         for ((chunk, (particles, weights)), share) in chunks.enumerate().zip(&mut shares) {
             let key = (self.seed, self.frame, (chunk * CHUNK) as u32);
@@ -146,7 +146,7 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
     }
 
     /// The next generation, chunk by chunk.
-    fn resample(&mut self, all: WeightShare, shares: &[WeightShare; MOST_CHUNKS]) {
+    fn resample(&mut self, all: WeightShare, shares: &[WeightShare; MAX_CHUNKS]) {
         let comb = Comb::new(all, resampling_offset(self.seed, self.frame), P);
         let shares = shares.get(..P.div_ceil(CHUNK)).unwrap_or_default();
         let mut rest: &mut [CyclicParticle<N>] = &mut self.next;
@@ -160,7 +160,8 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
     }
 }
 
-/// ln of the density of a measurement given those before, from how much all `count` particles weigh.
+/// ln of the density of a measurement given those before, from the weights of all `count`
+/// particles.
 ///
 /// ```
 /// use sinew_core::cyclic::AngleMeasurement;

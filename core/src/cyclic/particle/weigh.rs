@@ -1,11 +1,12 @@
-//! Weighing: how far particles are from what a frame shows, side by side in lanes.
+//! Weighting: log-weights of particles by their distance from a measurement, in lanes.
 
 use crate::cyclic::particle::propose::CyclicParticle;
 use crate::cyclic::{AngleMeasurement, CyclicEstimate};
 use crate::math::{least_angle, wrap_angle};
 use crate::random::lanes::LANES;
 
-/// What a frame's particles are compared with: the measured angles, and the last estimate's where none was seen.
+/// Target of a frame's particles: the measured angles, and the last estimate's where one is
+/// missing.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -16,7 +17,7 @@ use crate::random::lanes::LANES;
 ///
 /// # let model = WALKING.model()?;
 /// # let start = CycleStart::<13>::standard(&model, &[Some(0.0); 13], Some(0.3), None)?;
-/// // Nothing was seen but the first angle, so two particles that differ in another one weigh the same.
+/// // Only the first angle is measured, so two particles that differ in another one weigh the same.
 /// let mut angles_rad = [None; 13];
 /// angles_rad[0] = Some(0.1);
 /// let target = ParticleTarget::new(&AngleMeasurement::new(&angles_rad, 0.1)?, 13, &start.estimate());
@@ -32,7 +33,7 @@ use crate::random::lanes::LANES;
 #[derive(Debug, Clone, Copy)]
 pub struct ParticleTarget<const N: usize> {
     pub(super) angles_rad: [f32; N],
-    /// Zero where nothing was seen, so that weighing needs no question.
+    /// Zero where an angle is missing, so that weighting needs no branch.
     root_precision: [f32; N],
     pub(super) cycle_position: f32,
     pub(super) cycle_velocity: f32,
@@ -60,19 +61,24 @@ impl<const N: usize> ParticleTarget<N> {
 
 /// Up to [`LANES`] particles relative to a target, number by number side by side.
 pub(super) struct ParticleLanes<const N: usize> {
-    /// Angles less the target's, in [-pi, pi].
+    /// Angles minus the target's, in [-pi, pi].
     pub(super) off_rad: [[f32; LANES]; N],
-    /// Cycle positions less the target's.
-    pub(super) lead: [f32; LANES],
-    /// Cycle velocities less the target's.
-    pub(super) haste: [f32; LANES],
+    /// Cycle positions minus the target's, cycles.
+    pub(super) phase_offset: [f32; LANES],
+    /// Cycle velocities minus the target's, cycles per frame.
+    pub(super) velocity_offset: [f32; LANES],
     /// Log-weights; negative infinity where there is no particle.
     pub(super) log_weights: [f32; LANES],
 }
 
 impl<const N: usize> ParticleLanes<N> {
     pub(super) const fn empty() -> Self {
-        Self { off_rad: [[0.0; LANES]; N], lead: [0.0; LANES], haste: [0.0; LANES], log_weights: [0.0; LANES] }
+        Self {
+            off_rad: [[0.0; LANES]; N],
+            phase_offset: [0.0; LANES],
+            velocity_offset: [0.0; LANES],
+            log_weights: [0.0; LANES],
+        }
     }
 
     /// Takes `particles` and compares them with `target`.
@@ -82,8 +88,8 @@ impl<const N: usize> ParticleLanes<N> {
             for i in 0..N {
                 self.off_rad[i][lane] = particle.angles_rad[i];
             }
-            self.lead[lane] = particle.cycle_position - target.cycle_position;
-            self.haste[lane] = particle.cycle_velocity - target.cycle_velocity;
+            self.phase_offset[lane] = particle.cycle_position - target.cycle_position;
+            self.velocity_offset[lane] = particle.cycle_velocity - target.cycle_velocity;
         }
         let mut squares = [0.0; LANES];
         for i in 0..N {
@@ -95,8 +101,8 @@ impl<const N: usize> ParticleLanes<N> {
             }
         }
         self.log_weights = squares.map(|square| -0.5 * square);
-        for nobody in self.log_weights.iter_mut().skip(particles.len()) {
-            *nobody = f32::NEG_INFINITY;
+        for unused in self.log_weights.iter_mut().skip(particles.len()) {
+            *unused = f32::NEG_INFINITY;
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::math::{exp, exp_small, max};
 
-/// Turns log-weights into weights relative to `greatest` and returns their sum, taken in eight parts; NaN weighs nothing.
+/// Turns log-weights into weights relative to `greatest` and returns their sum, taken in eight
+/// parts; NaN has no weight.
 #[inline(always)]
 pub(super) fn exponentiate(greatest: f32, weights: &mut [f32]) -> f32 {
     let mut sums = [0.0; 8];
@@ -21,7 +22,7 @@ pub(super) fn exponentiate(greatest: f32, weights: &mut [f32]) -> f32 {
     sums.iter().fold(sum, |all, part| all + part)
 }
 
-/// The weight beside one of weight 1 and log-weight `greatest`; zero for NaN and below exp(-40).
+/// Weight relative to the `greatest`; zero for NaN and below exp(-40).
 #[inline(always)]
 pub(super) fn relative_weight(log_weight: f32, greatest: f32) -> f32 {
     let below = log_weight - greatest;
@@ -36,7 +37,8 @@ pub(super) fn greatest(log_weights: &[f32]) -> f32 {
     log_weights.iter().fold(f32::NEG_INFINITY, |best, &value| max(value, best))
 }
 
-/// How much some particles weigh: the greatest of their log-weights, and the sum of their weights relative to it.
+/// Weights of a set of particles: the greatest log-weight, and the sum of all weights relative to
+/// it.
 ///
 /// ```
 /// use core::f32::consts::LN_2;
@@ -53,7 +55,7 @@ pub(super) fn greatest(log_weights: &[f32]) -> f32 {
 pub struct WeightShare {
     /// Negative infinity of no particle.
     pub greatest_log_weight: f32,
-    /// At least 1 of any particle that weighs something.
+    /// At least 1 where any particle has a weight.
     pub weight: f32,
 }
 
@@ -61,7 +63,7 @@ impl WeightShare {
     /// No particle.
     pub const NOTHING: Self = Self { greatest_log_weight: f32::NEG_INFINITY, weight: 0.0 };
 
-    /// What the weights are multiplied by to be relative to `greatest_log_weight`.
+    /// Factor of the weights that makes them relative to `greatest_log_weight`.
     #[must_use]
     pub fn scale(&self, greatest_log_weight: f32) -> f32 {
         if self.greatest_log_weight > f32::NEG_INFINITY {
@@ -77,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nan_weighs_nothing_and_the_greatest_weighs_one() {
+    fn nan_has_no_weight_and_the_greatest_weight_is_one() {
         let mut weights = [-3.0, f32::NAN, -1.0, -200.0, f32::NEG_INFINITY];
         let best = greatest(&weights);
         assert_eq!(best, -1.0);

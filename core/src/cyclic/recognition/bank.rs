@@ -1,4 +1,4 @@
-//! Which of several motions is it? Filters that run side by side, compared with a bounded memory.
+//! Recognition of one of several motions: filters side by side, compared with a bounded memory.
 //!
 //! ```
 //! # #[cfg(feature = "walking-model")] {
@@ -27,30 +27,35 @@ use crate::cyclic::recognition::explained_variance::{ExplainedVariance, cycle_va
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::math::{exp, max, min, wrap_angle};
 
-/// Spread of people's poses about the mean cycle, rad (25 degrees): the same for every motion and angle.
+/// Spread of people's poses about the mean cycle, rad (25 degrees). Chosen: one for all motions and
+/// angles, since a model of few people does not determine its own.
 const POSE_SPREAD_RAD: f32 = 0.44;
-/// Beyond so many standard deviations an angle counts no more: short links that wind in a side view would decide alone.
+/// Largest distance of an angle from the mean pose, standard deviations. Chosen: short links that
+/// wind in a side view would decide alone.
 const POSE_LIMIT_SIGMAS: f32 = 1.5;
-/// A motion whose mean cycle leaves over more of the swing that is seen is not the one. Of 77 walks and runs one frame in a hundred has
-/// more, of 18 recordings of other exercises and gestures one in sixteen less.
-const GREATEST_LEFT_OVER: f32 = 0.67;
-/// Change of what is left over by which the odds of a motion change by e; by logistic regression on the same recordings.
-const LEFT_OVER_SPREAD: f32 = 0.05;
+/// Largest unexplained share of a recognised motion.
+///
+/// Measured: of 77 walks and runs 1 % of the frames have more, of 18 recordings of other exercises
+/// and gestures 6 % have less (`docs/cyclic_tracker.md`).
+const MAX_UNEXPLAINED_SHARE: f32 = 0.67;
+/// Change of the unexplained share by which the odds of a motion change by e. Measured: logistic
+/// regression on the same recordings.
+const LOG_ODDS_SCALE: f32 = 0.05;
 
-/// Positions of the cycle by which its variances are taken.
+/// Positions at which the variances over the cycle are computed.
 const CYCLE_POSITIONS: u8 = 100;
 
-/// What was seen of one motion.
+/// Evidence for one motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct WatchedMotion<const N: usize> {
+struct MotionEvidence<const N: usize> {
     swing: ExplainedVariance<N>,
     /// Variance of each angle over the motion's cycle, rad^2.
     cycle_rad2: [f32; N],
-    /// Share of the swing seen that the mean cycle leaves over.
+    /// Share of the measured variance that the mean cycle leaves unexplained.
     unexplained_share: Option<f32>,
 }
 
-impl<const N: usize> WatchedMotion<N> {
+impl<const N: usize> MotionEvidence<N> {
     fn new(model: &MotionModel<'_>) -> Self {
         let cycle_rad2 = cycle_variances_rad2(model, CYCLE_POSITIONS);
         Self { swing: ExplainedVariance::new(), cycle_rad2, unexplained_share: None }
@@ -64,7 +69,8 @@ impl<const N: usize> WatchedMotion<N> {
     }
 }
 
-/// Half the squared distance of the angles seen from a motion's mean pose, relative to their spread.
+/// Half the squared distance of the measured angles from a motion's mean pose, relative to their
+/// spread.
 fn pose_distance<const N: usize>(measurement: &AngleMeasurement<N>, pose_rad: &[f32]) -> f32 {
     let limit = POSE_LIMIT_SIGMAS * POSE_LIMIT_SIGMAS;
     let distance = |(i, &pose_rad): (usize, &f32)| {
@@ -77,11 +83,11 @@ fn pose_distance<const N: usize>(measurement: &AngleMeasurement<N>, pose_rad: &[
 
 /// Recursive comparison of up to `MOTIONS` motions of up to `N` angles with each other and with "none of these".
 ///
-/// Among the motions the one whose mean cycle the pose lies nearest to is the likeliest, by one spread for all: after a few
-/// cycles a filter has learned the person's deviations, whatever the motion, and predicts almost as well with a wrong model as with the right
-/// one. For the same reason it is not the filter's likelihood that tells whether that motion is seen at all: it is named if its mean cycle,
-/// at the position that the filter has found, tells a third or more of the swing that is seen. What was seen fades with
-/// the duration of a cycle, so that a change of motion is noticed; who stops is named for some two cycles more.
+/// The likeliest motion is the one whose mean cycle is nearest to the pose, by one spread for all
+/// motions. It is recognised if its mean cycle, at the filter's position, explains a third or more
+/// of the measured variance. The filters' likelihoods decide neither: after a few cycles a filter
+/// has learned the person's deviations and predicts almost as well with a wrong model. Evidence
+/// decays over a cycle. A motion that stops is recognised for about two cycles more.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -89,7 +95,7 @@ fn pose_distance<const N: usize>(measurement: &AngleMeasurement<N>, pose_rad: &[
 /// use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::cyclic::recognition::bank::MotionBank;
 ///
-/// // Two seconds of somebody who walks, then three of the same person standing.
+/// // Two seconds of walking, then three of standing.
 /// let models = [WALKING.model().expect("the shipped model is sound")];
 /// let mut bank = MotionBank::<1, 13>::new(&models);
 /// assert_eq!(bank.likeliest(), None);
@@ -109,28 +115,29 @@ fn pose_distance<const N: usize>(measurement: &AngleMeasurement<N>, pose_rad: &[
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionBank<const MOTIONS: usize, const N: usize> {
-    motions: [Option<WatchedMotion<N>>; MOTIONS],
+    motions: [Option<MotionEvidence<N>>; MOTIONS],
     /// Sum of each motion's pose distances.
     distances: [f32; MOTIONS],
     /// Mean cycle velocity of the slowest motion, cycles a frame.
-    least_velocity: f32,
+    min_velocity: f32,
 }
 
 impl<const MOTIONS: usize, const N: usize> MotionBank<MOTIONS, N> {
-    /// Nothing seen yet, for the first `MOTIONS` of the `models`.
+    /// A bank without evidence, for the first `MOTIONS` of the `models`.
     #[must_use]
     pub fn new(models: &[MotionModel<'_>]) -> Self {
         let velocities = models.iter().take(MOTIONS).map(MotionModel::mean_cycle_velocity);
         Self {
-            motions: core::array::from_fn(|motion| models.get(motion).map(WatchedMotion::new)),
+            motions: core::array::from_fn(|motion| models.get(motion).map(MotionEvidence::new)),
             distances: [0.0; MOTIONS],
-            least_velocity: velocities.fold(1.0, min),
+            min_velocity: velocities.fold(1.0, min),
         }
     }
 
-    /// Takes in a frame, with the cycle position that the filter of each of the `models` (those of [`MotionBank::new`]) gives it.
+    /// Adds a frame with the cycle position by the filter of each of the `models`, those of
+    /// [`MotionBank::new`].
     pub fn add(&mut self, models: &[MotionModel<'_>], measurement: &AngleMeasurement<N>, cycle_positions: &[f32]) {
-        let keep = exp(-measurement.step_frames() * self.least_velocity);
+        let keep = exp(-measurement.step_frames() * self.min_velocity);
         let filters = models.iter().zip(cycle_positions);
         for ((motion, distance), (model, &position)) in self.motions.iter_mut().zip(&mut self.distances).zip(filters) {
             let pose_rad = model.mean_pose_rad::<N>(model.point(position));
@@ -141,7 +148,7 @@ impl<const MOTIONS: usize, const N: usize> MotionBank<MOTIONS, N> {
         }
     }
 
-    /// Index of the motion that is likeliest among them, whether or not it is likelier than none; 0 where there is no evidence.
+    /// Index of the likeliest motion, also where none is recognised; 0 without evidence.
     #[must_use]
     pub fn best(&self) -> usize {
         let mut best = (f32::INFINITY, 0);
@@ -153,26 +160,27 @@ impl<const MOTIONS: usize, const N: usize> MotionBank<MOTIONS, N> {
         best.1
     }
 
-    /// By how much the best motion leaves over less of the swing than it may, in units of the odds' slope: above zero if it is the one.
+    /// Log-odds that the likeliest motion is performed.
     fn log_odds(&self) -> f32 {
         let Some(motion) = self.motions.get(self.best()).and_then(Option::as_ref) else { return 0.0 };
-        let spare = motion.unexplained_share.map_or(0.0, |unexplained_share| GREATEST_LEFT_OVER - unexplained_share);
-        motion.swing.knowledge() * spare / LEFT_OVER_SPREAD
+        let spare = motion.unexplained_share.map_or(0.0, |unexplained_share| MAX_UNEXPLAINED_SHARE - unexplained_share);
+        motion.swing.confidence() * spare / LOG_ODDS_SCALE
     }
 
-    /// Index of the likeliest motion; `None` where none of these is likelier.
+    /// Index of the likeliest motion; `None` where "none of these" is likelier.
     #[must_use]
     pub fn likeliest(&self) -> Option<usize> {
         (self.log_odds() > 0.0).then(|| self.best())
     }
 
-    /// Probability of each motion, 0 beyond the motions there are: that the likeliest is one at all, times its share among them.
+    /// Probability of each motion: that any is performed, times its share among them. 0 beyond the
+    /// last.
     #[must_use]
     pub fn probabilities(&self) -> [f32; MOTIONS] {
         let mut weights = [0.0; MOTIONS];
-        let Some(&least) = self.distances.get(self.best()) else { return weights };
+        let Some(&nearest) = self.distances.get(self.best()) else { return weights };
         for ((weight, &distance), motion) in weights.iter_mut().zip(&self.distances).zip(&self.motions) {
-            *weight = if motion.is_some() { exp(least - distance) } else { 0.0 };
+            *weight = if motion.is_some() { exp(nearest - distance) } else { 0.0 };
         }
         let sum = (1.0 + exp(-self.log_odds())) * max(weights.iter().sum::<f32>(), 1.0);
         weights.map(|weight| weight / sum)
@@ -193,9 +201,9 @@ mod tests {
     use crate::random::Stream;
     use core::f32::consts::TAU;
 
-    /// Three seconds of the motion, of another one, and of nonsense, watched by both models.
+    /// Three seconds of the motion, of another one, and of random angles, by two models.
     #[test]
-    fn the_motion_is_named_and_anything_else_is_none_of_these() {
+    fn the_motion_is_recognised_and_any_other_is_none_of_these() {
         let table = synthetic::table(4.0e-3, 9);
         let mut other = table.clone();
         for value in other.mean_acceleration.iter_mut().chain(&mut other.mean_pose_rad).flatten() {
@@ -233,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn without_measurements_nothing_changes_its_place() {
+    fn without_measurements_the_order_of_the_motions_stays() {
         let table = synthetic::table(4.0e-3, 9);
         let models = [table.model().unwrap(); 2];
         let mut bank = MotionBank::<3, 13>::new(&models);

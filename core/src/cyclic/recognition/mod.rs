@@ -1,4 +1,5 @@
-//! Which motion a person performs: several models at once, and whether any of them explains what is seen.
+//! Recognition of the motion: several models at once, and whether any of them explains the
+//! measurements.
 
 pub mod bank;
 pub(crate) mod explained_variance;

@@ -1,9 +1,9 @@
-//! What the cyclic tracker answers for a frame.
+//! Estimate of the cyclic tracker for a frame.
 
 use crate::cyclic::events::{CycleCounter, CycleStep};
 use crate::cyclic::{CyclicEstimate, MotionModel};
 
-/// What the tracker says after a frame.
+/// Estimate, cycles and cadence after a frame.
 ///
 /// ```
 /// use sinew_core::cyclic::AngleMeasurement;
@@ -12,7 +12,7 @@ use crate::cyclic::{CyclicEstimate, MotionModel};
 /// # let table = sinew_core::cyclic::example::swing_table();
 /// # let model = table.model().expect("the numbers agree");
 ///
-/// // A beep at the middle of every cycle: the frame says whether it was passed, and how long after the frame before.
+/// // A beep at the middle of every cycle, at its time between two frames.
 /// let seen = |frame: usize| AngleMeasurement::new(&swing_pose_rad(frame as f32 / 60.0).map(Some), 0.05);
 /// let mut tracker = CoupledTracker::<2>::new(&model, &seen(0)?, FirstPhase::default())?;
 /// let (mut beeps, mut at_frame) = (0, 0.0);
@@ -29,7 +29,7 @@ use crate::cyclic::{CyclicEstimate, MotionModel};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclicFrame<const N: usize> {
-    /// Pose, phase and how sure they are; likelihood and outlier.
+    /// Pose and phase with their variances; likelihood and outlier.
     pub estimate: CyclicEstimate<N>,
     /// Whole cycles since the first frame.
     pub cycles_completed: i32,
@@ -37,12 +37,13 @@ pub struct CyclicFrame<const N: usize> {
     pub cadence_per_min: f32,
     /// Standard deviation of the cadence.
     pub cadence_std_per_min: f32,
-    /// The way through the cycle since the last frame; asks it for the time at which a phase was passed.
+    /// Progress through the cycle since the last frame; it gives the time at which a phase was
+    /// passed.
     pub cycle_step: CycleStep,
 }
 
 impl<const N: usize> CyclicFrame<N> {
-    /// The answer of a frame: the filter's estimate, and what the counter made of it.
+    /// From the filter's estimate and the counter after it.
     pub(super) fn new(
         model: &MotionModel<'_>,
         estimate: CyclicEstimate<N>,

@@ -1,11 +1,11 @@
-//! A frame of the cyclic tracker: the angles, and what the image shows of root and segments.
+//! Input frame of the cyclic tracker: angles, root position and segment lengths.
 
 use crate::cyclic::AngleMeasurement;
 use crate::error::ParameterError;
 use crate::skeleton::stick_figure::{ImagePoint, StickFigure};
 use core::f32::consts::{PI, SQRT_2};
 
-/// What a frame shows.
+/// Measurements of a frame.
 ///
 /// ```
 /// use sinew_core::skeleton::stick_figure::{HUMAN, HUMAN_ANGLES, HUMAN_JOINTS};
@@ -42,7 +42,7 @@ impl<const N: usize> CyclicFrameInput<N> {
     /// From the joints of `figure` as a picture shows them, each coordinate with a standard deviation of `keypoint_std_px`, one
     /// frame after the last.
     ///
-    /// An angle's standard deviation is sqrt(2) times that over the segment's length, at most pi: a short segment says little.
+    /// An angle's standard deviation is sqrt(2) times that over the segment's length, at most pi.
     ///
     /// # Errors
     /// `keypoint_std_px` has to be positive.
@@ -82,7 +82,7 @@ mod tests {
     use crate::skeleton::stick_figure::{HUMAN, HUMAN_JOINTS};
 
     #[test]
-    fn a_short_segment_is_a_noisy_angle_and_a_joint_that_is_missing_none() {
+    fn a_short_segment_gives_a_noisy_angle_and_a_missing_joint_none() {
         let mut joints = [Some([0.0, 0.0]); HUMAN_JOINTS];
         joints[1] = Some([0.0, -100.0]);
         joints[2] = Some([1.0, -100.0]);

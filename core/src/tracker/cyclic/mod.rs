@@ -6,7 +6,7 @@
 //! use sinew_core::cyclic::model::walking::WALKING;
 //! use sinew_core::tracker::cyclic::{CyclicTracker, CyclicTrackerOptions, FirstPhase};
 //!
-//! // The walking model is in flash (feature `walking-model`); somebody walks as it says.
+//! // The walking model is in flash (feature `walking-model`); a person walks its mean cycle.
 //! let model = WALKING.model().expect("the shipped model is sound");
 //! let seen = |frame: usize| {
 //!     let pose = model.mean_pose_rad::<13>(model.point(0.3 + frame as f32 * model.mean_cycle_velocity()));

@@ -1,9 +1,9 @@
-//! What may be chosen in the cyclic tracker, and where in the cycle it begins.
+//! Options of the cyclic tracker, and its first phase.
 
 use crate::cyclic::PlaceOptions;
 use crate::cyclic::filter::FilterChoice;
 
-/// What may be chosen.
+/// Options of the cyclic tracker.
 ///
 /// ```
 /// use sinew_core::cyclic::PlaceOptions;

@@ -1,4 +1,4 @@
-//! A step of the cyclic tracker: filter, count, follow root and lengths.
+//! Step of the cyclic tracker: filter, cycle count, root and lengths.
 
 use super::estimate::CyclicFrame;
 use super::frame::CyclicFrameInput;
@@ -18,7 +18,7 @@ use crate::skeleton::stick_figure::{ImagePoint, StickFigure};
 /// # let table = sinew_core::cyclic::example::swing_table();
 /// # let model = table.model().expect("the numbers agree");
 ///
-/// // Somebody who moves a tenth faster than the model; every fifth frame shows nothing.
+/// // A person who moves a tenth faster than the model. Every fifth frame has no measurement.
 /// let seen = |frame: usize| match frame % 5 {
 ///     4 => Ok(AngleMeasurement::nothing().into()),
 ///     _ => AngleMeasurement::new(&swing_pose_rad(frame as f32 / 54.0).map(Some), 0.05).map(Into::into),

@@ -67,7 +67,7 @@ impl<'m, const N: usize> Filter<'m, N> {
                     StartName::Standard => CoupledFilter::new(&model, &first, position, velocity)?,
                     StartName::Uniform | StartName::Random => {
                         let mut filter = CoupledFilter::anywhere(&model, &first)?;
-                        first_told = filter.present(&model, &first);
+                        first_told = filter.current_estimate(&model, &first);
                         filter
                     }
                 };

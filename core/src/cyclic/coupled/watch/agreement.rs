@@ -60,7 +60,7 @@ impl Watch {
     /// Factor of the given noise variances by which measurements are weighted.
     #[inline]
     pub(in crate::cyclic::coupled) fn noise_scale(&self) -> f32 {
-        self.nis.noise_scale() * self.noise.share()
+        self.nis.noise_scale() * self.noise.scale()
     }
 
     /// Compares the grid's `mode` with the filter's `position`, `frames` after the last comparison.

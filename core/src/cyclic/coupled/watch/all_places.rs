@@ -1,4 +1,4 @@
-//! The estimate while the phase is unknown: the mean over all places of the grid.
+//! The estimate while the phase is unknown: the mean over the grid.
 
 use crate::cyclic::coupled::block::Basis;
 use crate::cyclic::coupled::measured_path::MeasuredPath;
@@ -12,14 +12,15 @@ use crate::numeric::log_product::LogProduct;
 use core::f32::consts::TAU;
 
 impl<const N: usize> CoupledFilter<N> {
-    /// The pose over all places of the grid, each with its weight, corrected angle by angle. `mode` is the grid's place if it is known.
+    /// The mean pose over the grid's positions by weight, corrected angle by angle. `mode` is the
+    /// grid's mode where it is known.
     pub(in crate::cyclic::coupled) fn estimate_of_all_places(
         &mut self,
         model: &MotionModel<'_>,
         measurement: &AngleMeasurement<N>,
         mode: Option<PhaseMode>,
     ) -> CyclicEstimate<N> {
-        let mode = mode.unwrap_or_else(|| self.grid.open().mode(model));
+        let mode = mode.unwrap_or_else(|| self.grid.load().mode(model));
         self.move_by(position_difference(mode.position, self.position));
         self.velocity = mode.velocity;
         self.path = MeasuredPath::new();
@@ -44,7 +45,7 @@ impl<const N: usize> CoupledFilter<N> {
             turns: self.turns,
             angle_variance_rad2: variance,
             cycle_position: self.position,
-            // Elsewhere means anywhere: the variance of a uniform position.
+            // The rest of the weight has the variance of a uniform position.
             cycle_position_variance: mode.weight * mode.covariance[0] + elsewhere / 12.0,
             cycle_velocity_per_frame: self.velocity,
             cycle_velocity_variance: mode.covariance[2],
@@ -53,11 +54,12 @@ impl<const N: usize> CoupledFilter<N> {
         }
     }
 
-    /// Mean and variance of each angle over the grid's positions, with what is known of the person.
+    /// Mean and variance of each angle over the grid's positions, with the person's learned
+    /// deviation.
     fn pose_of_all_places(&self, model: &MotionModel<'_>) -> ([f32; N], [f32; N]) {
         let reference = model.mean_pose_rad::<N>(model.point(self.position));
         let (mut mean, mut square) = ([0.0; N], [0.0; N]);
-        for (cell, weight) in self.grid.open().by_position().into_iter().enumerate() {
+        for (cell, weight) in self.grid.load().by_position().into_iter().enumerate() {
             let pose = model.mean_pose_rad::<N>(model.point(cell as f32 / POSITIONS as f32));
             for i in 0..model.angle_count().min(N) {
                 let off = wrap_angle(pose[i] - reference[i]);
@@ -68,8 +70,8 @@ impl<const N: usize> CoupledFilter<N> {
         let basis = Basis::at(self.position);
         let mut variance = [0.0; N];
         for i in 0..model.angle_count().min(N) {
-            let outlook = self.blocks[i].outlook(&basis, 0.0);
-            variance[i] = max(square[i] - mean[i] * mean[i], 0.0) + outlook.variance;
+            let prediction = self.blocks[i].predict_angle(&basis, 0.0);
+            variance[i] = max(square[i] - mean[i] * mean[i], 0.0) + prediction.variance;
             mean[i] += reference[i] + self.blocks[i].deviation(&basis);
         }
         (mean, variance)

@@ -27,7 +27,7 @@ const MAX_DISAGREEMENT_FRAMES: f32 = 6.0;
 const LEARNING_CYCLES: f32 = 1.5;
 /// Cycles at the mean speed after a relock in which the grid's phase is fused with the filter's.
 ///
-/// Chosen: a person who swings little looks like one who moves slowly until one cycle was seen.
+/// Chosen: until one cycle was measured, a small swing cannot be distinguished from a slow motion.
 const FUSION_CYCLES: f32 = 1.2;
 /// Share of the variance seen that the mean cycle may leave unexplained at the filter's phase.
 ///
@@ -38,9 +38,10 @@ const MAX_UNEXPLAINED_SHARE: f32 = 0.9;
 const MIN_SWING_SHARE: f32 = 0.15;
 /// Smallest filled part of the swing's memory from which a lock can be spurious. Chosen: a third of a cycle.
 const MIN_FILLED_SHARE: f32 = 0.28;
-/// Positions at which the cycle's own variance is computed.
+/// Positions at which the cycle's own variance is computed. Chosen: few, since each update checks
+/// it.
 const CYCLE_POSITIONS: u8 = 8;
-/// Most frames for which one measurement counts in the grid.
+/// Most frames for which one measurement counts in the grid. Chosen: as its `REPEATED_FRAMES`.
 const MAX_GRID_FRAMES: f32 = 4.0;
 
 impl<const N: usize> CoupledFilter<N> {
@@ -90,10 +91,10 @@ impl<const N: usize> CoupledFilter<N> {
     /// Moves the grid on by `frames`, updates it by the measurement, and returns its mode.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn update_grid(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) -> PhaseMode {
-        let mut grid = self.grid.open();
+        let mut grid = self.grid.load();
         grid.advance(model, frames);
         grid.weigh(model, measurement, clamp(frames, 1.0, MAX_GRID_FRAMES));
-        self.grid.keep(&grid);
+        self.grid.store(&grid);
         grid.mode(model)
     }
 
@@ -113,13 +114,13 @@ impl<const N: usize> CoupledFilter<N> {
     /// Whether the person swings and the mean cycle, at the filter's phase, explains nothing of it. A good NIS is
     /// then due to deviations that follow any motion.
     fn is_spurious_lock(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
-        if self.swing.filled() < MIN_FILLED_SHARE {
+        if self.swing.filled_share() < MIN_FILLED_SHARE {
             return false;
         }
         let cycle_rad2 = cycle_variances_rad2(model, CYCLE_POSITIONS);
         let unexplained = self.swing.unexplained_share(&cycle_rad2, measurement.std_rad());
         unexplained.is_some_and(|share| share > MAX_UNEXPLAINED_SHARE)
-            && self.swing.seen(&cycle_rad2, measurement.std_rad()) > MIN_SWING_SHARE
+            && self.swing.swing_share(&cycle_rad2, measurement.std_rad()) > MIN_SWING_SHARE
     }
 
     /// Whether the filter relocked less than [`FUSION_CYCLES`] ago.

@@ -1,4 +1,4 @@
-//! What a jump does: the filter goes on from the grid's phase, or fuses it with its own.
+//! Effect of a jump: the filter continues from the grid's phase, or fuses it with its own.
 
 use crate::cyclic::coupled::block::PARTS;
 use crate::cyclic::coupled::cycle_pair::{CyclePair, Information};
@@ -19,10 +19,14 @@ impl<const N: usize> CoupledFilter<N> {
     /// Corrects position and velocity by the grid's mode, as by a measurement of both.
     pub(super) fn fuse_grid_phase(&mut self, mode: &PhaseMode) {
         let way = position_difference(position_difference(mode.position, self.position), self.watch.mean_phase_offset);
-        let mut said = Information::NONE;
-        said.add(&[1.0, 0.0], 1.0 / (GRID_VARIANCE_INFLATION * mode.covariance[0]), way);
-        said.add(&[0.0, 1.0], 1.0 / (GRID_VARIANCE_INFLATION * mode.covariance[2]), mode.velocity - self.velocity);
-        let shift = self.pair.correct(&said);
+        let mut information = Information::NONE;
+        information.add(&[1.0, 0.0], 1.0 / (GRID_VARIANCE_INFLATION * mode.covariance[0]), way);
+        information.add(
+            &[0.0, 1.0],
+            1.0 / (GRID_VARIANCE_INFLATION * mode.covariance[2]),
+            mode.velocity - self.velocity,
+        );
+        let shift = self.pair.correct(&information);
         self.blocks.iter_mut().for_each(|block| block.follow(shift));
         self.velocity = clamp(self.velocity + shift[1], -0.5, 0.5);
         self.move_by(clamp(shift[0], -0.5, 0.5));
