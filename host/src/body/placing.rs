@@ -118,7 +118,7 @@ fn mean_front(frames: &[BodyJoints], up: Vec3) -> Option<Vec3> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use sinew_core::skeleton::full_body::BODY_BONES;
+    use sinew_core::skeleton::full_body::{BODY_BONES, TRUNK};
 
     fn walker(direction_rad: f32, frames: usize) -> Vec<BodyJoints> {
         let turn = axis_rotation(&Vec3::z(), direction_rad);
