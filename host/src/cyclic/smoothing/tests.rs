@@ -1,6 +1,7 @@
 use super::*;
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::tracking::{FilterName, Tracked, TrackingOptions, track};
+use crate::cyclic::turns::least_angle;
 use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
