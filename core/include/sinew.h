@@ -3,7 +3,7 @@
  * Made from the interface's source by `SINEW_REGENERATE=1 cargo test -p sinew-c-interface --test header`; do not edit.
  *
  * Nothing is allocated, nothing is global. Objects live in memory that the caller gives: SINEW_*_MAX_BYTES bytes, aligned to SINEW_ALIGN,
- * always suffice, and sinew_*_size and sinew_*_align tell the exact numbers of this target. Different objects may be used by different
+ * always suffice, and sinew_*_size and sinew_*_align return the exact numbers of this target. Different objects may be used by different
  * threads at the same time. All functions but sinew_*_size, sinew_*_align, sinew_version and sinew_error_text answer with a status, zero
  * for done. */
 

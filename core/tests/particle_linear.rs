@@ -21,8 +21,8 @@ const ACCELERATION_STD: f32 = 0.002;
 const START_STD: f32 = 0.002;
 /// Noise that leaves room for many particles to agree with a measurement, and no angle beyond half a turn.
 const MEASUREMENT_STD_RAD: f32 = 200.0 * ACCELERATION_STD;
-/// Greatest distance of 100,000 particles from the exact mean, posterior standard deviations.
-const GREATEST_DISTANCE: f64 = 0.15;
+/// Largest distance of 100,000 particles from the exact mean, posterior standard deviations.
+const MAX_DISTANCE: f64 = 0.15;
 const ZEROS: [f32; POSITIONS * N] = [0.0; POSITIONS * N];
 
 /// Correlated accelerations with the same covariance everywhere in the cycle; half of each is common to all.
@@ -142,7 +142,7 @@ fn many_particles_agree_with_the_kalman_filter_on_a_linear_model() {
     };
     let [few, many] = [1_000, 100_000].map(distance);
     println!("greatest distance in standard deviations: {few:.3} with 1000 particles, {many:.3} with 100,000");
-    assert!(many > 0.002 && many <= GREATEST_DISTANCE, "{many}");
+    assert!(many > 0.002 && many <= MAX_DISTANCE, "{many}");
     // A hundred times as many: a tenth of the distance, give or take a half of it for chance.
     assert!((3.0..30.0).contains(&(few / many)) && few < 1.0, "{few} beside {many}");
 }

@@ -9,11 +9,12 @@ use sinew_core::math::{Mat3, Vec3};
 use sinew_core::skeleton::{Bone, Joint, Limit, Skeleton};
 use std::cell::RefCell;
 
-/// A solver that stopped of itself is this near to the greatest log density around its pose, beside a share of what that density is: its steps
-/// end where the next one promises 0.05, and beyond reach Gauss and Newton promise too little.
+/// A solver that stops on its own is this near to the largest log density around its pose, beside a
+/// share of that density. Its steps end where the next one promises 0.05. Beyond reach Gauss-Newton
+/// steps promise too little.
 const TOLERANCE: f32 = 0.1;
 const RELATIVE_TOLERANCE: f32 = 2.0e-3;
-/// Most steps of Gauss and Newton, and along the gradient.
+/// Maximum number of steps of Gauss and Newton, and along the gradient.
 const STEPS: usize = 40;
 const GRADIENT_STEPS: usize = 400;
 /// Runs for each pair of bounds.
@@ -39,7 +40,7 @@ fn spatial() -> Skeleton<3, 3> {
     chain([Vec3::z(), Vec3::y(), Vec3::z()], [[-100.0, 80.0], [-70.0, 60.0], [0.0, 140.0]])
 }
 
-/// Greatest log density over all poses whose angles are `about` plus a whole number, `reach` at most either way, of `step_rad`, cut to the
+/// Largest log density over all poses whose angles are `about` plus a whole number, `reach` at most either way, of `step_rad`, cut to the
 /// limits; and its pose.
 fn best_around<const N: usize>(
     density: &PoseDensity<'_, N, N>,
@@ -173,8 +174,9 @@ fn assert_within(name: &str, share: f32, [least, most]: [f32; 2]) {
     assert!(share >= least && share <= most, "{name}: {share}, not from {least} to {most}");
 }
 
-/// Searches that begin near the goal's pose end in the best mode; of those that begin anywhere as many as stated: by Gauss and Newton, along the
-/// gradient, and by Gauss and Newton from the likeliest pose of a coarse grid.
+/// Searches that begin near the goal's pose end in the best mode. Of those that begin anywhere, the
+/// stated share does. The searches are Gauss-Newton, the gradient, and Gauss-Newton from the
+/// likeliest pose of a coarse grid.
 fn hold<const N: usize>(skeleton: &Skeleton<N, N>, best: [[f32; 2]; 3]) {
     let near = solve_many(skeleton, case(skeleton, Some(0.3), false), |density| density.mode(STEPS));
     assert_within("near: best", near.best, [0.999, 1.001]);

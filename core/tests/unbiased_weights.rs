@@ -1,5 +1,6 @@
-//! Importance weighting of the body's motion models against exact posteriors, on a chain so long that its angles stay small: its ends are linear in
-//! them, and all densities normal but for the limits.
+//! Importance weighting of the body's motion models against exact posteriors. The chain is so long
+//! that its angles stay small: its ends are linear in them, and all densities are normal except for
+//! the limits.
 
 use nalgebra::{Matrix2, Vector2};
 use sinew_core::kinematics::inverse::{Goal, PoseDensity, PoseObjective};
@@ -24,8 +25,8 @@ const GOAL_STD_M: f32 = 0.15;
 /// The pose whose ends the goals lie about.
 const GOAL_RAD: [f32; 2] = [0.012, 0.01];
 const DRAWS: u32 = 60_000;
-/// Greatest distance of a mean or a second moment from the exact one, standard errors.
-const MOST_ERRORS: f64 = 4.5;
+/// Largest distance of a mean or a second moment from the exact one, standard errors.
+const MAX_STANDARD_ERRORS: f64 = 4.5;
 /// Limits that nothing reaches; that cut off the mode in one angle; in both.
 const NO_LIMIT: [[f32; 2]; 2] = [[-1.0, 1.0]; 2];
 const ONE_LIMIT: [[f32; 2]; 2] = [[-0.02, 0.004], [-0.05, 0.05]];
@@ -117,7 +118,7 @@ fn integrate(limits: [[f32; 2]; 2], steps: usize, density: impl Fn([f32; 2]) -> 
     moments(&weighted)
 }
 
-/// Each moment of `found`, which came of `weighted`, lies within [`MOST_ERRORS`] standard errors of the exact one, on either side, and `slack`
+/// Each moment of `found`, which came of `weighted`, lies within [`MAX_STANDARD_ERRORS`] standard errors of the exact one, on either side, and `slack`
 /// standard deviations.
 fn assert_alike(weighted: &[([f32; 2], f64)], exact: &Moments, slack: f64) {
     let found = moments(weighted);
@@ -130,7 +131,7 @@ fn assert_alike(weighted: &[([f32; 2], f64)], exact: &Moments, slack: f64) {
         let [variance, squared_error] =
             weighted.iter().map(square).fold([0.0; 2], |sum, more| [sum[0] + more[0], sum[1] + more[1]]);
         let off = (found[i] - exact[i]).abs();
-        let most = MOST_ERRORS * squared_error.sqrt() + slack * variance.sqrt();
+        let most = MAX_STANDARD_ERRORS * squared_error.sqrt() + slack * variance.sqrt();
         assert!(off < most, "moment {i}: {} instead of {}, {most} allowed", found[i], exact[i]);
     }
 }

@@ -149,8 +149,8 @@ impl Application for ArmApp {
         self.arm.last_frame()
     }
 
-    fn costs(&self, tell: &mut dyn FnMut(&Cost)) {
-        tell(&Part::ArmStep.cost(self.arm.step_cost()));
+    fn costs(&self, report: &mut dyn FnMut(&Cost)) {
+        report(&Part::ArmStep.cost(self.arm.step_cost()));
     }
 }
 

@@ -98,7 +98,7 @@ impl CameraApp {
     }
 }
 
-/// What is told of the blobs and edges themselves.
+/// What is reported of the blobs and edges themselves.
 fn vision_result(frame: u32, seen: &FrameLines<'_>) -> VisionResult {
     let mut sum = Crc32::new();
     for candidate in seen.candidates {
@@ -149,11 +149,11 @@ impl Application for CameraApp {
         self.arm.last_frame()
     }
 
-    fn costs(&self, tell: &mut dyn FnMut(&Cost)) {
-        tell(&Part::FrontEnd.cost(&self.vision));
-        tell(&Part::ArmStep.cost(self.arm.step_cost()));
-        tell(&Part::CyclicStep.cost(self.cyclic.step_cost()));
-        tell(&Part::Frame.cost(&self.frame));
+    fn costs(&self, report: &mut dyn FnMut(&Cost)) {
+        report(&Part::FrontEnd.cost(&self.vision));
+        report(&Part::ArmStep.cost(self.arm.step_cost()));
+        report(&Part::CyclicStep.cost(self.cyclic.step_cost()));
+        report(&Part::Frame.cost(&self.frame));
     }
 }
 

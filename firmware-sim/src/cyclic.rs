@@ -110,8 +110,8 @@ impl Application for CyclicApp {
         self.last_frame.unwrap_or(0)
     }
 
-    fn costs(&self, tell: &mut dyn FnMut(&Cost)) {
-        tell(&Part::CyclicStep.cost(&self.step));
+    fn costs(&self, report: &mut dyn FnMut(&Cost)) {
+        report(&Part::CyclicStep.cost(&self.step));
     }
 }
 

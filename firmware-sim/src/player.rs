@@ -77,7 +77,7 @@ pub trait Application {
     fn last_frame(&self) -> u32;
 
     /// Hands out what its parts cost.
-    fn costs(&self, tell: &mut dyn FnMut(&Cost));
+    fn costs(&self, report: &mut dyn FnMut(&Cost));
 }
 
 /// Plays the whole input of `port` to `application`.
@@ -99,7 +99,7 @@ pub fn play<P: Port>(port: &mut P, application: &mut impl Application) -> Result
     let records = answers.records;
     info!("{} answers", records);
     answers.put(&End { records })?;
-    let mut told = Ok(());
-    application.costs(&mut |cost| told = told.and_then(|()| put(costs, cost)));
-    told
+    let mut written = Ok(());
+    application.costs(&mut |cost| written = written.and_then(|()| put(costs, cost)));
+    written
 }

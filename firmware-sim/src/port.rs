@@ -2,13 +2,13 @@
 
 use sinew_record::{Cost, HEADER_BYTES, Payload, RecordError, Source, encode};
 
-/// Power of two of the nanoseconds that the emulator lets pass for an instruction; its timer then tells instructions.
+/// Power of two of the nanoseconds that the emulator lets pass for an instruction; its timer then counts instructions.
 pub const ICOUNT_SHIFT: u32 = 6;
 /// Name of the file that an image reads its input from.
 pub const INPUT_FILE: &str = "input.rec";
 /// Name of the file that it answers to.
 pub const RESULTS_FILE: &str = "results.rec";
-/// Name of the file that it tells its costs to.
+/// Name of the file for its costs.
 pub const COSTS_FILE: &str = "costs.rec";
 
 /// Longest record that an image reads or writes, bytes, header included.
@@ -34,7 +34,7 @@ pub trait Port {
     fn instructions() -> u32;
 }
 
-/// Parts of an image's work whose costs are told; the number is [`Cost::part`].
+/// Parts of an image's work whose costs are reported; the number is [`Cost::part`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u16)]
 pub enum Part {
@@ -46,7 +46,7 @@ pub enum Part {
     FrontEnd = 3,
     /// All of a frame's work, instructions.
     Frame = 4,
-    /// Most stack that was in use, bytes.
+    /// Most stack in use, bytes.
     Stack = 16,
 }
 

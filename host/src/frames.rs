@@ -1,4 +1,4 @@
-//! What the trackers are told of each frame: the core's front end with buffers that fit the frames.
+//! The observations of each frame for the trackers: the core's front end with buffers that fit the frames.
 
 use anyhow::Result;
 use image::{GrayImage, Luma, RgbImage};
@@ -14,7 +14,7 @@ use sinew_core::vision::skin::SkinClassifier;
 
 /// Runs of one line and components that grow at once: enough for lines of 2048 pixels and any mask.
 const LINE_CAPACITY: usize = 1024;
-/// Most blobs of a frame.
+/// Maximum number of blobs of a frame.
 pub const MAX_BLOBS: usize = 64;
 /// Most temporal edge pixels of a frame; more are thinned evenly.
 pub const MAX_EDGES: usize = 4096;

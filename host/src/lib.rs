@@ -4,6 +4,7 @@ pub mod body;
 #[cfg(feature = "command")]
 pub mod cli;
 pub mod config;
+mod csv_text;
 pub mod cyclic;
 #[cfg(feature = "report")]
 pub mod doctor;

@@ -169,6 +169,15 @@ fn temporary_in(folder: &Path) -> std::io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
+/// Gives a table its name.
+///
+/// # Errors
+/// A file that cannot be written.
+pub(crate) fn finish_table(table: csv::Writer<PendingFile>) -> Result<()> {
+    let file = table.into_inner().map_err(|error| anyhow::anyhow!("a table cannot be written: {}", error.error()))?;
+    file.finish()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

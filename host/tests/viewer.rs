@@ -67,8 +67,8 @@ fn an_arms_run_has_its_frames_blobs_particles_and_curves() {
     sinew(folder.path(), "simulate arm --motion builtin --frames 6 --out scene");
     fs::write(at("scene/frames/frame_0003.png"), b"no picture").unwrap();
     let track = "track arm scene/frames --config scene/camera.toml --particles 20 --out run --rerun run.rrd";
-    let told = sinew(folder.path(), track);
-    assert!(told.contains("6 frames: run.rrd"), "{told}");
+    let output = sinew(folder.path(), track);
+    assert!(output.contains("6 frames: run.rrd"), "{output}");
 
     let found = entities(&at("run.rrd"));
     for constant in ["/world", "/world/camera"] {

@@ -156,10 +156,10 @@ async function controls(page) {
   await page.locator('#use-scene').click();
   await waitForFrames(page, 30);
   await set(page, 'particles', 300);
-  check((await page.locator('#particles-told').textContent()) === '300', 'the number of particles is told');
+  check((await page.locator('#particles-shown').textContent()) === '300', 'the number of particles is shown');
   await page.locator('#show-timing').check();
   await page.waitForFunction(() => document.querySelector('#timing').textContent.includes('vision'));
-  check((await page.locator('#told').textContent()).includes('placed'), 'the scene’s shoulder is known');
+  check((await page.locator('#answers').textContent()).includes('placed'), 'the scene’s shoulder is known');
   await page.locator('#stop').click();
   const count = (await frames(page)).length;
   await page.waitForTimeout(200);
@@ -191,12 +191,12 @@ async function camera(page) {
   const first = (await frames(page)).at(-1).firstMs;
   console.log(`camera: first frame tracked ${Math.round(first)} ms after the camera was asked for`);
   check(first <= MAX_FIRST_MS, `the first frame is tracked within 3 s, not ${first} ms`);
-  check((await page.locator('#told').textContent()).includes('guessed'), 'nothing is known of the person');
+  check((await page.locator('#answers').textContent()).includes('guessed'), 'nothing is known of the person');
   await forget(page);
   await waitForFrames(page, FRAMES);
   const errorsOf = (list) => list.map(({ answer, code }) => distance(answer.hand, truth.hands[code]));
   const guessed = (await frames(page)).slice(0, FRAMES);
-  check(guessed.every(({ code }) => code !== null && code < truth.hands.length), 'every picture tells its number');
+  check(guessed.every(({ code }) => code !== null && code < truth.hands.length), 'every picture shows its number');
   tellErrors('camera, shoulder guessed', errorsOf(guessed));
   // As a person would: the distance by the slider, the shoulder by a click.
   await set(page, 'distance', truth.distance.toFixed(2));

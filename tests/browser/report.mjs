@@ -130,7 +130,7 @@ async function demoPage(runs) {
   const frame = await shown(page);
   check(Number(frame) > 40 && Number(frame) < 75, `a click in a plot goes to its frame, ${frame}`);
   const value = Number(await page.locator('[data-plot="arm hand_likelihood"] .legend .at').first().textContent());
-  check(Math.abs(value - Number(track[Number(frame)].hand_likelihood)) < 1e-3, 'the legend tells the value of the frame');
+  check(Math.abs(value - Number(track[Number(frame)].hand_likelihood)) < 1e-3, 'the legend shows the value of the frame');
   await tables(page, join(runs.demo, 'track.csv'));
   await close(page);
 }
@@ -230,7 +230,7 @@ async function hostilePage(runs) {
   writeFileSync(join(run, 'run.json'), readFileSync(join(run, 'run.json'), 'utf8').replaceAll('"gaussian"', JSON.stringify(evil)));
   const page = await open(report('hostile', run));
   equal(await page.evaluate(() => window.broken), undefined, 'no name runs');
-  equal(await page.locator('.told td').first().textContent(), evil, 'a name is shown as it is');
+  equal(await page.locator('.shown td').first().textContent(), evil, 'a name is shown as it is');
   equal(await page.locator('.run-name').first().textContent(), run, 'so is the folder');
   await close(page);
 }
@@ -242,7 +242,7 @@ async function otherPages(runs) {
     check((await page.locator('[data-plot] > svg path').count()) >= plots, `${name} has its plots`);
     check((await page.locator('[data-plot]').count()) >= plots, `${name} has its plots`);
     if (name === 'broken') {
-      check((await page.locator('.notice.missing').count()) >= 2, 'what is missing is told');
+      check((await page.locator('.notice.missing').count()) >= 2, 'what is missing is reported');
       await page.keyboard.press('End');
       check((await place(page)).includes('120 of 120'), 'the pictures are there without the table');
     }

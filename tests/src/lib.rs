@@ -12,9 +12,10 @@ use std::sync::OnceLock;
 
 /// The command `sinew` of this workspace, freshly built in the profile of the running test.
 ///
-/// `CARGO_BIN_EXE_sinew` is set for the tests of the package that owns the binary only, and `cargo test` does not build
-/// binaries of other packages. So the target folder is taken from the path of the running test, and cargo is asked once
-/// a process to bring the binary up to date, which takes a moment if it is.
+/// `CARGO_BIN_EXE_sinew` is set for the tests of the package that owns the binary only, and `cargo
+/// test` does not build binaries of other packages. So the target folder is taken from the path of
+/// the running test. Cargo is asked once a process to bring the binary up to date, which is quick
+/// if it is.
 ///
 /// # Panics
 /// If the binary cannot be built.

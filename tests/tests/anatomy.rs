@@ -6,8 +6,9 @@ use sinew::cyclic::anatomy::{AnatomicalSeries, CycleCurves};
 use sinew::cyclic::{AngleTable, CutList};
 use sinew_tests::shared_data;
 
-/// Sagittal ranges of healthy walking: knee about 60 degrees, hip 40 to 70 (brisk walkers), elbow and shoulder less than 90; one side half a cycle
-/// after the other; ranges alike to 35 %, since some speed up.
+/// Sagittal ranges of healthy walking: knee about 60 degrees, hip 40 to 70 (brisk walkers), elbow
+/// and shoulder less than 90. One side is half a cycle after the other. Ranges agree to 35 %, since
+/// some people speed up.
 #[test]
 fn walking_has_the_ranges_of_healthy_gait() {
     let Some(folder) = shared_data("cyclic-walking") else { return };

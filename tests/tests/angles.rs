@@ -132,7 +132,7 @@ fn coco_results_and_tables_of_points_are_read() {
     }
     fs::write(root.path().join("points.csv"), text).unwrap();
     let mut command = sinew(root.path());
-    let note = "nothing tells which way the person faces";
+    let note = "it is unknown which way the person faces";
     command.args(["points.csv", "--out", "p.csv"]).assert().success().stderr(contains(note));
     let (results, points) = (table(&root.path().join("r.csv")), table(&root.path().join("p.csv")));
     for (a, b) in results.rows().iter().zip(points.rows()) {

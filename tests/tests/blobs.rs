@@ -45,7 +45,7 @@ fn a_row_for_each_blob_in_natural_order() {
 }
 
 #[test]
-fn json_and_csv_tell_the_same_and_can_go_to_a_file() {
+fn json_and_csv_hold_the_same_and_can_go_to_a_file() {
     let folder = tempfile::tempdir().unwrap();
     write_folder(folder.path());
     let out = folder.path().join("tables/blobs.json");

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Greatest size of all pictures together, bytes.
+/// Largest size of all pictures together, bytes.
 const MAX_PICTURES_BYTES: u64 = 600_000;
 
 fn docs() -> PathBuf {
@@ -70,7 +70,7 @@ fn every_page_has_one_title_and_it_comes_first() {
 }
 
 #[test]
-fn every_picture_is_shown_and_its_command_told() {
+fn every_picture_is_shown_with_its_command() {
     let mut pictures = BTreeSet::new();
     files(&docs(), &["png", "jpg", "jpeg", "gif", "svg"], &mut pictures);
     assert!(pictures.len() >= 8, "only {} pictures", pictures.len());
@@ -79,7 +79,7 @@ fn every_picture_is_shown_and_its_command_told() {
 
     let mut pages = BTreeSet::new();
     files(&docs(), &["md"], &mut pages);
-    let told = read(&docs().join("pictures.md"));
+    let text = read(&docs().join("pictures.md"));
     let mut shown = BTreeSet::new();
     for page in &pages {
         let text = read(&docs().join(page));
@@ -89,7 +89,7 @@ fn every_picture_is_shown_and_its_command_told() {
     for picture in pictures {
         assert!(shown.contains(&picture), "no page shows {picture}");
         let name = picture.strip_prefix("pictures/").unwrap_or_else(|| panic!("{picture} lies outside of pictures/"));
-        assert!(told.contains(&format!("`{name}`")), "pictures.md does not tell what makes {name}");
+        assert!(text.contains(&format!("`{name}`")), "pictures.md does not name what makes {name}");
     }
 }
 
@@ -108,6 +108,6 @@ fn links_stay_inside_of_the_book() {
 fn the_settings_of_the_book_leave_the_pages_where_they_are() {
     let settings = read(&docs().join("book.toml"));
     assert!(settings.contains("\nsrc = \".\"\n"), "{settings}");
-    // A summary with an entry too many would otherwise make an empty page.
+    // A summary with an entry too many would make an empty page.
     assert!(settings.contains("\ncreate-missing = false\n"), "{settings}");
 }

@@ -100,13 +100,13 @@ fn quiet_silences_notes_and_not_errors() {
     RgbImage::from_pixel(32, 24, Rgb([90, 120, 200])).save(root.path().join("in/0.png")).unwrap();
     fs::write(root.path().join("in/1.png"), "no image").unwrap();
     for words in ["segment in --out masks", "blobs in", "track arm in --out run"] {
-        let told = |more: &str| {
+        let stderr = |more: &str| {
             let output = sinew(root.path(), &format!("{words} {more}"));
             assert!(output.status.success() && !output.stdout.is_empty(), "{words}");
             String::from_utf8(output.stderr).unwrap()
         };
-        assert!(told("").contains("1.png"), "{words}");
-        assert_eq!(told("--quiet"), "", "{words}");
+        assert!(stderr("").contains("1.png"), "{words}");
+        assert_eq!(stderr("--quiet"), "", "{words}");
     }
     let output = sinew(root.path(), "track arm nowhere --out run --quiet --json");
     assert!(output.status.code() == Some(1) && output.stdout.is_empty());

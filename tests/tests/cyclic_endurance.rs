@@ -77,8 +77,8 @@ fn check_coupled(filter: &CoupledFilter<N>, step: u32) {
     }
 }
 
-/// Frames with all, some or no angles, gaps of up to thousands of frames, and noise from a tenth of a degree to 115, for
-/// `filter`, whose `step` is followed by a `check` now and then.
+/// Frames with all, some or no angles, gaps of up to thousands of frames, and noise from a tenth of
+/// a degree to 115. `step` of `filter` takes them, with a `check` now and then.
 fn run<F>(
     steps: u32,
     filter: &mut F,

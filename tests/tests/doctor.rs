@@ -13,7 +13,7 @@ fn stdout(output: &Output) -> String {
 }
 
 #[test]
-fn a_sound_scene_and_its_run_are_good_and_a_cut_one_is_not() {
+fn a_valid_scene_and_its_run_have_no_problem_and_a_cut_one_has() {
     let root = tempfile::tempdir().unwrap();
     let run = root.path().join("run");
     assert!(sinew(&["demo", "--out", run.to_str().unwrap()]).status.success());
@@ -50,7 +50,7 @@ fn a_folder_of_clouds_is_examined_with_what_lies_beside() {
 }
 
 #[test]
-fn shipped_models_are_taken_and_typing_errors_are_told() {
+fn shipped_models_are_taken_and_typing_errors_are_reported() {
     let model = workspace_root().join("host/models/running.json");
     let output = sinew(&["doctor", model.to_str().unwrap()]);
     assert!(output.status.success() && stdout(&output).contains("motion model"), "{}", stdout(&output));

@@ -138,9 +138,9 @@ fn every_public_module_of_the_core_has_a_compiled_example() {
     }
 }
 
-/// Greatest number of lines of a page of the book.
+/// Largest number of lines of a page of the book.
 const MAX_PAGE_LINES: usize = 200;
-/// Greatest width of a line of prose, characters.
+/// Largest width of a line of prose, characters.
 const MAX_PROSE_COLUMNS: usize = 100;
 /// Private metaphors, and words of a diary, which the book does without.
 const AVOIDED_WORDS: [&str; 15] = [

@@ -64,7 +64,7 @@ fn predictions_have_spread_and_blocks(report: &Value, out: &Path) {
 }
 
 #[test]
-fn hidden_arms_are_counted_and_told_one_by_one() {
+fn hidden_arms_are_counted_and_listed_one_by_one() {
     let root = tempfile::tempdir().unwrap();
     let mut command = sinew(root.path());
     command.args(["--motion", "pelvic-lift", "--models", "pelvic-lift", "--particles", "20", "--hide-arms", "40"]);

@@ -4,9 +4,9 @@ use sinew_tests::workspace_root;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Greatest length of README, lines.
+/// Largest length of README, lines.
 const MAX_README_LINES: usize = 120;
-/// Greatest length of an entry of CHANGELOG, characters.
+/// Largest length of an entry of CHANGELOG, characters.
 const MAX_ENTRY_CHARACTERS: usize = 120;
 /// What README, the core's front page and docs/architecture.md say alike.
 const UNSAFE_CLAIM: &str = "`sinew-core` has `unsafe` code in two places: the interface for C (feature `c-api`), and one \

@@ -57,7 +57,7 @@ fn message(folder: &Path, words: &str) -> (Option<i32>, String) {
 }
 
 #[test]
-fn missing_empty_and_wrong_inputs_are_told_with_the_remedy() {
+fn missing_empty_and_wrong_inputs_are_reported_with_the_remedy() {
     let root = tempfile::tempdir().unwrap();
     let folder = root.path();
     fs::create_dir(folder.join("empty")).unwrap();

@@ -60,7 +60,7 @@ impl Scene {
             for &place in &places[1..] {
                 break_off(BodyTrackRun::resume(options.clone(), &out).unwrap(), place);
             }
-            // Any number of threads gives the same; only the report tells them.
+            // Any number of threads gives the same; only the report names them.
             let run = BodyTrackRun::resume(BodyTrackOptions { threads: Some(1), ..options.clone() }, &out).unwrap();
             assert_eq!(run.frames_finished(), *places.last().unwrap());
             run.run(&never, &mut |_| ()).unwrap();

@@ -49,7 +49,7 @@ impl Walker {
         words
     }
 
-    /// Whether the command ended well, and what it told on standard error.
+    /// Whether the command ended well, and its standard error.
     fn command(&self, out: &str, more: &[&str]) -> (bool, String) {
         let output = sinew_command().args(self.words(out, more)).output().unwrap();
         (output.status.success(), String::from_utf8(output.stderr).unwrap())
@@ -120,7 +120,7 @@ fn a_start_without_a_position_and_a_recording_at_another_rate_go_on() {
 }
 
 #[test]
-fn estimates_by_the_whole_recording_and_motions_told_apart_go_on() {
+fn estimates_by_the_whole_recording_and_of_several_motions_resume() {
     let walker = Walker::new();
     for filter in ["coupled", "paper"] {
         walker.resumes(&["--model", "walking", "--smooth", "--filter", filter], &[&[3], &[45, 70]]);

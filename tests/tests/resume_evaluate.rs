@@ -32,7 +32,7 @@ impl Folder {
         all
     }
 
-    /// Whether the command ended well, and what it told on standard error.
+    /// Whether the command ended well, and its standard error.
     fn command(&self, words: &str, out: &str) -> (bool, String) {
         let output = sinew_command().args(self.words(words, out)).output().unwrap();
         (output.status.success(), String::from_utf8(output.stderr).unwrap())

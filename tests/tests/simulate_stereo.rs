@@ -95,7 +95,7 @@ fn what_cannot_be_used_is_refused_with_a_remedy() {
     assert_eq!(fs::read_dir(out.join("points")).unwrap().count(), 13, "the old points are gone");
 }
 
-/// Largest mean distance of a joint from the recorded one that docs/simulation.md tells, metres.
+/// Largest mean distance of a joint from the recorded one that docs/simulation.md states, metres.
 const LARGEST_MEAN_M: f32 = 0.015;
 
 #[test]

@@ -46,7 +46,7 @@ fn withheld(folder: &Path) -> Vec<f64> {
 
 /// Every second measurement is withheld; the band of the estimate, widened by the measurement's own noise, holds nine of ten.
 #[test]
-fn bands_are_honest_with_most_joints_missing() {
+fn bands_hold_the_truth_with_most_joints_missing() {
     let Some(data) = shared_data("swim2d/swimfix") else { return };
     let mut all = Vec::new();
     for (file, confidence) in [

@@ -103,7 +103,7 @@ fn views_that_cannot_be_made_are_refused_before_the_run() {
     };
     refused(&["--overlay", "gone"], "no such folder");
     refused(&["--overlay", "empty"], "is empty");
-    refused(&["--overlay", "frames"], "`overlay` needs a table that tells where the person is");
+    refused(&["--overlay", "frames"], "`overlay` needs a table with the place of the person");
     refused(&["--animation", "walk.mp4"], "`animation` has to end in .gif");
     refused(&["--animation", "empty"], "has to end in .gif");
 }

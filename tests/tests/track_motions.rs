@@ -188,7 +188,7 @@ fn random_angles_are_none_and_the_estimate_stays_whole() {
     assert!(json.contains("walking, running, arm-circles"));
 }
 
-/// The columns of a single model stay what they were; a bank of a model with itself tells what that model tells.
+/// The columns of a single model do not depend on the bank; a bank of a model with itself gives what that model gives.
 #[test]
 fn one_model_has_no_motion_and_unlike_models_are_refused() {
     let root = tempfile::tempdir().unwrap();

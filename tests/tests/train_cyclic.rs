@@ -110,7 +110,7 @@ fn bad_input_is_refused_with_file_line_and_rule() {
 }
 
 #[test]
-fn an_angle_that_winds_in_some_cycles_only_is_told() {
+fn an_angle_that_winds_in_some_cycles_only_is_reported() {
     let root = tempfile::tempdir().unwrap();
     write_input(root.path());
     let train = |cuts: &str| {
@@ -128,9 +128,9 @@ fn an_angle_that_winds_in_some_cycles_only_is_told() {
         text
     });
     fs::write(root.path().join("tables/w.csv"), winding).unwrap();
-    let told = "note: `r_wrist_rad` winds unevenly: -1 turns in 1 of the cycles, 0 turns in 2 of the cycles;";
+    let note = "note: `r_wrist_rad` winds unevenly: -1 turns in 1 of the cycles, 0 turns in 2 of the cycles;";
     train("tables/a.csv,10,70\ntables/b.csv,20,80\ntables/w.csv,20,80\n")
-        .stderr(contains(told).and(contains("note").count(1)));
+        .stderr(contains(note).and(contains("note").count(1)));
     train("tables/w.csv,10,70\ntables/w.csv,20,80\n").stderr(predicates::str::is_empty());
 }
 

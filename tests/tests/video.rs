@@ -22,7 +22,7 @@ fn scene() -> Option<TempDir> {
     }
     let root = tempfile::tempdir().unwrap();
     let made = sinew(root.path(), "simulate arm --motion builtin --frames 30 --out scene");
-    assert!(made.status.success(), "{}", told(&made));
+    assert!(made.status.success(), "{}", stderr(&made));
     Some(root)
 }
 
@@ -31,7 +31,7 @@ fn encode(root: &Path, name: &str, options: &str) -> PathBuf {
     let mut ffmpeg = Command::new("ffmpeg");
     ffmpeg.args(["-nostdin", "-v", "error", "-framerate", "15", "-i", "scene/frames/frame_%04d.png"]);
     let output = ffmpeg.args(options.split_whitespace()).arg(name).current_dir(root).output().unwrap();
-    assert!(output.status.success(), "{name}: {}", told(&output));
+    assert!(output.status.success(), "{name}: {}", stderr(&output));
     root.join(name)
 }
 
@@ -44,7 +44,7 @@ fn sinew(folder: &Path, words: &str) -> Output {
     sinew_command().current_dir(folder).args(words.split_whitespace()).output().unwrap()
 }
 
-fn told(output: &Output) -> String {
+fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
@@ -69,7 +69,7 @@ fn a_video_is_tracked_as_its_frames_are() {
     let options = "--config scene/camera.toml --side both --overlay --out";
     for (input, run) in [("scene/frames", "of_folder"), ("clip.mkv", "of_video")] {
         let output = sinew(root, &format!("track arm {input} {options} {run}"));
-        assert!(output.status.success() && told(&output).is_empty(), "{}", told(&output));
+        assert!(output.status.success() && stderr(&output).is_empty(), "{}", stderr(&output));
     }
     let (folder, video) = (root.join("of_folder"), root.join("of_video"));
     assert_eq!(rows(&folder), rows(&video));
@@ -96,10 +96,10 @@ fn a_video_is_recorded_for_firmware_as_its_frames_are() {
     let bytes = fs::read(lossless(root)).unwrap();
     for (input, run) in [("scene/frames", "of_folder"), ("clip.mkv", "of_video")] {
         let output = sinew(root, &format!("track arm {input} --config scene/camera.toml --out {run}"));
-        assert!(output.status.success(), "{}", told(&output));
+        assert!(output.status.success(), "{}", stderr(&output));
         for form in ["tracker", "camera"] {
             let output = sinew(root, &format!("record {run} --form {form} --out {run}.{form}"));
-            assert!(output.status.success(), "{}", told(&output));
+            assert!(output.status.success(), "{}", stderr(&output));
             assert!(String::from_utf8_lossy(&output.stdout).contains("of 30 frames"), "{output:?}");
         }
     }
@@ -110,7 +110,7 @@ fn a_video_is_recorded_for_firmware_as_its_frames_are() {
     }
     fs::write(root.join("clip.mkv"), &bytes[..bytes.len() / 2]).unwrap();
     let refused = sinew(root, "record of_video --out broken");
-    assert!(!refused.status.success() && told(&refused).contains("is broken after"), "{}", told(&refused));
+    assert!(!refused.status.success() && stderr(&refused).contains("is broken after"), "{}", stderr(&refused));
     assert!(!root.join("broken").exists());
 }
 
@@ -142,7 +142,7 @@ fn every_container_and_any_rate_is_read() {
     for name in ["clip.mp4", "clip.MOV", "clip.avi", "-i.mkv"] {
         encode(root, &format!("./{name}"), "-c:v mpeg4 -q:v 2");
         let output = sinew(root, &format!("track arm --out run -- {name}"));
-        assert!(output.status.success(), "{name}: {}", told(&output));
+        assert!(output.status.success(), "{name}: {}", stderr(&output));
         assert_eq!(rows(&root.join("run")).len(), FRAMES, "{name}");
     }
     // Half the rate is every second frame, twice the rate each frame twice.
@@ -181,7 +181,7 @@ fn a_broken_off_run_over_a_video_goes_on() {
     assert_eq!(rows(&root.join("broken_off")).len(), 11);
     assert!(sinew(root, "track arm clip.mkv --overlay --out whole").status.success());
     let resumed = sinew(root, "track arm clip.mkv --overlay --out broken_off --resume");
-    assert!(resumed.status.success(), "{}", told(&resumed));
+    assert!(resumed.status.success(), "{}", stderr(&resumed));
     for file in ["track.csv", "hand.png", "contact_sheet.png", "overlay/clip_000000.png", "overlay/clip_000029.png"] {
         let [a, b] = ["whole", "broken_off"].map(|run| fs::read(root.join(run).join(file)).unwrap());
         assert!(a == b, "{file}");
@@ -195,7 +195,7 @@ fn what_came_before_a_break_is_kept() {
     let bytes = fs::read(lossless(root)).unwrap();
     fs::write(root.join("cut.mkv"), &bytes[..bytes.len() / 2]).unwrap();
     let output = sinew(root, "track arm cut.mkv --out run");
-    let message = told(&output);
+    let message = stderr(&output);
     assert_eq!(output.status.code(), Some(1), "{message}");
     assert!(
         message.contains("`cut.mkv` is broken after") && message.contains("finished frames are in `run`"),
@@ -206,28 +206,28 @@ fn what_came_before_a_break_is_kept() {
     assert_eq!(report(&root.join("run"))["complete"], false);
     let output = sinew(root, "segment cut.mkv --out masks");
     assert!(
-        output.status.code() == Some(1) && told(&output).contains("what came before is written"),
+        output.status.code() == Some(1) && stderr(&output).contains("what came before is written"),
         "{}",
-        told(&output)
+        stderr(&output)
     );
     assert_eq!(fs::read_dir(root.join("masks")).unwrap().count(), kept);
 }
 
 #[test]
-fn a_video_that_is_none_and_a_missing_ffmpeg_are_told_with_the_remedy() {
+fn a_video_that_is_none_and_a_missing_ffmpeg_are_reported_with_the_remedy() {
     let root = tempfile::tempdir().unwrap();
     fs::write(root.path().join("words.mp4"), "no video").unwrap();
     for command in ["track arm words.mp4 --out run", "segment words.mp4 --out masks", "blobs words.mp4"] {
         let mut without = sinew_command();
         without.current_dir(root.path()).args(command.split_whitespace()).env("PATH", root.path());
         let output = without.output().unwrap();
-        let message = told(&output);
+        let message = stderr(&output);
         assert_eq!(output.status.code(), Some(1), "{message}");
         assert!(message.contains("apt install ffmpeg") && message.contains("give a folder of images"), "{message}");
         assert!(!root.path().join("run").exists());
     }
     if scene().is_some() {
-        let message = told(&sinew(root.path(), "track arm words.mp4 --out run"));
+        let message = stderr(&sinew(root.path(), "track arm words.mp4 --out run"));
         assert!(message.contains("`words.mp4` cannot be read as a video") && message.contains("whole"), "{message}");
     }
 }

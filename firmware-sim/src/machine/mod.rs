@@ -42,7 +42,7 @@ pub fn run(image: fn(&mut Board) -> Result<(), RecordError>) -> ! {
     let code = match play(image) {
         Ok(()) => EXIT_SUCCESS,
         Err(message) => {
-            stop::tell(message);
+            stop::print(message);
             EXIT_FAILURE
         }
     };

@@ -12,7 +12,7 @@ unsafe extern "C" {
     static _stack_end: u32;
 }
 
-/// Most bytes that were in use so far.
+/// Largest number of bytes in use.
 pub fn most_used_bytes() -> u32 {
     // The stack grows from the first symbol down to the second.
     let (high, low) = (addr_of!(_stack_start), addr_of!(_stack_end));

@@ -9,7 +9,7 @@ use cortex_m_semihosting::debug::{EXIT_FAILURE, exit};
 use cortex_m_semihosting::hio;
 
 /// Writes a line to the emulator's standard output.
-pub fn tell(message: &str) {
+pub fn print(message: &str) {
     if let Ok(mut out) = hio::hstdout() {
         let _ = out.write_all(message.as_bytes());
         let _ = out.write_all(b"\n");
@@ -19,16 +19,16 @@ pub fn tell(message: &str) {
 /// Tells where, without the formatting that would take more flash than the tracker, and ends with a failure.
 #[panic_handler]
 fn panicked(info: &PanicInfo<'_>) -> ! {
-    tell("panic at");
+    print("panic at");
     if let Some(place) = info.location() {
-        tell(place.file());
+        print(place.file());
         let mut digits = [b'0'; 6];
         let mut left = place.line();
         for digit in digits.iter_mut().rev() {
             *digit = b'0' + (left % 10) as u8;
             left /= 10;
         }
-        tell(core::str::from_utf8(&digits).unwrap_or_default());
+        print(core::str::from_utf8(&digits).unwrap_or_default());
     }
     fail()
 }
@@ -39,18 +39,18 @@ unsafe fn HardFault(_: &ExceptionFrame) -> ! {
 }
 
 extern "C" fn overflown() -> ! {
-    tell("stack overflow");
+    print("stack overflow");
     fail()
 }
 
 extern "C" fn faulted() -> ! {
-    tell("hard fault");
+    print("hard fault");
     fail()
 }
 
 #[exception]
 unsafe fn DefaultHandler(_: i16) {
-    tell("an exception that nobody handles");
+    print("an exception without a handler");
     fail()
 }
 

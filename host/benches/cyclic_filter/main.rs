@@ -1,8 +1,8 @@
-//! The cyclic filters' steps: `paper` and `coupled`, as the command takes them and with SSE2 alone, against dense filters of other
-//! crates; the particle filter by stage, on one thread and two, and beside numpy and the Python package `particles` where they are
-//! installed.
+//! The cyclic filters' steps: `paper` and `coupled`, as the command runs them and with SSE2 alone,
+//! against dense filters of other crates. Also the particle filter by stage, on one thread and two.
+//! It is compared with numpy and the Python package `particles` where they are installed.
 //!
-//! Medians and least times taken in turns in this process, on one thread unless said otherwise, and ratios of them. The Python filters run
+//! Medians and smallest times, measured in turns in this process, and their ratios. One thread where no other number is given. The Python filters run
 //! between two halves of the particle filter's rounds; `PYTHON` names the interpreter (default: python3).
 
 mod dense_peers;

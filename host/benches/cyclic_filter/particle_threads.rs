@@ -8,8 +8,9 @@ use std::time::Instant;
 
 use super::walk::Walk;
 
-/// Frames of a turn. In a recording one frame follows the other; workers that sleep through every second one
-/// seem to be woken on one processor: half of the steps then take as long as on one thread.
+/// Frames of a turn. In a recording one frame follows the other. Workers that sleep through every
+/// second one seem to be woken on one processor. Half of the steps then take as long as on one
+/// thread.
 const TURN: usize = 8;
 /// Frames of a turn that are not counted.
 const UNCOUNTED: usize = 1;

@@ -1,7 +1,8 @@
 //! The solver alone against the crate `k` on an arm of four angles: the same poses, goals, limits and tolerance, in turns in one process on one thread.
 //!
-//! `k` moves along the pseudo-inverse of its Jacobian and cuts to the limits until the hand is within the tolerance: by whole steps, which are
-//! fastest here, and by half steps, its default. Ours gets a precision with which it does not stop before.
+//! `k` moves along the pseudo-inverse of its Jacobian and cuts to the limits until the hand is
+//! within the tolerance. It takes whole steps, which are fastest here, and half steps, its default.
+//! Ours gets a precision with which it does not stop before.
 
 mod k_peer;
 
@@ -21,9 +22,9 @@ const ROUNDS: usize = 101;
 /// How near the hand has to come, metres.
 const TOLERANCE_M: f32 = 1.0e-3;
 /// A step ends the search when it promises less log density than this (`kinematics::inverse`): half of it is what a miss of the tolerance may cost.
-const LEAST_LOG_GAIN: f32 = 0.01;
-const MOST_STEPS: usize = 100;
-/// Greatest difference of an angle between the start and the pose that the goal is of, radians.
+const MIN_LOG_GAIN: f32 = 0.01;
+const MAX_STEPS: usize = 100;
+/// Largest difference of an angle between the start and the pose that the goal is of, radians.
 const CHANGE_RAD: f32 = 0.3;
 
 /// Where the search begins and where the hand has to go.
@@ -49,14 +50,14 @@ fn tasks(arm: &Skeleton<2, 4>) -> Vec<Task> {
 type Round = (f64, usize);
 
 fn sinew_round(arm: &Skeleton<2, 4>, tasks: &[Task]) -> Round {
-    let precision = Mat3::identity() * (2.0 * LEAST_LOG_GAIN / (TOLERANCE_M * TOLERANCE_M));
+    let precision = Mat3::identity() * (2.0 * MIN_LOG_GAIN / (TOLERANCE_M * TOLERANCE_M));
     let (mut seconds, mut reached) = (0.0, 0);
     for task in tasks {
         let goals = [Goal { bone: FOREARM, position_m: task.goal_m, precision }];
         let (root_m, previous_rad) = (Vec3::zeros(), task.start_rad);
         let density = PoseDensity { skeleton: arm, root_m, goals: &goals, previous_rad, stiffness: [0.1; 4], held: 0 };
         let start = Instant::now();
-        let mode = black_box(black_box(&density).mode(MOST_STEPS));
+        let mode = black_box(black_box(&density).mode(MAX_STEPS));
         seconds += start.elapsed().as_secs_f64();
         reached += usize::from(mode.residual_m < TOLERANCE_M);
     }
@@ -93,9 +94,9 @@ fn main() {
     }
     let arm = ArmGeometry::new(Side::Left, 0.3, 0.35).and_then(|arm| arm.skeleton()).expect("sound lengths");
     let tasks = tasks(&arm);
-    let k64 = |share| KPeer::<f64>::new(&arm, TOLERANCE_M.into(), share, MOST_STEPS);
+    let k64 = |share| KPeer::<f64>::new(&arm, TOLERANCE_M.into(), share, MAX_STEPS);
     let (whole, half) = (k64(1.0), k64(0.5));
-    let single = KPeer::<f32>::new(&arm, TOLERANCE_M.into(), 1.0, MOST_STEPS);
+    let single = KPeer::<f32>::new(&arm, TOLERANCE_M.into(), 1.0, MAX_STEPS);
     check(&arm, &whole, &tasks);
     let mut rounds: [Vec<Round>; 4] = Default::default();
     for _ in 0..ROUNDS {

@@ -11,9 +11,9 @@ use sinew::skin::SkinModel;
 use statrs::statistics::{Data, OrderStatistics};
 use std::fmt::Write;
 
-/// Least share of the boxes, on whole frames, with a hand inside.
+/// Smallest share of the boxes, on whole frames, with a hand inside.
 pub const INSIDE_FLOOR: f64 = 0.95;
-/// Least share of the boxes, through the moving window, with a hand near the centre.
+/// Smallest share of the boxes, through the moving window, with a hand near the centre.
 pub const CENTRED_FLOOR: f64 = 0.85;
 /// Largest share of confused frames, on whole frames and through the window.
 pub const CONFUSED_CEILING: f64 = 0.05;

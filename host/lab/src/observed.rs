@@ -49,7 +49,7 @@ pub struct ObservedScene {
 }
 
 impl ObservedScene {
-    /// What tells this scene from others that the same options and skin model make.
+    /// What distinguishes this scene from others that the same options and skin model make.
     #[must_use]
     pub fn key(&self) -> Value {
         json!([self.clip, self.seed, crc32_of(&self.truth)])
@@ -64,8 +64,8 @@ pub fn observe(clip: &Clip, options: &SceneOptions, base: &Config, skin: &SkinMo
     let options = SceneOptions { sides: Sides::One(clip.side), ..options.clone() };
     let motion = clip.load(options.frames_per_second, options.frames)?;
     let scene = Scene::new(&motion, &options)?;
-    let told = Config::parse(&scene.config_toml())?;
-    let config = Config { camera: told.camera, body: told.body, ..base.clone() };
+    let parsed = Config::parse(&scene.config_toml())?;
+    let config = Config { camera: parsed.camera, body: parsed.body, ..base.clone() };
     let mut reader = FrameReader::new(config.likelihood.build()?, config.edges.build()?)?;
     let mut read = |frame| {
         let image = scene.render(frame);

@@ -4,7 +4,7 @@
 mod shared_data;
 
 use sinew::body::run::score::RunningMean;
-use sinew::body::tracking::filter::{CARRIED, END_EFFECTORS};
+use sinew::body::tracking::end_effectors::{CARRIED, END_EFFECTORS};
 use sinew::body::tracking::tuning::JointStd;
 use sinew::body::tracking::{BodyModelKind, BodyTuning};
 use sinew::body::{BodyJoints, fit_pose};
@@ -87,8 +87,9 @@ impl<M: BodyMotion<BODY_BONES, BODY_ANGLES>> BodyMotion<BODY_BONES, BODY_ANGLES>
     }
 }
 
-/// Each frame's numbers foretold from the three true frames before, by the shares of velocity and of its change that serve this very series best
-/// (least squares; so many numbers have their shares `together`).
+/// Each frame's numbers predicted from the three true frames before. The shares of velocity and of
+/// its change are the least-squares fit to this very series. As many numbers as `together` share
+/// them.
 fn foretold(series: &[Vec<f32>], together: usize) -> Vec<Vec<f32>> {
     let at = |frame: usize, back: usize, i: usize| series[frame.saturating_sub(back)][i];
     let velocity = |frame: usize, i: usize| at(frame, 1, i) - at(frame, 2, i);
@@ -180,7 +181,7 @@ impl Model {
         let goals = LinearGoals::new(&END_EFFECTORS, BODY_BONES, process, reach_std_m).unwrap();
         let goals = goals.spreading_by(&numbers.goal_std.per_end_effector().map(|std_m| NOISE_SHARE * std_m)).unwrap();
         let joints = if kind == BodyModelKind::Angular { tuning.angular.joint_std } else { numbers.joint_std };
-        // The trunk, which is laid onto the points, keeps its own.
+        // The trunk, which is fitted to the points, keeps its own.
         let joints = JointStd { trunk: tuning.root.trunk_std_rad, ..joints.scaled(NOISE_SHARE) };
         Self { kind, tuning, scene, goals, angle_std_rad_per_sqrt_s: joints.per_angle() }
     }
@@ -224,8 +225,8 @@ impl Model {
         for (index, points_m) in seen.clouds_m.iter().enumerate().skip(1) {
             let blocks = blocks_of(&mut points_m.clone(), smoothing.as_ref());
             let frame = BodyFrame { dt_s: 1.0 / seen.rate_hz, blocks: &blocks };
-            let told = (foresight.places_m[index], foresight.poses_rad[index]);
-            let estimate = self.step(&mut tracker, &frame, told);
+            let foreseen = (foresight.places_m[index], foresight.poses_rad[index]);
+            let estimate = self.step(&mut tracker, &frame, foreseen);
             let surface = self.scene.surface(&self.scene.posture(&estimate.angles_rad));
             for marker_m in seen.markers_m[index].iter().flatten() {
                 error_m.add(f64::from(surface.skin_distance_m(marker_m)));

@@ -21,10 +21,10 @@ const REFERENCE_DEG: [(Protocol, FilterName, [f64; 6]); 4] = [
 const AGREEMENT: f64 = 0.05;
 /// The same at sigma 115 with noise, where runs that lose the pose differ by seed.
 const LOST_AGREEMENT: f64 = 0.08;
-/// Greatest error of `coupled` as a share of the better of `paper` and `paper-cut`.
+/// Largest error of `coupled` as a share of the better of `paper` and `paper-cut`.
 const COUPLED_SHARE: [(Protocol, [f64; 6]); 2] =
     [(Protocol::ExactMean, [1.0, 1.0, 1.0, 1.0, 1.0, 1.05]), (Protocol::Noisy, [1.0, 1.0, 1.0, 0.8, 0.8, 0.6])];
-/// Greatest error of `coupled` with two updates a cycle as a share of that of `paper`.
+/// Largest error of `coupled` with two updates a cycle as a share of that of `paper`.
 const TWO_UPDATES_SHARE: f64 = 0.85;
 /// Share of the truth inside `coupled`'s 90 % band: over all angles and sigmas, and for each angle.
 const BAND: [f64; 2] = [0.85, 0.95];

@@ -23,12 +23,13 @@ const SEEDS: [u64; 3] = [1, 2, 3];
 const CYCLES: u64 = 8;
 /// Tempos of people drawn from the model, as parts of its own; their own pace adds a tenth to either side.
 const TEMPOS: [f64; 7] = [0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4];
-/// Greatest relative error of the mean cadence from the third cycle on, of people drawn from the model and of the recorded circles.
+/// Largest relative error of the mean cadence from the third cycle on, of people drawn from the model and of the recorded circles.
 const CADENCE: f64 = 0.01;
-/// Greatest error of the number of cycles.
+/// Largest error of the number of cycles.
 const COUNT: f64 = 0.15;
-/// Of the recorded circles by models of two or three of them: mean error of the cadence for circles that the model knows, and for those
-/// of the other recording, of which other joints go round.
+/// Mean error of the cadence of the recorded circles by models of two or three of them. First for
+/// circles that the model knows, then for those of the other recording, of which other joints go
+/// round.
 const FEW_CADENCE: f64 = 0.03;
 
 /// Writes the poses of `cycle_frames` a cycle and gives their cuts.
@@ -68,7 +69,7 @@ fn people_who_circle_as_the_model_says_have_their_cadence_at_any_tempo() {
     for (number, tempo) in TEMPOS.into_iter().enumerate() {
         let cuts: Vec<Cut> = (1..=4)
             .flat_map(|seed| {
-                // More frames a second than are told make somebody slow.
+                // A higher rate than the filter assumes makes the motion slow.
                 let person = SyntheticPerson::draw(&model, 60.0 / tempo, seed).unwrap();
                 let file = format!("{number}_{seed}.csv");
                 write(folder.path(), &file, person.cycle_frames() as u64, |frame| unwound(&model, &person, frame))

@@ -1,4 +1,4 @@
-//! `sinew cut` on real walkers and runners: cuts stay at one phase of the motion, told by cues that cutting does not use.
+//! `sinew cut` on real walkers and runners: cuts stay at one phase of the motion, measured by cues that cutting does not use.
 //! Runs in release where `../shared/data` is at hand, and says so where not.
 
 mod shared_data;
@@ -9,11 +9,11 @@ use sinew::cyclic::cutting::{CuttingOptions, cycles};
 use sinew::cyclic::recording::{RecordingOptions, angles};
 use std::path::{Path, PathBuf};
 
-/// Greatest standard deviation of a cue's phase within a recording, cycles, the middle one of six cues.
+/// Largest standard deviation of a cue's phase within a recording, cycles, the middle one of six cues.
 const SPREAD: f64 = 0.02;
-/// Greatest distance of the cue's earliest and latest phase.
+/// Largest distance of the cue's earliest and latest phase.
 const RANGE: f64 = 0.06;
-/// Greatest distance of its mean in the first and the second half.
+/// Largest distance of its mean in the first and the second half.
 const DRIFT: f64 = 0.03;
 
 /// All recordings of walking and running at 60 frames a second, with their names.

@@ -15,9 +15,9 @@ use sinew_lab::cyclic::{Cell, LONG_RUN_SIGMA_DEG, Protocol, Setting, long_runs, 
 use walk_cuts::list;
 use walks::WALKS;
 
-/// Greatest relative error of the mean cadence from the third cycle on.
+/// Largest relative error of the mean cadence from the third cycle on.
 const CADENCE: f64 = 0.02;
-/// Greatest difference of the cycles counted and those that there were.
+/// Largest difference of the cycles counted and those that there were.
 const COUNT: f64 = 0.3;
 /// Root mean square and greatest error of the position over eight or more cycles.
 const PHASE: [f64; 2] = [0.05, 0.15];
@@ -56,7 +56,7 @@ fn holds(model: &str, files: &[&str]) {
 /// Share of the truth inside `coupled`'s 90 % band, over all angles and sigmas, and for each angle.
 const BAND: [f64; 2] = [0.85, 0.95];
 const BAND_EACH: [f64; 2] = [0.75, 0.99];
-/// Greatest error of `coupled` as a share of the better of `paper` and `paper-cut` at each sigma.
+/// Largest error of `coupled` as a share of the better of `paper` and `paper-cut` at each sigma.
 const SHARES: [(Protocol, [f64; 6]); 2] =
     [(Protocol::Noisy, [1.0, 1.0, 1.0, 0.9, 0.9, 0.75]), (Protocol::ExactMean, [1.0; 6])];
 

@@ -35,7 +35,7 @@ const NOISY_DEG: [(FilterName, [[f64; 2]; 2]); 3] = [
 const ROOM: f64 = 0.04;
 /// Share of the truth inside the smoothed 90 % band of `coupled`, both sigmas.
 const BAND: [f64; 2] = [0.90, 0.97];
-/// Greatest share of angles whose smoothed variance is above the filter's, `coupled`: where the smoothed position lies at a steeper
+/// Largest share of angles whose smoothed variance is above the filter's, `coupled`: where the smoothed position lies at a steeper
 /// place of the cycle. The others have none.
 const WIDER_SHARE: f64 = 0.01;
 /// Error within a second without measurement as a share of the filter's, and its bounds.

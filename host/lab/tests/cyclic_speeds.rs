@@ -1,5 +1,6 @@
-//! Real walks played slower, faster and with changes of speed, beside noise that is small and large: does `coupled` stay with
-//! the person? Runs in release where `../shared/data` is at hand, and says so where not.
+//! Real walks played slower, faster and with changes of speed, with small and large noise:
+//! `coupled` keeps the position. Runs in release where `../shared/data` is present, and reports
+//! where it is not.
 
 mod shared_data;
 #[path = "shared_data/walk_cuts.rs"]
@@ -16,8 +17,8 @@ use std::path::Path;
 use walk_cuts::list;
 use walks::WALKS;
 
-/// Noise, degrees, with the greatest mean error of the cadence from the third cycle on over all tempos, and the greatest share of
-/// runs whose position is off by a fifth of a cycle at some time.
+/// Noise, degrees, with the largest mean error of the cadence from the third cycle on over all
+/// tempos. Then the largest share of runs whose position is off by a fifth of a cycle at some time.
 const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.012, 0.045), (6.0, 0.012, 0.045), (29.0, 0.02, 0.07)];
 /// Seeds of the noise.
 const SEEDS: [u64; 3] = [1, 2, 3];

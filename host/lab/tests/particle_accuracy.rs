@@ -13,14 +13,14 @@ use sinew_lab::cyclic::{Cell, Setting, test_cycles};
 const PARTICLES: [usize; 3] = [1000, 20_000, 100_000];
 const START_PARTICLES: [usize; 2] = [1000, 10_000];
 const SEEDS: u64 = 4;
-/// Greatest error with 20,000 particles, degrees.
-const GREATEST_DEG: f64 = 9.0;
+/// Largest error with 20,000 particles, degrees.
+const MAX_DEG: f64 = 9.0;
 /// Error of `paper` (`cyclic_accuracy.rs`), to which no number of particles came down.
 const PAPER_DEG: f64 = 3.80;
-/// Greatest error with 100,000 particles as a share of that with 1000.
-const GREATEST_SHARE: f64 = 0.5;
-/// Error of a uniform start as a share of the standard one's, from the fifth frame on: never much above, and with few particles
-/// sometimes below, since it looks at more positions.
+/// Largest error with 100,000 particles as a share of that with 1000.
+const MAX_SHARE: f64 = 0.5;
+/// Error of a uniform start as a share of the standard one's, from the fifth frame on. It is never
+/// much above 1, and with few particles sometimes below, since it samples more positions.
 const UNIFORM_SHARE: [f64; 2] = [0.85, 1.1];
 
 #[test]
@@ -34,8 +34,8 @@ fn more_particles_and_an_unknown_phase_do_what_the_book_says() {
     let [few, more, most] = std::array::from_fn(|i| table[i].error_deg);
     let share = most / few;
     println!("standard start: {few:.2}, {more:.2}, {most:.2} degrees; the last {share:.3} of the first");
-    assert!(more > PAPER_DEG && more < GREATEST_DEG, "{more}");
-    assert!(most > PAPER_DEG && share < GREATEST_SHARE, "{most} beside {few}");
+    assert!(more > PAPER_DEG && more < MAX_DEG, "{more}");
+    assert!(most > PAPER_DEG && share < MAX_SHARE, "{most} beside {few}");
     let cells = setting.starts(&START_PARTICLES).unwrap();
     let cell = |start: StartName, particles: usize| -> &Cell {
         cells.iter().find(|cell| cell.start == start && cell.particles == Some(particles)).unwrap()

@@ -10,7 +10,7 @@ use sinew_core::vision::white_balance::Gains;
 /// Half the side of the box, as a part of the picture's longer side: 16 of 640 pixels.
 const HALF_SIDE_PART: usize = 40;
 /// What small pictures have of it, so that the box outweighs what was trained.
-const LEAST_HALF_SIDE_PX: usize = 8;
+const MIN_HALF_SIDE_PX: usize = 8;
 /// Pixels of the box that are looked at, at most.
 const SAMPLE_PIXELS: usize = 1024;
 /// Pixels of the longest line.
@@ -26,7 +26,7 @@ pub fn box_around((u, v): (usize, usize), (width, height): (usize, usize)) -> Re
             return Err(ParameterError::new(name, Rule::Within { low: 0.0, high: side as f32 - 1.0 }));
         }
     }
-    let half = (width.max(height) / HALF_SIDE_PART).max(LEAST_HALF_SIDE_PX);
+    let half = (width.max(height) / HALF_SIDE_PART).max(MIN_HALF_SIDE_PX);
     Ok(BoundingBox {
         min_u: u.saturating_sub(half) as u16,
         min_v: v.saturating_sub(half) as u16,

@@ -2,7 +2,7 @@
 //!
 //! Functions that can be refused give 0 for success and else the length of a text at [`text`] that says what is wrong.
 
-// Names are exported as they are in the module only, which has nothing else that they could clash with. The state is in locks that nobody else takes.
+// Names are exported as they are in the module only, which has nothing else that they could clash with. The state is in locks that have no other user.
 #![allow(unsafe_code)]
 // A page gives numbers one by one.
 #![allow(clippy::too_many_arguments)]
@@ -31,7 +31,7 @@ static TEXT: SpinMutex<String<TEXT_BYTES>> = SpinMutex::new(String::new());
 fn with_session(what: impl FnOnce(&mut Session, &mut Frame) -> Result<(), ParameterError>) -> u32 {
     let mut session = SESSION.lock();
     let Some(session) = session.get_mut() else { return refused(&"no session was begun") };
-    told(what(session, &mut FRAME.lock()))
+    status_code(what(session, &mut FRAME.lock()))
 }
 
 /// Asks the session for something; the default without one.
@@ -39,7 +39,7 @@ fn ask<T: Default>(what: impl FnOnce(&mut Session) -> T) -> T {
     SESSION.lock().get_mut().map_or_else(T::default, what)
 }
 
-fn told(outcome: Result<(), ParameterError>) -> u32 {
+fn status_code(outcome: Result<(), ParameterError>) -> u32 {
     outcome.map_or_else(|error| refused(&error), |()| 0)
 }
 
@@ -63,8 +63,9 @@ pub extern "C" fn picture() -> *mut u8 {
     FRAME.lock().rgba.as_mut_ptr()
 }
 
-/// Begins a session, or begins it anew for another choice: size of all pictures, the person's left arm or right (0), particles, seed, distance of
-/// the shoulder in metres and its pixel, both NaN where it is not known. The skin model stays.
+/// Begins a session, or begins it anew for another choice: size of all pictures, side of the arm (0
+/// is right), particles, seed, distance of the shoulder in metres and its pixel. Distance and pixel
+/// are NaN where they are not known. The skin model stays.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn begin(
     width: u32,
@@ -89,7 +90,7 @@ pub extern "C" fn begin(
         shoulder,
     };
     let mut slot = SESSION.lock();
-    told(begin_in(&mut slot, choice))
+    status_code(begin_in(&mut slot, choice))
 }
 
 fn begin_in(slot: &mut SpinMutexGuard<'_, Slot<Session>>, choice: Choice) -> Result<(), ParameterError> {
@@ -161,7 +162,7 @@ pub extern "C" fn particles() -> *const f32 {
     ask(|session| session.particles.as_ptr() as usize) as *const f32
 }
 
-/// Paints the last skin mask and tells where it lies: four bytes a pixel, transparent where no skin is.
+/// Paints the last skin mask and returns its address: four bytes a pixel, transparent where no skin is.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn skin() -> *const u8 {
     let size = ask(|session| session.size_px());

@@ -6,7 +6,7 @@ use sinew_core::vision::frame::{FrameBuffers, mask_words, runs_that_suffice};
 use sinew_core::vision::morphology::scratch_words;
 use sinew_core::vision::runs::Run;
 
-/// Most pixels of a picture: 640 x 480, upright or across.
+/// Maximum number of pixels of a picture: 640 x 480, upright or across.
 pub const MAX_PIXELS: usize = 640 * 480;
 /// Longest side, pixels.
 pub const MAX_SIDE_PX: usize = 640;

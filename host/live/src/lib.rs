@@ -1,8 +1,10 @@
 //! The arm tracker on a browser's pictures, as a WebAssembly module without allocator and without a binding generator.
 //!
-//! A page writes a picture into the module's memory, calls `see` and `track`, and reads numbers: [`exports`] lists the functions.
-//! What they do is [`session::Session`], an ordinary structure. Vision is the whole-frame chain of [`sinew_core::vision::frame`] and the
-//! tracker has the defaults of `sinew track arm`, so that the answers have the same bits as the command's on the same pictures (a test).
+//! A page writes a picture into the module's memory, calls `see` and `track`, and reads numbers:
+//! [`exports`] lists the functions. What they do is [`session::Session`], an ordinary structure.
+//! Vision is the whole-frame chain of [`sinew_core::vision::frame`], and the tracker has the
+//! defaults of `sinew track arm`. A test holds the answers bit for bit to the command's on the same
+//! pictures.
 
 #![cfg_attr(target_arch = "wasm32", no_std)]
 

@@ -20,7 +20,7 @@ use sinew_core::vision::white_balance::Gains;
 
 /// Particles that there is room for.
 pub const MAX_PARTICLES: usize = 512;
-/// Most blobs of a frame, the host's number.
+/// Maximum number of blobs of a frame, the host's number.
 pub const MAX_BLOBS: usize = 64;
 /// Most temporal edge pixels of a frame, the host's number.
 pub const MAX_EDGES: usize = 4096;

@@ -11,7 +11,7 @@ fn text(length: u32) -> String {
 }
 
 fn numbers(at: *const f32, count: u32) -> Vec<f32> {
-    // As many numbers as the module says, which nobody writes in this test meanwhile.
+    // As many numbers as the module says, which nothing in this test writes meanwhile.
     #[allow(unsafe_code)]
     let numbers = unsafe { core::slice::from_raw_parts(at, count as usize) };
     numbers.to_vec()

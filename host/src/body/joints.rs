@@ -22,8 +22,9 @@ const HEADS: &[&str] = &["lfhd+rfhd+lbhd+rbhd", "upperneck", "head", "lear+rear"
 const BALLS: &[&str] =
     &["{L}toebase", "toes{l}", "{L}toes", "{L}toe", "{l}toebase", "{l}toe", "{l}bigtoe", "{l}foot", "{l}toes"];
 
-/// The middle of the head lies this far from the base of the neck, body heights: a recorded point of the head that is nearer or
-/// farther (the joint below the skull, the crown) only gives the direction.
+/// Distance of the middle of the head from the base of the neck, body heights. Recordings have a
+/// point of the head that is nearer or farther (the joint below the skull, the crown). It gives the
+/// direction only.
 const HEAD_HEIGHTS: [f32; 2] = [0.085, 0.135];
 
 /// Which points of a file make up each end.

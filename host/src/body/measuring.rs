@@ -8,8 +8,8 @@ use sinew_core::skeleton::BodyMeasures;
 use sinew_core::skeleton::body_measures::REFERENCE_HEIGHT_M;
 use sinew_core::skeleton::full_body::{COLLARS, FEET, FOREARMS, HEAD, HIPS, PELVIS, SHANKS, THIGHS, TRUNK, UPPER_ARMS};
 
-/// A knee that is bent less than this tells no axis: the sine.
-const LEAST_KNEE_SINE: f32 = 0.3;
+/// A knee that is bent less than this gives no axis: the sine.
+const MIN_KNEE_SINE: f32 = 0.3;
 
 /// Left, up and front of a part of the body.
 struct Frame([Vec3; 3]);
@@ -32,10 +32,11 @@ impl Frame {
 
 /// Measures of the recorded person.
 ///
-/// Shoulders are measured in the trunk's frame (up from the middle of the hips to the neck, left from the right to the left
-/// shoulder); hips along the line through them, since their middle is the pelvis. A foot has its length, the share of it that
-/// points outwards along the axis of a bent knee, and its median slope against the shank, which becomes the ankle's zero. The girth is
-/// that of the stature that trunk and legs are a part of.
+/// Shoulders are measured in the trunk's frame: up from the middle of the hips to the neck, left
+/// from the right to the left shoulder. Hips are measured along the line through them, since their
+/// middle is the pelvis. A foot has its length, the share of it that points outwards along the axis
+/// of a bent knee, and its median slope against the shank. The slope becomes the zero of the ankle.
+/// The girth is that of the stature that trunk and legs are a part of.
 ///
 /// # Errors
 /// A segment that no frame shows.
@@ -97,7 +98,7 @@ fn foot_m(frames: &[BodyJoints]) -> Result<Vec3> {
         let (thigh, shank) = (unit(knee - joints[HIPS[side]]?)?, unit(ankle - knee)?);
         let axis = thigh.cross(&shank);
         let frame = Frame::new(-shank, axis)?;
-        (axis.norm() > LEAST_KNEE_SINE).then(|| Some(frame.outward(joints[FEET[side]]? - ankle, side)))?
+        (axis.norm() > MIN_KNEE_SINE).then(|| Some(frame.outward(joints[FEET[side]]? - ankle, side)))?
     });
     let outward_m = outward.map_or(0.0, |offset| offset.x.clamp(-0.5 * length_m, 0.5 * length_m));
     let sagittal_m = (length_m * length_m - outward_m * outward_m).sqrt();

@@ -1,8 +1,8 @@
 //! A recording is turned and shifted as a whole, so that a camera sees the person.
 
-use super::joints::{BodyJoints, median};
+use super::joints::BodyJoints;
 use sinew_core::math::{Mat3, Vec3, axis_rotation, unit};
-use sinew_core::skeleton::full_body::{FEET, HIPS, PELVIS, SHANKS, TRUNK};
+use sinew_core::skeleton::full_body::{FEET, HIPS, PELVIS, SHANKS};
 
 /// Where a recorded person is put before a level camera.
 ///
@@ -12,7 +12,7 @@ use sinew_core::skeleton::full_body::{FEET, HIPS, PELVIS, SHANKS, TRUNK};
 pub struct Placement {
     /// Mean distance of the pelvis, metres; larger where the other limits need it.
     pub mean_distance_m: f32,
-    /// Least distance of the pelvis, metres.
+    /// Smallest distance of the pelvis, metres.
     pub least_distance_m: f32,
     /// Camera above the floor, metres.
     pub camera_height_m: f32,
@@ -39,7 +39,7 @@ const FLESH_M: f32 = 0.1;
 /// From the joints of a foot down to its sole, metres.
 const SOLE_M: f32 = 0.042;
 /// A mean heading shorter than this share of one is none: the person turns.
-const LEAST_HEADING: f32 = 0.3;
+const MIN_HEADING: f32 = 0.3;
 
 /// A turn, then a shift.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,20 +111,14 @@ fn mean_front(frames: &[BodyJoints], up: Vec3) -> Option<Vec3> {
     };
     let fronts: Vec<Vec3> = frames.iter().filter_map(front).collect();
     let mean = fronts.iter().sum::<Vec3>() / fronts.len().max(1) as f32;
-    if mean.norm() > LEAST_HEADING { unit(mean) } else { fronts.first().copied() }
-}
-
-/// Median distance of the pelvis from the camera's plane, metres; `None` without a frame.
-#[must_use]
-pub fn median_distance_m(frames: &[BodyJoints]) -> Option<f32> {
-    median(frames.iter().filter_map(|joints| joints[PELVIS].or(joints[TRUNK])).map(|place| place.z).collect())
+    if mean.norm() > MIN_HEADING { unit(mean) } else { fronts.first().copied() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use sinew_core::skeleton::full_body::BODY_BONES;
+    use sinew_core::skeleton::full_body::{BODY_BONES, TRUNK};
 
     fn walker(direction_rad: f32, frames: usize) -> Vec<BodyJoints> {
         let turn = axis_rotation(&Vec3::z(), direction_rad);

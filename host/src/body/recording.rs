@@ -39,10 +39,10 @@ pub struct BodyRecordingOptions<'a> {
     pub placement: Placement,
 }
 
-/// Frames in a second of a stereo camera where nobody says another number.
+/// Frames in a second of a stereo camera by default.
 pub const DEFAULT_RATE_HZ: f32 = 15.0;
-/// Most frames that are made; more is taken for a mistake in a rate.
-const MOST_FRAMES: f32 = 1.0e6;
+/// Maximum number of frames that are made; more is taken for a mistake in a rate.
+const MAX_FRAMES: f32 = 1.0e6;
 /// How near to a recorded frame a time counts as that frame, frames.
 const SAME_FRAME: f32 = 1.0e-3;
 
@@ -115,7 +115,7 @@ impl BodyRecording {
             ensure!(rate > 0.0 && rate.is_finite(), "the rate {rate} has to be greater than zero");
         }
         let frames = self.joints_m.len() as f32 * rate_hz / self.rate_hz;
-        ensure!(frames <= MOST_FRAMES, "the rate {rate_hz} gives {frames} frames; at most {MOST_FRAMES} are made");
+        ensure!(frames <= MAX_FRAMES, "the rate {rate_hz} gives {frames} frames; at most {MAX_FRAMES} are made");
         let joints_m = resampled(&self.joints_m, self.rate_hz, rate_hz, |a, b, share| {
             std::array::from_fn::<_, BODY_BONES, _>(|bone| Some(a[bone]? * (1.0 - share) + b[bone]? * share))
         });

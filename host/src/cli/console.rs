@@ -1,4 +1,4 @@
-//! What the command tells a person or a script: results on standard output, everything else on standard error.
+//! The output for a person or a script: results on standard output, everything else on standard error.
 
 use super::stdout::write_all;
 use crate::resume::Interrupted;

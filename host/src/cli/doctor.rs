@@ -18,13 +18,13 @@ pub struct DoctorArgs {
     pub paths: Vec<PathBuf>,
 }
 
-/// Examines every path and tells what was found.
+/// Examines every path and prints the findings.
 ///
 /// # Errors
 /// One of them has a problem, or the text cannot be written.
 pub fn run(args: &DoctorArgs, console: &Console) -> Result<()> {
     let all: Vec<Diagnosis> = args.paths.iter().map(|path| examine(path)).collect();
-    console.answer(&told(&all), &all)?;
+    console.answer(&summary(&all), &all)?;
     let ill = all.iter().filter(|diagnosis| diagnosis.worst() == Severity::Problem).count();
     match ill {
         0 => Ok(()),
@@ -32,7 +32,7 @@ pub fn run(args: &DoctorArgs, console: &Console) -> Result<()> {
     }
 }
 
-fn told(all: &[Diagnosis]) -> String {
+fn summary(all: &[Diagnosis]) -> String {
     let mut text = String::new();
     for diagnosis in all {
         // Writing to a string cannot fail.

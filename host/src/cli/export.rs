@@ -2,7 +2,7 @@
 
 use super::console::Console;
 use crate::cyclic::CyclicModel;
-use crate::cyclic::model::MODEL_VALUE;
+use crate::cyclic::model_file::MODEL_VALUE;
 use crate::output::{check_writable_file, write_atomically};
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};

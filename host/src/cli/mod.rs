@@ -16,6 +16,7 @@ pub mod export;
 pub mod image_run;
 pub mod record;
 pub mod report;
+mod scene_args;
 pub mod segment;
 pub mod simulate;
 pub mod simulate_cyclic;
@@ -45,7 +46,7 @@ pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
-    /// How results are told.
+    /// How results are printed.
     #[command(flatten)]
     pub console: Console,
 }

@@ -1,6 +1,7 @@
 //! `sinew simulate`: scenes with known truth.
 
 use super::console::Console;
+use super::scene_args::{clear_frames, pair};
 use super::simulate_cyclic::{self, SimulateCyclicArgs};
 use super::simulate_stereo::{self, SimulateStereoArgs};
 use crate::motion::{self, ArmMotion, ArmSide, ReadOptions, reach};
@@ -12,7 +13,6 @@ use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 /// Frames of the built-in motion where `--frames` is not given.
 const BUILTIN_FRAMES: usize = 250;
@@ -107,12 +107,6 @@ pub struct SimulateArmArgs {
     pub force: bool,
 }
 
-/// Two values with a comma between them.
-pub(super) fn pair<T: FromStr>(text: &str) -> Result<(T, T), String> {
-    let parsed = text.split_once(',').and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
-    parsed.ok_or_else(|| "two numbers with a comma between them were expected".to_string())
-}
-
 /// Runs `sinew simulate`.
 ///
 /// # Errors
@@ -164,22 +158,6 @@ fn arm_motion(args: &SimulateArmArgs) -> Result<ArmMotion> {
         None => motion,
     };
     Ok(motion.resampled(args.rate)?)
-}
-
-/// Frames of an older scene would mix with the new ones: they are refused, or with `force` removed.
-pub(super) fn clear_frames(frames: &Path, start: &str, end: &str, force: bool) -> Result<()> {
-    let Ok(entries) = std::fs::read_dir(frames) else { return Ok(()) };
-    for entry in entries {
-        let path = entry?.path();
-        if !force {
-            bail!("`{}` already holds files; choose another --out, or replace them with --force", frames.display());
-        }
-        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or("");
-        if name.starts_with(start) && name.ends_with(end) {
-            std::fs::remove_file(&path).with_context(|| format!("`{}` cannot be removed", path.display()))?;
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

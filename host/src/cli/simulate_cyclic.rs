@@ -1,7 +1,7 @@
 //! `sinew simulate cyclic`: measured angles of a person who moves as a motion model says.
 
 use super::console::Console;
-use crate::cyclic::model::MODEL_VALUE;
+use crate::cyclic::model_file::MODEL_VALUE;
 use crate::cyclic::{CyclicModel, SyntheticPerson};
 use crate::output::check_writable_file;
 use anyhow::{Result, ensure};

@@ -1,7 +1,7 @@
 //! `sinew simulate stereo`: a whole body before a stereo camera.
 
 use super::console::Console;
-use super::simulate::{clear_frames, pair};
+use super::scene_args::{clear_frames, pair};
 use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::{BodyPart, BodyRecording, BodyRecordingOptions, Placement};
 use crate::motion::{DEFAULT_FRAMES_PER_SECOND, endings_without_rate};

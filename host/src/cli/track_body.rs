@@ -127,11 +127,11 @@ fn run_with_progress(run: BodyTrackRun, console: &Console) -> Result<BodyRunRepo
     let bar = console.bar(run.frame_count() as u64, "{wide_bar} frame {pos} of {len}, {per_sec}")?;
     bar.set_position(run.frames_finished() as u64);
     bar.reset_eta();
-    let told = |text: String| bar.suspend(|| console.note(text));
+    let print = |text: String| bar.suspend(|| console.note(text));
     let outcome = run.run(stop_flag()?, &mut |event| match event {
-        BodyEvent::Note(note) => told(format!("note: {note}")),
-        BodyEvent::Skipped(cloud) => told(format!("skipped frame {}: {}", cloud.frame, cloud.reason)),
-        BodyEvent::OverCap(points) => told(format!(
+        BodyEvent::Note(note) => print(format!("note: {note}")),
+        BodyEvent::Skipped(cloud) => print(format!("skipped frame {}: {}", cloud.frame, cloud.reason)),
+        BodyEvent::OverCap(points) => print(format!(
             "note: a cloud has {points} points; {MAX_POINTS} of them, drawn at random, are weighed, here and in all like it"
         )),
         BodyEvent::Finished(frames) => bar.set_position(frames as u64),

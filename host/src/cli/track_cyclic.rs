@@ -3,7 +3,7 @@
 use super::console::Console;
 use super::ctrl_c::stop_flag;
 use super::viewer_args::ViewerArgs;
-use crate::cyclic::model::MODEL_VALUE;
+use crate::cyclic::model_file::MODEL_VALUE;
 use crate::cyclic::pictures::{OverlayFrames, animation};
 use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::figures;
@@ -71,8 +71,9 @@ pub struct TrackCyclicArgs {
     /// Folder for what a coach reads: summary, repetitions, curves over the cycle, symmetry, plots, TRC and MOT files.
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
-    /// Draw the figure on the images of this folder, frame k of the table on image k in natural order, counted from 0; they are written
-    /// into `EST_overlay` beside the estimates. Needs a table from keypoints.
+    /// Draw the figure on the images of this folder, frame k of the table on image k in natural
+    /// order, counted from 0. The pictures are written into `EST_overlay` beside the estimates.
+    /// Needs a table from keypoints.
     #[arg(long, value_name = "FRAMES_DIR")]
     pub overlay: Option<PathBuf>,
     /// Write the stick figure alone as an animation, what was measured thin and grey behind the estimate.
@@ -100,7 +101,7 @@ pub fn run(args: &TrackCyclicArgs, console: &Console) -> Result<()> {
     console.resumable(run_until(args, console, stop_flag()?, &mut |_| ()))
 }
 
-/// As [`run`], ended by `stop` in the place of Ctrl-C; `notify` is told how many rows are answered.
+/// As [`run`], ended by `stop` in the place of Ctrl-C; `notify` gets the number of finished rows.
 ///
 /// # Errors
 /// As [`run`].
@@ -185,7 +186,7 @@ struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    /// Writes the estimates; of a complete run also report and pictures, and tells what came out.
+    /// Writes the estimates; of a complete run also report and pictures, and prints a summary.
     fn write(&self, run: &TableRun<'_>, is_complete: bool, stop: &AtomicBool, console: &Console) -> Result<()> {
         let Self { args, angles, options, .. } = self;
         let (tracked, motions) = run.answered()?;
@@ -195,7 +196,7 @@ impl Shown<'_> {
             || Interrupted { finished: run.finished(), all: Some(run.rows()), unit: "rows", out: args.out.clone() };
         ensure!(is_complete, interrupted());
         let report = Report::new(angles, &tracked, options);
-        let mut text = told(&report);
+        let mut text = summary(&report);
         if let Some(motions) = &motions {
             text.push_str(&told_motions(&args.model, motions));
         }
@@ -248,7 +249,7 @@ impl Shown<'_> {
         report.write(&origin, self.angles, tracked, output)
     }
 
-    /// Draws overlays and animation unless `stop` is set; tells on standard error what was skipped.
+    /// Draws overlays and animation unless `stop` is set; reports on standard error what was skipped.
     fn draw(&self, tracked: &Tracked, report: &Report, stop: &AtomicBool, console: &Console) -> Result<String> {
         let (args, angles) = (self.args, self.angles);
         let body = Body::of_table(angles, args.height);
@@ -326,11 +327,11 @@ fn overlay_folder(out: &Path) -> PathBuf {
     out.with_file_name(format!("{stem}_overlay"))
 }
 
-/// Most reasons for skipped overlays that are told.
+/// Most reasons for skipped overlays that are printed.
 const TOLD_REASONS: usize = 5;
 
 /// Cycles and cadence, and how alike the sides are, for a terminal.
-fn told(report: &Report) -> String {
+fn summary(report: &Report) -> String {
     let summary = &report.summary;
     let mut text = format!(
         "{} frames, {:.2} s: {:.2} cycles, {:.2} a minute, {} outliers\n",

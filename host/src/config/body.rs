@@ -78,7 +78,7 @@ impl BodyConfig {
         Ok(())
     }
 
-    /// Whether the file says where both shoulders are; otherwise they are guessed.
+    /// Whether the file says where both shoulders are; without it they are guessed.
     #[must_use]
     pub fn knows_shoulders(&self) -> bool {
         self.left_shoulder_m.is_some() && self.right_shoulder_m.is_some()

@@ -5,7 +5,7 @@ use sinew_core::error::{ParameterError, Rule};
 use sinew_core::tracker::arm::ArmOptions;
 use sinew_core::tracker::arm::options::AreaCue;
 
-/// Most particles that the command tracks with.
+/// Maximum number of particles that the command tracks with.
 pub const MAX_PARTICLES: usize = 5000;
 
 /// Checks every value.

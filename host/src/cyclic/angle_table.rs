@@ -1,6 +1,7 @@
 //! Angle tables: one row a frame, the 13 angles of the stick figure in radians, an empty cell where one is missing.
 
 use super::error::{CyclicError, read_text};
+use crate::csv_text::csv_reader;
 use crate::output::write_atomically;
 use anyhow::Result;
 use std::path::Path;
@@ -51,7 +52,7 @@ pub fn angle_columns() -> impl Iterator<Item = &'static str> {
     COLUMNS[1..].iter().chain(&SIDE_COLUMNS).copied()
 }
 
-/// Greatest number of a frame; more is taken for a mistake.
+/// Largest number of a frame; more is taken for a mistake.
 pub const MAX_FRAME: u64 = 1_000_000_000_000;
 
 /// One frame of a table.
@@ -67,9 +68,9 @@ pub struct AngleRow {
 
 /// Angles over time.
 ///
-/// Invariants: at least one row; frame numbers rise from row to row (a number that is left out is a frame without a
-/// measurement); every angle is finite; every row has as many extra cells as there are extra columns; side angles are those of all
-/// rows or of none.
+/// Invariants: there is at least one row, and frame numbers rise from row to row. A number that is
+/// left out is a frame without a measurement. Every angle is finite. Every row has as many extra
+/// cells as there are extra columns. Either all rows have side angles or none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AngleTable {
     rows: Vec<AngleRow>,
@@ -202,11 +203,7 @@ impl AngleTable {
     /// # Errors
     /// Names the file, the line and the rule that it broke.
     pub fn parse(text: &str, path: &Path) -> Result<Self, CyclicError> {
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .from_reader(text.as_bytes());
+        let mut reader = csv_reader(text);
         let mut records = reader.records();
         let Some(header) = records.next() else {
             return Err(CyclicError::broken(

@@ -1,6 +1,7 @@
 //! Cut lists: which frames of which angle tables are one cycle each.
 
 use super::error::{CyclicError, read_text};
+use crate::csv_text::csv_reader;
 use crate::output::write_atomically;
 use anyhow::Result;
 use std::path::{Path, PathBuf};
@@ -53,11 +54,7 @@ impl CutList {
     /// # Errors
     /// Names the file, the line and the rule that it broke.
     pub fn parse(text: &str, path: &Path) -> Result<Self, CyclicError> {
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .from_reader(text.as_bytes());
+        let mut reader = csv_reader(text);
         let mut cuts = Vec::new();
         for (index, record) in reader.records().enumerate() {
             let record = record.map_err(|error| CyclicError::broken(path, index as u64 + 1, error.to_string()))?;

@@ -27,7 +27,7 @@ pub struct ImageJoints {
     pub unit: &'static str,
 }
 
-/// What an angle table tells beside the angles.
+/// What an angle table holds beside the angles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExtraColumns {
     /// Nothing.
@@ -71,8 +71,9 @@ impl ImageJoints {
         Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
     }
 
-    /// How far each segment points out of the plane that these joints are seen in, to the person's left, radians in [-pi/2, pi/2]: the
-    /// arc tangent of its part along the left over its length in the plane. `front` are the same frames seen from before.
+    /// Angle of each segment out of the plane of these joints, to the person's left, radians in
+    /// [-pi/2, pi/2]. It is the arc tangent of its part along the left over its length in the
+    /// plane. `front` are the same frames seen from before.
     #[must_use]
     pub fn side_angles_rad(&self, front: &Self) -> Vec<[Option<f64>; ANGLES]> {
         let segment = |frame: &JointFrame, angle: usize| -> Option<Point> {

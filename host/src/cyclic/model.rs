@@ -1,21 +1,8 @@
 //! A motion model that owns its numbers, and lends them to the core's filters.
 
-use super::model_file;
-use anyhow::{Result, bail};
 use serde::{Deserialize, Serialize};
 use sinew_core::cyclic::model::bytes::{self, ModelHeader};
 use sinew_core::cyclic::{Deviation, ModelError, ModelParts, MotionModel};
-use std::path::Path;
-
-/// The models that are shipped, by name; `models/cuts/NAME.csv` tells on which cycles each was trained.
-const SHIPPED: [(&str, &str); 3] = [
-    ("walking", include_str!("../../models/walking.json")),
-    ("running", include_str!("../../models/running.json")),
-    ("arm-circles", include_str!("../../models/arm-circles.json")),
-];
-
-/// What an option for a model takes, for help texts.
-pub const MODEL_VALUE: &str = "MODEL.json|walking|running|arm-circles";
 
 /// What a model was trained on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -112,22 +99,6 @@ impl CyclicModel {
         Ok(Self { numbers, trained_on })
     }
 
-    /// The model that an option names: one of those shipped (see [`MODEL_VALUE`]), else a file.
-    ///
-    /// # Errors
-    /// No such file, or a file that is no model.
-    pub fn from_option(option: &str) -> Result<Self> {
-        if let Some((_, text)) = SHIPPED.iter().find(|(name, _)| *name == option) {
-            return model_file::parse(text);
-        }
-        let path = Path::new(option);
-        if !path.exists() {
-            let names = SHIPPED.map(|(name, _)| name).join(", ");
-            bail!("`--model {option}`: there is no such file; give {names}, or a file made by `sinew train cyclic`");
-        }
-        model_file::read(path)
-    }
-
     /// The model as the core's filters read it.
     ///
     /// # Panics
@@ -162,29 +133,5 @@ impl CyclicModel {
     #[must_use]
     pub fn trained_on(&self) -> &TrainedOn {
         &self.trained_on
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shipped_models_are_sound_and_have_the_cadence_of_people() {
-        for (name, cycles_per_s) in [("walking", 0.7..1.2), ("running", 1.1..1.7), ("arm-circles", 0.8..1.4)] {
-            let model = CyclicModel::from_option(name).unwrap();
-            let view = model.view();
-            let found = view.mean_cycle_velocity() * view.rate_hz();
-            assert!(cycles_per_s.contains(&found), "{name}: {found} cycles a second");
-            assert!(model.trained_on().cycles >= 6, "{name}");
-        }
-    }
-
-    #[test]
-    fn an_unknown_name_is_refused_with_the_choices() {
-        let message = CyclicModel::from_option("wlaking").unwrap_err().to_string();
-        assert!(message.contains("walking, running, arm-circles") && message.contains("wlaking"), "{message}");
-        let named = SHIPPED.map(|(name, _)| name).join("|");
-        assert_eq!(MODEL_VALUE, format!("MODEL.json|{named}"));
     }
 }

@@ -3,7 +3,7 @@
 use super::angle_table::{ANGLES, angle_columns};
 use super::model::{CyclicModel, DeviationNumbers, ModelNumbers, TrainedOn};
 use crate::model_text::{self, ModelFileKind};
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use sinew_core::numeric::semi_definite::packed_len;
@@ -15,6 +15,16 @@ const KIND: ModelFileKind =
 pub const FORMAT: &str = "sinew-cyclic";
 /// Value of the field `version`.
 pub const VERSION: u64 = 1;
+
+/// The models that are shipped, by name; `models/cuts/NAME.csv` lists the cycles each was trained.
+const SHIPPED: [(&str, &str); 3] = [
+    ("walking", include_str!("../../models/walking.json")),
+    ("running", include_str!("../../models/running.json")),
+    ("arm-circles", include_str!("../../models/arm-circles.json")),
+];
+
+/// What an option for a model takes, for help texts.
+pub const MODEL_VALUE: &str = "MODEL.json|walking|running|arm-circles";
 
 type Rows<T> = Vec<Vec<T>>;
 
@@ -35,6 +45,24 @@ struct ModelFile<Table> {
     acceleration_covariance: Table,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     deviation: Option<DeviationNumbers>,
+}
+
+impl CyclicModel {
+    /// The model that an option names: one of those shipped (see [`MODEL_VALUE`]), else a file.
+    ///
+    /// # Errors
+    /// No such file, or a file that is no model.
+    pub fn from_option(option: &str) -> Result<Self> {
+        if let Some((_, text)) = SHIPPED.iter().find(|(name, _)| *name == option) {
+            return parse(text);
+        }
+        let path = Path::new(option);
+        if !path.exists() {
+            let names = SHIPPED.map(|(name, _)| name).join(", ");
+            bail!("`--model {option}`: there is no such file; give {names}, or a file made by `sinew train cyclic`");
+        }
+        read(path)
+    }
 }
 
 /// The JSON text of a model, one line for each position of a table.
@@ -100,7 +128,7 @@ pub fn parse(text: &str) -> Result<CyclicModel> {
     let table = |name: &str, rows: Rows<f32>, width: usize| -> Result<Vec<f32>> {
         ensure!(rows.len() == l, "`{name}` has {} rows, but `mean_acceleration` has {l}", rows.len());
         if let Some((index, row)) = rows.iter().enumerate().find(|(_, row)| row.len() != width) {
-            anyhow::bail!("`{name}` has {} numbers in row {index}, but {width} are needed", row.len());
+            bail!("`{name}` has {} numbers in row {index}, but {width} are needed", row.len());
         }
         Ok(rows.concat())
     };
@@ -172,5 +200,24 @@ mod tests {
         assert!(message.contains("cycle position 7") && message.contains("positive semi-definite"), "{message}");
         let negative = changed(|v| v["acceleration_covariance"][0][0] = (-1.0e-6).into());
         assert!(negative.contains("cycle position 0") && negative.contains("positive semi-definite"), "{negative}");
+    }
+
+    #[test]
+    fn shipped_models_are_sound_and_have_the_cadence_of_people() {
+        for (name, cycles_per_s) in [("walking", 0.7..1.2), ("running", 1.1..1.7), ("arm-circles", 0.8..1.4)] {
+            let model = CyclicModel::from_option(name).unwrap();
+            let view = model.view();
+            let found = view.mean_cycle_velocity() * view.rate_hz();
+            assert!(cycles_per_s.contains(&found), "{name}: {found} cycles a second");
+            assert!(model.trained_on().cycles >= 6, "{name}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_name_is_refused_with_the_choices() {
+        let message = CyclicModel::from_option("wlaking").unwrap_err().to_string();
+        assert!(message.contains("walking, running, arm-circles") && message.contains("wlaking"), "{message}");
+        let named = SHIPPED.map(|(name, _)| name).join("|");
+        assert_eq!(MODEL_VALUE, format!("MODEL.json|{named}"));
     }
 }

@@ -35,7 +35,7 @@ pub enum UpAxis {
     Z,
 }
 
-/// What told which way is forward.
+/// Where the forward direction comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Forward {
     /// The way from the first to the last frame.
@@ -49,11 +49,11 @@ pub enum Forward {
 /// The plane of a view.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plane {
-    /// Right in the image: one for all frames, or one for each; `None` where nothing tells it.
+    /// Right in the image: one for all frames, or one for each; `None` where it is unknown.
     pub right: Vec<Option<Vec3>>,
     /// Up in the image.
     pub up: Vec3,
-    /// What told which way is forward.
+    /// Where the forward direction comes from.
     pub forward: Forward,
 }
 

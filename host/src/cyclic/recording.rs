@@ -27,7 +27,7 @@ pub struct RecordingOptions {
     pub up: Option<UpAxis>,
     /// Which way the person faces in the image; found where there is none.
     pub facing: Option<Facing>,
-    /// Least confidence of a keypoint.
+    /// Smallest confidence of a keypoint.
     pub min_confidence: f64,
     /// Take a motion that lacks joints.
     pub partial: bool,
@@ -40,7 +40,7 @@ pub struct RecordingOptions {
 pub struct RecordedAngles {
     /// The table.
     pub table: AngleTable,
-    /// Frames per second of the table; `None` for keypoints of which nobody told.
+    /// Frames per second of the table; `None` for keypoints without a known rate.
     pub rate_hz: Option<f64>,
     /// What a user should know, one sentence a line.
     pub notes: Vec<String>,
@@ -98,8 +98,7 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
         }
         Forward::Turning => {
             notes.push(
-                "the person turns: each frame was seen from where the hips face (--view side says otherwise)"
-                    .to_owned(),
+                "the person turns: each frame was seen from where the hips face (--view side changes it)".to_owned(),
             );
         }
     }
@@ -156,7 +155,7 @@ fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAng
         ));
     } else if track.frames_without > 0 {
         notes.push(format!(
-            "nobody is seen in {} of {} frames: all angles are missing there",
+            "no person is seen in {} of {} frames: all angles are missing there",
             track.frames_without,
             frames.len()
         ));
@@ -171,9 +170,7 @@ fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAng
         }
         (None, Some(Facing::Right)) => Facing::Right,
         (None, None) => {
-            notes.push(
-                "nothing tells which way the person faces: right is assumed (--facing says otherwise)".to_owned(),
-            );
+            notes.push("it is unknown which way the person faces: right is assumed (--facing changes it)".to_owned());
             Facing::Right
         }
     };

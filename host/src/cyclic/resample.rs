@@ -5,8 +5,8 @@ use super::image_joints::{ImageJoints, JointFrame, Point};
 use super::spline::CubicSpline;
 use crate::motion::joint_names::JOINTS;
 
-/// Most frames that are made; more is taken for a mistake in a rate.
-const MOST_FRAMES: f64 = 1.0e7;
+/// Maximum number of frames that are made; more is taken for a mistake in a rate.
+const MAX_FRAMES: f64 = 1.0e7;
 /// How near to a recorded frame a time counts as that frame, frames.
 const SAME_FRAME: f64 = 1.0e-6;
 
@@ -27,10 +27,10 @@ pub fn resample(joints: &ImageJoints, from_hz: f64, to_hz: f64) -> Result<ImageJ
     let (Some(first), Some(last)) = (joints.frames.first(), joints.frames.last()) else { return Ok(joints.clone()) };
     let step = from_hz / to_hz;
     let count = ((last.frame - first.frame) as f64 / step + SAME_FRAME).floor() + 1.0;
-    if count > MOST_FRAMES {
+    if count > MAX_FRAMES {
         return Err(CyclicError::parameter(
             "rate",
-            format!("{to_hz} gives {count} frames; at most {MOST_FRAMES} are made"),
+            format!("{to_hz} gives {count} frames; at most {MAX_FRAMES} are made"),
         ));
     }
     let base = (first.frame as f64 / step).round() as u64;

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use sinew_core::random::Stream;
 use std::f64::consts::TAU;
 
-/// Greatest relative difference of a cycle's duration from the model's mean.
+/// Largest relative difference of a cycle's duration from the model's mean.
 const DURATION_SPREAD: f64 = 0.1;
 
 /// One person: the model's mean cycle at their own pace, with a constant and a swing of each angle drawn from the model's spread.

@@ -9,6 +9,12 @@ pub fn wrapped(angle_rad: f64) -> f64 {
     if rest > PI { rest - TAU } else { rest }
 }
 
+/// The angle in [-pi, pi] that differs from `angle_rad` by whole turns.
+#[must_use]
+pub fn least_angle(angle_rad: f64) -> f64 {
+    angle_rad - TAU * (angle_rad / TAU).round()
+}
+
 /// The angle equal to `angle_rad` up to whole turns that is nearest to `reference_rad`.
 #[must_use]
 pub fn nearest_turn(angle_rad: f64, reference_rad: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! Files: configurations, models, persons, angle tables.
 
-use super::{Diagnosis, Severity};
+use super::diagnosis::{Diagnosis, Severity};
 use crate::body::BodyFile;
 use crate::body::run::tuning_file;
 use crate::config::Config;
@@ -13,7 +13,7 @@ use image::RgbImage;
 use serde_json::Value;
 use std::path::Path;
 
-/// Share of an angle's rows below which it is told.
+/// Share of an angle's rows below which it is reported.
 const SELDOM: f64 = 0.5;
 
 pub(super) fn examine(path: &Path) -> Diagnosis {
@@ -49,7 +49,7 @@ fn video(path: &Path) -> Diagnosis {
     diagnosis
 }
 
-/// A configuration of arms or of bodies; the problem told is that of the kind whose sections it has.
+/// A configuration of arms or of bodies; the problem reported is that of the kind whose sections it has.
 fn configuration(path: &Path) -> Diagnosis {
     let mut diagnosis = Diagnosis::new(path, "configuration");
     let (arm, body) = (Config::load(path), tuning_file::load(path));

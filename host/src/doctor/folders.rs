@@ -1,6 +1,7 @@
 //! Folders: of images, of clouds, of runs.
 
-use super::{Diagnosis, Severity, frames};
+use super::diagnosis::{Diagnosis, Severity};
+use super::frames;
 use crate::body::BodyFile;
 use crate::body::pose_file::read_pose;
 use crate::cloud::CloudFolder;

@@ -1,6 +1,6 @@
 //! A folder of video frames, as `sinew track arm` takes it.
 
-use super::{Diagnosis, Severity};
+use super::diagnosis::{Diagnosis, Severity};
 use crate::cloud::frame_number::frame_numbers;
 use crate::images::load_rgb;
 use crate::skin::SkinModel;

@@ -19,7 +19,7 @@ fn frames(folder: &Path, names: &[&str], size: (u32, u32), colour: [u8; 3]) {
 }
 
 #[test]
-fn sound_frames_are_good() {
+fn valid_frames_have_no_problem() {
     let folder = tempfile::tempdir().unwrap();
     frames(folder.path(), &["f_1.png", "f_2.png", "f_10.png"], (20, 16), [60, 90, 200]);
     fs::rename(folder.path().join("f_10.png"), folder.path().join("f_3.png")).unwrap();
@@ -33,7 +33,7 @@ fn sound_frames_are_good() {
 }
 
 #[test]
-fn what_is_wrong_with_frames_is_told() {
+fn problems_of_frames_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     frames(folder.path(), &["f_1.png", "f_2.png"], (20, 16), [10, 20, 30]);
     frames(folder.path(), &["f_9.png"], (22, 16), [10, 20, 30]);
@@ -53,7 +53,7 @@ fn what_is_wrong_with_frames_is_told() {
 }
 
 #[test]
-fn configurations_models_and_tables_are_told_apart() {
+fn configurations_models_and_tables_are_distinguished() {
     let folder = tempfile::tempdir().unwrap();
     let cases: [(&str, &str, Severity, &str); 9] = [
         ("arm.toml", DEFAULT_FILE, Severity::Good, "track arm"),

@@ -7,11 +7,11 @@ use image::{Rgb, RgbImage, imageops};
 
 /// Width of a thumbnail, pixels; smaller frames keep their size.
 const THUMBNAIL_WIDTH_PX: u32 = 320;
-/// Greatest height of a thumbnail, pixels.
+/// Largest height of a thumbnail, pixels.
 const THUMBNAIL_HEIGHT_PX: u32 = 640;
 /// Space around thumbnails, pixels.
 const GAP_PX: u32 = 4;
-/// Most tiles of a sheet.
+/// Maximum number of tiles of a sheet.
 pub const MAX_TILES: usize = 400;
 const BACKGROUND: Rgb<u8> = Rgb([32, 32, 36]);
 

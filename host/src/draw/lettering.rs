@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn letters_that_nobody_can_read_are_not_offered() {
+    fn letters_too_small_to_read_are_not_offered() {
         assert!(Lettering::new(5.0).is_none());
         assert!(Lettering::new(f32::NAN).is_none());
     }

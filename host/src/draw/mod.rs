@@ -3,6 +3,7 @@
 //! Nothing here writes a file; the caller saves the [`image::RgbImage`] by [`crate::output`]. The same input gives the
 //! same bytes. Positions may be anything, NaN and far outside of the image included: what cannot be seen is not drawn.
 
+mod arm_marks;
 pub mod body_views;
 pub mod colour;
 pub mod contact_sheet;

@@ -1,34 +1,15 @@
 //! One frame with all that the arm tracker knew and found.
 
+pub use super::arm_marks::OverlayArm;
+use super::arm_marks::{Scale, lighter, outlined};
 use super::colour::{BLOB, EDGE, INK, SHADE, SKIN, of_side};
-use super::lettering::Lettering;
 use super::stroke::{Stroke, disc, line, tint, tint_rectangle};
 use super::top_view;
 use crate::wording::{side_name, status_name};
-use image::{GrayImage, Rgb, RgbImage};
+use image::{GrayImage, RgbImage};
 use sinew_core::camera::Pixel;
-use sinew_core::math::Vec3;
 use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::Status;
-
-/// What is drawn of one arm.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OverlayArm {
-    /// The person's own side; gives the colour.
-    pub side: Side,
-    /// Solid lines where tracking, thin dashes where predicted, only a note and the particles' hands where lost.
-    pub status: Status,
-    /// Images of shoulder, elbow and hand.
-    pub joints_px: Option<[Pixel; 3]>,
-    /// Shoulder, elbow and hand, metres in camera axes: for the view from above.
-    pub joints_m: Option<[Vec3; 3]>,
-    /// Hand and weight of each particle; only ratios of weights matter.
-    pub particle_hands: Vec<(Pixel, f32)>,
-    /// Shoulder, elbow and hand of the heaviest particles.
-    pub best_arms: Vec<[Pixel; 3]>,
-    /// Two points of the ray through the carrying blob, metres in camera axes, the nearer one first.
-    pub ray: Option<[Vec3; 2]>,
-}
 
 /// What is drawn of one blob.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,26 +35,6 @@ pub struct Overlay<'a> {
     pub mask_outline: Option<&'a GrayImage>,
     /// Lines at the top; empty for none.
     pub caption: &'a str,
-}
-
-/// Smallest side of an image that gets letters, pixels.
-const SMALLEST_LETTERED_PX: u32 = 120;
-
-/// Sizes that follow the image: 1 at 240 pixels (the smaller side), growing with the square root.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Scale {
-    pub factor: f64,
-    pub letters: Option<Lettering>,
-}
-
-impl Scale {
-    fn of(image: &RgbImage) -> Self {
-        let smaller = image.width().min(image.height());
-        let factor = (f64::from(smaller) / 240.0).sqrt().clamp(0.35, 4.0);
-        let size_px = (11.5 * factor).max(10.0) as f32;
-        let letters = if smaller >= SMALLEST_LETTERED_PX { Lettering::new(size_px) } else { None };
-        Self { factor, letters }
-    }
 }
 
 /// `image` with `overlay` drawn on it; same size. Images with a side below 120 pixels get no letters.
@@ -204,23 +165,13 @@ fn draw_caption(image: &mut RgbImage, caption: &str, scale: Scale) {
     }
 }
 
-/// A chain of lines on a darker, wider one, so that it shows on any background.
-pub(super) fn outlined(image: &mut RgbImage, points: &[Pixel], stroke: Stroke, shade_width_px: f64) {
-    let shade = stroke.with_colour_and_width(SHADE, shade_width_px).with_opacity(0.6);
-    points.windows(2).for_each(|pair| line(image, pair[0], pair[1], &shade));
-    points.windows(2).for_each(|pair| line(image, pair[0], pair[1], &stroke));
-}
-
-/// A third of the way to white: letters and thin lines need it on a dark plate.
-pub(super) fn lighter(colour: Rgb<u8>) -> Rgb<u8> {
-    Rgb(colour.0.map(|channel| channel + (255 - channel) / 3))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::draw::colour::{LEFT, RIGHT};
+    use image::Rgb;
     use proptest::prelude::*;
+    use sinew_core::math::Vec3;
 
     const NOTHING: Overlay = Overlay { arms: &[], blobs: &[], edges: &[], mask_outline: None, caption: "" };
     const BACKGROUND: Rgb<u8> = Rgb([90, 100, 80]);

@@ -99,7 +99,7 @@ fn drawing(panel: &PoseFan, scale: f32) -> RgbImage {
         let off = (point - centre) * scale;
         Pixel::new(0.5 * WIDTH_PX as f32 + off[axis], 0.5 * HEIGHT_PX as f32 + off.y)
     };
-    // Ten poses are told apart, a hundred make a cloud.
+    // Ten poses can be distinguished, a hundred cannot.
     let opacity = (4.0 / panel.poses.len().max(1) as f64).clamp(0.12, 0.6);
     for bone in panel.poses.iter().flatten() {
         let stroke = Stroke::new(colour(bone), 1.6).with_opacity(opacity);

@@ -1,8 +1,8 @@
 //! The stick figure of the cyclic tracker, on a picture of the person or alone.
 
+use super::arm_marks::{lighter, outlined};
 use super::colour::{INK, LEFT, RIGHT, SHADE};
 use super::lettering::Lettering;
-use super::overlay::{lighter, outlined};
 use super::stroke::{Stroke, disc, line};
 use image::{Rgb, RgbImage};
 use sinew_core::camera::Pixel;

@@ -93,8 +93,8 @@ fn distance(a: Point, b: Point) -> f64 {
     ((a.0 - b.0) * (a.0 - b.0) + (a.1 - b.1) * (a.1 - b.1)).sqrt()
 }
 
-/// The part of the segment within `reach` of the image, cut at one border after the other; ends come to lie exactly on
-/// the borders, however far away they were.
+/// The part of the segment within `reach` of the image, cut at one border after the other. Ends lie
+/// exactly on the borders, however far away they were.
 fn clip(mut a: Point, mut b: Point, reach: f64, image: &RgbImage) -> Option<(Point, Point)> {
     if !(a.0 + a.1 + b.0 + b.1).is_finite() || image.width() == 0 || image.height() == 0 {
         return None;

@@ -1,7 +1,7 @@
 //! The scene from above, in a corner: a ray through the camera is a point in the image, and a line only from elsewhere.
 
+use super::arm_marks::{OverlayArm, Scale, lighter, outlined};
 use super::colour::{BLOB, INK, SHADE, of_side};
-use super::overlay::{OverlayArm, Scale, lighter, outlined};
 use super::stroke::{Stroke, disc, line, tint_rectangle};
 use image::{Rgb, RgbImage, imageops};
 use sinew_core::camera::Pixel;

@@ -2,8 +2,9 @@
 //! points.
 
 use super::error::{KeypointError, json, read_text};
+use super::layout::{self, DetectedFrame};
 use super::openpose::{numbers, people};
-use super::{DetectedFrame, layout, point_lists};
+use super::point_lists;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;

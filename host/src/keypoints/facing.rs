@@ -17,8 +17,9 @@ pub enum Facing {
 /// Way across the image, in lengths of the trunk, beyond which travel decides.
 const TRAVEL_TRUNKS: f64 = 1.5;
 
-/// Travel decides if the person gets far enough; else toes before heels (or ankles), then the nose before the neck, then
-/// knees before the line from hip to ankle: each by the sum over all frames. `None` if none of these was seen.
+/// Travel decides if the person gets far enough. Next come toes before heels (or ankles), then the
+/// nose before the neck, then knees before the line from hip to ankle. Each is a sum over all
+/// frames. `None` if none of these was seen.
 #[must_use]
 pub fn find(joints: &ImageJoints, people: &[Option<&Vec<Keypoint>>]) -> Option<Facing> {
     let hints = [travel(joints), sum_over(people, toes), sum_over(people, nose), knees(joints)];

@@ -1,6 +1,5 @@
 //! Which keypoint of a detector is which: the orders of COCO, OpenPose and HALPE.
 
-use super::DetectedFrame;
 use crate::cyclic::image_joints::Point;
 use crate::motion::joint_names::{HIP_CENTER, HIPS, JOINTS, NECK, SHOULDERS};
 
@@ -35,8 +34,17 @@ pub struct Keypoint {
     pub part: Part,
     /// Where it is, pixels: u right, v down.
     pub position_px: Point,
-    /// How sure the detector was, from 0; 1 where it does not tell.
+    /// How sure the detector was, from 0; 1 where it does not say.
     pub confidence: f64,
+}
+
+/// Everybody in one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DetectedFrame {
+    /// Number of the frame in the recording.
+    pub frame: u64,
+    /// The people, in the detector's order.
+    pub people: Vec<Vec<Keypoint>>,
 }
 
 const fn joint(number: usize) -> Part {

@@ -1,6 +1,6 @@
 //! 2D keypoints as pose detectors write them: OpenPose and COCO JSON, and CSV tables.
 //!
-//! What is read and how is told in `docs/keypoints.md`.
+//! `docs/keypoints.md` has the formats and how they are read.
 
 pub mod coco;
 pub mod error;
@@ -13,21 +13,12 @@ pub mod table;
 
 pub use error::KeypointError;
 pub use facing::Facing;
-pub use layout::Keypoint;
+pub use layout::{DetectedFrame, Keypoint};
 
 use crate::cyclic::image_joints::{ImageJoints, JointFrame};
 use crate::registry::{Kind, extensions};
 use layout::stick_joints;
 use std::path::Path;
-
-/// Everybody in one frame.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DetectedFrame {
-    /// Number of the frame in the recording.
-    pub frame: u64,
-    /// The people, in the detector's order.
-    pub people: Vec<Vec<Keypoint>>,
-}
 
 /// How sure a detector has to be of a keypoint unless something else is said.
 pub const DEFAULT_MIN_CONFIDENCE: f64 = 0.3;
@@ -59,11 +50,11 @@ pub fn read(path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
 pub struct Track {
     /// The joints of the stick figure, pixels.
     pub joints: ImageJoints,
-    /// Which way the person faces, as far as face, feet, knees and travel tell.
+    /// Which way the person faces, as far as face, feet, knees and travel show.
     pub facing: Option<Facing>,
     /// Frames in which the person was not found.
     pub frames_without: usize,
-    /// Greatest number of people in a frame.
+    /// Largest number of people in a frame.
     pub most_people: usize,
 }
 

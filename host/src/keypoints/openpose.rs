@@ -1,12 +1,13 @@
 //! OpenPose JSON: one file a frame, each with everybody in it. Pose2Sim and RTMLib write the same form.
 
 use super::error::{KeypointError, json, read_text};
-use super::{DetectedFrame, layout};
+use super::layout::{self, DetectedFrame};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Reads all JSON files of `folder` in natural order. A number at the end of each name (before `_keypoints`) is the number
-/// of its frame, if these rise from file to file; else the files are counted from 0.
+/// Reads all JSON files of `folder` in natural order. A number at the end of each name (before
+/// `_keypoints`) is the number of its frame, if these rise from file to file. If not, the files are
+/// counted from 0.
 ///
 /// # Errors
 /// The folder has no JSON file, or one breaks a rule.

@@ -1,7 +1,6 @@
 //! Which of several people is followed: the one that takes the most room at first, then the nearest from frame to frame.
 
-use super::DetectedFrame;
-use super::layout::{Keypoint, Part};
+use super::layout::{DetectedFrame, Keypoint, Part};
 use crate::cyclic::image_joints::Point;
 
 /// How far a person may move between frames, in their own height, before another one is believed to be seen.
@@ -10,9 +9,9 @@ const FARTHEST_STEP: f64 = 0.25;
 const FARTHER_PER_FRAME: f64 = 0.05;
 const FARTHEST: f64 = 1.0;
 
-/// For each frame the index of the person that is followed, or `None` where nobody is near enough. Where no frame has more
-/// than one person it is that one: there is nobody to be taken for them, and a box of the few points that were seen says
-/// nothing about a person's size.
+/// For each frame the index of the person that is followed, or `None` where no person is near
+/// enough. Where no frame has more than one person it is that one. No other person can be confused
+/// with them, and a box of few visible points says nothing about a person's size.
 #[must_use]
 pub fn follow(frames: &[DetectedFrame]) -> Vec<Option<usize>> {
     if frames.iter().all(|frame| frame.people.len() <= 1) {
@@ -144,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_is_nobody() {
+    fn a_frame_without_people_has_no_person() {
         assert_eq!(follow(&[DetectedFrame { frame: 0, people: Vec::new() }]), [None]);
     }
 }

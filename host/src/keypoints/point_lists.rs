@@ -1,9 +1,8 @@
-//! One JSON file that is a list with one flat list of numbers a frame, and nothing that names the points: x, y and confidence of
-//! each, of one person.
+//! One JSON file with one flat list of numbers a frame: x, y and confidence of each point of one
+//! person. Nothing in it names the points.
 
-use super::DetectedFrame;
 use super::error::KeypointError;
-use super::layout;
+use super::layout::{self, DetectedFrame};
 use super::openpose::numbers;
 use serde_json::Value;
 use std::path::Path;

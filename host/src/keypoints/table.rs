@@ -1,8 +1,8 @@
 //! CSV tables of keypoints: for each joint the columns `JOINT_x_px` and `JOINT_y_px`, and `JOINT_confidence` if there is one.
 
-use super::DetectedFrame;
 use super::error::{KeypointError, read_text};
-use super::layout::{Keypoint, Part, Side};
+use super::layout::{DetectedFrame, Keypoint, Part, Side};
+use crate::csv_text::csv_reader;
 use crate::motion::joint_names::{HIP_CENTER, NECK};
 use sinew_core::skeleton::stick_figure::HUMAN;
 use std::path::Path;
@@ -31,8 +31,7 @@ pub fn read(path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
 /// Names the file, the line and the rule that it broke.
 pub fn parse(text: &str, path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
     let broken = |line: u64, rule: String| KeypointError::broken(path, format!("line {line}"), rule);
-    let mut reader =
-        csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let mut reader = csv_reader(text);
     let mut records = reader.records().enumerate();
     let header = match records.next() {
         Some((_, Ok(header))) => header,

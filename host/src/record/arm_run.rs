@@ -1,4 +1,4 @@
-//! The run of one arm, as its `run.json` tells it.
+//! The run of one arm, as its `run.json` describes it.
 
 use crate::config::Config;
 use crate::skin::{Rectangle, SkinModel};

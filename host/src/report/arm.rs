@@ -134,7 +134,7 @@ fn player(folder: &mut RunFolder, report: &Value, track: &Table, has_truth: bool
         table: Some(track.name.clone()),
         rate_hz: report["options"]["rate_hz"].as_f64(),
         figures: vec![figure(track, has_truth, size_px(report))],
-        told: ["image", "time_s", "side", "status", "hand_u_px", "hand_v_px", "hand_z_m", "hand_likelihood"]
+        shown: ["image", "time_s", "side", "status", "hand_u_px", "hand_v_px", "hand_z_m", "hand_likelihood"]
             .map(str::to_owned)
             .to_vec(),
         ..Player::default()

@@ -55,7 +55,7 @@ pub fn body_run(mut folder: RunFolder, pictures: &mut Pictures) -> Run {
             figures: [("x", "from the front"), ("z", "from the person's right side")]
                 .map(|view| figure(&track, truth.is_some(), view))
                 .to_vec(),
-            told: [
+            shown: [
                 "frame",
                 "points",
                 "effective_sample_size",

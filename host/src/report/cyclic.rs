@@ -126,7 +126,7 @@ fn player(
         table: estimates.map(|estimates| estimates.name.clone()),
         rate_hz: summary["options"]["rate_hz"].as_f64(),
         figures: joints.map(figure).into_iter().collect(),
-        told: ["frame", "cycle_position", "cadence_per_min", "cycles", "log_likelihood", "outlier", "motion"]
+        shown: ["frame", "cycle_position", "cadence_per_min", "cycles", "log_likelihood", "outlier", "motion"]
             .map(str::to_owned)
             .to_vec(),
         ..Player::default()

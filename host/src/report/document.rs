@@ -94,8 +94,8 @@ pub struct Player {
     pub pictures: Option<String>,
     /// Skeletons that are drawn from numbers.
     pub figures: Vec<Figure>,
-    /// Columns of the table that are told beside the frame.
-    pub told: Vec<String>,
+    /// Columns of the table that are shown beside the frame.
+    pub shown: Vec<String>,
 }
 
 /// A skeleton drawn from columns of a table.
@@ -103,7 +103,7 @@ pub struct Player {
 pub struct Figure {
     /// What is seen, and from where.
     pub title: String,
-    /// Least x, least y, greatest x, greatest y of the drawing; from the places where there are none.
+    /// Smallest x, smallest y, largest x, largest y of the drawing; from the places where there are none.
     pub bounds: Option<[f64; 4]>,
     /// Whether y points down.
     pub y_down: bool,
@@ -218,7 +218,7 @@ pub struct Plot {
     pub from_zero: bool,
     /// Whether x is the frame that the player shows.
     pub over_frames: bool,
-    /// Least x, least y, greatest x, greatest y that are shown; from the values where there are none.
+    /// Smallest x, smallest y, largest x, largest y that are shown; from the values where there are none.
     pub bounds: Option<[f64; 4]>,
     /// What is drawn.
     pub series: Vec<Series>,

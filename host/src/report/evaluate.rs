@@ -277,7 +277,7 @@ fn noise_plot(table: &Table, protocol: &str) -> Option<Plot> {
         id: format!("evaluate cyclic noise {protocol}"),
         group: "Against noise".to_owned(),
         title: format!("Error against noise: {protocol}"),
-        reading: "Mean absolute error over 13 angles against the noise that the filter is told.".to_owned(),
+        reading: "Mean absolute error over 13 angles against the noise that the filter assumes.".to_owned(),
         x_label: "sigma, degrees".to_owned(),
         y_label: "mean error, degrees".to_owned(),
         x_log: true,

@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn another_version_is_told() {
+    fn another_version_is_reported() {
         let (_folder, mut run) = folder_with(&[]);
         run.check_version("run.json", &serde_json::json!({"version": 9, "sinew_version": "9.0"}), 1);
         run.check_version("run.json", &serde_json::json!({"version": 1}), 1);

@@ -7,8 +7,8 @@ use super::pictures::Pictures;
 use super::table::Table;
 use serde_json::Value;
 
-/// Most pictures of such a folder that are shown.
-const MOST_PICTURES: usize = 24;
+/// Maximum number of pictures of such a folder that are shown.
+const MAX_PICTURES: usize = 24;
 
 /// Evaluations whose folders hold nothing but tables: a file that each has, and its name on the page.
 const PLAIN_EVALUATIONS: [(&str, &str); 2] =
@@ -39,11 +39,11 @@ pub fn other_run(mut folder: RunFolder, pictures: &mut Pictures) -> Run {
         }
     }
     let shown: Vec<&String> = names.iter().filter(|name| name.ends_with(".png") || name.ends_with(".jpg")).collect();
-    for name in shown.iter().take(MOST_PICTURES) {
+    for name in shown.iter().take(MAX_PICTURES) {
         add_picture(&mut run, &folder, name, pictures);
     }
-    if shown.len() > MOST_PICTURES {
-        folder.notice(Level::Note, format!("the first {MOST_PICTURES} of {} pictures are shown", shown.len()));
+    if shown.len() > MAX_PICTURES {
+        folder.notice(Level::Note, format!("the first {MAX_PICTURES} of {} pictures are shown", shown.len()));
     }
     run.notices = folder.into_notices();
     run

@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn the_page_names_no_address() {
         for part in SCRIPTS.iter().chain(&STYLES).chain(&[HEAD, BODY]) {
-            // The name of SVG's elements is an address that nobody asks.
+            // The name of SVG's elements is an address that no browser loads.
             let rest = part.replace("http://www.w3.org/2000/svg", "");
             for sign in ["http:", "https:", "//cdn", "url(", "@import", "import(", "fetch(", "src=\""] {
                 assert!(!rest.contains(sign), "{sign}");

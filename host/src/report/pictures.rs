@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// Text that all pictures of a page may take together, bytes.
 pub const PAGE_BYTES: usize = 19 << 20;
-/// Greatest width, pixels, and quality of JPEG, the finest first.
+/// Largest width, pixels, and quality of JPEG, the finest first.
 const RUNGS: [(u32, u8); 6] = [(960, 80), (800, 70), (640, 60), (480, 55), (400, 45), (320, 35)];
 /// Pictures of which the size of all is guessed.
 const SAMPLES: usize = 12;
@@ -96,7 +96,7 @@ pub fn block_name(index: usize) -> String {
     format!("pictures-{index}")
 }
 
-/// The finest rung by which all pictures fit, as far as a sample tells, and of how many pictures one has to do.
+/// The finest rung by which all pictures fit, as far as a sample shows, and of how many pictures one has to do.
 fn choose(all: &[&PathBuf], bytes: usize) -> Result<(usize, usize)> {
     let step = all.len().div_ceil(SAMPLES).max(1);
     let sample: Vec<RgbImage> = all.iter().step_by(step).filter_map(|path| load(path)).collect();
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn overlays_of_one_stem_are_told_apart() {
+    fn overlays_of_one_stem_are_distinguished() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["x.png.png", "x.jpg.png", "y.png"] {
             std::fs::write(folder.path().join(name), "").unwrap();

@@ -23,7 +23,7 @@ pub struct Begun {
     options: Value,
     /// What is worked on, absolute; none where that is among the options.
     input: Option<PathBuf>,
-    /// What tells its frames from others.
+    /// What distinguishes its frames from others.
     frames: Vec<String>,
     /// CRC-32 of whatever else is read, by what it is called.
     read_crc32: BTreeMap<String, u32>,
@@ -209,11 +209,13 @@ mod tests {
     #[test]
     fn what_was_read_is_compared_by_name() {
         let new = || Begun::new("track body", &json!({ "seed": 1, "threads": 2 }), &["threads"]).unwrap();
-        let told = |now: &Begun| new().reading("the stick", 7).check_inputs(now).map_err(|error| error.to_string());
-        assert_eq!(told(&new().reading("the stick", 7)), Ok(()));
-        assert!(told(&new().reading("the stick", 8)).unwrap_err().contains("the stick is not as it was"));
-        assert!(told(&new()).unwrap_err().contains("the stick is not as it was"));
-        assert!(told(&new().reading("the stick", 7).with_frames(vec!["0.ply".into()])).unwrap_err().contains("0.ply"));
+        let checked = |now: &Begun| new().reading("the stick", 7).check_inputs(now).map_err(|error| error.to_string());
+        assert_eq!(checked(&new().reading("the stick", 7)), Ok(()));
+        assert!(checked(&new().reading("the stick", 8)).unwrap_err().contains("the stick is not as it was"));
+        assert!(checked(&new()).unwrap_err().contains("the stick is not as it was"));
+        assert!(
+            checked(&new().reading("the stick", 7).with_frames(vec!["0.ply".into()])).unwrap_err().contains("0.ply")
+        );
         let other = Begun::new("track body", &json!({ "seed": 1, "threads": 3 }), &["threads"]).unwrap();
         new().check_options(&other, Path::new("out")).unwrap();
     }

@@ -56,7 +56,7 @@ impl<'a> Cells<'a> {
     }
 
     /// Keeps cells below `out` until [`Cells::end`]; no more are measured once `stop` says so. With `resume` those that an evaluation
-    /// begun in the same way left there are taken for measured, otherwise they are removed.
+    /// begun in the same way left there are taken for measured. Without it they are removed.
     ///
     /// # Errors
     /// Nothing to resume in `out`, or it was begun with other options, by another command or version; a folder that cannot be written.
@@ -163,7 +163,7 @@ fn hash(key: &Value) -> u64 {
     hasher.finish()
 }
 
-/// A key's part that stands for data: CRC-32 of how they are written for programmers, which tells any two numbers apart.
+/// A key's part that stands for data: CRC-32 of how they are written for programmers, which differs for any two numbers.
 #[must_use]
 pub fn crc32_of(data: &impl Debug) -> Value {
     json!(super::text_crc32(&format!("{data:?}")))
@@ -190,7 +190,7 @@ mod tests {
         ended.store(true, Ordering::Relaxed);
         let error = cells.cell(&json!(["a", 2]), never).unwrap_err();
         assert_eq!(error.downcast_ref::<Interrupted>().unwrap().finished, 3);
-        assert_eq!(cells.cell(&json!(["a", 1]), never).unwrap(), third, "what is known is told all the same");
+        assert_eq!(cells.cell(&json!(["a", 1]), never).unwrap(), third, "a known cell is returned");
         ended.store(false, Ordering::Relaxed);
 
         let again = Cells::keep(&out, &begun(1), true, &stop).unwrap();

@@ -2,6 +2,9 @@
 
 use std::path::PathBuf;
 
+/// What to do where a run cannot be gone on with.
+pub const REMEDY: &str = "leave --resume out to begin anew";
+
 /// Ctrl-C ended the run; what was finished is written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("stopped by Ctrl-C after {finished}{} {unit}; their results are in `{}`", of(.all), .out.display())]

@@ -11,9 +11,6 @@ mod state_text;
 
 pub use begun::{Begun, absolute, file_crc32};
 pub use cells::{CELLS_FOLDER, Cells, Stop, crc32_of};
-pub use interrupted::Interrupted;
+pub use interrupted::{Interrupted, REMEDY};
 pub use left::{Left, RESUME_FILE, ResumeFile, text_crc32};
 pub use state_text::{List, from_text, long_real, optional, real, reals, to_text};
-
-/// What to do where a run cannot be gone on with.
-pub const REMEDY: &str = "leave --resume out to begin anew";

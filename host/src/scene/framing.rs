@@ -16,8 +16,9 @@ const SHOULDER_Y_M: [f32; 9] = [-0.1, -0.05, -0.15, 0.0, -0.2, 0.05, 0.1, 0.15, 
 /// Share of hand positions that have to be inside the image with a margin of a twentieth of its height.
 const INSIDE_SHARE: f32 = 0.97;
 
-/// Places the shoulders: a random distance of 1.0 to 1.5 m, then farther in steps until the hands of `sides` are inside
-/// the image nearly always; at the last distance the best height counts.
+/// Places the shoulders at a random distance of 1.0 to 1.5 m. Then moves them farther in steps
+/// until the hands of `sides` are inside the image nearly always. At the last distance the best
+/// height counts.
 #[must_use]
 pub fn place(
     stream: &mut Stream,

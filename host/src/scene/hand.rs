@@ -10,8 +10,8 @@ use sinew_core::random::Stream;
 /// hand is fingers.
 const FINGERS: [(f32, f32); 4] = [(0.165, 0.42), (0.055, 0.46), (-0.055, 0.43), (-0.160, 0.34)];
 
-/// By how much of its length the hand is drawn beyond the wrist, so that the half-open hand, seen flat, has the middle of
-/// its silhouette at [`ArmJoints::hand_m`], the point that truth and trackers call the hand.
+/// Share of its length by which the hand is drawn beyond the wrist. The half-open hand, seen flat,
+/// then has the middle of its silhouette at [`ArmJoints::hand_m`], the hand of truth and trackers.
 const BEYOND_WRIST: f32 = 0.08;
 
 /// Shape of a hand at one instant.

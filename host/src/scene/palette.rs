@@ -11,7 +11,7 @@ pub type Rgb = Vec3;
 const MEASURED_SKIN: [[f32; 3]; 2] = [[0.44, 0.22, 0.13], [0.63, 0.44, 0.34]];
 /// Absorption of melanin at 600, 540 and 450 nm relative to 600 nm: wavelength to the power of -3.33 (Jacques, 1998).
 const MELANIN: [f32; 3] = [1.0, 1.42, 2.61];
-/// Most melanin that is added, as optical depth at 600 nm.
+/// Maximum melanin that is added, as optical depth at 600 nm.
 const MAX_MELANIN: f32 = 0.5;
 /// Tries to draw a colour that differs enough from others.
 const TRIES: usize = 48;
@@ -35,7 +35,7 @@ pub fn hair(stream: &mut Stream) -> Rgb {
 
 /// A garment's colour that differs from all of `others` by at least 0.15 in encoded RGB where that can be had.
 ///
-/// Its hue lies from yellow-green over blue to purple, or it is nearly grey: nobody here wears skin colour.
+/// Its hue lies from yellow-green over blue to purple, or it is nearly grey: no clothes have the colour of skin.
 pub fn garment(stream: &mut Stream, others: &[Rgb]) -> Rgb {
     let mut colour = Rgb::zeros();
     for _ in 0..TRIES {

@@ -43,6 +43,13 @@ impl GaussianModel {
         let [mean_r, mean_g] = self.mean.map(|value| value as f32);
         Ok(GaussianSkin::new(mean_r, mean_g, covariance, self.threshold as f32, self.min_sum)?)
     }
+
+    /// The Gaussian of raw chromaticities that becomes this one when balanced by `gains`, to first order around its mean.
+    #[must_use]
+    pub fn before_balance(&self, gains: &Gains) -> Self {
+        let (mean, covariance) = gains.raw_moments(self.mean, self.covariance);
+        Self { mean, covariance, ..*self }
+    }
 }
 
 impl ColourLevels for GaussianSkin {

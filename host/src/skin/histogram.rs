@@ -1,7 +1,8 @@
 //! Colour histograms of skin and of everything else, and Bayes' rule, after Jones and Rehg (2002).
 //!
-//! Three things make a few dozen images enough: each pixel is counted under several strengths and tints of light, neighbouring
-//! cells share counts, and a cell with little evidence falls back to what is known of its chromaticity.
+//! Three things make a few dozen images enough. Each pixel is counted under several strengths and
+//! tints of light. Neighbouring cells share counts. A cell with little evidence falls back to the
+//! probability of its chromaticity.
 
 use super::colour_cube::{CELLS, cell_of, centre_of, over_brightness, relit, smooth};
 use super::threshold::{Choice, ColourLevels, cross_validate};

@@ -1,23 +1,19 @@
 //! A skin model of either kind, from a shipped default or a file, applied to whole images.
 
 use super::bit_image::BitImage;
+use super::confusion::Scores;
 use super::gaussian::GaussianModel;
 use super::histogram::HistogramModel;
-use super::model_file::{self, TrainedOn};
 use super::white_balance::WhiteBalance;
-use anyhow::{Result, bail};
+use anyhow::Result;
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use sinew_core::vision::frame::segment;
 use sinew_core::vision::skin::{CUBE_WORDS, GaussianSkin, HistogramSkin, SkinClassifier};
 use std::borrow::Cow;
-use std::path::Path;
 
 /// What `--skin` is when it is not given; `docs/skin.md` says why.
 pub const DEFAULT_SKIN: &str = "gaussian";
-
-const SHIPPED_GAUSSIAN: &str = include_str!("../../models/skin_gaussian.json");
-const SHIPPED_HISTOGRAM: &str = include_str!("../../models/skin_histogram.json");
 
 /// The two kinds of model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -46,6 +42,26 @@ enum Classifier {
     Histogram(Box<[u32; CUBE_WORDS]>),
 }
 
+/// What a model was trained on, and how well it did there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrainedOn {
+    /// Names of files or folders, without the places where they lay.
+    pub sources: Vec<String>,
+    /// Number of images, 0 for a list of pixels.
+    pub images: u64,
+    /// Pixels of skin that were counted (of images a sample, of a list the different rows).
+    pub skin_pixels: u64,
+    /// Other pixels that were counted.
+    pub other_pixels: u64,
+    /// Folds of the cross-validation.
+    pub folds: u64,
+    /// Seed of the shuffling.
+    pub seed: u64,
+    /// Pooled scores at the chosen threshold, each unit judged by a model that was not trained on it.
+    pub cross_validated: Scores,
+}
+
 /// A skin model that is ready for use.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SkinModel {
@@ -66,23 +82,6 @@ impl SkinModel {
             ModelNumbers::Histogram(histogram) => Classifier::Histogram(histogram.table()),
         };
         Ok(Self { numbers, classifier, trained_on })
-    }
-
-    /// The model that `--skin` names: `gaussian`, `histogram` (the shipped ones), or a file made by `sinew train skin`.
-    ///
-    /// # Errors
-    /// Says what is wrong with the file and how to make one.
-    pub fn from_option(option: &str) -> Result<Self> {
-        match option {
-            "gaussian" => model_file::parse(SHIPPED_GAUSSIAN),
-            "histogram" => model_file::parse(SHIPPED_HISTOGRAM),
-            path if Path::new(path).exists() => model_file::read(Path::new(path)),
-            other => {
-                bail!(
-                    "`--skin {other}`: there is no such file; give gaussian, histogram, or a file made by `sinew train skin`"
-                )
-            }
-        }
     }
 
     /// The numbers.
@@ -144,7 +143,7 @@ mod tests {
     use image::Rgb;
 
     #[test]
-    fn both_shipped_models_tell_skin_from_sky() {
+    fn both_shipped_models_separate_skin_from_sky() {
         for name in ["gaussian", "histogram"] {
             let model = SkinModel::from_option(name).unwrap();
             let image = RgbImage::from_fn(50, 3, |u, _| Rgb(if u < 20 { [196, 140, 115] } else { [120, 160, 220] }));

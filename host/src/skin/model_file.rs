@@ -1,10 +1,9 @@
 //! Skin models as JSON files.
 
 use super::colour_cube::CELLS;
-use super::confusion::Scores;
 use super::gaussian::GaussianModel;
 use super::histogram::{EVIDENCE_LEVELS, HistogramModel};
-use super::model::{ModelKind, ModelNumbers, SkinModel};
+use super::model::{ModelKind, ModelNumbers, SkinModel, TrainedOn};
 use crate::model_text::{self, ModelFileKind};
 use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
@@ -17,28 +16,10 @@ const KIND: ModelFileKind =
 pub const FORMAT: &str = "sinew-skin";
 /// Value of the field `version`.
 pub const VERSION: u64 = 1;
+const SHIPPED_GAUSSIAN: &str = include_str!("../../models/skin_gaussian.json");
+const SHIPPED_HISTOGRAM: &str = include_str!("../../models/skin_histogram.json");
 /// Cells in one line of the file: all blues of a red and a green.
 const CELLS_PER_LINE: usize = 32;
-
-/// What a model was trained on, and how well it did there.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TrainedOn {
-    /// Names of files or folders, without the places where they lay.
-    pub sources: Vec<String>,
-    /// Number of images, 0 for a list of pixels.
-    pub images: u64,
-    /// Pixels of skin that were counted (of images a sample, of a list the different rows).
-    pub skin_pixels: u64,
-    /// Other pixels that were counted.
-    pub other_pixels: u64,
-    /// Folds of the cross-validation.
-    pub folds: u64,
-    /// Seed of the shuffling.
-    pub seed: u64,
-    /// Pooled scores at the chosen threshold, each unit judged by a model that was not trained on it.
-    pub cross_validated: Scores,
-}
 
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -60,6 +41,25 @@ struct HistogramText {
     min_probability: u8,
     probability: Vec<String>,
     evidence: Vec<String>,
+}
+
+impl SkinModel {
+    /// The model that `--skin` names: `gaussian`, `histogram` (the shipped ones), or a file made by `sinew train skin`.
+    ///
+    /// # Errors
+    /// Says what is wrong with the file and how to make one.
+    pub fn from_option(option: &str) -> Result<Self> {
+        match option {
+            "gaussian" => parse(SHIPPED_GAUSSIAN),
+            "histogram" => parse(SHIPPED_HISTOGRAM),
+            path if Path::new(path).exists() => read(Path::new(path)),
+            other => {
+                bail!(
+                    "`--skin {other}`: there is no such file; give gaussian, histogram, or a file made by `sinew train skin`"
+                )
+            }
+        }
+    }
 }
 
 /// The JSON text of a model.

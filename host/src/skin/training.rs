@@ -1,8 +1,8 @@
 //! From files to a trained model.
 
 use super::labelled_pixels;
+use super::model::TrainedOn;
 use super::model::{ModelKind, ModelNumbers, SkinModel};
-use super::model_file::TrainedOn;
 use super::pairs::{Pair, PairList, short_name};
 use super::threshold::Choice;
 use super::training_set::{Source, TrainingSet, Unit};

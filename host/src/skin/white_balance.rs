@@ -1,6 +1,5 @@
 //! How a skin model follows the tint of an image; the correction is [`sinew_core::vision::white_balance`].
 
-use super::gaussian::GaussianModel;
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use sinew_core::vision::white_balance::Gains;
@@ -26,18 +25,9 @@ impl WhiteBalance {
     }
 }
 
-impl GaussianModel {
-    /// The Gaussian of raw chromaticities that becomes this one when balanced by `gains`, to first order around its mean.
-    #[must_use]
-    pub fn before_balance(&self, gains: &Gains) -> Self {
-        let (mean, covariance) = gains.raw_moments(self.mean, self.covariance);
-        Self { mean, covariance, ..*self }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::gaussian::chromaticity;
+    use super::super::gaussian::{GaussianModel, chromaticity};
     use super::*;
     use image::Rgb;
 

@@ -24,7 +24,7 @@ pub struct AnimatedBody {
     pub skeleton: BodySkeleton,
     /// The pose, inside the limits.
     pub angles: [f32; BODY_ANGLES],
-    /// lambda of eq. (12): how firmly each coordinate stays from frame to frame.
+    /// lambda of PIK (12): how firmly each coordinate stays from frame to frame.
     pub stiffness: [f32; BODY_ANGLES],
 }
 

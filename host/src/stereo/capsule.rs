@@ -21,8 +21,8 @@ const ALONG_SQUARED: f32 = 1.0e-10;
 impl Capsule {
     /// Where the ray from the origin along `direction` enters: the factor of `direction`; `None` where it misses, or begins inside.
     ///
-    /// A capsule is the union of two balls and of a cylinder whose flat ends lie inside the balls, so the first entry of the three
-    /// is that of the capsule.
+    /// A capsule is the union of two balls and of a cylinder whose flat ends lie inside the balls.
+    /// So the first entry of the three is that of the capsule.
     #[must_use]
     pub fn entry(&self, direction: &Vec3) -> Option<f32> {
         let caps = [self.start_m, self.end_m].map(|centre| enters_ball(&centre, direction, self.radius_m));

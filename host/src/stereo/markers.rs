@@ -30,16 +30,6 @@ const TRUNK_PLACES: [Place; 4] = [(0.75, FRONT), (0.75, BACK), (0.4, OUT), (0.4,
 /// Number of markers.
 pub const MARKERS: usize = 30;
 
-/// The bone that each marker sits on.
-#[must_use]
-pub fn marker_bones() -> [usize; MARKERS] {
-    let mut bones = [0; MARKERS];
-    for (slot, (bone, ..)) in bones.iter_mut().zip(layout()) {
-        *slot = bone;
-    }
-    bones
-}
-
 /// Bone, side (0 left or middle, 1 right), rest direction and place of all markers.
 fn layout() -> impl Iterator<Item = (usize, usize, BodyDirection, Place)> {
     let sides = (0..2).flat_map(|side| {
@@ -59,8 +49,9 @@ fn layout() -> impl Iterator<Item = (usize, usize, BodyDirection, Place)> {
 /// Markers of one frame, metres: three on each upper arm, forearm, thigh and shank (left limbs first), two on the head, four on
 /// the trunk. `None` where a joint that a marker needs was not recorded.
 ///
-/// A marker's direction turns with its bone by the smallest rotation from the bone's rest direction, in a frame of the trunk's
-/// axis and the line of the shoulders (of the hips for legs).
+/// A marker's direction turns with its bone by the smallest rotation from the bone's rest
+/// direction. The frame is that of the trunk's axis and the line of the shoulders (of the hips for
+/// legs).
 #[must_use]
 pub fn markers(joints: &BodyJoints, radii_m: &[f32; BODY_BONES]) -> Vec<Option<Vec3>> {
     let [upper, lower] = [COLLARS, HIPS].map(|pair| axes(joints, pair));
@@ -119,7 +110,7 @@ mod tests {
             }
             let joints = posture(&skeleton, &Vec3::new(0.0, 0.0, 3.0), &angles).ends.map(Some);
             let skins = capsules(&joints, &radii_m);
-            for (marker, bone) in markers(&joints, &radii_m).into_iter().zip(marker_bones()) {
+            for (marker, bone) in markers(&joints, &radii_m).into_iter().zip(layout().map(|(bone, ..)| bone)) {
                 let skin = skins.iter().find(|skin| skin.bone == bone).unwrap();
                 assert!(skin.distance_m(&marker.unwrap()).abs() < 1.0e-4, "bone {bone}");
                 let middle = 0.5 * (skin.start_m + skin.end_m);

@@ -20,8 +20,8 @@ const MAX_TRIES: usize = 16;
 const OUTLIER_MARGIN_M: f32 = 0.3;
 /// No point comes nearer to the camera, metres.
 const NEAREST_M: f32 = 0.2;
-/// Most points of a frame.
-pub const MOST_POINTS: usize = 1_000_000;
+/// Maximum number of points of a frame.
+pub const MAX_POINTS: usize = 1_000_000;
 
 /// How a scene is seen.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -73,11 +73,11 @@ impl StereoScene {
     /// The person of `recording`, as thick as their measures say.
     ///
     /// # Errors
-    /// No frame, a share of outliers outside of 0 to 1, more points than [`MOST_POINTS`], a segment that no frame shows.
+    /// No frame, a share of outliers outside of 0 to 1, more points than [`MAX_POINTS`], a segment that no frame shows.
     pub fn new(recording: BodyRecording, options: StereoOptions) -> Result<Self> {
         let (outliers, points) = (options.outliers, options.points);
         ensure!((0.0..=1.0).contains(&outliers), "`outliers` has to be from 0 to 1, not {outliers}");
-        ensure!(points <= MOST_POINTS, "`points` has to be at most {MOST_POINTS}, not {points}");
+        ensure!(points <= MAX_POINTS, "`points` has to be at most {MAX_POINTS}, not {points}");
         ensure!(!recording.joints_m.is_empty(), "the recording has no frame");
         let measures = measure(&recording)?;
         let patches = Patches::new(options.seed, options.patches);
@@ -133,7 +133,7 @@ impl StereoScene {
         capsules(self.joints_m(frame), &self.radii_m)
     }
 
-    /// Virtual markers on the true surface of a frame, for eq. (34) of the PIK paper.
+    /// Virtual markers on the true surface of a frame, for PIK (34).
     ///
     /// # Panics
     /// As [`Self::joints_m`].
@@ -291,7 +291,7 @@ mod tests {
         for (options, name) in [
             (StereoOptions { outliers: 1.5, ..StereoOptions::default() }, "outliers"),
             (StereoOptions { outliers: f32::NAN, ..StereoOptions::default() }, "outliers"),
-            (StereoOptions { points: MOST_POINTS + 1, ..StereoOptions::default() }, "points"),
+            (StereoOptions { points: MAX_POINTS + 1, ..StereoOptions::default() }, "points"),
         ] {
             assert!(StereoScene::new(recording.clone(), options).unwrap_err().to_string().contains(name));
         }

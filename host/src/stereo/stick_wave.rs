@@ -29,8 +29,8 @@ pub type StickEnds = [Vec3; 2];
 
 /// The motion and the stick: `ends[0]` is the one on the side of the person's left hand.
 ///
-/// The hands lie on the stick to a rounding error, since it is laid through them; they slide along it where the arms are too short
-/// for the path that was drawn.
+/// The hands lie on the stick to a rounding error, since it goes through them. They slide along it
+/// where the arms are too short for the drawn path.
 #[derive(Debug, Clone)]
 pub struct StickWave {
     /// The person.

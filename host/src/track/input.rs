@@ -30,8 +30,8 @@ impl FrameFolder {
     /// Lists the images of `folder` and reads the size of each; `strict` decodes them all.
     ///
     /// # Errors
-    /// The folder is missing or holds no image, no image can be read, two differ in size (the first odd one is named), or
-    /// one cannot be read and `strict` was asked for.
+    /// The folder is missing or holds no image, no image can be read, or two differ in size (the
+    /// first odd one is named). With `strict`, one cannot be read.
     pub fn open(folder: &Path, strict: bool) -> Result<Self> {
         let files = list_images(folder)?;
         let sizes: Vec<Option<(u32, u32)>> = files.par_iter().map(|file| size_of(file)).collect();

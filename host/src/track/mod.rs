@@ -1,7 +1,9 @@
 //! Tracking the arms of one image folder or video.
 
 mod arms;
+mod finish;
 mod input;
+mod options;
 mod particles;
 #[cfg(feature = "plots")]
 pub(crate) mod pictures;
@@ -16,9 +18,11 @@ mod source;
 mod table;
 
 pub use arms::{ArmSet, ArmView, SideChoice};
+pub use finish::RunOutcome;
 pub use input::{FrameFolder, SkippedImage};
+pub use options::{RATES_HZ, TrackOptions};
 pub use report::{Inputs, REPORT_VERSION, RunReport, StatusCounts};
-pub use run::{Event, RATES_HZ, RunOutcome, TrackOptions, TrackRun};
+pub use run::{Event, TrackRun};
 pub use sample::HandSample;
 pub use source::{FrameSource, VideoSource};
 pub use table::{HEADER, TrackRow};

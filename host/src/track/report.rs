@@ -1,7 +1,7 @@
 //! What a run says of itself: `run.json` and the summary at its end.
 
 use super::input::SkippedImage;
-use super::run::TrackOptions;
+use super::options::TrackOptions;
 use crate::wording::{side_name, status_name};
 use serde::Serialize;
 use sinew_core::skeleton::Side;
@@ -36,7 +36,7 @@ pub struct StatusCounts {
 /// The content of `run.json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct RunReport {
-    /// Version of the form of this file; a reader can tell by it what to expect.
+    /// Version of the form of this file; a reader checks it first.
     pub version: u32,
     /// Version of the program.
     pub sinew_version: &'static str,

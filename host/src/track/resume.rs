@@ -1,7 +1,8 @@
 //! Going on with a run that Ctrl-C ended: the trackers' state and what the plots show.
 
 use super::input::SkippedImage;
-use super::run::{TrackOptions, TrackRun};
+use super::options::TrackOptions;
+use super::run::TrackRun;
 use super::sample::HandSample;
 use crate::output::OutputDir;
 use crate::resume::{Begun, Left, List, ResumeFile, from_text, optional, real, reals, text_crc32, to_text};
@@ -59,8 +60,9 @@ fn read_by(begun: Begun, run: &TrackRun) -> Result<Begun> {
 }
 
 impl TrackRun {
-    /// Checks everything as [`TrackRun::prepare`] does, and takes up the run in `out` that was ended by Ctrl-C: what it will have
-    /// written at its end is, bit for bit, what it would have written without a break, but for `frames_per_second` in `run.json`.
+    /// Checks everything as [`TrackRun::prepare`] does, and resumes the run in `out` that was ended
+    /// by Ctrl-C. Its output is bit for bit that of a run without a break, except for
+    /// `frames_per_second` in `run.json`.
     ///
     /// # Errors
     /// As [`TrackRun::prepare`]; there is no such run in `out`, or it was begun with other options, images or another version.

@@ -1,75 +1,35 @@
 //! One run over an image folder or a video: load, read, step, record, frame by frame.
 
-use super::arms::{ArmSet, SideChoice};
+use super::arms::ArmSet;
 use super::input::SkippedImage;
+use super::options::{RATES_HZ, TrackOptions};
 use super::particles::{PARTICLE_HEADER, particle_rows};
 use super::pictures::{Pictures, Shot};
 use super::report::RunReport;
-use super::resume;
 use super::sample::HandSample;
 use super::source::FrameSource;
 use super::table::{HEADER, TrackRow};
-use crate::config::Config;
 use crate::frames::{FrameReader, FrameView};
 use crate::output::{OutputDir, PendingFile};
-use crate::resume::Interrupted;
-use crate::skin::{Rectangle, SkinModel};
-use anyhow::{Context, Result, anyhow, bail};
+use crate::skin::SkinModel;
+use anyhow::{Context, Result, bail};
 use image::RgbImage;
-use serde::Serialize;
 use sinew_core::camera::Camera;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
-/// Slowest and fastest rate of frames, Hz.
-pub const RATES_HZ: [f64; 2] = [0.001, 10_000.0];
-/// Most frames that are read ahead.
+/// Maximum number of frames that are read ahead.
 const MAX_CHUNK: usize = 32;
 /// Memory that frames which are read ahead may take, bytes.
 const CHUNK_BYTES: usize = 64 << 20;
 
-/// Everything that decides the result of a run.
-#[derive(Debug, Clone, Serialize)]
-pub struct TrackOptions {
-    /// Folder of the frames, or a video.
-    pub folder: PathBuf,
-    /// Which arms.
-    pub side: SideChoice,
-    /// Frames per second of the camera; of a video, how many are taken.
-    pub rate_hz: f64,
-    /// Seed of all that is random.
-    pub seed: u64,
-    /// The skin model, as for `--skin`.
-    pub skin: String,
-    /// Rectangle of skin in the first frame.
-    pub calibrate: Option<Rectangle>,
-    /// Whether overlays and a contact sheet are drawn.
-    pub overlay: bool,
-    /// Whether every particle is written.
-    pub particles_csv: bool,
-    /// Whether an unreadable image is refused.
-    pub strict: bool,
-    /// Camera, person, tracker, thresholds.
-    pub config: Config,
-}
-
-/// What a run tells while it goes on.
+/// What a run reports while it goes on.
 #[derive(Debug, Clone, Copy)]
 pub enum Event<'a> {
     /// An image could not be read.
     Skipped(&'a SkippedImage),
     /// So many frames are in the table.
     Finished(usize),
-}
-
-/// What a run returns beside its files.
-#[derive(Debug, Clone)]
-pub struct RunOutcome {
-    /// The content of `run.json`.
-    pub report: RunReport,
-    /// Every side's answer to every finished frame, in the order of frames; places are given for a lost arm, too.
-    pub samples: Vec<HandSample>,
 }
 
 /// A run whose inputs were all checked.
@@ -149,49 +109,14 @@ impl TrackRun {
         self.frames.count()
     }
 
-    /// Number of frames that were finished before the run was ended and taken up again; otherwise none.
+    /// Number of frames that were finished before the run was resumed; 0 in a new run.
     #[must_use]
     pub fn frames_finished(&self) -> usize {
         self.report.frames_finished
     }
 
-    /// Tracks all frames, or those before `stop` is set, and writes the run directory.
-    ///
-    /// # Errors
-    /// [`Interrupted`] if `stop` was set, or an output that cannot be written; the table of the finished frames is written all
-    /// the same.
-    pub fn run(mut self, stop: &AtomicBool, notify: &mut dyn FnMut(Event<'_>)) -> Result<RunOutcome> {
-        let start = Instant::now();
-        let out = self.out.path().to_path_buf();
-        let tracked = self.track_all(stop, notify);
-        let finished = self.report.frames_finished;
-        if matches!(self.frames, FrameSource::Video(_)) {
-            // Only now it is known how many there are.
-            self.report.inputs.files = (0..finished).map(|frame| self.frames.name(frame)).collect();
-            self.report.frames = if matches!(tracked, Ok(true)) { finished } else { self.report.frames.max(finished) };
-        }
-        let frames = self.report.frames;
-        self.seconds += start.elapsed().as_secs_f64();
-        self.report.frames_per_second = finished as f64 / self.seconds.max(1.0e-9);
-        self.report.complete = matches!(tracked, Ok(true));
-        let interrupted = matches!(tracked, Ok(false));
-        let written = self.write_results(interrupted);
-        if let Err(error) = tracked {
-            let kept = match &written {
-                Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
-                Err(other) => format!("and then {other:#}"),
-            };
-            return Err(anyhow!("{error:#}; {kept}"));
-        }
-        let outcome = written?;
-        if interrupted {
-            return Err(Interrupted { finished, all: Some(frames), unit: "frames", out }.into());
-        }
-        Ok(outcome)
-    }
-
     /// Whether the last frame was reached.
-    fn track_all(&mut self, stop: &AtomicBool, notify: &mut dyn FnMut(Event<'_>)) -> Result<bool> {
+    pub(super) fn track_all(&mut self, stop: &AtomicBool, notify: &mut dyn FnMut(Event<'_>)) -> Result<bool> {
         let (most, mut begin) = (self.chunk_length(), self.report.frames_finished);
         loop {
             let images = self.frames.load(begin, most)?;
@@ -284,31 +209,6 @@ impl TrackRun {
     fn timestamp_us(&self, frame: usize) -> u64 {
         (frame as f64 * 1.0e6 / self.report.options.rate_hz).round() as u64
     }
-
-    /// Gives the tables their names and writes plot, sheet and report. Each file is tried, also where another one failed. An
-    /// interrupted run leaves what [`TrackRun::resume`] needs.
-    fn write_results(mut self, interrupted: bool) -> Result<RunOutcome> {
-        let left = if interrupted { Some(resume::left(&mut self)?) } else { None };
-        let Self { out, track, particles, pictures, report, samples, .. } = self;
-        let mut results = vec![finish(track)];
-        results.extend(particles.map(finish));
-        let json = serde_json::to_string_pretty(&report)? + "\n";
-        results.push(out.write("run.json", |writer| Ok(writer.write_all(json.as_bytes())?)));
-        #[cfg(feature = "plots")]
-        results.push(
-            crate::draw::plot::hand_plot(&samples, report.image_size_px)
-                .and_then(|plot| out.write_png("hand.png", &plot)),
-        );
-        results.extend(pictures.map(|pictures| out.write_png("contact_sheet.png", &pictures.contact_sheet())));
-        results.into_iter().collect::<Result<()>>()?;
-        resume::put(left, &report.options, &out)?;
-        Ok(RunOutcome { report, samples })
-    }
-}
-
-fn finish(table: csv::Writer<PendingFile>) -> Result<()> {
-    let file = table.into_inner().map_err(|error| anyhow!("a table cannot be written: {}", error.error()))?;
-    file.finish()
 }
 
 /// Pictures among the frames would be frames of the next run, and overlays could replace the frames themselves.

@@ -26,7 +26,7 @@ pub struct VideoSource {
     first: RgbImage,
     /// Number of the next frame.
     next: usize,
-    /// What ended the video, until it is told.
+    /// What ended the video, until it is reported.
     end: Option<VideoError>,
 }
 
@@ -68,7 +68,7 @@ impl FrameSource {
         }
     }
 
-    /// What tells these frames from others, beside the path: the names of a folder's files, the size of a video's.
+    /// What distinguishes these frames from others, beside the path: the names of a folder's files, the size of a video's.
     #[must_use]
     pub fn identity(&self) -> Vec<String> {
         match self {

@@ -1,8 +1,8 @@
 //! Runs of `sinew track arm` and `sinew demo`: frames, blobs, arms, particles.
 
+use super::marks::{Shown, colour, jpeg, scalars, weighted_points};
 use super::numbers::Numbers;
 use super::recording::{Moment, Recording};
-use super::{Shown, colour, jpeg, scalars, weighted_points};
 use crate::frames::FrameReader;
 use crate::record::SeenFrames;
 use crate::track::{FrameFolder, FrameSource};

@@ -1,8 +1,8 @@
 //! Runs of `sinew track body`: points, skeleton, ends of limbs over the particles.
 
+use super::marks::{Shown, colour, scalars, weighted_points};
 use super::numbers::Numbers;
 use super::recording::{Moment, Recording};
-use super::{Shown, colour, scalars, weighted_points};
 use crate::cloud::{self, CloudFolder};
 use crate::report::body::BONES;
 use anyhow::{Context, Result};

@@ -1,8 +1,8 @@
 //! Runs of `sinew track cyclic --report`: the figure, angles, cadence, pictures where they were drawn.
 
+use super::marks::{Shown, colour, jpeg, scalars};
 use super::numbers::Numbers;
 use super::recording::{Moment, Recording};
-use super::{Shown, colour, jpeg, scalars};
 use crate::cyclic::angle_table::angle_columns;
 use crate::cyclic::export::trc::MARKERS;
 use crate::cyclic::report::ESTIMATES;

@@ -45,7 +45,7 @@ impl std::fmt::Debug for Recording<'_> {
 }
 
 impl<'w> Recording<'w> {
-    /// Begins a recording of the name, by which the viewer tells recordings apart.
+    /// Begins a recording of the name, by which the viewer distinguishes recordings.
     ///
     /// # Errors
     /// What the writer refuses.

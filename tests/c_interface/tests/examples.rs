@@ -14,7 +14,7 @@ const WARNINGS: [&str; 8] = [
     "-Wshadow",
     "-Wconversion",
     "-Werror",
-    // What a compiler makes one instruction of a product and a sum rounds otherwise.
+    // What a compiler makes one instruction of a product and a sum rounds differently.
     "-ffp-contract=off",
     "-O1",
 ];

@@ -26,7 +26,7 @@ const PREAMBLE: &str = "\
  * Made from the interface's source by `SINEW_REGENERATE=1 cargo test -p sinew-c-interface --test header`; do not edit.
  *
  * Nothing is allocated, nothing is global. Objects live in memory that the caller gives: SINEW_*_MAX_BYTES bytes, aligned to SINEW_ALIGN,
- * always suffice, and sinew_*_size and sinew_*_align tell the exact numbers of this target. Different objects may be used by different
+ * always suffice, and sinew_*_size and sinew_*_align return the exact numbers of this target. Different objects may be used by different
  * threads at the same time. All functions but sinew_*_size, sinew_*_align, sinew_version and sinew_error_text answer with a status, zero
  * for done. */";
 
@@ -98,7 +98,7 @@ fn every_function_of_the_interface_is_in_the_header() {
         for function in source.split("extern \"C\" fn sinew_").skip(1) {
             let name = function.split('(').next().unwrap();
             let declared = header.contains(&format!("sinew_{name}("));
-            // Those of the proof are linked only, and called by nobody.
+            // Those of the proof are linked only, and never called.
             assert!(declared || name == "panic_is_reachable" || name.starts_with("proof_"), "sinew_{name}");
             count += usize::from(declared);
         }

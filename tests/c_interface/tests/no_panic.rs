@@ -1,5 +1,5 @@
-//! No function of the interface can panic, nor what firmware in Rust calls each frame (`rust_entry_points.rs`): the linker finds no way
-//! to a panic in the library that firmware ships.
+//! No function of the interface can panic, nor what firmware in Rust calls each frame
+//! (`rust_entry_points.rs`). The linker finds no way to a panic in the library that firmware ships.
 //!
 //! The library is built with `prove-no-panic`, in which a panic calls a function that is defined nowhere. Each public function is linked
 //! alone and everything that it does not reach is dropped; what is left must not miss that function.
@@ -100,7 +100,7 @@ pub extern "C" fn checked(list: &[u8; 4], index: usize) -> u8 { list.get(index).
 pub extern "C" fn unchecked(list: &[u8; 4], index: usize) -> u8 { list[index] }
 "#;
 
-/// A library in which one function indexes by a number that nobody checked has to be told from the others.
+/// A library in which one function indexes by an unchecked number has to be distinguished from the others.
 #[test]
 fn the_check_finds_a_function_that_can_panic() {
     if !(has_tool(LINKER) && has_target(TARGET)) {

@@ -23,13 +23,13 @@ mod emulated {
 
     #[entry]
     fn main() -> ! {
-        let code = if tell().is_ok() { EXIT_SUCCESS } else { EXIT_FAILURE };
+        let code = if print_digests().is_ok() { EXIT_SUCCESS } else { EXIT_FAILURE };
         loop {
             exit(code);
         }
     }
 
-    fn tell() -> Result<(), core::fmt::Error> {
+    fn print_digests() -> Result<(), core::fmt::Error> {
         let mut out = hstdout().map_err(|()| core::fmt::Error)?;
         for subject in Subject::ALL {
             let digest = subject.digest(FRAMES).map_err(|_| core::fmt::Error)?;

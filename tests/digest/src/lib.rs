@@ -1,6 +1,6 @@
 //! Whether the trackers give the same bits everywhere: each reads a made-up stream of frames, and one number stands for all that it answers.
 //!
-//! The streams come from the core's random numbers and the core's mathematics alone, so a target that computes anything otherwise gets
+//! The streams come from the core's random numbers and the core's mathematics alone, so a target that computes anything differently gets
 //! another digest. `expected.txt` holds the digests over [`FRAMES`] frames; every target's test reads that one file.
 
 #![no_std]

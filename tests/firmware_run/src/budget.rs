@@ -175,12 +175,12 @@ fn cells(markdown: &str) -> BTreeMap<String, u64> {
 
 fn row(image: &str) -> Result<Row> {
     let path = build::image_path(image);
-    let told = run(&path, Machine::M4)?;
+    let ended = run(&path, Machine::M4)?;
     let elf = fs::read(&path)?;
     ensure!(Table::parse(&elf)?.is_some(), "`{image}` logs nothing; the table is for images that log");
     let (flash, ram) = sizes(&elf)?;
     let mut row = Row { image: image.to_owned(), flash, ram, stack: 0, parts: Vec::new() };
-    for (part, cost) in told.costs {
+    for (part, cost) in ended.costs {
         if part == Part::Stack {
             row.stack = u64::from(cost.worst);
         } else {

@@ -86,8 +86,8 @@ pub fn compare_records(found: &[u8], path: &Path) -> Result<()> {
 fn difference(found: &[u8], wanted: &[u8]) -> String {
     let [mut found, mut wanted] = [found, wanted].map(RecordStream::<_, 1024>::new);
     for index in 0.. {
-        let now = found.next_record().map(|record| record.map(|record| told(&record)));
-        let then = wanted.next_record().map(|record| record.map(|record| told(&record)));
+        let now = found.next_record().map(|record| record.map(|record| described(&record)));
+        let then = wanted.next_record().map(|record| record.map(|record| described(&record)));
         if now.is_none() && then.is_none() {
             break;
         }
@@ -99,7 +99,7 @@ fn difference(found: &[u8], wanted: &[u8]) -> String {
 }
 
 /// A record in words.
-fn told(record: &Record<'_>) -> String {
+fn described(record: &Record<'_>) -> String {
     match record.kind {
         Kind::CyclicResult => format!("{:?}", record.read::<CyclicResult>()),
         Kind::ArmResult => format!("{:?}", record.read::<ArmResult>()),

@@ -34,8 +34,8 @@ const LEFT_OUT: [std::ops::Range<u64>; 4] = [150..153, 330..390, 420..480, 520..
 /// Noise of its angles, radians.
 const WALK_NOISE_RAD: f32 = 0.1;
 
-/// The shipped model's own cycle with noise: angles missing now and then, a second without any, a change of speed, a jump to
-/// another place of the cycle, and rows left out, up to hundreds in a row.
+/// The shipped model's own cycle with noise. Angles are missing now and then, and one second has
+/// none. The speed changes, and the position jumps. Up to hundreds of rows in a row are left out.
 ///
 /// # Errors
 /// None in practice.

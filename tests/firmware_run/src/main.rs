@@ -62,8 +62,8 @@ fn main() -> ExitCode {
 fn answer(command: &Command) -> Result<()> {
     match command {
         Command::Image { path } => {
-            let told = run(path, Machine::from_environment()?)?;
-            show(&told);
+            let ended = run(path, Machine::from_environment()?)?;
+            show(&ended);
             println!("{}: as expected", path.display());
             Ok(())
         }
@@ -105,10 +105,10 @@ fn budget(check: bool, no_build: bool) -> Result<()> {
     budget.write()
 }
 
-fn show(told: &Told) {
-    print!("{}", told.printed);
-    told.log.iter().for_each(|line| println!("{line}"));
-    for (part, cost) in &told.costs {
+fn show(ended: &Told) {
+    print!("{}", ended.printed);
+    ended.log.iter().for_each(|line| println!("{line}"));
+    for (part, cost) in &ended.costs {
         let mean = cost.total as f64 / f64::from(cost.frames.max(1));
         println!("{}: mean {mean:.0}, worst {} of {}", part.name(), cost.worst, cost.frames);
     }

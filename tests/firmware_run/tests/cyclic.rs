@@ -96,7 +96,7 @@ fn bad_input_gets_codes_and_the_tracker_goes_on() {
 }
 
 #[test]
-fn a_changed_byte_costs_one_frame() {
+fn a_changed_byte_loses_one_frame() {
     let mut stream = StreamWriter::default();
     stream.push(&setup()).unwrap();
     for number in 0..6 {

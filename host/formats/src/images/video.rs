@@ -93,8 +93,8 @@ impl VideoFacts {
         match rate("avg_frame_rate").or_else(|| rate("r_frame_rate")) {
             Some(rate_hz) if packets > 0.0 => {
                 // The header of a cut file still gives the full duration.
-                let told = (number(&json["format"]["duration"]) * rate_hz).round();
-                Ok(Self { rate_hz, frames: packets.max(told) as usize })
+                let stated = (number(&json["format"]["duration"]) * rate_hz).round();
+                Ok(Self { rate_hz, frames: packets.max(stated) as usize })
             }
             _ => Err(unreadable("it holds no frames".to_owned())),
         }
@@ -124,11 +124,11 @@ impl VideoFrames {
     pub fn open(file: &Path, rate_hz: f64) -> Result<Self, VideoError> {
         let facts = VideoFacts::read(file)?;
         let complaints = tempfile::tempfile().map_err(|error| no_program(file, "ffmpeg", &error))?;
-        let told = complaints.try_clone().map_err(|error| no_program(file, "ffmpeg", &error))?;
+        let stderr = complaints.try_clone().map_err(|error| no_program(file, "ffmpeg", &error))?;
         let mut command = Command::new("ffmpeg");
         command.args(["-nostdin", "-v", "error", "-i"]).arg(address(file)).args(["-map", "0:v:0", "-vf"]);
         command.arg(format!("fps={rate_hz}")).args(["-f", "image2pipe", "-c:v", "ppm", "-"]);
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::from(told));
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::from(stderr));
         #[cfg(unix)]
         {
             use std::os::unix::process::CommandExt;
@@ -198,13 +198,13 @@ impl VideoFrames {
     /// Handles the end of the pipe: the video's end, or an error.
     fn end(&mut self, reason: Option<String>) -> Result<Option<RgbImage>, VideoError> {
         let succeeded = reason.is_none() && self.child.wait().is_ok_and(|status| status.success());
-        let mut told = String::new();
-        let _ = self.complaints.seek(SeekFrom::Start(0)).and_then(|_| self.complaints.read_to_string(&mut told));
+        let mut text = String::new();
+        let _ = self.complaints.seek(SeekFrom::Start(0)).and_then(|_| self.complaints.read_to_string(&mut text));
         // Messages about a video of full length are about minor defects.
-        if succeeded && (told.trim().is_empty() || self.read >= self.expected) {
+        if succeeded && (text.trim().is_empty() || self.read >= self.expected) {
             return Ok(None);
         }
-        let reason = if told.trim().is_empty() { reason } else { Some(last_line(&told)) };
+        let reason = if text.trim().is_empty() { reason } else { Some(last_line(&text)) };
         let reason = reason.unwrap_or_else(|| "ffmpeg failed and says nothing".to_owned());
         let file = self.file.clone();
         Err(match self.read {

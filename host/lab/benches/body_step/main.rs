@@ -1,6 +1,7 @@
-//! One step of the body tracker on the built-in scene with a stick (2000 points; a whole body of 16 capsules, an upper one of 8): frames a second with
-//! all threads by model and number of particles, the time relative to the angular model with as many, and how it grows with points, particles and
-//! bones. `RAYON_NUM_THREADS=1` for one thread.
+//! One step of the body tracker on the built-in scene with a stick. The scene has 2000 points, a
+//! whole body 16 capsules, an upper body 8. Prints frames a second with all threads by model and
+//! number of particles, and the time relative to the angular model. Also prints how the time grows
+//! with points, particles and bones. `RAYON_NUM_THREADS=1` for one thread.
 
 use criterion::Criterion;
 use sinew::body::BodyPart;
@@ -13,7 +14,7 @@ use std::time::Instant;
 
 /// Frames of a pass.
 const FRAMES: usize = 60;
-/// Passes; the median frame of all is told.
+/// Passes; prints the median time of a frame over all.
 const PASSES: u64 = 3;
 
 /// Seconds of each step of one pass with what is done to its points before, every `stride`-th of them kept.

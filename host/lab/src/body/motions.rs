@@ -147,7 +147,7 @@ impl ReadMotion {
         }
         let options = StereoOptions { seed, part, hidden: hidden.to_vec(), ..StereoOptions::default() };
         let scene = StereoScene::new(recording, options).with_context(|| format!("`{}` makes no scene", self.name))?;
-        // Those of an upper body are not told from those of the legs.
+        // The count does not separate an upper body from the legs.
         let recorded_markers_m = if part == BodyPart::Whole { self.markers_m.clone() } else { Vec::new() };
         Ok(SeenMotion { stick, recorded_markers_m, floor_y_m: height_m, ..SeenMotion::of_scene(&scene)? })
     }

@@ -79,8 +79,9 @@ pub struct BodyReport {
     pub tuning: BodyTuning,
     /// All cells.
     pub results: Vec<BodyResult>,
-    /// Particles with which the angular model equals the end-effector model with 250, by the mean over the motions; absent where
-    /// the counts do not tell, infinite (null) where none does.
+    /// Particles with which the angular model equals the end-effector model with 250, by the mean
+    /// over the motions. Absent where the counts do not determine it, infinite (null) where none
+    /// does.
     pub angular_equals_end_effector_250: Option<f64>,
     /// What the models predict before they see a point: figures 2, 19 and 20.
     pub predictions: Option<PredictionReport>,
@@ -157,7 +158,7 @@ impl BodyReport {
         let mut counts: Vec<usize> = self.results.iter().map(|cell| cell.particles).collect();
         counts.sort_unstable();
         counts.dedup();
-        let mut text = String::from("mean error over the motions, cm (eq. 34)\nparticles         ");
+        let mut text = String::from("mean error over the motions, cm, PIK (34)\nparticles         ");
         for count in &counts {
             let _ = write!(text, "{count:>8}");
         }

@@ -1,4 +1,4 @@
-//! One tracker on one motion: the PIK paper's measures (eqs. 34 and 35).
+//! One tracker on one motion: the PIK paper's measures (PIK (34) and PIK (35)).
 
 use anyhow::Result;
 use rayon::prelude::*;
@@ -68,7 +68,7 @@ impl SeenMotion {
         })
     }
 
-    /// What tells this motion from others that the same options and seed make.
+    /// What distinguishes this motion from others that the same options and seed make.
     #[must_use]
     pub fn key(&self) -> Value {
         crc32_of(&(&self.joints_m, &self.recorded_markers_m, &self.measures, &self.first_rad, &self.stick))
@@ -92,7 +92,7 @@ impl SeenMotion {
         Ok(sum.mean())
     }
 
-    /// Mean length that a joint goes in a frame, eq. (35), metres.
+    /// Mean length that a joint goes in a frame, PIK (35), metres.
     #[must_use]
     pub fn smoothness_m(&self) -> f64 {
         smoothness_m(self.part, self.joints_m.iter().copied())
@@ -102,13 +102,13 @@ impl SeenMotion {
 /// What a trial measured.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TrialResult {
-    /// Mean distance of the markers from the skin of the estimate, eq. (34), metres.
+    /// Mean distance of the markers from the skin of the estimate, PIK (34), metres.
     pub error_m: f64,
     /// The same for the recorded markers of a .c3d, metres.
     pub recorded_error_m: Option<f64>,
     /// Mean distance of the joints from the true ones, metres.
     pub joint_error_m: f64,
-    /// Mean length that the start of a bone goes in a frame, eq. (35), metres.
+    /// Mean length that the start of a bone goes in a frame, PIK (35), metres.
     pub smoothness_m: f64,
     /// Wall time of the tracker's step with what is done to the points before it, seconds a frame.
     pub seconds_per_frame: f64,

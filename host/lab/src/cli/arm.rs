@@ -32,7 +32,7 @@ pub struct EvaluateArmArgs {
     /// Folder of recorded motions; without it built-in reaches drive the scenes.
     #[arg(long, value_name = "DIR")]
     pub mocap: Option<PathBuf>,
-    /// Most clips that are used.
+    /// Maximum number of clips that are used.
     #[arg(long, default_value_t = 10)]
     pub clips: usize,
     /// Scenes of each clip: seeds 1 and on.
@@ -106,7 +106,7 @@ pub fn run_until(args: &EvaluateArmArgs, console: &Console, stop: Stop<'_>) -> R
     let bars: Vec<(String, f64)> = report.options.iter().map(|row| (row.name.clone(), row.error_m.median)).collect();
     output.write_png("options.png", &bars_plot("Each option's own effect", "3D hand error, m", &bars)?)?;
     cells.end()?;
-    let text = format!("{}tables and plots: {}\n", told(&report), args.out.display());
+    let text = format!("{}tables and plots: {}\n", summary(&report), args.out.display());
     console.answer(&text, &json!({ "out": args.out, "report": report }))
 }
 
@@ -197,10 +197,10 @@ fn curves(rows: &[Row], values: fn(&Row) -> [f64; 3]) -> Vec<Curve> {
 }
 
 /// The rows for a person.
-fn told(report: &Report) -> String {
+fn summary(report: &Report) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
-    let mut tell = |heading: &str, rows: &[Row]| {
+    let mut add = |heading: &str, rows: &[Row]| {
         let _ = writeln!(text, "{heading}");
         for row in rows {
             let (m, px) = (&row.error_m, &row.error_px);
@@ -212,9 +212,9 @@ fn told(report: &Report) -> String {
         }
     };
     let scenes = report.scenes.len();
-    tell(&format!("{scenes} scenes; median over runs (quartiles) of a run's mean hand error"), &report.variants);
-    tell("each option's own effect:", &report.options);
-    tell("as the arm paper prints them:", &report.as_printed);
+    add(&format!("{scenes} scenes; median over runs (quartiles) of a run's mean hand error"), &report.variants);
+    add("each option's own effect:", &report.options);
+    add("as the arm paper prints them:", &report.as_printed);
     let pik = report.variants.iter().find(|row| row.name == "pik" && row.particles == 50);
     if let Some(pik) = pik {
         let mut bootstrap = report.variants.iter().filter(|row| row.name == "bootstrap");

@@ -7,7 +7,7 @@ use clap::Args;
 use serde_json::json;
 use sinew::cli::console::Console;
 use sinew::cli::ctrl_c::stop_flag;
-use sinew::cyclic::model::MODEL_VALUE;
+use sinew::cyclic::model_file::MODEL_VALUE;
 use sinew::cyclic::training::{TrainingOptions, train};
 use sinew::cyclic::{CutList, CyclicModel};
 use sinew::output::OutputDir;

@@ -112,7 +112,7 @@ pub fn run(args: &EvaluateSkinArgs, console: &Console) -> Result<()> {
             Ok(table.flush()?)
         })?;
     }
-    console.answer(&told(&report), &report)
+    console.answer(&summary(&report), &report)
 }
 
 /// A training image's score says nothing about other images.
@@ -179,7 +179,7 @@ fn table(list: &PairList, judged: &Judged) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-fn told(report: &Report<'_>) -> String {
+fn summary(report: &Report<'_>) -> String {
     let mut text = format!("model: {}\n", report.model);
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{:<24} images  precision  recall  F1     median image F1", "folder");

@@ -28,7 +28,7 @@ pub struct LongRun {
     pub phase_rms: f64,
     /// The same about the errors' mean: where a person's cycle is said to begin is then left out.
     pub phase_spread: f64,
-    /// Greatest error of the position, cycles.
+    /// Largest error of the position, cycles.
     pub phase_max: f64,
     /// Relative error of the mean of the reported cadence from the third cycle on, beside the true number of cycles in that
     /// time.
@@ -53,13 +53,13 @@ impl Recording {
     }
 }
 
-/// Least number of cycles in a row that count as a recording.
-const LEAST_CYCLES: usize = 3;
+/// Smallest number of cycles in a row that count as a recording.
+const MIN_CYCLES: usize = 3;
 
 fn recordings(list: &CutList) -> Result<Vec<Recording>> {
     let mut all = Vec::new();
     let follows = |before: &Cut, after: &Cut| before.file == after.file && before.end_frame == after.start_frame;
-    for cuts in list.cuts().chunk_by(follows).filter(|cuts| cuts.len() >= LEAST_CYCLES) {
+    for cuts in list.cuts().chunk_by(follows).filter(|cuts| cuts.len() >= MIN_CYCLES) {
         let (first, last) = (&cuts[0], &cuts[cuts.len() - 1]);
         let table = AngleTable::read(&list.table_path(first))?;
         let inside = |row: &&AngleRow| (first.start_frame..last.end_frame).contains(&row.frame);
@@ -72,7 +72,7 @@ fn recordings(list: &CutList) -> Result<Vec<Recording>> {
     }
     ensure!(
         !all.is_empty(),
-        "`{}` has no {LEAST_CYCLES} cycles that follow each other in one table; `sinew cut` makes such lists",
+        "`{}` has no {MIN_CYCLES} cycles that follow each other in one table; `sinew cut` makes such lists",
         list.path().display()
     );
     Ok(all)

@@ -15,7 +15,7 @@ pub const LONG_ANGLES: [usize; 9] = [0, 2, 3, 5, 6, 8, 9, 11, 12];
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Protocol {
-    /// The true angle; sigma only tells the filter how much to trust it (the paper's protocol).
+    /// The true angle; sigma is only the noise that the filter assumes (the paper's protocol).
     ExactMean,
     /// The true angle with Gaussian noise of that sigma, from the second frame on.
     Noisy,

@@ -1,7 +1,7 @@
 // One run after the other: a source of pictures, the tracker, and what is drawn of both.
-const TOLD_EVERY_MS = 200;
+const SHOWN_EVERY_MS = 200;
 // Numbers with so many digits; a joint behind the camera has no pixel.
-const told = (numbers, digits) => (numbers.every(Number.isFinite) ? numbers.map((number) => number.toFixed(digits)).join(', ') : '–');
+const rounded = (numbers, digits) => (numbers.every(Number.isFinite) ? numbers.map((number) => number.toFixed(digits)).join(', ') : '–');
 
 class App {
   constructor(tracker, scene, recording) {
@@ -30,7 +30,7 @@ class App {
 
   #start(source, asked) {
     this.#fit(source);
-    Object.assign(this, { source, asked, firstMs: null, timing: new Timing(), told: 0, error: null });
+    Object.assign(this, { source, asked, firstMs: null, timing: new Timing(), shownMs: 0, error: null });
     this.setMirror(source.mirror);
     this.shoulder = null;
     if (source.name === 'scene') this.#knowScene(source.scene);
@@ -116,7 +116,7 @@ class App {
     const [begun, taken, seen, tracked, drawn] = clock;
     const milliseconds = { picture: taken - begun, vision: seen - taken, tracker: tracked - seen, drawing: drawn - tracked };
     this.timing.add(begun, milliseconds);
-    this.#tell(answer, about.truth, drawn);
+    this.#show(answer, about.truth, drawn);
     const detail = { source: this.source.name, pixels, timeUs, answer, milliseconds, number: about.number, firstMs: this.firstMs };
     document.dispatchEvent(new CustomEvent('sinew-frame', { detail }));
   }
@@ -135,20 +135,20 @@ class App {
     });
   }
 
-  #tell(answer, truth, now) {
+  #show(answer, truth, now) {
     if (truth) this.errors.push(Math.hypot(answer.hand[0] - truth[0], answer.hand[1] - truth[1]));
-    if (now - this.told < TOLD_EVERY_MS) return;
-    this.told = now;
-    const rows = { status: answer.status, 'hand, pixels': told(answer.hand, 0) };
-    if (answer.handM) rows['hand, metres'] = told(answer.handM, 2);
+    if (now - this.shownMs < SHOWN_EVERY_MS) return;
+    this.shownMs = now;
+    const rows = { status: answer.status, 'hand, pixels': rounded(answer.hand, 0) };
+    if (answer.handM) rows['hand, metres'] = rounded(answer.handM, 2);
     rows.blobs = String(this.engine.blobs().length);
     rows['is a hand'] = `${Math.round(100 * answer.likelihood)} %`;
     if (answer.sampleSize) rows['effective particles'] = answer.sampleSize.toFixed(0);
     rows.shoulder = this.shoulder ? 'placed' : 'guessed';
     if (this.firstMs !== null) rows['found after'] = `${(this.firstMs / 1000).toFixed(2)} s`;
     if (this.errors.length) rows['greatest error so far'] = `${((100 * Math.max(...this.errors)) / this.work.width).toFixed(1)} % of the width`;
-    tellRows(element('told'), rows);
-    tellRows(element('timing'), this.timing.rows());
+    showRows(element('answers'), rows);
+    showRows(element('timing'), this.timing.rows());
   }
 
   // A click on the hand teaches its skin, one on the shoulder says where that is.

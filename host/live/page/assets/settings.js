@@ -8,8 +8,8 @@ function settings() {
 }
 
 function tellSettings() {
-  element('particles-told').textContent = element('particles').value;
-  element('distance-told').textContent = `${Number(element('distance').value).toFixed(2)} m`;
+  element('particles-shown').textContent = element('particles').value;
+  element('distance-shown').textContent = `${Number(element('distance').value).toFixed(2)} m`;
 }
 
 function setDistance(metres) {

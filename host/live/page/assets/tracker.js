@@ -76,7 +76,7 @@ class Tracker {
     return Array.from({ length: count }, (_, row) => [...all.subarray(row * numbers, (row + 1) * numbers)]);
   }
 
-  // A call that was refused tells the length of its text.
+  // A call that was refused returns the length of its text.
   #check(length) {
     if (length === 0) return;
     throw new RangeError(new TextDecoder().decode(new Uint8Array(this.module.memory.buffer, this.module.text(), length)));

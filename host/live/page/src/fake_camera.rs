@@ -1,10 +1,11 @@
 //! The built-in scene as a file that Chromium takes for a camera (`--use-file-for-fake-video-capture`): YUV4MPEG2, 4:2:0, Rec. 601.
 //!
-//! The file runs to and fro, so that nothing jumps where it begins anew. A fake camera repeats and drops frames, so each carries its number: squares along its upper edge, the first white, the second black, then
-//! eight bits of the number, the highest first, white for one.
+//! The file runs to and fro, so that nothing jumps where it begins anew. A fake camera repeats and
+//! drops frames, so each carries its number as squares along its upper edge. The first is white,
+//! the second black. Eight bits of the number follow, the highest first, white for one.
 
 use crate::builtin::{BuiltinScene, RATE_HZ};
-use crate::scene_pack::tenths;
+use crate::rounding::tenths;
 use anyhow::Result;
 use image::{Rgb, RgbImage};
 use rayon::prelude::*;

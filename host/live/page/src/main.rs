@@ -8,6 +8,7 @@ mod fake_camera;
 mod module;
 mod page;
 mod recording;
+mod rounding;
 mod scene_pack;
 
 use anyhow::{Result, bail, ensure};
@@ -16,7 +17,7 @@ use clap::Parser;
 use sinew::output::OutputDir;
 use std::path::PathBuf;
 
-/// Most bytes of the page: what a visitor downloads.
+/// Maximum number of bytes of the page: what a visitor downloads.
 const MAX_PAGE_BYTES: usize = 1_500_000;
 
 /// Build the live page.
@@ -28,8 +29,9 @@ struct Args {
     /// The module, where it was built already: `sinew_live.wasm`.
     #[arg(long, value_name = "FILE")]
     module: Option<PathBuf>,
-    /// Also write what `tests/browser/live.mjs` needs: the built-in scene as a browser's fake camera shows it (`camera.y4m`) with its truth
-    /// (`camera.json`), and some of its frames (`frames.rgba`) with this machine's answers to them (`bits.json`).
+    /// Also write the inputs of `tests/browser/live.mjs`. These are the built-in scene for a fake
+    /// camera (`camera.y4m`) with its truth (`camera.json`), and some of its frames (`frames.rgba`)
+    /// with this machine's answers (`bits.json`).
     #[arg(long)]
     for_tests: bool,
 }

@@ -10,7 +10,7 @@ const TARGET: &str = "wasm32-unknown-unknown";
 /// Vector instructions of WebAssembly, which every browser has had since 2023: vision takes half the time.
 const FLAGS: &str = "-C target-feature=+simd128";
 
-/// What cargo tells of a file that it made.
+/// What cargo reports of a file that it made.
 #[derive(Debug, Deserialize)]
 struct Message {
     #[serde(default)]

@@ -1,7 +1,7 @@
 //! What the tracker makes of the built-in scene, for browsers that cannot run it.
 
 use crate::builtin::{BuiltinScene, RATE_HZ};
-use crate::scene_pack::tenths;
+use crate::rounding::{hundredths, tenths};
 use anyhow::Result;
 use image::RgbImage;
 use serde::Serialize;
@@ -10,7 +10,7 @@ use sinew_live::frame::Frame;
 use sinew_live::person::Shoulder;
 use sinew_live::session::{Choice, Session};
 
-/// Most blobs of a frame that are kept.
+/// Maximum number of blobs of a frame that are kept.
 const BLOBS: usize = 4;
 /// Particles and seed, the page's defaults.
 const PARTICLES: usize = 50;
@@ -94,10 +94,6 @@ fn answer(session: &Session) -> RecordedFrame {
         carrier: numbers[13],
         blobs: blobs.collect(),
     }
-}
-
-fn hundredths(number: f32) -> f32 {
-    (100.0 * number).round() / 100.0
 }
 
 #[cfg(test)]

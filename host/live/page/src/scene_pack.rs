@@ -2,6 +2,7 @@
 
 use crate::builtin::{BuiltinScene, RATE_HZ};
 use crate::recording::{RecordedFrame, recorded};
+use crate::rounding::{hundredths, tenths};
 use anyhow::{Context, Result};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -62,15 +63,10 @@ pub fn packed(scene: &BuiltinScene) -> Result<ScenePack> {
         height,
         frames_per_second: RATE_HZ,
         shoulder: tenths([shoulder.u_px, shoulder.v_px]),
-        distance: (100.0 * distance).round() / 100.0,
+        distance: hundredths(distance),
         still: jpeg(&still)?,
         frames: frames.collect::<Result<_>>()?,
     })
-}
-
-/// Rounded to tenths, which keeps the text short.
-pub fn tenths<const N: usize>(numbers: [f32; N]) -> [f32; N] {
-    numbers.map(|number| (10.0 * number).round() / 10.0)
 }
 
 /// The median of each byte over all frames: mostly what does not move.

@@ -12,7 +12,7 @@ use sinew_core::skeleton::full_body::{BODY_ANGLES, full_body};
 use std::path::Path;
 
 /// Farthest joint from the pelvis of a standing person, metres.
-const MOST_REACH_M: f32 = 2.0;
+const MAX_REACH_M: f32 = 2.0;
 
 /// Reads measures from a .json as `simulate stereo` writes it, or measures the person of a motion. Of a .asf without motion the rest pose
 /// is measured.
@@ -36,8 +36,8 @@ pub fn read_measures(path: &Path) -> Result<BodyMeasures> {
     let ends_m = posture(&skeleton, &Vec3::zeros(), &[0.0; BODY_ANGLES]).ends;
     let farthest_m = ends_m.iter().map(Vec3::norm).fold(0.0, f32::max);
     ensure!(
-        farthest_m <= MOST_REACH_M,
-        "the person of `{}` has a joint {farthest_m} m from the pelvis, and {MOST_REACH_M} m is the most; give lengths in metres",
+        farthest_m <= MAX_REACH_M,
+        "the person of `{}` has a joint {farthest_m} m from the pelvis, and {MAX_REACH_M} m is the most; give lengths in metres",
         path.display()
     );
     Ok(measures)
@@ -74,10 +74,10 @@ mod tests {
             ("body.json", "{\"trunk_m\": 0.5}", "no body.json"),
             ("body.asf", "nonsense", "cannot be measured"),
             ("body.obj", "", "no skeleton that can be read"),
-            ("nobody.json", "", "nobody.json"),
+            ("missing.json", "", "missing.json"),
         ] {
             let path = folder.path().join(name);
-            if name != "nobody.json" {
+            if name != "missing.json" {
                 std::fs::write(&path, text).unwrap();
             }
             let message = format!("{:#}", read_measures(&path).unwrap_err());

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 /// Slowest and fastest rate of frames, Hz.
 pub const RATES_HZ: [f32; 2] = [0.1, 1000.0];
-/// Most threads.
+/// Maximum number of threads.
 pub const MAX_THREADS: usize = 256;
 
 /// Everything that decides the result of a run; results do not depend on `threads`.
@@ -47,7 +47,7 @@ pub struct BodyTrackOptions {
 }
 
 impl BodyTrackOptions {
-    /// Particles of `model` where nobody says another number.
+    /// Default number of particles of `model`.
     #[must_use]
     pub fn default_particles(model: BodyModelKind) -> usize {
         if model == BodyModelKind::Guided { 50 } else { 500 }

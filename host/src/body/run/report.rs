@@ -62,7 +62,7 @@ pub struct BodyRunReport {
     pub degenerate_frames: usize,
     /// Mean share of effective particles.
     pub effective_share: f64,
-    /// Mean distance of the true markers from the skin of the estimate, eq. (34), from the second frame on, metres.
+    /// Mean distance of the true markers from the skin of the estimate, PIK (34), from the second frame on, metres.
     pub error_m: Option<f64>,
     /// Mean distance of the joints from the true ones, from the second frame on, metres.
     pub joint_error_m: Option<f64>,

@@ -2,17 +2,15 @@
 //!
 //! Animation, markers, errors and pictures are made anew from the answers; of clouds only those on the contact sheet are read again.
 
+use super::answer::NO_ANSWER;
 use super::options::BodyTrackOptions;
 use super::report::{PointCounts, SkippedCloud};
 use super::track::{BodyTrackRun, read_cloud};
-use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::output::OutputDir;
-use crate::resume::{Begun, Left, List, ResumeFile, file_crc32, from_text, real, reals, to_text};
+use crate::resume::{Begun, Left, List, ResumeFile, file_crc32, from_text, to_text};
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
-use sinew_core::math::Vec3;
-use sinew_core::saved_state::{SavedState, StateKind, StateVisitor};
-use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES};
+use sinew_core::saved_state::StateKind;
 use std::path::Path;
 
 const COMMAND: &str = "track body";
@@ -28,43 +26,6 @@ pub(super) struct BodyState {
     tracker: String,
     /// The answer to each finished frame.
     answers: String,
-}
-
-/// A finished frame.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Answer {
-    pub frame: u64,
-    pub estimate: WholeBodyEstimate,
-}
-
-/// What an answer is before it is read.
-const NO_ANSWER: Answer = Answer {
-    frame: 0,
-    estimate: WholeBodyEstimate {
-        angles_rad: [0.0; BODY_ANGLES],
-        ends_m: [Vec3::new(0.0, 0.0, 0.0); BODY_BONES],
-        spread_m: [0.0; BODY_BONES],
-        observed: [false; BODY_BONES],
-        effective_sample_size: 0.0,
-        log_evidence: 0.0,
-        tempering: 0.0,
-        is_degenerate: false,
-    },
-};
-
-impl SavedState for Answer {
-    fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        visitor.long(&mut self.frame);
-        let estimate = &mut self.estimate;
-        reals(&mut estimate.angles_rad, visitor);
-        estimate.ends_m.iter_mut().for_each(|end| reals(end.as_mut_slice(), visitor));
-        reals(&mut estimate.spread_m, visitor);
-        estimate.observed.iter_mut().for_each(|flag| visitor.flag(flag));
-        for value in [&mut estimate.effective_sample_size, &mut estimate.log_evidence, &mut estimate.tempering] {
-            real(value, visitor);
-        }
-        visitor.flag(&mut estimate.is_degenerate);
-    }
 }
 
 /// What `run` leaves, but for its tables.
@@ -109,8 +70,9 @@ fn cloud_name(path: &Path) -> String {
 }
 
 impl BodyTrackRun {
-    /// Checks everything as [`BodyTrackRun::prepare`] does, and takes up the run in `out` that was ended by Ctrl-C: what it will have
-    /// written at its end is, bit for bit, what it would have written without a break, but for the times in `run.json`.
+    /// Checks everything as [`BodyTrackRun::prepare`] does, and resumes the run in `out` that was
+    /// ended by Ctrl-C. Its output is bit for bit that of a run without a break, except for the
+    /// times in `run.json`.
     ///
     /// # Errors
     /// As [`BodyTrackRun::prepare`]; there is no such run in `out`, or it was begun with other options, inputs or another version.

@@ -1,4 +1,4 @@
-//! How far a track is from the truth (PIK paper, eq. 34).
+//! How far a track is from the truth by PIK (34).
 
 use crate::body::BodyJoints;
 use crate::body::tracking::BodyFilter;
@@ -29,7 +29,7 @@ impl RunningMean {
 /// Errors of the frames so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BodyScore {
-    /// Distance of the markers from the skin of the estimate, eq. (34), metres.
+    /// Distance of the markers from the skin of the estimate, PIK (34), metres.
     pub marker_m: RunningMean,
     /// Distance of the joints from the true ones, metres.
     pub joint_m: RunningMean,

@@ -1,4 +1,4 @@
-//! Where a body begins of which nothing is known but points: upright, facing the camera, then laid onto them.
+//! The first pose where only points are known: upright, facing the camera, then fitted to the points.
 
 use crate::body::BodyPart;
 use crate::body::tracking::tuning::PointTuning;
@@ -30,9 +30,10 @@ const SHIFT_STD_M: f32 = 0.5;
 const TURN_STD_RAD: f32 = 0.5;
 const ANGLE_STD_RAD: f32 = 0.4;
 
-/// An upright pose that faces the camera in the middle (median) of `points_m`, improved by the guided solver on `blocks` of the same
-/// points: the mode of eq. (12) times the points' likelihood, in stages of a narrowing robust metric. It finds a person who stands
-/// or sits and faces the camera; who lies needs a first pose.
+/// An upright pose at the median of `points_m` that faces the camera, improved by the guided solver
+/// on `blocks` of the same points. It is the mode of PIK (12) times the points' likelihood, in
+/// stages of a narrowing robust metric. It finds a person who stands or sits and faces the camera;
+/// who lies needs a first pose.
 ///
 /// # Errors
 /// Measures that no body has.

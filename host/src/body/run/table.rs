@@ -1,12 +1,14 @@
 //! `track.csv`: a row for each cloud.
 
 use crate::body::BodyPart;
-use crate::body::tracking::filter::{END_EFFECTORS, WholeBodyEstimate};
+use crate::body::tracking::end_effectors::END_EFFECTORS;
+use crate::body::tracking::filter::WholeBodyEstimate;
 use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_JOINT_NAMES};
 use sinew_core::skeleton::tree::SHIFTS;
 
-/// Columns: frame, the root, every joint in metres (camera axes), every angle in radians, the filter's own state, of every end-effector
-/// spread and whether points show it, and how many points were weighed.
+/// Columns: frame, the root, every joint in metres (camera axes), every angle in radians, the
+/// filter's own state. Then of every end-effector its spread and whether points show it, and the
+/// number of weighed points.
 #[must_use]
 pub fn header(part: BodyPart) -> Vec<String> {
     let mut columns = vec!["frame".to_owned()];
@@ -39,7 +41,7 @@ pub fn coordinate_columns(part: BodyPart) -> impl Iterator<Item = String> {
         .map(|(index, name)| if index < SHIFTS { format!("{name}_m") } else { format!("{name}_rad") })
 }
 
-/// Cells of a row; numbers have as many digits as tell them from all others.
+/// Cells of a row; numbers have the shortest digits that give the same number back.
 #[must_use]
 pub fn cells(part: BodyPart, frame: u64, estimate: &WholeBodyEstimate, points: usize) -> Vec<String> {
     let mut cells = vec![frame.to_string()];

@@ -1,28 +1,25 @@
 //! One run over a folder of clouds: read, step, record, frame by frame.
 
+use super::answer::Answer;
 use super::inputs::BodyInputs;
 use super::options::BodyTrackOptions;
 use super::pictures::BodyPictures;
 use super::report::{BodyRunReport, SkippedCloud};
-use super::resume::{self, Answer};
 use super::score::{BodyScore, RunningMean};
 use super::start::pose_from_points;
 use super::{particles, table};
-use crate::body::export::{body_layout, bvh_frame, upwards};
 use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::cloud::{self, CloudFrame, MAX_POINTS, blocks_of};
-use crate::motion::export::{BvhFrame, TrcFrame, TrcHeading, TrcUnit, to_trc, write_bvh};
 use crate::output::{OutputDir, PendingFile};
-use crate::resume::Interrupted;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sinew_core::math::Vec3;
 use sinew_core::observation::point_cloud::PointBlock;
 use sinew_core::observation::range_smoothing::RangeSmoothing;
 use sinew_core::pik::processes::stick::StickSight;
-use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_JOINT_NAMES};
+use sinew_core::skeleton::full_body::BODY_ANGLES;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -31,10 +28,8 @@ use std::time::Instant;
 const CHUNK: usize = 16;
 /// Clouds that are looked at for points where no first pose is given.
 const START_CLOUDS: usize = 100;
-/// Frames without a file that an animation repeats the pose before for, all in all; longer gaps are cut out of it.
-const MAX_REPEATED_FRAMES: u64 = 100_000;
 
-/// What a run tells while it goes on.
+/// What a run reports while it goes on.
 #[derive(Debug, Clone, Copy)]
 pub enum BodyEvent<'a> {
     /// Something that a user should know.
@@ -47,7 +42,7 @@ pub enum BodyEvent<'a> {
     Finished(usize),
 }
 
-/// Who is told.
+/// The receiver of these reports.
 pub type Notify<'a> = &'a mut (dyn FnMut(BodyEvent<'_>) + Send);
 
 /// A cloud ready for the tracker.
@@ -70,8 +65,8 @@ pub struct BodyTrackRun {
     pub(super) particles: Option<csv::Writer<PendingFile>>,
     pub(super) pictures: Option<BodyPictures>,
     pub(super) report: BodyRunReport,
-    score: BodyScore,
-    effective_share: RunningMean,
+    pub(super) score: BodyScore,
+    pub(super) effective_share: RunningMean,
     /// Wall time of the steps, seconds.
     pub(super) step_s: f64,
     /// Time that was spent before a resumption, seconds.
@@ -136,45 +131,13 @@ impl BodyTrackRun {
         self.inputs.clouds.frames.len()
     }
 
-    /// Number of frames that were finished before the run was ended and taken up again; otherwise none.
+    /// Number of frames that were finished before the run was resumed; 0 in a new run.
     #[must_use]
     pub fn frames_finished(&self) -> usize {
         self.report.frames_finished
     }
 
-    /// Tracks all clouds, or those before `stop` is set, and writes the run directory.
-    ///
-    /// # Errors
-    /// [`Interrupted`] if `stop` was set, a broken cloud if the run is strict, or an output that cannot be written; the results of
-    /// the finished frames are written all the same.
-    pub fn run(mut self, stop: &AtomicBool, notify: Notify<'_>) -> Result<BodyRunReport> {
-        let start = Instant::now();
-        let (frames, out) = (self.frame_count(), self.out.path().to_path_buf());
-        for note in &self.report.notes {
-            notify(BodyEvent::Note(note));
-        }
-        let tracked = self.track_all(stop, notify);
-        let finished = self.report.frames_finished;
-        self.seconds += start.elapsed().as_secs_f64();
-        self.report.frames_per_second = finished as f64 / self.seconds.max(1.0e-9);
-        self.report.complete = tracked.is_ok() && finished == frames;
-        let interrupted = tracked.is_ok() && finished < frames;
-        let written = self.write_results(interrupted);
-        if let Err(error) = tracked {
-            let kept = match &written {
-                Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
-                Err(other) => format!("and then {other:#}"),
-            };
-            return Err(anyhow!("{error:#}; {kept}"));
-        }
-        let report = written?;
-        if interrupted {
-            return Err(Interrupted { finished, all: Some(frames), unit: "frames", out }.into());
-        }
-        Ok(report)
-    }
-
-    fn track_all(&mut self, stop: &AtomicBool, notify: Notify<'_>) -> Result<()> {
+    pub(super) fn track_all(&mut self, stop: &AtomicBool, notify: Notify<'_>) -> Result<()> {
         let (begin, seed) = (self.report.frames_finished, self.report.seed);
         let frames = self.inputs.clouds.frames[begin..].to_vec();
         for chunk in frames.chunks(CHUNK) {
@@ -260,61 +223,9 @@ impl BodyTrackRun {
         self.effective_share.add(f64::from(estimate.effective_sample_size) / self.report.options.particles as f64);
         self.answers.push(answer);
     }
-
-    /// Gives the tables their names and writes the other files. Each one is tried, also where another one failed. An interrupted run leaves
-    /// what [`BodyTrackRun::resume`] needs.
-    fn write_results(mut self, interrupted: bool) -> Result<BodyRunReport> {
-        let left = if interrupted { Some(resume::left(&mut self)?) } else { None };
-        self.report.seconds_per_step = self.step_s / self.report.frames_finished.max(1) as f64;
-        self.report.effective_share = self.effective_share.mean().unwrap_or(0.0);
-        (self.report.error_m, self.report.joint_error_m) = (self.score.marker_m.mean(), self.score.joint_m.mean());
-        let mut results = vec![self.write_motion()];
-        results.push(finish(self.table));
-        results.extend(self.particles.map(finish));
-        results.extend(self.pictures.map(|pictures| pictures.write(&self.out)));
-        // Only what is there in full is called complete.
-        self.report.complete &= results.iter().all(Result::is_ok);
-        let json = serde_json::to_string_pretty(&self.report)? + "\n";
-        results.push(self.out.write("run.json", |writer| Ok(writer.write_all(json.as_bytes())?)));
-        results.into_iter().collect::<Result<()>>()?;
-        resume::put(left, &self.report.options, &self.out)?;
-        Ok(self.report)
-    }
-
-    /// `track.bvh` and `track.trc`; no frame at all is no file.
-    fn write_motion(&self) -> Result<()> {
-        if self.answers.is_empty() {
-            return Ok(());
-        }
-        let (part, rate_hz) = (self.inputs.part, f64::from(self.inputs.rate_hz));
-        let is_short = self.inputs.clouds.missing() <= MAX_REPEATED_FRAMES;
-        let mut frames: Vec<BvhFrame> = Vec::with_capacity(self.answers.len());
-        let mut markers = Vec::with_capacity(self.answers.len());
-        let mut before: Option<(u64, BvhFrame)> = None;
-        for Answer { frame, estimate } in &self.answers {
-            if let (Some((number, last)), true) = (before, is_short) {
-                // An animation has a frame for every number: what has no file keeps the pose before.
-                frames.extend((number + 1..*frame).map(|_| last.clone()));
-            }
-            let pose = bvh_frame(part, &self.filter.scene().skeleton, &estimate.angles_rad);
-            frames.push(pose.clone());
-            let place = |end: &Vec3| Some(<[f32; 3]>::from(upwards(end)).map(f64::from));
-            markers.push(TrcFrame {
-                frame: *frame,
-                positions_m: estimate.ends_m[..part.bones()].iter().map(place).collect(),
-            });
-            before = Some((*frame, pose));
-        }
-        let layout = body_layout(part, &self.filter.scene().skeleton)?;
-        self.out.write("track.bvh", |writer| Ok(write_bvh(&layout, &frames, rate_hz, writer)?))?;
-        let heading =
-            TrcHeading { name: "track.trc", markers: &BODY_JOINT_NAMES[..part.bones()], rate_hz, unit: TrcUnit::Metre };
-        let text = to_trc(&heading, &markers);
-        self.out.write("track.trc", |writer| Ok(writer.write_all(text.as_bytes())?))
-    }
 }
 
-/// The first frame: the first pose is its pose, and a look from there tells what its points show.
+/// The first frame: the first pose is its pose, and one step from there shows which bones its points observe.
 fn first_look(filter: &BodyFilter, blocks: &[PointBlock], stick: StickSight) -> WholeBodyEstimate {
     let mut estimate = filter.clone().step(blocks, 0.0, stick);
     if let Some(first) = filter.particles().0.first() {
@@ -350,16 +261,11 @@ fn found_start(inputs: &mut BodyInputs, options: &BodyTrackOptions) -> Result<[f
     let pose = pose_from_points(inputs.part, &inputs.measures, &options.tuning.guided_points, points_m, blocks)?;
     inputs.notes.push(match &found {
         Some((frame, _)) => format!(
-            "no first pose is given; someone upright who faces the camera is laid onto the points of frame {frame} (--init)"
+            "no first pose is given; someone upright who faces the camera is fitted to the points of frame {frame} (--init)"
         ),
         None => "no first pose is given and the first clouds have no points; someone upright 3 m before the camera (--init)".to_owned(),
     });
     Ok(pose)
-}
-
-fn finish(table: csv::Writer<PendingFile>) -> Result<()> {
-    let file = table.into_inner().map_err(|error| anyhow!("a table cannot be written: {}", error.error()))?;
-    file.finish()
 }
 
 /// The report would replace that of the scene, and tables among the clouds would be read as clouds.

@@ -5,9 +5,9 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::path::Path;
 use toml::{Table, Value};
 
-/// Most steps of a solver that a file may ask for.
+/// Maximum number of steps of a solver that a file may ask for.
 const MAX_SOLVER_STEPS: i64 = 100;
-/// Most blocks of points that a file may ask for.
+/// Maximum number of blocks of points that a file may ask for.
 const MAX_PULLING_BLOCKS: i64 = 1_000_000;
 /// Numbers that may be zero; all others have to be greater.
 const MAY_BE_ZERO: [&str; 6] = [

@@ -15,9 +15,7 @@ use sinew_core::observation::range_smoothing::RangeSmoothing;
 use sinew_core::pik::motion::{BodyParticle, BodyScene};
 use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::saved_state::StateKind;
-use sinew_core::skeleton::full_body::{
-    BODY_ANGLES, BODY_BONES, BodySkeleton, COLLARS, FOREARMS, HEAD, PELVIS, SHANKS, TRUNK, body_radii_m, full_body,
-};
+use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BodySkeleton, PELVIS, TRUNK, body_radii_m, full_body};
 use sinew_core::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
 use sinew_core::skeleton::upper_body::{
     UPPER_ANGLES, UPPER_BONES, UPPER_COORDINATES, upper_body, upper_coordinates, upper_radii_m,
@@ -25,16 +23,6 @@ use sinew_core::skeleton::upper_body::{
 use sinew_core::skeleton::{BodyMeasures, Joint};
 use sinew_core::tracker::body::{BodyEstimate, BodyFrame, angles_of_rotation};
 use std::sync::OnceLock;
-
-/// Most particles of a body tracker.
-pub const MAX_BODY_PARTICLES: usize = 16_384;
-
-/// End-effectors with goals: head, hands and feet; an upper body has the first three.
-pub const END_EFFECTORS: [usize; 5] = [HEAD, FOREARMS[0], FOREARMS[1], SHANKS[0], SHANKS[1]];
-/// Of these head and hands go with the root; feet stand.
-pub const CARRIED: usize = 3;
-/// About whose ends they swing: the neck and the shoulders.
-pub(super) const JOINTS: [usize; CARRIED] = [TRUNK, COLLARS[0], COLLARS[1]];
 
 /// A whole body's estimate. Of an upper body the legs hang, are not observed and have no spread.
 pub type WholeBodyEstimate = BodyEstimate<BODY_BONES, BODY_ANGLES>;

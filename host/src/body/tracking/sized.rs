@@ -2,7 +2,7 @@
 //!
 //! Every particle draws from its own stream and results are stored by index, so the bits do not depend on the threads.
 
-use super::filter::{CARRIED, END_EFFECTORS, JOINTS, MAX_BODY_PARTICLES};
+use super::end_effectors::{CARRIED, END_EFFECTORS, JOINTS, MAX_BODY_PARTICLES};
 use super::model_kind::BodyModelKind;
 use super::tuning::{BodyTuning, JointStd};
 use rayon::prelude::*;
@@ -27,7 +27,7 @@ use sinew_core::tracker::body::{BodyEstimate, BodyFrame, BodyTracker};
 const PAPER_END_EFFECTORS: [usize; 3] = [HEAD, FOREARMS[0], FOREARMS[1]];
 /// Standard deviation of every angle a frame for kappa = 500, radians (PIK paper, fig. 2).
 const PAPER_ANGLE_STD_RAD: f32 = 0.044_721_36;
-/// sigma of eq. (33), metres a frame: the paper does not print it.
+/// sigma of PIK (33), metres a frame: the paper does not print it.
 const PAPER_GOAL_STD_M: f32 = 0.05;
 
 type Particle<const BONES: usize, const ANGLES: usize> = BodyParticle<BONES, ANGLES>;
@@ -42,7 +42,7 @@ pub(super) struct SizedBody<const BONES: usize, const ANGLES: usize> {
     pub coordinates: [usize; ANGLES],
 }
 
-/// What a frame tells, and where the floor of the pelvic lift is.
+/// What a frame shows, and where the floor of the pelvic lift is.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SeenFrame<'a> {
     pub frame: BodyFrame<'a>,
@@ -176,7 +176,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         }
     }
 
-    /// The noise of each coordinate; the trunk's own where it is laid onto the points.
+    /// The noise of each coordinate; the trunk's own where it is fitted to the points.
     fn angle_std(&self, joints: &JointStd) -> [f32; ANGLES] {
         let trunk = if self.fit_trunk { self.tuning.root.trunk_std_rad } else { joints.trunk };
         let per_angle = JointStd { trunk, ..*joints }.per_angle();

@@ -1,6 +1,6 @@
 //! Numbers of the motion models, tuned on motions that no result is reported on (docs/body_tracker.md).
 
-use super::filter::END_EFFECTORS;
+use super::end_effectors::END_EFFECTORS;
 use super::model_kind::BodyModelKind;
 use serde::{Deserialize, Serialize};
 use sinew_core::error::ParameterError;
@@ -70,7 +70,7 @@ pub struct RootTuning {
     pub shift_std_m: f32,
     /// Radians by root second.
     pub turn_std_rad: f32,
-    /// Whether the mean pose is laid onto the points first, so that all particles set out from there.
+    /// Whether the mean pose is fitted to the points first, so that all particles begin there.
     pub aligned: bool,
     /// How far the aligned root may get, metres by root second.
     pub aligned_shift_std_m: f32,
@@ -78,16 +78,16 @@ pub struct RootTuning {
     pub aligned_turn_std_rad: f32,
     /// How far other angles may change while the root is aligned, radians by root second.
     pub aligned_angle_std_rad: f32,
-    /// Whether a limb farther off than points reach is looked for from afar.
+    /// Whether a coarse-to-fine search looks for a limb that is farther off than the likelihood reaches.
     pub aligned_from_afar: bool,
-    /// Whether the trunk is laid onto the points with the root.
+    /// Whether the trunk is fitted to the points with the root.
     pub aligned_trunk: bool,
-    /// How far the trunk gets off where it was laid, radians by root second; in the place of its `joint_std`.
+    /// Process noise of the trunk about the fitted place, radians by root second; in the place of its `joint_std`.
     pub trunk_std_rad: f32,
 }
 
 impl RootTuning {
-    /// How the root is laid onto the points, and the trunk with it if asked for.
+    /// How the root is fitted to the points, and the trunk with it if asked for.
     #[must_use]
     pub fn alignment(&self) -> Option<RootAlignment> {
         self.aligned.then_some(RootAlignment {
@@ -152,7 +152,7 @@ pub struct GoalTuning {
     pub joint_std: JointStd,
     /// Share of the angles' velocities that goes on in what the stiffness holds on to.
     pub angle_persistence: f32,
-    /// Most steps of the solver.
+    /// Maximum number of steps of the solver.
     pub solver_steps: usize,
 }
 
@@ -164,13 +164,13 @@ impl GoalTuning {
     }
 }
 
-/// How poses are drawn about their mode in the models with goals, but for the guided one, which always draws all of its expansion and pays.
+/// How poses are drawn about their mode in the models with goals, but for the guided one, which always draws all of its expansion and corrects the weights.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DrawTuning {
     /// Whether the weights take the importance ratio.
     pub pays: bool,
-    /// Width of the draw relative to the Laplace expansion's, in (0, 1]; read where the weights do not pay.
+    /// Width of the draw relative to the Laplace expansion's, in (0, 1]; read where the weights are not corrected.
     pub share: f32,
 }
 
@@ -190,11 +190,11 @@ pub struct AngularTuning {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PointTuning {
-    /// sigma of eq. (25), metres.
+    /// sigma of PIK (25), metres.
     pub std_m: f32,
-    /// Root of tau of eq. (29), metres.
+    /// Root of tau of PIK (29), metres.
     pub outlier_m: f32,
-    /// Least share of effective particles of a hundred; of others their least number grows with the root of theirs. Zero never flattens the
+    /// Smallest share of effective particles of a hundred; of others their least number grows with the root of theirs. Zero never flattens the
     /// weights.
     pub least_effective_share: f32,
     /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
@@ -211,7 +211,7 @@ pub struct SmoothingTuning {
     pub skin_std_m: f32,
 }
 
-/// How far estimates of a limb at rest tremble, in all models but the printed ones: the result stays still within it. Both zero tell each
+/// The deadband: how far estimates of a limb at rest vary, in all models but the printed ones. The result stays still within it. Both zero report each
 /// frame's mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -243,7 +243,7 @@ pub struct BodyTuning {
     /// How the noise of a limb follows its speed, in all models but the printed ones. A `rest_share`, a `max_scale_seen` and
     /// a `max_scale_unseen` of one leave every limb the model's own.
     pub pace: SpeedScaledNoise,
-    /// What is told of the particles' mean.
+    /// What is reported of the particles' mean.
     pub steady: SteadyTuning,
     /// Points of the models that draw from the motion alone.
     pub points: PointTuning,
@@ -263,14 +263,15 @@ pub struct BodyTuning {
     pub lift_turn_std_rad: f32,
 }
 
-/// Least effective share of whole poses with the settings that the paper prints.
+/// Smallest effective share of whole poses with the settings that the paper prints.
 const PAPER_EFFECTIVE_SHARE: f32 = 0.05;
-/// How closely goals are reached there, metres: near the 5 cm of DESIGN.md section 3, whatever a limb's pace.
+/// How closely goals are reached there, metres: chosen: near the 5 cm of accuracy aimed at, at any pace of a limb.
 const PAPER_REACH_STD_M: f32 = 0.054;
 
 impl BodyTuning {
-    /// The numbers that a model goes by: one with the settings that the paper prints sees the points as they are, weighs whole poses that may
-    /// pass through themselves, guesses its trunk, has the same noise at any pace and tells each frame's mean.
+    /// The default numbers of a model. One with the settings that the paper prints takes the points
+    /// as they are and weighs whole poses. Its poses may penetrate themselves, its trunk is drawn,
+    /// its noise does not depend on the pace, and each frame's mean is reported.
     #[must_use]
     pub fn of_kind(mut self, kind: BodyModelKind) -> Self {
         if kind.is_printed() {

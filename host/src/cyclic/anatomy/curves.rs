@@ -1,6 +1,6 @@
 //! Curves over the cycle, 0 to 100 %: mean and spread over all cycles.
 
-use super::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT};
+use super::angles::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT};
 use serde::Serialize;
 
 /// Points of a curve: each whole percent, both ends included.

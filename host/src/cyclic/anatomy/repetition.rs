@@ -1,9 +1,9 @@
 //! Repetitions: how long each cycle took and how far each joint went.
 
-use super::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT};
+use super::angles::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT};
 use serde::Serialize;
 
-/// Least and greatest value of an angle in a repetition.
+/// Smallest and largest value of an angle in a repetition.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Range {
     /// Least, degrees.

@@ -1,8 +1,8 @@
 //! Left against right: ranges, and curves half a cycle apart.
 
+use super::angles::PAIRS;
 use super::curves::{CycleCurves, POINTS};
-use super::repetition::Repetition;
-use super::{PAIRS, Range};
+use super::repetition::{Range, Repetition};
 use serde::Serialize;
 
 /// How alike the two sides of one joint move.
@@ -72,8 +72,8 @@ fn mean_range(repetitions: &[Repetition], angle: usize) -> Option<f64> {
     (!ranges.is_empty()).then(|| ranges.iter().sum::<f64>() / ranges.len() as f64)
 }
 
-/// The shift of `right` in cycles that makes it most like `left` when both are taken about their means, and the root mean
-/// square difference there with the means left in.
+/// The shift of `right` in cycles that makes it most like `left` when both are taken about their
+/// means. Also the root mean square difference there with the means left in.
 fn best_shift(left: &[Option<f64>], right: &[Option<f64>]) -> Option<(f64, f64)> {
     const PERCENTS: usize = POINTS - 1;
     let known = |curve: &[Option<f64>]| curve.iter().take(PERCENTS).copied().collect::<Option<Vec<f64>>>();

@@ -10,11 +10,12 @@ use std::ops::Range;
 const ROUNDS: usize = 4;
 /// How far a start is moved in a round, as a fraction of the period.
 const REACH: f64 = 0.125;
-/// Least share of the mean motion's values that have to be there to be compared with.
-const LEAST_SHARE: f64 = 0.25;
+/// Smallest share of the mean motion's values that have to be there to be compared with.
+const MIN_SHARE: f64 = 0.25;
 
-/// Moves each of `starts` (frames, rising) to where the motion of a period round it is nearest to the mean of all; they stay
-/// apart by at least half a period. All of them together stay where they are on the mean.
+/// Moves each of `starts` (frames, rising) to where the motion of a period round it is nearest to
+/// the mean of all. They stay apart by at least half a period. All of them together stay where they
+/// are on the mean.
 pub fn align(channels: &Channels, starts: &mut [usize], period: usize) {
     for _ in 0..ROUNDS {
         let template = Template::of(channels, starts, period);
@@ -63,7 +64,7 @@ impl Template {
     fn best_shift(&self, channels: &Channels, start: usize, period: usize) -> i64 {
         let reach = ((REACH * period as f64) as i64).max(1);
         let known = self.means.iter().flatten().filter(|value| !value.is_nan()).count();
-        let least = (LEAST_SHARE * known as f64).max(1.0) as usize;
+        let least = (MIN_SHARE * known as f64).max(1.0) as usize;
         let candidates = (-reach..=reach).filter_map(|shift| {
             let (difference, count) = self.difference(channels, start as i64 + shift - (period / 2) as i64);
             (count >= least).then_some((shift, difference / count as f64))

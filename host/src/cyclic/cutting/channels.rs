@@ -2,10 +2,10 @@
 
 use crate::cyclic::angle_table::{ANGLES, AngleTable};
 
-/// Least standard deviation of a signal that is used: about three degrees.
-const LEAST_MOTION: f64 = 0.05;
+/// Smallest standard deviation of a signal that is used: about three degrees.
+const MIN_STD_RAD: f64 = 0.05;
 /// Share of the frames in which an angle has to be there.
-const LEAST_SHARE: f64 = 0.2;
+const MIN_SHARE: f64 = 0.2;
 
 /// Signals of the same length; NaN where the angle is missing.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,9 +34,10 @@ impl Channels {
         (!signals.is_empty()).then_some(Self { signals, frames })
     }
 
-    /// The same signals made ready to be compared over `period` frames: each about its own mean over one period, so that a
-    /// person who slowly turns or leans does not look like one whose steps come later and later; and each by how closely it
-    /// comes back after a period, so that links that wind as they please say little.
+    /// The same signals, ready to be compared over `period` frames. Each is taken about its mean
+    /// over one period, so that a slow turn or lean of the person does not count as a late step.
+    /// Each is weighted by how closely it repeats after a period, so that angles that wind
+    /// irregularly count little.
     #[must_use]
     pub fn over_period(&self, period: usize) -> Self {
         let weighed = |signal: &Vec<f64>| {
@@ -44,7 +45,7 @@ impl Channels {
             let differences = level.iter().zip(level.iter().skip(period)).map(|(a, b)| (b - a).powi(2));
             let known: Vec<f64> = differences.filter(|square| !square.is_nan()).collect();
             let spread = if known.is_empty() { 1.0 } else { known.iter().sum::<f64>() / known.len() as f64 };
-            let weight = 1.0 / (spread + LEAST_MOTION * LEAST_MOTION).sqrt();
+            let weight = 1.0 / (spread + MIN_STD_RAD * MIN_STD_RAD).sqrt();
             level.into_iter().map(|value| weight * value).collect()
         };
         Self { signals: self.signals.iter().map(weighed).collect(), frames: self.frames }
@@ -126,11 +127,11 @@ fn about_running_mean(signal: &[f64], period: usize) -> Vec<f64> {
 /// The signal about its mean, if it is there often enough and moves.
 fn centred(mut signal: Vec<f64>) -> Option<Vec<f64>> {
     let known: Vec<f64> = signal.iter().copied().filter(|value| !value.is_nan()).collect();
-    if (known.len() as f64) < LEAST_SHARE * signal.len() as f64 || known.is_empty() {
+    if (known.len() as f64) < MIN_SHARE * signal.len() as f64 || known.is_empty() {
         return None;
     }
     let mean = known.iter().sum::<f64>() / known.len() as f64;
     let variance = known.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / known.len() as f64;
     signal.iter_mut().for_each(|value| *value -= mean);
-    (variance.sqrt() > LEAST_MOTION).then_some(signal)
+    (variance.sqrt() > MIN_STD_RAD).then_some(signal)
 }

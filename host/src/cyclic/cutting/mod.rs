@@ -1,8 +1,8 @@
 //! Finds the cycles of an angle table by itself.
 //!
-//! The period is where the motion of all angles resembles itself best ([`period`]). A cycle starts where the left thigh is
-//! farthest forward, in the swing of one period; the next one starts where everything round that moment comes back
-//! ([`recurrence`]), which is steadier than looking for the next peak.
+//! The period is where the motion of all angles resembles itself best ([`period`]). A cycle starts
+//! where the left thigh is farthest forward, in the swing of one period. The next one starts where
+//! the whole pose round that moment repeats ([`recurrence`]), which is steadier than the next peak.
 
 pub mod alignment;
 pub mod channels;
@@ -14,8 +14,8 @@ use super::cuts::Cut;
 use super::error::CyclicError;
 use channels::Channels;
 
-/// Most frames that are searched.
-const MOST_FRAMES: u64 = 2_000_000;
+/// Maximum number of frames that are searched.
+const MAX_FRAMES: u64 = 2_000_000;
 
 /// What counts as a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,9 +49,9 @@ pub fn cycles(table: &AngleTable, file: &str, options: CuttingOptions) -> Result
     }
     let refuse = |reason: String| Err(CyclicError::NoCycle { file: file.to_owned(), reason });
     let frames = table.end_frame() - table.first_frame();
-    if frames > MOST_FRAMES {
+    if frames > MAX_FRAMES {
         return refuse(format!(
-            "it spans {frames} frames, from its first to its last; {MOST_FRAMES} are searched at most"
+            "it spans {frames} frames, from its first to its last; {MAX_FRAMES} are searched at most"
         ));
     }
     let Some(channels) = Channels::of(table) else {

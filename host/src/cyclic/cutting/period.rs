@@ -3,7 +3,7 @@
 use super::channels::Channels;
 
 /// Correlation of the motion with itself one period later, below which there is no period.
-const LEAST_CORRELATION: f64 = 0.4;
+const MIN_CORRELATION: f64 = 0.4;
 /// A shorter lag is the period if it is nearly as good as the best: multiples of the period are as good as it.
 const NEARLY: f64 = 0.8;
 /// Share of the recording by which it may be shifted against itself: about a third has to overlap.
@@ -34,10 +34,10 @@ pub fn find(channels: &Channels, bounds: [usize; 2]) -> Result<usize, String> {
         .map(|(index, around)| (first + index + 1, around[1]))
         .collect();
     let best = peaks.iter().map(|peak| peak.1).fold(-1.0, f64::max);
-    if best < LEAST_CORRELATION {
+    if best < MIN_CORRELATION {
         let hint = if longest < bounds[1] { "; it may be too short" } else { "" };
         return Err(format!(
-            "nothing comes back in it: shifted by {shortest} to {longest} frames it resembles itself by {best:.2} at most, {LEAST_CORRELATION} is needed{hint}"
+            "nothing comes back in it: shifted by {shortest} to {longest} frames it resembles itself by {best:.2} at most, {MIN_CORRELATION} is needed{hint}"
         ));
     }
     // The list is not empty where the best of it is above the least.

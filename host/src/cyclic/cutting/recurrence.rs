@@ -5,15 +5,15 @@ use super::channels::Channels;
 use crate::cyclic::angle_table::AngleTable;
 use std::f64::consts::TAU;
 
-/// Angles whose swing tells the first start, best first: left and right thigh, left and right upper arm, shanks, forearms,
+/// Angles whose swing gives the first start, best first: left and right thigh, left and right upper arm, shanks, forearms,
 /// trunk.
 const ANCHORS: [usize; 9] = [8, 11, 2, 5, 9, 12, 3, 6, 0];
 /// Share of the frames in which the anchor has to be there.
-const LEAST_SHARE: f64 = 0.6;
+const MIN_SHARE: f64 = 0.6;
 /// How much shorter or longer than the period a cycle may be.
 const STRETCH: f64 = 0.25;
-/// Least correlation of the pose round a start with that round the next.
-const LEAST_RETURN: f64 = 0.5;
+/// Smallest correlation of the pose round a start with that round the next.
+const MIN_RETURN: f64 = 0.5;
 
 /// Start and end of each cycle, frames from the table's first.
 #[must_use]
@@ -47,7 +47,7 @@ pub fn boundaries(table: &AngleTable, channels: &Channels, period: usize) -> Vec
     starts.windows(2).zip(follows.iter().skip(1)).filter_map(cycle).collect()
 }
 
-/// By how many frames the swing's peaks lie later than the starts: the middle one of all, so that no single step tells where
+/// By how many frames the swing's peaks lie later than the starts: the middle one of all, so that no single step decides where
 /// a person's cycles begin.
 fn to_peaks(starts: &[usize], peaks: &[usize], period: usize) -> isize {
     let from_start = |&start: &usize| {
@@ -83,7 +83,7 @@ fn next(channels: &Channels, start: usize, period: usize) -> Option<usize> {
         return None;
     }
     let window = start.saturating_sub(half)..(start + half + 1).min(channels.len() - lag);
-    (channels.correlation(window, lag)? > LEAST_RETURN).then_some(start + lag)
+    (channels.correlation(window, lag)? > MIN_RETURN).then_some(start + lag)
 }
 
 /// Peaks of a limb's swing at the motion's period, frames from the first.
@@ -98,7 +98,7 @@ fn swing_peaks(table: &AngleTable, frames: usize, period: usize) -> Vec<usize> {
         signal
     };
     let share = |signal: &[Option<f64>]| signal.iter().flatten().count() as f64 / frames as f64;
-    let chosen = ANCHORS.into_iter().map(signal).find(|signal| share(signal) >= LEAST_SHARE);
+    let chosen = ANCHORS.into_iter().map(signal).find(|signal| share(signal) >= MIN_SHARE);
     let chosen = chosen.unwrap_or_else(|| {
         let all = ANCHORS.into_iter().map(signal);
         all.max_by(|a, b| share(a).total_cmp(&share(b))).unwrap_or_default()

@@ -1,6 +1,6 @@
 //! The figure alone on a blank canvas, walking on the spot, as a GIF that plays at the recording's own speed.
 
-use super::{measured, pixels};
+use super::figure::{measured, pixels};
 use crate::cyclic::AngleTable;
 use crate::cyclic::export::trc::JointPositions;
 use crate::cyclic::image_joints::Point;
@@ -18,9 +18,9 @@ use std::path::Path;
 const SIZE_PX: [u32; 2] = [360, 440];
 /// Room around the figure's whole path, pixels.
 const MARGIN_PX: f64 = 30.0;
-/// Most pictures a second.
+/// Maximum rate, pictures a second.
 const PICTURES_PER_S: f64 = 20.0;
-/// Most seconds that are shown; the rest is left out.
+/// Maximum duration, seconds; the rest is left out.
 pub const LONGEST_S: f64 = 60.0;
 /// Longest time that a picture stands, seconds: longer gaps between rows are cut.
 const LONGEST_PICTURE_S: f64 = 1.0;

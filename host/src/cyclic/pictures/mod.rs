@@ -1,36 +1,11 @@
 //! The stick figure on the person's own frames, and alone as an animation.
 
 pub mod animation;
+pub mod figure;
 pub mod overlay;
 
+pub use figure::{has_pixels, measured};
 pub use overlay::{Overlaid, OverlayFrames};
-
-use super::angle_table::ANGLES;
-use super::export::trc::{JointPositions, joint_positions};
-use super::image_joints::Point;
-use super::report::body::Body;
-use super::{AngleRow, AngleTable};
-use crate::draw::stick_figure::FigureJoints;
-use sinew_core::camera::Pixel;
-
-/// The figure as it was measured in a row, about `root`. A length that was not seen is that of the body.
-#[must_use]
-pub fn measured(row: &AngleRow, body: &Body, root: Option<Point>) -> JointPositions {
-    let lengths: [f64; ANGLES] =
-        std::array::from_fn(|angle| body.length(&row.extra, angle).unwrap_or(body.lengths[angle]));
-    joint_positions(root, &lengths, &row.angles_rad)
-}
-
-/// Points as pixels of a picture.
-fn pixels(joints: &JointPositions) -> FigureJoints {
-    joints.map(|joint| joint.map(|[u, v]| Pixel::new(u as f32, v as f32)))
-}
-
-/// Whether the table tells where the joints are in a picture.
-#[must_use]
-pub fn has_pixels(table: &AngleTable) -> bool {
-    Body::of_table(table, 1.75).is_in_pixels()
-}
 
 #[cfg(test)]
 mod tests;

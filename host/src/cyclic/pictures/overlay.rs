@@ -1,6 +1,6 @@
 //! The estimated figure drawn on the person's own frames.
 
-use super::{measured, pixels};
+use super::figure::{measured, pixels};
 use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::{Figure, in_image};
 use crate::cyclic::tracking::Tracked;
@@ -47,21 +47,21 @@ impl OverlayFrames {
         self.files.iter().map(name).collect()
     }
 
-    /// Checks that `table` tells where in the picture the person is.
+    /// Checks that `table` has the place of the person in the picture.
     ///
     /// # Errors
     /// It does not: it comes from a motion in space, or from nowhere.
     pub fn check(table: &AngleTable) -> Result<(), CyclicError> {
-        if super::has_pixels(table) {
+        if super::figure::has_pixels(table) {
             return Ok(());
         }
-        let rule = "needs a table that tells where the person is in the picture (hip_center_u_px and so on), as `sinew angles` writes \
+        let rule = "needs a table with the place of the person in the picture (hip_center_u_px and so on), as `sinew angles` writes \
             it from 2D keypoints; this one has angles only: use --animation";
         Err(CyclicError::parameter("overlay", rule))
     }
 
     /// Draws `figures` (one a row of `table`) on their images and writes them into `folder`. A frame without an image, an image that
-    /// cannot be read, and one of another size than the first are skipped and told. Nothing more is drawn once `stop` is set.
+    /// cannot be read, and one of another size than the first are skipped and reported. Nothing more is drawn once `stop` is set.
     ///
     /// # Errors
     /// A picture that cannot be written.

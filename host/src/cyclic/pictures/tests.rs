@@ -1,8 +1,10 @@
 use super::animation;
 use super::*;
+use crate::cyclic::angle_table::ANGLES;
+use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::figures;
 use crate::cyclic::tracking::{Tracked, TrackingOptions, track};
-use crate::cyclic::{AngleRow, CyclicModel};
+use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
 use crate::output::OutputDir;
 use image::AnimationDecoder;
 use image::codecs::gif::GifDecoder;
@@ -66,9 +68,9 @@ fn the_figure_stands_where_the_person_is_on_the_image_of_its_number() {
     }
 }
 
-/// A broken image, one of another size, and rows beyond the last image: told, and the others are there.
+/// A broken image, one of another size, and rows beyond the last image: reported, and the others are there.
 #[test]
-fn what_cannot_be_drawn_is_skipped_and_told() {
+fn what_cannot_be_drawn_is_skipped_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     let input = folder.path().join("in");
     fs::create_dir(&input).unwrap();

@@ -1,4 +1,4 @@
-//! What a table tells of the person's size and place.
+//! The person's size and place in a table.
 
 use crate::cyclic::AngleTable;
 use crate::cyclic::angle_table::ANGLES;
@@ -7,7 +7,7 @@ use crate::cyclic::image_joints::Point;
 use crate::motion::anthropometry::{SHANK, THIGH, TRUNK};
 use sinew_core::skeleton::stick_figure::HUMAN;
 
-/// Lengths of the person's segments, their scale, and the columns that tell where the root is.
+/// Lengths of the person's segments, their scale, and the columns of the place of the root.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     /// Length of each segment in the table's unit: the median over the rows, else that of an adult.
@@ -46,7 +46,7 @@ impl Body {
         Self { lengths, metres_per_unit, columns: Some(columns) }
     }
 
-    /// Whether the table tells where the root is.
+    /// Whether the table has the place of the root.
     #[must_use]
     pub const fn has_root(&self) -> bool {
         self.columns.is_some()

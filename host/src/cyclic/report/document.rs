@@ -1,6 +1,6 @@
 //! `summary.json`: what was run, and what it came to.
 
-use super::{Origin, OverlayOrigin, Report};
+use super::contents::{Origin, OverlayOrigin, Report};
 use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, Range, Repetition, Symmetry};
 use crate::cyclic::angle_table::COLUMNS;
 use crate::cyclic::tracking::{FilterName, StartName, Summary, Tracked, TrackingOptions, Updates};

@@ -1,7 +1,7 @@
 //! Joint positions of the estimate: root and segment lengths filtered beside the angles by the core.
 
-use super::Report;
 use super::body::Body;
+use super::contents::Report;
 use crate::cyclic::AngleTable;
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::export::trc::{JointPositions, joint_positions};
@@ -21,7 +21,7 @@ const TRUNK: usize = 0;
 pub struct Figure {
     /// Number of the frame.
     pub frame: u64,
-    /// Where the root is; (0, 0) where the table tells no place, `None` where it is not known any more.
+    /// Where the root is; (0, 0) where the table has no place, `None` where it is not known any more.
     pub root: Option<Point>,
     /// Length of each segment.
     pub lengths: [f64; ANGLES],
@@ -37,8 +37,9 @@ impl Figure {
     }
 }
 
-/// Joints of each row with its frame number: x forward, y down, in the table's unit; in metres about a root at (0, 0) where the
-/// table tells no place. Joints that hang on an angle that was never measured are missing.
+/// Joints of each row with its frame number: x forward, y down, in the table's unit. Where the
+/// table has no place they are in metres about a root at (0, 0). Joints that hang on an angle that
+/// was never measured are missing.
 ///
 /// # Errors
 /// None in practice: lengths and noise are positive.
@@ -85,8 +86,8 @@ pub fn figures(
     Ok(all)
 }
 
-/// Joints as they lie in the image of a person whose `side` is -1 where they face left: x is turned back, and left is the person's own
-/// left again.
+/// Joints as they lie in the image of a person whose `side` is -1 where they face left. Then x is
+/// turned back, and left is the person's own left again.
 #[must_use]
 pub fn in_image(joints: &JointPositions, side: f64) -> JointPositions {
     std::array::from_fn(|index| {

@@ -1,6 +1,6 @@
 //! The plots of a run.
 
-use super::Report;
+use super::contents::Report;
 use super::measured::measured_rad;
 use crate::cyclic::AngleTable;
 use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, COUNT, CyclePointStatistics, PAIRS};

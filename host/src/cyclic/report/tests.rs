@@ -1,7 +1,8 @@
 use super::*;
 use crate::cyclic::angle_table::ANGLES;
-use crate::cyclic::tracking::track;
-use crate::cyclic::{AngleRow, CyclicModel};
+use crate::cyclic::tracking::{Tracked, TrackingOptions, track};
+use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
+use crate::output::OutputDir;
 
 /// The shipped walk at 60 cycles a minute and 60 frames a second: frame f is at f / 60 of a cycle.
 fn walk(frames: impl Iterator<Item = u64>, missing: &[usize]) -> AngleTable {

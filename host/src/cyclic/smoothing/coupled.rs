@@ -105,7 +105,7 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
         Some(Link { predicted_mean: moved.mean(model), cross, predicted_covariance })
     }
 
-    fn told(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N> {
+    fn smoothed(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N> {
         let mean = &moments.mean;
         let position = mean[0].rem_euclid(1.0);
         let pose = model.mean_pose_rad::<N>(model.point(position as f32));

@@ -41,7 +41,7 @@ impl<const N: usize> KalmanState<N> {
         DMatrix::from_fn(2 * count, 2 * count, |i, j| f64::from(self.filter.covariance().entry(index(i), index(j))))
     }
 
-    /// Noise of a step (eqs. 8 and 9), part by part as the filter takes it, each carried on to the step's end.
+    /// Noise of a step by cyclic (8) and (9), part by part as the filter takes it, each carried on to the step's end.
     fn noise(&self, model: &MotionModel<'_>, step_frames: f32) -> DMatrix<f64> {
         let count = model.angle_count().min(N);
         let parts: Vec<f32> = Substeps::of(step_frames).collect();
@@ -112,7 +112,7 @@ impl<const N: usize> Smoothable<N> for KalmanState<N> {
         Some(Link { predicted_mean: moved.mean(model), cross: part(&cross), predicted_covariance: part(&predicted) })
     }
 
-    fn told(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N> {
+    fn smoothed(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N> {
         let count = model.angle_count().min(N);
         let cycle = self.filter.cycle();
         Smoothed {

@@ -1,7 +1,7 @@
 //! The pass backwards over the states of a filter.
 
-use super::least_angle;
 use super::recursion::{Moments, smooth_step};
+use crate::cyclic::turns::least_angle;
 use nalgebra::{DMatrix, DVector};
 use sinew_core::cyclic::{AngleMeasurement, MotionModel};
 
@@ -16,7 +16,7 @@ pub struct Link {
     pub predicted_covariance: DMatrix<f64>,
 }
 
-/// What is told of a frame.
+/// The smoothed estimate of a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Smoothed<const N: usize> {
     /// Angles, any turn.
@@ -44,8 +44,8 @@ pub trait Smoothable<const N: usize> {
     /// The step to the state `next`, which came out of `measurement`; `None` where that one does not follow from this.
     fn link(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, next: &Self) -> Option<Link>;
 
-    /// What moments of this kind of state tell of the frame. What no later measurement can change is that of this state.
-    fn told(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N>;
+    /// The estimate of the frame from moments of this kind of state. Numbers that no later measurement changes are those of this state.
+    fn smoothed(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N>;
 }
 
 /// Smooths: `measurements` at k led from the state k to the state k + 1.
@@ -70,11 +70,11 @@ pub fn backward<const N: usize, S: Smoothable<N>>(
             smooth_step(&filtered, &link.cross, &link.predicted_covariance, &moments.covariance, &surprise)
         });
         let moments = linked.unwrap_or(filtered);
-        let mut told = state.told(model, &moments);
-        for angle in &mut told.angles_rad {
+        let mut smoothed = state.smoothed(model, &moments);
+        for angle in &mut smoothed.angles_rad {
             *angle = least_angle(*angle);
         }
-        all.push(told);
+        all.push(smoothed);
         later = Some((state, moments));
     }
     all.reverse();

@@ -1,6 +1,7 @@
 use super::*;
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::tracking::{FilterName, Tracked, TrackingOptions, track};
+use crate::cyclic::turns::least_angle;
 use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -30,7 +31,7 @@ fn linear_model(work: impl FnOnce(&MotionModel<'_>)) {
     work(&model.unwrap());
 }
 
-/// F, the mean's shift and Q of a step of parts of at most a frame: part by part, as eqs. (6) to (9) say.
+/// F, the mean's shift and Q of a step of parts of at most a frame: part by part, by cyclic (6) to (9).
 fn dense_step(step: f64) -> (DMatrix<f64>, DVector<f64>, DMatrix<f64>) {
     let k = 5.0 / 4.0_f64;
     let (mut f, mut shift, mut q) = (DMatrix::identity(4, 4), DVector::zeros(4), DMatrix::zeros(4, 4));

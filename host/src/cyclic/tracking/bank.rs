@@ -10,8 +10,8 @@ use sinew_core::cyclic::MotionModel;
 use sinew_core::cyclic::events::CycleCounter;
 use sinew_core::cyclic::recognition::bank::MotionBank;
 
-/// Most motions of a bank.
-pub const MOST_MOTIONS: usize = 32;
+/// Maximum number of motions of a bank.
+pub const MAX_MOTIONS: usize = 32;
 
 /// What a frame shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,8 +20,8 @@ pub struct NamedMotion {
     pub motion: Option<usize>,
     /// Probability of that, or of "none of these".
     pub probability: f64,
-    /// Index of the model whose filter gave the frame's estimate: of the motion last named; before
-    /// one was, of the first that is; of the likeliest at the end if none ever is.
+    /// Index of the model whose filter gave the frame's estimate. It is the motion last named.
+    /// Until one is named it is the first that will be, or the likeliest at the end if none is.
     pub shown: usize,
 }
 
@@ -37,7 +37,7 @@ pub(super) fn named<const N: usize>(
 ) -> Result<Vec<NamedMotion>> {
     let views: Vec<MotionModel<'_>> = models.iter().map(CyclicModel::view).collect();
     let measurements = Measurements::<N>::new(table, &views[0], options)?;
-    let mut bank = MotionBank::<MOST_MOTIONS, N>::new(&views);
+    let mut bank = MotionBank::<MAX_MOTIONS, N>::new(&views);
     let mut shown = bank.best();
     let mut motions: Vec<NamedMotion> = Vec::with_capacity(runs[0].frames.len());
     motions.resize(measurements.first() + 1, name(&bank, shown));
@@ -54,7 +54,7 @@ pub(super) fn named<const N: usize>(
     Ok(motions)
 }
 
-fn name<const N: usize>(bank: &MotionBank<MOST_MOTIONS, N>, shown: usize) -> NamedMotion {
+fn name<const N: usize>(bank: &MotionBank<MAX_MOTIONS, N>, shown: usize) -> NamedMotion {
     let motion = bank.likeliest();
     let probability = motion.map_or(bank.none_probability(), |motion| bank.probabilities()[motion]);
     NamedMotion { motion, probability: f64::from(probability), shown }

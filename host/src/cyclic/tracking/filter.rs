@@ -148,7 +148,7 @@ impl<'m, const N: usize> Pass<'m, N> {
         }
     }
 
-    /// What each state tells given all measurements.
+    /// The estimate of each state given all measurements.
     #[must_use]
     pub fn smoothed(&self) -> Vec<Smoothed<N>> {
         match &self.states {

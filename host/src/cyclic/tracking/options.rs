@@ -124,8 +124,8 @@ impl Default for TrackingOptions {
     }
 }
 
-/// Most particles that a run is asked for.
-pub const MOST_PARTICLES: usize = 10_000_000;
+/// Maximum number of particles that a run is asked for.
+pub const MAX_PARTICLES: usize = 10_000_000;
 
 impl TrackingOptions {
     /// Checks every option.
@@ -152,8 +152,8 @@ impl TrackingOptions {
         if self.updates == Updates::Every(0) {
             return refuse("update-every", "has to be at least 1".into());
         }
-        if self.filter == FilterName::Particle && !(1..=MOST_PARTICLES).contains(&self.particles) {
-            return refuse("particles", format!("have to be 1 to {MOST_PARTICLES}, not {}", self.particles));
+        if self.filter == FilterName::Particle && !(1..=MAX_PARTICLES).contains(&self.particles) {
+            return refuse("particles", format!("have to be 1 to {MAX_PARTICLES}, not {}", self.particles));
         }
         if self.smooth && self.filter == FilterName::Particle {
             return refuse(

@@ -3,7 +3,7 @@
 //! Every particle draws from its own stream and the chunks' sums are added in their order, so the result has the same bits on
 //! any number of threads.
 
-use super::walk::visit_estimate;
+use super::saved_estimate::visit_estimate;
 use super::wide_vectors::particle_sweep;
 use crate::resume::{real, reals};
 use rayon::prelude::*;

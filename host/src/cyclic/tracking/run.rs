@@ -1,15 +1,12 @@
 //! One pass of a filter over an angle table.
 
-use super::options::TrackingOptions;
-use super::table_run::TableRun;
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
-use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
+use crate::cyclic::{AngleRow, AngleTable};
 use anyhow::{Result, bail};
 use sinew_core::cyclic::CyclicEstimate;
 use sinew_core::cyclic::events::CycleCounter;
 use sinew_core::cyclic::measurement::MAX_STEP_FRAMES;
 use std::f64::consts::TAU;
-use std::sync::atomic::AtomicBool;
 
 /// What the filter answered to one row.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,16 +41,6 @@ pub struct Tracked {
     pub rate_hz: f64,
     /// Frames of the model's rate in one of the recording's.
     pub step_frames: f64,
-}
-
-/// Tracks `table`. The first row with an angle gives the first state (see [`super::StartName`]) and is answered with it.
-///
-/// # Errors
-/// An option out of range, a rate so low that a step is too long, a table without any angle.
-pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions) -> Result<Tracked> {
-    let mut run = TableRun::begin(table, std::slice::from_ref(model), options)?;
-    run.run(&AtomicBool::new(false), &mut |_| ())?;
-    Ok(run.answered()?.0)
 }
 
 /// Index of the first row with an angle.

@@ -17,7 +17,7 @@ pub const ESTIMATE_COLUMNS: [&str; 7] = [
     "cycles",
 ];
 
-/// Columns at the end where several motions were told apart.
+/// Columns at the end where several motions were tracked.
 pub const MOTION_COLUMNS: [&str; 2] = ["motion", "motion_probability"];
 /// What stands in the column `motion` where it is none of them.
 pub const NO_MOTION: &str = "none";

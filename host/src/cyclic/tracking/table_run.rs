@@ -1,6 +1,6 @@
 //! A run over an angle table that may be stopped between rows and taken up again.
 
-use super::bank::{MOST_MOTIONS, NamedMotion, named, shown};
+use super::bank::{MAX_MOTIONS, NamedMotion, named, shown};
 use super::options::TrackingOptions;
 use super::run::Tracked;
 use super::walk::Walk;
@@ -10,6 +10,16 @@ use crate::resume::{REMEDY, from_text, to_text};
 use anyhow::{Result, ensure};
 use sinew_core::saved_state::{SavedState, StateKind, StateVisitor};
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Tracks `table`. The first row with an angle gives the first state (see [`super::StartName`]) and is answered with it.
+///
+/// # Errors
+/// An option out of range, a rate so low that a step is too long, a table without any angle.
+pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions) -> Result<Tracked> {
+    let mut run = TableRun::begin(table, std::slice::from_ref(model), options)?;
+    run.run(&AtomicBool::new(false), &mut |_| ())?;
+    Ok(run.answered()?.0)
+}
 
 /// The filters of all models over one table, row by row.
 #[derive(Debug)]
@@ -34,13 +44,13 @@ impl<'a> TableRun<'a> {
     /// likeliest motion of each row is named and shown.
     ///
     /// # Errors
-    /// An option out of range, a rate so low that a step is too long, a table without any angle; no model or too many, models that differ
-    /// in rate or number of angles.
+    /// An option out of range, a rate so low that a step is too long, or a table without any angle.
+    /// No model or too many, or models that differ in rate or number of angles.
     pub fn begin(table: &'a AngleTable, models: &'a [CyclicModel], options: &'a TrackingOptions) -> Result<Self> {
         options.check()?;
         ensure!(
-            (1..=MOST_MOTIONS).contains(&models.len()),
-            "`--model`: 1 to {MOST_MOTIONS} motions can be told apart, not {}",
+            (1..=MAX_MOTIONS).contains(&models.len()),
+            "`--model`: 1 to {MAX_MOTIONS} motions can be told apart, not {}",
             models.len()
         );
         let kind = |model: &CyclicModel| (model.numbers().angle_count, model.numbers().rate_hz);
@@ -75,7 +85,7 @@ impl<'a> TableRun<'a> {
         self.table.rows().len()
     }
 
-    /// Answers all rows, or those before `stop` is set; `notify` is told how many there are after each. Whether the last one was reached.
+    /// Answers all rows, or those before `stop` is set; `notify` gets their number after each. Returns whether the last one was reached.
     ///
     /// # Errors
     /// None for rows of the table.
@@ -103,12 +113,12 @@ impl<'a> TableRun<'a> {
     /// None for rows of the table.
     pub fn answered(&self) -> Result<(Tracked, Option<Vec<NamedMotion>>)> {
         match &self.walks {
-            Walks::Plane(walks) => self.told(walks),
-            Walks::Space(walks) => self.told(walks),
+            Walks::Plane(walks) => self.collected(walks),
+            Walks::Space(walks) => self.collected(walks),
         }
     }
 
-    fn told<const N: usize>(&self, walks: &[Walk<'_, N>]) -> Result<(Tracked, Option<Vec<NamedMotion>>)> {
+    fn collected<const N: usize>(&self, walks: &[Walk<'_, N>]) -> Result<(Tracked, Option<Vec<NamedMotion>>)> {
         let (rate_hz, step_frames) = self.rates;
         let run = |walk: &Walk<'_, N>| Tracked { frames: walk.frames(), rate_hz, step_frames };
         let mut runs: Vec<Tracked> = walks.iter().map(run).collect();

@@ -4,9 +4,10 @@ use super::filter::{Filter, Pass};
 use super::measurements::Measurements;
 use super::options::TrackingOptions;
 use super::run::{TrackedFrame, cycles, tracked};
+use super::saved_estimate::visit_estimate;
 use crate::cyclic::AngleTable;
 use crate::cyclic::smoothing::replace_estimates;
-use crate::resume::{List, long_real, real, reals};
+use crate::resume::{List, long_real};
 use anyhow::Result;
 use sinew_core::cyclic::events::CycleCounter;
 use sinew_core::cyclic::{CyclicEstimate, MotionModel};
@@ -107,21 +108,4 @@ impl<const N: usize> SavedState for Answer<N> {
         visit_estimate(&mut self.estimate, visitor);
         long_real(&mut self.cycles, visitor);
     }
-}
-
-/// Shows all numbers of an estimate.
-pub(super) fn visit_estimate<const N: usize>(estimate: &mut CyclicEstimate<N>, visitor: &mut impl StateVisitor) {
-    reals(&mut estimate.angles_rad, visitor);
-    estimate.turns.iter_mut().for_each(|turns| visitor.integer(turns));
-    reals(&mut estimate.angle_variance_rad2, visitor);
-    for value in [
-        &mut estimate.cycle_position,
-        &mut estimate.cycle_position_variance,
-        &mut estimate.cycle_velocity_per_frame,
-        &mut estimate.cycle_velocity_variance,
-        &mut estimate.log_likelihood,
-    ] {
-        real(value, visitor);
-    }
-    visitor.flag(&mut estimate.outlier);
 }

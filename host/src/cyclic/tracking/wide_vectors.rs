@@ -8,7 +8,7 @@ use sinew_core::cyclic::particle::propose::{CyclicParticle, ParticleOptions};
 use sinew_core::cyclic::particle::{sweep::sweep, weigh::ParticleTarget};
 use sinew_core::cyclic::{AngleMeasurement, CoupledFilter, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel};
 
-/// [`KalmanFilter::step`], with AVX2 on AMD's processors, of which `sse4a` tells: there it takes a fifth off the step. An Intel Xeon
+/// [`KalmanFilter::step`], with AVX2 on AMD's processors, which `sse4a` identifies: there it takes a fifth off the step. An Intel Xeon
 /// took a third longer with it, as rows of 13 numbers then straddle what was just stored.
 #[multiversion::multiversion(targets("x86_64+avx2+sse4a"))]
 pub fn kalman_step<const N: usize>(

@@ -6,8 +6,8 @@ use crate::cyclic::spline::CubicSpline;
 use crate::cyclic::turns::unwrap_along_time;
 use std::f64::consts::TAU;
 
-/// Frames on each side of the cut that the curve is laid through, where the recording has them: what lies farther off
-/// changes a cubic spline inside the cut by less than a millionth.
+/// Frames on each side of the cut that the curve goes through, where the recording has them. What
+/// lies farther off changes a cubic spline inside the cut by less than a millionth.
 const MARGIN_FRAMES: u64 = 10;
 /// Longest cycle, frames; more is taken for a mistake.
 const LONGEST_CYCLE_FRAMES: u64 = 1_000_000;
@@ -25,8 +25,9 @@ pub struct TrainingCycle {
 impl TrainingCycle {
     /// The cycle of `table` between the frames of `cut`.
     ///
-    /// Angles are unwrapped along time. The frames beyond the cut belong to the curve, since a real cycle does not close;
-    /// where the recording ends at the cut, it is continued by the cycle's own other end.
+    /// Angles are unwrapped along time. The frames beyond the cut belong to the curve, since a real
+    /// cycle does not close. Where the recording ends at the cut, it is continued by the cycle's
+    /// own other end.
     ///
     /// # Errors
     /// The cut lies outside of the table, is shorter than four frames or longer than a million, or an angle is missing for more than a tenth of it.

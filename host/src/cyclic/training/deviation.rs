@@ -1,9 +1,10 @@
 //! How people differ from the mean cycle, learned from a few cycles of a few people (see [`sinew_core::cyclic::Deviation`]).
 //!
-//! Each cycle's deviation from the mean is split into a constant, a swing with the cycle's own period, and a rest. Variances
-//! are taken from pairs of cycles: half the squared difference of two is an unbiased estimate. Ten cycles seldom come from
-//! ten people, and two cycles of one person say little about the next one; as nobody tells whose cycle it is, only the half
-//! of the pairs that differ most is used.
+//! Each cycle's deviation from the mean is split into a constant, a swing with the cycle's own
+//! period, and a rest. Variances are taken from pairs of cycles: half the squared difference of two
+//! is an unbiased estimate. Ten cycles seldom come from ten people, and two cycles of one person
+//! say little about the next one. It is not known whose cycle it is, so only the half of the pairs
+//! that differ most is used.
 
 use super::cycle::TrainingCycle;
 use super::statistics::{angle_count, mean_pose};
@@ -11,8 +12,9 @@ use crate::cyclic::model::DeviationNumbers;
 use crate::cyclic::turns::wrapped;
 use std::f64::consts::TAU;
 
-/// What variances of constant and swing are multiplied by: they come from about three people, so the spread of a new
-/// person is that of a t distribution with few degrees of freedom, and the mean cycle is itself that uncertain.
+/// Factor of the variances of constant and swing, which come from about three people. The spread of
+/// a new person is that of a t distribution with few degrees of freedom, and the mean cycle is as
+/// uncertain.
 const INFLATION: f64 = 4.0;
 /// Part of the variance of constant and swing that is replaced by the mean over the angles.
 const SHRINKAGE: f64 = 0.2;
@@ -21,8 +23,8 @@ const REST_INFLATION: f64 = 2.0;
 /// The same part of the rest's variance. It is more: how much of an angle's fine movement is a person's own depends on how the
 /// joints were placed, which for short links differs most between sources.
 const REST_SHRINKAGE: f64 = 0.35;
-/// Least standard deviation, radians (a third of a degree): labels are no better.
-const LEAST_STD_RAD: f64 = 0.006;
+/// Smallest standard deviation, radians (a third of a degree): labels are no better.
+const MIN_STD_RAD: f64 = 0.006;
 /// Bounds of the rest's rate per cycle: slower is a swing, faster is noise.
 const RATE_PER_CYCLE: (f64, f64) = (6.0, 60.0);
 
@@ -117,7 +119,7 @@ fn slope_variance(a: &Parts, b: &Parts) -> f64 {
 /// Standard deviations of variances, moved by the part `shrinkage` to their mean and multiplied by `factor`.
 fn stds(variances: &[f64], factor: f64, shrinkage: f64) -> Vec<f32> {
     let mean = variances.iter().sum::<f64>() / variances.len() as f64;
-    let std = |variance: &f64| (factor * ((1.0 - shrinkage) * variance + shrinkage * mean)).sqrt().max(LEAST_STD_RAD);
+    let std = |variance: &f64| (factor * ((1.0 - shrinkage) * variance + shrinkage * mean)).sqrt().max(MIN_STD_RAD);
     variances.iter().map(|variance| std(variance) as f32).collect()
 }
 
@@ -171,7 +173,7 @@ mod tests {
     #[test]
     fn equal_cycles_still_leave_some_doubt() {
         let numbers = of_cycles(&[cycle(0.1, 0.0, 0.0), cycle(0.1, 0.0, 0.0)], 100);
-        assert!(numbers.offset_std_rad.iter().all(|&std| f64::from(std) >= 0.99 * LEAST_STD_RAD && std < 0.01));
+        assert!(numbers.offset_std_rad.iter().all(|&std| f64::from(std) >= 0.99 * MIN_STD_RAD && std < 0.01));
         assert!(numbers.rest_rate_per_cycle.iter().all(|rate| (6.0..=60.0).contains(rate)));
     }
 }

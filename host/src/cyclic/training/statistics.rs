@@ -18,8 +18,9 @@ pub struct PositionStatistics {
     pub mean_velocity: Vec<f64>,
 }
 
-/// Statistics at each of `length` positions. Derivatives are central differences over one reference frame, 1 / `length`
-/// of a cycle (for these k = v / `v_ref` is 1); the acceleration is the difference of differences.
+/// Statistics at each of `length` positions. Derivatives are central differences over one reference
+/// frame, 1 / `length` of a cycle, for which k = v / `v_ref` is 1. The acceleration is the
+/// difference of differences.
 #[must_use]
 pub fn of_positions(cycles: &[TrainingCycle], length: usize) -> Vec<PositionStatistics> {
     let poses = mean_pose(cycles, length);
@@ -40,11 +41,13 @@ pub fn of_positions(cycles: &[TrainingCycle], length: usize) -> Vec<PositionStat
         .collect()
 }
 
-/// Mean angles at positions 0 to `length`, both included, radians: at each position the mean on the circle, so that cycles
-/// whose angles differ by whole turns agree; then unwrapped along the cycle. The last row is where the mean cycle ends.
+/// Mean angles at positions 0 to `length`, both included, radians. At each position it is the mean
+/// on the circle, so that cycles whose angles differ by whole turns agree. The means are unwrapped
+/// along the cycle. The last row is where the mean cycle ends.
 ///
-/// Where an angle winds in some cycles and not in others (a limb that points at the camera may turn either way), it is that
-/// of the cycles that do as most do: the mean of both ways is a pose that nobody takes.
+/// A limb that points at the camera may turn either way, so an angle may wind in some cycles only.
+/// Then it is the mean of the cycles with the commonest number of turns: the mean of both ways is a
+/// pose that does not occur.
 #[must_use]
 pub fn mean_pose(cycles: &[TrainingCycle], length: usize) -> Vec<Vec<f64>> {
     let count = angle_count(cycles);

@@ -9,7 +9,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 const SIZE_PX: (u32, u32) = (960, 560);
 const FILL: RGBColor = RGBColor(0, 114, 178);
-/// Most bars of a plot.
+/// Maximum number of bars of a plot.
 const MAX_BARS: usize = 200;
 
 /// Plots one bar a pair of name and value, with the value written on it; "-" where it is not finite.

@@ -13,7 +13,7 @@ pub const ZOOM: u32 = 2;
 /// Text in plots.
 pub const INK: RGBColor = RGBColor(40, 40, 46);
 const FONT: &str = "sans-serif";
-/// Most pixels along a side of a plot.
+/// Maximum number of pixels along a side of a plot.
 const MAX_SIDE_PX: u32 = 8000;
 
 /// A part of the sheet.

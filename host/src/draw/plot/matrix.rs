@@ -13,16 +13,16 @@ const NAMES_PX: u32 = 170;
 const SQUARES_PX: u32 = 560;
 /// Title and margin, pixels.
 const TITLE_PX: u32 = 40;
-/// Most rows of a plot.
+/// Maximum number of rows of a plot.
 const MAX_ROWS: usize = 100;
 /// Colour of +1; white is zero.
 const POSITIVE: [f64; 3] = [0.0, 72.0, 160.0];
 /// Colour of -1.
 const NEGATIVE: [f64; 3] = [200.0, 80.0, 0.0];
 
-/// Plots `rows`, a square matrix whose entries are meant to lie in [-1, 1] (blue is positive, orange negative, white zero; what lies
-/// beyond has the colour of its end, what is not finite is grey), with `names` of rows and columns. Thick lines are drawn where
-/// a block of `blocks` rows each ends.
+/// Plots `rows`, a square matrix with entries in [-1, 1], with `names` of rows and columns. Blue is
+/// positive, orange negative, white zero. An entry beyond has the colour of its end, one that is
+/// not finite is grey. Thick lines are drawn where a block of `blocks` rows each ends.
 ///
 /// # Errors
 /// There have to be 1 to 100 rows, each with a name and an entry for every column, and blocks that cover no more.

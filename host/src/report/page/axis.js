@@ -1,4 +1,4 @@
-// Axes: round steps, logarithms, and numbers as short as they can be told apart.
+// Axes: round steps, logarithms, and numbers as short as they can be while they differ.
 
 function roundStep(span, count) {
   const rough = span / Math.max(count, 1);

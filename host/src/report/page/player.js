@@ -9,10 +9,10 @@ class PlayerView {
     this.figures = player.figures.map((figure) => new FigureView(figure, tables));
     this.image = element('img', { alt: 'the frame with what was found drawn on it' });
     this.lack = element('p', { class: 'no-picture' }, 'no picture of this frame');
-    this.told = element('div', { class: 'told' });
+    this.shown = element('div', { class: 'shown' });
     const picture = this.pictures.some(Boolean) ? element('div', { class: 'picture' }, this.image, this.lack) : null;
     const figures = this.figures.length ? element('div', { class: 'figures' }, this.figures.map((figure) => figure.node)) : null;
-    this.node = element('div', { class: 'player' }, picture, figures, this.told);
+    this.node = element('div', { class: 'player' }, picture, figures, this.shown);
   }
 
   get count() {
@@ -40,20 +40,20 @@ class PlayerView {
     if (picture) this.image.src = `data:image/jpeg;base64,${picture}`;
     this.image.dataset.frame = frame;
     for (const figure of this.figures) figure.show(frame);
-    this.tell(frame);
+    this.showRow(frame);
     return frame;
   }
 
-  tell(frame) {
-    if (!this.table || !this.player.told.length) return;
-    const columns = this.player.told.map((name) => [name, this.table.index(name)]).filter(([, index]) => index >= 0);
+  showRow(frame) {
+    if (!this.table || !this.player.shown.length) return;
+    const columns = this.player.shown.map((name) => [name, this.table.index(name)]).filter(([, index]) => index >= 0);
     const heading = element('tr', {}, columns.map(([name]) => element('th', {}, name)));
     const rows = this.table.rowsOfFrame(frame).map((row) => element('tr', {}, columns.map(([, index]) => element('td', {}, row[index]))));
-    this.told.replaceChildren(element('table', {}, heading, rows));
+    this.shown.replaceChildren(element('table', {}, heading, rows));
   }
 }
 
-// Moments that are no farther apart are one, seconds: a rate's frames are told with so many digits.
+// Moments that are no farther apart are one, seconds: a rate's frames are written with so many digits.
 const SAME_MOMENT_S = 1e-6;
 
 // All moments at which a run has a frame, seconds, in order.
@@ -63,7 +63,7 @@ function moments(times) {
 }
 
 // Seconds between two frames that are shown, at least.
-const LEAST_PAUSE_S = 1 / 30;
+const MIN_PAUSE_S = 1 / 30;
 
 // The bar at the foot of the page: play, slider, keys. It goes from frame to frame; where runs have different frame rates, from one moment at
 // which a run has a frame to the next.
@@ -124,9 +124,9 @@ class Transport {
 
   // The place after the present one when playing, and the seconds until then.
   next() {
-    if (!this.isByTime) return [this.index + 1, Math.max(1 / (this.rate() || 15), LEAST_PAUSE_S)];
+    if (!this.isByTime) return [this.index + 1, Math.max(1 / (this.rate() || 15), MIN_PAUSE_S)];
     const now = this.stops[this.index];
-    const later = this.stops.findIndex((stop) => stop >= now + LEAST_PAUSE_S - SAME_MOMENT_S);
+    const later = this.stops.findIndex((stop) => stop >= now + MIN_PAUSE_S - SAME_MOMENT_S);
     const index = later < 0 ? this.count - 1 : later;
     return [index, this.stops[index] - now];
   }

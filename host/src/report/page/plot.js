@@ -1,7 +1,7 @@
-// A plot with lines, bands and dots. Its legend tells the values of the player's frame; the pointer those beneath it.
+// A plot with lines, bands and dots. Its legend shows the values of the player's frame; the pointer those beneath it.
 
 const MARGIN = { left: 62, right: 14, top: 10, bottom: 40 };
-const MOST_POINTS = 4000;
+const MAX_POINTS = 4000;
 
 class PlotView {
   constructor(plot, run, tables, onFrame) {
@@ -113,7 +113,7 @@ class PlotView {
       if (this.hidden.has(series.name)) continue;
       const style = { '--colour': colourOf(series.colour) };
       for (const whole of stretches(points, series.breaks)) {
-        const stretch = this.byBoth ? whole : thinned(whole, MOST_POINTS);
+        const stretch = this.byBoth ? whole : thinned(whole, MAX_POINTS);
         const banded = stretch.filter((point) => Number.isFinite(point.low) && Number.isFinite(point.high));
         if (banded.length > 1) {
           const back = [...banded].reverse();
@@ -202,7 +202,7 @@ class PlotView {
     }
     if (!best) return [];
     if (this.byBoth) return [best];
-    // Tables of one run may round times differently; the frame tells what belongs together.
+    // Tables of one run may round times differently; the frame number joins what belongs together.
     const { x, frame } = best.point;
     const belongs = (other) => (frame !== undefined && other.frame !== undefined ? other.frame === frame : other.x === x);
     const beside = ({ series, points }) => {

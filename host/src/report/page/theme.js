@@ -1,4 +1,4 @@
-// Light and dark: as the system has it, until the button says otherwise.
+// Light and dark: as the system has it, until the button changes it.
 
 function themeButton() {
   const system = window.matchMedia('(prefers-color-scheme: dark)');

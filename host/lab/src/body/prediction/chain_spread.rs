@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use serde::Serialize;
-use sinew::body::tracking::filter::{END_EFFECTORS, WholeBodyParticle};
+use sinew::body::tracking::end_effectors::END_EFFECTORS;
+use sinew::body::tracking::filter::WholeBodyParticle;
 use sinew_core::math::Vec3;
 use sinew_core::observation::point_likelihood::PointLikelihood;
 use sinew_core::pik::angular::AngularMotion;
@@ -24,9 +25,9 @@ pub const POSES: usize = 100;
 pub const KAPPA: f32 = 500.0;
 /// How closely each of the goals (head, wrists, ankles, where they are in the first pose) is reached, metres.
 pub const REACH_STD_M: f32 = 0.005;
-/// Most steps of the solver.
+/// Maximum number of steps of the solver.
 const SOLVER_STEPS: usize = 4;
-/// Joints whose spread is told, down each chain.
+/// Joints whose spread is reported, down each chain.
 const TOLD: [usize; 8] = [TRUNK, HEAD, UPPER_ARMS[0], FOREARMS[0], UPPER_ARMS[1], FOREARMS[1], THIGHS[0], SHANKS[0]];
 
 type Scene = BodyScene<BODY_BONES, BODY_ANGLES>;
@@ -141,8 +142,8 @@ mod tests {
         angles
     }
 
-    /// The caption of figure 2, as numbers: what a joint spreads grows down every chain under noise of the angles; with goals at the
-    /// ends the ends spread no more than the middle.
+    /// The caption of PIK figure 2, as numbers. Under noise of the angles the spread of the joints
+    /// grows along every chain. With goals the ends spread no more than the middle.
     #[test]
     fn spread_grows_down_the_chains_under_angular_noise_and_not_under_goals() {
         let measures = BodyMeasures::of_height(1.75).unwrap();

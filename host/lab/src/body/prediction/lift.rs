@@ -5,7 +5,8 @@ use anyhow::{Context, Result};
 use serde::Serialize;
 use sinew::body::Placement;
 use sinew::body::recording::DEFAULT_RATE_HZ;
-use sinew::body::tracking::filter::{END_EFFECTORS, WholeBodyParticle};
+use sinew::body::tracking::end_effectors::END_EFFECTORS;
+use sinew::body::tracking::filter::WholeBodyParticle;
 use sinew::body::tracking::{BodyFilter, BodyModelKind, BodyTuning};
 use sinew::stereo::{StereoOptions, StereoScene, pelvic_lift};
 use sinew_core::kinematics::forward::Posture;
@@ -29,7 +30,7 @@ pub const SAMPLES: usize = 10;
 const FRAME: usize = 8;
 /// Particles of the tracking up to there.
 const PARTICLES: usize = 100;
-/// Joints whose spread is told.
+/// Joints whose spread is reported.
 const TOLD: [usize; 8] = [PELVIS, THIGHS[0], THIGHS[1], HEAD, FOREARMS[0], FOREARMS[1], SHANKS[0], SHANKS[1]];
 
 /// Angles of one cluster of joints. Goals are behind each but the trunk, whose angles move head and arms too.
@@ -90,9 +91,10 @@ pub struct LiftSamples {
     pub(super) precisions: Vec<Precision>,
 }
 
-/// Tracks the built-in lift to its ninth frame with the model of the pelvic lift and draws ten samples of the next by eqs. (22), (38) and
-/// (39): an ancestor by its weight, the root, the goals, the mode of eq. (12), a pose from the
-/// Laplace expansion, as wide as the models' `[draw]` says.
+/// Tracks the built-in lift to its ninth frame with the model of the pelvic lift. Then draws ten
+/// samples of the next frame by PIK (22), PIK (38) and PIK (39): an ancestor by its weight, the
+/// root, the goals and the mode of PIK (12). The pose comes from a Laplace expansion, as wide as
+/// the models' `[draw]` says.
 ///
 /// # Errors
 /// Numbers of the model that break a rule.

@@ -1,4 +1,4 @@
-//! Whole walks whose noise is as large as `coupled` was told, smaller, or as large but slow: errors and bands. Runs in release where
+//! Whole walks whose noise is as large as `coupled` assumes, smaller, or as large but slow: errors and bands. Runs in release where
 //! `../shared/data` is at hand, and says so where not.
 
 mod shared_data;
@@ -15,8 +15,8 @@ use std::ops::Range;
 use walk_cuts::list;
 use walks::WALKS;
 
-/// Standard deviation that the filter is told, degrees.
-const TOLD_DEG: f64 = 6.0;
+/// Standard deviation that the filter assumes, degrees.
+const ASSUMED_DEG: f64 = 6.0;
 
 /// Noise that there is.
 struct Noise {
@@ -54,7 +54,7 @@ fn with_noise(truth: &AngleTable, noise: &Noise, seed: u64) -> AngleTable {
 }
 
 #[test]
-fn smaller_noise_than_told_gives_smaller_errors_and_slow_noise_keeps_its_bands() {
+fn smaller_noise_than_assumed_gives_smaller_errors_and_slow_noise_keeps_its_bands() {
     let Some(data) = shared_data::in_release("mocap") else { return };
     let folder = tempfile::tempdir().unwrap();
     let cuts = list(&data, folder.path(), &WALKS);
@@ -62,7 +62,7 @@ fn smaller_noise_than_told_gives_smaller_errors_and_slow_noise_keeps_its_bands()
     paths.dedup();
     let walks: Vec<AngleTable> = paths.iter().map(|path| AngleTable::read(path).unwrap()).collect();
     let model = CyclicModel::from_option("walking").unwrap();
-    let options = TrackingOptions { sigma_rad: TOLD_DEG.to_radians(), ..TrackingOptions::default() };
+    let options = TrackingOptions { sigma_rad: ASSUMED_DEG.to_radians(), ..TrackingOptions::default() };
     for noise in &CASES {
         let mut errors = Errors::default();
         for (seed, walk) in walks.iter().enumerate() {
@@ -71,7 +71,7 @@ fn smaller_noise_than_told_gives_smaller_errors_and_slow_noise_keeps_its_bands()
         }
         let (error_deg, inside_90) = (errors.all_deg(), errors.inside_90().0);
         println!(
-            "told {TOLD_DEG}, noise {} with correlation {}: {error_deg:.2} degrees, {:.1} % inside",
+            "assumed {ASSUMED_DEG}, noise {} with correlation {}: {error_deg:.2} degrees, {:.1} % inside",
             noise.std_deg,
             noise.correlation,
             100.0 * inside_90

@@ -1,0 +1,104 @@
+//! A run from its first cloud to its last, and the files that it writes.
+
+use super::answer::Answer;
+use super::report::BodyRunReport;
+use super::resume;
+use super::track::{BodyEvent, BodyTrackRun, Notify};
+use crate::body::export::{body_layout, bvh_frame, upwards};
+use crate::motion::export::{BvhFrame, TrcFrame, TrcHeading, TrcUnit, to_trc, write_bvh};
+use crate::output::finish_table;
+use crate::resume::Interrupted;
+use anyhow::{Result, anyhow};
+use sinew_core::math::Vec3;
+use sinew_core::skeleton::full_body::BODY_JOINT_NAMES;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// Frames without a file that an animation repeats the pose before for, all in all; longer gaps are cut out of it.
+const MAX_REPEATED_FRAMES: u64 = 100_000;
+
+impl BodyTrackRun {
+    /// Tracks all clouds, or those before `stop` is set, and writes the run directory.
+    ///
+    /// # Errors
+    /// [`Interrupted`] if `stop` was set, a broken cloud if the run is strict, or an output that
+    /// cannot be written. The results of the finished frames are written in each case.
+    pub fn run(mut self, stop: &AtomicBool, notify: Notify<'_>) -> Result<BodyRunReport> {
+        let start = Instant::now();
+        let (frames, out) = (self.frame_count(), self.out.path().to_path_buf());
+        for note in &self.report.notes {
+            notify(BodyEvent::Note(note));
+        }
+        let tracked = self.track_all(stop, notify);
+        let finished = self.report.frames_finished;
+        self.seconds += start.elapsed().as_secs_f64();
+        self.report.frames_per_second = finished as f64 / self.seconds.max(1.0e-9);
+        self.report.complete = tracked.is_ok() && finished == frames;
+        let interrupted = tracked.is_ok() && finished < frames;
+        let written = self.write_results(interrupted);
+        if let Err(error) = tracked {
+            let kept = match &written {
+                Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
+                Err(other) => format!("and then {other:#}"),
+            };
+            return Err(anyhow!("{error:#}; {kept}"));
+        }
+        let report = written?;
+        if interrupted {
+            return Err(Interrupted { finished, all: Some(frames), unit: "frames", out }.into());
+        }
+        Ok(report)
+    }
+
+    /// Gives the tables their names and writes the other files. Each one is tried, also where another one failed. An interrupted run leaves
+    /// what [`BodyTrackRun::resume`] needs.
+    fn write_results(mut self, interrupted: bool) -> Result<BodyRunReport> {
+        let left = if interrupted { Some(resume::left(&mut self)?) } else { None };
+        self.report.seconds_per_step = self.step_s / self.report.frames_finished.max(1) as f64;
+        self.report.effective_share = self.effective_share.mean().unwrap_or(0.0);
+        (self.report.error_m, self.report.joint_error_m) = (self.score.marker_m.mean(), self.score.joint_m.mean());
+        let mut results = vec![self.write_motion()];
+        results.push(finish_table(self.table));
+        results.extend(self.particles.map(finish_table));
+        results.extend(self.pictures.map(|pictures| pictures.write(&self.out)));
+        // Only what is there in full is called complete.
+        self.report.complete &= results.iter().all(Result::is_ok);
+        let json = serde_json::to_string_pretty(&self.report)? + "\n";
+        results.push(self.out.write("run.json", |writer| Ok(writer.write_all(json.as_bytes())?)));
+        results.into_iter().collect::<Result<()>>()?;
+        resume::put(left, &self.report.options, &self.out)?;
+        Ok(self.report)
+    }
+
+    /// `track.bvh` and `track.trc`; no frame at all is no file.
+    fn write_motion(&self) -> Result<()> {
+        if self.answers.is_empty() {
+            return Ok(());
+        }
+        let (part, rate_hz) = (self.inputs.part, f64::from(self.inputs.rate_hz));
+        let is_short = self.inputs.clouds.missing() <= MAX_REPEATED_FRAMES;
+        let mut frames: Vec<BvhFrame> = Vec::with_capacity(self.answers.len());
+        let mut markers = Vec::with_capacity(self.answers.len());
+        let mut before: Option<(u64, BvhFrame)> = None;
+        for Answer { frame, estimate } in &self.answers {
+            if let (Some((number, last)), true) = (before, is_short) {
+                // An animation has a frame for every number: what has no file keeps the pose before.
+                frames.extend((number + 1..*frame).map(|_| last.clone()));
+            }
+            let pose = bvh_frame(part, &self.filter.scene().skeleton, &estimate.angles_rad);
+            frames.push(pose.clone());
+            let place = |end: &Vec3| Some(<[f32; 3]>::from(upwards(end)).map(f64::from));
+            markers.push(TrcFrame {
+                frame: *frame,
+                positions_m: estimate.ends_m[..part.bones()].iter().map(place).collect(),
+            });
+            before = Some((*frame, pose));
+        }
+        let layout = body_layout(part, &self.filter.scene().skeleton)?;
+        self.out.write("track.bvh", |writer| Ok(write_bvh(&layout, &frames, rate_hz, writer)?))?;
+        let heading =
+            TrcHeading { name: "track.trc", markers: &BODY_JOINT_NAMES[..part.bones()], rate_hz, unit: TrcUnit::Metre };
+        let text = to_trc(&heading, &markers);
+        self.out.write("track.trc", |writer| Ok(writer.write_all(text.as_bytes())?))
+    }
+}
