@@ -1,8 +1,8 @@
 //! Cut lists: which frames of which angle tables are one cycle each.
 
 use super::error::{CyclicError, read_text};
+use crate::error::Result;
 use crate::output::write_atomically;
-use anyhow::Result;
 use std::path::{Path, PathBuf};
 
 /// Columns of a cut list.

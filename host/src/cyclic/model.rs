@@ -1,7 +1,7 @@
 //! A motion model that owns its numbers, and lends them to the core's filters.
 
 use super::model_file;
-use anyhow::{Result, bail};
+use crate::error::{Result, bail};
 use serde::{Deserialize, Serialize};
 use sinew_core::cyclic::model::bytes::{self, ModelHeader};
 use sinew_core::cyclic::{Deviation, ModelError, ModelParts, MotionModel};

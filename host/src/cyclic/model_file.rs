@@ -2,8 +2,8 @@
 
 use super::angle_table::{ANGLES, angle_columns};
 use super::model::{CyclicModel, DeviationNumbers, ModelNumbers, TrainedOn};
+use crate::error::{Context, Result, bail, ensure};
 use crate::model_text::{self, ModelFileKind};
-use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use sinew_core::numeric::semi_definite::packed_len;
@@ -100,7 +100,7 @@ pub fn parse(text: &str) -> Result<CyclicModel> {
     let table = |name: &str, rows: Rows<f32>, width: usize| -> Result<Vec<f32>> {
         ensure!(rows.len() == l, "`{name}` has {} rows, but `mean_acceleration` has {l}", rows.len());
         if let Some((index, row)) = rows.iter().enumerate().find(|(_, row)| row.len() != width) {
-            anyhow::bail!("`{name}` has {} numbers in row {index}, but {width} are needed", row.len());
+            bail!("`{name}` has {} numbers in row {index}, but {width} are needed", row.len());
         }
         Ok(rows.concat())
     };

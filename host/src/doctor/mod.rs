@@ -49,10 +49,10 @@ impl Diagnosis {
     }
 
     /// A good finding, or the problem that stands in its place.
-    fn add_result(&mut self, result: anyhow::Result<String>) {
+    fn add_result(&mut self, result: crate::error::Result<String>) {
         match result {
             Ok(text) => self.add(Severity::Good, text),
-            Err(error) => self.add(Severity::Problem, format!("{error:#}")),
+            Err(error) => self.add(Severity::Problem, error.chain().to_string()),
         }
     }
 

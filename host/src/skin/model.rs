@@ -5,7 +5,7 @@ use super::gaussian::GaussianModel;
 use super::histogram::HistogramModel;
 use super::model_file::{self, TrainedOn};
 use super::white_balance::WhiteBalance;
-use anyhow::{Result, bail};
+use crate::error::{Result, bail};
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use sinew_core::vision::frame::segment;

@@ -3,10 +3,10 @@
 use super::input::SkippedImage;
 use super::run::{TrackOptions, TrackRun};
 use super::sample::HandSample;
+use crate::error::Result;
 use crate::output::OutputDir;
 use crate::resume::{Begun, Left, List, ResumeFile, from_text, optional, real, reals, text_crc32, to_text};
 use crate::skin::model_file;
-use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;

@@ -10,11 +10,11 @@ use super::sample::HandSample;
 use super::source::FrameSource;
 use super::table::{HEADER, TrackRow};
 use crate::config::Config;
+use crate::error::{Context, Error, Result, WriteContext, bail};
 use crate::frames::{FrameReader, FrameView};
 use crate::output::{OutputDir, PendingFile};
 use crate::resume::Interrupted;
 use crate::skin::{Rectangle, SkinModel};
-use anyhow::{Context, Result, anyhow, bail};
 use image::RgbImage;
 use serde::Serialize;
 use sinew_core::camera::Camera;
@@ -179,9 +179,9 @@ impl TrackRun {
         if let Err(error) = tracked {
             let kept = match &written {
                 Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
-                Err(other) => format!("and then {other:#}"),
+                Err(other) => format!("and then {}", other.chain()),
             };
-            return Err(anyhow!("{error:#}; {kept}"));
+            return Err(Error::Unfinished { error: Box::new(error), kept });
         }
         let outcome = written?;
         if interrupted {
@@ -255,10 +255,10 @@ impl TrackRun {
 
     fn record(&mut self, row: &TrackRow) -> Result<()> {
         let estimate = &row.view.estimate;
-        self.track.write_record(row.cells(&self.camera)).context("`track.csv` cannot be written")?;
+        self.track.write_record(row.cells(&self.camera)).writing(|| "`track.csv` cannot be written")?;
         if let Some(particles) = &mut self.particles {
             for cells in particle_rows(row.frame, &row.view, &self.camera) {
-                particles.write_record(cells).context("`particles.csv` cannot be written")?;
+                particles.write_record(cells).writing(|| "`particles.csv` cannot be written")?;
             }
         }
         self.report.count(estimate.side, estimate.status);
@@ -307,7 +307,7 @@ impl TrackRun {
 }
 
 fn finish(table: csv::Writer<PendingFile>) -> Result<()> {
-    let file = table.into_inner().map_err(|error| anyhow!("a table cannot be written: {}", error.error()))?;
+    let file = table.into_inner().writing(|| "a table cannot be written")?;
     file.finish()
 }
 

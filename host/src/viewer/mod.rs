@@ -8,11 +8,11 @@ mod cyclic;
 pub mod numbers;
 pub mod recording;
 
+use crate::error::{Context, Result, bail};
 use crate::output::write_atomically;
 use crate::report::document::Colour;
 use crate::report::folder::RunFolder;
 use crate::report::kind::Kind;
-use anyhow::{Context, Result, bail};
 use image::RgbImage;
 use image::codecs::jpeg::JpegEncoder;
 use numbers::Numbers;

@@ -12,10 +12,10 @@ use crate::body::export::{body_layout, bvh_frame, upwards};
 use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::cloud::{self, CloudFrame, MAX_POINTS, blocks_of};
+use crate::error::{Context, Error, Result, WriteContext, bail};
 use crate::motion::export::{BvhFrame, TrcFrame, TrcHeading, TrcUnit, to_trc, write_bvh};
 use crate::output::{OutputDir, PendingFile};
 use crate::resume::Interrupted;
-use anyhow::{Context, Result, anyhow, bail};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sinew_core::math::Vec3;
@@ -163,9 +163,9 @@ impl BodyTrackRun {
         if let Err(error) = tracked {
             let kept = match &written {
                 Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
-                Err(other) => format!("and then {other:#}"),
+                Err(other) => format!("and then {}", other.chain()),
             };
-            return Err(anyhow!("{error:#}; {kept}"));
+            return Err(Error::Unfinished { error: Box::new(error), kept });
         }
         let report = written?;
         if interrupted {
@@ -235,10 +235,10 @@ impl BodyTrackRun {
         let points_m = cloud.map_or(&[][..], |cloud| &cloud.points_m);
         self.table
             .write_record(table::cells(self.inputs.part, frame, &estimate, points_m.len()))
-            .context("`track.csv` cannot be written")?;
+            .writing(|| "`track.csv` cannot be written")?;
         if let Some(particles) = &mut self.particles {
             for row in particles::rows(self.inputs.part, frame, &self.filter) {
-                particles.write_record(row).context("`particles.csv` cannot be written")?;
+                particles.write_record(row).writing(|| "`particles.csv` cannot be written")?;
             }
         }
         self.take(self.report.frames_finished, Answer { frame, estimate }, points_m);
@@ -358,7 +358,7 @@ fn found_start(inputs: &mut BodyInputs, options: &BodyTrackOptions) -> Result<[f
 }
 
 fn finish(table: csv::Writer<PendingFile>) -> Result<()> {
-    let file = table.into_inner().map_err(|error| anyhow!("a table cannot be written: {}", error.error()))?;
+    let file = table.into_inner().writing(|| "a table cannot be written")?;
     file.finish()
 }
 

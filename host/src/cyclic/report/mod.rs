@@ -15,8 +15,8 @@ use super::anatomy::{AnatomicalSeries, CycleCurves};
 use super::export::{mot, series::to_csv, trc};
 use super::tracking::table::{self, MotionCells};
 use super::tracking::{Summary, Tracked, TrackingOptions};
+use crate::error::Result;
 use crate::output::OutputDir;
-use anyhow::Result;
 use serde::Serialize;
 
 /// File of the estimates.

@@ -4,7 +4,7 @@ use super::options::TrackingOptions;
 use super::table_run::TableRun;
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
 use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
-use anyhow::{Result, bail};
+use crate::error::{Result, bail};
 use sinew_core::cyclic::CyclicEstimate;
 use sinew_core::cyclic::events::CycleCounter;
 use sinew_core::cyclic::measurement::MAX_STEP_FRAMES;
