@@ -129,7 +129,7 @@ fn begun(args: &EvaluateBodyArgs, tuning: &BodyTuning) -> Result<Begun> {
         "hide_arms": args.hide_arms,
         "config": tuning,
     });
-    Begun::new("evaluate body", &options, &[])
+    Ok(Begun::new("evaluate body", &options, &[])?)
 }
 
 /// All cells, and the figures of what models predict.
