@@ -188,9 +188,9 @@ mod tests {
         let never = || -> Result<f64> { panic!("it is known") };
         let third: f64 = 1.0 / 3.0;
         let cells = Cells::keep(&out, &begun(1), false, &stop).unwrap();
-        assert_eq!(cells.cell(&json!(["a", 1]), || Result::Ok(third)).unwrap(), third);
+        assert_eq!(cells.cell(&json!(["a", 1]), || -> Result<f64> { Ok(third) }).unwrap(), third);
         assert_eq!(cells.cell(&json!(["a", 1]), never).unwrap().to_bits(), third.to_bits());
-        assert!(cells.cell(&json!(["b", 1]), || Result::Ok(f64::NAN)).unwrap().is_nan());
+        assert!(cells.cell(&json!(["b", 1]), || -> Result<f64> { Ok(f64::NAN) }).unwrap().is_nan());
         ended.store(true, Ordering::Relaxed);
         let error = cells.cell(&json!(["a", 2]), never).unwrap_err();
         assert_eq!(error.interrupted().unwrap().finished, 3);
@@ -200,7 +200,7 @@ mod tests {
         let again = Cells::keep(&out, &begun(1), true, &stop).unwrap();
         assert_eq!(again.cell(&json!(["a", 1]), never).unwrap().to_bits(), third.to_bits());
         assert_eq!(
-            again.cell(&json!(["b", 1]), || Result::Ok(2.0)).unwrap(),
+            again.cell(&json!(["b", 1]), || -> Result<f64> { Ok(2.0) }).unwrap(),
             2.0,
             "what JSON cannot hold is measured again"
         );
@@ -211,6 +211,6 @@ mod tests {
         assert_eq!(fs::read_dir(out.join(CELLS_FOLDER)).unwrap().count(), 1);
         let message = Cells::keep(&out, &begun(1), true, &stop).unwrap_err().to_string();
         assert!(message.contains("holds no unfinished evaluation"), "{message}");
-        assert_eq!(Cells::not_kept().cell(&json!(1), || Result::Ok(3)).unwrap(), 3);
+        assert_eq!(Cells::not_kept().cell(&json!(1), || -> Result<u8> { Ok(3) }).unwrap(), 3);
     }
 }
