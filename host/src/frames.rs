@@ -1,6 +1,6 @@
 //! The observations of each frame for the trackers: the core's front end with buffers that fit the frames.
 
-use anyhow::Result;
+use crate::error::Result;
 use image::{GrayImage, Luma, RgbImage};
 use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION, LikelyBlob};
 use sinew_core::vision::candidate::HandCandidate;

@@ -10,6 +10,7 @@ pub mod cyclic;
 pub mod doctor;
 #[cfg(feature = "plots")]
 pub mod draw;
+pub mod error;
 pub mod frames;
 pub mod keypoints;
 pub mod model_text;
@@ -26,4 +27,5 @@ pub mod track;
 pub mod viewer;
 pub mod wording;
 
+pub use error::{Error, Result};
 pub use sinew_formats::{cloud, images, motion, registry};

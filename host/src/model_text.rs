@@ -1,6 +1,6 @@
 //! Model files as text, whatever the kind of model.
 
-use anyhow::{Context, Result, ensure};
+use crate::error::{Context, Result, ensure};
 use std::fs;
 use std::path::Path;
 

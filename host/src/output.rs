@@ -1,6 +1,6 @@
 //! Outputs that appear whole or not at all: a temporary name in the same folder, then a rename.
 
-use anyhow::{Context, Result, bail};
+use crate::error::{Result, WriteContext, bail};
 use image::{ImageFormat, RgbImage};
 use std::fs;
 use std::io::{BufWriter, Cursor, Write};
@@ -22,11 +22,11 @@ impl OutputDir {
         if path.exists() && !path.is_dir() {
             bail!("output `{}` is a file; give a folder, or remove the file", path.display());
         }
-        fs::create_dir_all(path).with_context(|| {
+        fs::create_dir_all(path).writing(|| {
             format!("output folder `{}` cannot be created; choose one that can be written", path.display())
         })?;
         temporary_in(path)
-            .with_context(|| format!("output folder `{}` cannot be written; choose another", path.display()))?;
+            .writing(|| format!("output folder `{}` cannot be written; choose another", path.display()))?;
         Ok(Self { path: path.to_path_buf() })
     }
 
@@ -68,9 +68,7 @@ impl OutputDir {
     pub fn write_png(&self, name: impl AsRef<Path>, image: &RgbImage) -> Result<()> {
         let mut bytes = Cursor::new(Vec::new());
         let path = self.join(name);
-        image
-            .write_to(&mut bytes, ImageFormat::Png)
-            .with_context(|| format!("`{}` cannot be encoded", path.display()))?;
+        image.write_to(&mut bytes, ImageFormat::Png).writing(|| format!("`{}` cannot be encoded", path.display()))?;
         write_atomically(&path, |writer| Ok(writer.write_all(bytes.get_ref())?))
     }
 
@@ -80,7 +78,7 @@ impl OutputDir {
     /// Names the file if the folder refuses it.
     pub fn begin(&self, name: impl AsRef<Path>) -> Result<PendingFile> {
         let path = self.join(name);
-        let temporary = temporary_in(&self.path).with_context(|| format!("`{}` cannot be written", path.display()))?;
+        let temporary = temporary_in(&self.path).writing(|| format!("`{}` cannot be written", path.display()))?;
         Ok(PendingFile { path, writer: BufWriter::new(temporary) })
     }
 }
@@ -103,7 +101,7 @@ impl PendingFile {
             writer.into_inner()?.persist(&path)?;
             Ok(())
         };
-        inner().with_context(|| format!("`{}` cannot be written", path.display()))
+        inner().writing(|| format!("`{}` cannot be written", path.display()))
     }
 }
 
@@ -147,7 +145,7 @@ where
         temporary.persist(path)?;
         Ok(())
     };
-    inner().with_context(|| format!("`{}` cannot be written", path.display()))
+    inner().writing(|| format!("`{}` cannot be written", path.display()))
 }
 
 fn parent_of(path: &Path) -> &Path {
@@ -174,7 +172,7 @@ fn temporary_in(folder: &Path) -> std::io::Result<NamedTempFile> {
 /// # Errors
 /// A file that cannot be written.
 pub(crate) fn finish_table(table: csv::Writer<PendingFile>) -> Result<()> {
-    let file = table.into_inner().map_err(|error| anyhow::anyhow!("a table cannot be written: {}", error.error()))?;
+    let file = table.into_inner().writing(|| "a table cannot be written")?;
     file.finish()
 }
 

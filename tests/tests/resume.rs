@@ -2,7 +2,6 @@
 
 use image::{Rgb, RgbImage};
 use sinew::config::Config;
-use sinew::resume::Interrupted;
 use sinew::track::{Event, SideChoice, TrackOptions, TrackRun};
 use sinew_tests::{files_below, sinew_command};
 use std::collections::BTreeMap;
@@ -72,7 +71,8 @@ impl Scene {
                 stop.store(true, Ordering::Relaxed);
             }
         });
-        let interrupted = error.unwrap_err().downcast::<Interrupted>().unwrap();
+        let error = error.unwrap_err();
+        let interrupted = error.interrupted().unwrap();
         assert_eq!(interrupted.finished, finished);
     }
 

@@ -3,7 +3,6 @@
 use sinew::body::BodyPart;
 use sinew::body::run::{BodyEvent, BodyTrackOptions, BodyTrackRun};
 use sinew::body::tracking::{BodyModelKind, BodyTuning};
-use sinew::resume::Interrupted;
 use sinew_tests::{files_below, sinew_command};
 use std::collections::BTreeMap;
 use std::fs;
@@ -111,7 +110,8 @@ fn break_off(run: BodyTrackRun, finished: usize) {
             stop.store(true, Ordering::Relaxed);
         }
     });
-    let interrupted = error.unwrap_err().downcast::<Interrupted>().unwrap();
+    let error = error.unwrap_err();
+    let interrupted = error.interrupted().unwrap();
     assert_eq!((interrupted.finished, interrupted.all), (finished, Some(FRAMES)));
 }
 

@@ -2,7 +2,6 @@
 
 use clap::Parser;
 use sinew::cli::{Cli, Command, track::Track, track_cyclic::run_until};
-use sinew::resume::Interrupted;
 use sinew_tests::{files_below, sinew_command};
 use std::fs;
 use std::path::PathBuf;
@@ -67,7 +66,8 @@ impl Walker {
                 stop.store(true, Ordering::Relaxed);
             }
         });
-        let interrupted = ended.unwrap_err().downcast::<Interrupted>().unwrap();
+        let error = ended.unwrap_err();
+        let interrupted = sinew::cli::interrupted(&error).unwrap();
         assert_eq!((interrupted.finished, interrupted.all, interrupted.unit), (finished, Some(ROWS), "rows"));
         assert!(self.path(out).join("est_resume.json").exists());
         assert_eq!(self.rows(out), finished);

@@ -2,7 +2,7 @@
 
 use clap::Parser;
 use serde_json::Value;
-use sinew::resume::{CELLS_FOLDER, Interrupted, Stop};
+use sinew::resume::{CELLS_FOLDER, Stop};
 use sinew_lab::cli::{Cli, Command, Evaluate, arm, body, cyclic};
 use sinew_tests::{files_below, sinew_command};
 use std::collections::BTreeMap;
@@ -51,7 +51,7 @@ impl Folder {
             Evaluate::Cyclic(args) => cyclic::run_until(args, &cli.console, stop),
             other => panic!("{other:?}"),
         };
-        assert_eq!(ended.unwrap_err().downcast::<Interrupted>().unwrap().unit, "cells");
+        assert_eq!(sinew::cli::interrupted(&ended.unwrap_err()).unwrap().unit, "cells");
         fs::read_dir(self.path(out).join(CELLS_FOLDER)).unwrap().count() - 1
     }
 

@@ -425,7 +425,7 @@ fn what_was_finished_before_ctrl_c_is_kept() {
         }
     });
     let stopped = stopped.unwrap_err();
-    let interrupted = stopped.downcast_ref::<sinew::resume::Interrupted>().unwrap();
+    let interrupted = stopped.interrupted().unwrap();
     assert_eq!((interrupted.finished, interrupted.all), (3, Some(FRAMES)));
     assert_sound(&scene.path("out/track.csv"));
     assert_eq!((scene.table("out").rows.len(), &scene.report("out")["complete"]), (3, &false.into()));

@@ -149,7 +149,9 @@ pub fn recovery(clips: &[Clip], seeds: &[u64], base: &Config, skin: &SkinModel, 
             .par_iter()
             .map(|scene| {
                 let key = json!(["recovery", scene.key(), f64::from(false_blob_fraction)]);
-                cells.cell(&key, || Ok(recovered(&track(scene, &base.tracker, scene.seed)?, scene.size_px.0)))
+                cells.cell(&key, || {
+                    track(scene, &base.tracker, scene.seed).map(|errors| recovered(&errors, scene.size_px.0))
+                })
             })
             .collect::<Result<_>>()?;
         Ok(found.iter().filter(|found| **found).count() as f64 / found.len().max(1) as f64)

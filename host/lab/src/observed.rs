@@ -71,7 +71,7 @@ pub fn observe(clip: &Clip, options: &SceneOptions, base: &Config, skin: &SkinMo
         let image = scene.render(frame);
         reader.read(&image, &*skin.for_image(&image)?)
     };
-    let views = (0..scene.len()).map(&mut read).collect::<Result<_>>()?;
+    let views = (0..scene.len()).map(&mut read).collect::<sinew::Result<_>>()?;
     let camera = scene.camera();
     let truth = (0..scene.len()).map(|frame| {
         let truth = scene.truth(frame);

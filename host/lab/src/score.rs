@@ -88,7 +88,7 @@ pub fn summarise(errors: &[FrameError]) -> RunError {
 pub fn run_all(scenes: &[ObservedScene], tracker: &ArmOptions, cells: &Cells<'_>) -> Result<Vec<RunError>> {
     let run = |scene: &ObservedScene| {
         let key = json!(["run", scene.key(), tracker]);
-        cells.cell(&key, || Ok(summarise(&track(scene, tracker, scene.seed)?)))
+        cells.cell(&key, || track(scene, tracker, scene.seed).map(|errors| summarise(&errors)))
     };
     scenes.par_iter().map(run).collect()
 }

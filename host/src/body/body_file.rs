@@ -1,6 +1,6 @@
 //! `body.json`: who is tracked.
 
-use anyhow::{Context, Result};
+use crate::error::{Context, Result};
 use serde::{Deserialize, Serialize};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::BodyMeasures;

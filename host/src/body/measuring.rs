@@ -2,7 +2,7 @@
 
 use super::joints::{BodyJoints, median};
 use super::recording::BodyRecording;
-use anyhow::{Context, Result};
+use crate::error::{Context, Result};
 use sinew_core::math::{Vec3, unit};
 use sinew_core::skeleton::BodyMeasures;
 use sinew_core::skeleton::body_measures::REFERENCE_HEIGHT_M;

@@ -1,6 +1,6 @@
 //! A pose by the names of its coordinates, as `first_pose.json` holds it.
 
-use anyhow::{Context, Result, bail};
+use crate::error::{Context, Result, bail};
 use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES};
 use std::fmt::Write;
 use std::path::Path;

@@ -3,10 +3,10 @@
 use super::joints::{BodyJoints, BodySources};
 use super::placing::Placement;
 use crate::cyclic::projection::upwards;
+use crate::error::{Context, Result, ensure};
 use crate::motion::joint_names::JointSources;
 use crate::motion::markers::MarkerMotion;
 use crate::motion::{self, ReadOptions, has_skin_markers};
-use anyhow::{Context, Result, ensure};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::full_body::BODY_BONES;
 use std::ops::Range;

@@ -1,7 +1,7 @@
 //! The output for a person or a script: results on standard output, everything else on standard error.
 
+use super::interrupted;
 use super::stdout::write_all;
-use crate::resume::Interrupted;
 use anyhow::Result;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -68,7 +68,7 @@ impl Console {
     /// That of the run.
     pub fn resumable<T>(&self, ended: Result<T>) -> Result<T> {
         ended.inspect_err(|error| {
-            if error.is::<Interrupted>() {
+            if interrupted(error).is_some() {
                 self.note("the same command with --resume goes on from there");
             }
         })

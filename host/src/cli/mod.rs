@@ -33,6 +33,7 @@ pub mod train_skin;
 pub mod variant_arg;
 pub mod viewer_args;
 
+use crate::error::Error as LibraryError;
 use crate::resume::Interrupted;
 use clap::{Parser, Subcommand};
 use console::Console;
@@ -124,11 +125,17 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
     }
 }
 
+/// How far a command came that Ctrl-C ended; none if it failed otherwise.
+#[must_use]
+pub fn interrupted(error: &anyhow::Error) -> Option<&Interrupted> {
+    error.downcast_ref::<Interrupted>().or_else(|| error.downcast_ref::<LibraryError>()?.interrupted())
+}
+
 /// How the program ends: an error is printed on standard error.
 pub fn exit_code(ended: anyhow::Result<()>) -> ExitCode {
     match ended {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) if error.is::<Interrupted>() => {
+        Err(error) if interrupted(&error).is_some() => {
             eprintln!("{error}");
             // 128 + SIGINT, what shells expect of a program that Ctrl-C ended.
             ExitCode::from(130)

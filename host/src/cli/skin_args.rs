@@ -23,7 +23,7 @@ impl SkinArgs {
     /// # Errors
     /// As [`SkinModel::from_option`].
     pub fn load(&self) -> Result<SkinModel> {
-        SkinModel::from_option(&self.skin)
+        Ok(SkinModel::from_option(&self.skin)?)
     }
 
     /// `model` adapted to the first image, if that was asked for.
@@ -32,7 +32,7 @@ impl SkinArgs {
     /// As [`SkinModel::calibrated`].
     pub fn calibrated(&self, model: SkinModel, first: &RgbImage) -> Result<SkinModel> {
         match self.calibrate {
-            Some(rectangle) => model.calibrated(first, rectangle),
+            Some(rectangle) => Ok(model.calibrated(first, rectangle)?),
             None => Ok(model),
         }
     }

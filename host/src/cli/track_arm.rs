@@ -150,7 +150,7 @@ pub(super) fn run_with_progress(run: TrackRun, console: &Console) -> Result<RunO
         Event::Finished(frames) => bar.set_position(frames as u64),
     });
     bar.finish_and_clear();
-    outcome
+    Ok(outcome?)
 }
 
 /// What the run directory holds.

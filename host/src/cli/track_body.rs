@@ -137,7 +137,7 @@ fn run_with_progress(run: BodyTrackRun, console: &Console) -> Result<BodyRunRepo
         BodyEvent::Finished(frames) => bar.set_position(frames as u64),
     });
     bar.finish_and_clear();
-    outcome
+    Ok(outcome?)
 }
 
 /// What the run directory holds.

@@ -118,7 +118,7 @@ pub fn run_until(
     let file = ResumeFile::beside(&args.out, COMMAND);
     let left: Option<Left<Option<String>>> = args.resume.then(|| file.read(&args.out)).transpose()?;
     let output = args.report.as_deref().map(OutputDir::create).transpose()?;
-    let models = args.model.iter().map(|name| CyclicModel::from_option(name)).collect::<Result<Vec<_>>>()?;
+    let models = args.model.iter().map(|name| CyclicModel::from_option(name)).collect::<crate::Result<Vec<_>>>()?;
     let angles = AngleTable::read(&args.table)?;
     let begun = begun(args, &models)?;
     let mut run = TableRun::begin(&angles, &models, &options)?;
@@ -133,7 +133,7 @@ pub fn run_until(
     let ended =
         follow(&mut run, stop, notify, console).and_then(|is_complete| shown.write(&run, is_complete, stop, console));
     let seconds = left.map_or(0.0, |left| left.seconds) + start.elapsed().as_secs_f64();
-    let is_interrupted = ended.as_ref().is_err_and(|error| error.is::<Interrupted>());
+    let is_interrupted = ended.as_ref().is_err_and(|error| super::interrupted(error).is_some());
     let left = if is_interrupted { Some(Left::new(begun, run.finished(), seconds, None, run.saved()?)) } else { None };
     file.put(left.as_ref())?;
     ended
@@ -173,7 +173,7 @@ fn follow(run: &mut TableRun<'_>, stop: &AtomicBool, notify: &mut dyn FnMut(usiz
         notify(finished);
     });
     bar.finish_and_clear();
-    ended
+    Ok(ended?)
 }
 
 /// What is made of a run.
@@ -246,7 +246,7 @@ impl Shown<'_> {
             motions,
             overlay: drawn.as_ref(),
         };
-        report.write(&origin, self.angles, tracked, output)
+        Ok(report.write(&origin, self.angles, tracked, output)?)
     }
 
     /// Draws overlays and animation unless `stop` is set; reports on standard error what was skipped.

@@ -32,7 +32,7 @@ impl ViewerArgs {
         if cfg!(not(feature = "rerun")) {
             bail!("`--rerun` is not part of this build; `cargo install --locked --path host --features rerun` has it");
         }
-        crate::output::check_writable_file(file)
+        Ok(crate::output::check_writable_file(file)?)
     }
 
     /// Writes the file of the finished run in `run`, and says so; nothing if none was asked for.

@@ -1,6 +1,6 @@
 //! Section `[camera]`.
 
-use anyhow::{Result, bail};
+use crate::error::{Result, bail};
 use serde::{Deserialize, Serialize};
 use sinew_core::camera::{Camera, Distortion, Pixel};
 use sinew_core::error::{ParameterError, finite, positive, within};

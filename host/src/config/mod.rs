@@ -11,7 +11,7 @@ pub use camera::CameraConfig;
 pub use likelihood::{EdgeConfig, LikelihoodConfig};
 pub use tracker::{MAX_PARTICLES, options_for};
 
-use anyhow::{Context, Result, bail};
+use crate::error::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use sinew_core::tracker::arm::ArmOptions;
 use std::path::Path;

@@ -2,8 +2,8 @@
 
 use super::error::{CyclicError, read_text};
 use crate::csv_text::csv_reader;
+use crate::error::{Error, Result};
 use crate::output::write_atomically;
-use anyhow::Result;
 use std::path::Path;
 
 /// Angles of the stick figure.
@@ -254,7 +254,7 @@ impl AngleTable {
             writer
                 .write_record(std::iter::once(row.frame.to_string()).chain(angles).chain(row.extra.iter().cloned()))?;
         }
-        Ok(String::from_utf8(writer.into_inner()?)?)
+        String::from_utf8(writer.into_inner()?).map_err(Error::invalid)
     }
 
     /// Writes the CSV file under a temporary name, then renames it.

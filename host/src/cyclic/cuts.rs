@@ -2,8 +2,8 @@
 
 use super::error::{CyclicError, read_text};
 use crate::csv_text::csv_reader;
+use crate::error::Result;
 use crate::output::write_atomically;
-use anyhow::Result;
 use std::path::{Path, PathBuf};
 
 /// Columns of a cut list.

@@ -2,8 +2,8 @@
 
 use super::angle_table::{ANGLES, angle_columns};
 use super::model::{CyclicModel, DeviationNumbers, ModelNumbers, TrainedOn};
+use crate::error::{Context, Result, bail, ensure};
 use crate::model_text::{self, ModelFileKind};
-use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use sinew_core::numeric::semi_definite::packed_len;

@@ -2,8 +2,8 @@
 
 use super::heading::{headings, straightness};
 use super::image_joints::{ImageJoints, JointFrame};
+use crate::error::{Context, Result, bail};
 use crate::motion::joint_names::{HIP_CENTER, HIPS, JOINTS, NECK, SpatialJoints};
-use anyhow::{Context, Result, bail};
 use sinew_core::math::Vec3;
 
 /// From where the person is seen.

@@ -4,12 +4,12 @@ use super::angle_table::AngleTable;
 use super::image_joints::{ExtraColumns, ImageJoints};
 use super::projection::{Forward, Plane, UpAxis, View};
 use super::resample::resample;
+use crate::error::{Context, Result, bail, ensure};
 use crate::keypoints::{self, Facing};
 use crate::motion::joint_names::JointSources;
 use crate::motion::markers::MarkerMotion;
 use crate::motion::{self, ReadOptions};
 use crate::registry::{Kind, MOTION, choice, described, find};
-use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 
 /// How to turn a recording into an angle table.

@@ -3,7 +3,7 @@
 
 use super::angle_table::{ANGLES, AngleTable};
 use super::model::CyclicModel;
-use anyhow::{Context, Result};
+use crate::error::{Context, Result};
 use sinew_core::random::Stream;
 use std::f64::consts::TAU;
 

@@ -45,7 +45,7 @@ impl Diagnosis {
     }
 
     /// A good finding, or the problem that stands in its place.
-    pub(super) fn add_result(&mut self, result: anyhow::Result<String>) {
+    pub(super) fn add_result(&mut self, result: crate::error::Result<String>) {
         match result {
             Ok(text) => self.add(Severity::Good, text),
             Err(error) => self.add(Severity::Problem, format!("{error:#}")),

@@ -59,8 +59,8 @@ fn configuration(path: &Path) -> Diagnosis {
     match (arm, body) {
         (Ok(_), _) => diagnosis.add(Severity::Good, "`sinew track arm --config` takes it"),
         (_, Ok(_)) => diagnosis.add(Severity::Good, "`sinew track body --config` takes it"),
-        (_, Err(error)) if is_body => diagnosis.add(Severity::Problem, format!("{error:#}")),
-        (Err(error), _) => diagnosis.add(Severity::Problem, format!("{error:#}")),
+        (_, Err(error)) if is_body => diagnosis.add(Severity::Problem, error.chain().to_string()),
+        (Err(error), _) => diagnosis.add(Severity::Problem, error.chain().to_string()),
     }
     diagnosis
 }

@@ -2,7 +2,7 @@
 
 use super::colour::INK;
 use super::lettering::Lettering;
-use anyhow::{Result, ensure};
+use crate::error::{Result, ensure};
 use image::{Rgb, RgbImage, imageops};
 
 /// Width of a thumbnail, pixels; smaller frames keep their size.

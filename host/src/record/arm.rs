@@ -2,8 +2,8 @@
 
 use super::StreamWriter;
 use super::arm_run::ArmRun;
+use crate::error::Result;
 use crate::frames::{FrameReader, FrameView};
-use anyhow::Result;
 use sinew_core::math::Vec3;
 use sinew_record::{ArmInput, CANDIDATES_A_RECORD, CandidateChunk, EDGES_A_RECORD, EdgeChunk};
 

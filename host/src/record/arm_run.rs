@@ -1,9 +1,9 @@
 //! The run of one arm, as its `run.json` describes it.
 
 use crate::config::Config;
+use crate::error::{Context, Result, ensure};
 use crate::skin::{Rectangle, SkinModel};
 use crate::track::{ArmSet, FrameSource, SideChoice};
-use anyhow::{Context, Result, ensure};
 use image::RgbImage;
 use serde::Deserialize;
 use serde_json::Value;

@@ -2,8 +2,8 @@
 
 use super::StreamWriter;
 use super::arm_run::ArmRun;
+use crate::error::{Context, Result, bail};
 use crate::skin::model::ModelNumbers;
-use anyhow::{Context, Result, bail};
 use image::RgbImage;
 use sinew_core::camera::Pixel;
 use sinew_record::{ArmInput, ArmSetup, CameraLine, CameraSetup, LINE_PIXELS};

@@ -4,7 +4,7 @@ use super::StreamWriter;
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::tracking::{FilterName, Measurements, StartName, TrackingOptions};
 use crate::cyclic::{AngleTable, CyclicModel};
-use anyhow::{Context, Result, ensure};
+use crate::error::{Context, Result, ensure};
 use sinew_core::tracker::cyclic::FirstPhase;
 use sinew_record::{CyclicInput, CyclicSetup, model_checksum};
 

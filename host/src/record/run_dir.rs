@@ -7,7 +7,7 @@ use super::cyclic_stream;
 use crate::cyclic::report::document::FORMAT as CYCLIC_FORMAT;
 use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates};
 use crate::cyclic::{AngleTable, CyclicModel};
-use anyhow::{Context, Result, bail, ensure};
+use crate::error::{Context, Error, Result, bail, ensure};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::fs;
@@ -74,7 +74,8 @@ fn cyclic_run(summary: &Path) -> Result<Recorded> {
 /// The options as a report's summary has them.
 fn tracking_options(json: &Value) -> Result<TrackingOptions> {
     fn named<T: DeserializeOwned>(json: &Value, name: &str) -> Result<T> {
-        T::deserialize(&json[name]).map_err(|_| anyhow::anyhow!("summary.json has no option `{name}` that is known"))
+        T::deserialize(&json[name])
+            .map_err(|_| Error::Invalid(format!("summary.json has no option `{name}` that is known")))
     }
     let updates = match (json["update_every"].as_u64(), json["update_at"].as_array()) {
         (Some(every), _) => Updates::Every(every),

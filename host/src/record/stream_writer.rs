@@ -1,6 +1,6 @@
 //! Puts records one after the other.
 
-use anyhow::{Context, Result};
+use crate::error::{Context, Result};
 use sinew_record::{End, HEADER_BYTES, Payload, encode};
 
 /// A stream that grows.

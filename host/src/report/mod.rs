@@ -19,7 +19,7 @@ pub mod pictures;
 pub mod series;
 pub mod table;
 
-use anyhow::{Result, bail, ensure};
+use crate::error::{Result, bail, ensure};
 use document::{Document, FORMAT, Level, Notice, Run};
 use folder::RunFolder;
 use kind::Kind;

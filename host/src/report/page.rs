@@ -2,7 +2,7 @@
 
 use super::document::Document;
 use super::pictures::{Block, block_name};
-use anyhow::Result;
+use crate::error::Result;
 use serde::Serialize;
 use std::io::Write;
 

@@ -1,6 +1,6 @@
 //! Pictures as JPEG inside the page, of a size that is bounded for the whole page.
 
-use anyhow::{Context, Result};
+use crate::error::{Context, Result};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::codecs::jpeg::JpegEncoder;
@@ -77,7 +77,7 @@ impl Pictures {
                 .enumerate()
                 .map(|(index, path)| match path {
                     Some(path) if wanted(index) => match load(path) {
-                        Some(image) => jpeg(&image, rung).map(Some).map_err(|error| format!("{error:#}")),
+                        Some(image) => jpeg(&image, rung).map(Some).map_err(|error| error.chain().to_string()),
                         None => Err(path.display().to_string()),
                     },
                     _ => Ok(None),

@@ -1,7 +1,7 @@
 //! How a run was begun, so that it is gone on with in the same way only.
 
 use super::REMEDY;
-use anyhow::{Context, Result, bail, ensure};
+use crate::error::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;

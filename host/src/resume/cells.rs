@@ -1,8 +1,8 @@
 //! Cells of an evaluation: each is kept as it ends, so that an evaluation which was broken off goes on with the missing ones.
 
 use super::{Begun, Interrupted, REMEDY};
+use crate::error::{Context, Error, Result, WriteContext};
 use crate::output::OutputDir;
-use anyhow::{Context, Result, bail};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -91,7 +91,11 @@ impl<'a> Cells<'a> {
     ///
     /// # Errors
     /// As `measure`; [`Interrupted`] once `stop` says so; a file that cannot be written.
-    pub fn cell<T: Serialize + DeserializeOwned>(&self, key: &Value, measure: impl FnOnce() -> Result<T>) -> Result<T> {
+    pub fn cell<T, E>(&self, key: &Value, measure: impl FnOnce() -> Result<T, E>) -> Result<T, E>
+    where
+        T: Serialize + DeserializeOwned,
+        E: From<Error>,
+    {
         let Some(kept) = &self.kept else { return measure() };
         let name = format!("{:016x}.json", hash(key));
         let known = || -> Option<T> {
@@ -122,7 +126,7 @@ impl<'a> Cells<'a> {
         match &self.kept {
             Some(kept) if (kept.stop)() => {
                 let finished = self.finished.load(Ordering::Relaxed);
-                bail!(Interrupted { finished, all: None, unit: "cells", out: kept.out.clone() })
+                Err(Interrupted { finished, all: None, unit: "cells", out: kept.out.clone() }.into())
             }
             _ => Ok(()),
         }
@@ -151,7 +155,7 @@ fn remove(folder: &Path) -> Result<()> {
         }
         Ok(())
     };
-    inner().with_context(|| format!("`{}` cannot be emptied; remove it", folder.display()))?;
+    inner().writing(|| format!("`{}` cannot be emptied; remove it", folder.display()))?;
     // What is not from here stays.
     let _ = fs::remove_dir(folder);
     Ok(())
@@ -184,9 +188,9 @@ mod tests {
         let never = || -> Result<f64> { panic!("it is known") };
         let third: f64 = 1.0 / 3.0;
         let cells = Cells::keep(&out, &begun(1), false, &stop).unwrap();
-        assert_eq!(cells.cell(&json!(["a", 1]), || Ok(third)).unwrap(), third);
+        assert_eq!(cells.cell(&json!(["a", 1]), || -> Result<f64> { Ok(third) }).unwrap(), third);
         assert_eq!(cells.cell(&json!(["a", 1]), never).unwrap().to_bits(), third.to_bits());
-        assert!(cells.cell(&json!(["b", 1]), || Ok(f64::NAN)).unwrap().is_nan());
+        assert!(cells.cell(&json!(["b", 1]), || -> Result<f64> { Ok(f64::NAN) }).unwrap().is_nan());
         ended.store(true, Ordering::Relaxed);
         let error = cells.cell(&json!(["a", 2]), never).unwrap_err();
         assert_eq!(error.downcast_ref::<Interrupted>().unwrap().finished, 3);
@@ -195,7 +199,11 @@ mod tests {
 
         let again = Cells::keep(&out, &begun(1), true, &stop).unwrap();
         assert_eq!(again.cell(&json!(["a", 1]), never).unwrap().to_bits(), third.to_bits());
-        assert_eq!(again.cell(&json!(["b", 1]), || Ok(2.0)).unwrap(), 2.0, "what JSON cannot hold is measured again");
+        assert_eq!(
+            again.cell(&json!(["b", 1]), || -> Result<f64> { Ok(2.0) }).unwrap(),
+            2.0,
+            "what JSON cannot hold is measured again"
+        );
         let message = Cells::keep(&out, &begun(2), true, &stop).unwrap_err().to_string();
         assert!(message.contains("begun with seed = 1, not 2") && message.contains(REMEDY), "{message}");
         fs::write(out.join("unfinished/notes.txt"), "mine").unwrap();
@@ -203,6 +211,6 @@ mod tests {
         assert_eq!(fs::read_dir(out.join(CELLS_FOLDER)).unwrap().count(), 1);
         let message = Cells::keep(&out, &begun(1), true, &stop).unwrap_err().to_string();
         assert!(message.contains("holds no unfinished evaluation"), "{message}");
-        assert_eq!(Cells::not_kept().cell(&json!(1), || Ok(3)).unwrap(), 3);
+        assert_eq!(Cells::not_kept().cell(&json!(1), || -> Result<u8> { Ok(3) }).unwrap(), 3);
     }
 }

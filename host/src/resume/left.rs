@@ -2,8 +2,8 @@
 
 use super::begun::copy_with_crc32;
 use super::{Begun, REMEDY, file_crc32};
+use crate::error::{Context, Result, WriteContext, bail, ensure};
 use crate::output::{OutputDir, PendingFile, write_atomically};
-use anyhow::{Context, Result, bail, ensure};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -109,7 +109,7 @@ impl ResumeFile {
             Some(left) => write_atomically(&self.path, |writer| Ok(serde_json::to_writer_pretty(writer, left)?)),
             None => match fs::remove_file(&self.path) {
                 Err(error) if self.path.exists() => {
-                    Err(error).context(format!("`{}` cannot be removed", self.path.display()))
+                    Err(error).writing(|| format!("`{}` cannot be removed", self.path.display()))
                 }
                 _ => Ok(()),
             },

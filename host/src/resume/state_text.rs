@@ -1,7 +1,7 @@
 //! States as text inside JSON: the core's saved state, with its checksum, in base64.
 
 use super::REMEDY;
-use anyhow::{Context, Result};
+use crate::error::{Context, Error, Result};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use sinew_core::saved_state::{SavedState, StateKind, StateVisitor, restore, save, saved_bytes};
@@ -21,7 +21,7 @@ pub fn to_text(kind: StateKind, state: &mut impl SavedState) -> Result<String> {
 /// # Errors
 /// The text is not whole, or of another kind of state.
 pub fn from_text(kind: StateKind, text: &str, state: &mut impl SavedState) -> Result<()> {
-    let mut inner = || -> Result<()> { Ok(restore(kind, 0, state, &STANDARD.decode(text)?)?) };
+    let mut inner = || -> Result<()> { Ok(restore(kind, 0, state, &STANDARD.decode(text).map_err(Error::invalid)?)?) };
     inner().with_context(|| format!("what the run left is not whole; {REMEDY}"))
 }
 

@@ -1,9 +1,9 @@
 //! Writes a scene as a folder: frames, camera and truth.
 
 use super::{Scene, truth};
+use crate::error::Result;
 use crate::motion::ArmSide;
 use crate::output::OutputDir;
-use anyhow::Result;
 use rayon::prelude::*;
 
 impl Scene {

@@ -1,6 +1,6 @@
 //! The words of a one-bit image; the image itself is the core's mask.
 
-use anyhow::Result;
+use crate::error::Result;
 use image::{GrayImage, Luma};
 use sinew_core::vision::frame::{DEFAULT_CLOSING_FRACTION, closing_steps};
 use sinew_core::vision::mask::{Mask, MaskMut, words_per_row};

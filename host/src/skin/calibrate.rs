@@ -4,7 +4,7 @@ use super::colour_cube::{CELLS, cell_of, relit, smooth};
 use super::gaussian::{GaussianModel, Moments, chromaticity};
 use super::histogram::{HistogramModel, SMOOTHING_STD_CELLS};
 use super::model::{ModelNumbers, SkinModel};
-use anyhow::{Result, bail, ensure};
+use crate::error::{Result, bail, ensure};
 use image::RgbImage;
 use serde::Serialize;
 use sinew_core::vision::white_balance::Gains;

@@ -3,7 +3,7 @@
 use super::threshold::{Choice, ColourLevels, cross_validate};
 use super::training_set::{Source, TrainingSet, Unit};
 use super::white_balance::WhiteBalance;
-use anyhow::{Result, bail};
+use crate::error::{Result, bail};
 use serde::{Deserialize, Serialize};
 use sinew_core::vision::skin::GaussianSkin;
 use sinew_core::vision::white_balance::Gains;

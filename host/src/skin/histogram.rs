@@ -7,7 +7,7 @@
 use super::colour_cube::{CELLS, cell_of, centre_of, over_brightness, relit, smooth};
 use super::threshold::{Choice, ColourLevels, cross_validate};
 use super::training_set::{TrainingSet, Unit};
-use anyhow::{Result, bail};
+use crate::error::{Result, bail};
 use sinew_core::vision::skin::{CUBE_WORDS, HistogramSkin};
 
 /// Strengths of light under which each training pixel is counted.

@@ -1,6 +1,6 @@
 //! Labelled pixels in the form of the UCI "Skin Segmentation" set: rows `B G R label`, 1 = skin, 2 = not skin.
 
-use anyhow::{Context, Result, bail};
+use crate::error::{Context, Result, bail};
 use std::fs;
 use std::path::Path;
 

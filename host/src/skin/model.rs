@@ -5,7 +5,7 @@ use super::confusion::Scores;
 use super::gaussian::GaussianModel;
 use super::histogram::HistogramModel;
 use super::white_balance::WhiteBalance;
-use anyhow::Result;
+use crate::error::Result;
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use sinew_core::vision::frame::segment;

@@ -1,8 +1,8 @@
 //! Pairs of an image and its skin mask, found by name.
 
 use super::bit_image::BitImage;
+use crate::error::{Context, Result, bail};
 use crate::images::{ImageFileError, list_images, load_rgb};
-use anyhow::{Context, Result, bail};
 use image::{DynamicImage, RgbImage};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

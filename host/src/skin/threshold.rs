@@ -40,8 +40,8 @@ pub fn cross_validate<M: ColourLevels>(
     fold_count: usize,
     seed: u64,
     level_count: usize,
-    train: impl Fn(&[&Unit]) -> anyhow::Result<M>,
-) -> anyhow::Result<Curve> {
+    train: impl Fn(&[&Unit]) -> crate::error::Result<M>,
+) -> crate::error::Result<Curve> {
     let fold_of = folds::assign(set.units.len(), fold_count, seed);
     let mut groups = vec![vec![Confusion::default(); level_count]; set.groups.len()];
     for fold in 0..fold_count {

@@ -7,7 +7,7 @@ use super::pairs::{Pair, PairList, short_name};
 use super::threshold::Choice;
 use super::training_set::{Source, TrainingSet, Unit};
 use super::{gaussian, histogram};
-use anyhow::{Result, bail, ensure};
+use crate::error::{Result, bail, ensure};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 

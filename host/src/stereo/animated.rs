@@ -1,7 +1,7 @@
 //! A body that the solver moves by goals of its joints: the built-in motions.
 
 use crate::body::BodyJoints;
-use anyhow::Result;
+use crate::error::Result;
 use sinew_core::kinematics::forward::posture;
 use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
 use sinew_core::math::{Mat3, Vec3};

@@ -2,7 +2,7 @@
 
 use super::animated::{AnimatedBody, FIRM, goal};
 use crate::body::BodyRecording;
-use anyhow::Result;
+use crate::error::Result;
 use sinew_core::kinematics::inverse::Goal;
 use sinew_core::math::{Mat3, Vec3, axis_rotation, sin_cos};
 use sinew_core::skeleton::full_body::{BODY_RADII_M, FEET, FOREARMS, HEAD, PELVIS, SHANKS, THIGHS, TRUNK};

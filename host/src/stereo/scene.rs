@@ -7,7 +7,7 @@ use super::markers::markers;
 use super::patches::{Disc, Patches};
 use super::visible::{VisiblePixel, capsules, visible_pixels};
 use crate::body::{BodyJoints, BodyPart, BodyRecording, measure};
-use anyhow::{Result, ensure};
+use crate::error::{Result, ensure};
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
 use sinew_core::random::Stream;

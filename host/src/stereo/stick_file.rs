@@ -2,7 +2,7 @@
 
 use super::camera::StereoCamera;
 use super::stick_wave::StickEnds;
-use anyhow::{Context, Result, bail, ensure};
+use crate::error::{Context, Result, bail, ensure};
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
 use std::fmt::Write;

@@ -2,7 +2,7 @@
 
 use super::animated::{AnimatedBody, FIRM, goal};
 use crate::body::BodyRecording;
-use anyhow::Result;
+use crate::error::Result;
 use sinew_core::math::{Vec3, sin_cos, unit};
 use sinew_core::random::Stream;
 use sinew_core::skeleton::full_body::{COLLARS, FOREARMS};

@@ -3,7 +3,7 @@
 use super::markers::MARKERS;
 use super::scene::StereoScene;
 use crate::body::BodyJoints;
-use anyhow::{Context, Result, bail, ensure};
+use crate::error::{Context, Result, bail, ensure};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::full_body::{BODY_BONES, BODY_JOINT_NAMES};
 use std::fmt::Write;

@@ -1,9 +1,9 @@
 //! One arm or both, with their models: what `track arm`, `demo` and `evaluate arm` step through.
 
 use crate::config::{BodyConfig, Config, options_for};
+use crate::error::Result;
 use crate::frames::FrameView;
 use crate::resume::{from_text, to_text};
-use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::Vec3;

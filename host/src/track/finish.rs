@@ -5,9 +5,9 @@ use super::resume;
 use super::run::{Event, TrackRun};
 use super::sample::HandSample;
 use super::source::FrameSource;
+use crate::error::{Error, Result};
 use crate::output::finish_table;
 use crate::resume::Interrupted;
-use anyhow::{Result, anyhow};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -45,9 +45,9 @@ impl TrackRun {
         if let Err(error) = tracked {
             let kept = match &written {
                 Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
-                Err(other) => format!("and then {other:#}"),
+                Err(other) => format!("and then {}", other.chain()),
             };
-            return Err(anyhow!("{error:#}; {kept}"));
+            return Err(Error::Unfinished { error: Box::new(error), kept });
         }
         let outcome = written?;
         if interrupted {

@@ -1,7 +1,7 @@
 //! The frames of a run: one folder of images of one size, checked before anything is tracked.
 
+use crate::error::{Result, bail};
 use crate::images::{ImageFileError, list_images, load_rgb};
-use anyhow::{Result, bail};
 use image::{ImageReader, RgbImage};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

@@ -2,9 +2,9 @@
 
 use super::arms::{ArmSet, ArmView};
 use super::source::FrameSource;
+use crate::error::{Result, bail};
 use crate::frames::FrameView;
 use crate::output::OutputDir;
-use anyhow::{Result, bail};
 use image::RgbImage;
 
 /// What one frame's overlay would show.

@@ -9,10 +9,10 @@ use super::report::RunReport;
 use super::sample::HandSample;
 use super::source::FrameSource;
 use super::table::{HEADER, TrackRow};
+use crate::error::{Context, Result, WriteContext, bail};
 use crate::frames::{FrameReader, FrameView};
 use crate::output::{OutputDir, PendingFile};
 use crate::skin::SkinModel;
-use anyhow::{Context, Result, bail};
 use image::RgbImage;
 use sinew_core::camera::Camera;
 use std::path::Path;
@@ -180,10 +180,10 @@ impl TrackRun {
 
     fn record(&mut self, row: &TrackRow) -> Result<()> {
         let estimate = &row.view.estimate;
-        self.track.write_record(row.cells(&self.camera)).context("`track.csv` cannot be written")?;
+        self.track.write_record(row.cells(&self.camera)).writing(|| "`track.csv` cannot be written")?;
         if let Some(particles) = &mut self.particles {
             for cells in particle_rows(row.frame, &row.view, &self.camera) {
-                particles.write_record(cells).context("`particles.csv` cannot be written")?;
+                particles.write_record(cells).writing(|| "`particles.csv` cannot be written")?;
             }
         }
         self.report.count(estimate.side, estimate.status);

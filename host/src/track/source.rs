@@ -1,10 +1,10 @@
 //! Where the frames of a run come from: a folder of images, or a video.
 
 use super::input::{FrameFolder, SkippedImage};
+use crate::error::{Result, ensure};
 use crate::images::video::frame_name;
 use crate::images::{VideoError, VideoFrames, is_video};
 use crate::registry::{Kind, extensions};
-use anyhow::{Result, ensure};
 use image::RgbImage;
 use rayon::prelude::*;
 use std::fs;

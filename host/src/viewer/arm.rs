@@ -6,7 +6,6 @@ use super::recording::{Moment, Recording};
 use crate::frames::FrameReader;
 use crate::record::SeenFrames;
 use crate::track::{FrameFolder, FrameSource};
-use anyhow::Result;
 use re_sdk_types::archetypes::{Clear, EncodedImage, LineStrips2D, LineStrips3D, Pinhole, Points2D, ViewCoordinates};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -43,7 +42,7 @@ pub(super) fn write(folder: &Path, report: &Value, recording: &mut Recording<'_>
                     .to_owned(),
             ),
         },
-        Err(error) => shown.notes.push(format!("no pictures and no blobs: {error:#}")),
+        Err(error) => shown.notes.push(format!("no pictures and no blobs: {}", error.chain())),
     }
     for side in track.distinct_sides() {
         arm(&track, &side, &frames, recording)?;

@@ -4,8 +4,8 @@ use super::marks::{Shown, colour, scalars, weighted_points};
 use super::numbers::Numbers;
 use super::recording::{Moment, Recording};
 use crate::cloud::{self, CloudFolder};
+use crate::error::{Context, Result};
 use crate::report::body::BONES;
-use anyhow::{Context, Result};
 use re_sdk_types::archetypes::{LineStrips3D, Points3D, ViewCoordinates};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -28,7 +28,7 @@ pub(super) fn write(folder: &Path, report: &Value, recording: &mut Recording<'_>
     let clouds = report["inputs"]["clouds"].as_str().context("run.json has no clouds");
     match clouds.and_then(|clouds| Ok(CloudFolder::open(Path::new(clouds))?)) {
         Ok(clouds) => points(&clouds, &frames, recording)?,
-        Err(error) => shown.notes.push(format!("no points: {error:#}")),
+        Err(error) => shown.notes.push(format!("no points: {}", error.chain())),
     }
     let skeleton = (0..track.len()).filter_map(|row| {
         let moment = *frames.get(&track.frame(row)?)?;

@@ -6,10 +6,10 @@ use super::recording::{Moment, Recording};
 use crate::cyclic::angle_table::angle_columns;
 use crate::cyclic::export::trc::MARKERS;
 use crate::cyclic::report::ESTIMATES;
+use crate::error::{Context, Result};
 use crate::images::load_rgb;
 use crate::motion::trc;
 use crate::report::pictures::overlay_of;
-use anyhow::{Context, Result};
 use re_sdk_types::archetypes::{EncodedImage, LineStrips3D, ViewCoordinates};
 use serde_json::Value;
 use sinew_core::skeleton::stick_figure::HUMAN;
@@ -39,7 +39,7 @@ pub(super) fn write(folder: &Path, summary: &Value, recording: &mut Recording<'_
     }
     let figure = figure(folder, &frames, recording);
     if let Err(error) = figure {
-        shown.notes.push(format!("no figure: {error:#}"));
+        shown.notes.push(format!("no figure: {}", error.chain()));
     }
     pictures(summary, &frames, recording)?;
     Ok(shown)

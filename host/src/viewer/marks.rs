@@ -2,8 +2,8 @@
 
 use super::numbers::Numbers;
 use super::recording::{Moment, Recording};
+use crate::error::Result;
 use crate::report::document::Colour;
-use anyhow::Result;
 use image::RgbImage;
 use image::codecs::jpeg::JpegEncoder;
 use re_sdk_types::archetypes::{Points3D, Scalars};

@@ -11,10 +11,10 @@ pub mod recording;
 
 pub use marks::Shown;
 
+use crate::error::{Context, Result, bail};
 use crate::output::write_atomically;
 use crate::report::folder::RunFolder;
 use crate::report::kind::Kind;
-use anyhow::{Context, Result, bail};
 use recording::Recording;
 use serde_json::Value;
 use sinew_core::checksum::crc32;

@@ -1,6 +1,6 @@
 //! Columns of a run's tables as numbers, row by row of a file of any length.
 
-use anyhow::{Context, Result};
+use crate::error::{Context, Result};
 use std::collections::BTreeMap;
 use std::path::Path;
 

@@ -1,6 +1,6 @@
 //! The file itself: rows of entities in chunks. Ids are counted and not taken from a clock, so the same run gives the same ids.
 
-use anyhow::{Context, Result};
+use crate::error::{Context, Result};
 use re_chunk::{Chunk, ChunkId, RowId, TimePoint, Timeline};
 use re_log_encoding::{Encoder, EncodingOptions};
 use re_log_types::{LogMsg, SetStoreInfo, StoreId, StoreInfo, StoreKind, StoreSource};

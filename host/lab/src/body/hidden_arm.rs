@@ -90,7 +90,7 @@ pub fn follow(
     seed: u64,
 ) -> Result<Vec<HiddenArm>> {
     let key = json!(["hidden arms", motion, seen.key(), model.name(), particles, seed]);
-    let courses: Vec<Option<Course>> = cells.cell(&key, || {
+    let courses: Vec<Option<Course>> = cells.cell(&key, || -> Result<_> {
         let (_, estimates) = trial(seen, model, tuning, particles, seed)?;
         Ok(windows.iter().map(|hidden| course(seen, &estimates, hidden)).collect())
     })?;

@@ -129,7 +129,7 @@ fn begun(args: &EvaluateBodyArgs, tuning: &BodyTuning) -> Result<Begun> {
         "hide_arms": args.hide_arms,
         "config": tuning,
     });
-    Begun::new("evaluate body", &options, &[])
+    Ok(Begun::new("evaluate body", &options, &[])?)
 }
 
 /// All cells, and the figures of what models predict.
@@ -147,7 +147,9 @@ fn evaluate(
         let read = motion.read_turned(args.skeleton.as_deref(), args.heading.to_radians())?;
         let seeds = (1..=args.trials).into_par_iter();
         let seen: Vec<SeenMotion> = seeds
-            .map(|seed| cells.go_on().and_then(|()| read.seen_hiding(args.body, seed, &args.hide)))
+            .map(|seed| {
+                cells.go_on().map_err(anyhow::Error::from).and_then(|()| read.seen_hiding(args.body, seed, &args.hide))
+            })
             .collect::<Result<_>>()?;
         let of_truth: Vec<f64> = seen.iter().map(SeenMotion::smoothness_m).collect();
         let truth = (motion.name(), Measured::of(&of_truth).mean);
@@ -195,7 +197,7 @@ fn cell(
     let mut trials: Vec<TrialResult> = Vec::with_capacity(seen.len());
     for (seed, motion) in (1..).zip(seen) {
         let key = json!(["trial", name, motion.key(), model.name(), particles, seed]);
-        trials.push(cells.cell(&key, || Ok(trial(motion, model, tuning, particles, seed)?.0))?);
+        trials.push(cells.cell(&key, || trial(motion, model, tuning, particles, seed).map(|trial| trial.0))?);
         progress.inc(1);
     }
     let of = |value: fn(&TrialResult) -> f64| Measured::of(&trials.iter().map(value).collect::<Vec<_>>());

@@ -5,10 +5,10 @@ use super::report::BodyRunReport;
 use super::resume;
 use super::track::{BodyEvent, BodyTrackRun, Notify};
 use crate::body::export::{body_layout, bvh_frame, upwards};
+use crate::error::{Error, Result};
 use crate::motion::export::{BvhFrame, TrcFrame, TrcHeading, TrcUnit, to_trc, write_bvh};
 use crate::output::finish_table;
 use crate::resume::Interrupted;
-use anyhow::{Result, anyhow};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::full_body::BODY_JOINT_NAMES;
 use std::sync::atomic::AtomicBool;
@@ -39,9 +39,9 @@ impl BodyTrackRun {
         if let Err(error) = tracked {
             let kept = match &written {
                 Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
-                Err(other) => format!("and then {other:#}"),
+                Err(other) => format!("and then {}", other.chain()),
             };
-            return Err(anyhow!("{error:#}; {kept}"));
+            return Err(Error::Unfinished { error: Box::new(error), kept });
         }
         let report = written?;
         if interrupted {

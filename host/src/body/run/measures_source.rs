@@ -2,9 +2,9 @@
 
 use crate::body::recording::BodyRecording;
 use crate::body::{BodyFile, BodySources, measure};
+use crate::error::{Context, Result, bail, ensure};
 use crate::motion::{self, DEFAULT_FRAMES_PER_SECOND, MarkerMotion, ReadOptions, amc, asf};
 use crate::registry::{Kind, MEASURABLE, extensions, find};
-use anyhow::{Context, Result, bail, ensure};
 use sinew_core::kinematics::forward::posture;
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::BodyMeasures;

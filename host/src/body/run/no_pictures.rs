@@ -2,8 +2,8 @@
 
 use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
+use crate::error::{Result, bail};
 use crate::output::OutputDir;
-use anyhow::{Result, bail};
 use sinew_core::math::Vec3;
 
 /// There is none.

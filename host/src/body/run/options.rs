@@ -2,7 +2,7 @@
 
 use crate::body::BodyPart;
 use crate::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
-use anyhow::{Result, ensure};
+use crate::error::{Result, ensure_option};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -58,13 +58,13 @@ impl BodyTrackOptions {
     /// # Errors
     /// Names the option and its range.
     pub fn check(&self) -> Result<()> {
-        ensure!(
+        ensure_option!(
             (1..=MAX_BODY_PARTICLES).contains(&self.particles),
             "--particles has to be from 1 to {MAX_BODY_PARTICLES}, not {}",
             self.particles
         );
         if let Some(threads) = self.threads {
-            ensure!(
+            ensure_option!(
                 (1..=MAX_THREADS).contains(&threads),
                 "--threads has to be from 1 to {MAX_THREADS}, not {threads}; leave it out for all"
             );
@@ -72,7 +72,7 @@ impl BodyTrackOptions {
         if let Some(rate_hz) = self.rate_hz {
             check_rate("--rate", rate_hz)?;
         }
-        ensure!(
+        ensure_option!(
             self.stick.is_none() || self.model == BodyModelKind::Stick,
             "--stick is for --model stick, and the model is {}; choose one of both",
             self.model.name()
@@ -87,6 +87,6 @@ impl BodyTrackOptions {
 /// If it is outside [`RATES_HZ`].
 pub fn check_rate(name: &str, rate_hz: f32) -> Result<()> {
     let [low, high] = RATES_HZ;
-    ensure!((low..=high).contains(&rate_hz), "{name} has to be from {low} to {high} Hz, not {rate_hz}");
+    ensure_option!((low..=high).contains(&rate_hz), "{name} has to be from {low} to {high} Hz, not {rate_hz}");
     Ok(())
 }

@@ -5,8 +5,8 @@ use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::draw::body_views::{body_views, drawn_bones, sheet};
 use crate::draw::contact_sheet::ContactSheet;
 use crate::draw::plot::{Curve, curves_plot};
+use crate::error::Result;
 use crate::output::OutputDir;
-use anyhow::Result;
 use image::RgbImage;
 use sinew_core::math::Vec3;
 

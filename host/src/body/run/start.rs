@@ -2,7 +2,7 @@
 
 use crate::body::BodyPart;
 use crate::body::tracking::tuning::PointTuning;
-use anyhow::Result;
+use crate::error::Result;
 use sinew_core::kinematics::inverse::{PoseDensity, Solve};
 use sinew_core::math::Vec3;
 use sinew_core::observation::point_cloud::PointBlock;

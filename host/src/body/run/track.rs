@@ -11,8 +11,8 @@ use super::{particles, table};
 use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::cloud::{self, CloudFrame, MAX_POINTS, blocks_of};
+use crate::error::{Context, Result, WriteContext, bail};
 use crate::output::{OutputDir, PendingFile};
-use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sinew_core::math::Vec3;
@@ -198,10 +198,10 @@ impl BodyTrackRun {
         let points_m = cloud.map_or(&[][..], |cloud| &cloud.points_m);
         self.table
             .write_record(table::cells(self.inputs.part, frame, &estimate, points_m.len()))
-            .context("`track.csv` cannot be written")?;
+            .writing(|| "`track.csv` cannot be written")?;
         if let Some(particles) = &mut self.particles {
             for row in particles::rows(self.inputs.part, frame, &self.filter) {
-                particles.write_record(row).context("`particles.csv` cannot be written")?;
+                particles.write_record(row).writing(|| "`particles.csv` cannot be written")?;
             }
         }
         self.take(self.report.frames_finished, Answer { frame, estimate }, points_m);

@@ -1,7 +1,7 @@
 //! `--config` of `sinew track body`: a TOML file with any of the numbers of [`BodyTuning`]; the others keep their defaults.
 
 use crate::body::tracking::BodyTuning;
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use crate::error::{Context, Error, Result, bail, ensure};
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -40,7 +40,7 @@ pub fn load(path: &Path) -> Result<BodyTuning> {
 /// As [`load`].
 pub fn parse(text: &str) -> Result<BodyTuning> {
     let given: Table = toml::from_str(text).context("it is not valid TOML")?;
-    let mut all = Table::try_from(BodyTuning::default())?;
+    let mut all = Table::try_from(BodyTuning::default()).map_err(Error::invalid)?;
     let known = keys("", &all);
     overlay("", &mut all, given, &known)?;
     check("", &all)?;
@@ -53,7 +53,7 @@ pub fn parse(text: &str) -> Result<BodyTuning> {
 /// None for the defaults that are built in.
 pub fn printed() -> Result<String> {
     // Serialised at once and not as a table, which would hold doubles: 0.05 stays 0.05.
-    let numbers = toml::to_string(&BodyTuning::default())?;
+    let numbers = toml::to_string(&BodyTuning::default()).map_err(Error::invalid)?;
     Ok(format!(
         "# Defaults of `sinew track body`. Every line may be left out. Metres, radians; standard deviations grow with the root of\n\
          # time and hold after one second (docs/track_body.md).\n\n{numbers}"
@@ -111,7 +111,9 @@ fn check(prefix: &str, table: &Table) -> Result<()> {
                 let most = if key == "pulling_blocks" { MAX_PULLING_BLOCKS } else { MAX_SOLVER_STEPS };
                 ensure!((1..=most).contains(count), "`{full}` has to be from 1 to {most}, not {count}");
             }
-            Value::Float(number) => check_number(key, &full, *number).map_err(|rule| anyhow!("`{full}` {rule}"))?,
+            Value::Float(number) => {
+                check_number(key, &full, *number).map_err(|rule| Error::Invalid(format!("`{full}` {rule}")))?
+            }
             _ => {}
         }
     }

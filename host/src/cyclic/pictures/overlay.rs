@@ -7,10 +7,10 @@ use crate::cyclic::tracking::Tracked;
 use crate::cyclic::tracking::summary::cadence_per_min;
 use crate::cyclic::{AngleTable, CyclicError};
 use crate::draw::stick_figure::{FigureStyle, caption, draw_figure};
+use crate::error::{Context, Result};
 use crate::images::{InputError, list_images, load_rgb};
 use crate::output::OutputDir;
 use crate::track::pictures::overlay_names;
-use anyhow::{Result, anyhow};
 use image::RgbImage;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -82,7 +82,7 @@ impl OverlayFrames {
             .filter(|_| !stop.load(Ordering::Relaxed))
             .map(|row| {
                 let figure = &figures[*row];
-                let file = image(figure.frame).ok_or_else(|| anyhow!("frame {} has no image", figure.frame))?;
+                let file = image(figure.frame).with_context(|| format!("frame {} has no image", figure.frame))?;
                 let mut picture = match load_rgb(file) {
                     Ok(picture) => picture,
                     Err(error) => return Ok(Some(error.to_string())),

@@ -8,8 +8,8 @@ use crate::cyclic::AngleTable;
 use crate::cyclic::anatomy::{repetition, symmetry};
 use crate::cyclic::export::{mot, series::to_csv, trc};
 use crate::cyclic::tracking::{Tracked, table};
+use crate::error::Result;
 use crate::output::OutputDir;
-use anyhow::Result;
 
 /// File of the estimates.
 pub const ESTIMATES: &str = "estimates.csv";

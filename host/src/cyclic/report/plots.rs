@@ -8,7 +8,7 @@ use crate::cyclic::angle_table::COLUMNS;
 use crate::cyclic::tracking::summary::cadence_per_min;
 use crate::cyclic::tracking::{Tracked, Updates};
 use crate::draw::plot::{Curve, bars_plot, curves_plot};
-use anyhow::Result;
+use crate::error::Result;
 use image::RgbImage;
 
 /// Half width of a normal's 90 % band, standard deviations.

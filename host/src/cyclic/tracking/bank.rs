@@ -5,7 +5,7 @@ use super::options::TrackingOptions;
 use super::run::{Tracked, TrackedFrame, cycles};
 use crate::cyclic::turns::nearest_turn;
 use crate::cyclic::{AngleTable, CyclicModel};
-use anyhow::Result;
+use crate::error::Result;
 use sinew_core::cyclic::MotionModel;
 use sinew_core::cyclic::events::CycleCounter;
 use sinew_core::cyclic::recognition::bank::MotionBank;

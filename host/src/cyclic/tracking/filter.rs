@@ -4,7 +4,7 @@ use super::options::{FilterName, StartName, TrackingOptions};
 use super::particles::ParticleFilter;
 use super::wide_vectors::{coupled_step, kalman_step};
 use crate::cyclic::smoothing::{CoupledState, KalmanState, Smoothed, backward};
-use anyhow::Result;
+use crate::error::Result;
 use sinew_core::cyclic::particle::propose::{ParticleOptions, Spread};
 use sinew_core::cyclic::{
     AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel,

@@ -3,7 +3,7 @@
 use super::TrackingOptions;
 use super::run::{first_seen, measured, step_of};
 use crate::cyclic::AngleTable;
-use anyhow::{Result, ensure};
+use crate::error::{Result, ensure};
 use sinew_core::cyclic::measurement::MAX_STEP_FRAMES;
 use sinew_core::cyclic::{AngleMeasurement, MotionModel};
 

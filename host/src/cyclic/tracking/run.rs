@@ -2,7 +2,7 @@
 
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
 use crate::cyclic::{AngleRow, AngleTable};
-use anyhow::{Result, bail};
+use crate::error::{Result, bail};
 use sinew_core::cyclic::CyclicEstimate;
 use sinew_core::cyclic::events::CycleCounter;
 use sinew_core::cyclic::measurement::MAX_STEP_FRAMES;

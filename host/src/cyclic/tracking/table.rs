@@ -2,8 +2,8 @@
 
 use super::run::Tracked;
 use crate::cyclic::angle_table::{ANGLES, COLUMNS, SPACE_ANGLES, angle_columns};
+use crate::error::{Error, Result};
 use crate::output::write_atomically;
-use anyhow::Result;
 use std::path::Path;
 
 /// Columns after the angles.
@@ -68,7 +68,7 @@ pub fn to_csv(tracked: &Tracked, motions: Option<&MotionCells>) -> Result<String
         let cells = std::iter::once(frame.frame.to_string()).chain(angles).chain(derived).chain(stds).chain(motion);
         writer.write_record(cells)?;
     }
-    Ok(String::from_utf8(writer.into_inner()?)?)
+    String::from_utf8(writer.into_inner()?).map_err(Error::invalid)
 }
 
 /// Six decimals in [0, 1): what would round up to one is the start of the next cycle.

@@ -6,8 +6,8 @@ use super::run::Tracked;
 use super::walk::Walk;
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
 use crate::cyclic::{AngleTable, CyclicModel};
+use crate::error::{Result, ensure};
 use crate::resume::{REMEDY, from_text, to_text};
-use anyhow::{Result, ensure};
 use sinew_core::saved_state::{SavedState, StateKind, StateVisitor};
 use std::sync::atomic::{AtomicBool, Ordering};
 

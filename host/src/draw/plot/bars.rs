@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, plottable};
 use super::figure::{Area, INK, Names, ZOOM, chart, px, render, text};
-use anyhow::{Result, ensure};
+use crate::error::{Result, ensure};
 use image::RgbImage;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

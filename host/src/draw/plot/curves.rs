@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, log_place, plottable};
 use super::figure::{INK, Key, Names, ZOOM, band, broken_line, chart, legend, px, render, text};
-use anyhow::{Result, ensure};
+use crate::error::{Result, ensure};
 use image::RgbImage;
 use plotters::prelude::*;
 

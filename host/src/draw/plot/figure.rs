@@ -1,7 +1,7 @@
 //! The sheet that plots are drawn on, and what all of them share: font, axes, lines with gaps, legends.
 
 use super::axis::Axis;
-use anyhow::{Result, anyhow, ensure};
+use crate::error::{Result, ensure};
 use image::{Rgb, RgbImage, imageops};
 use plotters::chart::ChartContext;
 use plotters::coord::Shift;
@@ -48,7 +48,8 @@ fn register_font() -> Result<()> {
     let registered = *REGISTERED.get_or_init(|| {
         plotters::style::register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok()
     });
-    if registered { Ok(()) } else { Err(anyhow!("the font of the plots cannot be read; build the program again")) }
+    ensure!(registered, "the font of the plots cannot be read; build the program again");
+    Ok(())
 }
 
 /// Text of `size_px`.

@@ -3,9 +3,9 @@
 use super::axis::{Axis, plottable};
 use super::figure::{Area, Chart, INK, Key, Names, ZOOM, band, broken_line, chart, legend, paint, px, render};
 use crate::draw::colour::of_side;
+use crate::error::Result;
 use crate::track::HandSample;
 use crate::wording::side_name;
-use anyhow::Result;
 use image::RgbImage;
 use plotters::prelude::*;
 use sinew_core::camera::Pixel;

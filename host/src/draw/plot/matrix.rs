@@ -2,7 +2,7 @@
 
 use super::axis::plottable;
 use super::figure::{INK, px, render, text};
-use anyhow::{Result, ensure};
+use crate::error::{Result, ensure};
 use image::RgbImage;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

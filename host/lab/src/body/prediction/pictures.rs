@@ -58,5 +58,6 @@ pub fn figure_20(samples: &LiftSamples) -> Result<RgbImage> {
     let rows = samples.precisions.first().map(scaled).unwrap_or_default();
     let names = &BODY_ANGLE_NAMES[ANGLE_BLOCKS[0].1.start..];
     let blocks = ANGLE_BLOCKS.map(|(_, rows)| rows.len());
-    matrix_plot("Figure 20: precision of the importance distribution, diagonal scaled to 1", names, &rows, &blocks)
+    let title = "Figure 20: precision of the importance distribution, diagonal scaled to 1";
+    Ok(matrix_plot(title, names, &rows, &blocks)?)
 }
