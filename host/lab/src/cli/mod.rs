@@ -39,7 +39,7 @@ pub enum Command {
     )]
     Evaluate(Evaluate),
     /// Write or check the tables of the book.
-    #[command(bin_name = "sinew-lab tables")]
+    #[command(override_usage = "sinew-lab tables [OPTIONS] [NAME]...")]
     Tables(TablesArgs),
 }
 

@@ -63,7 +63,7 @@ pub const TABLES: [Table; 13] = [
         recordings: Some("video/handtracking"),
         rows: hands::ranking,
     },
-    Table { name: "skin-scores", page: "skin.md", cost: Cost::Cheap, recordings: Some("skin"), rows: skin::scores },
+    Table { name: "skin-scores", page: "skin.md", cost: Cost::Long, recordings: Some("skin"), rows: skin::scores },
     Table {
         name: "body-figure-2",
         page: "measurements_body.md",
@@ -78,7 +78,7 @@ pub const TABLES: [Table; 13] = [
         recordings: Some("mocap"),
         rows: body::hdm05,
     },
-    Table { name: "tuning-body", page: "tuning.md", cost: Cost::Cheap, recordings: None, rows: body::tuning },
+    Table { name: "tuning-body", page: "tuning.md", cost: Cost::Long, recordings: None, rows: body::tuning },
     Table {
         name: "body-builtin",
         page: "measurements_body.md",
