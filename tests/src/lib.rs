@@ -45,6 +45,10 @@ fn build_sinew() -> PathBuf {
             "sinew",
             "--bin",
             "sinew-lab",
+            // A test among the targets makes cargo choose the features of `cargo test --workspace`,
+            // so that the library is not compiled once more.
+            "--test",
+            "help",
             "--profile",
             profile,
             "--target-dir",

@@ -193,10 +193,15 @@ fn every_page_of_the_book_is_short() {
     }
 }
 
+/// Pages beside the book. Entries of CHANGELOG have a rule of their own, notices are quoted.
+const OTHER_PAGES: [&str; 6] =
+    ["README.md", "CONTRIBUTING.md", "SECURITY.md", "CODE_OF_CONDUCT.md", "core/README.md", "host/README.md"];
+
 /// Tables, headings, marks and pictures are free, and so is a line of one word, which no break makes shorter.
 #[test]
-fn prose_of_the_book_is_wrapped() {
-    for (name, page) in book() {
+fn prose_of_all_pages_is_wrapped() {
+    let read = |name: &str| (name.to_owned(), fs::read_to_string(workspace_root().join(name)).unwrap());
+    for (name, page) in book().into_iter().chain(OTHER_PAGES.map(read)) {
         for (number, line) in prose(&page) {
             let free = line.trim_start().starts_with(['|', '#', '<', '!']) || !line.trim().contains(' ');
             let width = line.chars().count();

@@ -8,6 +8,10 @@ use std::path::{Path, PathBuf};
 const MAX_README_LINES: usize = 120;
 /// Largest length of an entry of CHANGELOG, characters.
 const MAX_ENTRY_CHARACTERS: usize = 120;
+/// Greatest width of a line of comment, characters.
+const MAX_COMMENT_COLUMNS: usize = 100;
+/// A line without a space from here on, as one that ends in a link, is free.
+const LAST_WORD_COLUMN: usize = 40;
 /// What README, the core's front page and docs/architecture.md say alike.
 const UNSAFE_CLAIM: &str = "`sinew-core` has `unsafe` code in two places: the interface for C (feature `c-api`), and one \
                             square-root instruction in `math.rs` on Arm with a floating-point unit.";
@@ -55,6 +59,39 @@ fn entries_of_the_changelog_are_short_and_sorted_by_kind() {
         }
         assert!(!line.starts_with("  "), "an entry is one line: {line}");
     }
+}
+
+/// Lines of comment that are too wide, with their numbers. Tables and code in comments are free.
+fn wide_comments(text: &str) -> Vec<usize> {
+    let mut in_code = false;
+    let mut wide = Vec::new();
+    for (index, line) in text.lines().enumerate() {
+        let Some(comment) = line.trim_start().strip_prefix("//") else {
+            in_code = false;
+            continue;
+        };
+        let comment = comment.trim_start_matches(['/', '!']);
+        if comment.trim_start().starts_with("```") {
+            in_code = !in_code;
+        }
+        let free = in_code || comment.starts_with("     ") || comment.trim_start().starts_with('|');
+        let has_break = line.chars().skip(LAST_WORD_COLUMN).any(|c| c == ' ');
+        if !free && has_break && line.chars().count() > MAX_COMMENT_COLUMNS {
+            wide.push(index + 1);
+        }
+    }
+    wide
+}
+
+#[test]
+fn comments_end_at_column_100() {
+    let mut wide = Vec::new();
+    for path in ["core", "host", "firmware-sim", "tests"].iter().flat_map(|folder| files(folder, ".rs")) {
+        let name = path.strip_prefix(workspace_root()).unwrap().display();
+        let lines = wide_comments(&fs::read_to_string(&path).unwrap());
+        wide.extend(lines.into_iter().map(|line| format!("{name}:{line}")));
+    }
+    assert!(wide.is_empty(), "{} lines of comment are too wide:\n{}", wide.len(), wide.join("\n"));
 }
 
 #[test]

@@ -44,7 +44,7 @@ impl Folder {
         let cli = Cli::try_parse_from(std::iter::once("sinew").chain(words.iter().map(String::as_str))).unwrap();
         let asked = AtomicUsize::new(0);
         let stop: Stop<'_> = &|| asked.fetch_add(1, Ordering::Relaxed) >= most;
-        let Command::Evaluate(evaluate) = &cli.command;
+        let Command::Evaluate(evaluate) = &cli.command else { panic!("{words:?}") };
         let ended = match evaluate {
             Evaluate::Arm(args) => arm::run_until(args, &cli.console, stop),
             Evaluate::Body(args) => body::run_until(args, &cli.console, stop),

@@ -15,6 +15,9 @@ use sinew::skin::SkinModel;
 use sinew_core::tracker::arm::options::{AreaCue, DEFAULT_AREA_CUE, EstimateRule, LimbCombination};
 use sinew_core::tracker::arm::{ArmOptions, Variant};
 
+/// Stack of a worker thread: the trackers with thousands of particles are built there.
+pub const STACK_BYTES: usize = 32 << 20;
+
 /// Errors of one tracker over all scenes.
 #[derive(Debug, Clone, Serialize)]
 pub struct Row {
@@ -78,6 +81,17 @@ pub fn as_printed(variant: Variant, particles: usize) -> ArmOptions {
         estimate: EstimateRule::Mean,
         ..ArmOptions::default()
     }
+}
+
+/// Three of these trackers on all scenes.
+///
+/// # Errors
+/// As [`row`].
+pub fn printed(scenes: &[ObservedScene], cells: &Cells<'_>) -> Result<Vec<Row>> {
+    let trackers = [(Variant::Corrected, 50), (Variant::Standard, 50), (Variant::Standard, 1000)];
+    let named = |variant: Variant| format!("{} as printed", variant.traits().name);
+    let measured = |(variant, n)| row(&named(variant), scenes, &as_printed(variant, n), cells);
+    trackers.into_iter().map(measured).collect()
 }
 
 /// Each option of `variant` changed on its own, with 50 particles; the unchanged tracker first.

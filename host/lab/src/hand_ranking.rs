@@ -28,35 +28,80 @@ pub struct HandRanking {
     pub paper_area: Option<f64>,
 }
 
-/// Finds the blobs of all `frames`, sorts them by `boxes` into hands and others, and ranks them by both forms.
+/// Scores of blobs on real frames: those of the default form, of the printed one, and the area term.
+#[derive(Debug, Clone, Default)]
+pub struct BlobScores {
+    /// Of each box with a blob, those of its largest blob.
+    pub hands: Vec<[f32; 3]>,
+    /// Of blobs over [`OTHER_MIN_AREA_PX`] in no box.
+    pub others: Vec<[f32; 3]>,
+}
+
+impl BlobScores {
+    /// Adds those of another sequence.
+    pub fn merge(&mut self, other: Self) {
+        self.hands.extend(other.hands);
+        self.others.extend(other.others);
+    }
+
+    fn area(&self, score: usize) -> Option<f64> {
+        let of = |scores: &[[f32; 3]]| -> Vec<f32> { scores.iter().map(|blob| blob[score]).collect() };
+        area_under_curve(&of(&self.hands), &of(&self.others))
+    }
+
+    /// How well both forms rank the hands.
+    #[must_use]
+    pub fn ranking(&self) -> HandRanking {
+        HandRanking {
+            hands: self.hands.len(),
+            others: self.others.len(),
+            filled_area: self.area(0),
+            paper_area: self.area(1),
+        }
+    }
+
+    /// Area under the curve of the default form's area term alone.
+    #[must_use]
+    pub fn area_alone(&self) -> Option<f64> {
+        self.area(2)
+    }
+}
+
+/// Finds the blobs of all `frames`, sorts them by `boxes` into hands and others, and scores them.
 ///
 /// # Errors
 /// As [`FrameReader::read`].
-pub fn rank(frames: &[RgbImage], boxes: &[ReferenceBox], skin: &SkinModel) -> Result<HandRanking> {
+pub fn blob_scores(frames: &[RgbImage], boxes: &[ReferenceBox], skin: &SkinModel) -> Result<BlobScores> {
+    let form = |form, weights| HandLikelihood::new(form, weights, DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE);
     let filled = HandLikelihood::default();
-    let paper = HandLikelihood::new(LikelihoodForm::Paper, DEFAULT_WEIGHTS, DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE)?;
+    let paper = form(LikelihoodForm::Paper, DEFAULT_WEIGHTS)?;
+    let area_alone = form(LikelihoodForm::Filled, [1.0, 0.0, 0.0])?;
     let mut reader = FrameReader::new(filled, EdgeDetector::default())?;
-    // Scores of both forms, of hands and of others.
-    let (mut hands, mut others) = (Vec::new(), Vec::new());
+    let mut found = BlobScores::default();
     for (index, frame) in frames.iter().enumerate() {
         let image_area_px = (frame.width() * frame.height()) as f32;
         let blobs = reader.read(frame, &*skin.for_image(frame)?)?.blobs;
-        let scores = |blob: &LikelyBlob| [filled, paper].map(|form| form.evaluate(&blob.blob, image_area_px));
+        let scores =
+            |blob: &LikelyBlob| [filled, paper, area_alone].map(|form| form.evaluate(&blob.blob, image_area_px));
         let here: Vec<&ReferenceBox> = boxes.iter().filter(|b| b.frame == index).collect();
         for wanted in &here {
             let inside = blobs.iter().filter(|blob| wanted.contains(blob.blob.centroid));
-            hands.extend(inside.max_by_key(|blob| blob.blob.area_px).map(scores));
+            found.hands.extend(inside.max_by_key(|blob| blob.blob.area_px).map(scores));
         }
         let is_other = |blob: &&LikelyBlob| {
             blob.blob.area_px > OTHER_MIN_AREA_PX && !here.iter().any(|b| b.contains(blob.blob.centroid))
         };
-        others.extend(blobs.iter().filter(is_other).map(scores));
+        found.others.extend(blobs.iter().filter(is_other).map(scores));
     }
-    let area = |form: usize| {
-        let of = |scores: &[[f32; 2]]| -> Vec<f32> { scores.iter().map(|score| score[form]).collect() };
-        area_under_curve(&of(&hands), &of(&others))
-    };
-    Ok(HandRanking { hands: hands.len(), others: others.len(), filled_area: area(0), paper_area: area(1) })
+    Ok(found)
+}
+
+/// How well both forms rank the blobs of all `frames`.
+///
+/// # Errors
+/// As [`blob_scores`].
+pub fn rank(frames: &[RgbImage], boxes: &[ReferenceBox], skin: &SkinModel) -> Result<HandRanking> {
+    Ok(blob_scores(frames, boxes, skin)?.ranking())
 }
 
 /// Part of all pairs in which the hand has the greater score, ties by half; `None` where there is no pair.

@@ -5,6 +5,7 @@ use image::{RgbImage, imageops};
 use serde::{Deserialize, Serialize};
 use sinew::config::Config;
 use sinew::frames::FrameReader;
+use sinew::images::folder::{list_images, load_rgb};
 use sinew::skin::SkinModel;
 use sinew::track::{ArmSet, SideChoice};
 use sinew_core::camera::Pixel;
@@ -74,6 +75,27 @@ pub fn read_boxes(path: &Path) -> Result<Vec<ReferenceBox>> {
         bail!("boxes `{}` has no row; give a table with the columns frame,x,y,w,h", path.display());
     }
     Ok(boxes)
+}
+
+/// The frames of a folder in natural order, all of one size.
+///
+/// # Errors
+/// A picture that cannot be read or has another size, by name.
+pub fn load_frames(folder: &Path) -> Result<Vec<RgbImage>> {
+    let mut frames: Vec<RgbImage> = Vec::new();
+    for path in list_images(folder)? {
+        let frame = load_rgb(&path)?;
+        if let Some(first) = frames.first().filter(|first| first.dimensions() != frame.dimensions()) {
+            let ((width, height), (first_width, first_height)) = (frame.dimensions(), first.dimensions());
+            bail!(
+                "`{}` has {width} x {height} pixels, the frames before it {first_width} x {first_height}; \
+                 give frames of one size",
+                path.display()
+            );
+        }
+        frames.push(frame);
+    }
+    Ok(frames)
 }
 
 /// A window that moves over the frames, so that no constant answer can do well.

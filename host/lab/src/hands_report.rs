@@ -86,6 +86,9 @@ pub struct HandsOptions {
     pub window_px: (u32, u32),
 }
 
+/// Those of `sinew evaluate hands` where it is not given others.
+pub const DEFAULT_OPTIONS: HandsOptions = HandsOptions { rate_hz: 15.0, seeds: 5, window_px: (440, 360) };
+
 /// All scores of one sequence.
 #[derive(Debug, Clone, Serialize)]
 pub struct HandsReport {

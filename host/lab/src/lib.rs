@@ -10,3 +10,5 @@ pub mod hands;
 pub mod hands_report;
 pub mod observed;
 pub mod score;
+pub mod skin_scores;
+pub mod tables;

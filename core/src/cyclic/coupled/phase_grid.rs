@@ -156,7 +156,8 @@ impl PhaseGrid {
                 }
             }
             let around: [f32; POSITIONS + 2] = core::array::from_fn(|i| row[(i + POSITIONS - 1) % POSITIONS]);
-            for (weight, [before, here, after]) in self.weights[speed].iter_mut().zip(around.array_windows()) {
+            let neighbours = around.iter().zip(&around[1..]).zip(&around[2..]);
+            for (weight, ((before, here), after)) in self.weights[speed].iter_mut().zip(neighbours) {
                 *weight = here + blur * (after + before - 2.0 * here);
             }
         }

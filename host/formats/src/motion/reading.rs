@@ -4,7 +4,7 @@ use super::error::MotionError;
 use super::markers::MarkerMotion;
 use super::read_options::ReadOptions;
 use super::recording::Motion;
-use crate::registry::{Kind, MOTION, Reader, choice, extensions, find, formats, sniff};
+use crate::registry::{JointReader, Kind, MOTION, Reader, choice, extensions, find, formats, sniff};
 use std::io::Read;
 use std::path::Path;
 
@@ -39,7 +39,7 @@ pub fn read(path: &Path, options: &ReadOptions<'_>) -> Result<Motion, MotionErro
 pub fn read_space(path: &Path, options: &ReadOptions<'_>) -> Result<MarkerMotion, MotionError> {
     let mut motion = match find(path, MOTION).map(|format| format.reader) {
         Some(Reader::Markers(reader)) => (reader.read)(path)?,
-        Some(Reader::Joints(reader)) if let Some(read) = reader.read_whole_body => {
+        Some(Reader::Joints(JointReader { read_whole_body: Some(read), .. })) => {
             MarkerMotion::from(&read(path, options)?)
         }
         _ => MarkerMotion::from(&read(path, options)?),

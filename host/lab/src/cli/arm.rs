@@ -1,7 +1,7 @@
 //! `sinew evaluate arm`
 
 use crate::clips::{builtin, recorded};
-use crate::experiments::{self, Recovery, Row, as_printed, row};
+use crate::experiments::{self, Recovery, Row, STACK_BYTES};
 use crate::observed::{ObservedScene, observe_all};
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -21,9 +21,6 @@ use sinew_core::tracker::arm::Variant;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
-
-/// Stack of a worker thread: the trackers with thousands of particles are built there.
-const STACK_BYTES: usize = 32 << 20;
 
 /// Options of `sinew evaluate arm`.
 #[derive(Debug, Args)]
@@ -138,7 +135,6 @@ fn measure(args: &EvaluateArmArgs, skin: &SkinModel, cells: &Cells<'_>) -> Resul
     let scenes: Vec<ObservedScene> = observe_all(&clips, &seeds, &options, &base, skin, cells)?;
     let mut effects = experiments::options(&scenes, Variant::Pik, cells)?;
     effects.extend(experiments::options(&scenes, Variant::Corrected, cells)?);
-    let printed = [(Variant::Corrected, 50), (Variant::Standard, 50), (Variant::Standard, 1000)];
     Ok(Report {
         format: "sinew-evaluate-arm",
         version: 1,
@@ -147,13 +143,7 @@ fn measure(args: &EvaluateArmArgs, skin: &SkinModel, cells: &Cells<'_>) -> Resul
         scenes: scenes.iter().map(|scene| (scene.clip.clone(), scene.seed)).collect(),
         variants: experiments::variants(&scenes, &args.variants, &args.particles, cells)?,
         options: effects,
-        as_printed: printed
-            .into_iter()
-            .map(|(variant, n)| {
-                let name = format!("{} as printed", variant.traits().name);
-                row(&name, &scenes, &as_printed(variant, n), cells)
-            })
-            .collect::<Result<_>>()?,
+        as_printed: experiments::printed(&scenes, cells)?,
         recovery: experiments::recovery(&clips, &seeds, &base, skin, cells)?,
     })
 }

@@ -1,18 +1,17 @@
 //! `sinew evaluate hands`: both hands on real frames with reference boxes.
 
-use crate::hands::{ReferenceBox, read_boxes};
+use crate::hands::{ReferenceBox, load_frames, read_boxes};
 use crate::hands_report::{HandsOptions, report};
 use anyhow::{Result, bail, ensure};
 use clap::Args;
 use image::RgbImage;
 use sinew::cli::console::Console;
 use sinew::config::Config;
-use sinew::images::folder::{list_images, load_rgb};
 use sinew::output::OutputDir;
 use sinew::skin::SkinModel;
 use sinew::skin::model::DEFAULT_SKIN;
 use sinew::track::RATES_HZ;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Options of `sinew evaluate hands`.
 #[derive(Debug, Args)]
@@ -82,24 +81,6 @@ pub fn run(args: &EvaluateHandsArgs, console: &Console) -> Result<()> {
         bail!("`{}` misses the floors: {}", args.folder.display(), misses.join("; "));
     }
     Ok(())
-}
-
-/// All frames, of one size.
-fn load_frames(folder: &Path) -> Result<Vec<RgbImage>> {
-    let mut frames: Vec<RgbImage> = Vec::new();
-    for path in list_images(folder)? {
-        let frame = load_rgb(&path)?;
-        if let Some(first) = frames.first().filter(|first| first.dimensions() != frame.dimensions()) {
-            let ((width, height), (first_width, first_height)) = (frame.dimensions(), first.dimensions());
-            bail!(
-                "`{}` has {width} x {height} pixels, the frames before it {first_width} x {first_height}; \
-                 give frames of one size",
-                path.display()
-            );
-        }
-        frames.push(frame);
-    }
-    Ok(frames)
 }
 
 /// Do window and boxes fit the frames?

@@ -1,10 +1,11 @@
-//! `sinew evaluate ...`
+//! `sinew evaluate ...`, and what only this program has
 
 pub mod arm;
 pub mod body;
 pub mod cyclic;
 pub mod hands;
 pub mod skin;
+pub mod tables;
 
 use arm::EvaluateArmArgs;
 use body::EvaluateBodyArgs;
@@ -13,6 +14,7 @@ use cyclic::EvaluateCyclicArgs;
 use hands::EvaluateHandsArgs;
 use sinew::cli::console::Console;
 use skin::EvaluateSkinArgs;
+use tables::TablesArgs;
 
 /// What `sinew evaluate ARGS...` starts, as `sinew-lab evaluate ARGS...`: its help names the former.
 #[derive(Debug, Parser)]
@@ -36,6 +38,9 @@ pub enum Command {
   sinew evaluate cyclic --model walking --seeds 1 --particles none --out cyclic"
     )]
     Evaluate(Evaluate),
+    /// Write or check the tables of the book.
+    #[command(override_usage = "sinew-lab tables [OPTIONS] [NAME]...")]
+    Tables(TablesArgs),
 }
 
 /// What can be evaluated.
@@ -59,13 +64,13 @@ pub enum Evaluate {
 /// As the chosen evaluation.
 pub fn run(cli: &Cli) -> anyhow::Result<()> {
     let console = &cli.console;
-    let Command::Evaluate(evaluate) = &cli.command;
-    match evaluate {
-        Evaluate::Arm(args) => arm::run(args, console),
-        Evaluate::Body(args) => body::run(args, console),
-        Evaluate::Cyclic(args) => cyclic::run(args, console),
-        Evaluate::Hands(args) => hands::run(args, console),
-        Evaluate::Skin(args) => skin::run(args, console),
+    match &cli.command {
+        Command::Evaluate(Evaluate::Arm(args)) => arm::run(args, console),
+        Command::Evaluate(Evaluate::Body(args)) => body::run(args, console),
+        Command::Evaluate(Evaluate::Cyclic(args)) => cyclic::run(args, console),
+        Command::Evaluate(Evaluate::Hands(args)) => hands::run(args, console),
+        Command::Evaluate(Evaluate::Skin(args)) => skin::run(args, console),
+        Command::Tables(args) => tables::run(args, console),
     }
 }
 

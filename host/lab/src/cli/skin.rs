@@ -1,18 +1,16 @@
 //! `sinew evaluate skin`: pixel scores of a skin model on images with masks.
 
-use anyhow::{Result, bail, ensure};
+use crate::skin_scores::{FolderScores, Folds, by_folder, judge};
+use anyhow::Result;
 use clap::Args;
-use rayon::prelude::*;
 use serde::Serialize;
 use sinew::cli::console::Console;
 use sinew::cli::train_skin::report_unmasked;
 use sinew::output::OutputDir;
 use sinew::skin::SkinModel;
-use sinew::skin::confusion::{Confusion, median};
-use sinew::skin::folds;
 use sinew::skin::model::{DEFAULT_SKIN, ModelKind};
-use sinew::skin::pairs::{self, Pair, PairList};
-use sinew::skin::training::{TrainingOptions, pairs_set, train};
+use sinew::skin::pairs::{self, PairList};
+use sinew::skin::training::TrainingOptions;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -49,17 +47,6 @@ pub struct EvaluateSkinArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Scores of one folder pair.
-#[derive(Debug, Serialize)]
-struct Row {
-    images_folder: String,
-    images: usize,
-    precision: f64,
-    recall: f64,
-    f1: f64,
-    median_image_f1: f64,
-}
-
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     format: &'static str,
@@ -68,7 +55,7 @@ struct Report<'a> {
     model: &'a str,
     cross_validated: bool,
     morphology: bool,
-    rows: Vec<Row>,
+    rows: Vec<FolderScores>,
     skipped: Vec<String>,
 }
 
@@ -82,7 +69,9 @@ pub fn run(args: &EvaluateSkinArgs, console: &Console) -> Result<()> {
     report_unmasked(&list, console);
     let (judged, model) = match args.cross_validate {
         Some(count) => {
-            (cross_validated(&list, count as usize, args)?, format!("{:?}, cross-validated", args.kind).to_lowercase())
+            let options = TrainingOptions { kind: args.kind, folds: 10, seed: args.seed };
+            let folds = Folds::train(&list, count as usize, options)?;
+            (folds.judge(&list, args.morphology)?, format!("{:?}, cross-validated", args.kind).to_lowercase())
         }
         None => {
             let model = SkinModel::from_option(&args.skin)?;
@@ -92,7 +81,7 @@ pub fn run(args: &EvaluateSkinArgs, console: &Console) -> Result<()> {
     };
     let skipped: Vec<String> = judged.iter().filter_map(|image| image.as_ref().err().cloned()).collect();
     skipped.iter().for_each(|reason| console.note(format!("skipped: {reason}")));
-    let rows = table(&list, &judged)?;
+    let rows = by_folder(&list, &judged)?;
     let cross_validated = args.cross_validate.is_some();
     let report = Report {
         format: "sinew-evaluate-skin",
@@ -121,62 +110,6 @@ fn warn_if_trained_on(model: &SkinModel, list: &PairList, console: &Console) {
         let remedy = "if it is this one, use --cross-validate";
         console.note(format!("note: the model was trained on a folder named {name}; {remedy}"));
     }
-}
-
-/// Decisions on each image, or why it could not be read.
-type Judged = Vec<Result<Confusion, String>>;
-
-fn judge<'m>(pairs: &[Pair], model_of: impl Fn(usize) -> &'m SkinModel + Sync, morphology: bool) -> Result<Judged> {
-    let one = |(index, pair): (usize, &Pair)| -> Result<Result<Confusion, String>> {
-        let (image, truth) = match pair.load()? {
-            Ok(loaded) => loaded,
-            Err(unreadable) => return Ok(Err(unreadable.to_string())),
-        };
-        let mut found = model_of(index).classify(&image)?;
-        if morphology {
-            found.clean()?;
-        }
-        Ok(Ok(Confusion::of(&found, &truth)))
-    };
-    pairs.par_iter().enumerate().map(one).collect()
-}
-
-fn cross_validated(list: &PairList, count: usize, args: &EvaluateSkinArgs) -> Result<Judged> {
-    let (set, skipped) = pairs_set(list, args.seed)?;
-    if let Some((path, reason)) = skipped.first() {
-        bail!("`{}`: {reason}; remove the pair before a cross-validation", path.display());
-    }
-    ensure!(count <= set.units.len(), "--cross-validate {count} needs as many images; there are {}", set.units.len());
-    let fold_of = folds::assign(set.units.len(), count, args.seed);
-    let train_fold = |fold: usize| {
-        let rest = set.subset(|index| fold_of[index] != fold);
-        Ok(train(&rest, TrainingOptions { kind: args.kind, folds: 10, seed: args.seed })?.0)
-    };
-    let models: Vec<SkinModel> = (0..count).into_par_iter().map(train_fold).collect::<Result<_>>()?;
-    judge(&list.pairs, |index| &models[fold_of[index]], args.morphology)
-}
-
-fn table(list: &PairList, judged: &Judged) -> Result<Vec<Row>> {
-    let mut rows = Vec::new();
-    for (group, name) in list.groups.iter().enumerate() {
-        let of_group = list.pairs.iter().zip(judged).filter(|(pair, _)| pair.group == group);
-        let confusions: Vec<&Confusion> = of_group.filter_map(|(_, image)| image.as_ref().ok()).collect();
-        let mut pooled = Confusion::default();
-        confusions.iter().for_each(|confusion| pooled.merge(confusion));
-        let Some(median_image_f1) = median(confusions.iter().map(|confusion| confusion.scores().f1).collect()) else {
-            bail!("no image-mask pair of {name} can be read");
-        };
-        let scores = pooled.scores();
-        rows.push(Row {
-            images_folder: name.clone(),
-            images: confusions.len(),
-            precision: scores.precision,
-            recall: scores.recall,
-            f1: scores.f1,
-            median_image_f1,
-        });
-    }
-    Ok(rows)
 }
 
 fn summary(report: &Report<'_>) -> String {

@@ -1,0 +1,66 @@
+//! The arm's variants and options on rendered scenes of recorded clips.
+
+use super::markdown::{Rows, line, named};
+use crate::clips::{Clip, recorded};
+use crate::experiments::{self, Row, STACK_BYTES};
+use crate::observed::{ObservedScene, observe_all};
+use anyhow::Result;
+use sinew::config::Config;
+use sinew::resume::Cells;
+use sinew::scene::SceneOptions;
+use sinew::skin::SkinModel;
+use sinew::skin::model::DEFAULT_SKIN;
+use sinew_core::tracker::arm::Variant;
+use std::path::Path;
+
+/// Clips, seeds of each, and frames: those of `sinew evaluate arm`.
+const CLIPS: usize = 10;
+const SEEDS: u64 = 10;
+const FRAMES: usize = 250;
+/// Numbers of particles.
+const PARTICLES: [usize; 7] = [10, 25, 50, 100, 250, 1000, 5000];
+
+/// Rows that `measure` makes of all scenes, on threads with room for thousands of particles.
+fn on_scenes(recordings: &Path, measure: fn(&[ObservedScene]) -> Result<Rows>) -> Result<Rows> {
+    let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build()?;
+    pool.install(|| {
+        let mut clips: Vec<Clip> = recorded(&recordings.join("mocap"))?;
+        clips.truncate(CLIPS);
+        let seeds: Vec<u64> = (1..=SEEDS).collect();
+        let options = SceneOptions { frames: FRAMES, ..SceneOptions::default() };
+        let skin = SkinModel::from_option(DEFAULT_SKIN)?;
+        measure(&observe_all(&clips, &seeds, &options, &Config::default(), &skin, &Cells::not_kept())?)
+    })
+}
+
+pub fn variants(recordings: &Path) -> Result<Rows> {
+    on_scenes(recordings, |scenes| {
+        let measured = experiments::variants(scenes, &Variant::ALL, &PARTICLES, &Cells::not_kept())?;
+        let mut rows = vec![named("", PARTICLES.map(|count| count.to_string()))];
+        let error = |row: &Row| format!("{:.3} m, {:.1} px", row.error_m.median, row.error_px.median);
+        for of_variant in measured.chunks(PARTICLES.len()) {
+            rows.push(named(format!("`{}`", of_variant[0].name), of_variant.iter().map(error)));
+        }
+        Ok(rows)
+    })
+}
+
+pub fn options(recordings: &Path) -> Result<Rows> {
+    on_scenes(recordings, |scenes| {
+        let cells = &Cells::not_kept();
+        let row = |name: String, row: &Row| {
+            let (m, px) = (&row.error_m, &row.error_px);
+            let metres = format!("{:.3} ({:.3}-{:.3})", m.median, m.lower, m.upper);
+            line([name, metres, format!("{:.1} ({:.1}-{:.1})", px.median, px.lower, px.upper)])
+        };
+        let mut rows = vec![line(["", "3D error, m (quartiles)", "2D error, px (quartiles)"])];
+        for variant in [Variant::Pik, Variant::Corrected] {
+            let effects = experiments::options(scenes, variant, cells)?;
+            rows.extend(effects.iter().map(|effect| row(effect.name.clone(), effect)));
+        }
+        for printed in experiments::printed(scenes, cells)? {
+            rows.push(row(format!("{}, {} particles", printed.name, printed.particles), &printed));
+        }
+        Ok(rows)
+    })
+}
