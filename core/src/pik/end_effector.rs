@@ -17,33 +17,19 @@ const LIMIT_MASS_DRAWS: usize = 8;
 /// Goals from a process, poses by the Laplace proposal.
 ///
 /// ```
+/// use sinew_core::math::Vec3;
 /// use sinew_core::pik::end_effector::EndEffectorMotion;
+/// use sinew_core::pik::example::{arm_past, arm_scene};
 /// use sinew_core::pik::goal::{LinearExtrapolation, MEMORY};
-/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, FramePast};
 /// use sinew_core::pik::processes::extrapolation::LinearGoals;
 /// use sinew_core::pik::root::RootProcess;
 /// use sinew_core::random::Stream;
 /// use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
-/// # let past = FramePast {
-/// #     scene: &scene,
-/// #     blocks: &[],
-/// #     angle_velocity_per_s: [0.0; 4],
-/// #     shared_change: [None; 4],
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &ancestor.ends_m,
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
 ///
+/// let scene = arm_scene()?;
+/// let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// let past = arm_past(&scene, &ancestor, &[]);
 /// // The hand was lifted by half a metre a second: after a tenth of a second poses reach five centimetres higher.
 /// let past = FramePast { velocity_m_per_s: &[Vec3::zeros(), Vec3::new(0.0, -0.5, 0.0)], ..past };
 /// let process = LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s: 0.05 };
@@ -86,19 +72,13 @@ pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
 /// Makes the expansion around a mode `share` times as wide, about the same centre.
 ///
 /// ```
-/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::kinematics::inverse::Solve;
 /// use sinew_core::pik::end_effector::narrow;
+/// use sinew_core::pik::example::{hand_goal, reaching_arm, right_arm};
 /// use sinew_core::pik::proposal::LaplaceProposal;
-/// # use sinew_core::math::{Mat3, Vec3};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
-/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
-/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
-/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// # let density =
-/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
 ///
+/// let (skeleton, goals) = (right_arm()?, hand_goal());
+/// let density = reaching_arm(&skeleton, &goals);
 /// let mut mode = density.mode(10);
 /// let wide = LaplaceProposal::new(&mode).expect("a mode has curvature");
 /// let curvature = mode.hessian[0][0];

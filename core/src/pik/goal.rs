@@ -13,22 +13,15 @@ pub const MEMORY: usize = 32;
 ///
 /// ```
 /// use sinew_core::math::Vec3;
-/// use sinew_core::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals, MEMORY};
+/// use sinew_core::pik::example::goal_past;
+/// use sinew_core::pik::goal::{GoalMemory, GoalProcess, Goals, MEMORY};
 /// use sinew_core::pik::processes::paper_extrapolation::PaperGoals;
 /// use sinew_core::random::Stream;
 ///
 /// // The paper's process goes on from the goal before, which each particle keeps: zeros at first.
 /// let mut memory: GoalMemory = [0.0; MEMORY];
 /// let at = [Vec3::new(0.1, 0.2, 2.0)];
-/// # let past = GoalPast {
-/// #     reached_m: &at,
-/// #     velocity_m_per_s: &[Vec3::zeros()],
-/// #     noise_share: &[1.0; 1],
-/// #     first_m: &at,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
+/// let past = goal_past(&at);
 /// let process = PaperGoals { end_effectors: &[0], std_m: 0.05, reach_std_m: 0.02 };
 /// let mut goals = Goals::new();
 /// process.draw(&past, &mut memory, &mut Stream::new(1, 0, 0), &mut goals);
@@ -107,6 +100,7 @@ struct OwnMotionModel;
 /// ```
 /// use sinew_core::kinematics::inverse::Goal;
 /// use sinew_core::math::{Mat3, Vec3};
+/// use sinew_core::pik::example::goal_past;
 /// use sinew_core::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals, MEMORY};
 /// use sinew_core::random::Stream;
 ///
@@ -125,16 +119,8 @@ struct OwnMotionModel;
 ///     }
 /// }
 ///
-/// # let at = [Vec3::zeros(), Vec3::new(0.0, 0.3, 2.0)];
-/// # let past = GoalPast {
-/// #     reached_m: &at,
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &at,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.2,
-/// #     is_first: true,
-/// # };
+/// let at = [Vec3::zeros(), Vec3::new(0.0, 0.3, 2.0)];
+/// let past = GoalPast { dt_s: 0.2, ..goal_past(&at) };
 /// let mut goals = Goals::new();
 /// Lift.draw(&past, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0), &mut goals);
 /// assert!((goals[0].position_m - Vec3::new(0.0, 0.2, 2.0)).norm() < 0.05);

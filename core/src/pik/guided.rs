@@ -29,45 +29,20 @@ pub(crate) const LOOSE_SHARE: f32 = 0.8;
 /// expansion the pose is drawn from, so that the draw knows the frame's data.
 ///
 /// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::example::{arm_past, arm_points, arm_scene};
 /// use sinew_core::pik::goal::{LinearExtrapolation, MEMORY};
 /// use sinew_core::pik::guided::GuidedMotion;
-/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle};
 /// use sinew_core::pik::processes::extrapolation::LinearGoals;
 /// use sinew_core::pik::root::RootProcess;
 /// use sinew_core::random::Stream;
 /// use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let points_of = |pose: &[f32; 4]| {
-/// #     let surface = scene.surface(&scene.posture(pose));
-/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
-/// #         let bone = &surface.capsules[i % 2].capsule;
-/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
-/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
-/// #     });
-/// #     let mut cloud = PointCloud::<2>::new();
-/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
-/// #     cloud
-/// # };
-/// # let cloud = points_of(&[0.5, 0.1, 0.1, 1.4]);
-/// # let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
-/// # let past = FramePast {
-/// #     scene: &scene,
-/// #     blocks: cloud.blocks(),
-/// #     angle_velocity_per_s: [0.0; 4],
-/// #     shared_change: [None; 4],
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &ancestor.ends_m,
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
 ///
+/// let scene = arm_scene()?;
+/// let cloud = arm_points(&scene, &[0.5, 0.1, 0.1, 1.4]);
+/// let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// let past = arm_past(&scene, &ancestor, cloud.blocks());
 /// // The elbow was at 1.0 rad and seemed to stand still; the frame's points lie where it is at 1.4 rad.
 /// let process = LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s: 0.5 };
 /// let motion = GuidedMotion {
@@ -109,31 +84,15 @@ pub struct GuidedMotion<'a, P, const ANGLES: usize> {
 ///
 /// ```
 /// use sinew_core::kinematics::inverse::{PoseDensity, Solve};
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::example::{arm_points, arm_scene};
 /// use sinew_core::pik::guided::GuidedDensity;
-/// use sinew_core::pik::motion::BodyScene;
 /// use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let points_of = |pose: &[f32; 4]| {
-/// #     let surface = scene.surface(&scene.posture(pose));
-/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
-/// #         let bone = &surface.capsules[i % 2].capsule;
-/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
-/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
-/// #     });
-/// #     let mut cloud = PointCloud::<2>::new();
-/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
-/// #     cloud
-/// # };
 ///
+/// let scene = arm_scene()?;
 /// // Lay a pose onto points, without any goal: the elbow was at 1.0 rad, the points show it at 1.4 rad.
 /// let truth_rad = [0.5, 0.1, 0.1, 1.4];
-/// let cloud = points_of(&truth_rad);
+/// let cloud = arm_points(&scene, &truth_rad);
 /// let prior = PoseDensity {
 ///     skeleton: &scene.skeleton,
 ///     root_m: Vec3::zeros(),

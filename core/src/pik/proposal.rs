@@ -15,19 +15,13 @@ use crate::skeleton::Limit;
 /// A normal approximation of a pose's density.
 ///
 /// ```
-/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::kinematics::inverse::Solve;
+/// use sinew_core::pik::example::{hand_goal, reaching_arm, right_arm};
 /// use sinew_core::pik::proposal::LaplaceProposal;
 /// use sinew_core::random::Stream;
-/// # use sinew_core::math::{Mat3, Vec3};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
-/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
-/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
-/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// # let density =
-/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
 ///
+/// let (skeleton, goals) = (right_arm()?, hand_goal());
+/// let density = reaching_arm(&skeleton, &goals);
 /// let mode = density.mode(10);
 /// let proposal = LaplaceProposal::new(&mode).expect("a mode has curvature");
 /// // No limit is near: the normal's centre is the mode, and so is the mean of what is drawn.
@@ -53,19 +47,13 @@ pub struct LaplaceProposal<const ANGLES: usize> {
 /// A pose drawn from a [`LaplaceProposal`].
 ///
 /// ```
-/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::kinematics::inverse::Solve;
+/// use sinew_core::pik::example::{hand_goal, reaching_arm, right_arm};
 /// use sinew_core::pik::proposal::LaplaceProposal;
 /// use sinew_core::random::Stream;
-/// # use sinew_core::math::{Mat3, Vec3};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
-/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
-/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
-/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// # let density =
-/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
 ///
+/// let (skeleton, goals) = (right_arm()?, hand_goal());
+/// let density = reaching_arm(&skeleton, &goals);
 /// let proposal = LaplaceProposal::new(&density.mode(10)).expect("a mode has curvature");
 /// let mut mean_distance = 0.0;
 /// for particle in 0..1000 {
@@ -89,19 +77,13 @@ pub struct PoseDraw<const ANGLES: usize> {
 /// Whether the mass that limits cut off is part of an importance ratio.
 ///
 /// ```
-/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
+/// use sinew_core::kinematics::inverse::{PoseObjective, Solve};
+/// use sinew_core::pik::example::{hand_goal, reaching_arm, right_arm};
 /// use sinew_core::pik::proposal::{LaplaceProposal, LimitMass};
 /// use sinew_core::random::Stream;
-/// # use sinew_core::math::{Mat3, Vec3};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
-/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
-/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
-/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// # let density =
-/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
 ///
+/// let (skeleton, goals) = (right_arm()?, hand_goal());
+/// let density = reaching_arm(&skeleton, &goals);
 /// let proposal = LaplaceProposal::new(&density.mode(10)).expect("a mode has curvature");
 /// let mut stream = Stream::new(1, 0, 0);
 /// let draw = proposal.draw(skeleton.limits(), &mut stream);

@@ -16,21 +16,14 @@ const LEAST_VARIANCE_M2: f32 = 1.0e-8;
 ///
 /// ```
 /// use sinew_core::math::Vec3;
+/// use sinew_core::pik::example::goal_past;
 /// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, LinearExtrapolation, MEMORY};
 /// use sinew_core::pik::processes::extrapolation::LinearGoals;
 /// use sinew_core::random::Stream;
 ///
 /// // A root (bone 0) that stands and a hand (bone 1) that goes a metre a second to the right.
 /// let places_m = [Vec3::zeros(), Vec3::new(0.3, 0.0, 2.0)];
-/// # let past = GoalPast {
-/// #     reached_m: &places_m,
-/// #     velocity_m_per_s: &[Vec3::zeros(), Vec3::x()],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &places_m,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
+/// let past = GoalPast { velocity_m_per_s: &[Vec3::zeros(), Vec3::x()], ..goal_past(&places_m) };
 /// let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.2 };
 /// let hand = LinearGoals::new(&[1], 2, process, 0.05)?.carrying(1);
 /// let mut goals = Goals::new();

@@ -13,39 +13,32 @@ const UNKNOWN: f32 = 0.0;
 ///
 /// ```
 /// use sinew_core::math::Vec3;
-/// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, LinearExtrapolation, MEMORY};
+/// use sinew_core::pik::example::goal_past;
+/// use sinew_core::pik::goal::{GoalProcess, Goals, LinearExtrapolation, MEMORY};
 /// use sinew_core::pik::processes::extrapolation::LinearGoals;
 /// use sinew_core::pik::processes::stick::{StickGoals, StickSight};
 /// use sinew_core::random::Stream;
 ///
 /// // A camera sees in which directions the ends of the stick are, not how far away:
 /// // hands go to the wedge between both rays.
-/// # let hands_m = [Vec3::new(0.3, 0.2, 2.0), Vec3::new(0.1, 0.2, 2.0)];
-/// # let past = GoalPast {
-/// #     reached_m: &hands_m,
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &hands_m,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
-/// # let process = LinearExtrapolation { persistence: 0.0, std_m_per_sqrt_s: 0.0 };
-/// # let others = LinearGoals::new(&[0, 1], 2, process, 0.05)?;
+/// let hands_m = [Vec3::new(0.3, 0.2, 2.0), Vec3::new(0.1, 0.2, 2.0)];
+/// let past = goal_past(&hands_m);
+/// let process = LinearExtrapolation { persistence: 0.0, std_m_per_sqrt_s: 0.0 };
+/// let others = LinearGoals::new(&[0, 1], 2, process, 0.05)?;
 /// let sight = StickSight::Rays([Vec3::new(0.3, 0.0, 1.0).normalize(), Vec3::z()]);
-/// # let stick = StickGoals {
-/// #     hands: [0, 1],
-/// #     sight,
-/// #     camera_m: Vec3::zeros(),
-/// #     gamma_std_per_sqrt_s: 0.1,
-/// #     reach_std_m: 0.01,
-/// #     others: &others,
-/// # };
+/// let stick = StickGoals {
+///     hands: [0, 1],
+///     sight,
+///     camera_m: Vec3::zeros(),
+///     gamma_std_per_sqrt_s: 0.1,
+///     reach_std_m: 0.01,
+///     others: &others,
+/// };
 /// # let hands_y_m = |sight| {
 /// #     let mut goals = Goals::new();
 /// #     StickGoals { sight, ..stick }.draw(&past, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0), &mut goals);
 /// #     [goals[0].position_m.y, goals[1].position_m.y]
-/// # };
+/// };
 /// // Both hands were at y = 0.2; where do their goals lie?
 /// assert_eq!(hands_y_m(sight), [0.0; 2], "both rays lie at y = 0");
 /// assert_eq!(hands_y_m(StickSight::Unseen), [0.2; 2], "without a stick hands stay where they were");
@@ -66,22 +59,15 @@ pub enum StickSight {
 ///
 /// ```
 /// use sinew_core::math::Vec3;
-/// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, LinearExtrapolation, MEMORY};
+/// use sinew_core::pik::example::goal_past;
+/// use sinew_core::pik::goal::{GoalProcess, Goals, LinearExtrapolation, MEMORY};
 /// use sinew_core::pik::processes::extrapolation::LinearGoals;
 /// use sinew_core::pik::processes::stick::{StickGoals, StickSight};
 /// use sinew_core::random::Stream;
 ///
 /// // Two hands (bones 0 and 1) near a stick of a metre, both ends of which are known in space.
 /// let hands_m = [Vec3::new(0.3, 0.05, 2.0), Vec3::new(0.7, -0.05, 2.0)];
-/// # let past = GoalPast {
-/// #     reached_m: &hands_m,
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &hands_m,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
+/// let past = goal_past(&hands_m);
 /// let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.2 };
 /// let stick = StickGoals {
 ///     hands: [0, 1],

@@ -6,6 +6,7 @@
 
 mod context;
 mod estimate;
+pub mod example;
 mod frame;
 mod importance;
 mod limbs;

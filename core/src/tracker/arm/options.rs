@@ -129,18 +129,10 @@ pub struct BlobMemoryOptions {
 /// What is reported as the estimate.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmModel, ArmOptions, options::EstimateRule};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm};
+/// use sinew_core::tracker::arm::{ArmOptions, options::EstimateRule};
 ///
+/// let (model, hand, shoulder_m) = (left_arm()?, hand_blob(), SHOULDERS_M[0]);
 /// // Particles count to a blob within this many pixels of it; a large blob has its own radius.
 /// assert!((model.least_cluster_radius_px() - 0.045 * model.camera().focal_px()).abs() < 1e-3);
 /// assert!(model.cluster_radius_px(&hand) > model.least_cluster_radius_px());

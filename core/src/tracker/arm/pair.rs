@@ -61,21 +61,10 @@ const SPLIT_REACH: f32 = 3.0;
 /// One frame of both arms.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmImage, ArmModel, ArmOptions, ArmPair, PairFrame, Status};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm, right_arm};
+/// use sinew_core::tracker::arm::{ArmImage, ArmPair, PairFrame, Status};
 ///
-/// # let right = ArmGeometry::new(Side::Right, 0.30, 0.35)?;
-/// # let right = ArmModel::new(camera, (640, 480), right, ArmOptions::default())?;
-/// # let shoulders_m = [shoulder_m, Vec3::new(-0.2, -0.1, 1.2)];
+/// let (model, right, hand, shoulders_m) = (left_arm()?, right_arm()?, hand_blob(), SHOULDERS_M);
 /// // One list of blobs for both arms; this one holds the left hand only.
 /// let mut pair = ArmPair::<50>::new([&model, &right], shoulders_m, 1)?;
 /// let mut statuses = [Status::Lost; 2];
@@ -100,22 +89,13 @@ pub struct PairFrame<'a> {
 /// State of both arms' trackers, left and right.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmImage, ArmModel, ArmOptions, ArmPair, PairFrame};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::camera::Pixel;
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm, right_arm};
+/// use sinew_core::tracker::arm::{ArmImage, ArmPair, PairFrame};
+/// use sinew_core::vision::candidate::HandCandidate;
 ///
-/// # let right = ArmGeometry::new(Side::Right, 0.30, 0.35)?;
-/// # let right = ArmModel::new(camera, (640, 480), right, ArmOptions::default())?;
-/// # let models = [&model, &right];
-/// # let shoulders_m = [shoulder_m, Vec3::new(-0.2, -0.1, 1.2)];
+/// let (model, right, hand, shoulders_m) = (left_arm()?, right_arm()?, hand_blob(), SHOULDERS_M);
+/// let models = [&model, &right];
 /// // Two hands, the right one on the left of the picture; each side finds its own.
 /// let mut pair = ArmPair::<50>::new(models, shoulders_m, 1)?;
 /// let candidates = [HandCandidate { centre: Pixel::new(240.0, 250.0), ..hand }, hand];

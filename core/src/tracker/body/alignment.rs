@@ -13,31 +13,10 @@ use crate::skeleton::tree::SHIFTS;
 /// How the expected pose is laid onto a frame's points.
 ///
 /// ```
+/// use sinew_core::pik::example::{rod_points, rod_scene};
 /// use sinew_core::tracker::body::RootAlignment;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::pik::motion::BodyScene;
-/// # use sinew_core::skeleton::{Bone, Joint, Limit, Skeleton};
-/// # let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
-/// # let rod = Bone { parent: None, joint: Joint::Free([x, y, z, y, z, x]), offset_m: y * 0.6 };
-/// # let scene = BodyScene {
-/// #     skeleton: Skeleton::new([rod], [Limit { low_rad: -10.0, high_rad: 10.0 }; 6])?,
-/// #     radii_m: [0.1],
-/// #     camera_m: Vec3::zeros(),
-/// #     likelihood: PointLikelihood { std_m: 0.05, outlier_m: 0.25 },
-/// #     self_penetration: None,
-/// # };
-/// # let points_of = |pose: &[f32; 6]| {
-/// #     let skin = scene.surface(&scene.posture(pose)).capsules[0].capsule;
-/// #     let mut points_m = core::array::from_fn::<Vec3, 48, _>(|i| {
-/// #         let beside = skin.start_m + (skin.end_m - skin.start_m) * (i as f32 / 47.0) + [x, -x, -z][i % 3];
-/// #         skin.nearest_visible(&scene.camera_m, &beside)
-/// #     });
-/// #     let mut cloud = PointCloud::<3>::new();
-/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
-/// #     cloud
-/// # };
 ///
+/// let scene = rod_scene()?;
 /// let alignment = RootAlignment {
 ///     steps: 10,
 ///     coarse_to_fine: false,
@@ -49,7 +28,7 @@ use crate::skeleton::tree::SHIFTS;
 /// };
 /// // A body of one bone, three metres away, whose points show it ten centimetres farther to the right.
 /// let before = [0.0, 0.0, 3.0, 0.0, 0.0, 0.0];
-/// let cloud = points_of(&[0.1, 0.0, 3.0, 0.0, 0.0, 0.0]);
+/// let cloud = rod_points(&scene, &[0.1, 0.0, 3.0, 0.0, 0.0, 0.0]);
 /// let laid = alignment.fit_root(&scene, cloud.blocks(), (&before, &[false; 6]), 1.0 / 15.0);
 /// assert!((laid[0] - 0.1).abs() < 0.02 && (laid[2] - 3.0).abs() < 0.02, "{laid:?}");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
