@@ -1,4 +1,4 @@
-//! The baseline: angles extrapolated one by one, von Mises noise, box limits (PIK paper, eqs. 31 and 32).
+//! The baseline: angles extrapolated one by one, von Mises noise, box limits (PIK (31) and PIK (32)).
 
 use super::goal::GoalMemory;
 use super::motion::{BodyMotion, BodyParticle, FramePast, Proposed};

@@ -9,9 +9,11 @@ use crate::math::{Vec3, clamp};
 use crate::random::Stream;
 
 /// Greatest size of a log importance ratio: where the expansion is bad the ratio would decide alone.
+/// Chosen: far beyond the ratios of a good expansion.
 const MAX_LOG_RATIO: f32 = 10.0;
 
-/// Draws that tell the mass inside the limits, where the weight pays.
+/// Draws that estimate the mass inside the limits, where the weight is corrected.
+/// Chosen: bounds the time of a particle.
 const LIMIT_MASS_DRAWS: usize = 8;
 
 /// Goals from a process, poses by the Laplace proposal.
@@ -39,7 +41,7 @@ const LIMIT_MASS_DRAWS: usize = 8;
 ///     angle_std_rad_per_sqrt_s: [2.0; 4],
 ///     angle_persistence: 0.0,
 ///     solver_steps: 5,
-///     pays: false,
+///     corrects_weight: false,
 ///     draw_share: 0.1,
 /// };
 /// let mut lift_m = 0.0;
@@ -56,16 +58,16 @@ pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
     pub process: &'a P,
     /// The root's own process.
     pub root: RootProcess,
-    /// Standard deviation of each angle's change after one second, radians: lambda = 1 / (std^2 dt) of eq. (12), a diagonal.
+    /// Standard deviation of each angle's change after one second, radians: lambda = 1 / (std^2 dt) of PIK (12), a diagonal.
     pub angle_std_rad_per_sqrt_s: [f32; ANGLES],
-    /// Share of the angles' velocities that goes on in what the stiffness holds on to: zero is eq. (12), the pose of the frame before.
+    /// Share of the angles' velocities that goes on in what the stiffness holds on to: zero is PIK (12), the pose of the frame before.
     pub angle_persistence: f32,
     /// Most steps of the solver.
     pub solver_steps: usize,
     /// Whether the weight takes the importance ratio (18).
-    pub pays: bool,
+    pub corrects_weight: bool,
     /// Standard deviation of the draw relative to that of the Laplace expansion, in (0, 1]; 1 is the paper's, and what is meant where
-    /// the weight pays. Below it goals spread the particles, and angles that no goal moves spread them less.
+    /// the weight is corrected. Below it goals spread the particles, and angles that no goal moves spread them less.
     pub draw_share: f32,
 }
 
@@ -98,7 +100,7 @@ pub fn narrow<const ANGLES: usize>(mode: &mut Mode<ANGLES>, share: f32) {
     }
 }
 
-/// lambda of eq. (12), one an angle.
+/// lambda of PIK (12), one an angle.
 pub(super) fn stiffness<const ANGLES: usize>(std_rad: &[f32; ANGLES]) -> [f32; ANGLES] {
     std_rad.map(|std| 1.0 / (std * std))
 }
@@ -135,7 +137,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
             held: skeleton.root_coordinates(),
         };
         let mut mode = density.mode(self.solver_steps);
-        if !self.pays {
+        if !self.corrects_weight {
             narrow(&mut mode, self.draw_share);
         }
         let Some(proposal) = LaplaceProposal::new(&mode) else {
@@ -144,7 +146,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         };
         let draw = proposal.draw(skeleton.limits(), stream);
         let posture = density.posture(&draw.angles_rad);
-        let log_ratio = if self.pays {
+        let log_ratio = if self.corrects_weight {
             let log_density = density.log_density(&draw.angles_rad, &posture);
             let log_box = proposal.log_box(skeleton.limits(), LIMIT_MASS_DRAWS, stream);
             let ratio = proposal.log_importance_ratio(&draw, log_density, LimitMass::Counted { log_box });

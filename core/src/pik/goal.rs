@@ -74,14 +74,14 @@ pub type Goals = Vec<Goal, MAX_GOALS>;
 pub struct GoalPast<'a, const BONES: usize> {
     /// Ends of all bones that the particle reached in the frame before, metres.
     pub reached_m: &'a [Vec3; BONES],
-    /// Their velocities by the filter's estimates, not the particle's own: DESIGN.md section 3; metres a second.
+    /// Their velocities by the filter's estimates, not the particle's own, metres a second. Beyond PIK (33).
     pub velocity_m_per_s: &'a [Vec3; BONES],
-    /// Share of its noise that a goal of each bone's end has in this frame: one is all of it, a limb at rest may have less and one that nobody
-    /// sees more. [`LinearGoals`](super::processes::extrapolation::LinearGoals) keeps to it; other processes may.
+    /// Share of its noise that a goal of each bone's end has in this frame: one is all of it, a limb at rest may have less and an
+    /// unobserved one more. [`LinearGoals`](super::processes::extrapolation::LinearGoals) keeps to it; other processes may.
     pub noise_share: &'a [f32; BONES],
     /// Ends of all bones in the pose that the tracking began with, metres.
     pub first_m: &'a [Vec3; BONES],
-    /// How far the root goes in this frame, as far as its process or the points tell; metres.
+    /// How far the root goes in this frame, by its process or the points, metres.
     pub root_shift_m: Vec3,
     /// Time since the frame before, seconds.
     pub dt_s: f32,
@@ -139,9 +139,9 @@ pub trait GoalProcess<const BONES: usize> {
     }
 }
 
-/// Linear extrapolation (PIK paper, eq. 33) of the reached place, with a velocity that fades and white noise.
+/// Linear extrapolation (PIK (33)) of the reached place, with a velocity that fades and white noise.
 ///
-/// The velocity is that of the filter's estimate, not of the particle: DESIGN.md section 3.
+/// The velocity is that of the filter's estimate, not of the particle: a particle does not go on with its own noise.
 ///
 /// ```
 /// use sinew_core::math::Vec3;

@@ -161,13 +161,13 @@ pub struct FramePast<'a, const BONES: usize, const ANGLES: usize> {
     pub blocks: &'a [PointBlock],
     /// Velocities of the coordinates by the filter's estimates, a second.
     pub angle_velocity_per_s: [f32; ANGLES],
-    /// What a coordinate changes by for every particle alike, before its noise: those of a free root, and of the trunk where it is laid onto
+    /// What a coordinate changes by for every particle alike, before its noise: those of a free root, and of the trunk where it is fitted to
     /// the points. `None` leaves it to the motion model.
     pub shared_change: [Option<f32>; ANGLES],
     /// Velocities of the bones' ends by the filter's estimates, metres a second.
     pub velocity_m_per_s: &'a [Vec3; BONES],
     /// Share of the motion model's noise that each bone has in this frame: its joint's angles, and a goal of its end. One is all of it; a limb at
-    /// rest may have less, one that nobody sees more.
+    /// rest may have less, an unobserved one more.
     pub noise_share: &'a [f32; BONES],
     /// Ends of all bones in the first pose, metres.
     pub first_m: &'a [Vec3; BONES],
@@ -246,7 +246,7 @@ impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
 /// let proposed = motion.propose(&past, &ancestor, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0));
 /// assert_eq!(scene.skeleton.clamp(proposed.angles_rad), proposed.angles_rad, "inside the limits");
 /// assert_eq!(proposed.posture, scene.posture(&proposed.angles_rad), "where the bones are");
-/// assert_eq!(proposed.log_ratio, 0.0, "drawn from the motion itself: nothing to pay");
+/// assert_eq!(proposed.log_ratio, 0.0, "drawn from the motion itself: no importance ratio");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
@@ -255,7 +255,7 @@ pub struct Proposed<const BONES: usize, const ANGLES: usize> {
     pub angles_rad: [f32; ANGLES],
     /// Its posture.
     pub posture: Posture<BONES, ANGLES>,
-    /// ln of transition over proposal, eq. (18).
+    /// ln of transition over proposal, PIK (18).
     pub log_ratio: f32,
 }
 

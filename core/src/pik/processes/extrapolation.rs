@@ -1,4 +1,4 @@
-//! Linear extrapolation of several end-effectors (PIK paper, eq. 33, with DESIGN.md's changes).
+//! Linear extrapolation of several end-effectors by PIK (33), with the velocity of the estimate.
 
 use crate::error::{ParameterError, Rule, positive};
 use crate::kinematics::inverse::Goal;
@@ -8,7 +8,8 @@ use crate::random::Stream;
 use heapless::Vec;
 
 /// A limb without any noise still has a precision that is a number, square metres.
-const LEAST_VARIANCE_M2: f32 = 1.0e-8;
+/// Chosen: a tenth of a millimetre, far below the noise of points.
+const MIN_VARIANCE_M2: f32 = 1.0e-8;
 
 /// Each end-effector goes on from the place that it *reached*, with a share of the filter's velocity: those that the root carries
 /// (head, hands) relative to it, the others (feet, which stand) in space. Carried ones may go on along an arc about the joint that their limb
@@ -142,9 +143,9 @@ struct Looseness {
     reach_std_m: f32,
 }
 
-/// The goal of a bone's end that is missed by so much along each axis; a tenth of a millimetre is not told from none.
+/// The goal of a bone's end that is missed by so much along each axis; a tenth of a millimetre counts as none.
 fn goal(bone: usize, position_m: Vec3, variance_m2: f32) -> Goal {
-    Goal { bone, position_m, precision: Mat3::identity() / max(variance_m2, LEAST_VARIANCE_M2) }
+    Goal { bone, position_m, precision: Mat3::identity() / max(variance_m2, MIN_VARIANCE_M2) }
 }
 
 /// A list of bones of a skeleton with `bones` bones.

@@ -1,4 +1,4 @@
-//! Linear extrapolation as the PIK paper prints it (eq. 33): of the particle's own sampled goals, with full velocity.
+//! Linear extrapolation as PIK (33) prints it: of the particle's own sampled goals, with full velocity.
 
 use crate::kinematics::inverse::Goal;
 use crate::math::{Mat3, Vec3};
@@ -33,9 +33,9 @@ const MOST: usize = MEMORY / 6;
 pub struct PaperGoals<'a> {
     /// Bones whose ends have goals; those beyond the fifth have none.
     pub end_effectors: &'a [usize],
-    /// sigma of eq. (33), metres a frame.
+    /// sigma of PIK (33), metres a frame.
     pub std_m: f32,
-    /// W = 1 / std^2 of eq. (3), metres.
+    /// W = 1 / std^2 of PIK (3), metres.
     pub reach_std_m: f32,
 }
 

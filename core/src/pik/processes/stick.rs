@@ -1,4 +1,4 @@
-//! Both hands on a stick whose ends are known, in space or in the image (PIK paper, section 7.2, eqs. 36 and 37).
+//! Both hands on a stick whose ends are known, in space or in the image (PIK (36) and PIK (37), section 7.2).
 
 use super::extrapolation::LinearGoals;
 use crate::kinematics::inverse::Goal;
@@ -6,7 +6,8 @@ use crate::math::{Mat3, Vec3, clamp, max, min, sqrt, unit};
 use crate::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals};
 use crate::random::Stream;
 
-/// Where a hand is on the stick at first: not known, so its own place tells.
+/// Where a hand is on the stick at first: not known, so its own place decides.
+/// Zero, as in a new memory.
 const UNKNOWN: f32 = 0.0;
 
 /// What is known of the stick in a frame.
@@ -92,7 +93,7 @@ pub struct StickGoals<'a> {
     pub sight: StickSight,
     /// Centre of the camera, metres.
     pub camera_m: Vec3,
-    /// sigma of eq. (37) after one second.
+    /// sigma of PIK (37) after one second.
     pub gamma_std_per_sqrt_s: f32,
     /// How closely a hand reaches its place on the stick, metres.
     pub reach_std_m: f32,
@@ -137,7 +138,7 @@ impl StickGoals<'_> {
                     // Strictly inside, so that a hand at the very end is not taken for an unknown one.
                     let z = stream.truncated_normal((f32::EPSILON - *gamma) / std, (1.0 - *gamma) / std);
                     *gamma = clamp(*gamma + std * z, f32::EPSILON, 1.0);
-                    // gamma is the share of the first end, as in eq. (36).
+                    // gamma is the share of the first end, as in PIK (36).
                     *goal = self.goal(*hand, ends_m[0] * *gamma + ends_m[1] * (1.0 - *gamma));
                 }
                 StickSight::Rays(rays) => *goal = self.goal(*hand, into_wedge(&self.camera_m, &rays, &goal.position_m)),

@@ -9,7 +9,8 @@ use heapless::Vec;
 pub const MAX_CANDIDATES: usize = 8;
 
 /// A blob less likely than this is no hand: a speck of noise must not carry an estimate.
-pub const LEAST_LIKELIHOOD: f32 = 0.05;
+/// Chosen: specks lie below it, hands far above.
+pub const MIN_LIKELIHOOD: f32 = 0.05;
 
 /// What was found in one image.
 ///
@@ -42,7 +43,7 @@ pub struct ArmImage<'a> {
 /// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmTracker};
 ///
 /// let (model, hand, shoulder_m) = (left_arm()?, hand_blob(), SHOULDERS_M[0]);
-/// // Frames of a camera that drops every other one: what is dropped is not given, the timestamp tells.
+/// // Frames of a camera that drops every other one: what is dropped is not given, the timestamp shows it.
 /// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
 /// for frame in 0..10 {
 ///     let image = Some(ArmImage { candidates: &[hand], edges: &[] });
@@ -68,7 +69,7 @@ pub struct ArmFrame<'a> {
 
 /// The most likely candidates, in descending order of likelihood, and the count of those that found no room.
 ///
-/// Candidates whose numbers are not finite, or that are less likely than [`LEAST_LIKELIHOOD`], are dropped as well.
+/// Candidates whose numbers are not finite, or that are less likely than [`MIN_LIKELIHOOD`], are dropped as well.
 #[must_use]
 pub fn most_likely(candidates: &[HandCandidate]) -> (Vec<HandCandidate, MAX_CANDIDATES>, usize) {
     let mut kept: Vec<HandCandidate, MAX_CANDIDATES> = Vec::new();
@@ -78,7 +79,7 @@ pub fn most_likely(candidates: &[HandCandidate]) -> (Vec<HandCandidate, MAX_CAND
             && candidate.area_px > 0.0
             && candidate.area_px.is_finite()
             && candidate.moments_px2.iter().all(|moment| moment.is_finite())
-            && candidate.likelihood >= LEAST_LIKELIHOOD
+            && candidate.likelihood >= MIN_LIKELIHOOD
             && candidate.likelihood <= 1.0;
         if !usable {
             continue;

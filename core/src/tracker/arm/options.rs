@@ -61,7 +61,7 @@ pub struct Gate {
     pub allotment_reach: f32,
 }
 
-/// Area cue: the blob's area tells the hand's distance, since area times squared depth is about constant.
+/// Area cue: the blob's area measures the hand's distance, since area times squared depth is about constant.
 ///
 /// ```
 /// use sinew_core::tracker::arm::options::AreaCue;
@@ -114,7 +114,7 @@ impl AreaCue {
 pub struct BlobMemoryOptions {
     /// Time in which belief in a blob falls by 1/e while the hand is at another, seconds.
     pub fall_time_s: f32,
-    /// Time in which it comes back otherwise, seconds.
+    /// Time in which it recovers, seconds.
     pub rise_time_s: f32,
     /// Belief that is never lost; it bounds how long a mistake can last.
     pub floor: f32,
@@ -168,8 +168,8 @@ pub const DEFAULT_AREA_CUE: AreaCue =
     AreaCue { hand_area_m2: 0.0194, length_share: 0.65, foreshortening: 0.85, log_std: 0.3 };
 /// Default of the cluster's radius: 25 pixels of a 640 pixel image with 60 degrees.
 pub const DEFAULT_RADIUS_PER_FOCAL: f32 = 0.045;
-/// How much less the area tells of the depth where the shoulder is guessed: the depth that fits the arm may be far from
-/// the one that the area says.
+/// Multiple of the area cue's standard deviation where the shoulder is guessed: the depth that fits the arm may be far from
+/// the one that the area gives. Chosen: the cue still orders near and far.
 const GUESSED_AREA_DOUBT: f32 = 3.0;
 
 impl Default for Gate {
@@ -245,11 +245,11 @@ pub struct ArmOptions {
     pub ray_std_per_path: f32,
     /// Error of a blob's centre as the hand's place, as a share of the focal length.
     pub centre_std_per_focal: f32,
-    /// Standard deviation of reaching a goal, W^(-1/2) of eq. (12); metres.
+    /// Standard deviation of reaching a goal, W^(-1/2) of PIK (12); metres.
     pub reach_std_m: f32,
     /// The same across the ray, for goals that a blob drives.
     pub reach_across_std_m: f32,
-    /// Spread of each angle after one second, lambda^(-1/2) of eq. (12); radians.
+    /// Spread of each angle after one second, lambda^(-1/2) of PIK (12); radians.
     pub angle_std_rad_per_sqrt_s: [f32; ARM_ANGLES],
     /// Steps of the pose solver.
     pub solver_steps: usize,

@@ -1,4 +1,4 @@
-//! Two arms that share one list of blobs: a blob serves one hand, unless hands touch (DESIGN.md section 4).
+//! Two arms that share one list of blobs: a blob serves one hand, unless hands touch. Beyond the arm paper, which tracks one arm.
 //!
 //! ```
 //! use sinew_core::camera::{Camera, Pixel};
@@ -46,16 +46,22 @@ use crate::vision::candidate::HandCandidate;
 use heapless::Vec;
 
 /// What a hand without any blob is as likely as; compared with a blob's odds times its nearness.
+/// Chosen: a blob of likelihood 0.1 at the prediction is about as likely.
 const NO_BLOB: f32 = 0.1;
 /// What a blob at any distance from the prediction keeps of its nearness.
+/// Chosen: small, but a hand that jumps is not excluded.
 const FAR_FLOOR: f32 = 0.05;
 /// No blob is more surely a hand than this when the sides are shared out.
-const MOST_LIKELY: f32 = 0.95;
+/// Chosen: bounds the odds to 19.
+const MAX_LIKELIHOOD: f32 = 0.95;
 /// Share of its likelihood that a blob keeps for a side that has a likelier one of its own.
+/// Chosen: such a blob remains a second choice.
 const STRAY_SHARE: f32 = 0.25;
 /// Least standard deviation of where a hand is expected, metres: hands start and stop.
-const LEAST_STD_M: f32 = 0.15;
+/// Chosen: a floor for the prediction's spread.
+const MIN_STD_M: f32 = 0.15;
 /// A blob is split where both predictions lie within this many of its standard deviations.
+/// Chosen: 99 % of the blob's pixels.
 const SPLIT_REACH: f32 = 3.0;
 
 /// One frame of both arms.
@@ -194,7 +200,7 @@ fn expected<const CAPACITY: usize>(
 ) -> Option<Expected> {
     let (hand_m, std_m) = tracker.predicted_hand(model, timestamp_us);
     let hand = model.camera().project(&hand_m)?;
-    let std_px = max(std_m, LEAST_STD_M) * model.camera().focal_px() / max(hand_m.z, 0.1);
+    let std_px = max(std_m, MIN_STD_M) * model.camera().focal_px() / max(hand_m.z, 0.1);
     Some(Expected { hand, std_px })
 }
 
@@ -218,11 +224,11 @@ fn log_fit(candidate: &HandCandidate, expected: Option<&Expected>) -> f32 {
         let miss = candidate.centre.distance_px(e.hand) / e.std_px;
         exp(-0.5 * miss * miss) + FAR_FLOOR
     });
-    let likelihood = min(candidate.likelihood, MOST_LIKELY);
+    let likelihood = min(candidate.likelihood, MAX_LIKELIHOOD);
     ln(likelihood / (1.0 - likelihood) * nearness)
 }
 
-/// Gives each side its blob of the likeliest pair, and to both the blobs that are nobody's.
+/// Gives each side its blob of the likeliest pair, and to both the blobs of neither.
 fn share_out(candidates: &[HandCandidate], expected: &[Option<Expected>; 2]) -> [SideCandidates; 2] {
     let fit = |expected: &Option<Expected>, choice: Option<usize>| {
         let candidate = choice.and_then(|index| candidates.get(index));

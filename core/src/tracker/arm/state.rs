@@ -1,4 +1,4 @@
-//! State of one arm's tracker: how it begins and what it tells between frames.
+//! State of one arm's tracker: how it begins and what it holds between frames.
 
 use super::estimate::ArmJoints;
 use super::limbs::{LimbDensities, LimbRoom};
@@ -13,14 +13,18 @@ use crate::random::Stream;
 use heapless::Vec;
 
 /// Spread of the angles around the waiting pose before anything was seen, radians.
+/// Chosen: covers an arm that hangs or is half raised.
 const INITIAL_STD_RAD: f32 = 0.5;
 /// Time that the hand counts as unseen before the first frame, seconds: it may be anywhere.
+/// Chosen: long against the growth of the gate.
 const UNSEEN_AT_START_S: f32 = 2.0;
 /// Time that is taken to have passed before the first frame, seconds.
+/// Chosen: that of a camera with 15 Hz.
 const FIRST_DT_S: f32 = 1.0 / 15.0;
 /// Shortest and longest time between two frames that the motion model is asked for, seconds.
 const DT_RANGE_S: (f32, f32) = (1.0e-3, 1.0);
 /// How far a hand that is not known to be anywhere may be from that of the waiting pose, metres.
+/// Chosen: about the length of a forearm.
 const WAITING_STD_M: f32 = 0.25;
 /// The camera's centre, and no speed.
 const ORIGIN_M: Vec3 = Vec3::new(0.0, 0.0, 0.0);

@@ -1,4 +1,4 @@
-//! One pose out of many particles (PIK paper, eq. 30).
+//! One pose out of many particles (PIK (30)).
 
 use super::mean_rotation::{angles_of_rotation, mean_rotation};
 use crate::math::{Mat3, Vec3, axis_rotation, sqrt};
@@ -28,7 +28,7 @@ use crate::skeleton::{Joint, Limbs, Skeleton};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyEstimate<const BONES: usize, const ANGLES: usize> {
-    /// Coordinates of the mean pose, inside the limits; held still where it moves no farther than the tracker's options say that it trembles.
+    /// Coordinates of the mean pose, inside the limits; with the deadband of the options.
     pub angles_rad: [f32; ANGLES],
     /// Ends of all bones in that pose, metres.
     pub ends_m: [Vec3; BONES],
@@ -161,11 +161,11 @@ mod tests {
     use crate::skeleton::{ArmGeometry, Side};
 
     /// Sets of particles of unlike weights: how far their means are from the place that they were drawn about, root mean square, beside the
-    /// standard error that each set tells.
+    /// standard error that each set estimates.
     #[test]
     fn means_are_off_by_their_standard_error() {
         let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35).unwrap().skeleton().unwrap();
-        let (mut stream, mut off, mut told) = (Stream::new(3, 0, 0), 0.0, 0.0);
+        let (mut stream, mut off, mut estimated) = (Stream::new(3, 0, 0), 0.0, 0.0);
         for _ in 0..400 {
             let mut particles = [BodyParticle::at(&skeleton, [0.5, 0.1, 0.1, 1.0]); 40];
             let mut weights = [0.0; 40];
@@ -179,10 +179,10 @@ mod tests {
             spread_of_group((&particles, &weights), (&Limbs::none(), 0), kept);
             let mean_m: Vec3 = particles.iter().zip(&weights).map(|(p, &weight)| p.ends_m[FOREARM] * weight).sum();
             off += mean_m.norm_squared();
-            told += standard_error_m[FOREARM] * standard_error_m[FOREARM];
+            estimated += standard_error_m[FOREARM] * standard_error_m[FOREARM];
             assert!((0.05..0.12).contains(&spread_m[FOREARM]), "{spread_m:?}");
         }
-        // The mean that distances are taken from is the set's own, so that the error told is a little small.
-        assert!((0.85..1.05).contains(&(told / off)), "{}", told / off);
+        // The mean that distances are taken from is the set's own, so that the estimated error is a little small.
+        assert!((0.85..1.05).contains(&(estimated / off)), "{}", estimated / off);
     }
 }

@@ -17,7 +17,7 @@ use crate::observation::point_cloud::PointBlock;
 /// let mut tracker = BodyTracker::<2, 4, 30, _>::new(&first, sets, DEFAULT_BODY_OPTIONS, 1)?;
 /// let cloud = arm_points(&scene, &bending_elbow(1));
 /// let seen = tracker.step(&scene, &motion, &BodyFrame { dt_s: 1.0 / 15.0, blocks: cloud.blocks() });
-/// // No points for a third of a second: an ordinary frame, of which nobody learns anything.
+/// // No points for a third of a second: an ordinary frame, that has no evidence.
 /// let unseen = tracker.step(&scene, &motion, &BodyFrame { dt_s: 1.0 / 3.0, blocks: &[] });
 /// assert_eq!(unseen.observed, [false; 2]);
 /// assert!(unseen.spread_m[FOREARM] > seen.spread_m[FOREARM], "and the particles know less");

@@ -29,17 +29,17 @@ use crate::error::{ParameterError, Rule};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyOptions {
     /// Weights are flattened until at least this share of a hundred particles is effective, and of others a number that grows with the
-    /// root of theirs: many particles tell a sharper likelihood from chance. Zero never flattens.
+    /// root of theirs: many particles separate a sharper likelihood from chance. Zero never flattens.
     pub least_effective_share: f32,
     /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
     pub limb_by_limb: bool,
-    /// How the expected pose is laid onto the points before particles are drawn, so that their root, and trunk if asked for, set out from
+    /// How the expected pose is fitted to the points before particles are drawn, so that their root, and trunk if asked for, set out from
     /// there; `None` leaves them to their process.
     pub alignment: Option<RootAlignment>,
-    /// How far the mean of the particles trembles about a limb at rest, in its standard errors: the pose that is told stays still within it.
-    pub tremble_errors: f32,
-    /// How far it trembles beyond that, however many particles there are, metres. Both zero tell each frame's mean.
-    pub tremble_m: f32,
+    /// Deadband of the reported pose at rest, in standard errors of the particles' mean.
+    pub jitter_std_errors: f32,
+    /// Part of the deadband that no number of particles reduces, metres. With both zero each frame's mean is reported.
+    pub jitter_std_m: f32,
     /// How the noise of a limb follows its pace; `None` leaves every limb the motion model's own.
     pub pace: Option<SpeedScaledNoise>,
     /// Share of the velocity's last change that goes on, in [0, 1]: motion models are given a velocity that changes on as it did. Zero is the
@@ -47,13 +47,13 @@ pub struct BodyOptions {
     pub acceleration_share: f32,
 }
 
-/// What is used unless told otherwise.
+/// The default options.
 pub const DEFAULT_BODY_OPTIONS: BodyOptions = BodyOptions {
     least_effective_share: 0.0,
     limb_by_limb: false,
     alignment: None,
-    tremble_errors: 0.0,
-    tremble_m: 0.0,
+    jitter_std_errors: 0.0,
+    jitter_std_m: 0.0,
     pace: None,
     acceleration_share: 0.0,
 };
@@ -71,7 +71,7 @@ impl BodyOptions {
                 return Err(ParameterError::new(name, Rule::Within { low: 0.0, high: 1.0 }));
             }
         }
-        for (name, value) in [("tremble_errors", self.tremble_errors), ("tremble_m", self.tremble_m)] {
+        for (name, value) in [("jitter_std_errors", self.jitter_std_errors), ("jitter_std_m", self.jitter_std_m)] {
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(ParameterError::new(name, Rule::NotNegative));
             }
