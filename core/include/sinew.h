@@ -204,22 +204,22 @@ typedef int32_t SinewStatus;
 #endif // __cplusplus
 
 /**
- * An arm tracker; see `sinew_arm_init`.
+ * An arm tracker; see `sinew_arm_init`. Saved states fit the same configuration; seed and shoulders may differ.
  */
 typedef struct SinewArm SinewArm;
 
 /**
- * A tracker of both arms; see `sinew_arm_pair_init`.
+ * A tracker of both arms; see `sinew_arm_pair_init`. Saved states fit the same configuration; seed and shoulders may differ.
  */
 typedef struct SinewArmPair SinewArmPair;
 
 /**
- * A cyclic tracker; see `sinew_cyclic_init`.
+ * A cyclic tracker; see `sinew_cyclic_init`. Saved states fit the same model. After a reset the next frame may have any timestamp.
  */
 typedef struct SinewCyclic SinewCyclic;
 
 /**
- * A front end; see `sinew_vision_init`.
+ * A front end; see `sinew_vision_init`. Saved states hold the skin table, no frames, and fit the same pixel format.
  */
 typedef struct SinewVision SinewVision;
 
@@ -626,12 +626,12 @@ const char *sinew_error_text(int32_t status);
 uint32_t sinew_version(void);
 
 /**
- * Bytes that a cyclic tracker takes on this target; `SINEW_CYCLIC_MAX_BYTES` at most.
+ * Bytes that this object takes on this target; the constant MAX_BYTES of its kind at most.
  */
 size_t sinew_cyclic_size(void);
 
 /**
- * Alignment that the memory of a cyclic tracker needs; `SINEW_ALIGN` at most.
+ * Alignment that the memory of this object needs; `SINEW_ALIGN` at most.
  */
 size_t sinew_cyclic_align(void);
 
@@ -682,35 +682,35 @@ SinewStatus sinew_cyclic_mean_pose(struct SinewCyclic *tracker,
                                    size_t angle_count);
 
 /**
- * Forgets all frames; the next one begins anew, at any timestamp.
+ * Forgets all frames, as after the object's `init` with the same configuration. A front end keeps its skin table.
  *
  * Caller's duty:
- * `tracker` comes from `sinew_cyclic_init`.
+ * `tracker` comes from the object's `init`.
  */
 SinewStatus sinew_cyclic_reset(struct SinewCyclic *tracker);
 
 /**
- * Writes the state into `buffer`, so that a tracker made with the same model, on this processor or another, can go on from it.
+ * Writes the state into `buffer`. An object of the same kind and configuration can go on from it, on this
+ * processor or another. The object's type says what is saved, and which of its configuration may differ.
  *
- * Writes into `written` how many bytes the state takes, also where the buffer is too small. The tracker is not changed.
+ * Writes into `written` how many bytes the state takes, also where the buffer is too small. The object is not changed.
  *
  * Caller's duty:
- * `tracker` comes from `sinew_cyclic_init`, `buffer` has the size that is said.
+ * `tracker` comes from the object's `init`, `buffer` has the size that is said.
  */
 SinewStatus sinew_cyclic_save(struct SinewCyclic *tracker, uint8_t *buffer, size_t buffer_bytes, size_t *written);
 
 /**
  * Goes on from a state that was saved, all of `state_bytes`.
  *
- * A state that is not whole, of another version or of another model is refused, and the tracker is as before. A state that is
- * whole and yet holds a number that cannot be (SINEW_STATUS_BAD_STATE too) leaves a tracker that begins anew, as after `sinew_cyclic_reset`.
+ * A state that is not whole, of another version or configuration is refused, and the object is as before.
+ * A whole state may hold a number that cannot be (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the
+ * skin table of its configuration.
  *
  * Caller's duty:
- * `tracker` comes from `sinew_cyclic_init`, `state` has the size that is said.
+ * `tracker` comes from the object's `init`, `state` has the size that is said.
  */
-SinewStatus sinew_cyclic_restore(struct SinewCyclic *tracker,
-                                 const uint8_t *state,
-                                 size_t state_bytes);
+SinewStatus sinew_cyclic_restore(struct SinewCyclic *tracker, const uint8_t *state, size_t state_bytes);
 
 /**
  * Writes a configuration: a camera with square pixels, an adult who faces it at 1.25 metres, seed 1.
@@ -726,12 +726,12 @@ SinewStatus sinew_arm_default_config(uint32_t image_width_px,
                                      struct SinewArmConfig *config);
 
 /**
- * Bytes that an arm tracker takes on this target; `SINEW_ARM_MAX_BYTES` at most.
+ * Bytes that this object takes on this target; the constant MAX_BYTES of its kind at most.
  */
 size_t sinew_arm_size(void);
 
 /**
- * Alignment that the memory of an arm tracker needs; `SINEW_ALIGN` at most.
+ * Alignment that the memory of this object needs; `SINEW_ALIGN` at most.
  */
 size_t sinew_arm_align(void);
 
@@ -762,44 +762,43 @@ SinewStatus sinew_arm_init(void *memory,
 SinewStatus sinew_arm_step(struct SinewArm *tracker, const struct SinewArmFrame *frame, struct SinewArmResult *result);
 
 /**
- * Forgets all frames, as after `sinew_arm_init` with the same configuration.
+ * Forgets all frames, as after the object's `init` with the same configuration. A front end keeps its skin table.
  *
  * Caller's duty:
- * `tracker` comes from `sinew_arm_init`.
+ * `tracker` comes from the object's `init`.
  */
 SinewStatus sinew_arm_reset(struct SinewArm *tracker);
 
 /**
- * Writes the state into `buffer`, so that a tracker made with the same configuration (seed and shoulders may differ), on this
- * processor or another, can go on from it.
+ * Writes the state into `buffer`. An object of the same kind and configuration can go on from it, on this
+ * processor or another. The object's type says what is saved, and which of its configuration may differ.
  *
- * Writes into `written` how many bytes the state takes, also where the buffer is too small. The tracker is not changed.
+ * Writes into `written` how many bytes the state takes, also where the buffer is too small. The object is not changed.
  *
  * Caller's duty:
- * `tracker` comes from `sinew_arm_init`, `buffer` has the size that is said.
+ * `tracker` comes from the object's `init`, `buffer` has the size that is said.
  */
 SinewStatus sinew_arm_save(struct SinewArm *tracker, uint8_t *buffer, size_t buffer_bytes, size_t *written);
 
 /**
  * Goes on from a state that was saved, all of `state_bytes`.
  *
- * A state that is not whole, of another version or configuration is refused, and the tracker is as before. A state that is whole
- * and yet holds a number that cannot be (SINEW_STATUS_BAD_STATE too) leaves a tracker that begins anew, as after `sinew_arm_reset`.
+ * A state that is not whole, of another version or configuration is refused, and the object is as before.
+ * A whole state may hold a number that cannot be (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the
+ * skin table of its configuration.
  *
  * Caller's duty:
- * `tracker` comes from `sinew_arm_init`, `state` has the size that is said.
+ * `tracker` comes from the object's `init`, `state` has the size that is said.
  */
-SinewStatus sinew_arm_restore(struct SinewArm *tracker,
-                              const uint8_t *state,
-                              size_t state_bytes);
+SinewStatus sinew_arm_restore(struct SinewArm *tracker, const uint8_t *state, size_t state_bytes);
 
 /**
- * Bytes that a tracker of both arms takes on this target; `SINEW_ARM_PAIR_MAX_BYTES` at most.
+ * Bytes that this object takes on this target; the constant MAX_BYTES of its kind at most.
  */
 size_t sinew_arm_pair_size(void);
 
 /**
- * Alignment that the memory of a tracker of both arms needs; `SINEW_ALIGN` at most.
+ * Alignment that the memory of this object needs; `SINEW_ALIGN` at most.
  */
 size_t sinew_arm_pair_align(void);
 
@@ -828,36 +827,35 @@ SinewStatus sinew_arm_pair_init(void *memory,
 SinewStatus sinew_arm_pair_step(struct SinewArmPair *tracker, const struct SinewArmFrame *frame, struct SinewArmResult *results);
 
 /**
- * Forgets all frames, as after `sinew_arm_pair_init` with the same configuration.
+ * Forgets all frames, as after the object's `init` with the same configuration. A front end keeps its skin table.
  *
  * Caller's duty:
- * `tracker` comes from `sinew_arm_pair_init`.
+ * `tracker` comes from the object's `init`.
  */
 SinewStatus sinew_arm_pair_reset(struct SinewArmPair *tracker);
 
 /**
- * Writes the state into `buffer`, so that a tracker made with the same configuration (seed and shoulders may differ), on this
- * processor or another, can go on from it.
+ * Writes the state into `buffer`. An object of the same kind and configuration can go on from it, on this
+ * processor or another. The object's type says what is saved, and which of its configuration may differ.
  *
- * Writes into `written` how many bytes the state takes, also where the buffer is too small. The tracker is not changed.
+ * Writes into `written` how many bytes the state takes, also where the buffer is too small. The object is not changed.
  *
  * Caller's duty:
- * `tracker` comes from `sinew_arm_pair_init`, `buffer` has the size that is said.
+ * `tracker` comes from the object's `init`, `buffer` has the size that is said.
  */
 SinewStatus sinew_arm_pair_save(struct SinewArmPair *tracker, uint8_t *buffer, size_t buffer_bytes, size_t *written);
 
 /**
  * Goes on from a state that was saved, all of `state_bytes`.
  *
- * A state that is not whole, of another version or configuration is refused, and the tracker is as before. A state that is whole
- * and yet holds a number that cannot be (SINEW_STATUS_BAD_STATE too) leaves a tracker that begins anew, as after `sinew_arm_pair_reset`.
+ * A state that is not whole, of another version or configuration is refused, and the object is as before.
+ * A whole state may hold a number that cannot be (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the
+ * skin table of its configuration.
  *
  * Caller's duty:
- * `tracker` comes from `sinew_arm_pair_init`, `state` has the size that is said.
+ * `tracker` comes from the object's `init`, `state` has the size that is said.
  */
-SinewStatus sinew_arm_pair_restore(struct SinewArmPair *tracker,
-                                   const uint8_t *state,
-                                   size_t state_bytes);
+SinewStatus sinew_arm_pair_restore(struct SinewArmPair *tracker, const uint8_t *state, size_t state_bytes);
 
 /**
  * Writes a configuration: 320 x 240 pixels of RGB565, skin of many people under many lights.
@@ -868,12 +866,12 @@ SinewStatus sinew_arm_pair_restore(struct SinewArmPair *tracker,
 SinewStatus sinew_vision_default_config(struct SinewVisionConfig *config);
 
 /**
- * Bytes that a front end takes on this target; `SINEW_VISION_MAX_BYTES` at most.
+ * Bytes that this object takes on this target; the constant MAX_BYTES of its kind at most.
  */
 size_t sinew_vision_size(void);
 
 /**
- * Alignment that the memory of a front end needs; `SINEW_ALIGN` at most.
+ * Alignment that the memory of this object needs; `SINEW_ALIGN` at most.
  */
 size_t sinew_vision_align(void);
 
@@ -960,36 +958,35 @@ SinewStatus sinew_vision_end_frame(struct SinewVision *vision,
                                    struct SinewVisionResult *result);
 
 /**
- * Forgets all frames, as after a missing image or a cut; the skin table stays.
+ * Forgets all frames, as after the object's `init` with the same configuration. A front end keeps its skin table.
  *
  * Caller's duty:
- * `vision` comes from `sinew_vision_init`.
+ * `vision` comes from the object's `init`.
  */
 SinewStatus sinew_vision_reset(struct SinewVision *vision);
 
 /**
- * Writes the skin table into `buffer`, so that a front end of the same pixel format, on this processor or another, can go on with
- * it. Frames are not saved.
+ * Writes the state into `buffer`. An object of the same kind and configuration can go on from it, on this
+ * processor or another. The object's type says what is saved, and which of its configuration may differ.
  *
- * Writes into `written` how many bytes the state takes, also where the buffer is too small. The front end is not changed.
+ * Writes into `written` how many bytes the state takes, also where the buffer is too small. The object is not changed.
  *
  * Caller's duty:
- * `vision` comes from `sinew_vision_init`, `buffer` has the size that is said.
+ * `vision` comes from the object's `init`, `buffer` has the size that is said.
  */
 SinewStatus sinew_vision_save(struct SinewVision *vision, uint8_t *buffer, size_t buffer_bytes, size_t *written);
 
 /**
- * Goes on with a skin table that was saved, all of `state_bytes`, and forgets all frames.
+ * Goes on from a state that was saved, all of `state_bytes`.
  *
- * A state that is not whole, of another version or pixel format is refused, and the front end is as before. A state that is whole and yet
- * of a wrong length (SINEW_STATUS_BAD_STATE too) leaves the skin table of the configuration.
+ * A state that is not whole, of another version or configuration is refused, and the object is as before.
+ * A whole state may hold a number that cannot be (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the
+ * skin table of its configuration.
  *
  * Caller's duty:
- * `vision` comes from `sinew_vision_init`, `state` has the size that is said.
+ * `vision` comes from the object's `init`, `state` has the size that is said.
  */
-SinewStatus sinew_vision_restore(struct SinewVision *vision,
-                                 const uint8_t *state,
-                                 size_t state_bytes);
+SinewStatus sinew_vision_restore(struct SinewVision *vision, const uint8_t *state, size_t state_bytes);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -1,12 +1,13 @@
 //! The arm tracker: blobs of skin and moving edges in, the pose of one arm out.
 
 use super::arm_frame::{
-    SINEW_ARM_PARTICLES, SINEW_SIDE_LEFT, SINEW_SIDE_RIGHT, SinewArmConfig, SinewArmFrame, SinewArmResult,
+    ArmMemory, SINEW_ARM_PARTICLES, SINEW_SIDE_LEFT, SINEW_SIDE_RIGHT, SinewArmConfig, SinewArmFrame, SinewArmResult,
 };
 use super::cyclic::SINEW_ALIGN;
-use super::object::{Seal, Sealed, bytes_mut, given, list, object, place, room};
+use super::object::{Seal, Sealed, given, object, place, room};
+use super::stateful::{Stateful, install, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
-use crate::saved_state::{SavedState, StateError, StateKind, StateVisitor, restore, save, saved_bytes};
+use crate::saved_state::StateKind;
 use crate::skeleton::Side;
 use crate::tracker::arm::{ArmFrame, ArmModel, ArmTracker};
 use core::ffi::c_void;
@@ -19,22 +20,16 @@ pub const SINEW_ARM_STATE_MAX_BYTES: usize = 4096;
 
 const _: () = assert!(size_of::<SinewArm>() <= SINEW_ARM_MAX_BYTES && align_of::<SinewArm>() <= SINEW_ALIGN);
 
-/// An arm tracker; see `sinew_arm_init`.
+type Tracker = ArmTracker<SINEW_ARM_PARTICLES>;
+
+/// An arm tracker; see `sinew_arm_init`. Saved states fit the same configuration; seed and shoulders may differ.
 #[derive(Debug)]
 pub struct SinewArm {
     seal: Seal,
     fingerprint: u32,
     config: SinewArmConfig,
     model: ArmModel,
-    memory: Memory,
-}
-
-/// What changes from frame to frame.
-#[derive(Debug)]
-struct Memory {
-    /// That of the last frame, if there was one.
-    timestamp_us: Option<u64>,
-    tracker: ArmTracker<SINEW_ARM_PARTICLES>,
+    memory: ArmMemory<Tracker>,
 }
 
 // SAFETY: the seal is that field.
@@ -43,17 +38,7 @@ unsafe impl Sealed for SinewArm {
     const SEAL_AT: usize = offset_of!(SinewArm, seal);
 }
 
-/// Bytes that an arm tracker takes on this target; `SINEW_ARM_MAX_BYTES` at most.
-#[unsafe(no_mangle)]
-pub extern "C" fn sinew_arm_size() -> usize {
-    size_of::<SinewArm>()
-}
-
-/// Alignment that the memory of an arm tracker needs; `SINEW_ALIGN` at most.
-#[unsafe(no_mangle)]
-pub extern "C" fn sinew_arm_align() -> usize {
-    align_of::<SinewArm>()
-}
+size_functions!(SinewArm, sinew_arm_size, sinew_arm_align);
 
 /// Makes an arm tracker in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
 ///
@@ -82,13 +67,9 @@ pub unsafe extern "C" fn sinew_arm_init(
             };
             let model = config.model(side)?;
             let fingerprint = config.fingerprint(side as u32);
-            let memory = Memory { timestamp_us: None, tracker: ArmTracker::empty() };
-            // The seal comes last: a tracker that did not begin is none.
+            let memory = ArmMemory::new(Tracker::empty());
             let object = place.write(SinewArm { seal: Seal::BROKEN, fingerprint, config, model, memory });
-            object.reset()?;
-            object.seal = SinewArm::SEAL;
-            handle.write(object);
-            Ok(())
+            install(object, handle)
         })()
     })
 }
@@ -117,10 +98,7 @@ pub unsafe extern "C" fn sinew_arm_step(
                 image: frame.image()?,
                 shoulder_m: frame.shoulder(model.side())?,
             };
-            if memory.timestamp_us.is_some_and(|before| frame.timestamp_us <= before) {
-                return Err(SinewStatus::OutOfOrder);
-            }
-            memory.timestamp_us = Some(frame.timestamp_us);
+            memory.admit(frame.timestamp_us)?;
             let estimate = memory.tracker.step(model, &frame_of_arm);
             result.write(SinewArmResult::of(frame.timestamp_us, model, &estimate));
             Ok(())
@@ -128,78 +106,27 @@ pub unsafe extern "C" fn sinew_arm_step(
     })
 }
 
-/// Forgets all frames, as after `sinew_arm_init` with the same configuration.
-///
-/// # Safety
-/// `tracker` comes from `sinew_arm_init`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sinew_arm_reset(tracker: *mut SinewArm) -> SinewStatus {
-    // SAFETY: the caller's duty.
-    status(unsafe { object(tracker) }.and_then(SinewArm::reset))
-}
+state_functions!(SinewArm, tracker, sinew_arm_reset, sinew_arm_save, sinew_arm_restore);
 
-/// Writes the state into `buffer`, so that a tracker made with the same configuration (seed and shoulders may differ), on this
-/// processor or another, can go on from it.
-///
-/// Writes into `written` how many bytes the state takes, also where the buffer is too small. The tracker is not changed.
-///
-/// # Safety
-/// `tracker` comes from `sinew_arm_init`, `buffer` has the size that is said.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sinew_arm_save(
-    tracker: *mut SinewArm,
-    buffer: *mut u8,
-    buffer_bytes: usize,
-    written: *mut usize,
-) -> SinewStatus {
-    // SAFETY: the caller's duty.
-    status(unsafe {
-        (|| {
-            let (tracker, buffer, written) = (object(tracker)?, bytes_mut(buffer, buffer_bytes)?, room(written)?);
-            written.write(saved_bytes(&mut tracker.memory));
-            save(StateKind::Arm, tracker.fingerprint, &mut tracker.memory, buffer)?;
-            Ok(())
-        })()
-    })
-}
+impl Stateful for SinewArm {
+    type Memory = ArmMemory<Tracker>;
+    const KIND: StateKind = StateKind::Arm;
 
-/// Goes on from a state that was saved, all of `state_bytes`.
-///
-/// A state that is not whole, of another version or configuration is refused, and the tracker is as before. A state that is whole
-/// and yet holds a number that cannot be (SINEW_STATUS_BAD_STATE too) leaves a tracker that begins anew, as after `sinew_arm_reset`.
-///
-/// # Safety
-/// `tracker` comes from `sinew_arm_init`, `state` has the size that is said.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sinew_arm_restore(
-    tracker: *mut SinewArm,
-    state: *const u8,
-    state_bytes: usize,
-) -> SinewStatus {
-    // SAFETY: the caller's duty.
-    status(unsafe {
-        (|| {
-            let (tracker, state) = (object(tracker)?, list(state, state_bytes)?);
-            let answer = restore(StateKind::Arm, tracker.fingerprint, &mut tracker.memory, state);
-            if answer == Err(StateError::Illegal) {
-                tracker.reset()?;
-            }
-            Ok(answer?)
-        })()
-    })
-}
+    fn seal_mut(&mut self) -> &mut Seal {
+        &mut self.seal
+    }
 
-impl SinewArm {
+    fn fingerprint(&self) -> u32 {
+        self.fingerprint
+    }
+
+    fn memory(&mut self) -> &mut ArmMemory<Tracker> {
+        &mut self.memory
+    }
+
     fn reset(&mut self) -> Answer {
         let shoulder_m = self.config.shoulder(self.model.side())?;
-        self.memory.timestamp_us = None;
+        self.memory.forget();
         Ok(self.memory.tracker.begin(&self.model, shoulder_m, self.config.seed)?)
-    }
-}
-
-impl SavedState for Memory {
-    fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        visitor.optional_long(&mut self.timestamp_us);
-        self.tracker.visit(visitor);
     }
 }

@@ -6,6 +6,7 @@ use crate::camera::{Camera, Pixel};
 use crate::checksum::Crc32;
 use crate::error::{finite, positive, within};
 use crate::math::Vec3;
+use crate::saved_state::{SavedState, StateVisitor};
 use crate::skeleton::{ArmGeometry, Side};
 use crate::tracker::arm::{ArmEstimate, ArmImage, ArmModel, ArmOptions, Status};
 use crate::vision::candidate::HandCandidate;
@@ -109,10 +110,48 @@ pub struct SinewArmResult {
     pub reserved: u32,
 }
 
+/// What changes from frame to frame in a tracker of one arm or of both.
+#[derive(Debug)]
+pub(super) struct ArmMemory<T> {
+    /// That of the last frame, if there was one.
+    timestamp_us: Option<u64>,
+    pub tracker: T,
+}
+
+impl<T> ArmMemory<T> {
+    /// The memory of no frame.
+    pub const fn new(tracker: T) -> Self {
+        Self { timestamp_us: None, tracker }
+    }
+
+    /// Forgets the last frame's timestamp.
+    pub const fn forget(&mut self) {
+        self.timestamp_us = None;
+    }
+
+    /// Takes over the timestamp of a new frame, which has to lie after that of the last one.
+    pub fn admit(&mut self, timestamp_us: u64) -> Answer {
+        if self.timestamp_us.is_some_and(|last_us| timestamp_us <= last_us) {
+            return Err(SinewStatus::OutOfOrder);
+        }
+        self.timestamp_us = Some(timestamp_us);
+        Ok(())
+    }
+}
+
+impl<T: SavedState> SavedState for ArmMemory<T> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.optional_long(&mut self.timestamp_us);
+        self.tracker.visit(visitor);
+    }
+}
+
 /// Greatest coordinate of a shoulder, metres.
-const MOST_M: f32 = 100.0;
+/// Chosen: a room is smaller.
+const MAX_M: f32 = 100.0;
 /// Greatest coordinate in an image, pixels, and side of it.
-const MOST_PX: f32 = 65_536.0;
+/// Chosen: no camera has more, and `f32` still resolves 1/128 pixel there.
+const MAX_PX: f32 = 65_536.0;
 
 fn shoulder(shoulders_m: &[[f32; 3]; 2], side: Side) -> Result<Vec3, SinewStatus> {
     let [left, right] = *shoulders_m;
@@ -121,7 +160,7 @@ fn shoulder(shoulders_m: &[[f32; 3]; 2], side: Side) -> Result<Vec3, SinewStatus
         Side::Right => right,
     };
     for coordinate in place {
-        within("shoulders_m", coordinate, -MOST_M, MOST_M)?;
+        within("shoulders_m", coordinate, -MAX_M, MAX_M)?;
     }
     Ok(Vec3::from(place))
 }
@@ -132,17 +171,17 @@ impl SinewArmConfig {
         let [focal_u, focal_v] = self.focal_px;
         let [u_px, v_px] = self.principal_point_px;
         for length_px in [focal_u, focal_v] {
-            within("focal_px", length_px, 1.0, 16.0 * MOST_PX)?;
+            within("focal_px", length_px, 1.0, 16.0 * MAX_PX)?;
         }
         for coordinate in [u_px, v_px] {
-            within("principal_point_px", coordinate, -MOST_PX, MOST_PX)?;
+            within("principal_point_px", coordinate, -MAX_PX, MAX_PX)?;
         }
         for length_m in [self.upper_arm_m, self.forearm_m] {
             within("length of a limb", length_m, 0.01, 2.0)?;
         }
         let camera = Camera::new(focal_u, focal_v, Pixel::new(u_px, v_px))?;
         for side_px in [self.image_width_px, self.image_height_px] {
-            within("image size", side_px as f32, 1.0, MOST_PX)?;
+            within("image size", side_px as f32, 1.0, MAX_PX)?;
         }
         let geometry = ArmGeometry::new(side, self.upper_arm_m, self.forearm_m)?;
         let options = ArmOptions { particles: SINEW_ARM_PARTICLES, ..ArmOptions::default() };
@@ -192,12 +231,12 @@ impl SinewArmFrame {
 
 fn check_candidate(candidate: &HandCandidate) -> Answer {
     for coordinate in [candidate.centre.u_px, candidate.centre.v_px] {
-        within("centre", coordinate, -MOST_PX, MOST_PX)?;
+        within("centre", coordinate, -MAX_PX, MAX_PX)?;
     }
     for moment in candidate.moments_px2 {
-        within("moments_px2", finite("moments_px2", moment)?, -MOST_PX * MOST_PX, MOST_PX * MOST_PX)?;
+        within("moments_px2", finite("moments_px2", moment)?, -MAX_PX * MAX_PX, MAX_PX * MAX_PX)?;
     }
-    within("area_px", positive("area_px", candidate.area_px)?, 0.0, MOST_PX * MOST_PX)?;
+    within("area_px", positive("area_px", candidate.area_px)?, 0.0, MAX_PX * MAX_PX)?;
     within("likelihood", candidate.likelihood, 0.0, 1.0)?;
     Ok(())
 }

@@ -2,13 +2,14 @@
 
 use super::cyclic_frame::{SINEW_MAX_ANGLES, SinewCyclicFrame, SinewCyclicResult};
 use super::model::{fingerprint, read_model};
-use super::object::{Seal, Sealed, bytes_mut, given, list, object, place, room};
+use super::object::{Seal, Sealed, given, object, place, room};
+use super::stateful::{Stateful, install, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
 use crate::cyclic::measurement::MAX_STEP_FRAMES;
 use crate::cyclic::phase::wrap_position;
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::math::min;
-use crate::saved_state::{SavedState, StateError, StateKind, StateVisitor, restore, save, saved_bytes};
+use crate::saved_state::{SavedState, StateKind, StateVisitor};
 use crate::tracker::cyclic::CoupledTracker;
 use crate::tracker::cyclic::{CyclicFrame, FirstPhase};
 use core::ffi::c_void;
@@ -25,7 +26,7 @@ const _: () = assert!(size_of::<SinewCyclic>() <= SINEW_CYCLIC_MAX_BYTES && alig
 
 type Tracker = CoupledTracker<SINEW_MAX_ANGLES>;
 
-/// A cyclic tracker; see `sinew_cyclic_init`.
+/// A cyclic tracker; see `sinew_cyclic_init`. Saved states fit the same model. After a reset the next frame may have any timestamp.
 #[derive(Debug)]
 pub struct SinewCyclic {
     seal: Seal,
@@ -36,7 +37,7 @@ pub struct SinewCyclic {
 
 /// What changes from frame to frame.
 #[derive(Debug)]
-struct Memory {
+pub(super) struct Memory {
     timestamp_us: u64,
     /// Whether a frame showed something; the tracker means nothing until then.
     has_begun: bool,
@@ -49,17 +50,7 @@ unsafe impl Sealed for SinewCyclic {
     const SEAL_AT: usize = offset_of!(SinewCyclic, seal);
 }
 
-/// Bytes that a cyclic tracker takes on this target; `SINEW_CYCLIC_MAX_BYTES` at most.
-#[unsafe(no_mangle)]
-pub extern "C" fn sinew_cyclic_size() -> usize {
-    size_of::<SinewCyclic>()
-}
-
-/// Alignment that the memory of a cyclic tracker needs; `SINEW_ALIGN` at most.
-#[unsafe(no_mangle)]
-pub extern "C" fn sinew_cyclic_align() -> usize {
-    align_of::<SinewCyclic>()
-}
+size_functions!(SinewCyclic, sinew_cyclic_size, sinew_cyclic_align);
 
 /// Makes a cyclic tracker in `memory`, which it needs as long as it is used; there is nothing to free.
 ///
@@ -88,8 +79,7 @@ pub unsafe extern "C" fn sinew_cyclic_init(
             let model = read_model(model, model_bytes)?;
             let fingerprint = fingerprint(&model);
             let memory = Memory { timestamp_us: 0, has_begun: false, tracker: Tracker::empty() };
-            handle.write(place.write(SinewCyclic { seal: SinewCyclic::SEAL, fingerprint, model, memory }));
-            Ok(())
+            install(place.write(SinewCyclic { seal: Seal::BROKEN, fingerprint, model, memory }), handle)
         })()
     })
 }
@@ -149,64 +139,28 @@ pub unsafe extern "C" fn sinew_cyclic_mean_pose(
     })
 }
 
-/// Forgets all frames; the next one begins anew, at any timestamp.
-///
-/// # Safety
-/// `tracker` comes from `sinew_cyclic_init`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sinew_cyclic_reset(tracker: *mut SinewCyclic) -> SinewStatus {
-    // SAFETY: the caller's duty.
-    status(unsafe { object(tracker) }.map(|tracker| tracker.memory.forget()))
-}
+state_functions!(SinewCyclic, tracker, sinew_cyclic_reset, sinew_cyclic_save, sinew_cyclic_restore);
 
-/// Writes the state into `buffer`, so that a tracker made with the same model, on this processor or another, can go on from it.
-///
-/// Writes into `written` how many bytes the state takes, also where the buffer is too small. The tracker is not changed.
-///
-/// # Safety
-/// `tracker` comes from `sinew_cyclic_init`, `buffer` has the size that is said.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sinew_cyclic_save(
-    tracker: *mut SinewCyclic,
-    buffer: *mut u8,
-    buffer_bytes: usize,
-    written: *mut usize,
-) -> SinewStatus {
-    // SAFETY: the caller's duty.
-    status(unsafe {
-        (|| {
-            let (tracker, buffer, written) = (object(tracker)?, bytes_mut(buffer, buffer_bytes)?, room(written)?);
-            written.write(saved_bytes(&mut tracker.memory));
-            save(StateKind::Cyclic, tracker.fingerprint, &mut tracker.memory, buffer)?;
-            Ok(())
-        })()
-    })
-}
+impl Stateful for SinewCyclic {
+    type Memory = Memory;
+    const KIND: StateKind = StateKind::Cyclic;
 
-/// Goes on from a state that was saved, all of `state_bytes`.
-///
-/// A state that is not whole, of another version or of another model is refused, and the tracker is as before. A state that is
-/// whole and yet holds a number that cannot be (SINEW_STATUS_BAD_STATE too) leaves a tracker that begins anew, as after `sinew_cyclic_reset`.
-///
-/// # Safety
-/// `tracker` comes from `sinew_cyclic_init`, `state` has the size that is said.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sinew_cyclic_restore(
-    tracker: *mut SinewCyclic,
-    state: *const u8,
-    state_bytes: usize,
-) -> SinewStatus {
-    // SAFETY: the caller's duty.
-    status(unsafe {
-        (|| {
-            let (tracker, state) = (object(tracker)?, list(state, state_bytes)?);
-            let answer = restore(StateKind::Cyclic, tracker.fingerprint, &mut tracker.memory, state);
-            if answer == Err(StateError::Illegal) {
-                tracker.memory.forget();
-            }
-            Ok(answer?)
-        })()
-    })
+    fn seal_mut(&mut self) -> &mut Seal {
+        &mut self.seal
+    }
+
+    fn fingerprint(&self) -> u32 {
+        self.fingerprint
+    }
+
+    fn memory(&mut self) -> &mut Memory {
+        &mut self.memory
+    }
+
+    fn reset(&mut self) -> Answer {
+        self.memory.forget();
+        Ok(())
+    }
 }
 
 impl SinewCyclic {

@@ -23,6 +23,7 @@ mod object;
 mod panic;
 #[cfg(feature = "prove-no-panic")]
 pub mod rust_entry_points;
+mod stateful;
 pub mod status;
 pub mod vision;
 pub mod vision_frame;

@@ -40,7 +40,7 @@ pub(super) unsafe trait Sealed {
 /// A pointer that is null or misaligned.
 ///
 /// # Safety
-/// Otherwise `pointer` points at a `T` that nobody changes for `'a`; any bits make a `T`.
+/// If not refused, `pointer` points at a `T` that no code changes for `'a`; any bits make a `T`.
 pub(super) unsafe fn given<'a, T>(pointer: *const T) -> Result<&'a T, SinewStatus> {
     check(pointer)?;
     // SAFETY: checked above, and the caller's duty.
@@ -53,7 +53,7 @@ pub(super) unsafe fn given<'a, T>(pointer: *const T) -> Result<&'a T, SinewStatu
 /// A pointer that is null or misaligned.
 ///
 /// # Safety
-/// Otherwise `pointer` points at room for a `T` that nobody else uses for `'a`.
+/// If not refused, `pointer` points at room for a `T` that no other code uses for `'a`.
 pub(super) unsafe fn room<'a, T>(pointer: *mut T) -> Result<&'a mut MaybeUninit<T>, SinewStatus> {
     check(pointer)?;
     // SAFETY: checked above, and the caller's duty; a MaybeUninit needs no value.
@@ -66,7 +66,7 @@ pub(super) unsafe fn room<'a, T>(pointer: *mut T) -> Result<&'a mut MaybeUninit<
 /// A pointer that is null or misaligned, `len` beyond what an address space holds.
 ///
 /// # Safety
-/// Otherwise `pointer` points at `len` elements that nobody changes for `'a`; any bits make a `T`.
+/// If not refused, `pointer` points at `len` elements that no code changes for `'a`; any bits make a `T`.
 pub(super) unsafe fn list<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], SinewStatus> {
     if len == 0 {
         return Ok(&[]);
@@ -85,7 +85,7 @@ pub(super) unsafe fn list<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T
 /// A null pointer, `len` beyond what an address space holds.
 ///
 /// # Safety
-/// Otherwise `pointer` points at `len` bytes that nobody else uses for `'a`.
+/// If not refused, `pointer` points at `len` bytes that no other code uses for `'a`.
 pub(super) unsafe fn bytes_mut<'a>(pointer: *mut u8, len: usize) -> Result<&'a mut [u8], SinewStatus> {
     if len == 0 {
         return Ok(&mut []);
@@ -104,7 +104,7 @@ pub(super) unsafe fn bytes_mut<'a>(pointer: *mut u8, len: usize) -> Result<&'a m
 /// A pointer that is null or misaligned, or memory without the type's seal.
 ///
 /// # Safety
-/// Otherwise `pointer` points at a `T` that nobody else uses for `'a`.
+/// If not refused, `pointer` points at a `T` that no other code uses for `'a`.
 pub(super) unsafe fn object<'a, T: Sealed>(pointer: *mut T) -> Result<&'a mut T, SinewStatus> {
     check(pointer)?;
     // SAFETY: aligned, and by the caller's duty memory of at least a T, which has a Seal there; any bits make a Seal.
@@ -122,7 +122,7 @@ pub(super) unsafe fn object<'a, T: Sealed>(pointer: *mut T) -> Result<&'a mut T,
 /// A pointer that is null or misaligned, too few bytes.
 ///
 /// # Safety
-/// Otherwise `memory` points at `bytes` bytes that nobody else uses for `'a`.
+/// If not refused, `memory` points at `bytes` bytes that no other code uses for `'a`.
 pub(super) unsafe fn place<'a, T>(memory: *mut c_void, bytes: usize) -> Result<&'a mut MaybeUninit<T>, SinewStatus> {
     let pointer: *mut T = memory.cast();
     check(pointer)?;
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pointers_that_cannot_be_used_are_told_apart() {
+    fn unusable_pointers_have_different_statuses() {
         let words = [7_u32; 4];
         let inside = words.as_ptr().cast::<u8>().wrapping_add(1).cast::<u32>();
         // SAFETY: the pointers are null, misaligned, or point at `words`.

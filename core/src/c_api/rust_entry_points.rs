@@ -1,5 +1,5 @@
 //! What firmware in Rust calls and no C function does, so that the link-time proof of `prove-no-panic` covers it too. In no other library, and in no header.
-#![allow(missing_docs, improper_ctypes_definitions, reason = "called by nobody, only linked")]
+#![allow(missing_docs, improper_ctypes_definitions, reason = "only linked, never called")]
 
 use crate::cyclic::recognition::bank::MotionBank;
 use crate::cyclic::{AngleMeasurement, MotionModel};

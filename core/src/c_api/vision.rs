@@ -1,13 +1,14 @@
 //! The front end: a camera's lines in, blobs that may be hands and moving edges out, without a frame buffer.
 
 use super::cyclic::SINEW_ALIGN;
-use super::object::{Seal, Sealed, bytes_mut, given, list, object, place, room};
+use super::object::{Seal, Sealed, given, list, object, place, room};
+use super::stateful::{Stateful, install, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
 use super::vision_frame::{
     SINEW_PIXEL_RGB565, SINEW_PIXEL_RGB565_SWAPPED, SINEW_PIXEL_YUYV, SinewBox, SinewSkin, SinewVisionConfig,
     SinewVisionResult,
 };
-use crate::saved_state::{SavedState, StateError, StateKind, StateVisitor, restore, save, saved_bytes};
+use crate::saved_state::{SavedState, StateKind, StateVisitor};
 use crate::vision::front_end::QvgaFrontEnd;
 use crate::vision::front_end::calibration::SkinSample;
 use crate::vision::front_end::edge_lines::EdgeSteps;
@@ -25,7 +26,7 @@ pub const SINEW_VISION_STATE_MAX_BYTES: usize = 8320;
 
 const _: () = assert!(size_of::<SinewVision>() <= SINEW_VISION_MAX_BYTES && align_of::<SinewVision>() <= SINEW_ALIGN);
 
-/// A front end; see `sinew_vision_init`.
+/// A front end; see `sinew_vision_init`. Saved states hold the skin table, no frames, and fit the same pixel format.
 #[derive(Debug)]
 pub struct SinewVision {
     seal: Seal,
@@ -39,7 +40,7 @@ pub struct SinewVision {
 
 /// Skin of one of the formats.
 #[derive(Debug)]
-enum Skin {
+pub(super) enum Skin {
     Rgb565(SkinOf<Rgb565>),
     Swapped(SkinOf<SwappedRgb565>),
     Yuyv(SkinOf<Yuyv>),
@@ -50,7 +51,7 @@ const SAMPLE_PIXELS: usize = 256;
 
 /// The table, and what was seen of the box that is to adapt it.
 #[derive(Debug)]
-struct SkinOf<F> {
+pub(super) struct SkinOf<F> {
     table: SkinTable<F>,
     sample: Option<SkinSample<F, SAMPLE_PIXELS>>,
 }
@@ -100,17 +101,7 @@ unsafe impl Sealed for SinewVision {
     const SEAL_AT: usize = offset_of!(SinewVision, seal);
 }
 
-/// Bytes that a front end takes on this target; `SINEW_VISION_MAX_BYTES` at most.
-#[unsafe(no_mangle)]
-pub extern "C" fn sinew_vision_size() -> usize {
-    size_of::<SinewVision>()
-}
-
-/// Alignment that the memory of a front end needs; `SINEW_ALIGN` at most.
-#[unsafe(no_mangle)]
-pub extern "C" fn sinew_vision_align() -> usize {
-    align_of::<SinewVision>()
-}
+size_functions!(SinewVision, sinew_vision_size, sinew_vision_align);
 
 /// Makes a front end in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
 ///
@@ -140,11 +131,8 @@ pub unsafe extern "C" fn sinew_vision_init(
             };
             let size = (config.width_px as usize, config.height_px as usize);
             let front_end = QvgaFrontEnd::new(size, HandLikelihood::default(), EdgeSteps::default())?;
-            let seal = SinewVision::SEAL;
-            let vision = place.write(SinewVision { seal, config, trained: model, is_in_frame: false, skin, front_end });
-            vision.skin.learn(&model);
-            handle.write(vision);
-            Ok(())
+            let (seal, is_in_frame) = (Seal::BROKEN, false);
+            install(place.write(SinewVision { seal, config, trained: model, is_in_frame, skin, front_end }), handle)
         })()
     })
 }
@@ -277,67 +265,37 @@ pub unsafe extern "C" fn sinew_vision_end_frame(
     })
 }
 
-/// Forgets all frames, as after a missing image or a cut; the skin table stays.
-///
-/// # Safety
-/// `vision` comes from `sinew_vision_init`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sinew_vision_reset(vision: *mut SinewVision) -> SinewStatus {
-    // SAFETY: the caller's duty.
-    status(unsafe { object(vision) }.map(SinewVision::forget_frames))
-}
+state_functions!(SinewVision, vision, sinew_vision_reset, sinew_vision_save, sinew_vision_restore);
 
-/// Writes the skin table into `buffer`, so that a front end of the same pixel format, on this processor or another, can go on with
-/// it. Frames are not saved.
-///
-/// Writes into `written` how many bytes the state takes, also where the buffer is too small. The front end is not changed.
-///
-/// # Safety
-/// `vision` comes from `sinew_vision_init`, `buffer` has the size that is said.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sinew_vision_save(
-    vision: *mut SinewVision,
-    buffer: *mut u8,
-    buffer_bytes: usize,
-    written: *mut usize,
-) -> SinewStatus {
-    // SAFETY: the caller's duty.
-    status(unsafe {
-        (|| {
-            let (vision, buffer, written) = (object(vision)?, bytes_mut(buffer, buffer_bytes)?, room(written)?);
-            written.write(saved_bytes(&mut vision.skin));
-            save(StateKind::Vision, vision.config.pixel_format, &mut vision.skin, buffer)?;
-            Ok(())
-        })()
-    })
-}
+impl Stateful for SinewVision {
+    type Memory = Skin;
+    const KIND: StateKind = StateKind::Vision;
 
-/// Goes on with a skin table that was saved, all of `state_bytes`, and forgets all frames.
-///
-/// A state that is not whole, of another version or pixel format is refused, and the front end is as before. A state that is whole and yet
-/// of a wrong length (SINEW_STATUS_BAD_STATE too) leaves the skin table of the configuration.
-///
-/// # Safety
-/// `vision` comes from `sinew_vision_init`, `state` has the size that is said.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sinew_vision_restore(
-    vision: *mut SinewVision,
-    state: *const u8,
-    state_bytes: usize,
-) -> SinewStatus {
-    // SAFETY: the caller's duty.
-    status(unsafe {
-        (|| {
-            let (vision, state) = (object(vision)?, list(state, state_bytes)?);
-            let answer = restore(StateKind::Vision, vision.config.pixel_format, &mut vision.skin, state);
-            if answer == Err(StateError::Illegal) {
-                vision.skin.learn(&vision.config.skin.model()?);
-            }
-            answer?;
-            vision.forget_frames();
-            Ok(())
-        })()
-    })
+    fn seal_mut(&mut self) -> &mut Seal {
+        &mut self.seal
+    }
+
+    fn fingerprint(&self) -> u32 {
+        self.config.pixel_format
+    }
+
+    fn memory(&mut self) -> &mut Skin {
+        &mut self.skin
+    }
+
+    fn reset(&mut self) -> Answer {
+        self.forget_frames();
+        Ok(())
+    }
+
+    fn begin(&mut self) -> Answer {
+        self.skin.learn(&self.config.skin.model()?);
+        Ok(())
+    }
+
+    fn after_restore(&mut self) {
+        self.forget_frames();
+    }
 }
 
 impl SinewVision {

@@ -1,4 +1,4 @@
-//! What the front end is told, and what a frame showed.
+//! The configuration of the front end, and its result for a frame.
 
 use super::status::SinewStatus;
 use crate::vision::candidate::HandCandidate;

@@ -1,4 +1,4 @@
-//! The baseline: angles extrapolated one by one, von Mises noise, box limits (PIK paper, eqs. 31 and 32).
+//! The baseline: angles extrapolated one by one, von Mises noise, box limits (PIK (31) and PIK (32)).
 
 use super::goal::GoalMemory;
 use super::motion::{BodyMotion, BodyParticle, FramePast, Proposed};
@@ -13,30 +13,15 @@ const MAX_TRIES: usize = 8;
 ///
 /// ```
 /// use sinew_core::pik::angular::AngularMotion;
+/// use sinew_core::pik::example::{arm_past, arm_scene};
 /// use sinew_core::pik::goal::MEMORY;
-/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, FramePast};
 /// use sinew_core::pik::root::RootProcess;
 /// use sinew_core::random::Stream;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
-/// # let past = FramePast {
-/// #     scene: &scene,
-/// #     blocks: &[],
-/// #     angle_velocity_per_s: [0.0; 4],
-/// #     shared_change: [None; 4],
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &ancestor.ends_m,
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
 ///
+/// let scene = arm_scene()?;
+/// let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// let past = arm_past(&scene, &ancestor, &[]);
 /// // The elbow bends by two radians a second, and went on for a tenth of a second: 0.2 rad on the mean.
 /// let past = FramePast { angle_velocity_per_s: [0.0, 0.0, 0.0, 2.0], ..past };
 /// let root = RootProcess::FIXED;

@@ -9,41 +9,29 @@ use crate::math::{Vec3, clamp};
 use crate::random::Stream;
 
 /// Greatest size of a log importance ratio: where the expansion is bad the ratio would decide alone.
+/// Chosen: far beyond the ratios of a good expansion.
 const MAX_LOG_RATIO: f32 = 10.0;
 
-/// Draws that tell the mass inside the limits, where the weight pays.
+/// Draws that estimate the mass inside the limits, where the weight is corrected.
+/// Chosen: bounds the time of a particle.
 const LIMIT_MASS_DRAWS: usize = 8;
 
 /// Goals from a process, poses by the Laplace proposal.
 ///
 /// ```
+/// use sinew_core::math::Vec3;
 /// use sinew_core::pik::end_effector::EndEffectorMotion;
+/// use sinew_core::pik::example::{arm_past, arm_scene};
 /// use sinew_core::pik::goal::{LinearExtrapolation, MEMORY};
-/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, FramePast};
 /// use sinew_core::pik::processes::extrapolation::LinearGoals;
 /// use sinew_core::pik::root::RootProcess;
 /// use sinew_core::random::Stream;
 /// use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
-/// # let past = FramePast {
-/// #     scene: &scene,
-/// #     blocks: &[],
-/// #     angle_velocity_per_s: [0.0; 4],
-/// #     shared_change: [None; 4],
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &ancestor.ends_m,
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
 ///
+/// let scene = arm_scene()?;
+/// let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// let past = arm_past(&scene, &ancestor, &[]);
 /// // The hand was lifted by half a metre a second: after a tenth of a second poses reach five centimetres higher.
 /// let past = FramePast { velocity_m_per_s: &[Vec3::zeros(), Vec3::new(0.0, -0.5, 0.0)], ..past };
 /// let process = LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s: 0.05 };
@@ -53,7 +41,7 @@ const LIMIT_MASS_DRAWS: usize = 8;
 ///     angle_std_rad_per_sqrt_s: [2.0; 4],
 ///     angle_persistence: 0.0,
 ///     solver_steps: 5,
-///     pays: false,
+///     corrects_weight: false,
 ///     draw_share: 0.1,
 /// };
 /// let mut lift_m = 0.0;
@@ -70,35 +58,29 @@ pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
     pub process: &'a P,
     /// The root's own process.
     pub root: RootProcess,
-    /// Standard deviation of each angle's change after one second, radians: lambda = 1 / (std^2 dt) of eq. (12), a diagonal.
+    /// Standard deviation of each angle's change after one second, radians: lambda = 1 / (std^2 dt) of PIK (12), a diagonal.
     pub angle_std_rad_per_sqrt_s: [f32; ANGLES],
-    /// Share of the angles' velocities that goes on in what the stiffness holds on to: zero is eq. (12), the pose of the frame before.
+    /// Share of the angles' velocities that goes on in what the stiffness holds on to: zero is PIK (12), the pose of the frame before.
     pub angle_persistence: f32,
     /// Most steps of the solver.
     pub solver_steps: usize,
     /// Whether the weight takes the importance ratio (18).
-    pub pays: bool,
+    pub corrects_weight: bool,
     /// Standard deviation of the draw relative to that of the Laplace expansion, in (0, 1]; 1 is the paper's, and what is meant where
-    /// the weight pays. Below it goals spread the particles, and angles that no goal moves spread them less.
+    /// the weight is corrected. Below it goals spread the particles, and angles that no goal moves spread them less.
     pub draw_share: f32,
 }
 
 /// Makes the expansion around a mode `share` times as wide, about the same centre.
 ///
 /// ```
-/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::kinematics::inverse::Solve;
 /// use sinew_core::pik::end_effector::narrow;
+/// use sinew_core::pik::example::{hand_goal, reaching_arm, right_arm};
 /// use sinew_core::pik::proposal::LaplaceProposal;
-/// # use sinew_core::math::{Mat3, Vec3};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
-/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
-/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
-/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// # let density =
-/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
 ///
+/// let (skeleton, goals) = (right_arm()?, hand_goal());
+/// let density = reaching_arm(&skeleton, &goals);
 /// let mut mode = density.mode(10);
 /// let wide = LaplaceProposal::new(&mode).expect("a mode has curvature");
 /// let curvature = mode.hessian[0][0];
@@ -118,7 +100,7 @@ pub fn narrow<const ANGLES: usize>(mode: &mut Mode<ANGLES>, share: f32) {
     }
 }
 
-/// lambda of eq. (12), one an angle.
+/// lambda of PIK (12), one an angle.
 pub(super) fn stiffness<const ANGLES: usize>(std_rad: &[f32; ANGLES]) -> [f32; ANGLES] {
     std_rad.map(|std| 1.0 / (std * std))
 }
@@ -155,7 +137,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
             held: skeleton.root_coordinates(),
         };
         let mut mode = density.mode(self.solver_steps);
-        if !self.pays {
+        if !self.corrects_weight {
             narrow(&mut mode, self.draw_share);
         }
         let Some(proposal) = LaplaceProposal::new(&mode) else {
@@ -164,7 +146,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         };
         let draw = proposal.draw(skeleton.limits(), stream);
         let posture = density.posture(&draw.angles_rad);
-        let log_ratio = if self.pays {
+        let log_ratio = if self.corrects_weight {
             let log_density = density.log_density(&draw.angles_rad, &posture);
             let log_box = proposal.log_box(skeleton.limits(), LIMIT_MASS_DRAWS, stream);
             let ratio = proposal.log_importance_ratio(&draw, log_density, LimitMass::Counted { log_box });

@@ -13,22 +13,15 @@ pub const MEMORY: usize = 32;
 ///
 /// ```
 /// use sinew_core::math::Vec3;
-/// use sinew_core::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals, MEMORY};
+/// use sinew_core::pik::example::goal_past;
+/// use sinew_core::pik::goal::{GoalMemory, GoalProcess, Goals, MEMORY};
 /// use sinew_core::pik::processes::paper_extrapolation::PaperGoals;
 /// use sinew_core::random::Stream;
 ///
 /// // The paper's process goes on from the goal before, which each particle keeps: zeros at first.
 /// let mut memory: GoalMemory = [0.0; MEMORY];
 /// let at = [Vec3::new(0.1, 0.2, 2.0)];
-/// # let past = GoalPast {
-/// #     reached_m: &at,
-/// #     velocity_m_per_s: &[Vec3::zeros()],
-/// #     noise_share: &[1.0; 1],
-/// #     first_m: &at,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
+/// let past = goal_past(&at);
 /// let process = PaperGoals { end_effectors: &[0], std_m: 0.05, reach_std_m: 0.02 };
 /// let mut goals = Goals::new();
 /// process.draw(&past, &mut memory, &mut Stream::new(1, 0, 0), &mut goals);
@@ -81,14 +74,14 @@ pub type Goals = Vec<Goal, MAX_GOALS>;
 pub struct GoalPast<'a, const BONES: usize> {
     /// Ends of all bones that the particle reached in the frame before, metres.
     pub reached_m: &'a [Vec3; BONES],
-    /// Their velocities by the filter's estimates, not the particle's own: DESIGN.md section 3; metres a second.
+    /// Their velocities by the filter's estimates, not the particle's own, metres a second. Beyond PIK (33).
     pub velocity_m_per_s: &'a [Vec3; BONES],
-    /// Share of its noise that a goal of each bone's end has in this frame: one is all of it, a limb at rest may have less and one that nobody
-    /// sees more. [`LinearGoals`](super::processes::extrapolation::LinearGoals) keeps to it; other processes may.
+    /// Share of its noise that a goal of each bone's end has in this frame: one is all of it, a limb at rest may have less and an
+    /// unobserved one more. [`LinearGoals`](super::processes::extrapolation::LinearGoals) keeps to it; other processes may.
     pub noise_share: &'a [f32; BONES],
     /// Ends of all bones in the pose that the tracking began with, metres.
     pub first_m: &'a [Vec3; BONES],
-    /// How far the root goes in this frame, as far as its process or the points tell; metres.
+    /// How far the root goes in this frame, by its process or the points, metres.
     pub root_shift_m: Vec3,
     /// Time since the frame before, seconds.
     pub dt_s: f32,
@@ -107,6 +100,7 @@ struct OwnMotionModel;
 /// ```
 /// use sinew_core::kinematics::inverse::Goal;
 /// use sinew_core::math::{Mat3, Vec3};
+/// use sinew_core::pik::example::goal_past;
 /// use sinew_core::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals, MEMORY};
 /// use sinew_core::random::Stream;
 ///
@@ -125,16 +119,8 @@ struct OwnMotionModel;
 ///     }
 /// }
 ///
-/// # let at = [Vec3::zeros(), Vec3::new(0.0, 0.3, 2.0)];
-/// # let past = GoalPast {
-/// #     reached_m: &at,
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &at,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.2,
-/// #     is_first: true,
-/// # };
+/// let at = [Vec3::zeros(), Vec3::new(0.0, 0.3, 2.0)];
+/// let past = GoalPast { dt_s: 0.2, ..goal_past(&at) };
 /// let mut goals = Goals::new();
 /// Lift.draw(&past, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0), &mut goals);
 /// assert!((goals[0].position_m - Vec3::new(0.0, 0.2, 2.0)).norm() < 0.05);
@@ -153,9 +139,9 @@ pub trait GoalProcess<const BONES: usize> {
     }
 }
 
-/// Linear extrapolation (PIK paper, eq. 33) of the reached place, with a velocity that fades and white noise.
+/// Linear extrapolation (PIK (33)) of the reached place, with a velocity that fades and white noise.
 ///
-/// The velocity is that of the filter's estimate, not of the particle: DESIGN.md section 3.
+/// The velocity is that of the filter's estimate, not of the particle: a particle does not go on with its own noise.
 ///
 /// ```
 /// use sinew_core::math::Vec3;

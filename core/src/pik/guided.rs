@@ -1,4 +1,4 @@
-//! Guided proposals: the points pull at the pose before it is drawn (DESIGN.md, section 3: beyond the paper).
+//! Guided proposals: the points pull at the pose before it is drawn. Beyond the PIK paper.
 
 use super::end_effector::stiffness;
 use super::goal::{GoalMemory, GoalProcess, Goals};
@@ -16,58 +16,36 @@ use crate::random::Stream;
 use crate::skeleton::Skeleton;
 
 /// Inverse variance of a coordinate that is held.
+/// Chosen: a thousand times any stiffness of a free coordinate, and still well conditioned in `f32`.
 pub(crate) const HELD_STIFFNESS: f32 = 1.0e6;
 
-/// How many times as far points reach in a look from afar.
+/// How many times as far points reach in the coarse steps of [`GuidedDensity::mode_coarse_to_fine`].
+/// Chosen: reaches the forearm of the test in this file.
 const FAR_REACH: f32 = 2.0;
-/// Steps of a look from afar.
+/// Coarse steps. Chosen: bounds the time of a particle.
 const FAR_STEPS: usize = 2;
 /// Noise, as a share of the motion model's, from which on a limb may be farther off than points reach.
+/// Chosen: a limb at rest stays below it, one that moves or is unseen does not.
 pub(crate) const LOOSE_SHARE: f32 = 0.8;
 
 /// As [`super::end_effector::EndEffectorMotion`], but goals, stiffness, root *and* points make the density whose mode and Laplace
 /// expansion the pose is drawn from, so that the draw knows the frame's data.
 ///
 /// ```
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::example::{arm_past, arm_points, arm_scene};
 /// use sinew_core::pik::goal::{LinearExtrapolation, MEMORY};
 /// use sinew_core::pik::guided::GuidedMotion;
-/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle};
 /// use sinew_core::pik::processes::extrapolation::LinearGoals;
 /// use sinew_core::pik::root::RootProcess;
 /// use sinew_core::random::Stream;
 /// use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let points_of = |pose: &[f32; 4]| {
-/// #     let surface = scene.surface(&scene.posture(pose));
-/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
-/// #         let bone = &surface.capsules[i % 2].capsule;
-/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
-/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
-/// #     });
-/// #     let mut cloud = PointCloud::<2>::new();
-/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
-/// #     cloud
-/// # };
-/// # let cloud = points_of(&[0.5, 0.1, 0.1, 1.4]);
-/// # let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
-/// # let past = FramePast {
-/// #     scene: &scene,
-/// #     blocks: cloud.blocks(),
-/// #     angle_velocity_per_s: [0.0; 4],
-/// #     shared_change: [None; 4],
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &ancestor.ends_m,
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
 ///
+/// let scene = arm_scene()?;
+/// let cloud = arm_points(&scene, &[0.5, 0.1, 0.1, 1.4]);
+/// let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// let past = arm_past(&scene, &ancestor, cloud.blocks());
 /// // The elbow was at 1.0 rad and seemed to stand still; the frame's points lie where it is at 1.4 rad.
 /// let process = LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s: 0.5 };
 /// let motion = GuidedMotion {
@@ -109,31 +87,15 @@ pub struct GuidedMotion<'a, P, const ANGLES: usize> {
 ///
 /// ```
 /// use sinew_core::kinematics::inverse::{PoseDensity, Solve};
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::example::{arm_points, arm_scene};
 /// use sinew_core::pik::guided::GuidedDensity;
-/// use sinew_core::pik::motion::BodyScene;
 /// use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let points_of = |pose: &[f32; 4]| {
-/// #     let surface = scene.surface(&scene.posture(pose));
-/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
-/// #         let bone = &surface.capsules[i % 2].capsule;
-/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
-/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
-/// #     });
-/// #     let mut cloud = PointCloud::<2>::new();
-/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
-/// #     cloud
-/// # };
 ///
+/// let scene = arm_scene()?;
 /// // Lay a pose onto points, without any goal: the elbow was at 1.0 rad, the points show it at 1.4 rad.
 /// let truth_rad = [0.5, 0.1, 0.1, 1.4];
-/// let cloud = points_of(&truth_rad);
+/// let cloud = arm_points(&scene, &truth_rad);
 /// let prior = PoseDensity {
 ///     skeleton: &scene.skeleton,
 ///     root_m: Vec3::zeros(),
@@ -164,10 +126,10 @@ pub struct GuidedDensity<'a, const BONES: usize, const ANGLES: usize> {
 }
 
 impl<const BONES: usize, const ANGLES: usize> GuidedDensity<'_, BONES, ANGLES> {
-    /// The mode from the start, or from where a look from afar finds the pose, whichever is likelier: two steps about `far_prior` with points
-    /// that reach twice as far. What moved farther than points reach is pulled by none of them otherwise.
+    /// The likelier of two modes: from the start, and from the pose after two coarse steps about `far_prior`.
+    /// In coarse steps points reach twice as far. In fine steps no point pulls at a limb that moved farther than points reach.
     #[must_use]
-    pub fn mode_from_afar(&self, far_prior: &PoseDensity<'_, BONES, ANGLES>, max_steps: usize) -> Mode<ANGLES> {
+    pub fn mode_coarse_to_fine(&self, far_prior: &PoseDensity<'_, BONES, ANGLES>, max_steps: usize) -> Mode<ANGLES> {
         let far = GuidedDensity { prior: *far_prior, reach: FAR_REACH * self.reach, ..*self };
         self.mode_from(&[self.start_rad(), far.mode(FAR_STEPS).angles_rad], max_steps)
     }
@@ -264,7 +226,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         let pulling = past.blocks.get(first..).unwrap_or_default();
         let density = GuidedDensity { prior, scene: past.scene, blocks: pulling, stride, reach: 1.0 };
         let mode = if self.is_any_loose(past) {
-            density.mode_from_afar(&prior, self.solver_steps)
+            density.mode_coarse_to_fine(&prior, self.solver_steps)
         } else {
             density.mode(self.solver_steps)
         };
@@ -309,12 +271,12 @@ mod tests {
         cloud
     }
 
-    /// A forearm that swung farther than its points reach: it stays where it was, unless they are first looked at from afar. One that has
+    /// A forearm that swung farther than its points reach: it stays where it was without coarse steps. One that has
     /// hardly moved ends at the same place either way.
     #[test]
     fn what_swung_out_of_reach_is_found_from_afar() {
         let scene = scene_of(0.08);
-        let off_m = |truth_rad: [f32; 4], looks_afar: bool| {
+        let off_m = |truth_rad: [f32; 4], coarse_to_fine: bool| {
             let cloud = cloud_of(&scene, &truth_rad);
             let prior = PoseDensity {
                 skeleton: &scene.skeleton,
@@ -326,7 +288,7 @@ mod tests {
             };
             let density = GuidedDensity { prior, scene: &scene, blocks: cloud.blocks(), stride: 1, reach: 1.0 };
             let hand_m = |pose_rad| scene.posture(&pose_rad).ends[FOREARM];
-            let mode = if looks_afar { density.mode_from_afar(&prior, 4) } else { density.mode(4) };
+            let mode = if coarse_to_fine { density.mode_coarse_to_fine(&prior, 4) } else { density.mode(4) };
             (hand_m(mode.angles_rad) - hand_m(truth_rad)).norm()
         };
         let swung_rad = [0.5, 0.1, 0.1, 1.4];

@@ -36,6 +36,7 @@
 
 pub mod angular;
 pub mod end_effector;
+pub mod example;
 pub mod goal;
 pub mod guided;
 pub mod motion;

@@ -131,15 +131,11 @@ impl<const BONES: usize, const ANGLES: usize> BodyScene<BONES, ANGLES> {
 /// What all particles of a frame share.
 ///
 /// ```
-/// use sinew_core::pik::motion::{BodyParticle, BodyScene, FramePast};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::example::arm_scene;
+/// use sinew_core::pik::motion::{BodyParticle, FramePast};
 ///
+/// let scene = arm_scene()?;
 /// let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
 /// let past = FramePast {
 ///     scene: &scene,
@@ -165,13 +161,13 @@ pub struct FramePast<'a, const BONES: usize, const ANGLES: usize> {
     pub blocks: &'a [PointBlock],
     /// Velocities of the coordinates by the filter's estimates, a second.
     pub angle_velocity_per_s: [f32; ANGLES],
-    /// What a coordinate changes by for every particle alike, before its noise: those of a free root, and of the trunk where it is laid onto
+    /// What a coordinate changes by for every particle alike, before its noise: those of a free root, and of the trunk where it is fitted to
     /// the points. `None` leaves it to the motion model.
     pub shared_change: [Option<f32>; ANGLES],
     /// Velocities of the bones' ends by the filter's estimates, metres a second.
     pub velocity_m_per_s: &'a [Vec3; BONES],
     /// Share of the motion model's noise that each bone has in this frame: its joint's angles, and a goal of its end. One is all of it; a limb at
-    /// rest may have less, one that nobody sees more.
+    /// rest may have less, an unobserved one more.
     pub noise_share: &'a [f32; BONES],
     /// Ends of all bones in the first pose, metres.
     pub first_m: &'a [Vec3; BONES],
@@ -231,40 +227,26 @@ impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
 ///
 /// ```
 /// use sinew_core::pik::angular::AngularMotion;
+/// use sinew_core::pik::example::{arm_past, arm_scene};
 /// use sinew_core::pik::goal::MEMORY;
-/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle};
 /// use sinew_core::pik::root::RootProcess;
 /// use sinew_core::random::Stream;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
-/// # let past = FramePast {
-/// #     scene: &scene,
-/// #     blocks: &[],
-/// #     angle_velocity_per_s: [0.0; 4],
-/// #     shared_change: [None; 4],
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &ancestor.ends_m,
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
-/// # let motion = AngularMotion {
-/// #     root: RootProcess::FIXED,
-/// #     persistence: 1.0,
-/// #     angle_std_rad_per_sqrt_s: [1.0; 4],
-/// #     own_velocity: false,
-/// # };
+///
+/// let scene = arm_scene()?;
+/// let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// let past = arm_past(&scene, &ancestor, &[]);
+/// let motion = AngularMotion {
+///     root: RootProcess::FIXED,
+///     persistence: 1.0,
+///     angle_std_rad_per_sqrt_s: [1.0; 4],
+///     own_velocity: false,
+/// };
 ///
 /// let proposed = motion.propose(&past, &ancestor, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0));
 /// assert_eq!(scene.skeleton.clamp(proposed.angles_rad), proposed.angles_rad, "inside the limits");
 /// assert_eq!(proposed.posture, scene.posture(&proposed.angles_rad), "where the bones are");
-/// assert_eq!(proposed.log_ratio, 0.0, "drawn from the motion itself: nothing to pay");
+/// assert_eq!(proposed.log_ratio, 0.0, "drawn from the motion itself: no importance ratio");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
@@ -273,18 +255,22 @@ pub struct Proposed<const BONES: usize, const ANGLES: usize> {
     pub angles_rad: [f32; ANGLES],
     /// Its posture.
     pub posture: Posture<BONES, ANGLES>,
-    /// ln of transition over proposal, eq. (18).
+    /// ln of transition over proposal, PIK (18).
     pub log_ratio: f32,
 }
 
 /// A motion model: how a particle moves on.
 ///
 /// ```
+/// use sinew_core::pik::example::{arm_past, arm_scene};
 /// use sinew_core::pik::goal::{GoalMemory, MEMORY};
-/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast, Proposed};
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle, FramePast, Proposed};
 /// use sinew_core::pik::root::RootProcess;
 /// use sinew_core::random::Stream;
 ///
+/// let scene = arm_scene()?;
+/// let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// let past = arm_past(&scene, &ancestor, &[]);
 /// /// An arm of which only the elbow moves, by a random walk.
 /// struct ElbowWalk;
 ///
@@ -307,25 +293,6 @@ pub struct Proposed<const BONES: usize, const ANGLES: usize> {
 ///     }
 /// }
 ///
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let ancestor = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
-/// # let past = FramePast {
-/// #     scene: &scene,
-/// #     blocks: &[],
-/// #     angle_velocity_per_s: [0.0; 4],
-/// #     shared_change: [None; 4],
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &ancestor.ends_m,
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
 /// let moved = ElbowWalk.propose(&past, &ancestor, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0));
 /// assert_eq!(moved.posture.ends[0], ancestor.ends_m[0], "the elbow stays in its place");
 /// assert_ne!(moved.posture.ends[1], ancestor.ends_m[1]);

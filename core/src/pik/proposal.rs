@@ -1,4 +1,4 @@
-//! The Laplace proposal of a pose, cut to the limits (PIK paper, eqs. 18-22).
+//! The Laplace proposal of a pose, cut to the limits (PIK (18) to (22)).
 //!
 //! With H = L L' an angle is drawn after those behind it, each from a one-dimensional normal cut to its limits. The
 //! density of such a draw is N(theta; m, H^-1) / prod M_i, with M_i the mass that the limits leave to angle i given the
@@ -15,19 +15,13 @@ use crate::skeleton::Limit;
 /// A normal approximation of a pose's density.
 ///
 /// ```
-/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::kinematics::inverse::Solve;
+/// use sinew_core::pik::example::{hand_goal, reaching_arm, right_arm};
 /// use sinew_core::pik::proposal::LaplaceProposal;
 /// use sinew_core::random::Stream;
-/// # use sinew_core::math::{Mat3, Vec3};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
-/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
-/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
-/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// # let density =
-/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
 ///
+/// let (skeleton, goals) = (right_arm()?, hand_goal());
+/// let density = reaching_arm(&skeleton, &goals);
 /// let mode = density.mode(10);
 /// let proposal = LaplaceProposal::new(&mode).expect("a mode has curvature");
 /// // No limit is near: the normal's centre is the mode, and so is the mean of what is drawn.
@@ -53,19 +47,13 @@ pub struct LaplaceProposal<const ANGLES: usize> {
 /// A pose drawn from a [`LaplaceProposal`].
 ///
 /// ```
-/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, Solve};
+/// use sinew_core::kinematics::inverse::Solve;
+/// use sinew_core::pik::example::{hand_goal, reaching_arm, right_arm};
 /// use sinew_core::pik::proposal::LaplaceProposal;
 /// use sinew_core::random::Stream;
-/// # use sinew_core::math::{Mat3, Vec3};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
-/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
-/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
-/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// # let density =
-/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
 ///
+/// let (skeleton, goals) = (right_arm()?, hand_goal());
+/// let density = reaching_arm(&skeleton, &goals);
 /// let proposal = LaplaceProposal::new(&density.mode(10)).expect("a mode has curvature");
 /// let mut mean_distance = 0.0;
 /// for particle in 0..1000 {
@@ -89,19 +77,13 @@ pub struct PoseDraw<const ANGLES: usize> {
 /// Whether the mass that limits cut off is part of an importance ratio.
 ///
 /// ```
-/// use sinew_core::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
+/// use sinew_core::kinematics::inverse::{PoseObjective, Solve};
+/// use sinew_core::pik::example::{hand_goal, reaching_arm, right_arm};
 /// use sinew_core::pik::proposal::{LaplaceProposal, LimitMass};
 /// use sinew_core::random::Stream;
-/// # use sinew_core::math::{Mat3, Vec3};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Right, 0.30, 0.35)?.skeleton()?;
-/// # let position_m = Vec3::new(-0.3, 0.3, -0.2);
-/// # let goals = [Goal { bone: FOREARM, position_m, precision: Mat3::identity() * 2500.0 }];
-/// # let (root_m, previous_rad) = (Vec3::zeros(), [0.6, 0.1, 0.1, 0.9]);
-/// # let density =
-/// #     PoseDensity { skeleton: &skeleton, root_m, goals: &goals, previous_rad, stiffness: [50.0; 4], held: 0 };
 ///
+/// let (skeleton, goals) = (right_arm()?, hand_goal());
+/// let density = reaching_arm(&skeleton, &goals);
 /// let proposal = LaplaceProposal::new(&density.mode(10)).expect("a mode has curvature");
 /// let mut stream = Stream::new(1, 0, 0);
 /// let draw = proposal.draw(skeleton.limits(), &mut stream);
@@ -114,7 +96,7 @@ pub struct PoseDraw<const ANGLES: usize> {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LimitMass {
-    /// Neither M_box nor the M_i: right where no limit is active. Where one is, poses count as the sequential draw makes them and not as eq. (12)
+    /// Neither M_box nor the M_i: right where no limit is active. Where one is, poses count as the sequential draw makes them and not as PIK (12)
     /// cut to the limits does, unless the angles at limits do not depend on others.
     Neglected,
     /// Both: ln M_box is given, the M_i are known from the draw.
@@ -201,7 +183,7 @@ impl<const ANGLES: usize> LaplaceProposal<ANGLES> {
         if sum > 0.0 { greatest + ln(sum / count as f32) } else { 0.0 }
     }
 
-    /// ln of the importance ratio (18) of a draw whose eq. (12) density is `log_density`.
+    /// ln of the importance ratio PIK (18) of a draw whose PIK (12) density is `log_density`.
     ///
     /// ln |H| and (2 pi)^(n/2) stand in both densities and cancel.
     #[must_use]
@@ -226,7 +208,7 @@ mod tests {
         Skeleton::new([hinge(None), hinge(Some(0))], limits).unwrap()
     }
 
-    /// Mean of both angles under eq. (12), by a grid over the box, and the log of its integral.
+    /// Mean of both angles under PIK (12), by a grid over the box, and the log of its integral.
     fn grid(density: &PoseDensity<'_, 2, 2>) -> ([f64; 2], f64) {
         let limits = density.skeleton.limits();
         let steps = 800;
@@ -296,7 +278,7 @@ mod tests {
 
     #[test]
     fn without_limits_on_a_linear_map_every_ratio_is_one() {
-        // No goal: eq. (12) is then exactly the normal of the stiffness.
+        // No goal: PIK (12) is then exactly the normal of the stiffness.
         let wide = planar_arm([Limit::from_degrees(-36_000.0, 36_000.0); 2]);
         let density = PoseDensity {
             skeleton: &wide,

@@ -1,4 +1,6 @@
-//! How a free root moves: the same in every motion model, drawn before the pose (DESIGN.md, section 3).
+//! How a free root moves: the same in every motion model, drawn before the pose.
+//!
+//! Beyond the PIK paper, whose subjects stay in place.
 //!
 //! ```
 //! use sinew_core::pik::root::RootProcess;
@@ -59,7 +61,7 @@ impl RootProcess {
     pub const FIXED: Self =
         Self { persistence: 0.0, std_per_sqrt_s: [0.0; FREE_ROOT_COORDINATES], shift_limits_m: NO_PLANES };
 
-    /// The pelvic lift's root (PIK paper, eq. 39) over a floor at `floor_y_m`, camera axes with y down: standard deviations `std`
+    /// The pelvic lift's root (PIK (39)) over a floor at `floor_y_m`, camera axes with y down: standard deviations `std`
     /// across and four times as much up and down, metres by root second.
     #[must_use]
     pub fn pelvic_lift(std_m_per_sqrt_s: f32, turn_std_rad_per_sqrt_s: f32, floor_y_m: f32) -> Self {
@@ -69,7 +71,7 @@ impl RootProcess {
         Self { persistence: 0.0, std_per_sqrt_s: [s, 4.0 * s, s, t, t, t], shift_limits_m }
     }
 
-    /// How the root goes on where no points tell: a share of the filter's velocity.
+    /// How the root goes on without evidence of points: a share of the filter's velocity.
     #[must_use]
     pub fn expected_change<const ANGLES: usize>(
         &self,

@@ -211,7 +211,7 @@ impl Model {
             angle_std_rad_per_sqrt_s,
             angle_persistence: 0.0,
             solver_steps: self.tuning.end_effector.solver_steps,
-            pays: self.tuning.draw.pays,
+            corrects_weight: self.tuning.draw.corrects_weight,
             draw_share: self.tuning.draw.share,
         };
         tracker.step(&self.scene, &Foretold { shipped, pose_rad }, frame)

@@ -9,8 +9,9 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Version of the form in which this is kept.
-const VERSION: u32 = 2;
+/// Layout in which this is kept: of its own fields, and of the options. Options are named as in a configuration file,
+/// so a new name of a key is a new layout.
+const VERSION: u32 = 3;
 
 /// Command, version, options and inputs of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -85,7 +86,13 @@ impl Begun {
     /// It is not, or it belongs to another command; `path` is where it stands.
     pub(super) fn check_kind(value: &Value, command: &str, path: &Path) -> Result<()> {
         ensure!(
-            value["version"] == VERSION && value["sinew_version"] == env!("CARGO_PKG_VERSION"),
+            value["version"] == VERSION,
+            "`{}` has layout {} of options, and this sinew reads layout {VERSION}, in which `[tracker]` has sections; {REMEDY}",
+            path.display(),
+            value["version"]
+        );
+        ensure!(
+            value["sinew_version"] == env!("CARGO_PKG_VERSION"),
             "`{}` was written by sinew {}, and this is {}; {REMEDY}",
             path.display(),
             value["sinew_version"].as_str().unwrap_or("of another version"),
@@ -193,6 +200,22 @@ pub(super) fn copy_with_crc32(path: &Path, to: &mut dyn Write) -> Result<u32> {
 mod tests {
     use super::*;
     use serde_json::json;
+
+    #[test]
+    fn a_layout_with_flat_options_is_refused_by_name() {
+        let begun = Begun::new("track arm", &json!({ "config": { "tracker": { "gate_std_m": 0.8 } } }), &[]).unwrap();
+        let mut value = serde_json::to_value(begun).unwrap();
+        let check = |value: &Value| Begun::check_kind(value, "track arm", Path::new("resume.json"));
+        check(&value).unwrap();
+        value["version"] = json!(VERSION - 1);
+        let message = check(&value).unwrap_err().to_string();
+        assert!(
+            message.contains("has layout 2 of options")
+                && message.contains("`[tracker]` has sections")
+                && message.contains(REMEDY),
+            "{message}"
+        );
+    }
 
     #[test]
     fn the_first_difference_is_named_with_its_section() {

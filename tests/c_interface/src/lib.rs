@@ -1,5 +1,6 @@
 //! What the tests of the interface for C share: where things lie, and which tools there are.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -10,6 +11,32 @@ use std::process::{Command, Output};
 #[must_use]
 pub fn workspace_root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the package lies in the workspace")
+}
+
+/// The text of a source of the interface, with the functions of its macros written out: cbindgen expands no macros.
+///
+/// # Panics
+/// If the file cannot be read, or does not use the macros as `c_api/stateful.rs` defines them.
+#[must_use]
+pub fn expanded_source(path: &Path) -> String {
+    let read = |path: &Path| fs::read_to_string(path).expect("the interface has this source");
+    let (mut source, macros) = (read(path), read(&workspace_root().join("core/src/c_api/stateful.rs")));
+    for definition in macros.split("macro_rules! ").skip(1) {
+        let (name, definition) = definition.split_once(" {").expect("a macro has a name");
+        let (matcher, body) = definition.split_once(") => {\n").expect("a macro has one arm");
+        let body = body.split("\n    };\n").next().expect("an arm ends").replace("$crate", "crate");
+        let call = format!("\n{name}!(");
+        while let Some((before, after)) = source.split_once(&call) {
+            let (values, after) = after.split_once(");\n").expect("a call of a macro ends");
+            let names = matcher.trim_start_matches(['(', ' ', '\n']).split(',');
+            let text = names.zip(values.split(',')).fold(body.clone(), |text, (name, value)| {
+                let name = name.trim().split(':').next().expect("a parameter has a name");
+                text.replace(name, value.trim())
+            });
+            source = format!("{before}\n{text}\n{after}");
+        }
+    }
+    source
 }
 
 /// Whether `tool` runs; where it does not, says what is left out, and fails in CI, which has to have all tools.

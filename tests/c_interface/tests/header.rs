@@ -1,6 +1,6 @@
 //! `sinew.h` is what the interface's source says, and every C and C++ compiler takes it.
 
-use sinew_c_interface::{expect_success, has_tool, workspace_root};
+use sinew_c_interface::{expanded_source, expect_success, has_tool, workspace_root};
 use std::fs;
 use std::process::Command;
 
@@ -51,8 +51,11 @@ fn header() -> String {
     // Constants of the sources that the structures come from.
     config.export.exclude.extend(["DEFAULT_MIN_GRADIENT", "DEFAULT_MIN_MOTION"].map(String::from));
     let mut builder = cbindgen::Builder::new().with_config(config);
+    let folder = tempfile::tempdir().unwrap();
     for source in SOURCES {
-        builder = builder.with_src(workspace_root().join("core/src").join(source));
+        let expanded = folder.path().join(source.replace('/', "_"));
+        fs::write(&expanded, expanded_source(&workspace_root().join("core/src").join(source))).unwrap();
+        builder = builder.with_src(expanded);
     }
     let mut text = Vec::new();
     builder.generate().expect("the interface can be said in C").write(&mut text);
@@ -94,7 +97,7 @@ fn every_function_of_the_interface_is_in_the_header() {
     let sources = fs::read_dir(workspace_root().join("core/src/c_api")).unwrap();
     let mut count = 0;
     for source in sources {
-        let source = fs::read_to_string(source.unwrap().path()).unwrap();
+        let source = expanded_source(&source.unwrap().path());
         for function in source.split("extern \"C\" fn sinew_").skip(1) {
             let name = function.split('(').next().unwrap();
             let declared = header.contains(&format!("sinew_{name}("));

@@ -4,7 +4,7 @@
 //! The library is built with `prove-no-panic`, in which a panic calls a function that is defined nowhere. Each public function is linked
 //! alone and everything that it does not reach is dropped; what is left must not miss that function.
 
-use sinew_c_interface::{cargo, expect_success, has_target, has_tool, static_library, workspace_root};
+use sinew_c_interface::{cargo, expanded_source, expect_success, has_target, has_tool, static_library, workspace_root};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -23,7 +23,7 @@ const UNDEFINED: &str = "sinew_panic_is_reachable";
 fn public_functions(folder: &str) -> Vec<String> {
     let mut names = Vec::new();
     for source in fs::read_dir(workspace_root().join(folder)).unwrap() {
-        let source = fs::read_to_string(source.unwrap().path()).unwrap();
+        let source = expanded_source(&source.unwrap().path());
         for function in source.split("pub extern \"C\" fn ").chain(source.split("pub unsafe extern \"C\" fn ")) {
             names
                 .extend(function.split(['(', '<']).next().filter(|name| name.starts_with("sinew_")).map(str::to_owned));

@@ -1,4 +1,4 @@
-//! Linear extrapolation of several end-effectors (PIK paper, eq. 33, with DESIGN.md's changes).
+//! Linear extrapolation of several end-effectors by PIK (33), with the velocity of the estimate.
 
 use crate::error::{ParameterError, Rule, positive};
 use crate::kinematics::inverse::Goal;
@@ -8,7 +8,8 @@ use crate::random::Stream;
 use heapless::Vec;
 
 /// A limb without any noise still has a precision that is a number, square metres.
-const LEAST_VARIANCE_M2: f32 = 1.0e-8;
+/// Chosen: a tenth of a millimetre, far below the noise of points.
+const MIN_VARIANCE_M2: f32 = 1.0e-8;
 
 /// Each end-effector goes on from the place that it *reached*, with a share of the filter's velocity: those that the root carries
 /// (head, hands) relative to it, the others (feet, which stand) in space. Carried ones may go on along an arc about the joint that their limb
@@ -16,21 +17,14 @@ const LEAST_VARIANCE_M2: f32 = 1.0e-8;
 ///
 /// ```
 /// use sinew_core::math::Vec3;
+/// use sinew_core::pik::example::goal_past;
 /// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, LinearExtrapolation, MEMORY};
 /// use sinew_core::pik::processes::extrapolation::LinearGoals;
 /// use sinew_core::random::Stream;
 ///
 /// // A root (bone 0) that stands and a hand (bone 1) that goes a metre a second to the right.
 /// let places_m = [Vec3::zeros(), Vec3::new(0.3, 0.0, 2.0)];
-/// # let past = GoalPast {
-/// #     reached_m: &places_m,
-/// #     velocity_m_per_s: &[Vec3::zeros(), Vec3::x()],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &places_m,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
+/// let past = GoalPast { velocity_m_per_s: &[Vec3::zeros(), Vec3::x()], ..goal_past(&places_m) };
 /// let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.2 };
 /// let hand = LinearGoals::new(&[1], 2, process, 0.05)?.carrying(1);
 /// let mut goals = Goals::new();
@@ -149,9 +143,9 @@ struct Looseness {
     reach_std_m: f32,
 }
 
-/// The goal of a bone's end that is missed by so much along each axis; a tenth of a millimetre is not told from none.
+/// The goal of a bone's end that is missed by so much along each axis; a tenth of a millimetre counts as none.
 fn goal(bone: usize, position_m: Vec3, variance_m2: f32) -> Goal {
-    Goal { bone, position_m, precision: Mat3::identity() / max(variance_m2, LEAST_VARIANCE_M2) }
+    Goal { bone, position_m, precision: Mat3::identity() / max(variance_m2, MIN_VARIANCE_M2) }
 }
 
 /// A list of bones of a skeleton with `bones` bones.

@@ -1,4 +1,4 @@
-//! Linear extrapolation as the PIK paper prints it (eq. 33): of the particle's own sampled goals, with full velocity.
+//! Linear extrapolation as PIK (33) prints it: of the particle's own sampled goals, with full velocity.
 
 use crate::kinematics::inverse::Goal;
 use crate::math::{Mat3, Vec3};
@@ -12,21 +12,14 @@ const MOST: usize = MEMORY / 6;
 ///
 /// ```
 /// use sinew_core::math::Vec3;
+/// use sinew_core::pik::example::goal_past;
 /// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, MEMORY};
 /// use sinew_core::pik::processes::paper_extrapolation::PaperGoals;
 /// use sinew_core::random::Stream;
 ///
 /// // Goals go on by their own last step, whether the hand follows or not; it stays at the origin here.
 /// let hand_m = [Vec3::zeros()];
-/// # let past = GoalPast {
-/// #     reached_m: &hand_m,
-/// #     velocity_m_per_s: &hand_m,
-/// #     noise_share: &[1.0; 1],
-/// #     first_m: &hand_m,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
+/// let past = goal_past(&hand_m);
 /// let process = PaperGoals { end_effectors: &[0], std_m: 0.01, reach_std_m: 0.02 };
 /// let (mut memory, mut stream, mut steps_m) = ([0.0; MEMORY], Stream::new(1, 0, 0), [Vec3::zeros(); 20]);
 /// for (frame, step_m) in steps_m.iter_mut().enumerate() {
@@ -40,9 +33,9 @@ const MOST: usize = MEMORY / 6;
 pub struct PaperGoals<'a> {
     /// Bones whose ends have goals; those beyond the fifth have none.
     pub end_effectors: &'a [usize],
-    /// sigma of eq. (33), metres a frame.
+    /// sigma of PIK (33), metres a frame.
     pub std_m: f32,
-    /// W = 1 / std^2 of eq. (3), metres.
+    /// W = 1 / std^2 of PIK (3), metres.
     pub reach_std_m: f32,
 }
 

@@ -1,5 +1,5 @@
-//! The pelvic lift: hands, feet and head stay where they were at first (PIK paper, section 7.3, eq. 38). The root's part, eq.
-//! (39), is [`crate::pik::root::RootProcess::pelvic_lift`].
+//! The pelvic lift: hands, feet and head stay where they were at first (PIK (38), section 7.3). The root's part,
+//! PIK (39), is [`crate::pik::root::RootProcess::pelvic_lift`].
 
 use crate::kinematics::inverse::Goal;
 use crate::math::Mat3;
@@ -10,21 +10,14 @@ use crate::random::Stream;
 ///
 /// ```
 /// use sinew_core::math::Vec3;
+/// use sinew_core::pik::example::goal_past;
 /// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, MEMORY};
 /// use sinew_core::pik::processes::pelvic_lift::FixedGoals;
 /// use sinew_core::random::Stream;
 ///
 /// // Feet that stay where they first were, though the pose has slipped by three centimetres.
 /// let (first_m, slipped_m) = ([Vec3::new(0.1, 0.9, 3.0)], [Vec3::new(0.13, 0.9, 3.0)]);
-/// # let past = GoalPast {
-/// #     reached_m: &slipped_m,
-/// #     velocity_m_per_s: &[Vec3::zeros()],
-/// #     noise_share: &[1.0; 1],
-/// #     first_m: &first_m,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.1,
-/// #     is_first: false,
-/// # };
+/// let past = GoalPast { first_m: &first_m, is_first: false, ..goal_past(&slipped_m) };
 /// let feet = FixedGoals { end_effectors: &[0], reach_std_m: 0.02 };
 /// let mut goals = Goals::new();
 /// feet.draw(&past, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0), &mut goals);

@@ -9,7 +9,8 @@ use crate::random::Stream;
 ///
 /// ```
 /// use sinew_core::math::Vec3;
-/// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, MEMORY};
+/// use sinew_core::pik::example::goal_past;
+/// use sinew_core::pik::goal::{GoalProcess, Goals, MEMORY};
 /// use sinew_core::pik::processes::reach::StraightReach;
 /// use sinew_core::random::Stream;
 ///
@@ -19,15 +20,7 @@ use crate::random::Stream;
 ///     StraightReach { hand: [0], target_m: cup_m, speed_m_per_s: 0.5, std_m_per_sqrt_s: 0.0, reach_std_m: 0.02 };
 /// let mut at_m = [Vec3::new(0.0, 0.0, 2.0)];
 /// for wanted_m in [0.08, 0.03, 0.0] {
-/// #     let past = GoalPast {
-/// #         reached_m: &at_m,
-/// #         velocity_m_per_s: &[Vec3::zeros()],
-/// #         noise_share: &[1.0; 1],
-/// #         first_m: &at_m,
-/// #         root_shift_m: Vec3::zeros(),
-/// #         dt_s: 0.1,
-/// #         is_first: true,
-/// #     };
+///     let past = goal_past(&at_m);
 ///     let mut goals = Goals::new();
 ///     reach.draw(&past, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0), &mut goals);
 ///     at_m[0] = goals[0].position_m;

@@ -1,4 +1,4 @@
-//! Both hands on a stick whose ends are known, in space or in the image (PIK paper, section 7.2, eqs. 36 and 37).
+//! Both hands on a stick whose ends are known, in space or in the image (PIK (36) and PIK (37), section 7.2).
 
 use super::extrapolation::LinearGoals;
 use crate::kinematics::inverse::Goal;
@@ -6,46 +6,40 @@ use crate::math::{Mat3, Vec3, clamp, max, min, sqrt, unit};
 use crate::pik::goal::{GoalMemory, GoalPast, GoalProcess, Goals};
 use crate::random::Stream;
 
-/// Where a hand is on the stick at first: not known, so its own place tells.
+/// Where a hand is on the stick at first: not known, so its own place decides.
+/// Zero, as in a new memory.
 const UNKNOWN: f32 = 0.0;
 
 /// What is known of the stick in a frame.
 ///
 /// ```
 /// use sinew_core::math::Vec3;
-/// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, LinearExtrapolation, MEMORY};
+/// use sinew_core::pik::example::goal_past;
+/// use sinew_core::pik::goal::{GoalProcess, Goals, LinearExtrapolation, MEMORY};
 /// use sinew_core::pik::processes::extrapolation::LinearGoals;
 /// use sinew_core::pik::processes::stick::{StickGoals, StickSight};
 /// use sinew_core::random::Stream;
 ///
 /// // A camera sees in which directions the ends of the stick are, not how far away:
 /// // hands go to the wedge between both rays.
-/// # let hands_m = [Vec3::new(0.3, 0.2, 2.0), Vec3::new(0.1, 0.2, 2.0)];
-/// # let past = GoalPast {
-/// #     reached_m: &hands_m,
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &hands_m,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
-/// # let process = LinearExtrapolation { persistence: 0.0, std_m_per_sqrt_s: 0.0 };
-/// # let others = LinearGoals::new(&[0, 1], 2, process, 0.05)?;
+/// let hands_m = [Vec3::new(0.3, 0.2, 2.0), Vec3::new(0.1, 0.2, 2.0)];
+/// let past = goal_past(&hands_m);
+/// let process = LinearExtrapolation { persistence: 0.0, std_m_per_sqrt_s: 0.0 };
+/// let others = LinearGoals::new(&[0, 1], 2, process, 0.05)?;
 /// let sight = StickSight::Rays([Vec3::new(0.3, 0.0, 1.0).normalize(), Vec3::z()]);
-/// # let stick = StickGoals {
-/// #     hands: [0, 1],
-/// #     sight,
-/// #     camera_m: Vec3::zeros(),
-/// #     gamma_std_per_sqrt_s: 0.1,
-/// #     reach_std_m: 0.01,
-/// #     others: &others,
-/// # };
+/// let stick = StickGoals {
+///     hands: [0, 1],
+///     sight,
+///     camera_m: Vec3::zeros(),
+///     gamma_std_per_sqrt_s: 0.1,
+///     reach_std_m: 0.01,
+///     others: &others,
+/// };
 /// # let hands_y_m = |sight| {
 /// #     let mut goals = Goals::new();
 /// #     StickGoals { sight, ..stick }.draw(&past, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0), &mut goals);
 /// #     [goals[0].position_m.y, goals[1].position_m.y]
-/// # };
+/// };
 /// // Both hands were at y = 0.2; where do their goals lie?
 /// assert_eq!(hands_y_m(sight), [0.0; 2], "both rays lie at y = 0");
 /// assert_eq!(hands_y_m(StickSight::Unseen), [0.2; 2], "without a stick hands stay where they were");
@@ -66,22 +60,15 @@ pub enum StickSight {
 ///
 /// ```
 /// use sinew_core::math::Vec3;
-/// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, LinearExtrapolation, MEMORY};
+/// use sinew_core::pik::example::goal_past;
+/// use sinew_core::pik::goal::{GoalProcess, Goals, LinearExtrapolation, MEMORY};
 /// use sinew_core::pik::processes::extrapolation::LinearGoals;
 /// use sinew_core::pik::processes::stick::{StickGoals, StickSight};
 /// use sinew_core::random::Stream;
 ///
 /// // Two hands (bones 0 and 1) near a stick of a metre, both ends of which are known in space.
 /// let hands_m = [Vec3::new(0.3, 0.05, 2.0), Vec3::new(0.7, -0.05, 2.0)];
-/// # let past = GoalPast {
-/// #     reached_m: &hands_m,
-/// #     velocity_m_per_s: &[Vec3::zeros(); 2],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &hands_m,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
+/// let past = goal_past(&hands_m);
 /// let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.2 };
 /// let stick = StickGoals {
 ///     hands: [0, 1],
@@ -106,7 +93,7 @@ pub struct StickGoals<'a> {
     pub sight: StickSight,
     /// Centre of the camera, metres.
     pub camera_m: Vec3,
-    /// sigma of eq. (37) after one second.
+    /// sigma of PIK (37) after one second.
     pub gamma_std_per_sqrt_s: f32,
     /// How closely a hand reaches its place on the stick, metres.
     pub reach_std_m: f32,
@@ -151,7 +138,7 @@ impl StickGoals<'_> {
                     // Strictly inside, so that a hand at the very end is not taken for an unknown one.
                     let z = stream.truncated_normal((f32::EPSILON - *gamma) / std, (1.0 - *gamma) / std);
                     *gamma = clamp(*gamma + std * z, f32::EPSILON, 1.0);
-                    // gamma is the share of the first end, as in eq. (36).
+                    // gamma is the share of the first end, as in PIK (36).
                     *goal = self.goal(*hand, ends_m[0] * *gamma + ends_m[1] * (1.0 - *gamma));
                 }
                 StickSight::Rays(rays) => *goal = self.goal(*hand, into_wedge(&self.camera_m, &rays, &goal.position_m)),

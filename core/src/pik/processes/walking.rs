@@ -9,6 +9,7 @@ use crate::random::Stream;
 ///
 /// ```
 /// use sinew_core::math::Vec3;
+/// use sinew_core::pik::example::goal_past;
 /// use sinew_core::pik::goal::{GoalPast, GoalProcess, Goals, LinearExtrapolation, MEMORY};
 /// use sinew_core::pik::processes::walking::WalkingGoals;
 /// use sinew_core::random::Stream;
@@ -22,16 +23,8 @@ use crate::random::Stream;
 ///     planted_std_m_per_sqrt_s: 0.01,
 ///     reach_std_m: 0.03,
 /// };
-/// # let ankles_m = [Vec3::new(0.1, 1.0, 3.0), Vec3::new(-0.1, 0.95, 3.0)];
-/// # let past = GoalPast {
-/// #     reached_m: &ankles_m,
-/// #     velocity_m_per_s: &[Vec3::zeros(), Vec3::new(0.0, 1.0, -2.0)],
-/// #     noise_share: &[1.0; 2],
-/// #     first_m: &ankles_m,
-/// #     root_shift_m: Vec3::zeros(),
-/// #     dt_s: 0.1,
-/// #     is_first: true,
-/// # };
+/// let ankles_m = [Vec3::new(0.1, 1.0, 3.0), Vec3::new(-0.1, 0.95, 3.0)];
+/// let past = GoalPast { velocity_m_per_s: &[Vec3::zeros(), Vec3::new(0.0, 1.0, -2.0)], ..goal_past(&ankles_m) };
 /// let mut goals = Goals::new();
 /// walking.draw(&past, &mut [0.0; MEMORY], &mut Stream::new(1, 0, 0), &mut goals);
 /// assert!((goals[0].position_m - ankles_m[0]).norm() < 0.02, "planted");

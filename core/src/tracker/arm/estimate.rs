@@ -13,18 +13,10 @@ use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 /// How the estimate came about.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, Status};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm};
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmOptions, ArmTracker, Status};
 ///
+/// let (model, hand, shoulder_m) = (left_arm()?, hand_blob(), SHOULDERS_M[0]);
 /// // A hand is seen once, then the camera is covered.
 /// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
 /// let mut at = |timestamp_us, image| tracker.step(&model, &ArmFrame { timestamp_us, image, shoulder_m }).status;
@@ -81,18 +73,12 @@ pub struct ArmJoints {
 /// What a step answers.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::camera::Pixel;
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm};
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmTracker};
+/// use sinew_core::vision::candidate::HandCandidate;
 ///
+/// let (model, hand, shoulder_m) = (left_arm()?, hand_blob(), SHOULDERS_M[0]);
 /// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
 /// // A speck comes first in the list, the hand second.
 /// let speck = HandCandidate { centre: Pixel::new(50.0, 50.0), likelihood: 0.06, ..hand };

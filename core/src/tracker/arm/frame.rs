@@ -9,23 +9,16 @@ use heapless::Vec;
 pub const MAX_CANDIDATES: usize = 8;
 
 /// A blob less likely than this is no hand: a speck of noise must not carry an estimate.
-pub const LEAST_LIKELIHOOD: f32 = 0.05;
+/// Chosen: specks lie below it, hands far above.
+pub const MIN_LIKELIHOOD: f32 = 0.05;
 
 /// What was found in one image.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, MAX_CANDIDATES};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm};
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmTracker, MAX_CANDIDATES};
 ///
+/// let (model, hand, shoulder_m) = (left_arm()?, hand_blob(), SHOULDERS_M[0]);
 /// // More blobs than a step considers: the most likely are kept, the others counted.
 /// let candidates = [hand; MAX_CANDIDATES + 2];
 /// let image = ArmImage { candidates: &candidates, edges: &[] };
@@ -45,19 +38,12 @@ pub struct ArmImage<'a> {
 /// One frame of one arm.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::math::Vec3;
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm};
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmTracker};
 ///
-/// // Frames of a camera that drops every other one: what is dropped is not given, the timestamp tells.
+/// let (model, hand, shoulder_m) = (left_arm()?, hand_blob(), SHOULDERS_M[0]);
+/// // Frames of a camera that drops every other one: what is dropped is not given, the timestamp shows it.
 /// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
 /// for frame in 0..10 {
 ///     let image = Some(ArmImage { candidates: &[hand], edges: &[] });
@@ -83,7 +69,7 @@ pub struct ArmFrame<'a> {
 
 /// The most likely candidates, in descending order of likelihood, and the count of those that found no room.
 ///
-/// Candidates whose numbers are not finite, or that are less likely than [`LEAST_LIKELIHOOD`], are dropped as well.
+/// Candidates whose numbers are not finite, or that are less likely than [`MIN_LIKELIHOOD`], are dropped as well.
 #[must_use]
 pub fn most_likely(candidates: &[HandCandidate]) -> (Vec<HandCandidate, MAX_CANDIDATES>, usize) {
     let mut kept: Vec<HandCandidate, MAX_CANDIDATES> = Vec::new();
@@ -93,7 +79,7 @@ pub fn most_likely(candidates: &[HandCandidate]) -> (Vec<HandCandidate, MAX_CAND
             && candidate.area_px > 0.0
             && candidate.area_px.is_finite()
             && candidate.moments_px2.iter().all(|moment| moment.is_finite())
-            && candidate.likelihood >= LEAST_LIKELIHOOD
+            && candidate.likelihood >= MIN_LIKELIHOOD
             && candidate.likelihood <= 1.0;
         if !usable {
             continue;

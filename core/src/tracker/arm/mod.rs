@@ -6,6 +6,7 @@
 
 mod context;
 mod estimate;
+pub mod example;
 mod frame;
 mod importance;
 mod limbs;
@@ -25,7 +26,7 @@ mod variant;
 mod weigh;
 
 pub use estimate::{ArmEstimate, ArmJoints, Status};
-pub use frame::{ArmFrame, ArmImage, LEAST_LIKELIHOOD, MAX_CANDIDATES};
+pub use frame::{ArmFrame, ArmImage, MAX_CANDIDATES, MIN_LIKELIHOOD};
 pub use model::ArmModel;
 pub use options::ArmOptions;
 pub use pair::{ArmPair, PairFrame};

@@ -22,7 +22,7 @@ use crate::vision::candidate::HandCandidate;
 /// let camera = Camera::from_field_of_view(640, 480, 1.05)?;
 /// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
 /// let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// // What the model tells: how far the hand can be from the shoulder, and where an elbow and a hand are in a pose.
+/// // Geometry of the model: how far the hand can be from the shoulder, and where an elbow and a hand are in a pose.
 /// let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
 /// assert!((model.reachable(&shoulder_m).outer_m - 0.65).abs() < 1e-5);
 /// let (elbow_m, hand_m) = model.elbow_and_hand(&shoulder_m, &[0.0; 4]);

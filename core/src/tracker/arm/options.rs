@@ -61,7 +61,7 @@ pub struct Gate {
     pub allotment_reach: f32,
 }
 
-/// Area cue: the blob's area tells the hand's distance, since area times squared depth is about constant.
+/// Area cue: the blob's area measures the hand's distance, since area times squared depth is about constant.
 ///
 /// ```
 /// use sinew_core::tracker::arm::options::AreaCue;
@@ -114,7 +114,7 @@ impl AreaCue {
 pub struct BlobMemoryOptions {
     /// Time in which belief in a blob falls by 1/e while the hand is at another, seconds.
     pub fall_time_s: f32,
-    /// Time in which it comes back otherwise, seconds.
+    /// Time in which it recovers, seconds.
     pub rise_time_s: f32,
     /// Belief that is never lost; it bounds how long a mistake can last.
     pub floor: f32,
@@ -129,18 +129,10 @@ pub struct BlobMemoryOptions {
 /// What is reported as the estimate.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmModel, ArmOptions, options::EstimateRule};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm};
+/// use sinew_core::tracker::arm::{ArmOptions, options::EstimateRule};
 ///
+/// let (model, hand, shoulder_m) = (left_arm()?, hand_blob(), SHOULDERS_M[0]);
 /// // Particles count to a blob within this many pixels of it; a large blob has its own radius.
 /// assert!((model.least_cluster_radius_px() - 0.045 * model.camera().focal_px()).abs() < 1e-3);
 /// assert!(model.cluster_radius_px(&hand) > model.least_cluster_radius_px());
@@ -176,8 +168,8 @@ pub const DEFAULT_AREA_CUE: AreaCue =
     AreaCue { hand_area_m2: 0.0194, length_share: 0.65, foreshortening: 0.85, log_std: 0.3 };
 /// Default of the cluster's radius: 25 pixels of a 640 pixel image with 60 degrees.
 pub const DEFAULT_RADIUS_PER_FOCAL: f32 = 0.045;
-/// How much less the area tells of the depth where the shoulder is guessed: the depth that fits the arm may be far from
-/// the one that the area says.
+/// Multiple of the area cue's standard deviation where the shoulder is guessed: the depth that fits the arm may be far from
+/// the one that the area gives. Chosen: the cue still orders near and far.
 const GUESSED_AREA_DOUBT: f32 = 3.0;
 
 impl Default for Gate {
@@ -253,11 +245,11 @@ pub struct ArmOptions {
     pub ray_std_per_path: f32,
     /// Error of a blob's centre as the hand's place, as a share of the focal length.
     pub centre_std_per_focal: f32,
-    /// Standard deviation of reaching a goal, W^(-1/2) of eq. (12); metres.
+    /// Standard deviation of reaching a goal, W^(-1/2) of PIK (12); metres.
     pub reach_std_m: f32,
     /// The same across the ray, for goals that a blob drives.
     pub reach_across_std_m: f32,
-    /// Spread of each angle after one second, lambda^(-1/2) of eq. (12); radians.
+    /// Spread of each angle after one second, lambda^(-1/2) of PIK (12); radians.
     pub angle_std_rad_per_sqrt_s: [f32; ARM_ANGLES],
     /// Steps of the pose solver.
     pub solver_steps: usize,

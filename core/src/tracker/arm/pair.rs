@@ -1,4 +1,4 @@
-//! Two arms that share one list of blobs: a blob serves one hand, unless hands touch (DESIGN.md section 4).
+//! Two arms that share one list of blobs: a blob serves one hand, unless hands touch. Beyond the arm paper, which tracks one arm.
 //!
 //! ```
 //! use sinew_core::camera::{Camera, Pixel};
@@ -46,36 +46,31 @@ use crate::vision::candidate::HandCandidate;
 use heapless::Vec;
 
 /// What a hand without any blob is as likely as; compared with a blob's odds times its nearness.
+/// Chosen: a blob of likelihood 0.1 at the prediction is about as likely.
 const NO_BLOB: f32 = 0.1;
 /// What a blob at any distance from the prediction keeps of its nearness.
+/// Chosen: small, but a hand that jumps is not excluded.
 const FAR_FLOOR: f32 = 0.05;
 /// No blob is more surely a hand than this when the sides are shared out.
-const MOST_LIKELY: f32 = 0.95;
+/// Chosen: bounds the odds to 19.
+const MAX_LIKELIHOOD: f32 = 0.95;
 /// Share of its likelihood that a blob keeps for a side that has a likelier one of its own.
+/// Chosen: such a blob remains a second choice.
 const STRAY_SHARE: f32 = 0.25;
 /// Least standard deviation of where a hand is expected, metres: hands start and stop.
-const LEAST_STD_M: f32 = 0.15;
+/// Chosen: a floor for the prediction's spread.
+const MIN_STD_M: f32 = 0.15;
 /// A blob is split where both predictions lie within this many of its standard deviations.
+/// Chosen: 99 % of the blob's pixels.
 const SPLIT_REACH: f32 = 3.0;
 
 /// One frame of both arms.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmImage, ArmModel, ArmOptions, ArmPair, PairFrame, Status};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm, right_arm};
+/// use sinew_core::tracker::arm::{ArmImage, ArmPair, PairFrame, Status};
 ///
-/// # let right = ArmGeometry::new(Side::Right, 0.30, 0.35)?;
-/// # let right = ArmModel::new(camera, (640, 480), right, ArmOptions::default())?;
-/// # let shoulders_m = [shoulder_m, Vec3::new(-0.2, -0.1, 1.2)];
+/// let (model, right, hand, shoulders_m) = (left_arm()?, right_arm()?, hand_blob(), SHOULDERS_M);
 /// // One list of blobs for both arms; this one holds the left hand only.
 /// let mut pair = ArmPair::<50>::new([&model, &right], shoulders_m, 1)?;
 /// let mut statuses = [Status::Lost; 2];
@@ -100,22 +95,13 @@ pub struct PairFrame<'a> {
 /// State of both arms' trackers, left and right.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmImage, ArmModel, ArmOptions, ArmPair, PairFrame};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::camera::Pixel;
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm, right_arm};
+/// use sinew_core::tracker::arm::{ArmImage, ArmPair, PairFrame};
+/// use sinew_core::vision::candidate::HandCandidate;
 ///
-/// # let right = ArmGeometry::new(Side::Right, 0.30, 0.35)?;
-/// # let right = ArmModel::new(camera, (640, 480), right, ArmOptions::default())?;
-/// # let models = [&model, &right];
-/// # let shoulders_m = [shoulder_m, Vec3::new(-0.2, -0.1, 1.2)];
+/// let (model, right, hand, shoulders_m) = (left_arm()?, right_arm()?, hand_blob(), SHOULDERS_M);
+/// let models = [&model, &right];
 /// // Two hands, the right one on the left of the picture; each side finds its own.
 /// let mut pair = ArmPair::<50>::new(models, shoulders_m, 1)?;
 /// let candidates = [HandCandidate { centre: Pixel::new(240.0, 250.0), ..hand }, hand];
@@ -214,7 +200,7 @@ fn expected<const CAPACITY: usize>(
 ) -> Option<Expected> {
     let (hand_m, std_m) = tracker.predicted_hand(model, timestamp_us);
     let hand = model.camera().project(&hand_m)?;
-    let std_px = max(std_m, LEAST_STD_M) * model.camera().focal_px() / max(hand_m.z, 0.1);
+    let std_px = max(std_m, MIN_STD_M) * model.camera().focal_px() / max(hand_m.z, 0.1);
     Some(Expected { hand, std_px })
 }
 
@@ -238,11 +224,11 @@ fn log_fit(candidate: &HandCandidate, expected: Option<&Expected>) -> f32 {
         let miss = candidate.centre.distance_px(e.hand) / e.std_px;
         exp(-0.5 * miss * miss) + FAR_FLOOR
     });
-    let likelihood = min(candidate.likelihood, MOST_LIKELY);
+    let likelihood = min(candidate.likelihood, MAX_LIKELIHOOD);
     ln(likelihood / (1.0 - likelihood) * nearness)
 }
 
-/// Gives each side its blob of the likeliest pair, and to both the blobs that are nobody's.
+/// Gives each side its blob of the likeliest pair, and to both the blobs of neither.
 fn share_out(candidates: &[HandCandidate], expected: &[Option<Expected>; 2]) -> [SideCandidates; 2] {
     let fit = |expected: &Option<Expected>, choice: Option<usize>| {
         let candidate = choice.and_then(|index| candidates.get(index));

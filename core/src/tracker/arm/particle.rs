@@ -6,18 +6,10 @@ use crate::skeleton::arm::ArmAngles;
 /// One weighted arm.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm};
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmTracker};
 ///
+/// let (model, hand, shoulder_m) = (left_arm()?, hand_blob(), SHOULDERS_M[0]);
 /// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
 /// let image = Some(ArmImage { candidates: &[hand], edges: &[] });
 /// let _ = tracker.step(&model, &ArmFrame { timestamp_us: 0, image, shoulder_m });

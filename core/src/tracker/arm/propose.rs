@@ -15,7 +15,8 @@ use crate::random::Stream;
 use crate::skeleton::arm::{ARM_ANGLES, FOREARM, UPPER_ARM};
 
 /// Greatest part of a corrected weight that the importance ratio of the pose may decide. The expansion's tails are thinner than
-/// those of the density, so rare draws would otherwise take the whole weight, the more so the more particles there are.
+/// those of the density, so without a bound rare draws take the whole weight, more so with more particles.
+/// Chosen: a factor of twenty.
 const MAX_LOG_RATIO: f32 = 3.0;
 
 /// A particle before it is weighted.

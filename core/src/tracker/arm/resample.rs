@@ -20,7 +20,7 @@ impl FrameContext<'_> {
     /// Which candidate drives each ancestor's hand, if any.
     ///
     /// Unpaid, an ancestor that is at a blob stays with it while that blob has particles left: sent elsewhere it would
-    /// only meet the gate. The others, and all where goals are paid for, are assigned in the given (permuted) order.
+    /// only meet the gate. The others, and all where the weight corrects for goals, are assigned in the given (permuted) order.
     pub fn assign_drivers<'p, const CAPACITY: usize>(
         &self,
         ancestors: impl Iterator<Item = Option<&'p Particle>>,

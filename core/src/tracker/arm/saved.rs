@@ -11,10 +11,11 @@ use crate::math::Vec3;
 use crate::saved_state::{FINITE, NOT_NEGATIVE, SavedState, StateVisitor};
 
 /// No place and no speed of an arm is greater, metres and metres per second.
-const MOST_M: f32 = 1.0e6;
+/// Chosen: refuses a corrupt state, never a tracked one.
+const MAX_M: f32 = 1.0e6;
 
 fn place(value: &mut Vec3, visitor: &mut impl StateVisitor) {
-    visitor.reals(value.as_mut_slice(), &(-MOST_M..=MOST_M));
+    visitor.reals(value.as_mut_slice(), &(-MAX_M..=MAX_M));
 }
 
 impl SavedState for Particle {

@@ -1,4 +1,4 @@
-//! State of one arm's tracker: how it begins and what it tells between frames.
+//! State of one arm's tracker: how it begins and what it holds between frames.
 
 use super::estimate::ArmJoints;
 use super::limbs::{LimbDensities, LimbRoom};
@@ -13,14 +13,18 @@ use crate::random::Stream;
 use heapless::Vec;
 
 /// Spread of the angles around the waiting pose before anything was seen, radians.
+/// Chosen: covers an arm that hangs or is half raised.
 const INITIAL_STD_RAD: f32 = 0.5;
 /// Time that the hand counts as unseen before the first frame, seconds: it may be anywhere.
+/// Chosen: long against the growth of the gate.
 const UNSEEN_AT_START_S: f32 = 2.0;
 /// Time that is taken to have passed before the first frame, seconds.
+/// Chosen: that of a camera with 15 Hz.
 const FIRST_DT_S: f32 = 1.0 / 15.0;
 /// Shortest and longest time between two frames that the motion model is asked for, seconds.
 const DT_RANGE_S: (f32, f32) = (1.0e-3, 1.0);
 /// How far a hand that is not known to be anywhere may be from that of the waiting pose, metres.
+/// Chosen: about the length of a forearm.
 const WAITING_STD_M: f32 = 0.25;
 /// The camera's centre, and no speed.
 const ORIGIN_M: Vec3 = Vec3::new(0.0, 0.0, 0.0);
@@ -28,18 +32,10 @@ const ORIGIN_M: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 /// State of one arm's tracker with room for `CAPACITY` particles.
 ///
 /// ```
-/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmOptions, ArmTracker, Status};
-/// # use sinew_core::camera::{Camera, Pixel};
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::vision::candidate::HandCandidate;
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let camera = Camera::from_field_of_view(640, 480, 1.05)?;
-/// # let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?;
-/// # let model = ArmModel::new(camera, (640, 480), arm, ArmOptions::default())?;
-/// # let shoulder_m = Vec3::new(0.2, -0.1, 1.2);
-/// # let centre = Pixel::new(400.0, 250.0);
-/// # let hand = HandCandidate { centre, moments_px2: [400.0, 0.0, 400.0], area_px: 4700.0, likelihood: 0.8 };
+/// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm};
+/// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmTracker, Status};
 ///
+/// let (model, hand, shoulder_m) = (left_arm()?, hand_blob(), SHOULDERS_M[0]);
 /// let mut tracker = ArmTracker::<50>::new(&model, shoulder_m, 1)?;
 /// for frame in 0..10 {
 ///     let image = Some(ArmImage { candidates: &[hand], edges: &[] });

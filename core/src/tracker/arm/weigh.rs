@@ -12,6 +12,7 @@ use crate::observation::orientation::OrientationDensity;
 use crate::vision::candidate::HandCandidate;
 
 /// A limb whose image is shorter than this has no orientation.
+/// Chosen: fewer pixels have no direction.
 const MIN_LIMB_IMAGE_PX: f32 = 6.0;
 
 impl FrameContext<'_> {
@@ -48,7 +49,8 @@ impl FrameContext<'_> {
         ln(exp(-0.5 * jumps * jumps) + gate.floor)
     }
 
-    /// Observation density of both limbs, eq. (3) or the product; uniform where a limb has no orientation.
+    /// Observation density of both limbs, arm (3) or the product; uniform where a limb has no orientation.
+    /// Chosen: fewer pixels have no direction.
     fn log_orientation(&self, image: Option<&ArmImagePoints>, limbs: &LimbDensities) -> f32 {
         let limb = |density: &OrientationDensity, a: Pixel, b: Pixel| {
             if a.distance_px(b) < MIN_LIMB_IMAGE_PX { 1.0 } else { density.at(atan2(b.v_px - a.v_px, b.u_px - a.u_px)) }

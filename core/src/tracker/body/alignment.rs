@@ -1,4 +1,4 @@
-//! Where the body is, by the points: the expected pose is laid onto them before any particle is drawn.
+//! Where the body is, by the points: the expected pose is fitted to them before any particle is drawn.
 //!
 //! The PIK paper's subjects stand still. A root that moves has six coordinates that move everything, and particles that guess them
 //! one by one are lost on it; so every motion model may begin with the same look at the points.
@@ -10,34 +10,13 @@ use crate::pik::guided::{GuidedDensity, HELD_STIFFNESS};
 use crate::pik::motion::BodyScene;
 use crate::skeleton::tree::SHIFTS;
 
-/// How the expected pose is laid onto a frame's points.
+/// How the expected pose is fitted to a frame's points.
 ///
 /// ```
+/// use sinew_core::pik::example::{rod_points, rod_scene};
 /// use sinew_core::tracker::body::RootAlignment;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::pik::motion::BodyScene;
-/// # use sinew_core::skeleton::{Bone, Joint, Limit, Skeleton};
-/// # let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
-/// # let rod = Bone { parent: None, joint: Joint::Free([x, y, z, y, z, x]), offset_m: y * 0.6 };
-/// # let scene = BodyScene {
-/// #     skeleton: Skeleton::new([rod], [Limit { low_rad: -10.0, high_rad: 10.0 }; 6])?,
-/// #     radii_m: [0.1],
-/// #     camera_m: Vec3::zeros(),
-/// #     likelihood: PointLikelihood { std_m: 0.05, outlier_m: 0.25 },
-/// #     self_penetration: None,
-/// # };
-/// # let points_of = |pose: &[f32; 6]| {
-/// #     let skin = scene.surface(&scene.posture(pose)).capsules[0].capsule;
-/// #     let mut points_m = core::array::from_fn::<Vec3, 48, _>(|i| {
-/// #         let beside = skin.start_m + (skin.end_m - skin.start_m) * (i as f32 / 47.0) + [x, -x, -z][i % 3];
-/// #         skin.nearest_visible(&scene.camera_m, &beside)
-/// #     });
-/// #     let mut cloud = PointCloud::<3>::new();
-/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
-/// #     cloud
-/// # };
 ///
+/// let scene = rod_scene()?;
 /// let alignment = RootAlignment {
 ///     steps: 10,
 ///     coarse_to_fine: false,
@@ -49,16 +28,16 @@ use crate::skeleton::tree::SHIFTS;
 /// };
 /// // A body of one bone, three metres away, whose points show it ten centimetres farther to the right.
 /// let before = [0.0, 0.0, 3.0, 0.0, 0.0, 0.0];
-/// let cloud = points_of(&[0.1, 0.0, 3.0, 0.0, 0.0, 0.0]);
-/// let laid = alignment.fit_root(&scene, cloud.blocks(), (&before, &[false; 6]), 1.0 / 15.0);
-/// assert!((laid[0] - 0.1).abs() < 0.02 && (laid[2] - 3.0).abs() < 0.02, "{laid:?}");
+/// let cloud = rod_points(&scene, &[0.1, 0.0, 3.0, 0.0, 0.0, 0.0]);
+/// let fitted = alignment.fit_root(&scene, cloud.blocks(), (&before, &[false; 6]), 1.0 / 15.0);
+/// assert!((fitted[0] - 0.1).abs() < 0.02 && (fitted[2] - 3.0).abs() < 0.02, "{fitted:?}");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RootAlignment {
     /// Most steps of the solver.
     pub steps: usize,
-    /// Whether the pose is looked for from afar too, for limbs that are farther off than points reach ([`GuidedDensity::mode_from_afar`]).
+    /// Whether coarse steps come first, for limbs that are farther off than points reach ([`GuidedDensity::mode_coarse_to_fine`]).
     pub coarse_to_fine: bool,
     /// How far the root is believed to get off its expected place, metres by root second.
     pub shift_std_m_per_sqrt_s: f32,
@@ -69,12 +48,12 @@ pub struct RootAlignment {
     pub angle_std_rad_per_sqrt_s: f32,
     /// Most blocks of points that pull.
     pub pulling_blocks: usize,
-    /// Whether particles take over the trunk as it was laid, and not the root alone: limbs then hang where the points show the trunk.
+    /// Whether particles take over the fitted trunk, and not the root alone: limbs then hang where the points show the trunk.
     pub fit_trunk: bool,
 }
 
 impl RootAlignment {
-    /// The pose `expected_rad` laid onto the points `blocks`, `dt_s` seconds after the last one. In a look from afar the angles of limbs that
+    /// The pose `expected_rad` fitted to the points `blocks`, `dt_s` seconds after the last one. In coarse steps the angles of limbs that
     /// are `unseen` hold still: points of whatever hides a limb are not its own.
     #[must_use]
     pub fn fit_root<const BONES: usize, const ANGLES: usize>(
@@ -107,6 +86,6 @@ impl RootAlignment {
         for (held, _) in far_prior.stiffness.iter_mut().zip(unseen).filter(|(_, unseen)| **unseen) {
             *held = HELD_STIFFNESS;
         }
-        density.mode_from_afar(&far_prior, self.steps).angles_rad
+        density.mode_coarse_to_fine(&far_prior, self.steps).angles_rad
     }
 }

@@ -1,8 +1,8 @@
 //! The pose that is reported: still where the body rests, and where the particles say as soon as it moves.
 //!
-//! The mean of a hundred particles trembles by a centimetre or two about a limb at rest. An ordinary low pass that takes this away is late
-//! whenever the limb moves. Two frames in a row tell the two apart: trembling is to the one side of what was reported and then to the other, and a
-//! limb on its way is found ahead of it twice. How far a limb trembles its particles tell, by the standard error of their mean.
+//! The mean of a hundred particles has a jitter of a centimetre or two about a limb at rest. A low pass against it is late whenever
+//! the limb moves. Two frames in a row separate jitter from motion. Jitter lies on one side of the reported pose and then on the
+//! other. A limb that moves is ahead of it twice. The standard error of the particles' mean estimates the jitter.
 
 use super::estimate::mean_of_group;
 use crate::kinematics::inverse::{Goal, PoseDensity, Solve};
@@ -10,15 +10,20 @@ use crate::math::{Mat3, Vec3, max, min, sqrt};
 use crate::pik::motion::{BodyParticle, BodyScene};
 use crate::skeleton::{Joint, Limbs, Skeleton};
 
-/// What lies within the trembling is followed too, in this time, seconds.
+/// Motion within the jitter is followed too, in this time, seconds.
+/// Chosen: much longer than a frame.
 const REST_S: f32 = 2.0;
 /// A way counts this much of itself if the frame before was not off to the same side: a limb that starts at once is not waited for.
+/// Chosen: below one, since a single frame may be jitter.
 const ALONE: f32 = 0.7;
-/// Particles that all are in one place still have some trembling, metres.
+/// Particles that all are in one place still have some jitter, metres.
+/// Chosen: far below any visible motion; avoids a division by zero.
 const MIN_JITTER_STD_M: f32 = 1.0e-6;
 /// Of the place of a bone's end: known to a centimetre, inverse square metres.
+/// Chosen: ends weigh much more than angles.
 const PRECISION: f32 = 1.0e4;
 /// Of an angle: known to 0.3 rad, inverse square radians.
+/// Chosen: holds angles that no end determines.
 const STIFFNESS: f32 = 11.0;
 /// Steps of the solver.
 const SOLVER_STEPS: usize = 3;
@@ -38,9 +43,9 @@ impl<const BONES: usize, const ANGLES: usize> Deadband<BONES, ANGLES> {
         Self { reported: first, off_m: [Vec3::new(0.0, 0.0, 0.0); BONES] }
     }
 
-    /// The pose to tell where the particles' mean is `now`: the ends of each limb's bones go from where they were reported to where they are now,
-    /// the whole way if the limb moves by much more than its ends tremble, `jitter_std_m`. The pose is the one between the two that has its ends
-    /// there: were angles alone mixed, a hand would tremble with the trunk's angles, for which the arm's no longer make up.
+    /// The pose to report where the particles' mean is `now`. The ends of each limb's bones go from where they were reported to where they are,
+    /// the whole way if the limb moves by much more than the jitter of its ends, `jitter_std_m`. The pose between the two has its ends
+    /// there. A mix of angles alone would move a hand with the jitter of the trunk's angles.
     pub(super) fn filter(
         &mut self,
         (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
@@ -61,8 +66,8 @@ impl<const BONES: usize, const ANGLES: usize> Deadband<BONES, ANGLES> {
             precision: Mat3::from_diagonal_element(PRECISION),
         });
         for group in 0..limbs.count() {
-            let trembles_m = root_mean((&groups, group), |bone| jitter_std_m[bone] * jitter_std_m[bone]);
-            let share = share(self.moved_m((&groups, group), &off_m) / max(trembles_m, MIN_JITTER_STD_M), dt_s);
+            let group_jitter_m = root_mean((&groups, group), |bone| jitter_std_m[bone] * jitter_std_m[bone]);
+            let share = share(self.moved_m((&groups, group), &off_m) / max(group_jitter_m, MIN_JITTER_STD_M), dt_s);
             let (poses, weights) = ([self.reported, *now], [1.0 - share, share]);
             mean_of_group(&scene.skeleton, (&poses, &weights), (limbs, group), &mut between_rad);
             for (bone, goal) in goals.iter_mut().enumerate().filter(|(bone, _)| groups[*bone] == group) {
@@ -117,7 +122,7 @@ fn group_of_end<const BONES: usize, const ANGLES: usize>(
     limbs.group(bone)
 }
 
-/// The part of the way that is gone by a limb that moved by so many times its trembling.
+/// The part of the way that is gone by a limb that moved by so many times its jitter.
 fn share(moved: f32, dt_s: f32) -> f32 {
     let rest = min(1.0, dt_s / REST_S);
     // Beyond it the other term is one to the last digit, and its square is an ordinary number.
@@ -166,27 +171,27 @@ mod tests {
     fn followed(speed_rad_per_s: f32, noise_rad: f32) -> (f32, f32, f32) {
         let (scene, mut stream) = (scene(), Stream::new(5, 0, 0));
         let mut before = seen(&scene, 0.5, 0.0, &mut stream);
-        let mut steady = Deadband::new(before);
-        let (mut way_m, mut told_way_m, mut behind_m) = (0.0, 0.0, 0.0);
+        let mut deadband = Deadband::new(before);
+        let (mut way_m, mut reported_way_m, mut behind_m) = (0.0, 0.0, 0.0);
         let wrist = FOREARMS[1];
         for frame in 1..=FRAMES {
             let now = seen(&scene, 0.5 + speed_rad_per_s * DT_S * frame as f32, noise_rad, &mut stream);
-            let reported = steady.reported.ends_m[wrist];
-            let next = steady
+            let reported = deadband.reported.ends_m[wrist];
+            let next = deadband
                 .filter((&scene, &Limbs::of(&scene.skeleton)), &now, &[JITTER_STD_M; BODY_BONES], DT_S)
                 .ends_m[wrist];
             way_m += (now.ends_m[wrist] - before.ends_m[wrist]).norm() / FRAMES as f32;
-            told_way_m += (next - reported).norm() / FRAMES as f32;
+            reported_way_m += (next - reported).norm() / FRAMES as f32;
             behind_m = (next - now.ends_m[wrist]).norm();
             before = now;
         }
-        (way_m, told_way_m, behind_m)
+        (way_m, reported_way_m, behind_m)
     }
 
     #[test]
-    fn an_arm_at_rest_hardly_trembles() {
-        let (way_m, told_way_m, _) = followed(0.0, 0.03);
-        assert!(way_m > 0.015 && told_way_m < 0.25 * way_m, "{way_m} {told_way_m}");
+    fn an_arm_at_rest_has_little_jitter() {
+        let (way_m, reported_way_m, _) = followed(0.0, 0.03);
+        assert!(way_m > 0.015 && reported_way_m < 0.25 * way_m, "{way_m} {reported_way_m}");
     }
 
     #[test]
@@ -204,31 +209,31 @@ mod tests {
     #[test]
     fn a_waving_arm_does_not_take_the_trunk_along() {
         let (scene, mut stream) = (scene(), Stream::new(6, 0, 0));
-        let mut steady = Deadband::new(seen(&scene, 0.5, 0.0, &mut stream));
-        let (mut neck_m, mut told_neck_m) = (0.0, 0.0);
-        let mut before = steady.reported;
+        let mut deadband = Deadband::new(seen(&scene, 0.5, 0.0, &mut stream));
+        let (mut neck_m, mut reported_neck_m) = (0.0, 0.0);
+        let mut before = deadband.reported;
         for frame in 1..=FRAMES {
             let bend_rad = if frame % 2 == 0 { 0.5 } else { 1.5 };
             let now = seen(&scene, bend_rad, 0.01, &mut stream);
-            let reported = steady.reported.ends_m[TRUNK];
-            let next = steady.filter((&scene, &Limbs::of(&scene.skeleton)), &now, &[JITTER_STD_M; BODY_BONES], DT_S);
-            told_neck_m += (next.ends_m[TRUNK] - reported).norm();
+            let reported = deadband.reported.ends_m[TRUNK];
+            let next = deadband.filter((&scene, &Limbs::of(&scene.skeleton)), &now, &[JITTER_STD_M; BODY_BONES], DT_S);
+            reported_neck_m += (next.ends_m[TRUNK] - reported).norm();
             assert!((next.ends_m[FOREARMS[1]] - now.ends_m[FOREARMS[1]]).norm() < 0.03, "the wrist is where it is");
             neck_m += (now.ends_m[TRUNK] - before.ends_m[TRUNK]).norm();
             before = now;
         }
-        assert!(told_neck_m < 0.3 * neck_m, "{told_neck_m} {neck_m}");
+        assert!(reported_neck_m < 0.3 * neck_m, "{reported_neck_m} {neck_m}");
     }
 
     #[test]
     fn an_arm_that_moves_is_not_left_behind() {
         // The wrist goes 5 cm in a frame.
-        let (way_m, told_way_m, behind_m) = followed(3.0, 0.0);
-        assert!((0.9..1.05).contains(&(told_way_m / way_m)), "{way_m} {told_way_m}");
+        let (way_m, reported_way_m, behind_m) = followed(3.0, 0.0);
+        assert!((0.9..1.05).contains(&(reported_way_m / way_m)), "{way_m} {reported_way_m}");
         assert!(behind_m < 0.5 * way_m, "{way_m} {behind_m}");
-        // Half as fast, within the trembling: a frame behind.
-        let (way_m, told_way_m, behind_m) = followed(1.5, 0.0);
-        assert!((0.75..1.05).contains(&(told_way_m / way_m)), "{way_m} {told_way_m}");
+        // Half as fast, within the jitter: a frame behind.
+        let (way_m, reported_way_m, behind_m) = followed(1.5, 0.0);
+        assert!((0.75..1.05).contains(&(reported_way_m / way_m)), "{way_m} {reported_way_m}");
         assert!(behind_m < 1.3 * way_m, "{way_m} {behind_m}");
     }
 
@@ -239,10 +244,10 @@ mod tests {
         ) {
             let (scene, mut stream) = (scene(), Stream::new(seed, 0, 0));
             let [first, second, third] = core::array::from_fn(|_| seen(&scene, 0.8, noise_rad, &mut stream));
-            let mut steady = Deadband::new(first);
-            steady.filter((&scene, &Limbs::of(&scene.skeleton)), &second, &[jitter_std_m; BODY_BONES], DT_S);
-            let before = steady.reported;
-            let next = *steady.filter((&scene, &Limbs::of(&scene.skeleton)), &third, &[jitter_std_m; BODY_BONES], DT_S);
+            let mut deadband = Deadband::new(first);
+            deadband.filter((&scene, &Limbs::of(&scene.skeleton)), &second, &[jitter_std_m; BODY_BONES], DT_S);
+            let before = deadband.reported;
+            let next = *deadband.filter((&scene, &Limbs::of(&scene.skeleton)), &third, &[jitter_std_m; BODY_BONES], DT_S);
             prop_assert_eq!(next.angles_rad, scene.skeleton.clamp(next.angles_rad));
             prop_assert_eq!(next.ends_m, scene.posture(&next.angles_rad).ends);
             for bone in 0..BODY_BONES {

@@ -1,4 +1,4 @@
-//! One pose out of many particles (PIK paper, eq. 30).
+//! One pose out of many particles (PIK (30)).
 
 use super::mean_rotation::{angles_of_rotation, mean_rotation};
 use crate::math::{Mat3, Vec3, axis_rotation, sqrt};
@@ -9,42 +9,17 @@ use crate::skeleton::{Joint, Limbs, Skeleton};
 /// What is known after a frame.
 ///
 /// ```
+/// use sinew_core::pik::example::{arm_points, arm_scene, bending_elbow, guided_arm, hand_goals};
+/// use sinew_core::pik::motion::BodyParticle;
 /// use sinew_core::tracker::body::{BodyFrame, BodyTracker, DEFAULT_BODY_OPTIONS};
-/// # use sinew_core::pik::guided::GuidedMotion;
-/// # use sinew_core::pik::motion::{BodyParticle, BodyScene};
-/// # use sinew_core::pik::{goal::LinearExtrapolation, processes::extrapolation::LinearGoals, root::RootProcess};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let points_of = |pose: &[f32; 4]| {
-/// #     let surface = scene.surface(&scene.posture(pose));
-/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
-/// #         let bone = &surface.capsules[i % 2].capsule;
-/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
-/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
-/// #     });
-/// #     let mut cloud = PointCloud::<2>::new();
-/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
-/// #     cloud
-/// # };
-/// # let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.3 };
-/// # let goals = LinearGoals::new(&[FOREARM], 2, process, 0.05)?;
-/// # let (process, root, angle_std_rad_per_sqrt_s) = (&goals, RootProcess::FIXED, [1.0; 4]);
-/// # let (solver_steps, pulling_blocks, angle_persistence) = (3, 2, 0.0);
-/// # let motion =
-/// #     GuidedMotion { process, root, angle_std_rad_per_sqrt_s, angle_persistence, solver_steps, pulling_blocks };
-/// # let truth = |frame: usize| [0.5, 0.1, 0.1, 1.0 + 0.05 * frame as f32];
-/// # let first = BodyParticle::at(&scene.skeleton, truth(0));
 ///
+/// let (scene, goals) = (arm_scene()?, hand_goals()?);
+/// let motion = guided_arm(&goals);
+/// let first = BodyParticle::at(&scene.skeleton, bending_elbow(0));
 /// // A body of two bones, an arm; thirty particles.
 /// let sets = ([first; 30], [first; 30]);
 /// let mut tracker = BodyTracker::<2, 4, 30, _>::new(&first, sets, DEFAULT_BODY_OPTIONS, 1)?;
-/// let cloud = points_of(&truth(1));
+/// let cloud = arm_points(&scene, &bending_elbow(1));
 /// let estimate = tracker.step(&scene, &motion, &BodyFrame { dt_s: 1.0 / 15.0, blocks: cloud.blocks() });
 /// assert_eq!(estimate.ends_m, scene.posture(&estimate.angles_rad).ends, "one pose, not a mean of places");
 /// assert_eq!(estimate.observed, [true; 2], "the points show both bones");
@@ -53,7 +28,7 @@ use crate::skeleton::{Joint, Limbs, Skeleton};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyEstimate<const BONES: usize, const ANGLES: usize> {
-    /// Coordinates of the mean pose, inside the limits; held still where it moves no farther than the tracker's options say that it trembles.
+    /// Coordinates of the mean pose, inside the limits; with the deadband of the options.
     pub angles_rad: [f32; ANGLES],
     /// Ends of all bones in that pose, metres.
     pub ends_m: [Vec3; BONES],
@@ -186,11 +161,11 @@ mod tests {
     use crate::skeleton::{ArmGeometry, Side};
 
     /// Sets of particles of unlike weights: how far their means are from the place that they were drawn about, root mean square, beside the
-    /// standard error that each set tells.
+    /// standard error that each set estimates.
     #[test]
     fn means_are_off_by_their_standard_error() {
         let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35).unwrap().skeleton().unwrap();
-        let (mut stream, mut off, mut told) = (Stream::new(3, 0, 0), 0.0, 0.0);
+        let (mut stream, mut off, mut estimated) = (Stream::new(3, 0, 0), 0.0, 0.0);
         for _ in 0..400 {
             let mut particles = [BodyParticle::at(&skeleton, [0.5, 0.1, 0.1, 1.0]); 40];
             let mut weights = [0.0; 40];
@@ -204,10 +179,10 @@ mod tests {
             spread_of_group((&particles, &weights), (&Limbs::none(), 0), kept);
             let mean_m: Vec3 = particles.iter().zip(&weights).map(|(p, &weight)| p.ends_m[FOREARM] * weight).sum();
             off += mean_m.norm_squared();
-            told += standard_error_m[FOREARM] * standard_error_m[FOREARM];
+            estimated += standard_error_m[FOREARM] * standard_error_m[FOREARM];
             assert!((0.05..0.12).contains(&spread_m[FOREARM]), "{spread_m:?}");
         }
-        // The mean that distances are taken from is the set's own, so that the error told is a little small.
-        assert!((0.85..1.05).contains(&(told / off)), "{}", told / off);
+        // The mean that distances are taken from is the set's own, so that the estimated error is a little small.
+        assert!((0.85..1.05).contains(&(estimated / off)), "{}", estimated / off);
     }
 }

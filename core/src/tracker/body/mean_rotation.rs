@@ -1,11 +1,12 @@
-//! The mean of many rotations, and its three angles (PIK paper, eq. 30, for ball joints).
+//! The mean of many rotations, and its three angles (PIK (30), for ball joints).
 
 use crate::math::{Mat3, Vec3, abs, asin, atan2, clamp};
 
 /// Steps of the polar decomposition; it converges quadratically.
 const POLAR_STEPS: usize = 12;
-/// A sum of unit rotations whose determinant is less than this has no mean that says anything.
-const LEAST_DETERMINANT: f32 = 1.0e-4;
+/// A sum of unit rotations whose determinant is less than this has no useful mean.
+/// Chosen: above the rounding of `f32`, far below the determinant of any cluster.
+const MIN_DETERMINANT: f32 = 1.0e-4;
 
 /// The rotation nearest to `sum`, the weighted sum of rotation matrices: the mean that makes the sum of squared chords least.
 /// `None` where the rotations point all ways.
@@ -22,7 +23,7 @@ const LEAST_DETERMINANT: f32 = 1.0e-4;
 #[must_use]
 pub fn mean_rotation(sum: &Mat3) -> Option<Mat3> {
     let mut x = *sum;
-    if !(x.determinant() > LEAST_DETERMINANT) {
+    if !(x.determinant() > MIN_DETERMINANT) {
         return None;
     }
     for _ in 0..POLAR_STEPS {

@@ -9,16 +9,21 @@ use crate::skeleton::Limbs;
 use crate::skeleton::limbs::{MAX_GROUPS, TRUNK_GROUP};
 
 /// A point nearer to a bone's skin than this belongs to it, metres.
+/// Chosen: above the noise of points.
 const NEAR_M: f32 = 0.06;
-/// A point speaks for a limb if the skin of every other limb and of the trunk is farther by this at least, metres,
+/// A point speaks for a limb if the skin of every other limb and of the trunk is farther by this at least, metres.
+/// Chosen: more than a point's noise.
 const CLEARER_M: f32 = 0.03;
-/// and by this many times the points' mean distance from the skin: those of a body far away are scattered in depth. A limb of one bone, a
+/// It is also farther by this many times the points' mean distance from the skin: those of a body far away are scattered in depth. A limb of one bone, a
 /// head, cannot reach in front of other skin and needs no more than the least.
+/// Chosen: scatter beyond it is rare.
 const CLEARER_SCATTERS: f32 = 2.5;
 /// A point farther from all skin than this says nothing about the scatter, metres.
+/// Chosen: beyond the noise of every sensor in use; such a point lies on another object.
 const SCATTERED_M: f32 = 0.2;
 /// A bone with less than this share of the points that its size lets expect is not observed.
-const LEAST_SHARE: f32 = 0.25;
+/// Chosen: a limb half hidden is observed.
+const MIN_SHARE: f32 = 0.25;
 
 /// Whether the points show each bone: enough of them lie on its skin and, where it is part of a limb, clearly on no other limb's nor the
 /// trunk's. A limb that is hidden before the trunk, say, would else be shown by the trunk's points.
@@ -66,7 +71,7 @@ pub fn observed<const BONES: usize>(
     let size: f32 = sizes.iter().sum();
     let mut result = [false; BONES];
     for bone in 0..BONES {
-        result[bone] = counts[bone] > 0.0 && counts[bone] >= LEAST_SHARE * found * sizes[bone] / size;
+        result[bone] = counts[bone] > 0.0 && counts[bone] >= MIN_SHARE * found * sizes[bone] / size;
     }
     result
 }

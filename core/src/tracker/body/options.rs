@@ -7,43 +7,19 @@ use crate::error::{ParameterError, Rule};
 /// Options of the filter itself.
 ///
 /// ```
+/// use sinew_core::pik::example::{arm_points, arm_scene, bending_elbow, guided_arm, hand_goals};
+/// use sinew_core::pik::motion::BodyParticle;
 /// use sinew_core::tracker::body::{BodyFrame, BodyOptions, BodyTracker, DEFAULT_BODY_OPTIONS};
-/// # use sinew_core::pik::guided::GuidedMotion;
-/// # use sinew_core::pik::motion::{BodyParticle, BodyScene};
-/// # use sinew_core::pik::{goal::LinearExtrapolation, processes::extrapolation::LinearGoals, root::RootProcess};
-/// # use sinew_core::skeleton::arm::FOREARM;
-/// # use sinew_core::math::Vec3;
-/// # use sinew_core::observation::{point_cloud::PointCloud, point_likelihood::PointLikelihood};
-/// # use sinew_core::skeleton::{ArmGeometry, Side};
-/// # let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
-/// # let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.15 };
-/// # let camera_m = Vec3::new(0.0, 0.0, -2.0);
-/// # let scene = BodyScene { skeleton, radii_m: [0.05, 0.04], camera_m, likelihood, self_penetration: None };
-/// # let points_of = |pose: &[f32; 4]| {
-/// #     let surface = scene.surface(&scene.posture(pose));
-/// #     let mut points_m = core::array::from_fn::<Vec3, 32, _>(|i| {
-/// #         let bone = &surface.capsules[i % 2].capsule;
-/// #         let place_m = bone.start_m + (bone.end_m - bone.start_m) * (i as f32 / 32.0);
-/// #         bone.nearest_visible(&scene.camera_m, &(place_m - Vec3::z()))
-/// #     });
-/// #     let mut cloud = PointCloud::<2>::new();
-/// #     let _ = cloud.set(&mut points_m, &scene.camera_m);
-/// #     cloud
-/// # };
-/// # let process = LinearExtrapolation { persistence: 0.5, std_m_per_sqrt_s: 0.3 };
-/// # let goals = LinearGoals::new(&[FOREARM], 2, process, 0.05)?;
-/// # let (process, root, angle_std_rad_per_sqrt_s) = (&goals, RootProcess::FIXED, [1.0; 4]);
-/// # let (solver_steps, pulling_blocks, angle_persistence) = (3, 2, 0.0);
-/// # let motion =
-/// #     GuidedMotion { process, root, angle_std_rad_per_sqrt_s, angle_persistence, solver_steps, pulling_blocks };
-/// # let truth = |frame: usize| [0.5, 0.1, 0.1, 1.0 + 0.05 * frame as f32];
-/// # let first = BodyParticle::at(&scene.skeleton, truth(0));
 ///
+/// let (scene, goals) = (arm_scene()?, hand_goals()?);
+/// let motion = guided_arm(&goals);
+/// let first = BodyParticle::at(&scene.skeleton, bending_elbow(0));
 /// // Each limb is weighed and resampled by itself, so that all particles weigh the same after a step.
 /// let options = BodyOptions { limb_by_limb: true, ..DEFAULT_BODY_OPTIONS };
 /// let new = |options| BodyTracker::<2, 4, 30, _>::new(&first, ([first; 30], [first; 30]), options, 1);
 /// let mut tracker = new(options)?;
-/// let _ = tracker.step(&scene, &motion, &BodyFrame { dt_s: 1.0 / 15.0, blocks: points_of(&truth(1)).blocks() });
+/// let cloud = arm_points(&scene, &bending_elbow(1));
+/// let _ = tracker.step(&scene, &motion, &BodyFrame { dt_s: 1.0 / 15.0, blocks: cloud.blocks() });
 /// assert!(tracker.weights().iter().all(|weight| *weight == tracker.weights()[0]));
 /// // A wrong option is refused by its name.
 /// let wrong = new(BodyOptions { least_effective_share: 1.5, ..options });
@@ -53,17 +29,17 @@ use crate::error::{ParameterError, Rule};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyOptions {
     /// Weights are flattened until at least this share of a hundred particles is effective, and of others a number that grows with the
-    /// root of theirs: many particles tell a sharper likelihood from chance. Zero never flattens.
+    /// root of theirs: many particles separate a sharper likelihood from chance. Zero never flattens.
     pub least_effective_share: f32,
     /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
     pub limb_by_limb: bool,
-    /// How the expected pose is laid onto the points before particles are drawn, so that their root, and trunk if asked for, set out from
+    /// How the expected pose is fitted to the points before particles are drawn, so that their root, and trunk if asked for, set out from
     /// there; `None` leaves them to their process.
     pub alignment: Option<RootAlignment>,
-    /// How far the mean of the particles trembles about a limb at rest, in its standard errors: the pose that is told stays still within it.
-    pub tremble_errors: f32,
-    /// How far it trembles beyond that, however many particles there are, metres. Both zero tell each frame's mean.
-    pub tremble_m: f32,
+    /// Deadband of the reported pose at rest, in standard errors of the particles' mean.
+    pub jitter_std_errors: f32,
+    /// Part of the deadband that no number of particles reduces, metres. With both zero each frame's mean is reported.
+    pub jitter_std_m: f32,
     /// How the noise of a limb follows its pace; `None` leaves every limb the motion model's own.
     pub pace: Option<SpeedScaledNoise>,
     /// Share of the velocity's last change that goes on, in [0, 1]: motion models are given a velocity that changes on as it did. Zero is the
@@ -71,13 +47,13 @@ pub struct BodyOptions {
     pub acceleration_share: f32,
 }
 
-/// What is used unless told otherwise.
+/// The default options.
 pub const DEFAULT_BODY_OPTIONS: BodyOptions = BodyOptions {
     least_effective_share: 0.0,
     limb_by_limb: false,
     alignment: None,
-    tremble_errors: 0.0,
-    tremble_m: 0.0,
+    jitter_std_errors: 0.0,
+    jitter_std_m: 0.0,
     pace: None,
     acceleration_share: 0.0,
 };
@@ -95,7 +71,7 @@ impl BodyOptions {
                 return Err(ParameterError::new(name, Rule::Within { low: 0.0, high: 1.0 }));
             }
         }
-        for (name, value) in [("tremble_errors", self.tremble_errors), ("tremble_m", self.tremble_m)] {
+        for (name, value) in [("jitter_std_errors", self.jitter_std_errors), ("jitter_std_m", self.jitter_std_m)] {
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(ParameterError::new(name, Rule::NotNegative));
             }

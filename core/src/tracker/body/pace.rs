@@ -1,7 +1,7 @@
 //! How far a limb may stray from where its motion takes it: at rest less than when it is swung, and unseen more and more.
 //!
 //! A motion model has one noise for each joint, wide enough for a hand that is thrown. Most limbs rest most of the time, and particles that are
-//! drawn that wide about them mostly tell by how much they are too few.
+//! drawn that wide about them mostly measure their own sparsity.
 
 use crate::error::{ParameterError, Rule, positive};
 use crate::math::{Vec3, exp, max, min, sqrt};
@@ -10,8 +10,10 @@ use crate::skeleton::Limbs;
 use crate::skeleton::limbs::{MAX_GROUPS, TRUNK_GROUP};
 
 /// A limb is unseen if fewer than this share of its bones with flesh are observed.
+/// Chosen: one of an arm's two bones still holds it.
 const MIN_OBSERVED: f32 = 0.5;
-/// Nobody may ask for more than this many times the noise of a motion model.
+/// Greatest multiple of the noise of a motion model that options may ask for.
+/// Chosen: bounds a mistyped option.
 const MAX_SCALE: f32 = 100.0;
 
 /// How the noise of a limb follows its pace; the trunk's is always the motion model's own.
@@ -165,7 +167,7 @@ mod tests {
     fn followed(frames: usize, speed_m_per_s: f32, noise: LimbNoise) -> (LimbNoise, [f32; BODY_BONES]) {
         let measures = BodyMeasures::of_height(1.75).unwrap();
         let (limbs, radii_m) = (Limbs::of(&full_body(&measures).unwrap()), body_radii_m(&measures));
-        // The whole body goes on, which is nobody's pace but the root's.
+        // The whole body goes on, which is the root's pace alone.
         let mut velocity = [Vec3::new(0.0, 0.0, 1.5); BODY_BONES];
         velocity[FOREARMS[0]].x = speed_m_per_s;
         let mut observed = [true; BODY_BONES];
@@ -214,7 +216,7 @@ mod tests {
             let is_let_loose = FOREARMS.map(|bone| noise.is_let_loose(limbs.group(bone)));
             (noise.is_any_fast(limbs.count()), is_let_loose)
         };
-        assert_eq!(of(0.4, (0.7, false)), (false, [false; 2]), "the trunk's own noise is nobody's pace");
+        assert_eq!(of(0.4, (0.7, false)), (false, [false; 2]), "the trunk's own noise is no limb's pace");
         assert_eq!(of(0.9, (0.4, false)), (true, [false; 2]));
         assert_eq!(of(0.4, (1.4, false)), (true, [false; 2]), "fast, and seen");
         assert_eq!(of(0.4, (1.4, true)), (false, [false, true]));

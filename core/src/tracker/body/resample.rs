@@ -1,7 +1,7 @@
 //! Resampling limb by limb: a new particle has its trunk from one particle of the last set and each limb from another.
 //!
 //! A limb that the points like lives on whatever became of the particle's other limbs, so a hundred particles hold a hundred guesses about
-//! each of them. What is lost is how a limb's angles go together with its trunk's: after the root is laid onto the points trunks differ little.
+//! each of them. What is lost is how a limb's angles go together with its trunk's: after the root is fitted to the points trunks differ little.
 
 use super::state::BodyTracker;
 use crate::particle::resampling::{permute, systematic};

@@ -116,7 +116,7 @@ where
             self.noise.follow((pace, limbs), &self.velocity.last.ends_m_per_s, (&observed, &scene.radii_m), dt_s);
         }
         let jitter_std_m =
-            standard_error_m.map(|error_m| self.options.tremble_m + self.options.tremble_errors * error_m);
+            standard_error_m.map(|error_m| self.options.jitter_std_m + self.options.jitter_std_errors * error_m);
         let reported = *self.deadband.filter((scene, limbs), &mean, &jitter_std_m, dt_s);
         self.before = mean;
         BodyEstimate {

@@ -7,7 +7,8 @@ use crate::math::{Vec3, min};
 use crate::pik::motion::BodyParticle;
 
 /// Velocities are not followed for longer than this across a gap, seconds; the noise grows all the same.
-const LONGEST_STRIDE_S: f32 = 0.2;
+/// Chosen: a limb turns back within a few tenths of a second.
+const MAX_STRIDE_S: f32 = 0.2;
 
 /// Velocities of one frame, by coordinate and by bone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,7 +69,7 @@ impl<const BONES: usize, const ANGLES: usize> EstimateVelocity<BONES, ANGLES> {
 
     /// What is gone on with over a frame of `dt_s`: the last velocity and `acceleration_share` of its change.
     pub(super) fn expected(&self, acceleration_share: f32, dt_s: f32) -> Velocity<BONES, ANGLES> {
-        self.last.plus(&self.change, acceleration_share, min(1.0, LONGEST_STRIDE_S / dt_s))
+        self.last.plus(&self.change, acceleration_share, min(1.0, MAX_STRIDE_S / dt_s))
     }
 }
 
@@ -118,7 +119,7 @@ mod tests {
         ) {
             let velocity = followed(&[1.0, first_rad, second_rad]);
             let way_rad = |dt_s: f32| velocity.expected(share, dt_s).angles_per_s[3] * dt_s;
-            let longest_rad = way_rad(LONGEST_STRIDE_S);
+            let longest_rad = way_rad(MAX_STRIDE_S);
             prop_assert!((way_rad(gap_s) - longest_rad).abs() < 1.0e-4 * (1.0 + longest_rad.abs()));
         }
     }

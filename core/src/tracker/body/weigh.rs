@@ -6,7 +6,7 @@ use crate::math::{min, sqrt};
 use crate::particle::Weights;
 use crate::pik::motion::BodyParticle;
 
-/// Particles that the least effective share is meant for.
+/// Particles that the least effective share is meant for. Chosen: a round number.
 const SHARE_PARTICLES: f32 = 100.0;
 
 impl<const BONES: usize, const ANGLES: usize, const N: usize, S> BodyTracker<BONES, ANGLES, N, S>

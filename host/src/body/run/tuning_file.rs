@@ -15,13 +15,18 @@ const MAY_BE_ZERO: [&str; 6] = [
     "root.turn_std_rad",
     "self_penetration_std_m",
     "smoothing.radius_m",
-    "steady.tremble_errors",
-    "steady.tremble_m",
+    "deadband.jitter_std_errors",
+    "deadband.jitter_std_m",
 ];
 
 /// Keys of files of version 0.1, and their present names.
-const FORMER: [(&str, &str); 2] =
-    [("pace.swing_most", "pace.max_scale_seen"), ("pace.unseen_most", "pace.max_scale_unseen")];
+const FORMER: [(&str, &str); 5] = [
+    ("pace.swing_most", "pace.max_scale_seen"),
+    ("pace.unseen_most", "pace.max_scale_unseen"),
+    ("steady.tremble_errors", "deadband.jitter_std_errors"),
+    ("steady.tremble_m", "deadband.jitter_std_m"),
+    ("draw.pays", "draw.corrects_weight"),
+];
 
 /// Reads a configuration.
 ///
@@ -77,7 +82,7 @@ fn keys(prefix: &str, table: &Table) -> Vec<String> {
 fn overlay(prefix: &str, all: &mut Table, given: Table, known: &[String]) -> Result<()> {
     for (key, value) in given {
         let full = format!("{prefix}{key}");
-        let Some(slot) = all.get_mut(&key) else { bail!("{}", unknown(&full, known)) };
+        let Some(slot) = all.get_mut(&key) else { bail!("{}", unknown(&first_key(&full, &value), known)) };
         match (slot, value) {
             (Value::Table(inner), Value::Table(given)) => overlay(&format!("{full}."), inner, given, known)?,
             (Value::Table(_), _) => bail!("`{full}` is a section; write `[{full}]`"),
@@ -89,6 +94,13 @@ fn overlay(prefix: &str, all: &mut Table, given: Table, known: &[String]) -> Res
         }
     }
     Ok(())
+}
+
+/// `key`, or the first one below it if its value is a section with former keys.
+fn first_key(key: &str, value: &Value) -> String {
+    let below = |inner: &String| format!("{key}.{inner}");
+    let mut inner = value.as_table().into_iter().flat_map(Table::keys).map(below);
+    inner.find(|full| FORMER.iter().any(|(former, _)| former == full)).unwrap_or_else(|| key.to_owned())
 }
 
 fn unknown(key: &str, known: &[String]) -> String {
@@ -166,6 +178,9 @@ mod tests {
             ),
             ("[pace]\nswing_most = 5.0\n", "`pace.swing_most` is now `pace.max_scale_seen`"),
             ("[pace]\nunseen_most = 2.5\n", "`pace.unseen_most` is now `pace.max_scale_unseen`"),
+            ("[steady]\ntremble_m = 0.01\n", "`steady.tremble_m` is now `deadband.jitter_std_m`"),
+            ("[steady]\ntremble_errors = 2.0\n", "`steady.tremble_errors` is now `deadband.jitter_std_errors`"),
+            ("[draw]\npays = true\n", "`draw.pays` is now `draw.corrects_weight`"),
             ("[gided]\nreach_std_m = 1.0\n", "no key `gided`; the nearest one is `guided`"),
             ("[guided]\nreach_std_m = -1.0\n", "`guided.reach_std_m` has to be from"),
             ("self_penetration_std_m = -0.01\n", "`self_penetration_std_m` has to be from 0 to"),

@@ -162,7 +162,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
                 let process = PaperGoals { end_effectors: &PAPER_END_EFFECTORS, std_m: PAPER_GOAL_STD_M, reach_std_m };
                 let angle_std = paper_angle_std(frame.dt_s);
                 let motion = EndEffectorMotion {
-                    pays: true,
+                    corrects_weight: true,
                     angle_persistence: 0.0,
                     ..with_goals(&tuning, angle_std, &process, root)
                 };
@@ -219,7 +219,7 @@ fn with_goals<'a, P, const ANGLES: usize>(
         angle_std_rad_per_sqrt_s,
         angle_persistence: tuning.end_effector.angle_persistence,
         solver_steps: tuning.end_effector.solver_steps,
-        pays: tuning.draw.pays,
+        corrects_weight: tuning.draw.corrects_weight,
         draw_share: tuning.draw.share,
     }
 }

@@ -164,13 +164,14 @@ impl GoalTuning {
     }
 }
 
-/// How poses are drawn about their mode in the models with goals, but for the guided one, which always draws all of its expansion and corrects the weights.
+/// How poses are drawn about their mode in the models with goals, but for the guided one.
+/// That one always draws all of its expansion and corrects the weight.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DrawTuning {
     /// Whether the weights take the importance ratio.
-    pub pays: bool,
-    /// Width of the draw relative to the Laplace expansion's, in (0, 1]; read where the weights are not corrected.
+    pub corrects_weight: bool,
+    /// Width of the draw relative to the Laplace expansion's, in (0, 1]; read where weights are not corrected.
     pub share: f32,
 }
 
@@ -211,15 +212,15 @@ pub struct SmoothingTuning {
     pub skin_std_m: f32,
 }
 
-/// The deadband: how far estimates of a limb at rest vary, in all models but the printed ones. The result stays still within it. Both zero report each
-/// frame's mean.
+/// The deadband of the reported pose at rest, in all models but the printed ones. With both zero each
+/// frame's mean is reported.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SteadyTuning {
+pub struct DeadbandTuning {
     /// In standard errors of the particles' mean.
-    pub tremble_errors: f32,
+    pub jitter_std_errors: f32,
     /// Beyond that, metres.
-    pub tremble_m: f32,
+    pub jitter_std_m: f32,
 }
 
 /// Everything that a body tracker's results depend on, but the number of particles and the seed.
@@ -243,8 +244,8 @@ pub struct BodyTuning {
     /// How the noise of a limb follows its speed, in all models but the printed ones. A `rest_share`, a `max_scale_seen` and
     /// a `max_scale_unseen` of one leave every limb the model's own.
     pub pace: SpeedScaledNoise,
-    /// What is reported of the particles' mean.
-    pub steady: SteadyTuning,
+    /// The deadband of the reported pose.
+    pub deadband: DeadbandTuning,
     /// Points of the models that draw from the motion alone.
     pub points: PointTuning,
     /// Points of the guided model.
@@ -265,7 +266,8 @@ pub struct BodyTuning {
 
 /// Smallest effective share of whole poses with the settings that the paper prints.
 const PAPER_EFFECTIVE_SHARE: f32 = 0.05;
-/// How closely goals are reached there, metres: chosen: near the 5 cm of accuracy aimed at, at any pace of a limb.
+/// How closely goals are reached there, metres.
+/// Chosen: near the 5 cm of accuracy aimed at, at any pace of a limb.
 const PAPER_REACH_STD_M: f32 = 0.054;
 
 impl BodyTuning {
@@ -279,7 +281,7 @@ impl BodyTuning {
             self.end_effector.reach_std_m = PAPER_REACH_STD_M;
             (self.pace.rest_share, self.pace.max_scale_seen, self.pace.max_scale_unseen) = (1.0, 1.0, 1.0);
             (self.end_effector.acceleration_share, self.angular.acceleration_share) = (0.0, 0.0);
-            self.steady = SteadyTuning { tremble_errors: 0.0, tremble_m: 0.0 };
+            self.deadband = DeadbandTuning { jitter_std_errors: 0.0, jitter_std_m: 0.0 };
             self.self_penetration_std_m = 0.0;
             (self.root.aligned_trunk, self.root.aligned_from_afar) = (false, false);
             self.points.limb_by_limb = false;
@@ -309,8 +311,8 @@ impl BodyTuning {
             least_effective_share: points.least_effective_share,
             limb_by_limb: points.limb_by_limb,
             alignment: self.root.alignment().filter(|_| is_aligned),
-            tremble_errors: self.steady.tremble_errors,
-            tremble_m: self.steady.tremble_m,
+            jitter_std_errors: self.deadband.jitter_std_errors,
+            jitter_std_m: self.deadband.jitter_std_m,
             pace: Some(self.pace),
             acceleration_share,
         }
@@ -375,7 +377,7 @@ impl Default for BodyTuning {
                 trunk_std_rad: 0.04,
             },
             end_effector: GOALS,
-            draw: DrawTuning { pays: false, share: 0.62 },
+            draw: DrawTuning { corrects_weight: false, share: 0.62 },
             guided: GUIDED_GOALS,
             pulling_blocks: 64,
             angular: AngularTuning { persistence: 0.55, acceleration_share: 0.35, joint_std: ANGULAR_JOINTS },
@@ -387,7 +389,7 @@ impl Default for BodyTuning {
                 unseen_growth_s: 0.5,
                 max_scale_unseen: 2.5,
             },
-            steady: SteadyTuning { tremble_errors: 3.0, tremble_m: 0.0075 },
+            deadband: DeadbandTuning { jitter_std_errors: 3.0, jitter_std_m: 0.0075 },
             smoothing: SmoothingTuning { radius_m: 0.04, skin_std_m: 0.015 },
             points,
             guided_points: PointTuning {

@@ -95,7 +95,7 @@ fn end_effector(process: &LinearGoals) -> EndEffectorMotion<'_, LinearGoals, BOD
         angle_std_rad_per_sqrt_s: ANGLE_STD,
         angle_persistence: 0.0,
         solver_steps: 2,
-        pays: false,
+        corrects_weight: false,
         draw_share: 1.0,
     }
 }
@@ -135,8 +135,8 @@ const OPTIONS: BodyOptions = BodyOptions {
         pulling_blocks: 64,
         fit_trunk: true,
     }),
-    tremble_errors: 0.0,
-    tremble_m: 0.0,
+    jitter_std_errors: 0.0,
+    jitter_std_m: 0.0,
     pace: None,
     acceleration_share: 0.0,
 };

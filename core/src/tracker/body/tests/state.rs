@@ -20,7 +20,7 @@ fn sets_and_options_that_do_not_fit_are_refused() {
 fn a_tracker_goes_on_from_its_saved_state_as_if_nothing_had_been() {
     let (scene, goals) = (scene(), goals());
     let motion = guided(&goals);
-    for options in [OPTIONS, BodyOptions { tremble_errors: 4.0, tremble_m: 0.004, ..LIMB_BY_LIMB }] {
+    for options in [OPTIONS, BodyOptions { jitter_std_errors: 4.0, jitter_std_m: 0.004, ..LIMB_BY_LIMB }] {
         let mut tracker = tracker_of(&scene, 20, 5, options);
         for frame in 1..=4 {
             tracker.step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: cloud(&scene, frame, &[]).blocks() });

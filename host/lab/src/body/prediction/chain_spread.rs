@@ -87,7 +87,7 @@ pub fn draw(measures: &BodyMeasures, first_rad: [f32; BODY_ANGLES], seed: u64) -
         angle_std_rad_per_sqrt_s,
         angle_persistence: 0.0,
         solver_steps: SOLVER_STEPS,
-        pays: false,
+        corrects_weight: false,
         draw_share: 1.0,
     };
     let (angular, angular_m) = poses(&scene, &angular, first_rad, seed)?;

@@ -178,7 +178,7 @@ fn sample(
     let stiffness = tuning.end_effector.joint_std.per_angle().map(|std| 1.0 / (std * std * dt_s));
     let density = PoseDensity { skeleton, root_m: Vec3::zeros(), goals: &goals, previous_rad, stiffness, held };
     let mut mode = density.mode(tuning.end_effector.solver_steps);
-    if !tuning.draw.pays {
+    if !tuning.draw.corrects_weight {
         narrow(&mut mode, tuning.draw.share);
     }
     let drawn = LaplaceProposal::new(&mode)?.draw(skeleton.limits(), stream);
