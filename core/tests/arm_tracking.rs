@@ -1,4 +1,5 @@
-//! The arm tracker on simulated blobs and edges with known truth: no pixels, so only the tracker is tested.
+//! The arm tracker on simulated blobs and edges with known truth: no pixels, so only the tracker is
+//! tested.
 
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::{Vec3, exp, sin_cos};
@@ -45,7 +46,8 @@ struct Scene {
     hidden: std::ops::Range<u64>,
 }
 
-/// Tracks one simulated sequence and returns each frame's estimate with its 3D (m) and 2D (px) hand error.
+/// Tracks one simulated sequence and returns each frame's estimate with its 3D (m) and 2D (px) hand
+/// error.
 fn run(model: &ArmModel, scene: &Scene, seed: u64) -> Vec<(ArmEstimate, f32, f32)> {
     let mut tracker = ArmTracker::<512>::new(model, SHOULDER, seed).unwrap();
     let camera = *model.camera();

@@ -1,4 +1,5 @@
-//! The particle filter against the exact posterior where that is known: a linear model with normal noise.
+//! The particle filter against the exact posterior where that is known: a linear model with normal
+//! noise.
 
 use sinew_core::cyclic::particle::moments::ParticleMoments;
 use sinew_core::cyclic::particle::propose::{
@@ -16,16 +17,19 @@ use sinew_core::random::Stream;
 const N: usize = 13;
 const POSITIONS: usize = 4;
 const FRAMES: u32 = 20;
-/// Standard deviation of the accelerations, rad per frame^2, and of the first angles (rad) and velocities (rad per frame).
+/// Standard deviation of the accelerations, rad per frame^2, and of the first angles (rad) and
+/// velocities (rad per frame).
 const ACCELERATION_STD: f32 = 0.002;
 const START_STD: f32 = 0.002;
-/// Noise that leaves room for many particles to agree with a measurement, and no angle beyond half a turn.
+/// Noise that leaves room for many particles to agree with a measurement, and no angle beyond half
+/// a turn.
 const MEASUREMENT_STD_RAD: f32 = 200.0 * ACCELERATION_STD;
 /// Largest distance of 100,000 particles from the exact mean, posterior standard deviations.
 const MAX_DISTANCE: f64 = 0.15;
 const ZEROS: [f32; POSITIONS * N] = [0.0; POSITIONS * N];
 
-/// Correlated accelerations with the same covariance everywhere in the cycle; half of each is common to all.
+/// Correlated accelerations with the same covariance everywhere in the cycle; half of each is
+/// common to all.
 fn covariance() -> Vec<f32> {
     let mut packed = vec![0.0; packed_len(N)];
     for i in 0..N {

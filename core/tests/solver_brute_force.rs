@@ -1,4 +1,5 @@
-//! Both solvers against brute force on chains of two and three hinges: what a grid over the limits finds, refined.
+//! Both solvers against brute force on chains of two and three hinges: what a grid over the limits
+//! finds, refined.
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -40,8 +41,8 @@ fn spatial() -> Skeleton<3, 3> {
     chain([Vec3::z(), Vec3::y(), Vec3::z()], [[-100.0, 80.0], [-70.0, 60.0], [0.0, 140.0]])
 }
 
-/// Largest log density over all poses whose angles are `about` plus a whole number, `reach` at most either way, of `step_rad`, cut to the
-/// limits; and its pose.
+/// Largest log density over all poses whose angles are `about` plus a whole number, `reach` at most
+/// either way, of `step_rad`, cut to the limits; and its pose.
 fn best_around<const N: usize>(
     density: &PoseDensity<'_, N, N>,
     about: [f32; N],
@@ -76,14 +77,16 @@ fn brute_force<const N: usize>(density: &PoseDensity<'_, N, N>) -> f32 {
     best.1
 }
 
-/// A run: the angles that the search begins at and the goal, of a pose inside the limits or anywhere from beside the root to beyond reach.
+/// A run: the angles that the search begins at and the goal, of a pose inside the limits or
+/// anywhere from beside the root to beyond reach.
 #[derive(Debug, Clone)]
 struct Case<const N: usize> {
     start_rad: [f32; N],
     position_m: Vec3,
 }
 
-/// Begins within `near_rad` of the pose that the goal is of, or anywhere; every other goal lies anywhere if `far_goals`.
+/// Begins within `near_rad` of the pose that the goal is of, or anywhere; every other goal lies
+/// anywhere if `far_goals`.
 fn case<const N: usize>(
     skeleton: &Skeleton<N, N>,
     near_rad: Option<f32>,
@@ -120,7 +123,8 @@ struct Shares {
     out_of_reach: f32,
 }
 
-/// Runs `solve` on `CASES` cases and compares each answer with the poses around it and with those of the grid.
+/// Runs `solve` on `CASES` cases and compares each answer with the poses around it and with those
+/// of the grid.
 fn solve_many<const N: usize>(
     skeleton: &Skeleton<N, N>,
     cases: impl Strategy<Value = Case<N>>,

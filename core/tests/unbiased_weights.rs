@@ -18,7 +18,8 @@ use sinew_core::skeleton::{Bone, Joint, Limit, Skeleton};
 /// Length of each of the two bones, metres.
 const LENGTH_M: f32 = 20.0;
 const DT_S: f32 = 0.25;
-/// Standard deviations of an angle's change in a frame, of the reach, and of the goals about their mean.
+/// Standard deviations of an angle's change in a frame, of the reach, and of the goals about their
+/// mean.
 const ANGLE_STD_RAD: f32 = 0.01;
 const REACH_STD_M: f32 = 0.2;
 const GOAL_STD_M: f32 = 0.15;
@@ -118,8 +119,8 @@ fn integrate(limits: [[f32; 2]; 2], steps: usize, density: impl Fn([f32; 2]) -> 
     moments(&weighted)
 }
 
-/// Each moment of `found`, which came of `weighted`, lies within [`MAX_STANDARD_ERRORS`] standard errors of the exact one, on either side, and `slack`
-/// standard deviations.
+/// Each moment of `found`, which came of `weighted`, lies within [`MAX_STANDARD_ERRORS`] standard
+/// errors of the exact one, on either side, and `slack` standard deviations.
 fn assert_alike(weighted: &[([f32; 2], f64)], exact: &Moments, slack: f64) {
     let found = moments(weighted);
     let total: f64 = weighted.iter().map(|(_, weight)| weight).sum();

@@ -1,4 +1,5 @@
-//! The image `camera`: a frame's lines arrive, blobs and edge pixels come out, the arm and the cyclic tracker step.
+//! The image `camera`: a frame's lines arrive, blobs and edge pixels come out, the arm and the
+//! cyclic tracker step.
 
 use crate::arm::Arm;
 use crate::cyclic::CyclicApp;
@@ -46,7 +47,8 @@ impl CameraApp {
         }
     }
 
-    // Not inlined: what begins a tracker and what steps it need their stack one after the other, not at once.
+    // Not inlined: what begins a tracker and what steps it need their stack one after the other, not at
+    // once.
     #[inline(never)]
     fn begin(&mut self, setup: &CameraSetup) -> Result<(), Refusal> {
         let [width, height] = setup.size_px.map(usize::from);

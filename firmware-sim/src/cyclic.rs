@@ -1,4 +1,5 @@
-//! The image `cyclic`: angles in, pose, phase and cadence out, by the phase-coupled filter and the walking model.
+//! The image `cyclic`: angles in, pose, phase and cadence out, by the phase-coupled filter and the
+//! walking model.
 
 use crate::log::debug;
 use crate::player::{Answers, Application, Refusal, play};

@@ -1,4 +1,5 @@
-//! Logging by defmt on the board, by nothing on the host; the features `log-info` and `log-debug` choose the level.
+//! Logging by defmt on the board, by nothing on the host; the features `log-info` and `log-debug`
+//! choose the level.
 
 macro_rules! info {
     ($($arguments:tt)*) => {

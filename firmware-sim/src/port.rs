@@ -2,7 +2,8 @@
 
 use sinew_record::{Cost, HEADER_BYTES, Payload, RecordError, Source, encode};
 
-/// Power of two of the nanoseconds that the emulator lets pass for an instruction; its timer then counts instructions.
+/// Power of two of the nanoseconds that the emulator lets pass for an instruction; its timer then
+/// counts instructions.
 pub const ICOUNT_SHIFT: u32 = 6;
 /// Name of the file that an image reads its input from.
 pub const INPUT_FILE: &str = "input.rec";

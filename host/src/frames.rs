@@ -1,4 +1,5 @@
-//! The observations of each frame for the trackers: the core's front end with buffers that fit the frames.
+//! The observations of each frame for the trackers: the core's front end with buffers that fit the
+//! frames.
 
 use crate::error::Result;
 use image::{GrayImage, Luma, RgbImage};

@@ -83,7 +83,8 @@ impl OutputDir {
     }
 }
 
-/// A file that grows under a temporary name and gets its own name at the end; dropped before, it leaves nothing.
+/// A file that grows under a temporary name and gets its own name at the end; dropped before, it
+/// leaves nothing.
 #[derive(Debug)]
 pub struct PendingFile {
     path: PathBuf,
@@ -126,7 +127,8 @@ pub fn check_writable_file(path: &Path) -> Result<()> {
     OutputDir::create(parent_of(path)).map(|_| ())
 }
 
-/// Lets `fill` write to a temporary file beside `path`, then renames it to `path`, replacing what was there.
+/// Lets `fill` write to a temporary file beside `path`, then renames it to `path`, replacing what
+/// was there.
 ///
 /// If `fill` fails, `path` stays as it was.
 ///

@@ -1,4 +1,5 @@
-//! Two angles a joint on real walks in space (ASF/AMC). Runs where `../shared/data` is at hand, and says so where not.
+//! Two angles a joint on real walks in space (ASF/AMC). Runs where `../shared/data` is at hand, and
+//! says so where not.
 
 use sinew::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
 use sinew::cyclic::projection::View;
@@ -21,7 +22,8 @@ const ERRORS_DEG: [(FilterName, bool, [f64; 2]); 5] = [
     (FilterName::Coupled, false, [2.09, 1.69]),
     (FilterName::Coupled, true, [1.37, 1.10]),
 ];
-/// The same of `coupled` on a walk of another source (BVH, 30 frames a second made 60), looking back or not.
+/// The same of `coupled` on a walk of another source (BVH, 30 frames a second made 60), looking
+/// back or not.
 const BVH_DEG: [(bool, [f64; 2]); 2] = [(false, [2.35, 1.40]), (true, [1.76, 1.06])];
 /// Relative room of these numbers.
 const ROOM: f64 = 0.05;
@@ -136,7 +138,8 @@ fn walks_in_space_are_tracked_with_two_angles_a_joint() {
     assert!(message.contains("two angles a joint") && message.contains("--view space"), "{message}");
 }
 
-/// Another source, another rate, all of a recording of several cycles: the model of the AMC walks follows a BVH walk.
+/// Another source, another rate, all of a recording of several cycles: the model of the AMC walks
+/// follows a BVH walk.
 #[test]
 fn a_walk_of_another_source_is_followed_in_space() {
     let Some(data) = data() else { return };

@@ -1,4 +1,5 @@
-//! The features that the host's dependencies turn on, such as `std` of the linear algebra, do not change a bit of the trackers.
+//! The features that the host's dependencies turn on, such as `std` of the linear algebra, do not
+//! change a bit of the trackers.
 
 use sinew_digest::{FRAMES, Line, Subject};
 use std::path::Path;

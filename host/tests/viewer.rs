@@ -1,4 +1,5 @@
-//! `--rerun FILE.rrd`: the file is read back, and what it holds are the numbers of the run's tables.
+//! `--rerun FILE.rrd`: the file is read back, and what it holds are the numbers of the run's
+//! tables.
 
 use re_chunk::external::arrow;
 use re_chunk::{Chunk, TimelineName};

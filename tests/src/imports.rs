@@ -1,4 +1,5 @@
-//! Which file of a crate imports which: the arrows of `docs/architecture.md`, read from the sources.
+//! Which file of a crate imports which: the arrows of `docs/architecture.md`, read from the
+//! sources.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -14,7 +15,8 @@ const MAX_RE_EXPORTS: usize = 8;
 
 /// The files of a crate and what each imports from the others.
 ///
-/// A name that a module only hands on (`pub use`) counts for the file that defines it. Tests are left out.
+/// A name that a module only hands on (`pub use`) counts for the file that defines it. Tests are
+/// left out.
 #[derive(Debug)]
 pub struct Imports {
     arrows: BTreeMap<Module, BTreeSet<Module>>,
@@ -123,7 +125,8 @@ struct Resolver<'a> {
 }
 
 impl Resolver<'_> {
-    /// The module whose file defines what `path` names when `module` says it; `None` if another crate does.
+    /// The module whose file defines what `path` names when `module` says it; `None` if another
+    /// crate does.
     fn definition(&self, module: &Module, path: &[String]) -> Option<Module> {
         let (mut base, mut rest) = self.start(module, path)?;
         for _ in 0..MAX_RE_EXPORTS {
@@ -155,7 +158,8 @@ impl Resolver<'_> {
     }
 }
 
-/// Reads the sources below `folder`, which is `module`; a name is kept with whether its file is a folder's face.
+/// Reads the sources below `folder`, which is `module`; a name is kept with whether its file is a
+/// folder's face.
 fn read_sources(folder: &Path, module: &Module, sources: &mut BTreeMap<Module, (bool, Names)>) {
     for entry in fs::read_dir(folder).expect("the folder can be read") {
         let path = entry.expect("the folder can be read").path();

@@ -68,7 +68,8 @@ pub fn command_tree() -> clap::Command {
     sinew::cli::Cli::command().mut_subcommand("evaluate", |_| evaluate)
 }
 
-/// Reads a command line as `sinew` or, where it begins with `evaluate`, as `sinew-lab` does; `words` begin after the program.
+/// Reads a command line as `sinew` or, where it begins with `evaluate`, as `sinew-lab` does;
+/// `words` begin after the program.
 ///
 /// # Errors
 /// What clap says of words that are not understood.
@@ -80,7 +81,8 @@ pub fn parse<'a>(words: impl IntoIterator<Item = &'a str>) -> Result<(), clap::E
     sinew::cli::Cli::try_parse_from(words).map(drop)
 }
 
-/// Every file below `folder`, by its path from there; the numbers in `run.json` that `times` names are left out, which differ from run to run.
+/// Every file below `folder`, by its path from there; the numbers in `run.json` that `times` names
+/// are left out, which differ from run to run.
 ///
 /// # Panics
 /// If something cannot be read, or `run.json` has no such number.
@@ -116,7 +118,8 @@ pub fn workspace_root() -> &'static Path {
     package.parent().unwrap_or(package)
 }
 
-/// A folder or file of the development data beside the workspace; `None`, with a line that says so, where it is not there.
+/// A folder or file of the development data beside the workspace; `None`, with a line that says so,
+/// where it is not there.
 #[must_use]
 pub fn shared_data(path: &str) -> Option<PathBuf> {
     let from = env::var_os("SINEW_SHARED_DATA").map_or_else(|| workspace_root().join("../shared/data"), PathBuf::from);

@@ -267,7 +267,8 @@ fn swimmers_with_most_joints_missing_are_read() {
     }
 }
 
-/// The same take as markers and as a skeleton: long segments differ by a few degrees, since markers sit on the skin.
+/// The same take as markers and as a skeleton: long segments differ by a few degrees, since markers
+/// sit on the skin.
 #[test]
 fn markers_and_skeleton_of_one_take_agree() {
     let Some(folder) = shared_data("mocap/hdm05") else { return };

@@ -1,4 +1,5 @@
-//! The book: every page of docs/ has a place in SUMMARY.md and every entry a page, pictures exist and say where they come from.
+//! The book: every page of docs/ has a place in SUMMARY.md and every entry a page, pictures exist
+//! and say where they come from.
 
 use sinew_tests::workspace_root;
 use std::collections::BTreeSet;
@@ -16,7 +17,8 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Files below `folder` with one of the endings, by their path relative to docs/. The built book is left out.
+/// Files below `folder` with one of the endings, by their path relative to docs/. The built book is
+/// left out.
 fn files(folder: &Path, endings: &[&str], found: &mut BTreeSet<String>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

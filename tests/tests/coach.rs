@@ -1,4 +1,5 @@
-//! The way that docs/coach.md goes: a table of keypoints in pixels, angles, cadence, joints in pixels again.
+//! The way that docs/coach.md goes: a table of keypoints in pixels, angles, cadence, joints in
+//! pixels again.
 
 mod cyclic_walk;
 
@@ -16,7 +17,8 @@ fn sinew(folder: &Path, arguments: &[&str]) {
     command.current_dir(folder).args(arguments).assert().success();
 }
 
-/// Joints of a walker who is 400 px high, at 30 frames a second and 50 cycles a minute; hips unseen now and then.
+/// Joints of a walker who is 400 px high, at 30 frames a second and 50 cycles a minute; hips unseen
+/// now and then.
 fn keypoints(frames: u64, faces_left: bool) -> String {
     let names: Vec<&str> = std::iter::once("hip_center").chain(HUMAN.angle_names()).collect();
     let mut text = "frame".to_owned();

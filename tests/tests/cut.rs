@@ -14,7 +14,8 @@ fn sinew(folder: &Path) -> Command {
     command
 }
 
-/// Every hand-made cut has a cycle at the same place whose length is the same to two frames, of about 67.
+/// Every hand-made cut has a cycle at the same place whose length is the same to two frames, of
+/// about 67.
 #[test]
 fn recorded_walks_are_cut_as_by_hand() {
     let Some(folder) = shared_data("cyclic-walking") else { return };
@@ -37,7 +38,8 @@ fn recorded_walks_are_cut_as_by_hand() {
     assert_eq!(count, 23);
 }
 
-/// Cycles of a long walk follow one another without a break, and their number is that of the steps counted by eye.
+/// Cycles of a long walk follow one another without a break, and their number is that of the steps
+/// counted by eye.
 #[test]
 fn long_walks_are_cut_without_a_break() {
     let Some(data) = shared_data("mocap") else { return };

@@ -1,6 +1,8 @@
-//! Every public type, trait and function of the core has an example in its own documentation, which `cargo test` compiles and runs.
+//! Every public type, trait and function of the core has an example in its own documentation, which
+//! `cargo test` compiles and runs.
 //!
-//! Constants are shown in the examples of what uses them, methods in those of their types; the interface for C has its examples in C.
+//! Constants are shown in the examples of what uses them, methods in those of their types; the
+//! interface for C has its examples in C.
 
 use sinew_tests::workspace_root;
 use std::fs;
@@ -22,7 +24,8 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Whether users can name `item` of the module in `path`: its module is public, or the item is handed on by the one above.
+/// Whether users can name `item` of the module in `path`: its module is public, or the item is
+/// handed on by the one above.
 fn is_reachable(path: &Path, item: &str) -> bool {
     let name = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
     if ["mod", "lib"].contains(&name(path).as_str()) {

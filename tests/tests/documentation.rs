@@ -73,7 +73,8 @@ fn pages(folder: &Path) -> Vec<PathBuf> {
     entries.filter(|path| path.extension().is_some_and(|extension| extension == "md")).collect()
 }
 
-/// Targets of `[text](target)` and `![text](target)` that are neither web addresses nor anchors of the same page.
+/// Targets of `[text](target)` and `![text](target)` that are neither web addresses nor anchors of
+/// the same page.
 fn links(page: &str) -> Vec<&str> {
     let targets = page.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
     targets.map(|(target, _)| target).filter(|target| !target.contains("://") && !target.starts_with('#')).collect()
@@ -197,7 +198,8 @@ fn every_page_of_the_book_is_short() {
 const OTHER_PAGES: [&str; 6] =
     ["README.md", "CONTRIBUTING.md", "SECURITY.md", "CODE_OF_CONDUCT.md", "core/README.md", "host/README.md"];
 
-/// Tables, headings, marks and pictures are free, and so is a line of one word, which no break makes shorter.
+/// Tables, headings, marks and pictures are free, and so is a line of one word, which no break
+/// makes shorter.
 #[test]
 fn prose_of_all_pages_is_wrapped() {
     let read = |name: &str| (name.to_owned(), fs::read_to_string(workspace_root().join(name)).unwrap());

@@ -1,7 +1,9 @@
-//! The tracks of small rendered scenes, of arms and of a whole body, compared with committed files to the last digit.
+//! The tracks of small rendered scenes, of arms and of a whole body, compared with committed files
+//! to the last digit.
 //!
-//! Results are the same in every build, so there is no tolerance. After a change that is meant to change tracks, run
-//! `SINEW_REGENERATE=1 cargo test -p sinew-tests --test golden_track`, look at the difference, and commit it.
+//! Results are the same in every build, so there is no tolerance. After a change that is meant to
+//! change tracks, run `SINEW_REGENERATE=1 cargo test -p sinew-tests --test golden_track`, look at
+//! the difference, and commit it.
 
 use assert_cmd::Command;
 use sinew::motion::reach::random_reaches;
@@ -56,8 +58,9 @@ fn the_paper_s_tracker() {
     compare("corrected", &["--variant", "corrected"]);
 }
 
-/// Simulates a built-in motion with few points, tracks its first frames by the numbers of `tests/golden/body.toml`, which tuning leaves alone, and
-/// compares the table with `tests/golden/NAME.csv`.
+/// Simulates a built-in motion with few points, tracks its first frames by the numbers of
+/// `tests/golden/body.toml`, which tuning leaves alone, and compares the table with
+/// `tests/golden/NAME.csv`.
 fn compare_body(name: &str, motion: &str, words: &[&str]) {
     let root = tempfile::tempdir().unwrap();
     let scene = root.path().join("scene");

@@ -4,7 +4,8 @@ use clap::Command;
 use sinew_tests::{command_tree, sinew_command};
 use std::collections::BTreeSet;
 
-/// The words of every command below `sinew`, groups too: `[["demo"], ["track"], ["track", "arm"], ...]`, and of `sinew` itself.
+/// The words of every command below `sinew`, groups too: `[["demo"], ["track"], ["track", "arm"],
+/// ...]`, and of `sinew` itself.
 fn commands() -> Vec<Vec<String>> {
     fn walk(command: &Command, words: &[String], found: &mut Vec<Vec<String>>) {
         found.push(words.to_vec());

@@ -1,4 +1,5 @@
-//! Recorded motion, where the recordings are beside the project. Without them these tests say that they are skipped.
+//! Recorded motion, where the recordings are beside the project. Without them these tests say that
+//! they are skipped.
 
 use sinew::motion::{self, ArmSide, ReadOptions, clips, landmarks::Arm};
 use sinew::scene::{Scene, SceneOptions, Sides};

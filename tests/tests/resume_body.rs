@@ -1,4 +1,5 @@
-//! `sinew track body --resume`: a run that was broken off and taken up again writes what an unbroken one writes.
+//! `sinew track body --resume`: a run that was broken off and taken up again writes what an
+//! unbroken one writes.
 
 use sinew::body::BodyPart;
 use sinew::body::run::{BodyEvent, BodyTrackOptions, BodyTrackRun};
@@ -46,7 +47,8 @@ impl Scene {
         self.path(&format!("in/points/{frame:06}.ply"))
     }
 
-    /// Breaks runs off after so many frames, takes them up, and expects what an unbroken run writes.
+    /// Breaks runs off after so many frames, takes them up, and expects what an unbroken run
+    /// writes.
     fn resumes(&self, options: &BodyTrackOptions, breaks: &[&[usize]]) {
         let never = AtomicBool::new(false);
         BodyTrackRun::prepare(options.clone(), &self.path("whole")).unwrap().run(&never, &mut |_| ()).unwrap();
@@ -132,7 +134,8 @@ fn assert_same(whole: &BTreeMap<String, Vec<u8>>, resumed: &BTreeMap<String, Vec
 #[test]
 fn a_run_with_every_output_goes_on_wherever_it_was_broken_off() {
     let scene = Scene::new();
-    // Before the first frame, after it, beside the broken cloud, beside the gap, twice, and before the last.
+    // Before the first frame, after it, beside the broken cloud, beside the gap, twice, and before the
+    // last.
     let breaks: [&[usize]; 6] = [&[0], &[1], &[BROKEN], &[BROKEN + 1, MISSING], &[2, 3, 8], &[9]];
     scene.resumes(&scene.options(BodyModelKind::Stick, true), &breaks);
 }

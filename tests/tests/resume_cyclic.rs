@@ -1,4 +1,5 @@
-//! `sinew track cyclic --resume`: a run that was broken off and taken up again writes what an unbroken one writes.
+//! `sinew track cyclic --resume`: a run that was broken off and taken up again writes what an
+//! unbroken one writes.
 
 use clap::Parser;
 use sinew::cli::{Cli, Command, track::Track, track_cyclic::run_until};

@@ -1,4 +1,5 @@
-//! `--resume` of the evaluations: one that was broken off and taken up again writes what an unbroken one writes.
+//! `--resume` of the evaluations: one that was broken off and taken up again writes what an
+//! unbroken one writes.
 
 use clap::Parser;
 use serde_json::Value;
@@ -38,7 +39,8 @@ impl Folder {
         (output.status.success(), String::from_utf8(output.stderr).unwrap())
     }
 
-    /// Breaks an evaluation off before it would measure one more than `most` things; gives the number of cells that are kept.
+    /// Breaks an evaluation off before it would measure one more than `most` things; gives the
+    /// number of cells that are kept.
     fn break_off(&self, words: &str, out: &str, most: usize) -> usize {
         let words = self.words(words, out);
         let cli = Cli::try_parse_from(std::iter::once("sinew").chain(words.iter().map(String::as_str))).unwrap();
@@ -75,7 +77,8 @@ impl Folder {
     }
 }
 
-/// All files, without times: those of a report, the last column of a body's table and the plot of them.
+/// All files, without times: those of a report, the last column of a body's table and the plot of
+/// them.
 fn measured(out: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut files = files_below(out, &[]);
     files.remove("figure_15_time.png");

@@ -1,4 +1,5 @@
-//! Swimmers of whom a pose detector saw few joints: keypoints to angles to a track, as a user types it.
+//! Swimmers of whom a pose detector saw few joints: keypoints to angles to a track, as a user types
+//! it.
 
 use assert_cmd::Command;
 use sinew::cyclic::AngleTable;
@@ -44,7 +45,8 @@ fn withheld(folder: &Path) -> Vec<f64> {
     deviations
 }
 
-/// Every second measurement is withheld; the band of the estimate, widened by the measurement's own noise, holds nine of ten.
+/// Every second measurement is withheld; the band of the estimate, widened by the measurement's own
+/// noise, holds nine of ten.
 #[test]
 fn bands_hold_the_truth_with_most_joints_missing() {
     let Some(data) = shared_data("swim2d/swimfix") else { return };

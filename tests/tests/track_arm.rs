@@ -1,4 +1,5 @@
-//! `sinew track arm` as a user types it: what it writes, and that nothing that was finished is lost.
+//! `sinew track arm` as a user types it: what it writes, and that nothing that was finished is
+//! lost.
 
 use assert_cmd::Command;
 use image::{Rgb, RgbImage};

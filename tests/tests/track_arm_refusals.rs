@@ -1,4 +1,5 @@
-//! What `sinew track arm` refuses: with what is wrong, where, and the remedy, and before anything is written.
+//! What `sinew track arm` refuses: with what is wrong, where, and the remedy, and before anything
+//! is written.
 
 use assert_cmd::Command;
 use image::{Rgb, RgbImage};
@@ -32,7 +33,8 @@ impl Scene {
         fs::write(self.path(name), text).unwrap();
     }
 
-    /// Expects `sinew track arm INPUT --out out WORDS` to fail with all of `parts` in its message, and to write nothing.
+    /// Expects `sinew track arm INPUT --out out WORDS` to fail with all of `parts` in its message,
+    /// and to write nothing.
     fn refuses(&self, input: &str, words: &[&str], parts: &[&str]) {
         let mut command = Command::from_std(sinew_command());
         command.current_dir(self.root.path()).args(["track", "arm", input]).args(words);

@@ -76,7 +76,8 @@ impl Scene {
         command.args(words).output().unwrap()
     }
 
-    /// Tracks, expects success, checks all that holds of every table, and returns what was said on standard error.
+    /// Tracks, expects success, checks all that holds of every table, and returns what was said on
+    /// standard error.
     fn tracks(&self, out: &str, words: &[&str]) -> String {
         let output = self.track(out, words);
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -296,7 +297,8 @@ fn who_is_not_known_is_said_and_found() {
     let message = scene.tracks("tall", &["--height", "1.9", "--rate", "30"]);
     assert!(!message.contains("m tall") && !message.contains("Hz"), "{message}");
     assert!(scene.report("tall")["body"]["trunk_m"].as_f64() > scene.report("out")["body"]["trunk_m"].as_f64());
-    // The animation of one run is the skeleton of another, whose measures are the same to a file's decimals.
+    // The animation of one run is the skeleton of another, whose measures are the same to a file's
+    // decimals.
     scene.tracks("measured", &["--skeleton", "tall/track.bvh"]);
     let thigh_m = |out: &str| scene.report(out)["body"]["thigh_m"].as_f64().unwrap();
     assert!((thigh_m("measured") - thigh_m("tall")).abs() < 1.0e-3, "{}", thigh_m("measured"));

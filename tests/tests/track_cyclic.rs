@@ -281,7 +281,8 @@ fn the_report_holds_what_a_coach_reads() {
     }
 }
 
-/// A recording of less than a cycle has no repetition, and says so with empty tables instead of failing.
+/// A recording of less than a cycle has no repetition, and says so with empty tables instead of
+/// failing.
 #[test]
 fn a_short_recording_has_a_report_without_cycles() {
     let root = tempfile::tempdir().unwrap();

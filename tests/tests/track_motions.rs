@@ -23,7 +23,8 @@ fn sinew(folder: &Path) -> Command {
     command
 }
 
-/// The angles of a recording at 60 frames a second, some frames of them, with noise of six degrees, as `noisy.csv`.
+/// The angles of a recording at 60 frames a second, some frames of them, with noise of six degrees,
+/// as `noisy.csv`.
 fn write_noisy(folder: &Path, recording: &Path, skeleton: Option<&Path>, frames: Range<u64>) {
     let mut command = sinew(folder);
     command.arg("angles").arg(recording).args(["--rate", "60", "--out", "angles.csv"]);
@@ -123,7 +124,8 @@ fn arm_circles_are_named_by_the_model_of_another_recording() {
     }
 }
 
-/// Exercises and gestures: recording, and its frames at 60 a second. Jumping jacks are not among them: from the side their arms circle.
+/// Exercises and gestures: recording, and its frames at 60 a second. Jumping jacks are not among
+/// them: from the side their arms circle.
 const OTHERS: [(&str, Range<u64>); 18] = [
     ("cmu-exercise/13_29.amc", 234..606),
     ("cmu-exercise/13_29.amc", 960..1350),
@@ -188,7 +190,8 @@ fn random_angles_are_none_and_the_estimate_stays_whole() {
     assert!(json.contains("walking, running, arm-circles"));
 }
 
-/// The columns of a single model do not depend on the bank; a bank of a model with itself gives what that model gives.
+/// The columns of a single model do not depend on the bank; a bank of a model with itself gives
+/// what that model gives.
 #[test]
 fn one_model_has_no_motion_and_unlike_models_are_refused() {
     let root = tempfile::tempdir().unwrap();

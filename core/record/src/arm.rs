@@ -1,4 +1,5 @@
-//! What the arm tracker is given: the arm once, then candidates, edges and the frame that they belong to.
+//! What the arm tracker is given: the arm once, then candidates, edges and the frame that they
+//! belong to.
 
 use crate::error::RecordError;
 use crate::fields::{FieldReader, FieldWriter};
@@ -20,8 +21,8 @@ pub const CANDIDATES_A_RECORD: usize = 8;
 /// Edge pixels of a record.
 pub const EDGES_A_RECORD: usize = 64;
 
-/// Begins the recording of an arm: camera, lengths, seed, and the options that depend on what is known of the person. All others are the
-/// defaults.
+/// Begins the recording of an arm: camera, lengths, seed, and the options that depend on what is
+/// known of the person. All others are the defaults.
 ///
 /// ```
 /// use sinew_core::camera::Pixel;

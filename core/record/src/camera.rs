@@ -138,7 +138,8 @@ pub struct VisionResult {
     pub edges: u16,
     /// CRC-32 of the candidates' bits and the edge pixels.
     pub checksum: u32,
-    /// Components, blobs, edges and lines that were lost, as in [`sinew_core::vision::front_end::FrameLosses`].
+    /// Components, blobs, edges and lines that were lost, as in
+    /// [`sinew_core::vision::front_end::FrameLosses`].
     pub losses: [u32; 6],
 }
 

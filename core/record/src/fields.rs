@@ -2,7 +2,8 @@
 
 use crate::error::RecordError;
 
-/// Bits of the one NaN that records hold: which NaN an operation gives differs from processor to processor.
+/// Bits of the one NaN that records hold: which NaN an operation gives differs from processor to
+/// processor.
 const NAN_BITS: u32 = 0x7fc0_0000;
 
 /// Writes fields into a slice; what finds no room is left out and [`Self::finish`] says so.

@@ -41,7 +41,8 @@ impl Record<'_> {
     /// The payload's fields.
     ///
     /// # Errors
-    /// [`RecordError::OutOfOrder`] for another kind, else those of [`Payload::read`]; all bytes have to be read.
+    /// [`RecordError::OutOfOrder`] for another kind, else those of [`Payload::read`]; all bytes
+    /// have to be read.
     pub fn read<P: Payload>(&self) -> Result<P, RecordError> {
         if self.kind != P::KIND {
             return Err(RecordError::OutOfOrder);
@@ -68,7 +69,8 @@ impl Record<'_> {
 /// ```
 ///
 /// # Errors
-/// [`RecordError::Capacity`] where `bytes` is shorter; [`HEADER_BYTES`] and [`Payload::MAX_BYTES`] always suffice.
+/// [`RecordError::Capacity`] where `bytes` is shorter; [`HEADER_BYTES`] and [`Payload::MAX_BYTES`]
+/// always suffice.
 pub fn encode<P: Payload>(payload: &P, bytes: &mut [u8]) -> Result<usize, RecordError> {
     const NO_ROOM: RecordError = RecordError::Capacity { list: "bytes" };
     let (header, rest) = bytes.split_first_chunk_mut::<HEADER_BYTES>().ok_or(NO_ROOM)?;
@@ -96,8 +98,8 @@ fn checksum(header: &[u8; HEADER_BYTES], payload: &[u8]) -> u32 {
 /// Length of the record that `bytes` begin with, header included, as the header tells it.
 ///
 /// # Errors
-/// [`RecordError::Truncated`] where the header is not there as a whole, else [`RecordError::NoRecord`] or
-/// [`RecordError::WrongVersion`].
+/// [`RecordError::Truncated`] where the header is not there as a whole, else
+/// [`RecordError::NoRecord`] or [`RecordError::WrongVersion`].
 pub(super) fn announced_len(bytes: &[u8]) -> Result<usize, RecordError> {
     let header = bytes.first_chunk::<HEADER_BYTES>().ok_or(RecordError::Truncated)?;
     if !header.starts_with(&MARK) {
@@ -127,7 +129,8 @@ pub(super) fn announced_len(bytes: &[u8]) -> Result<usize, RecordError> {
 /// ```
 ///
 /// # Errors
-/// What is wrong with it, checked in this order: whole header, mark, version, whole payload, checksum, kind.
+/// What is wrong with it, checked in this order: whole header, mark, version, whole payload,
+/// checksum, kind.
 pub fn decode(bytes: &[u8]) -> Result<(Record<'_>, usize), RecordError> {
     let length = announced_len(bytes)?;
     let record = bytes.get(..length).ok_or(RecordError::Truncated)?;

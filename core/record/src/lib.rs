@@ -1,5 +1,6 @@
 #![cfg_attr(not(test), no_std)]
-//! Fixed records: what is recorded on the host is played to firmware bit for bit, and what firmware answers is compared.
+//! Fixed records: what is recorded on the host is played to firmware bit for bit, and what firmware
+//! answers is compared.
 //!
 //! A record is a header of 16 bytes and a payload. All numbers are little-endian.
 //!
@@ -11,8 +12,9 @@
 //! | 8 to 11 | length of the payload, bytes |
 //! | 12 to 15 | CRC-32 (ISO-HDLC) of the first twelve bytes and the payload |
 //!
-//! A stream is records one after the other; the last one is [`End`], which counts them. [`RecordStream`] reads from any [`Source`] with
-//! a buffer of fixed size, and goes on at the next sound record after a broken one.
+//! A stream is records one after the other; the last one is [`End`], which counts them.
+//! [`RecordStream`] reads from any [`Source`] with a buffer of fixed size, and goes on at the next
+//! sound record after a broken one.
 //!
 //! ```
 //! use sinew_record::{Cost, Kind, RecordStream, decode, encode};

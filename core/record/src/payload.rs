@@ -28,6 +28,7 @@ pub trait Payload: Sized {
     /// Reads all fields.
     ///
     /// # Errors
-    /// [`RecordError::WrongLength`] where they do not fit, [`RecordError::Value`] where one has a value that is none.
+    /// [`RecordError::WrongLength`] where they do not fit, [`RecordError::Value`] where one has a
+    /// value that is none.
     fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError>;
 }

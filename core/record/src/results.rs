@@ -202,7 +202,8 @@ impl Payload for ArmResult {
 pub struct Failure {
     /// Number of the last frame that was answered, 0 before the first.
     pub frame: u32,
-    /// [`RecordError::code`], or 64 for a parameter that the tracker refuses, or 65 for another model.
+    /// [`RecordError::code`], or 64 for a parameter that the tracker refuses, or 65 for another
+    /// model.
     pub code: u16,
 }
 

@@ -1,4 +1,5 @@
-//! Entry points for the link-time proof of `prove-no-panic`: decoding and encoding of records. In no other library.
+//! Entry points for the link-time proof of `prove-no-panic`: decoding and encoding of records. In
+//! no other library.
 #![allow(missing_docs, unsafe_code, improper_ctypes_definitions, reason = "only linked, never called")]
 
 use crate::{ArmInput, ArmSetup, CameraLine, CyclicInput, CyclicResult, Record, RecordError, decode, encode};

@@ -129,8 +129,8 @@ impl<S: Source, const BYTES: usize> RecordStream<S, BYTES> {
 
     /// The next record, or what is wrong with it; `None` after the last one.
     ///
-    /// [`End`] is checked here and not handed out: [`RecordError::Lost`] where it counts other records than came,
-    /// [`RecordError::Truncated`] where it is missing.
+    /// [`End`] is checked here and not handed out: [`RecordError::Lost`] where it counts other
+    /// records than came, [`RecordError::Truncated`] where it is missing.
     pub fn next_record(&mut self) -> Option<Result<Record<'_>, RecordError>> {
         let length = match self.ahead() {
             Ahead::Record(length) => length,

@@ -22,7 +22,8 @@ const _: () = assert!(size_of::<SinewArm>() <= SINEW_ARM_MAX_BYTES && align_of::
 
 type Tracker = ArmTracker<SINEW_ARM_PARTICLES>;
 
-/// An arm tracker; see `sinew_arm_init`. Saved states fit the same configuration; seed and shoulders may differ.
+/// An arm tracker; see `sinew_arm_init`. Saved states fit the same configuration; seed and
+/// shoulders may differ.
 #[derive(Debug)]
 pub struct SinewArm {
     seal: Seal,
@@ -40,7 +41,8 @@ unsafe impl Sealed for SinewArm {
 
 size_functions!(SinewArm, sinew_arm_size, sinew_arm_align);
 
-/// Makes an arm tracker in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
+/// Makes an arm tracker in `memory`, which it needs as long as it is used; there is nothing to
+/// free. `config` is copied.
 ///
 /// `side` is SINEW_SIDE_LEFT or SINEW_SIDE_RIGHT, the person's own.
 /// `tracker` is written only if the status is SINEW_STATUS_OK.
@@ -76,8 +78,8 @@ pub unsafe extern "C" fn sinew_arm_init(
 
 /// Takes in one frame, and writes where the arm is then.
 ///
-/// Every status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or out of range, lists over
-/// capacity, a timestamp not after the last one.
+/// Every status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or
+/// out of range, lists over capacity, a timestamp not after the last one.
 ///
 /// # Safety
 /// `tracker` comes from `sinew_arm_init`; the frame's lists have as many elements as it says.

@@ -47,8 +47,8 @@ pub struct SinewArmConfig {
     pub upper_arm_m: f32,
     /// From elbow to the middle of the hand, metres.
     pub forearm_m: f32,
-    /// Left and right shoulder, metres in camera axes: x to the right of the image, y down, z along the line of sight. A tracker of one
-    /// arm looks at its own side only.
+    /// Left and right shoulder, metres in camera axes: x to the right of the image, y down, z along
+    /// the line of sight. A tracker of one arm looks at its own side only.
     pub shoulders_m: [[f32; 3]; 2],
 }
 
@@ -58,7 +58,8 @@ pub struct SinewArmConfig {
 pub struct SinewArmFrame {
     /// When the frame was taken, microseconds since any start. Dropped frames are simply not given.
     pub timestamp_us: u64,
-    /// Blobs that may be a hand, as `sinew_vision_end_frame` gives them; not looked at if `candidate_count` is zero.
+    /// Blobs that may be a hand, as `sinew_vision_end_frame` gives them; not looked at if
+    /// `candidate_count` is zero.
     pub candidates: *const HandCandidate,
     /// Temporal edge pixels; not looked at if `edge_count` is zero.
     pub edges: *const EdgePixel,
@@ -68,7 +69,8 @@ pub struct SinewArmFrame {
     pub edge_count: u32,
     /// 0 where the image is missing, so that the lists say nothing; else 1.
     pub has_image: u32,
-    /// Left and right shoulder, metres in camera axes; a tracker of one arm looks at its own side only.
+    /// Left and right shoulder, metres in camera axes; a tracker of one arm looks at its own side
+    /// only.
     pub shoulders_m: [[f32; 3]; 2],
 }
 
@@ -269,7 +271,8 @@ impl SinewArmResult {
     }
 }
 
-/// Writes a configuration: a camera with square pixels, an adult who faces it at 1.25 metres, seed 1.
+/// Writes a configuration: a camera with square pixels, an adult who faces it at 1.25 metres, seed
+/// 1.
 ///
 /// Returns SINEW_STATUS_OUT_OF_RANGE for a field of view that does not lie between 0 and pi.
 ///

@@ -21,7 +21,8 @@ const _: () =
 
 type Tracker = ArmPair<SINEW_ARM_PARTICLES>;
 
-/// A tracker of both arms; see `sinew_arm_pair_init`. Saved states fit the same configuration; seed and shoulders may differ.
+/// A tracker of both arms; see `sinew_arm_pair_init`. Saved states fit the same configuration; seed
+/// and shoulders may differ.
 #[derive(Debug)]
 pub struct SinewArmPair {
     seal: Seal,
@@ -40,7 +41,8 @@ unsafe impl Sealed for SinewArmPair {
 
 size_functions!(SinewArmPair, sinew_arm_pair_size, sinew_arm_pair_align);
 
-/// Makes a tracker of both arms in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
+/// Makes a tracker of both arms in `memory`, which it needs as long as it is used; there is nothing
+/// to free. `config` is copied.
 ///
 /// `tracker` is written only if the status is SINEW_STATUS_OK.
 ///
@@ -69,11 +71,12 @@ pub unsafe extern "C" fn sinew_arm_pair_init(
 
 /// Takes in one frame, and writes where both arms are then, left and right.
 ///
-/// Every status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or out of range, lists over
-/// capacity, a timestamp not after the last one.
+/// Every status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or
+/// out of range, lists over capacity, a timestamp not after the last one.
 ///
 /// # Safety
-/// `tracker` comes from `sinew_arm_pair_init`; the frame's lists have as many elements as it says. `results` has room for two.
+/// `tracker` comes from `sinew_arm_pair_init`; the frame's lists have as many elements as it says.
+/// `results` has room for two.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_arm_pair_step(
     tracker: *mut SinewArmPair,

@@ -26,7 +26,8 @@ const _: () = assert!(size_of::<SinewCyclic>() <= SINEW_CYCLIC_MAX_BYTES && alig
 
 type Tracker = CoupledTracker<SINEW_MAX_ANGLES>;
 
-/// A cyclic tracker; see `sinew_cyclic_init`. Saved states fit the same model. After a reset the next frame may have any timestamp.
+/// A cyclic tracker; see `sinew_cyclic_init`. Saved states fit the same model. After a reset the
+/// next frame may have any timestamp.
 #[derive(Debug)]
 pub struct SinewCyclic {
     seal: Seal,
@@ -52,14 +53,16 @@ unsafe impl Sealed for SinewCyclic {
 
 size_functions!(SinewCyclic, sinew_cyclic_size, sinew_cyclic_align);
 
-/// Makes a cyclic tracker in `memory`, which it needs as long as it is used; there is nothing to free.
+/// Makes a cyclic tracker in `memory`, which it needs as long as it is used; there is nothing to
+/// free.
 ///
-/// `model` is a motion model in bytes (the command `sinew export` makes one), aligned to four, which has to stay where it is as long as the tracker is
-/// used. Null and zero bytes stand for the walking model that the library was built with. All numbers of the model are checked
-/// once, here.
+/// `model` is a motion model in bytes (the command `sinew export` makes one), aligned to four,
+/// which has to stay where it is as long as the tracker is used. Null and zero bytes stand for the
+/// walking model that the library was built with. All numbers of the model are checked once, here.
 ///
-/// Returns SINEW_STATUS_BAD_MODEL for bytes that are no model of at most `SINEW_MAX_ANGLES` angles, SINEW_STATUS_NO_MODEL if the
-/// library was built without the walking model. `tracker` is written only if the status is SINEW_STATUS_OK.
+/// Returns SINEW_STATUS_BAD_MODEL for bytes that are no model of at most `SINEW_MAX_ANGLES` angles,
+/// SINEW_STATUS_NO_MODEL if the library was built without the walking model. `tracker` is written
+/// only if the status is SINEW_STATUS_OK.
 ///
 /// # Safety
 /// `memory` and `model` have the sizes that are said.
@@ -86,8 +89,9 @@ pub unsafe extern "C" fn sinew_cyclic_init(
 
 /// Takes in one frame, and writes what is known then.
 ///
-/// A frame more than 600 frames of the model after the last counts as that much later. Returns SINEW_STATUS_WAITING, and writes no
-/// result, until a first frame shows an angle. Every other status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or
+/// A frame more than 600 frames of the model after the last counts as that much later. Returns
+/// SINEW_STATUS_WAITING, and writes no result, until a first frame shows an angle. Every other
+/// status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or
 /// out of range, more angles than the model has, a timestamp not after the last one.
 ///
 /// # Safety
@@ -109,7 +113,8 @@ pub unsafe extern "C" fn sinew_cyclic_step(
     })
 }
 
-/// Writes the model's mean pose at a position of the cycle (any number; 1 is one cycle on) into the first `angle_count` of `angles_rad`, radians.
+/// Writes the model's mean pose at a position of the cycle (any number; 1 is one cycle on) into the
+/// first `angle_count` of `angles_rad`, radians.
 ///
 /// Returns SINEW_STATUS_OVER_CAPACITY for more angles than the model has.
 ///

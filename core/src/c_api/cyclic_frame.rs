@@ -36,7 +36,8 @@ pub struct SinewCyclicResult {
     pub angles_rad: [f32; SINEW_MAX_ANGLES],
     /// Standard deviation of each angle, radians.
     pub angle_std_rad: [f32; SINEW_MAX_ANGLES],
-    /// Whole turns of each angle since the start: the unwrapped angle is `angles_rad` + 2 pi `turns`.
+    /// Whole turns of each angle since the start: the unwrapped angle is `angles_rad` + 2 pi
+    /// `turns`.
     pub turns: [i32; SINEW_MAX_ANGLES],
     /// Whole cycles since the first frame; a cycle of walking is two steps.
     pub cycles_completed: i32,

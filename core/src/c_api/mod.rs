@@ -1,15 +1,18 @@
-//! The trackers for programs in C: objects in memory that the caller gives, status codes, plain structures.
+//! The trackers for programs in C: objects in memory that the caller gives, status codes, plain
+//! structures.
 //!
 //! The header `include/sinew.h` is made from this folder. The rules of every function:
 //!
-//! - Nothing is allocated, nothing is global, nothing unwinds. Different objects may be used by different threads at the same time.
-//! - A pointer that is null or misaligned, an object that was not initialised, a number out of range are answered with a status, and
-//!   the object is as before; where a function says otherwise it says what is left.
+//! - Nothing is allocated, nothing is global, nothing unwinds. Different objects may be used by
+//!   different threads at the same time.
+//! - A pointer that is null or misaligned, an object that was not initialised, a number out of
+//!   range are answered with a status, and the object is as before; where a function says otherwise
+//!   it says what is left.
 //! - Structures are read and written whole; the caller owns all memory.
 //!
-//! This folder has `unsafe` code: it turns the caller's pointers into references, after checking what can be checked. The rest is
-//! the caller's duty: that a pointer which is not null points at memory of the size that was said, and that no other thread uses
-//! the same object meanwhile.
+//! This folder has `unsafe` code: it turns the caller's pointers into references, after checking
+//! what can be checked. The rest is the caller's duty: that a pointer which is not null points at
+//! memory of the size that was said, and that no other thread uses the same object meanwhile.
 #![allow(unsafe_code)]
 
 pub mod arm;

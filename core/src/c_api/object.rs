@@ -4,7 +4,8 @@ use super::status::{Answer, SinewStatus};
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
 
-/// What marks an object that was initialised: the kind, and its complement, which no forgotten memory has by chance.
+/// What marks an object that was initialised: the kind, and its complement, which no forgotten
+/// memory has by chance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub(super) struct Seal {
@@ -66,7 +67,8 @@ pub(super) unsafe fn room<'a, T>(pointer: *mut T) -> Result<&'a mut MaybeUninit<
 /// A pointer that is null or misaligned, `len` beyond what an address space holds.
 ///
 /// # Safety
-/// If not refused, `pointer` points at `len` elements that no code changes for `'a`; any bits make a `T`.
+/// If not refused, `pointer` points at `len` elements that no code changes for `'a`; any bits make
+/// a `T`.
 pub(super) unsafe fn list<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T], SinewStatus> {
     if len == 0 {
         return Ok(&[]);
@@ -107,7 +109,8 @@ pub(super) unsafe fn bytes_mut<'a>(pointer: *mut u8, len: usize) -> Result<&'a m
 /// If not refused, `pointer` points at a `T` that no other code uses for `'a`.
 pub(super) unsafe fn object<'a, T: Sealed>(pointer: *mut T) -> Result<&'a mut T, SinewStatus> {
     check(pointer)?;
-    // SAFETY: aligned, and by the caller's duty memory of at least a T, which has a Seal there; any bits make a Seal.
+    // SAFETY: aligned, and by the caller's duty memory of at least a T, which has a Seal there; any
+    // bits make a Seal.
     let seal = unsafe { pointer.byte_add(T::SEAL_AT).cast::<Seal>().read_volatile() };
     if seal != T::SEAL {
         return Err(SinewStatus::NotInitialised);

@@ -1,6 +1,7 @@
 //! What a panic does in a library that is linked without Rust's standard library.
 
-/// Never reached: the link-time proof (feature `prove-no-panic`) shows that no function of the interface can panic.
+/// Never reached: the link-time proof (feature `prove-no-panic`) shows that no function of the
+/// interface can panic.
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     #[cfg(feature = "prove-no-panic")]

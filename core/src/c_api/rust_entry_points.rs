@@ -1,4 +1,5 @@
-//! What firmware in Rust calls and no C function does, so that the link-time proof of `prove-no-panic` covers it too. In no other library, and in no header.
+//! What firmware in Rust calls and no C function does, so that the link-time proof of
+//! `prove-no-panic` covers it too. In no other library, and in no header.
 #![allow(missing_docs, improper_ctypes_definitions, reason = "only linked, never called")]
 
 use crate::cyclic::recognition::bank::MotionBank;

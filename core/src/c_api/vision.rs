@@ -1,4 +1,5 @@
-//! The front end: a camera's lines in, blobs that may be hands and moving edges out, without a frame buffer.
+//! The front end: a camera's lines in, blobs that may be hands and moving edges out, without a
+//! frame buffer.
 
 use super::cyclic::SINEW_ALIGN;
 use super::object::{Seal, Sealed, given, list, object, place, room};
@@ -26,7 +27,8 @@ pub const SINEW_VISION_STATE_MAX_BYTES: usize = 8320;
 
 const _: () = assert!(size_of::<SinewVision>() <= SINEW_VISION_MAX_BYTES && align_of::<SinewVision>() <= SINEW_ALIGN);
 
-/// A front end; see `sinew_vision_init`. Saved states hold the skin table, no frames, and fit the same pixel format.
+/// A front end; see `sinew_vision_init`. Saved states hold the skin table, no frames, and fit the
+/// same pixel format.
 #[derive(Debug)]
 pub struct SinewVision {
     seal: Seal,
@@ -103,10 +105,12 @@ unsafe impl Sealed for SinewVision {
 
 size_functions!(SinewVision, sinew_vision_size, sinew_vision_align);
 
-/// Makes a front end in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
+/// Makes a front end in `memory`, which it needs as long as it is used; there is nothing to free.
+/// `config` is copied.
 ///
-/// Fills the skin table, one decision for each of 65536 colours, which takes some time. `vision` is written only if the status is
-/// SINEW_STATUS_OK. Returns SINEW_STATUS_OVER_CAPACITY for frames larger than 320 x 240.
+/// Fills the skin table, one decision for each of 65536 colours, which takes some time. `vision` is
+/// written only if the status is SINEW_STATUS_OK. Returns SINEW_STATUS_OVER_CAPACITY for frames
+/// larger than 320 x 240.
 ///
 /// # Safety
 /// `memory` has the size that is said.
@@ -154,10 +158,12 @@ pub unsafe extern "C" fn sinew_vision_learn_skin(vision: *mut SinewVision, skin:
     })
 }
 
-/// Begins to calibrate: from the next line on, until `sinew_vision_end_calibration`, the pixels inside of `box_px` are looked at, 256 of them, evenly. It has to show
-/// nothing but skin, a hand held into it; the lines of one frame suffice.
+/// Begins to calibrate: from the next line on, until `sinew_vision_end_calibration`, the pixels
+/// inside of `box_px` are looked at, 256 of them, evenly. It has to show nothing but skin, a hand
+/// held into it; the lines of one frame suffice.
 ///
-/// A calibration that was begun before is given up. Returns SINEW_STATUS_OUT_OF_RANGE for a box that is empty or reaches beyond the frame.
+/// A calibration that was begun before is given up. Returns SINEW_STATUS_OUT_OF_RANGE for a box
+/// that is empty or reaches beyond the frame.
 ///
 /// # Safety
 /// `vision` comes from `sinew_vision_init`.
@@ -177,11 +183,12 @@ pub unsafe extern "C" fn sinew_vision_begin_calibration(
     })
 }
 
-/// Ends a calibration: adapts the skin of the configuration, or the last one of `sinew_vision_learn_skin`, to what the box showed, takes it
-/// over from the next line on, and writes it into `skin`, which may be null.
+/// Ends a calibration: adapts the skin of the configuration, or the last one of
+/// `sinew_vision_learn_skin`, to what the box showed, takes it over from the next line on, and
+/// writes it into `skin`, which may be null.
 ///
-/// Returns SINEW_STATUS_NO_SAMPLE where no calibration was begun or no line of the box came since, SINEW_STATUS_OUT_OF_RANGE where all of its
-/// pixels were black; the skin is as before then.
+/// Returns SINEW_STATUS_NO_SAMPLE where no calibration was begun or no line of the box came since,
+/// SINEW_STATUS_OUT_OF_RANGE where all of its pixels were black; the skin is as before then.
 ///
 /// # Safety
 /// `vision` comes from `sinew_vision_init`.
@@ -215,10 +222,12 @@ pub unsafe extern "C" fn sinew_vision_begin_frame(vision: *mut SinewVision) -> S
     }))
 }
 
-/// Reads a line of the frame: `row` from 0 at the top, `pixel_count` pixels of 16 bits from the left.
+/// Reads a line of the frame: `row` from 0 at the top, `pixel_count` pixels of 16 bits from the
+/// left.
 ///
-/// Lines come in order. A line that is left out or too short counts as without skin where pixels are missing, one that comes twice or too
-/// late is ignored; the frame's result says how many. Returns SINEW_STATUS_NO_FRAME before `sinew_vision_begin_frame`, and SINEW_STATUS_OUT_OF_RANGE
+/// Lines come in order. A line that is left out or too short counts as without skin where pixels
+/// are missing, one that comes twice or too late is ignored; the frame's result says how many.
+/// Returns SINEW_STATUS_NO_FRAME before `sinew_vision_begin_frame`, and SINEW_STATUS_OUT_OF_RANGE
 /// for a row or pixels beyond the frame, which change nothing.
 ///
 /// # Safety
@@ -239,8 +248,8 @@ pub unsafe extern "C" fn sinew_vision_line(
     })
 }
 
-/// Ends the frame, and writes what it showed. The lists of the result lie in the front end's memory and are good until the next frame
-/// begins.
+/// Ends the frame, and writes what it showed. The lists of the result lie in the front end's memory
+/// and are good until the next frame begins.
 ///
 /// Returns SINEW_STATUS_NO_FRAME before `sinew_vision_begin_frame`.
 ///

@@ -9,7 +9,8 @@ use crate::vision::skin::GaussianSkin;
 
 /// 5 bits of red (the highest), 6 of green, 5 of blue.
 pub const SINEW_PIXEL_RGB565: u32 = 0;
-/// The same with both bytes swapped, as cameras with an 8-bit port and a little-endian processor have it.
+/// The same with both bytes swapped, as cameras with an 8-bit port and a little-endian processor
+/// have it.
 pub const SINEW_PIXEL_RGB565_SWAPPED: u32 = 1;
 /// Y in the low byte; in the high byte U of a pair of pixels in the left one, V in the right one.
 pub const SINEW_PIXEL_YUYV: u32 = 2;

@@ -26,7 +26,8 @@
 pub struct CyclicEstimate<const N: usize> {
     /// Angles in (-pi, pi].
     pub angles_rad: [f32; N],
-    /// Whole turns of each angle since the start: the unwrapped angle is `angles_rad` + 2 pi `turns`.
+    /// Whole turns of each angle since the start: the unwrapped angle is `angles_rad` + 2 pi
+    /// `turns`.
     pub turns: [i32; N],
     /// Variance of each angle, rad^2.
     pub angle_variance_rad2: [f32; N],
@@ -38,7 +39,8 @@ pub struct CyclicEstimate<const N: usize> {
     pub cycle_velocity_per_frame: f32,
     /// Variance of v.
     pub cycle_velocity_variance: f32,
-    /// Natural logarithm of the density of this frame's measurement given those before; 0 without a measurement.
+    /// Natural logarithm of the density of this frame's measurement given those before; 0 without a
+    /// measurement.
     pub log_likelihood: f32,
     /// Whether this frame's measurement lies beyond the innovation gate.
     pub outlier: bool,

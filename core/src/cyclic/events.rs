@@ -19,7 +19,8 @@ use crate::saved_state::{SavedState, StateVisitor};
 
 /// Counts cycles from one estimate to the next.
 ///
-/// Invariant: whole cycles and the part of a cycle are kept apart, so that the count stays exact however long it runs.
+/// Invariant: whole cycles and the part of a cycle are kept apart, so that the count stays exact
+/// however long it runs.
 ///
 /// ```
 /// use sinew_core::cyclic::events::CycleCounter;
@@ -127,7 +128,8 @@ impl CycleStep {
         Self { from: position, to: position, laps: 0, advance: 0.0, step_frames: 0.0 }
     }
 
-    /// When `phase` was passed forwards, frames after the earlier estimate, in (0, step]; `None` if it was not.
+    /// When `phase` was passed forwards, frames after the earlier estimate, in (0, step]; `None` if
+    /// it was not.
     ///
     /// Linear between both estimates; the first passage where a long step holds several. The two
     /// positions and the laps decide whether it was passed. By the rounded advance, a phase at the

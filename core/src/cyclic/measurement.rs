@@ -18,7 +18,8 @@ pub const MAX_STEP_FRAMES: f32 = 600.0;
 
 /// One frame's measured angles; `N` is a capacity, angles beyond the model's are ignored.
 ///
-/// Invariant: the angles present are finite, all standard deviations finite and positive, the step in (0, 600] frames.
+/// Invariant: the angles present are finite, all standard deviations finite and positive, the step
+/// in (0, 600] frames.
 ///
 /// ```
 /// use sinew_core::cyclic::AngleMeasurement;
@@ -44,7 +45,8 @@ impl<const N: usize> AngleMeasurement<N> {
         Self { angles_rad: [None; N], std_rad: [1.0; N], step_frames: 1.0 }
     }
 
-    /// `angles_rad` (any turn; NaN and infinity count as missing) with the same standard deviation for all.
+    /// `angles_rad` (any turn; NaN and infinity count as missing) with the same standard deviation
+    /// for all.
     ///
     /// # Errors
     /// `std_rad` has to be finite and positive.

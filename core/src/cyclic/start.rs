@@ -51,8 +51,9 @@ pub struct CycleStart<const N: usize> {
 impl<const N: usize> CycleStart<N> {
     /// The standard start: the angles of the first frame, the model's mean velocities times k.
     ///
-    /// Without a `position` the one whose mean pose matches best is taken, without a `velocity` the mean of the training
-    /// cycles. An angle that is missing starts at the model's mean pose with its spread.
+    /// Without a `position` the one whose mean pose matches best is taken, without a `velocity` the
+    /// mean of the training cycles. An angle that is missing starts at the model's mean pose
+    /// with its spread.
     ///
     /// # Errors
     /// `position` finite; `velocity` within +-0.5 cycles a frame.
@@ -109,7 +110,8 @@ impl<const N: usize> CycleStart<N> {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// Finite angles, velocities and position; extra variances not negative; cycle velocity within +-0.5.
+    /// Finite angles, velocities and position; extra variances not negative; cycle velocity within
+    /// +-0.5.
     pub fn check(&self) -> Result<(), ParameterError> {
         for i in 0..N {
             finite("initial angle", self.angles_rad[i])?;

@@ -31,7 +31,8 @@ impl Substeps {
         Self { left_frames, part_frames: 1.0 }
     }
 
-    /// As [`Self::of`], but no more than `parts` (at least one), all alike: beyond so many frames each part is longer than a frame.
+    /// As [`Self::of`], but no more than `parts` (at least one), all alike: beyond so many frames
+    /// each part is longer than a frame.
     #[inline]
     #[must_use]
     pub fn few(step_frames: f32, parts: u8) -> Self {

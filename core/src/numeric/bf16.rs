@@ -5,7 +5,8 @@
 pub(crate) struct Bf16(u16);
 
 impl Bf16 {
-    /// The nearest one; a finite value within half a unit of the last digit of `f32::MAX` becomes infinite.
+    /// The nearest one; a finite value within half a unit of the last digit of `f32::MAX` becomes
+    /// infinite.
     #[inline]
     pub(crate) const fn new(value: f32) -> Self {
         Self((value.to_bits().wrapping_add(0x8000) >> 16) as u16)

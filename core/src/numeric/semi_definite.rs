@@ -1,4 +1,5 @@
-//! Symmetric matrices stored as packed lower triangles: test for a negative eigenvalue, and a factor that may be singular.
+//! Symmetric matrices stored as packed lower triangles: test for a negative eigenvalue, and a
+//! factor that may be singular.
 //!
 //! Entry (i, j) with j <= i stands at i (i + 1) / 2 + j.
 
@@ -50,10 +51,12 @@ pub const RELATIVE_TOLERANCE: f32 = 1.0e-4;
 /// 0.1 %.
 pub const DIAGONAL_EXCESS: f32 = 1.0e-4;
 
-/// Whether the matrix with lower triangle `packed` has no eigenvalue below zero by more than rounding.
+/// Whether the matrix with lower triangle `packed` has no eigenvalue below zero by more than
+/// rounding.
 ///
-/// The matrix is scaled to a diagonal of ones and eliminated with the greatest remaining pivot first, which is stable for
-/// singular matrices. False for other lengths, for NaN, and beyond [`MAX_ROWS`].
+/// The matrix is scaled to a diagonal of ones and eliminated with the greatest remaining pivot
+/// first, which is stable for singular matrices. False for other lengths, for NaN, and beyond
+/// [`MAX_ROWS`].
 ///
 /// ```
 /// use sinew_core::numeric::semi_definite::is_positive_semi_definite;
@@ -95,8 +98,9 @@ pub fn is_positive_semi_definite(packed: &[f32], rows: usize) -> bool {
     true
 }
 
-/// Writes the full matrix scaled to a diagonal of ones; a row of zeros keeps its zeros. False where an entry is out of the
-/// question by itself: not finite, a negative variance, a covariance beside a variance of zero.
+/// Writes the full matrix scaled to a diagonal of ones; a row of zeros keeps its zeros. False where
+/// an entry is out of the question by itself: not finite, a negative variance, a covariance beside
+/// a variance of zero.
 fn correlation(packed: &[f32], rows: usize, matrix: &mut [[f32; MAX_ROWS]; MAX_ROWS]) -> bool {
     let entry = |i: usize, j: usize| packed.get(packed_index(i, j)).copied().unwrap_or(f32::NAN);
     let mut scale = [0.0_f32; MAX_ROWS];
@@ -129,8 +133,9 @@ fn greatest_pivot(matrix: &[[f32; MAX_ROWS]; MAX_ROWS], done: &[bool; MAX_ROWS],
     best
 }
 
-/// Whether all that is left of the elimination is zero up to rounding. Off the diagonal the limit is wider: a pivot of
-/// `RELATIVE_TOLERANCE` may stand beside entries of up to that size by rounding of both rows.
+/// Whether all that is left of the elimination is zero up to rounding. Off the diagonal the limit
+/// is wider: a pivot of `RELATIVE_TOLERANCE` may stand beside entries of up to that size by
+/// rounding of both rows.
 fn rest_is_zero(matrix: &[[f32; MAX_ROWS]; MAX_ROWS], done: &[bool; MAX_ROWS], rows: usize) -> bool {
     (0..rows).filter(|&i| !done[i]).all(|i| {
         (0..rows)
@@ -139,8 +144,9 @@ fn rest_is_zero(matrix: &[[f32; MAX_ROWS]; MAX_ROWS], done: &[bool; MAX_ROWS], r
     })
 }
 
-/// Writes the lower triangular L with L L' = the matrix, its diagonal raised by [`DIAGONAL_EXCESS`], into `factor` (both
-/// packed). A column whose pivot has vanished all the same becomes zero; nothing is written where a slice is too short.
+/// Writes the lower triangular L with L L' = the matrix, its diagonal raised by
+/// [`DIAGONAL_EXCESS`], into `factor` (both packed). A column whose pivot has vanished all the same
+/// becomes zero; nothing is written where a slice is too short.
 pub(crate) fn semi_cholesky(packed: &[f32], rows: usize, factor: &mut [f32]) {
     if packed.len() < packed_len(rows) || factor.len() < packed_len(rows) {
         return;

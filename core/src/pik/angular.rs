@@ -1,4 +1,5 @@
-//! The baseline: angles extrapolated one by one, von Mises noise, box limits (PIK (31) and PIK (32)).
+//! The baseline: angles extrapolated one by one, von Mises noise, box limits (PIK (31) and PIK
+//! (32)).
 
 use super::goal::GoalMemory;
 use super::motion::{BodyMotion, BodyParticle, FramePast, Proposed};
@@ -40,9 +41,11 @@ pub struct AngularMotion<const ANGLES: usize> {
     pub root: RootProcess,
     /// Share of the velocity that goes on; 1 is the paper's.
     pub persistence: f32,
-    /// Standard deviation of each angle after one second, radians; kappa = 1 / (std^2 dt). Entries of a free root are not read.
+    /// Standard deviation of each angle after one second, radians; kappa = 1 / (std^2 dt). Entries
+    /// of a free root are not read.
     pub angle_std_rad_per_sqrt_s: [f32; ANGLES],
-    /// Whether the velocity is the particle's own, theta_t - theta_t-1, as printed, and not the filter's.
+    /// Whether the velocity is the particle's own, theta_t - theta_t-1, as printed, and not the
+    /// filter's.
     pub own_velocity: bool,
 }
 
@@ -80,7 +83,8 @@ impl<const BONES: usize, const ANGLES: usize> BodyMotion<BONES, ANGLES> for Angu
     }
 }
 
-/// A von Mises draw around `mean_rad` that keeps its limit: rejection while the tries last, then a normal draw cut to it.
+/// A von Mises draw around `mean_rad` that keeps its limit: rejection while the tries last, then a
+/// normal draw cut to it.
 fn draw_inside(mean_rad: f32, std_rad: f32, limit: &Limit, stream: &mut Stream) -> f32 {
     if !(std_rad > 0.0) {
         return limit.clamp(mean_rad);

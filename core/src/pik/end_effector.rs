@@ -1,4 +1,5 @@
-//! Probabilistic inverse kinematics: goals in space, then a pose that reaches them (PIK paper, sections 4 and 5).
+//! Probabilistic inverse kinematics: goals in space, then a pose that reaches them (PIK paper,
+//! sections 4 and 5).
 
 use super::goal::{GoalMemory, GoalProcess, Goals};
 use super::motion::{BodyMotion, BodyParticle, FramePast, Proposed};
@@ -8,8 +9,8 @@ use crate::kinematics::inverse::{Mode, PoseDensity, PoseObjective, Solve};
 use crate::math::{Vec3, clamp};
 use crate::random::Stream;
 
-/// Greatest size of a log importance ratio: where the expansion is bad the ratio would decide alone.
-/// Chosen: far beyond the ratios of a good expansion.
+/// Greatest size of a log importance ratio: where the expansion is bad the ratio would decide
+/// alone. Chosen: far beyond the ratios of a good expansion.
 const MAX_LOG_RATIO: f32 = 10.0;
 
 /// Draws that estimate the mass inside the limits, where the weight is corrected.
@@ -58,16 +59,19 @@ pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
     pub process: &'a P,
     /// The root's own process.
     pub root: RootProcess,
-    /// Standard deviation of each angle's change after one second, radians: lambda = 1 / (std^2 dt) of PIK (12), a diagonal.
+    /// Standard deviation of each angle's change after one second, radians: lambda = 1 / (std^2 dt)
+    /// of PIK (12), a diagonal.
     pub angle_std_rad_per_sqrt_s: [f32; ANGLES],
-    /// Share of the angles' velocities that goes on in what the stiffness holds on to: zero is PIK (12), the pose of the frame before.
+    /// Share of the angles' velocities that goes on in what the stiffness holds on to: zero is PIK
+    /// (12), the pose of the frame before.
     pub angle_persistence: f32,
     /// Most steps of the solver.
     pub solver_steps: usize,
     /// Whether the weight takes the importance ratio (18).
     pub corrects_weight: bool,
-    /// Standard deviation of the draw relative to that of the Laplace expansion, in (0, 1]; 1 is the paper's, and what is meant where
-    /// the weight is corrected. Below it goals spread the particles, and angles that no goal moves spread them less.
+    /// Standard deviation of the draw relative to that of the Laplace expansion, in (0, 1]; 1 is
+    /// the paper's, and what is meant where the weight is corrected. Below it goals spread the
+    /// particles, and angles that no goal moves spread them less.
     pub draw_share: f32,
 }
 

@@ -90,7 +90,8 @@ pub fn arm_past<'a>(
     }
 }
 
-/// The past of goals in a first frame, 0.1 s after bones whose ends stood still at `reached_m`, metres.
+/// The past of goals in a first frame, 0.1 s after bones whose ends stood still at `reached_m`,
+/// metres.
 #[must_use]
 pub fn goal_past<const BONES: usize>(reached_m: &[Vec3; BONES]) -> GoalPast<'_, BONES> {
     GoalPast {

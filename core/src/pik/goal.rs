@@ -74,10 +74,13 @@ pub type Goals = Vec<Goal, MAX_GOALS>;
 pub struct GoalPast<'a, const BONES: usize> {
     /// Ends of all bones that the particle reached in the frame before, metres.
     pub reached_m: &'a [Vec3; BONES],
-    /// Their velocities by the filter's estimates, not the particle's own, metres a second. Beyond PIK (33).
+    /// Their velocities by the filter's estimates, not the particle's own, metres a second. Beyond
+    /// PIK (33).
     pub velocity_m_per_s: &'a [Vec3; BONES],
-    /// Share of its noise that a goal of each bone's end has in this frame: one is all of it, a limb at rest may have less and an
-    /// unobserved one more. [`LinearGoals`](super::processes::extrapolation::LinearGoals) keeps to it; other processes may.
+    /// Share of its noise that a goal of each bone's end has in this frame: one is all of it, a
+    /// limb at rest may have less and an unobserved one more.
+    /// [`LinearGoals`](super::processes::extrapolation::LinearGoals) keeps to it; other processes
+    /// may.
     pub noise_share: &'a [f32; BONES],
     /// Ends of all bones in the pose that the tracking began with, metres.
     pub first_m: &'a [Vec3; BONES],
@@ -94,8 +97,8 @@ pub struct GoalPast<'a, const BONES: usize> {
 #[doc = include_str!("../../../docs/own_motion_model.md")]
 struct OwnMotionModel;
 
-/// A stochastic process of the end-effectors' goals, p(g_t | g_1..t-1) (PIK paper, section 4.2). Users may write their own:
-/// docs/own_motion_model.md.
+/// A stochastic process of the end-effectors' goals, p(g_t | g_1..t-1) (PIK paper, section 4.2).
+/// Users may write their own: docs/own_motion_model.md.
 ///
 /// ```
 /// use sinew_core::kinematics::inverse::Goal;
@@ -132,16 +135,18 @@ pub trait GoalProcess<const BONES: usize> {
     /// Draws the next goals and adds them to `goals`, which is empty and takes [`MAX_GOALS`].
     fn draw(&self, past: &GoalPast<'_, BONES>, memory: &mut GoalMemory, stream: &mut Stream, goals: &mut Goals);
 
-    /// The goals' means, with the spread of the process added to what W forgives: what a guided proposal sets out from. Unless
-    /// written, a draw.
+    /// The goals' means, with the spread of the process added to what W forgives: what a guided
+    /// proposal sets out from. Unless written, a draw.
     fn expect(&self, past: &GoalPast<'_, BONES>, memory: &mut GoalMemory, stream: &mut Stream, goals: &mut Goals) {
         self.draw(past, memory, stream, goals);
     }
 }
 
-/// Linear extrapolation (PIK (33)) of the reached place, with a velocity that fades and white noise.
+/// Linear extrapolation (PIK (33)) of the reached place, with a velocity that fades and white
+/// noise.
 ///
-/// The velocity is that of the filter's estimate, not of the particle: a particle does not go on with its own noise.
+/// The velocity is that of the filter's estimate, not of the particle: a particle does not go on
+/// with its own noise.
 ///
 /// ```
 /// use sinew_core::math::Vec3;
@@ -174,8 +179,9 @@ impl LinearExtrapolation {
         reached_m + velocity_m_per_s * (self.persistence * dt_s)
     }
 
-    /// Mean of the draw of a place that swings about a joint, which was at `joint_m` and moved with `joint_velocity_m_per_s`: about it the
-    /// place goes on along an arc. A hand at speed would leave the arm's reach along a straight line.
+    /// Mean of the draw of a place that swings about a joint, which was at `joint_m` and moved with
+    /// `joint_velocity_m_per_s`: about it the place goes on along an arc. A hand at speed would
+    /// leave the arm's reach along a straight line.
     ///
     /// ```
     /// use sinew_core::math::Vec3;

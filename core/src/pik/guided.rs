@@ -16,20 +16,22 @@ use crate::random::Stream;
 use crate::skeleton::Skeleton;
 
 /// Inverse variance of a coordinate that is held.
-/// Chosen: a thousand times any stiffness of a free coordinate, and still well conditioned in `f32`.
+/// Chosen: a thousand times any stiffness of a free coordinate, and still well conditioned in
+/// `f32`.
 pub(crate) const HELD_STIFFNESS: f32 = 1.0e6;
 
-/// How many times as far points reach in the coarse steps of [`GuidedDensity::mode_coarse_to_fine`].
-/// Chosen: reaches the forearm of the test in this file.
+/// How many times as far points reach in the coarse steps of
+/// [`GuidedDensity::mode_coarse_to_fine`]. Chosen: reaches the forearm of the test in this file.
 const FAR_REACH: f32 = 2.0;
 /// Coarse steps. Chosen: bounds the time of a particle.
 const FAR_STEPS: usize = 2;
-/// Noise, as a share of the motion model's, from which on a limb may be farther off than points reach.
-/// Chosen: a limb at rest stays below it, one that moves or is unseen does not.
+/// Noise, as a share of the motion model's, from which on a limb may be farther off than points
+/// reach. Chosen: a limb at rest stays below it, one that moves or is unseen does not.
 pub(crate) const LOOSE_SHARE: f32 = 0.8;
 
-/// As [`super::end_effector::EndEffectorMotion`], but goals, stiffness, root *and* points make the density whose mode and Laplace
-/// expansion the pose is drawn from, so that the draw knows the frame's data.
+/// As [`super::end_effector::EndEffectorMotion`], but goals, stiffness, root *and* points make the
+/// density whose mode and Laplace expansion the pose is drawn from, so that the draw knows the
+/// frame's data.
 ///
 /// ```
 /// use sinew_core::math::Vec3;
@@ -78,8 +80,9 @@ pub struct GuidedMotion<'a, P, const ANGLES: usize> {
     pub angle_persistence: f32,
     /// Most steps of the solver.
     pub solver_steps: usize,
-    /// Most blocks of points that pull; of a larger cloud every n-th one does, n times as strongly. With which one it begins each particle
-    /// draws for itself: were it the same for all, what the others show would be missing from every particle's mode alike.
+    /// Most blocks of points that pull; of a larger cloud every n-th one does, n times as strongly.
+    /// With which one it begins each particle draws for itself: were it the same for all, what
+    /// the others show would be missing from every particle's mode alike.
     pub pulling_blocks: usize,
 }
 
@@ -121,13 +124,15 @@ pub struct GuidedDensity<'a, const BONES: usize, const ANGLES: usize> {
     pub blocks: &'a [PointBlock],
     /// Every how many blocks pull, at least one; each that does pulls as often.
     pub stride: usize,
-    /// How many times as far as the scene's likelihood has it a point speaks to skin; 1 is the likelihood itself.
+    /// How many times as far as the scene's likelihood has it a point speaks to skin; 1 is the
+    /// likelihood itself.
     pub reach: f32,
 }
 
 impl<const BONES: usize, const ANGLES: usize> GuidedDensity<'_, BONES, ANGLES> {
-    /// The likelier of two modes: from the start, and from the pose after two coarse steps about `far_prior`.
-    /// In coarse steps points reach twice as far. In fine steps no point pulls at a limb that moved farther than points reach.
+    /// The likelier of two modes: from the start, and from the pose after two coarse steps about
+    /// `far_prior`. In coarse steps points reach twice as far. In fine steps no point pulls at
+    /// a limb that moved farther than points reach.
     #[must_use]
     pub fn mode_coarse_to_fine(&self, far_prior: &PoseDensity<'_, BONES, ANGLES>, max_steps: usize) -> Mode<ANGLES> {
         let far = GuidedDensity { prior: *far_prior, reach: FAR_REACH * self.reach, ..*self };
@@ -183,7 +188,8 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
 }
 
 impl<P, const ANGLES: usize> GuidedMotion<'_, P, ANGLES> {
-    /// Whether the limb of an end-effector is fast or unseen, so that it may be farther from where it is expected than points reach.
+    /// Whether the limb of an end-effector is fast or unseen, so that it may be farther from where
+    /// it is expected than points reach.
     fn is_any_loose<const BONES: usize>(&self, past: &FramePast<'_, BONES, ANGLES>) -> bool
     where
         P: GoalProcess<BONES>,
@@ -271,8 +277,8 @@ mod tests {
         cloud
     }
 
-    /// A forearm that swung farther than its points reach: it stays where it was without coarse steps. One that has
-    /// hardly moved ends at the same place either way.
+    /// A forearm that swung farther than its points reach: it stays where it was without coarse
+    /// steps. One that has hardly moved ends at the same place either way.
     #[test]
     fn what_swung_out_of_reach_is_found_from_afar() {
         let scene = scene_of(0.08);
@@ -299,7 +305,8 @@ mod tests {
         assert!(near_m < 0.03 && (far_m - near_m).abs() < 5.0e-3, "{near_m} {far_m}");
     }
 
-    /// Of two blocks, one shows the elbow more bent than it was and the other one less; particles that look at one each go either way.
+    /// Of two blocks, one shows the elbow more bent than it was and the other one less; particles
+    /// that look at one each go either way.
     #[test]
     fn particles_look_at_points_of_their_own() {
         let scene = scene_of(0.25);

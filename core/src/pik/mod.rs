@@ -1,4 +1,5 @@
-//! Probabilistic inverse kinematics: goals in space, poses by a Laplace proposal (PIK paper, sections 4 and 5).
+//! Probabilistic inverse kinematics: goals in space, poses by a Laplace proposal (PIK paper,
+//! sections 4 and 5).
 //!
 //! ```
 //! use sinew_core::kinematics::forward::posture;

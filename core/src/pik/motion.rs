@@ -35,7 +35,8 @@ pub struct BodyParticle<const BONES: usize, const ANGLES: usize> {
     pub ends_m: [Vec3; BONES],
     /// What the motion model keeps.
     pub memory: GoalMemory,
-    /// Log-weights by the last frame's points: of the whole pose in the trunk's place, then of each limb.
+    /// Log-weights by the last frame's points: of the whole pose in the trunk's place, then of each
+    /// limb.
     pub log_weights: GroupLogs,
 }
 
@@ -97,8 +98,9 @@ impl<const BONES: usize, const ANGLES: usize> BodyScene<BONES, ANGLES> {
         posture(&self.skeleton, &Vec3::zeros(), angles_rad)
     }
 
-    /// log weights of a pose by its surface: the points' likelihood and what limbs in limbs cost in the trunk's place, then each limb's own
-    /// part of both, about the body that `expected` has.
+    /// log weights of a pose by its surface: the points' likelihood and what limbs in limbs cost in
+    /// the trunk's place, then each limb's own part of both, about the body that `expected`
+    /// has.
     #[must_use]
     pub fn log_weights(
         &self,
@@ -161,13 +163,15 @@ pub struct FramePast<'a, const BONES: usize, const ANGLES: usize> {
     pub blocks: &'a [PointBlock],
     /// Velocities of the coordinates by the filter's estimates, a second.
     pub angle_velocity_per_s: [f32; ANGLES],
-    /// What a coordinate changes by for every particle alike, before its noise: those of a free root, and of the trunk where it is fitted to
-    /// the points. `None` leaves it to the motion model.
+    /// What a coordinate changes by for every particle alike, before its noise: those of a free
+    /// root, and of the trunk where it is fitted to the points. `None` leaves it to the motion
+    /// model.
     pub shared_change: [Option<f32>; ANGLES],
     /// Velocities of the bones' ends by the filter's estimates, metres a second.
     pub velocity_m_per_s: &'a [Vec3; BONES],
-    /// Share of the motion model's noise that each bone has in this frame: its joint's angles, and a goal of its end. One is all of it; a limb at
-    /// rest may have less, an unobserved one more.
+    /// Share of the motion model's noise that each bone has in this frame: its joint's angles, and
+    /// a goal of its end. One is all of it; a limb at rest may have less, an unobserved one
+    /// more.
     pub noise_share: &'a [f32; BONES],
     /// Ends of all bones in the first pose, metres.
     pub first_m: &'a [Vec3; BONES],
@@ -178,7 +182,8 @@ pub struct FramePast<'a, const BONES: usize, const ANGLES: usize> {
 }
 
 impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
-    /// What coordinate `index` changes by on the mean: what all particles share, else `persistence` of the filter's velocity.
+    /// What coordinate `index` changes by on the mean: what all particles share, else `persistence`
+    /// of the filter's velocity.
     #[must_use]
     pub fn change(&self, index: usize, persistence: f32) -> f32 {
         let own = |velocity_per_s: &f32| persistence * velocity_per_s * self.dt_s;
@@ -186,7 +191,8 @@ impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
         shared.unwrap_or_else(|| self.angle_velocity_per_s.get(index).map_or(0.0, own))
     }
 
-    /// Standard deviations of all angles over this frame, radians, of a model with these after one second.
+    /// Standard deviations of all angles over this frame, radians, of a model with these after one
+    /// second.
     #[must_use]
     pub fn angle_std_rad(&self, std_rad_per_sqrt_s: &[f32; ANGLES]) -> [f32; ANGLES] {
         let root_of_time = sqrt(self.dt_s);
@@ -302,7 +308,8 @@ pub trait BodyMotion<const BONES: usize, const ANGLES: usize> {
     /// The root's own process.
     fn root(&self) -> &RootProcess;
 
-    /// Moves `ancestor` on by one frame; `memory` holds the ancestor's and keeps the new particle's.
+    /// Moves `ancestor` on by one frame; `memory` holds the ancestor's and keeps the new
+    /// particle's.
     fn propose(
         &self,
         past: &FramePast<'_, BONES, ANGLES>,

@@ -46,10 +46,11 @@ use crate::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
 pub struct RootProcess {
     /// Share of the filter's velocity that goes on, in [0, 1].
     pub persistence: f32,
-    /// Standard deviations after one second: metres for the shifts, radians for the angles; they grow with the root of time.
-    /// Zero holds a coordinate.
+    /// Standard deviations after one second: metres for the shifts, radians for the angles; they
+    /// grow with the root of time. Zero holds a coordinate.
     pub std_per_sqrt_s: [f32; FREE_ROOT_COORDINATES],
-    /// Lowest and highest first, second and third shift, metres: the ground plane; infinite where nothing is known.
+    /// Lowest and highest first, second and third shift, metres: the ground plane; infinite where
+    /// nothing is known.
     pub shift_limits_m: [[f32; 2]; SHIFTS],
 }
 
@@ -61,8 +62,9 @@ impl RootProcess {
     pub const FIXED: Self =
         Self { persistence: 0.0, std_per_sqrt_s: [0.0; FREE_ROOT_COORDINATES], shift_limits_m: NO_PLANES };
 
-    /// The pelvic lift's root (PIK (39)) over a floor at `floor_y_m`, camera axes with y down: standard deviations `std`
-    /// across and four times as much up and down, metres by root second.
+    /// The pelvic lift's root (PIK (39)) over a floor at `floor_y_m`, camera axes with y down:
+    /// standard deviations `std` across and four times as much up and down, metres by root
+    /// second.
     #[must_use]
     pub fn pelvic_lift(std_m_per_sqrt_s: f32, turn_std_rad_per_sqrt_s: f32, floor_y_m: f32) -> Self {
         let (s, t) = (std_m_per_sqrt_s, turn_std_rad_per_sqrt_s);
@@ -93,7 +95,8 @@ impl RootProcess {
         self.std_per_sqrt_s.get(index).map_or(0.0, |std| std * sqrt(max(dt_s, 0.0)))
     }
 
-    /// Draws the root's coordinates, the first of `angles_rad`, in place; `change` is what coordinates are expected to change by.
+    /// Draws the root's coordinates, the first of `angles_rad`, in place; `change` is what
+    /// coordinates are expected to change by.
     pub fn draw<const BONES: usize, const ANGLES: usize>(
         &self,
         skeleton: &Skeleton<BONES, ANGLES>,

@@ -1,4 +1,5 @@
-//! Streams of neighbouring particles side by side: the same numbers as [`Stream`](super::Stream) gives one by one.
+//! Streams of neighbouring particles side by side: the same numbers as [`Stream`](super::Stream)
+//! gives one by one.
 
 use super::normal_table::from_bits;
 use super::stream::{first_state, frame_key};
@@ -7,8 +8,8 @@ pub use super::stream::LANES;
 
 /// The streams of [`LANES`] particles with successive indices.
 ///
-/// The generator is xoshiro128++ (Blackman and Vigna 2021), whose steps are additions, shifts and exclusive ors of 32 bits:
-/// on arrays of lanes compilers turn them into vector instructions.
+/// The generator is xoshiro128++ (Blackman and Vigna 2021), whose steps are additions, shifts and
+/// exclusive ors of 32 bits: on arrays of lanes compilers turn them into vector instructions.
 ///
 /// ```
 /// use sinew_core::random::lanes::{LANES, StreamLanes};
@@ -69,7 +70,8 @@ impl StreamLanes {
         drawn
     }
 
-    /// A draw from the standard normal distribution for each stream, by the table of [`super::normal_table`].
+    /// A draw from the standard normal distribution for each stream, by the table of
+    /// [`super::normal_table`].
     #[inline(always)]
     pub fn normal(&mut self) -> [f32; LANES] {
         from_bits(&self.bits())

@@ -1,7 +1,8 @@
 //! Seeded random streams and draws with bounded work.
 //!
-//! Every particle of every frame draws from a [`Stream`] of its own, derived from (seed, frame, index), so a result
-//! depends neither on the order nor on the number of threads in which particles are handled.
+//! Every particle of every frame draws from a [`Stream`] of its own, derived from (seed, frame,
+//! index), so a result depends neither on the order nor on the number of threads in which particles
+//! are handled.
 //!
 //! ```
 //! use sinew_core::random::Stream;

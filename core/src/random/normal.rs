@@ -1,7 +1,8 @@
 //! The standard normal distribution: quantile, tails and draws.
 //!
-//! A draw is the quantile of one uniform number, so its work is bounded and does not depend on chance. The quantile is
-//! the rational approximation AS 241 (Wichura 1988), its form for single precision.
+//! A draw is the quantile of one uniform number, so its work is bounded and does not depend on
+//! chance. The quantile is the rational approximation AS 241 (Wichura 1988), its form for single
+//! precision.
 
 use super::Stream;
 use crate::math::{Vec3, erfc, exp, ln, sqrt};
@@ -74,7 +75,8 @@ pub(super) fn tail_beside_one(x: f32) -> f32 {
     if x > NEGLIGIBLE_TAIL_SIGMAS { 0.0 } else { upper_tail(x) }
 }
 
-/// Natural logarithm of [`upper_tail`], without underflow: for large `x` by Laplace's continued fraction.
+/// Natural logarithm of [`upper_tail`], without underflow: for large `x` by Laplace's continued
+/// fraction.
 ///
 /// ```
 /// use sinew_core::random::normal::{log_upper_tail, upper_tail};
@@ -112,7 +114,8 @@ pub fn log_density(x: f32) -> f32 {
     -0.5 * x * x - LOG_SQRT_TAU
 }
 
-/// ln of the probability that a standard normal lies in `low..=high`; negative infinity where the interval is empty.
+/// ln of the probability that a standard normal lies in `low..=high`; negative infinity where the
+/// interval is empty.
 ///
 /// ```
 /// use sinew_core::math::exp;

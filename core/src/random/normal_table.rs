@@ -1,8 +1,10 @@
-//! Standard normal draws from a table of cubics: the quantile of one uniform number without logarithm, root or branch.
+//! Standard normal draws from a table of cubics: the quantile of one uniform number without
+//! logarithm, root or branch.
 //!
-//! The size of a draw is the quantile of a tail probability x / 2^32 with x in [0.5, 2^31]. The upper bits of the
-//! floating-point number x choose one of four parts of one of 32 octaves, the others are the argument of that part's
-//! cubic. The table is computed at compile time from the rational approximation of [`super::normal`], 2 KiB.
+//! The size of a draw is the quantile of a tail probability x / 2^32 with x in [0.5, 2^31]. The
+//! upper bits of the floating-point number x choose one of four parts of one of 32 octaves, the
+//! others are the argument of that part's cubic. The table is computed at compile time from the
+//! rational approximation of [`super::normal`], 2 KiB.
 
 use super::normal::{NEAR_MIDDLE, quantile_in_tail, quantile_near_middle};
 use super::stream::LANES;
@@ -58,7 +60,8 @@ const fn cubics() -> [[f32; 4]; PARTS * OCTAVES] {
     all
 }
 
-/// The cubic through four points of part `index`, near Chebyshev's, by Newton's divided differences.
+/// The cubic through four points of part `index`, near Chebyshev's, by Newton's divided
+/// differences.
 const fn cubic(index: usize) -> [f32; 4] {
     // Chosen: the Chebyshev nodes of [0, 1] for four points, rounded to 1/128.
     const NODES: [f32; 4] = [0.0390625, 0.3125, 0.6875, 0.9609375];

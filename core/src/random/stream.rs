@@ -17,7 +17,8 @@ use rand_xoshiro::Xoshiro128PlusPlus;
 /// Chosen: enough that compilers keep loops over them, which they then vectorise.
 pub const LANES: usize = 32;
 
-/// Finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every input bit reaches every output bit.
+/// Finaliser of `SplitMix64` (Steele, Lea and Flood 2014): every input bit reaches every output
+/// bit.
 #[inline]
 fn scramble(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -86,7 +87,8 @@ impl Stream {
         ((self.bits() >> 9) as f32 + 0.5) * (1.0 / 8_388_608.0)
     }
 
-    /// Uniform whole number below `bound` (multiply-shift; its bias is below bound / 2^32). Zero for a bound of zero.
+    /// Uniform whole number below `bound` (multiply-shift; its bias is below bound / 2^32). Zero
+    /// for a bound of zero.
     #[inline]
     pub fn below(&mut self, bound: u32) -> u32 {
         ((u64::from(self.bits()) * u64::from(bound)) >> 32) as u32

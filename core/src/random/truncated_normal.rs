@@ -1,7 +1,8 @@
 //! Draws from a standard normal distribution cut to an interval.
 //!
-//! One uniform number is turned into a draw by the inverse of the distribution function, so the work is bounded however
-//! far out the interval lies; beyond [`FAR_TAIL`] the inverse is taken in log space.
+//! One uniform number is turned into a draw by the inverse of the distribution function, so the
+//! work is bounded however far out the interval lies; beyond [`FAR_TAIL`] the inverse is taken in
+//! log space.
 //!
 //! ```
 //! use sinew_core::random::Stream;
@@ -24,7 +25,8 @@ pub const FAR_TAIL: f32 = 9.0;
 impl Stream {
     /// A standard normal draw given that it lies in `low..=high`.
     ///
-    /// Infinite ends are allowed. An empty interval (`high <= low`) gives `low`; NaN ends count as no limit.
+    /// Infinite ends are allowed. An empty interval (`high <= low`) gives `low`; NaN ends count as
+    /// no limit.
     pub fn truncated_normal(&mut self, low: f32, high: f32) -> f32 {
         let low = if low.is_nan() { f32::NEG_INFINITY } else { low };
         let high = if high.is_nan() { f32::INFINITY } else { high };
@@ -64,7 +66,8 @@ fn upper_part(low: f32, high: f32, u: f32) -> f32 {
     // ln of the tail probability relative to that at `low`: the tail falls from 1 to exp(-drop).
     let drop = if high.is_finite() { log_upper_tail(low) - log_upper_tail(high) } else { f32::INFINITY };
     let log_tail = ln(1.0 - u * (1.0 - exp(-min(drop, 80.0))));
-    // tail(x) / tail(low) is about exp((low^2 - x^2) / 2) low / x; two steps of the fixed point are enough out here.
+    // tail(x) / tail(low) is about exp((low^2 - x^2) / 2) low / x; two steps of the fixed point are
+    // enough out here.
     let mut x = sqrt(low * low - 2.0 * log_tail);
     for _ in 0..2 {
         x = sqrt(low * low - 2.0 * (log_tail + ln(x / low)));
@@ -77,7 +80,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Mean and variance by numeric integration, relative to the density at the interval's nearest point to zero.
+    /// Mean and variance by numeric integration, relative to the density at the interval's nearest
+    /// point to zero.
     fn exact_moments(low: f64, high: f64) -> (f64, f64) {
         let nearest = if low > 0.0 {
             low

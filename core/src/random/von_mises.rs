@@ -4,15 +4,17 @@ use super::Stream;
 use crate::math::{acos, sqrt, wrap_angle};
 use core::f32::consts::PI;
 
-/// Rejection tries before the last proposal is taken as it is. The acceptance rate is at least 0.65, so that happens
-/// less than once in 10^14 draws.
+/// Rejection tries before the last proposal is taken as it is. The acceptance rate is at least
+/// 0.65, so that happens less than once in 10^14 draws.
 pub const MAX_TRIES: usize = 32;
 
 impl Stream {
-    /// A draw from the von Mises distribution with mean direction `mean_rad` and concentration kappa, in (-pi, pi].
+    /// A draw from the von Mises distribution with mean direction `mean_rad` and concentration
+    /// kappa, in (-pi, pi].
     ///
-    /// Best and Fisher (1979) with a bounded number of tries. A `concentration` of zero or less, or NaN, gives the
-    /// uniform distribution; above 10^5 the wrapped normal with variance 1 / kappa is used.
+    /// Best and Fisher (1979) with a bounded number of tries. A `concentration` of zero or less, or
+    /// NaN, gives the uniform distribution; above 10^5 the wrapped normal with variance 1 /
+    /// kappa is used.
     pub fn von_mises(&mut self, mean_rad: f32, concentration: f32) -> f32 {
         if !(concentration > 1.0e-6) {
             return wrap_angle(PI * (2.0 * self.uniform() - 1.0));

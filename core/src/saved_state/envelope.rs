@@ -77,7 +77,8 @@ pub enum StateError {
     Version,
     /// Saved with another model or other options.
     Foreign,
-    /// Whole, but with a number that cannot be. What it was read into is neither the old state nor the new.
+    /// Whole, but with a number that cannot be. What it was read into is neither the old state nor
+    /// the new.
     Illegal,
 }
 

@@ -1,8 +1,9 @@
-//! State that outlives a loss of power: saved as bytes with a version and a checksum, checked whole before it is used again.
+//! State that outlives a loss of power: saved as bytes with a version and a checksum, checked whole
+//! before it is used again.
 //!
-//! A type says once, in [`SavedState::visit`], which numbers it consists of and what range each has. Writing, counting and reading are
-//! three visitors of that one list, so they cannot disagree. All is little-endian words of four bytes; a state saved on one processor is
-//! read by any other.
+//! A type says once, in [`SavedState::visit`], which numbers it consists of and what range each
+//! has. Writing, counting and reading are three visitors of that one list, so they cannot disagree.
+//! All is little-endian words of four bytes; a state saved on one processor is read by any other.
 //!
 //! ```
 //! use sinew_core::cyclic::events::CycleCounter;
@@ -164,7 +165,8 @@ pub trait StateVisitor {
         }
     }
 
-    /// The length of `list`, which a reader fills up with `fill` or cuts; its elements are to be shown after.
+    /// The length of `list`, which a reader fills up with `fill` or cuts; its elements are to be
+    /// shown after.
     fn length<T: Clone, const CAPACITY: usize>(&mut self, list: &mut Vec<T, CAPACITY>, fill: T) {
         let mut len = list.len();
         self.index(&mut len, CAPACITY);

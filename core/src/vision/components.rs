@@ -223,9 +223,9 @@ pub(super) fn overlaps(above: (u16, u16), below: (u16, u16)) -> [u32; 3] {
 /// (Cauchy-Crofton).
 ///
 /// Rows cross the outline twice a run. Columns and diagonals cross it twice for each pixel without
-/// a set neighbour in that direction. These counts follow from the area and the `pairs` (u, v), (u
-/// + d, v + 1), d = -1, 0, 1, of set pixels. With diagonals 1/sqrt 2 apart, P = pi/8 (rows +
-/// columns + (both diagonals) / sqrt 2).
+/// a set neighbour in that direction. These counts follow from the area and the `pairs` of set
+/// pixels (u, v) and (u + d, v + 1), where d is -1, 0 or 1. With diagonals 1/sqrt 2 apart,
+/// `P = pi/8 (rows + columns + (both diagonals) / sqrt 2)`.
 ///
 /// The mean over directions is unbiased. A straight edge reads from 5.2 % too short (upright and at
 /// 45 degrees) to 2.7 % too long (between), a disc right (asserted by tests).

@@ -1,7 +1,7 @@
 //! The emulated board: MPS2 with a Cortex-M4 or M7 under QEMU.
 //!
-//! Records go through semihosting, log bytes through UART 0, instructions are read from timer 0. A panic, a fault and a
-//! stack overflow end the emulator with a failure.
+//! Records go through semihosting, log bytes through UART 0, instructions are read from timer 0. A
+//! panic, a fault and a stack overflow end the emulator with a failure.
 
 mod files;
 mod logger;

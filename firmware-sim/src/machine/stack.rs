@@ -1,4 +1,5 @@
-//! The stack's limit, and how much of the stack was in use: it is painted before `main`, and paint that is left was never written over.
+//! The stack's limit, and how much of the stack was in use: it is painted before `main`, and paint
+//! that is left was never written over.
 
 #![expect(unsafe_code, reason = "the stack is memory that no variable names")]
 
@@ -24,7 +25,8 @@ pub fn most_used_bytes() -> u32 {
     (high as u32).saturating_sub(at as u32)
 }
 
-/// Makes every access below the stack a fault, by a region of the memory protection unit without any permission.
+/// Makes every access below the stack a fault, by a region of the memory protection unit without
+/// any permission.
 pub fn guard() {
     const SIZE_64_KIB: u32 = 15 << 1;
     const NO_ACCESS_NOR_EXECUTION: u32 = 1 << 28;

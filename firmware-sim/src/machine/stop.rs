@@ -16,7 +16,8 @@ pub fn print(message: &str) {
     }
 }
 
-/// Tells where, without the formatting that would take more flash than the tracker, and ends with a failure.
+/// Tells where, without the formatting that would take more flash than the tracker, and ends with a
+/// failure.
 #[panic_handler]
 fn panicked(info: &PanicInfo<'_>) -> ! {
     print("panic at");

@@ -1,5 +1,5 @@
-//! The comparisons of `evaluate arm`: variants against particle counts, each option's own effect, the trackers as the arm
-//! paper prints them, and recovery after the hand was away.
+//! The comparisons of `evaluate arm`: variants against particle counts, each option's own effect,
+//! the trackers as the arm paper prints them, and recovery after the hand was away.
 
 use super::clips::Clip;
 use super::observed::{ObservedScene, observe_all};
@@ -67,7 +67,8 @@ pub fn variants(
     .collect()
 }
 
-/// A tracker as the arm paper prints it: mean of both limbs, no gate, no area cue, no memory, mean of all particles.
+/// A tracker as the arm paper prints it: mean of both limbs, no gate, no area cue, no memory, mean
+/// of all particles.
 #[must_use]
 pub fn as_printed(variant: Variant, particles: usize) -> ArmOptions {
     ArmOptions {
@@ -138,7 +139,8 @@ pub struct Recovery {
     pub runs: usize,
 }
 
-/// Whether the error was small for [`STEADY_FRAMES`] on end, beginning within [`RECOVERY_FRAMES`] after the return.
+/// Whether the error was small for [`STEADY_FRAMES`] on end, beginning within [`RECOVERY_FRAMES`]
+/// after the return.
 fn recovered(errors: &[FrameError], width_px: u32) -> bool {
     let small = |error: &FrameError| error.error_px < RECOVERED_SHARE * f64::from(width_px);
     let after = errors.get(AWAY.end..).unwrap_or(&[]);

@@ -1,4 +1,5 @@
-//! Does the hand likelihood rank hands above other blobs on real frames? The area under the ROC curve.
+//! Does the hand likelihood rank hands above other blobs on real frames? The area under the ROC
+//! curve.
 
 use super::hands::ReferenceBox;
 use anyhow::Result;
@@ -28,7 +29,8 @@ pub struct HandRanking {
     pub paper_area: Option<f64>,
 }
 
-/// Scores of blobs on real frames: those of the default form, of the printed one, and the area term.
+/// Scores of blobs on real frames: those of the default form, of the printed one, and the area
+/// term.
 #[derive(Debug, Clone, Default)]
 pub struct BlobScores {
     /// Of each box with a blob, those of its largest blob.
@@ -104,7 +106,8 @@ pub fn rank(frames: &[RgbImage], boxes: &[ReferenceBox], skin: &SkinModel) -> Re
     Ok(blob_scores(frames, boxes, skin)?.ranking())
 }
 
-/// Part of all pairs in which the hand has the greater score, ties by half; `None` where there is no pair.
+/// Part of all pairs in which the hand has the greater score, ties by half; `None` where there is
+/// no pair.
 #[must_use]
 pub fn area_under_curve(hands: &[f32], others: &[f32]) -> Option<f64> {
     let pairs = hands.iter().flat_map(|h| others.iter().map(move |o| h.total_cmp(o)));

@@ -1,4 +1,5 @@
-//! Both hands on real frames with reference boxes: are the tracked hands in the boxes, and do the sides keep apart?
+//! Both hands on real frames with reference boxes: are the tracked hands in the boxes, and do the
+//! sides keep apart?
 
 use anyhow::{Context, Result, bail};
 use image::{RgbImage, imageops};
@@ -206,7 +207,8 @@ fn summarise(answers: &[Answered], size: (u32, u32)) -> HandScores {
     }
 }
 
-/// Share of all frames in which both hands are in one box while two are there, or each is in the box that the other had.
+/// Share of all frames in which both hands are in one box while two are there, or each is in the
+/// box that the other had.
 fn confused_share(answers: &[Answered]) -> f64 {
     let mut confused = 0_u32;
     // Whether the left hand was in the box further to the right, when that was last clear.

@@ -1,4 +1,5 @@
-//! A rendered scene after the front end: what the trackers see, beside the truth. Rendered once, tracked many times.
+//! A rendered scene after the front end: what the trackers see, beside the truth. Rendered once,
+//! tracked many times.
 
 use super::clips::Clip;
 use anyhow::Result;

@@ -81,7 +81,8 @@ pub fn summarise(errors: &[FrameError]) -> RunError {
     }
 }
 
-/// Tracks every scene with its own seed and returns the runs' mean errors, in the scenes' order; each run is a cell.
+/// Tracks every scene with its own seed and returns the runs' mean errors, in the scenes' order;
+/// each run is a cell.
 ///
 /// # Errors
 /// As [`track`] and [`Cells::cell`].

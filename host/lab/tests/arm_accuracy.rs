@@ -1,5 +1,5 @@
-//! The accuracy of the default arm tracker that the book states, on rendered scenes that real motion drives. Runs in release where
-//! `../shared/data` is at hand, and says so where not.
+//! The accuracy of the default arm tracker that the book states, on rendered scenes that real
+//! motion drives. Runs in release where `../shared/data` is at hand, and says so where not.
 
 mod shared_data;
 

@@ -1,5 +1,6 @@
-//! The body's models on real motion before the simulated camera, as the book compares them (docs/measurements.md). Runs in release where
-//! `../shared/data` is at hand, and says so where not.
+//! The body's models on real motion before the simulated camera, as the book compares them
+//! (docs/measurements.md). Runs in release where `../shared/data` is at hand, and says so where
+//! not.
 
 mod shared_data;
 
@@ -19,7 +20,8 @@ const LARGEST_GUIDED_M: f64 = 0.0050;
 /// Largest error (34) of the pelvic lift model with 100 particles, metres.
 const LARGEST_LIFT_M: f64 = 0.03;
 
-/// Largest mean errors (34) of an upper body, metres: end-effector with 100 particles, guided with 25.
+/// Largest mean errors (34) of an upper body, metres: end-effector with 100 particles, guided with
+/// 25.
 const LARGEST_UPPER_M: [f64; 2] = [0.0075, 0.0035];
 
 /// Runners and a jogger, whose feet go farther between two frames than the likelihood reaches.
@@ -36,8 +38,9 @@ const LARGEST_RUNNING_M: [f64; 2] = [0.016, 0.024];
 const MOTIONS: [&str; 3] =
     ["bandai/dataset-2_wave-both-hands_normal_001.bvh@0-4", "cmu-walk/02/02_01.amc", "cmu-exercise/13_29.amc@0-3.9"];
 
-/// Smallest share of hidden arms whose error is below twice its level within ten frames of their return, and whose spread grew. Two dozen arms
-/// measure a share of nine tenths to 6 %, so that models that have little more (docs/measurements.md) are held to eight.
+/// Smallest share of hidden arms whose error is below twice its level within ten frames of their
+/// return, and whose spread grew. Two dozen arms measure a share of nine tenths to 6 %, so that
+/// models that have little more (docs/measurements.md) are held to eight.
 const MIN_FOUND_AGAIN: [(BodyModelKind, usize, f64); 3] =
     [(BodyModelKind::Guided, 50, 0.9), (BodyModelKind::EndEffector, 100, 0.8), (BodyModelKind::Angular, 100, 0.8)];
 /// Smallest share of them that are said to be unobserved in all 15 hidden frames.

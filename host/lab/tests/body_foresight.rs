@@ -1,5 +1,6 @@
-//! What no tracker has: the past without noise. How far goals in space are ahead of angles then is the most that a better memory could give them
-//! (docs/body_tracker.md, *what goals could gain at most*). Runs in release where `../shared/data` is at hand, and says so where not.
+//! What no tracker has: the past without noise. How far goals in space are ahead of angles then is
+//! the most that a better memory could give them (docs/body_tracker.md, *what goals could gain at
+//! most*). Runs in release where `../shared/data` is at hand, and says so where not.
 
 mod shared_data;
 
@@ -236,7 +237,8 @@ impl Model {
     }
 }
 
-/// Goals stay ahead, by less than was once asked for: that a memory is noisy is not what holds them back.
+/// Goals stay ahead, by less than was once asked for: that a memory is noisy is not what holds them
+/// back.
 #[test]
 fn with_a_past_free_of_noise_goals_are_ahead_by_a_tenth() {
     let Some(folder) = shared_data::in_release("mocap") else { return };

@@ -1,5 +1,5 @@
-//! The accuracy of the cyclic filters that the book states, on real walkers. Runs in release where `../shared/data` is at hand,
-//! and says so where not.
+//! The accuracy of the cyclic filters that the book states, on real walkers. Runs in release where
+//! `../shared/data` is at hand, and says so where not.
 
 mod shared_data;
 
@@ -10,7 +10,8 @@ use sinew::resume::Cells;
 use sinew_lab::cyclic::experiments::SIGMAS_DEG;
 use sinew_lab::cyclic::{Cell, Protocol, Setting, test_cycles};
 
-/// Degrees over 13 angles at each sigma, by an independent implementation of the paper's filter with the same training.
+/// Degrees over 13 angles at each sigma, by an independent implementation of the paper's filter
+/// with the same training.
 const REFERENCE_DEG: [(Protocol, FilterName, [f64; 6]); 4] = [
     (Protocol::ExactMean, FilterName::Paper, [0.35, 0.83, 1.39, 3.80, 5.33, 6.69]),
     (Protocol::ExactMean, FilterName::PaperCut, [0.18, 0.57, 1.03, 3.11, 4.56, 6.23]),

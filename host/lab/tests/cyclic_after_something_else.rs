@@ -1,5 +1,6 @@
-//! Walks that begin in the middle of a recording: somebody stands, waves or squats before. Is the walk found, and how soon? Runs in
-//! release where `../shared/data` is at hand, and says so where not.
+//! Walks that begin in the middle of a recording: somebody stands, waves or squats before. Is the
+//! walk found, and how soon? Runs in release where `../shared/data` is at hand, and says so where
+//! not.
 
 mod shared_data;
 #[path = "shared_data/walks.rs"]
@@ -14,7 +15,8 @@ use std::ops::Range;
 use std::path::Path;
 use walks::WALKS;
 
-/// Noise, degrees, with the greatest share of frames off in the second second of walking, and from then on.
+/// Noise, degrees, with the greatest share of frames off in the second second of walking, and from
+/// then on.
 const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.14, 0.07), (6.0, 0.14, 0.07), (29.0, 0.23, 0.14)];
 const SEEDS: [u64; 2] = [1, 2];
 /// Error of the position beyond which a frame is off, cycles.

@@ -1,5 +1,6 @@
-//! Arms that circle steadily: their cadence, and how many circles they did. People drawn from the shipped model at seven tempos, and the
-//! five recorded circles that it knows, each closed and repeated; these by models of one recording's circles alone, too.
+//! Arms that circle steadily: their cadence, and how many circles they did. People drawn from the
+//! shipped model at seven tempos, and the five recorded circles that it knows, each closed and
+//! repeated; these by models of one recording's circles alone, too.
 
 #[path = "shared_data/circles.rs"]
 mod circles;
@@ -21,9 +22,11 @@ const SIGMAS_DEG: [f64; 3] = [1.5, 6.0, 29.0];
 const SEEDS: [u64; 3] = [1, 2, 3];
 /// Cycles of a recording.
 const CYCLES: u64 = 8;
-/// Tempos of people drawn from the model, as parts of its own; their own pace adds a tenth to either side.
+/// Tempos of people drawn from the model, as parts of its own; their own pace adds a tenth to
+/// either side.
 const TEMPOS: [f64; 7] = [0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4];
-/// Largest relative error of the mean cadence from the third cycle on, of people drawn from the model and of the recorded circles.
+/// Largest relative error of the mean cadence from the third cycle on, of people drawn from the
+/// model and of the recorded circles.
 const CADENCE: f64 = 0.01;
 /// Largest error of the number of cycles.
 const COUNT: f64 = 0.15;

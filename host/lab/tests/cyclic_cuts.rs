@@ -1,5 +1,6 @@
-//! `sinew cut` on real walkers and runners: cuts stay at one phase of the motion, measured by cues that cutting does not use.
-//! Runs in release where `../shared/data` is at hand, and says so where not.
+//! `sinew cut` on real walkers and runners: cuts stay at one phase of the motion, measured by cues
+//! that cutting does not use. Runs in release where `../shared/data` is at hand, and says so where
+//! not.
 
 mod shared_data;
 
@@ -9,7 +10,8 @@ use sinew::cyclic::cutting::{CuttingOptions, cycles};
 use sinew::cyclic::recording::{RecordingOptions, angles};
 use std::path::{Path, PathBuf};
 
-/// Largest standard deviation of a cue's phase within a recording, cycles, the middle one of six cues.
+/// Largest standard deviation of a cue's phase within a recording, cycles, the middle one of six
+/// cues.
 const SPREAD: f64 = 0.02;
 /// Largest distance of the cue's earliest and latest phase.
 const RANGE: f64 = 0.06;
@@ -38,7 +40,8 @@ fn recordings(data: &Path) -> Vec<(String, AngleTable)> {
     all
 }
 
-/// Signals whose greatest value in a cycle is a cue: each foot farthest forward, farthest back, each knee most bent.
+/// Signals whose greatest value in a cycle is a cue: each foot farthest forward, farthest back,
+/// each knee most bent.
 fn cues(table: &AngleTable) -> [Vec<f64>; 6] {
     let leg = |thigh: usize, value: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
         let value = |row: &sinew::cyclic::AngleRow| match (row.angles_rad[thigh], row.angles_rad[thigh + 1]) {

@@ -1,5 +1,6 @@
-//! Position in the cycle, cadence and number of cycles over whole recordings of people that no model was trained on, by the
-//! phase-coupled filter. Runs in release where `../shared/data` is at hand, and says so where not.
+//! Position in the cycle, cadence and number of cycles over whole recordings of people that no
+//! model was trained on, by the phase-coupled filter. Runs in release where `../shared/data` is at
+//! hand, and says so where not.
 
 mod shared_data;
 #[path = "shared_data/walk_cuts.rs"]

@@ -1,5 +1,5 @@
-//! Whole walks whose noise is as large as `coupled` assumes, smaller, or as large but slow: errors and bands. Runs in release where
-//! `../shared/data` is at hand, and says so where not.
+//! Whole walks whose noise is as large as `coupled` assumes, smaller, or as large but slow: errors
+//! and bands. Runs in release where `../shared/data` is at hand, and says so where not.
 
 mod shared_data;
 #[path = "shared_data/walk_cuts.rs"]

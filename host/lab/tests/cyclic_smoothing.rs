@@ -1,4 +1,5 @@
-//! What looking back gains on real walkers. Runs where `../shared/data` is at hand, and says so where not.
+//! What looking back gains on real walkers. Runs where `../shared/data` is at hand, and says so
+//! where not.
 
 use sinew::cyclic::tracking::{FilterName, TrackingOptions, track};
 use sinew::cyclic::training::{TrainingOptions, train};
@@ -25,7 +26,8 @@ fn walkers() -> Option<(CyclicModel, Vec<TestCycle>)> {
     Some((model, test_cycles(&CutList::read(&folder.join("test_cuts.csv")).unwrap()).unwrap()))
 }
 
-/// Mean absolute error over 13 angles in degrees at sigma 6 and 29 (noisy): the filter's, and looking back.
+/// Mean absolute error over 13 angles in degrees at sigma 6 and 29 (noisy): the filter's, and
+/// looking back.
 const NOISY_DEG: [(FilterName, [[f64; 2]; 2]); 3] = [
     (FilterName::Paper, [[2.59, 1.52], [7.73, 4.67]]),
     (FilterName::PaperCut, [[2.75, 1.96], [7.54, 5.18]]),
@@ -35,8 +37,8 @@ const NOISY_DEG: [(FilterName, [[f64; 2]; 2]); 3] = [
 const ROOM: f64 = 0.04;
 /// Share of the truth inside the smoothed 90 % band of `coupled`, both sigmas.
 const BAND: [f64; 2] = [0.90, 0.97];
-/// Largest share of angles whose smoothed variance is above the filter's, `coupled`: where the smoothed position lies at a steeper
-/// place of the cycle. The others have none.
+/// Largest share of angles whose smoothed variance is above the filter's, `coupled`: where the
+/// smoothed position lies at a steeper place of the cycle. The others have none.
 const WIDER_SHARE: f64 = 0.01;
 /// Error within a second without measurement as a share of the filter's, and its bounds.
 const GAP_SHARE: [(FilterName, [f64; 2]); 2] = [(FilterName::Coupled, [0.3, 0.9]), (FilterName::Paper, [0.05, 0.6])];
@@ -98,7 +100,8 @@ fn later_frames_only_make_surer() {
     }
 }
 
-/// The whole recordings of the test's people that are long enough, a second taken out of their middle.
+/// The whole recordings of the test's people that are long enough, a second taken out of their
+/// middle.
 #[test]
 fn a_second_without_measurement_is_bridged_better_from_both_sides() {
     let (Some((model, cycles)), Some(folder)) = (walkers(), data()) else { return };

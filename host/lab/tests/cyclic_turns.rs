@@ -1,5 +1,5 @@
-//! Arms that go round: real arm circles of one person in two recordings, forwards and backwards. Runs in release where
-//! `../shared/data` is at hand, and says so where not.
+//! Arms that go round: real arm circles of one person in two recordings, forwards and backwards.
+//! Runs in release where `../shared/data` is at hand, and says so where not.
 
 #[path = "shared_data/circles.rs"]
 mod circles;

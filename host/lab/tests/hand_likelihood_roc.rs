@@ -1,4 +1,5 @@
-//! Do hands rank above other blobs on real webcam sequences? Runs where `../shared/data` is at hand, and says so where not.
+//! Do hands rank above other blobs on real webcam sequences? Runs where `../shared/data` is at
+//! hand, and says so where not.
 
 use sinew::images::folder::{list_images, load_rgb};
 use sinew::skin::SkinModel;

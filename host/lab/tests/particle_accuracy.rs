@@ -1,5 +1,5 @@
-//! What the book says about the particle filter's accuracy on real walkers. Runs in release where `../shared/data` is at hand,
-//! and says so where not.
+//! What the book says about the particle filter's accuracy on real walkers. Runs in release where
+//! `../shared/data` is at hand, and says so where not.
 
 mod shared_data;
 

@@ -35,7 +35,8 @@ pub fn box_around((u, v): (usize, usize), (width, height): (usize, usize)) -> Re
     })
 }
 
-/// `trained` adapted to what lies inside of `bounds` in a picture of interleaved RGB, by [`SkinSample`].
+/// `trained` adapted to what lies inside of `bounds` in a picture of interleaved RGB, by
+/// [`SkinSample`].
 ///
 /// # Errors
 /// A box that shows only black.

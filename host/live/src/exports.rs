@@ -1,8 +1,11 @@
-//! The module's functions. Numbers go in, addresses and counts come out; the page reads and writes the memory at the addresses between calls.
+//! The module's functions. Numbers go in, addresses and counts come out; the page reads and writes
+//! the memory at the addresses between calls.
 //!
-//! Functions that can be refused give 0 for success and else the length of a text at [`text`] that says what is wrong.
+//! Functions that can be refused give 0 for success and else the length of a text at [`text`] that
+//! says what is wrong.
 
-// Names are exported as they are in the module only, which has nothing else that they could clash with. The state is in locks that have no other user.
+// Names are exported as they are in the module only, which has nothing else that they could clash with. The state is in
+// locks that have no other user.
 #![allow(unsafe_code)]
 // A page gives numbers one by one.
 #![allow(clippy::too_many_arguments)]
@@ -107,7 +110,8 @@ pub extern "C" fn see() -> u32 {
     with_session(Session::see)
 }
 
-/// Moves the arm on to the picture that was seen last, taken at `timestamp_us`, microseconds since any start.
+/// Moves the arm on to the picture that was seen last, taken at `timestamp_us`, microseconds since
+/// any start.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn track(timestamp_us: f64) -> u32 {
     with_session(|session, _| {
@@ -144,7 +148,8 @@ pub extern "C" fn blob_count() -> u32 {
     ask(|session| session.candidates.len() as u32)
 }
 
-/// Where they lie, the most likely first, seven numbers each: centre u and v, moments uu, uv and vv, area, likelihood.
+/// Where they lie, the most likely first, seven numbers each: centre u and v, moments uu, uv and
+/// vv, area, likelihood.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn blobs() -> *const f32 {
     ask(|session| session.candidates.as_ptr() as usize) as *const f32
@@ -162,7 +167,8 @@ pub extern "C" fn particles() -> *const f32 {
     ask(|session| session.particles.as_ptr() as usize) as *const f32
 }
 
-/// Paints the last skin mask and returns its address: four bytes a pixel, transparent where no skin is.
+/// Paints the last skin mask and returns its address: four bytes a pixel, transparent where no skin
+/// is.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn skin() -> *const u8 {
     let size = ask(|session| session.size_px());

@@ -1,4 +1,5 @@
-//! The arm tracker on a browser's pictures, as a WebAssembly module without allocator and without a binding generator.
+//! The arm tracker on a browser's pictures, as a WebAssembly module without allocator and without a
+//! binding generator.
 //!
 //! A page writes a picture into the module's memory, calls `see` and `track`, and reads numbers:
 //! [`exports`] lists the functions. What they do is [`session::Session`], an ordinary structure.

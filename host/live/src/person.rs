@@ -1,4 +1,5 @@
-//! Camera, arm and options before anything is known of them: those of `sinew track arm` without a configuration file.
+//! Camera, arm and options before anything is known of them: those of `sinew track arm` without a
+//! configuration file.
 
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::error::{ParameterError, finite, positive};
@@ -19,13 +20,15 @@ const ELBOW_TO_HAND_CENTRE: f32 = 0.146 + 0.5 * 0.108;
 const HAND_AREA: f32 = 0.00632;
 /// Distance of a seated adult's shoulders from a laptop's camera, metres.
 pub const DISTANCE_M: f32 = 0.9;
-/// Sideways place of the left shoulder of somebody who sits in the middle, at the height of the camera, metres.
+/// Sideways place of the left shoulder of somebody who sits in the middle, at the height of the
+/// camera, metres.
 const LEFT_SHOULDER_X_M: f32 = 0.2;
 
 /// Where a shoulder is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shoulder {
-    /// Not said: that of somebody who sits in the middle, so far away (metres along the line of sight).
+    /// Not said: that of somebody who sits in the middle, so far away (metres along the line of
+    /// sight).
     Guessed {
         /// Distance, metres.
         distance_m: f32,
@@ -54,10 +57,12 @@ impl Shoulder {
     }
 }
 
-/// An arm before a camera with images of `size_px` (width, height), and where its shoulder is, metres.
+/// An arm before a camera with images of `size_px` (width, height), and where its shoulder is,
+/// metres.
 ///
 /// # Errors
-/// Sizes, the number of particles and the distance have to be greater than zero, the shoulder's pixel finite.
+/// Sizes, the number of particles and the distance have to be greater than zero, the shoulder's
+/// pixel finite.
 pub fn arm(
     size_px: (u32, u32),
     side: Side,

@@ -127,7 +127,8 @@ impl Session {
         Ok(())
     }
 
-    /// Moves the tracker on to the frame that was seen last, taken at `timestamp_us`, microseconds since any start.
+    /// Moves the tracker on to the frame that was seen last, taken at `timestamp_us`, microseconds
+    /// since any start.
     pub fn track(&mut self, timestamp_us: u64) -> ArmEstimate {
         let image = Some(ArmImage { candidates: &self.candidates, edges: self.edges.as_slice() });
         let frame = ArmFrame { timestamp_us, image, shoulder_m: self.shoulder_m };
@@ -139,7 +140,8 @@ impl Session {
         estimate
     }
 
-    /// Adapts the shipped skin model to a box around the pixel (`u`, `v`) of the picture in `frame`.
+    /// Adapts the shipped skin model to a box around the pixel (`u`, `v`) of the picture in
+    /// `frame`.
     ///
     /// # Errors
     /// A pixel outside of the picture, a box that shows only black; the model is as before then.

@@ -4,7 +4,8 @@ use sinew_core::error::ParameterError;
 use sinew_core::vision::skin::GaussianSkin;
 use sinew_core::vision::white_balance::Gains;
 
-/// A normal distribution of the chromaticities r = R/(R+G+B) and g = G/(R+G+B) of skin, after [`Gains::quarter_grey_world`].
+/// A normal distribution of the chromaticities r = R/(R+G+B) and g = G/(R+G+B) of skin, after
+/// [`Gains::quarter_grey_world`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BalancedSkin {
     /// Mean of r and g.

@@ -32,7 +32,8 @@ pub struct BodyFile {
     pub foot_m: [f32; 3],
     /// Girth relative to a body 1.75 m tall.
     pub girth: f32,
-    /// Radii of the capsules by the joint that they end at; for readers of the file, `girth` says the same.
+    /// Radii of the capsules by the joint that they end at; for readers of the file, `girth` says
+    /// the same.
     #[serde(default)]
     pub radii_m: BTreeMap<String, f32>,
 }

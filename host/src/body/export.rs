@@ -1,6 +1,7 @@
 //! A tracked body for animation and biomechanics programs: BVH and TRC, y up.
 //!
-//! The files' axes are the camera's turned by half about x: x to the picture's right, y up, z towards the camera.
+//! The files' axes are the camera's turned by half about x: x to the picture's right, y up, z
+//! towards the camera.
 
 use crate::body::BodyPart;
 use crate::motion::export::{BvhFrame, ExportError, LayoutJoint, SkeletonLayout};
@@ -17,7 +18,8 @@ const CROWN_M: f32 = 0.1;
 /// Name of the joint that turns the trunk; it lies in the pelvis.
 const TRUNK_JOINT: &str = "trunk";
 
-/// A joint of the file: its name, its parent, the bones that lie between both, and the bone that it turns.
+/// A joint of the file: its name, its parent, the bones that lie between both, and the bone that it
+/// turns.
 struct Node {
     name: &'static str,
     parent: Option<usize>,
@@ -25,7 +27,8 @@ struct Node {
     turns: Option<usize>,
 }
 
-/// The joints of `part` by their names, and `trunk`: one joint turns all that hangs on it, and neck and hips do not turn alike.
+/// The joints of `part` by their names, and `trunk`: one joint turns all that hangs on it, and neck
+/// and hips do not turn alike.
 fn nodes(part: BodyPart) -> Vec<Node> {
     let joint = |bone: usize, parent, turns| Node { name: BODY_JOINT_NAMES[bone], parent, between: vec![bone], turns };
     let mut nodes = vec![

@@ -8,7 +8,8 @@ use sinew_core::math::{Mat3, Vec3};
 use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BodySkeleton, PELVIS, TRUNK};
 use std::f32::consts::FRAC_PI_2;
 
-/// Coordinates that the first fit turns by quarters: about the vertical, and forward (someone who lies).
+/// Coordinates that the first fit turns by quarters: about the vertical, and forward (someone who
+/// lies).
 const ROOT_TURN: usize = 3;
 const ROOT_PITCH: usize = 5;
 /// Inverse variance of a joint, 1 / m^2: one centimetre.
@@ -51,8 +52,9 @@ impl FittedPose {
 
 /// The pose whose joints are nearest to `joints` (least sum of squares), inside the limits.
 ///
-/// Climbs from `start`, and where there is none, or that ends far away, also from a person who stands at the recorded pelvis and
-/// looks to four sides, or lies. What the joints do not show (an outstretched arm's turn) stays near the start.
+/// Climbs from `start`, and where there is none, or that ends far away, also from a person who
+/// stands at the recorded pelvis and looks to four sides, or lies. What the joints do not show (an
+/// outstretched arm's turn) stays near the start.
 #[must_use]
 pub fn fit_pose(skeleton: &BodySkeleton, joints: &BodyJoints, start: Option<&[f32; BODY_ANGLES]>) -> FittedPose {
     let goals: Vec<Goal> = joints
@@ -104,7 +106,8 @@ pub fn fit_recording(skeleton: &BodySkeleton, recording: &BodyRecording) -> Vec<
     fits
 }
 
-/// A person who stands with the pelvis at `place`, elbows and knees a little bent: there no direction of turning is lost.
+/// A person who stands with the pelvis at `place`, elbows and knees a little bent: there no
+/// direction of turning is lost.
 fn standing(place: Vec3) -> [f32; BODY_ANGLES] {
     const BENT_RAD: f32 = 0.2;
     let mut angles = [0.0; BODY_ANGLES];

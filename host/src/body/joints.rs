@@ -1,7 +1,8 @@
-//! The 17 ends of a body's bones in recordings of many makers: the stick figure's 14 joints, the middle of the head, and the
-//! balls of the feet.
+//! The 17 ends of a body's bones in recordings of many makers: the stick figure's 14 joints, the
+//! middle of the head, and the balls of the feet.
 //!
-//! The pelvis is the middle of the hips. What a recording lacks of head and toes is put where human proportions have it.
+//! The pelvis is the middle of the hips. What a recording lacks of head and toes is put where human
+//! proportions have it.
 
 use crate::motion::MotionError;
 use crate::motion::joint_names::{self as figure, JointSources, SpatialJoints, middle, named_points};
@@ -13,12 +14,14 @@ use sinew_core::skeleton::full_body::{
 };
 use std::path::Path;
 
-/// Ends of a body's bones in one frame, in the order of `sinew_core::skeleton::full_body::BODY_JOINT_NAMES`, metres.
+/// Ends of a body's bones in one frame, in the order of
+/// `sinew_core::skeleton::full_body::BODY_JOINT_NAMES`, metres.
 pub type BodyJoints = [Option<Vec3>; BODY_BONES];
 
 /// Names of a point of the head: four of a head band, CMU and HDM05, BVH exporters, keypoints.
 const HEADS: &[&str] = &["lfhd+rfhd+lbhd+rbhd", "upperneck", "head", "lear+rear", "lfhd+rfhd", "nose"];
-/// Names of the ball of a foot, where the toes begin; in CMU and HDM05 it is the end of the bone `lfoot`.
+/// Names of the ball of a foot, where the toes begin; in CMU and HDM05 it is the end of the bone
+/// `lfoot`.
 const BALLS: &[&str] =
     &["{L}toebase", "toes{l}", "{L}toes", "{L}toe", "{l}toebase", "{l}toe", "{l}bigtoe", "{l}foot", "{l}toes"];
 
@@ -96,8 +99,8 @@ fn standing_height_m(joints: &BodyJoints) -> Option<f32> {
     Some((length(PELVIS, TRUNK)? + legs) / (of_one_metre.trunk_m + of_one_metre.thigh_m + of_one_metre.shank_m))
 }
 
-/// Puts heads at a head's distance from the neck where the recorded point is another one, and on the trunk's extension where there
-/// is none.
+/// Puts heads at a head's distance from the neck where the recorded point is another one, and on
+/// the trunk's extension where there is none.
 fn complete_heads(frames: &mut [BodyJoints], height_m: f32, head_m: f32) {
     let recorded = frames.iter().filter_map(|joints| Some((joints[HEAD]? - joints[TRUNK]?).norm())).collect();
     let scale = median(recorded).map(|length_m: f32| {
@@ -129,7 +132,8 @@ fn standard_ball(joints: &BodyJoints, side: usize, measures: &BodyMeasures) -> O
     Some(ankle + up * measures.foot_m.y + front * measures.foot_m.z)
 }
 
-/// The middle value; the mean of both middle ones where their number is even. Infinite and missing values have to be left out.
+/// The middle value; the mean of both middle ones where their number is even. Infinite and missing
+/// values have to be left out.
 pub(super) fn median(mut values: Vec<f32>) -> Option<f32> {
     values.sort_by(f32::total_cmp);
     let half = values.len() / 2;

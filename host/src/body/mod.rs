@@ -1,4 +1,5 @@
-//! Whole bodies from recordings: their joints over time, their measures, and the poses that come nearest to them.
+//! Whole bodies from recordings: their joints over time, their measures, and the poses that come
+//! nearest to them.
 
 pub mod body_file;
 pub mod export;

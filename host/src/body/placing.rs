@@ -6,8 +6,9 @@ use sinew_core::skeleton::full_body::{FEET, HIPS, PELVIS, SHANKS};
 
 /// Where a recorded person is put before a level camera.
 ///
-/// One rigid motion for all frames. The person faces the camera on the mean of the frames; where the headings of a person
-/// who turns cancel out, in the first frame. The floor is where the lowest foot of the recording stands.
+/// One rigid motion for all frames. The person faces the camera on the mean of the frames; where
+/// the headings of a person who turns cancel out, in the first frame. The floor is where the lowest
+/// foot of the recording stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     /// Mean distance of the pelvis, metres; larger where the other limits need it.
@@ -18,7 +19,8 @@ pub struct Placement {
     pub camera_height_m: f32,
     /// Half the picture's width and height over the focal length: every joint is kept inside.
     pub half_view: [f32; 2],
-    /// Turn of the person about the vertical: 0 faces the camera, a positive one turns to the person's left. Radians.
+    /// Turn of the person about the vertical: 0 faces the camera, a positive one turns to the
+    /// person's left. Radians.
     pub heading_rad: f32,
 }
 
@@ -57,8 +59,8 @@ impl RigidMotion {
 }
 
 impl Placement {
-    /// Puts `frames` before the camera; `up` is the file's vertical, a unit vector. `false` if no frame shows the pelvis and where
-    /// the person faces: then nothing is changed.
+    /// Puts `frames` before the camera; `up` is the file's vertical, a unit vector. `false` if no
+    /// frame shows the pelvis and where the person faces: then nothing is changed.
     #[must_use]
     pub fn place(&self, frames: &mut [BodyJoints], up: Vec3) -> bool {
         let Some(motion) = self.motion(frames, up) else { return false };
@@ -106,7 +108,8 @@ fn mean_front(frames: &[BodyJoints], up: Vec3) -> Option<Vec3> {
     let front = |joints: &BodyJoints| {
         let [left, right] = HIPS.map(|hip| joints[hip]);
         let across = left? - right?;
-        // Of a person who lies on the back the hips alone would do; the trunk says the same where it is upright.
+        // Of a person who lies on the back the hips alone would do; the trunk says the same where it is
+        // upright.
         unit(across.cross(&up))
     };
     let fronts: Vec<Vec3> = frames.iter().filter_map(front).collect();

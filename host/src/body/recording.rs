@@ -17,7 +17,8 @@ use std::path::Path;
 pub struct BodyRecording {
     /// Frames in a second.
     pub rate_hz: f32,
-    /// The ends of the bones in each frame, in the order of `BODY_JOINT_NAMES`; `None` where one was not recorded.
+    /// The ends of the bones in each frame, in the order of `BODY_JOINT_NAMES`; `None` where one
+    /// was not recorded.
     pub joints_m: Vec<BodyJoints>,
 }
 
@@ -67,8 +68,8 @@ impl BodyRecording {
         Ok(Self::read_with_markers(path, options)?.0)
     }
 
-    /// As [`Self::read`], with the markers of each frame: those of a .c3d whose name does not begin with `*`, as an unlabelled one's does.
-    /// Other files have joints, not markers.
+    /// As [`Self::read`], with the markers of each frame: those of a .c3d whose name does not begin
+    /// with `*`, as an unlabelled one's does. Other files have joints, not markers.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -105,8 +106,9 @@ impl BodyRecording {
         Ok((recording, markers_m))
     }
 
-    /// The same motion at `rate_hz`: each joint on the line between the two frames nearest in time; missing where one of
-    /// them misses it. No low-pass filter: a camera, too, samples instants.
+    /// The same motion at `rate_hz`: each joint on the line between the two frames nearest in time;
+    /// missing where one of them misses it. No low-pass filter: a camera, too, samples
+    /// instants.
     ///
     /// # Errors
     /// Both rates have to be greater than zero and give at most a million frames.
@@ -134,7 +136,8 @@ impl BodyRecording {
     }
 }
 
-/// `frames` of one rate at another one: each time is the frame there, or what `mix` makes of the two nearest.
+/// `frames` of one rate at another one: each time is the frame there, or what `mix` makes of the
+/// two nearest.
 fn resampled<T: Clone>(frames: &[T], from_hz: f32, to_hz: f32, mix: impl Fn(&T, &T, f32) -> T) -> Vec<T> {
     let Some(last) = frames.len().checked_sub(1) else { return Vec::new() };
     let count = (last as f32 / (from_hz / to_hz) + SAME_FRAME).floor() + 1.0;

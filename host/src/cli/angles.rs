@@ -30,7 +30,8 @@ pub struct AnglesArgs {
     /// Frames per second of the table [default: those of the recording].
     #[arg(long, value_name = "HZ")]
     pub rate: Option<f64>,
-    /// Frames per second of the recording [default: what the file says; 120 for AMC and exponential maps].
+    /// Frames per second of the recording [default: what the file says; 120 for AMC and exponential
+    /// maps].
     #[arg(long, value_name = "HZ")]
     pub input_rate: Option<f64>,
     /// Angle table to write.
@@ -51,7 +52,8 @@ pub struct AnglesArgs {
     /// Take a motion in space that lacks joints; their angles are missing.
     #[arg(long)]
     pub partial: bool,
-    /// Exchange the names of left and right: the same motion led by the other side, a second one to train on.
+    /// Exchange the names of left and right: the same motion led by the other side, a second one to
+    /// train on.
     #[arg(long)]
     pub swap_sides: bool,
 }

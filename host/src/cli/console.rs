@@ -1,4 +1,5 @@
-//! The output for a person or a script: results on standard output, everything else on standard error.
+//! The output for a person or a script: results on standard output, everything else on standard
+//! error.
 
 use super::interrupted;
 use super::stdout::write_all;
@@ -30,14 +31,16 @@ impl Console {
         [(self.quiet, "--quiet"), (self.json, "--json")].into_iter().filter_map(|(is_set, flag)| is_set.then_some(flag))
     }
 
-    /// Tells on standard error what a user should know and a script need not, unless `--quiet` was given.
+    /// Tells on standard error what a user should know and a script need not, unless `--quiet` was
+    /// given.
     pub fn note(&self, text: impl Display) {
         if !self.quiet {
             eprintln!("{text}");
         }
     }
 
-    /// Prints a result: `text`, or with `--json` the same as one line of JSON. A reader that has gone away is no error.
+    /// Prints a result: `text`, or with `--json` the same as one line of JSON. A reader that has
+    /// gone away is no error.
     ///
     /// # Errors
     /// A failure of the operating system.
@@ -74,7 +77,8 @@ impl Console {
         })
     }
 
-    /// Does what takes long and has no count, while standard error, if it is a terminal, shows `what` and for how long.
+    /// Does what takes long and has no count, while standard error, if it is a terminal, shows
+    /// `what` and for how long.
     ///
     /// # Errors
     /// As `work`.

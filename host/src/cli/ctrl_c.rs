@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 static STOP: AtomicBool = AtomicBool::new(false);
 static HANDLER: OnceLock<Result<(), String>> = OnceLock::new();
 
-/// A flag that is set when Ctrl-C is pressed; from the first call on, Ctrl-C no longer ends the program by itself.
+/// A flag that is set when Ctrl-C is pressed; from the first call on, Ctrl-C no longer ends the
+/// program by itself.
 ///
 /// # Errors
 /// The operating system refuses the handler.

@@ -34,7 +34,8 @@ pub struct CutArgs {
     pub longest: f64,
 }
 
-/// Finds the cycles of each table and writes them all; a table without cycles is named and left out.
+/// Finds the cycles of each table and writes them all; a table without cycles is named and left
+/// out.
 ///
 /// # Errors
 /// Bad input, no cycle in any table, or an output that cannot be written.
@@ -77,7 +78,8 @@ pub fn run(args: &CutArgs, console: &Console) -> Result<()> {
     console.answer(&report, &json!({ "tables": tables, "left_out": left_out, "out": args.out }))
 }
 
-/// How a list at `list` names `table`: relative where the table lies in the list's folder or below it, else absolute.
+/// How a list at `list` names `table`: relative where the table lies in the list's folder or below
+/// it, else absolute.
 fn name_from(list: &Path, table: &Path) -> Result<String> {
     let absolute = |path: &Path| path.canonicalize().with_context(|| format!("`{}` cannot be found", path.display()));
     let folder = list.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));

@@ -36,7 +36,8 @@ pub struct DemoArgs {
     pub seed: u64,
 }
 
-/// The content of `error.json`: distance of the tracked hand from the true one, over frames `first_frame` to `last_frame`.
+/// The content of `error.json`: distance of the tracked hand from the true one, over frames
+/// `first_frame` to `last_frame`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DemoError {
     /// First frame that counts.
@@ -68,7 +69,8 @@ pub fn run(args: &DemoArgs, console: &Console) -> Result<()> {
     console.answer(&report(&outcome, &error, out.path()), &json)
 }
 
-/// A person who reaches about with the right arm; the face shows half of the time, the hand is hidden a tenth of it.
+/// A person who reaches about with the right arm; the face shows half of the time, the hand is
+/// hidden a tenth of it.
 fn render(out: &OutputDir, seed: u64) -> Result<Scene> {
     let motion = reach::random_reaches(seed, RATE_HZ, FRAMES)?;
     let sides = Sides::One(ArmSide::Right);
@@ -107,7 +109,8 @@ fn track_options(out: &OutputDir, seed: u64) -> Result<TrackOptions> {
     })
 }
 
-/// Distances of the tracked hand from the true one. A hand that is projected nowhere is as wrong as the image is wide.
+/// Distances of the tracked hand from the true one. A hand that is projected nowhere is as wrong as
+/// the image is wide.
 fn compare(scene: &Scene, outcome: &RunOutcome) -> Result<DemoError> {
     ensure!(
         outcome.samples.len() == scene.len(),

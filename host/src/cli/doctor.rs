@@ -13,7 +13,8 @@ use std::path::PathBuf;
   sinew simulate arm --motion builtin --frames 5 --out scene
   sinew doctor scene/frames scene/camera.toml")]
 pub struct DoctorArgs {
-    /// Folders of images, of clouds or of runs; configurations (.toml), models and persons (.json), angle tables (.csv).
+    /// Folders of images, of clouds or of runs; configurations (.toml), models and persons (.json),
+    /// angle tables (.csv).
     #[arg(value_name = "PATH", required = true)]
     pub paths: Vec<PathBuf>,
 }

@@ -48,7 +48,8 @@ fn lab() -> Result<PathBuf> {
     Ok(lab)
 }
 
-/// Becomes the other program, so that signals reach it and its status is the own one. Returns only where that fails.
+/// Becomes the other program, so that signals reach it and its status is the own one. Returns only
+/// where that fails.
 #[cfg(unix)]
 fn end_as(mut command: Command) -> std::io::Result<process::ExitStatus> {
     use std::os::unix::process::CommandExt;

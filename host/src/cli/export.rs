@@ -85,7 +85,8 @@ fn array_name(out: &Path) -> Result<String> {
     Ok(name)
 }
 
-/// The bytes as an array of words, which lies at a multiple of four as `sinew_cyclic_init` asks for.
+/// The bytes as an array of words, which lies at a multiple of four as `sinew_cyclic_init` asks
+/// for.
 fn c_source(name: &str, bytes: &[u8]) -> String {
     let words = bytes.as_chunks::<4>().0;
     let mut text = format!(

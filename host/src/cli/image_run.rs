@@ -57,12 +57,14 @@ impl Skipped {
     }
 }
 
-/// Calls `take` with the model, the index and the image of each file, or frame of a video, that can be read.
+/// Calls `take` with the model, the index and the image of each file, or frame of a video, that can
+/// be read.
 ///
 /// The model is calibrated on the first one, if that was asked for; it then has to be readable.
 ///
 /// # Errors
-/// Whatever `take` refuses; an unreadable image if strict or if no image can be read; a bad calibration; no ffmpeg for a video.
+/// Whatever `take` refuses; an unreadable image if strict or if no image can be read; a bad
+/// calibration; no ffmpeg for a video.
 pub fn load_each(
     input: &ImageInput,
     skin: &SkinArgs,

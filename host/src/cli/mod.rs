@@ -1,7 +1,8 @@
 //! The command tree: one file per subcommand, each with its `...Args` and a `run`.
 //!
 //! To add a subcommand, write `cli/NAME.rs` with `pub struct NameArgs` (`clap::Args`) and
-//! `pub fn run(args: &NameArgs, console: &Console) -> anyhow::Result<()>`, then add a variant and an arm here.
+//! `pub fn run(args: &NameArgs, console: &Console) -> anyhow::Result<()>`, then add a variant and
+//! an arm here.
 
 pub mod angles;
 pub mod blobs;

@@ -15,7 +15,8 @@ use std::path::PathBuf;
   sinew track arm scene/frames --config scene/camera.toml --out run
   sinew record run --out arm.stream")]
 pub struct RecordArgs {
-    /// Folder of a run: of `sinew track arm` or `sinew demo`, or the report of `sinew track cyclic`.
+    /// Folder of a run: of `sinew track arm` or `sinew demo`, or the report of `sinew track
+    /// cyclic`.
     #[arg(value_name = "RUN_DIR")]
     pub run: PathBuf,
     /// What is recorded.

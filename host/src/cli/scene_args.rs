@@ -1,4 +1,5 @@
-//! What the scenes of `sinew simulate` share: pairs of numbers, and a folder without an older scene.
+//! What the scenes of `sinew simulate` share: pairs of numbers, and a folder without an older
+//! scene.
 
 use anyhow::{Context, Result, bail};
 use std::path::Path;

@@ -78,7 +78,8 @@ pub struct SimulateArmArgs {
     /// Which arms move and show their hands; left is the person's left.
     #[arg(long, value_enum, default_value_t = SideChoice::Right)]
     pub side: SideChoice,
-    /// Number of frames [default: the motion's length, 250 for builtin]; a shorter motion runs to and fro.
+    /// Number of frames [default: the motion's length, 250 for builtin]; a shorter motion runs to
+    /// and fro.
     #[arg(long, value_name = "N")]
     pub frames: Option<usize>,
     /// Frames per second of the camera.
@@ -110,7 +111,8 @@ pub struct SimulateArmArgs {
 /// Runs `sinew simulate`.
 ///
 /// # Errors
-/// A motion that cannot be read, an option out of range, a folder that cannot be written or holds frames already.
+/// A motion that cannot be read, an option out of range, a folder that cannot be written or holds
+/// frames already.
 pub fn run(args: &SimulateArgs, console: &Console) -> Result<()> {
     match &args.subject {
         SimulateSubject::Arm(args) => run_arm(args, console),

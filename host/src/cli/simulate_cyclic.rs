@@ -13,7 +13,8 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  sinew simulate cyclic --model running --out run.csv")]
 pub struct SimulateCyclicArgs {
-    /// Motion of the person, who has a pace and a style of their own: a shipped model, or a file of `sinew train cyclic`.
+    /// Motion of the person, who has a pace and a style of their own: a shipped model, or a file of
+    /// `sinew train cyclic`.
     #[arg(long, value_name = MODEL_VALUE)]
     pub model: String,
     /// Number of cycles.

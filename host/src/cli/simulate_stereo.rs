@@ -42,7 +42,8 @@ pub struct SimulateStereoArgs {
     /// Part of the motion that is used, in seconds from its beginning.
     #[arg(long, value_name = "START,END", value_parser = pair::<f32>)]
     pub between: Option<(f32, f32)>,
-    /// Mean distance of the pelvis from the camera, metres; larger if the person would come too near or leave the picture.
+    /// Mean distance of the pelvis from the camera, metres; larger if the person would come too
+    /// near or leave the picture.
     #[arg(long, value_name = "METRES", default_value_t = Placement::default().mean_distance_m)]
     pub distance: f32,
     /// Turn of the person to their left, degrees; 0 faces the camera on the mean.
@@ -63,7 +64,8 @@ pub struct SimulateStereoArgs {
     /// Patches of the picture in which no point is found; they move slowly over the body.
     #[arg(long, value_name = "N", default_value_t = 4)]
     pub patches: u32,
-    /// Leave out the points on a limb (l_arm, r_arm, l_leg, r_leg) from one frame to another, both included; may be repeated.
+    /// Leave out the points on a limb (l_arm, r_arm, l_leg, r_leg) from one frame to another, both
+    /// included; may be repeated.
     #[arg(long, value_name = "LIMB:FIRST-LAST")]
     pub hide: Vec<Hidden>,
     /// Seed of all that is random.
@@ -80,7 +82,8 @@ pub struct SimulateStereoArgs {
 /// Runs `sinew simulate stereo`.
 ///
 /// # Errors
-/// A motion that cannot be read, an option out of range, a folder that cannot be written or holds points already.
+/// A motion that cannot be read, an option out of range, a folder that cannot be written or holds
+/// points already.
 pub fn run(args: &SimulateStereoArgs, console: &Console) -> Result<()> {
     ensure!(args.rate > 0.0 && args.rate.is_finite(), "--rate has to be greater than zero, not {}", args.rate);
     ensure!(args.rate <= 1000.0, "--rate has to be at most 1000 Hz, not {}", args.rate);

@@ -32,8 +32,8 @@ pub struct TrackArmArgs {
         extensions(&[Kind::Video])
     ))]
     pub folder: Option<PathBuf>,
-    /// Folder for track.csv, run.json, hand.png and what else is asked for; files of these names are replaced, each as a
-    /// whole, when the run ends.
+    /// Folder for track.csv, run.json, hand.png and what else is asked for; files of these names
+    /// are replaced, each as a whole, when the run ends.
     #[arg(long, value_name = "DIR", required_unless_present = "print_config")]
     pub out: Option<PathBuf>,
     /// Camera, person and thresholds; options of the command line come before it.
@@ -57,16 +57,19 @@ pub struct TrackArmArgs {
     /// Skin model and calibration.
     #[command(flatten)]
     pub skin: SkinArgs,
-    /// Frames per second of the camera; of a video, how many are taken [default: 15, of a video its own].
+    /// Frames per second of the camera; of a video, how many are taken [default: 15, of a video its
+    /// own].
     #[arg(long, value_name = "HZ", value_parser = rate_hz, allow_negative_numbers = true)]
     pub rate: Option<f64>,
-    /// Draw what was found on every frame, into DIR/overlay, and some of these pictures on DIR/contact_sheet.png.
+    /// Draw what was found on every frame, into DIR/overlay, and some of these pictures on
+    /// DIR/contact_sheet.png.
     #[arg(long)]
     pub overlay: bool,
     /// Write every particle of every frame into DIR/particles.csv.
     #[arg(long)]
     pub particles_csv: bool,
-    /// Refuse the folder if one of its images cannot be read; without it such a frame counts as missing.
+    /// Refuse the folder if one of its images cannot be read; without it such a frame counts as
+    /// missing.
     #[arg(long)]
     pub strict: bool,
     /// Go on with the run in --out that Ctrl-C ended; the other options have to be the same.
@@ -134,7 +137,8 @@ fn effective_config(args: &TrackArmArgs) -> Result<Config> {
     Ok(config)
 }
 
-/// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the current frame.
+/// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the
+/// current frame.
 ///
 /// # Errors
 /// As [`TrackRun::run`].

@@ -27,10 +27,12 @@ pub struct TrackBodyArgs {
         choice(&[Kind::Cloud])
     ))]
     pub folder: Option<PathBuf>,
-    /// Folder for track.csv, track.bvh, track.trc, run.json and what else is asked for; files of these names are replaced.
+    /// Folder for track.csv, track.bvh, track.trc, run.json and what else is asked for; files of
+    /// these names are replaced.
     #[arg(long, value_name = "DIR", required_unless_present = "print_config")]
     pub out: Option<PathBuf>,
-    /// How much of the body is tracked: a camera that sees no legs asks for the upper part [default: that of DIR/run.json, or whole].
+    /// How much of the body is tracked: a camera that sees no legs asks for the upper part
+    /// [default: that of DIR/run.json, or whole].
     #[arg(long, value_enum)]
     pub body: Option<BodyPart>,
     /// How particles move.
@@ -48,7 +50,8 @@ pub struct TrackBodyArgs {
     /// Height of a person who is not measured, metres.
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub height: Option<f32>,
-    /// Pose of the first frame [default: DIR/first_pose.json; without one, someone upright who faces the camera].
+    /// Pose of the first frame [default: DIR/first_pose.json; without one, someone upright who
+    /// faces the camera].
     #[arg(long, value_name = "FILE.json")]
     pub init: Option<PathBuf>,
     /// Ends of the stick, for --model stick [default: DIR/stick.csv].
@@ -75,10 +78,12 @@ pub struct TrackBodyArgs {
     /// Draw some frames from the front and the side on contact_sheet.png, and curves over time.
     #[arg(long)]
     pub pictures: bool,
-    /// End the run at a cloud that cannot be read; without it such a frame counts as one without points.
+    /// End the run at a cloud that cannot be read; without it such a frame counts as one without
+    /// points.
     #[arg(long)]
     pub strict: bool,
-    /// Go on with the run in --out that Ctrl-C ended; the other options have to be the same, but for --threads.
+    /// Go on with the run in --out that Ctrl-C ended; the other options have to be the same, but
+    /// for --threads.
     #[arg(long)]
     pub resume: bool,
     /// The run for a viewer.
@@ -122,7 +127,8 @@ pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
     console.answer(&text, &json!({ "out": out, "contents": names, "viewer": args.viewer.rerun, "run": report }))
 }
 
-/// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the current frame.
+/// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the
+/// current frame.
 fn run_with_progress(run: BodyTrackRun, console: &Console) -> Result<BodyRunReport> {
     let bar = console.bar(run.frame_count() as u64, "{wide_bar} frame {pos} of {len}, {per_sec}")?;
     bar.set_position(run.frames_finished() as u64);

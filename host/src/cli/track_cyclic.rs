@@ -28,8 +28,8 @@ use std::time::Instant;
 pub struct TrackCyclicArgs {
     /// Angle table, made by `sinew angles` from a motion in space or from keypoints.
     pub table: PathBuf,
-    /// Motion: a shipped one, or a file of `sinew train cyclic`. Given several times, the motion of each frame is named, or none
-    /// of these, and tracked by its own model.
+    /// Motion: a shipped one, or a file of `sinew train cyclic`. Given several times, the motion of
+    /// each frame is named, or none of these, and tracked by its own model.
     #[arg(long, value_name = MODEL_VALUE, required = true)]
     pub model: Vec<String>,
     /// Filter.
@@ -44,7 +44,8 @@ pub struct TrackCyclicArgs {
     /// What is known of the first state.
     #[arg(long, value_enum, default_value_t = StartName::Standard)]
     pub init: StartName,
-    /// Position in the cycle at the first frame, [0, 1) [default: where the model's pose fits best].
+    /// Position in the cycle at the first frame, [0, 1) [default: where the model's pose fits
+    /// best].
     #[arg(long, value_name = "X")]
     pub initial_cycle_position: Option<f64>,
     /// Cycles per frame at the first frame [default: the model's mean].
@@ -56,7 +57,8 @@ pub struct TrackCyclicArgs {
     /// Use only the measurements of these frames.
     #[arg(long, value_name = "F1,F2,...", value_delimiter = ',')]
     pub update_at: Option<Vec<u64>>,
-    /// Give each frame the estimate that the whole recording speaks for, later frames included (not with `particle`).
+    /// Give each frame the estimate that the whole recording speaks for, later frames included (not
+    /// with `particle`).
     #[arg(long)]
     pub smooth: bool,
     /// Frames per second of the recording [default: those of the model].
@@ -68,7 +70,8 @@ pub struct TrackCyclicArgs {
     /// Table of estimates to write.
     #[arg(long, value_name = "EST.csv")]
     pub out: PathBuf,
-    /// Folder for what a coach reads: summary, repetitions, curves over the cycle, symmetry, plots, TRC and MOT files.
+    /// Folder for what a coach reads: summary, repetitions, curves over the cycle, symmetry, plots,
+    /// TRC and MOT files.
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
     /// Draw the figure on the images of this folder, frame k of the table on image k in natural
@@ -76,13 +79,15 @@ pub struct TrackCyclicArgs {
     /// Needs a table from keypoints.
     #[arg(long, value_name = "FRAMES_DIR")]
     pub overlay: Option<PathBuf>,
-    /// Write the stick figure alone as an animation, what was measured thin and grey behind the estimate.
+    /// Write the stick figure alone as an animation, what was measured thin and grey behind the
+    /// estimate.
     #[arg(long, value_name = "FILE.gif")]
     pub animation: Option<PathBuf>,
     /// Height of the person, metres: the scale of the report's joints.trc.
     #[arg(long, value_name = "METRES", default_value_t = 1.75)]
     pub height: f64,
-    /// Go on with the run to --out that Ctrl-C ended; what decides the estimates has to be the same.
+    /// Go on with the run to --out that Ctrl-C ended; what decides the estimates has to be the
+    /// same.
     #[arg(long)]
     pub resume: bool,
     /// The run for a viewer.
@@ -96,7 +101,8 @@ const COMMAND: &str = "track cyclic";
 /// Tracks the table, writes the estimates, prints cycles and cadence.
 ///
 /// # Errors
-/// A table or model that cannot be used, an option out of range, an output that cannot be written, or [`Interrupted`].
+/// A table or model that cannot be used, an option out of range, an output that cannot be written,
+/// or [`Interrupted`].
 pub fn run(args: &TrackCyclicArgs, console: &Console) -> Result<()> {
     console.resumable(run_until(args, console, stop_flag()?, &mut |_| ()))
 }
@@ -163,7 +169,8 @@ fn begun(args: &TrackCyclicArgs, models: &[CyclicModel]) -> Result<Begun> {
     }))
 }
 
-/// Tracks with a progress bar on standard error, if that is a terminal, until the last row or Ctrl-C; whether it was the last row.
+/// Tracks with a progress bar on standard error, if that is a terminal, until the last row or
+/// Ctrl-C; whether it was the last row.
 fn follow(run: &mut TableRun<'_>, stop: &AtomicBool, notify: &mut dyn FnMut(usize), console: &Console) -> Result<bool> {
     let bar = console.bar(run.rows() as u64, "{wide_bar} row {pos} of {len}, {per_sec}")?;
     bar.set_position(run.finished() as u64);
@@ -249,7 +256,8 @@ impl Shown<'_> {
         Ok(report.write(&origin, self.angles, tracked, output)?)
     }
 
-    /// Draws overlays and animation unless `stop` is set; reports on standard error what was skipped.
+    /// Draws overlays and animation unless `stop` is set; reports on standard error what was
+    /// skipped.
     fn draw(&self, tracked: &Tracked, report: &Report, stop: &AtomicBool, console: &Console) -> Result<String> {
         let (args, angles) = (self.args, self.angles);
         let body = Body::of_table(angles, args.height);

@@ -17,7 +17,8 @@ use std::path::PathBuf;
   sinew cut walk.csv --out cuts.csv
   sinew train cyclic --cuts cuts.csv --out my_walk.json")]
 pub struct TrainCyclicArgs {
-    /// Cycles to train on: a CSV file `file,start_frame,end_frame`, end excluded, file relative to CUTS or absolute.
+    /// Cycles to train on: a CSV file `file,start_frame,end_frame`, end excluded, file relative to
+    /// CUTS or absolute.
     #[arg(long, value_name = "CUTS.csv")]
     pub cuts: PathBuf,
     /// Model file to write.

@@ -19,7 +19,8 @@ use std::path::PathBuf;
   sinew segment scene/frames --out masks
   sinew train skin --images scene/frames --masks masks --out my_skin.json")]
 pub struct TrainSkinArgs {
-    /// Labelled pixels: rows `B G R label`, label 1 = skin, 2 = not (the UCI "Skin Segmentation" form).
+    /// Labelled pixels: rows `B G R label`, label 1 = skin, 2 = not (the UCI "Skin Segmentation"
+    /// form).
     #[arg(long, value_name = "FILE", required_unless_present = "images", conflicts_with_all = ["images", "masks"])]
     pub pixels: Option<PathBuf>,
     /// Folder of images; may be given several times, each with its --masks.

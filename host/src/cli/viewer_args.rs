@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 /// Options of the commands whose runs the viewer shows.
 #[derive(Debug, Clone, Default, Args)]
 pub struct ViewerArgs {
-    /// Write frames, blobs, particles, points, skeleton and curves for the Rerun viewer, too (a build with `--features rerun`).
+    /// Write frames, blobs, particles, points, skeleton and curves for the Rerun viewer, too (a
+    /// build with `--features rerun`).
     #[arg(long, value_name = "FILE.rrd")]
     pub rerun: Option<PathBuf>,
 }

@@ -31,7 +31,8 @@ pub struct BodyConfig {
     /// Image area of the hand times squared depth over squared focal length, square metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand_area_m2: Option<f32>,
-    /// Turn of the torso about its own vertical axis, degrees; positive turns the person to their left.
+    /// Turn of the torso about its own vertical axis, degrees; positive turns the person to their
+    /// left.
     pub torso_yaw_deg: f32,
     /// Forward lean of the torso, degrees; a camera that looks down by so much sees the same.
     pub torso_pitch_deg: f32,
@@ -84,7 +85,8 @@ impl BodyConfig {
         self.left_shoulder_m.is_some() && self.right_shoulder_m.is_some()
     }
 
-    /// Left and right shoulder in camera axes, metres. One that is given places the other by the default's distance.
+    /// Left and right shoulder in camera axes, metres. One that is given places the other by the
+    /// default's distance.
     #[must_use]
     pub fn shoulders_m(&self) -> [Vec3; 2] {
         let [left, right] = Self::DEFAULT_SHOULDERS_M.map(Vec3::from);
@@ -114,7 +116,8 @@ impl BodyConfig {
 
     /// Body axes to camera axes.
     fn torso(&self) -> Mat3 {
-        // Yaw about up (camera -y), then pitch about the camera's x axis, which tips the upper body towards the camera.
+        // Yaw about up (camera -y), then pitch about the camera's x axis, which tips the upper body towards
+        // the camera.
         let yaw = axis_rotation(&-Vec3::y(), self.torso_yaw_deg.to_radians());
         let pitch = axis_rotation(&Vec3::x(), self.torso_pitch_deg.to_radians());
         pitch * yaw * facing_camera()

@@ -39,8 +39,8 @@ impl Config {
     /// Reads a TOML file.
     ///
     /// # Errors
-    /// Names the file and what is wrong: not readable, not TOML, an unknown key (with the nearest right one), a value of the wrong
-    /// type or out of range.
+    /// Names the file and what is wrong: not readable, not TOML, an unknown key (with the nearest
+    /// right one), a value of the wrong type or out of range.
     pub fn load(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path).with_context(|| {
             format!("configuration `{}` cannot be read; `sinew track arm --print-config` writes one", path.display())

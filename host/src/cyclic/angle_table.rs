@@ -1,4 +1,5 @@
-//! Angle tables: one row a frame, the 13 angles of the stick figure in radians, an empty cell where one is missing.
+//! Angle tables: one row a frame, the 13 angles of the stick figure in radians, an empty cell where
+//! one is missing.
 
 use super::error::{CyclicError, read_text};
 use crate::csv_text::csv_reader;
@@ -8,7 +9,8 @@ use std::path::Path;
 
 /// Angles of the stick figure.
 pub const ANGLES: usize = 13;
-/// First columns of every table: the frame, then the angles in the order of the stick figure's joints.
+/// First columns of every table: the frame, then the angles in the order of the stick figure's
+/// joints.
 pub const COLUMNS: [&str; ANGLES + 1] = [
     "frame",
     "neck_rad",
@@ -26,8 +28,8 @@ pub const COLUMNS: [&str; ANGLES + 1] = [
     "r_ankle_rad",
 ];
 
-/// Columns of a motion in space, right after [`COLUMNS`]: how far each segment points out of the side view's plane, to the
-/// person's left, radians.
+/// Columns of a motion in space, right after [`COLUMNS`]: how far each segment points out of the
+/// side view's plane, to the person's left, radians.
 pub const SIDE_COLUMNS: [&str; ANGLES] = [
     "neck_side_rad",
     "l_shoulder_side_rad",
@@ -60,7 +62,8 @@ pub const MAX_FRAME: u64 = 1_000_000_000_000;
 pub struct AngleRow {
     /// Number of the frame in the recording.
     pub frame: u64,
-    /// Angle of each joint about its parent in image axes (x right, y down), radians; `None` is a missing measurement.
+    /// Angle of each joint about its parent in image axes (x right, y down), radians; `None` is a
+    /// missing measurement.
     pub angles_rad: [Option<f64>; ANGLES],
     /// Cells of [`AngleTable::extra_columns`], as they stand in the file.
     pub extra: Vec<String>,
@@ -318,7 +321,8 @@ fn angles<'a>(
     Ok(angles_rad)
 }
 
-/// Whether the columns after the first angles are [`SIDE_COLUMNS`]: all of them in their order, or none.
+/// Whether the columns after the first angles are [`SIDE_COLUMNS`]: all of them in their order, or
+/// none.
 fn is_spatial(extra_columns: &[String], path: &Path) -> Result<bool, CyclicError> {
     let is_side = |name: &String| SIDE_COLUMNS.contains(&name.as_str());
     if !extra_columns.iter().any(is_side) {

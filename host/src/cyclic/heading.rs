@@ -3,11 +3,12 @@
 use crate::motion::joint_names::{HIPS, SpatialJoints};
 use sinew_core::math::{Vec3, unit};
 
-/// Time over which headings are averaged, seconds: about a cycle, so that the pelvis's own swing goes out.
+/// Time over which headings are averaged, seconds: about a cycle, so that the pelvis's own swing
+/// goes out.
 const WINDOW_S: f64 = 1.2;
 
-/// Heading of each frame: level, square to the line through the hips, averaged over a cycle's time; `None` where hips are
-/// missing for that long.
+/// Heading of each frame: level, square to the line through the hips, averaged over a cycle's time;
+/// `None` where hips are missing for that long.
 #[must_use]
 pub fn headings(frames: &[SpatialJoints], up: Vec3, rate_hz: f64) -> Vec<Option<Vec3>> {
     let single: Vec<Option<Vec3>> = frames
@@ -26,8 +27,8 @@ pub fn headings(frames: &[SpatialJoints], up: Vec3, rate_hz: f64) -> Vec<Option<
         .collect()
 }
 
-/// Length of the mean heading: 1 for a person who keeps their direction, 0 for one who walks in circles. 1 where no heading
-/// is known.
+/// Length of the mean heading: 1 for a person who keeps their direction, 0 for one who walks in
+/// circles. 1 where no heading is known.
 #[must_use]
 pub fn straightness(headings: &[Option<Vec3>]) -> f32 {
     let count = headings.iter().flatten().count();

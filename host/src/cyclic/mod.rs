@@ -1,4 +1,5 @@
-//! Cyclic motion on the host: angle tables, training, cutting of cycles, and what people read off them.
+//! Cyclic motion on the host: angle tables, training, cutting of cycles, and what people read off
+//! them.
 
 pub mod anatomy;
 pub mod angle_table;

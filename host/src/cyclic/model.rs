@@ -20,7 +20,8 @@ pub struct TrainedOn {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeviationNumbers {
-    /// What the variances of constant and swing were multiplied by, for the few people that they come from.
+    /// What the variances of constant and swing were multiplied by, for the few people that they
+    /// come from.
     pub inflation: f32,
     /// Part of each variance that was replaced by the mean over the angles.
     pub shrinkage: f32,
@@ -49,7 +50,8 @@ pub struct ModelNumbers {
     pub mean_velocity: Vec<f32>,
     /// See [`ModelParts::turns_per_cycle`].
     pub turns_per_cycle: Vec<i8>,
-    /// See [`ModelParts::mean_duration_frames`]: one over the mean of the training cycles' 1 / duration.
+    /// See [`ModelParts::mean_duration_frames`]: one over the mean of the training cycles' 1 /
+    /// duration.
     pub mean_duration_frames: f32,
     /// See [`ModelParts::rate_hz`].
     pub rate_hz: f32,
@@ -108,7 +110,8 @@ impl CyclicModel {
         self.numbers.view().expect("the numbers were checked when the model was made")
     }
 
-    /// The model as firmware reads it ([`sinew_core::cyclic::model::bytes`]); `None` where it says nothing of how people differ.
+    /// The model as firmware reads it ([`sinew_core::cyclic::model::bytes`]); `None` where it says
+    /// nothing of how people differ.
     #[must_use]
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
         let view = self.view();

@@ -4,7 +4,8 @@ use super::{AngleRow, AngleTable};
 use sinew_core::random::Stream;
 
 impl AngleTable {
-    /// The angles with independent Gaussian noise of `sigma_rad`; the first row stays exact, since it gives the first state.
+    /// The angles with independent Gaussian noise of `sigma_rad`; the first row stays exact, since
+    /// it gives the first state.
     #[must_use]
     pub fn with_noise(&self, sigma_rad: f64, seed: u64) -> Self {
         let mut rows: Vec<AngleRow> = self.rows().to_vec();

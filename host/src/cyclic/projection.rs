@@ -19,7 +19,8 @@ pub enum View {
     Path,
     /// From before: x is the person's left.
     Front,
-    /// As `auto`, and beside each angle how far the segment points out of that plane: two angles a joint.
+    /// As `auto`, and beside each angle how far the segment points out of that plane: two angles a
+    /// joint.
     Space,
 }
 
@@ -59,15 +60,16 @@ pub struct Plane {
 
 /// How far a person has to get, in lengths of the trunk, to count as travelling.
 const TRAVEL_TRUNKS: f32 = 1.0;
-/// Length of the mean heading below which a person turns: headings spread over more than about 50 degrees to each side.
+/// Length of the mean heading below which a person turns: headings spread over more than about 50
+/// degrees to each side.
 const TURNING_BELOW: f32 = 0.85;
 /// Ankles, for the direction that is up where a person stands.
 const ANKLES: [usize; 2] = [10, 13];
 
 impl Plane {
-    /// Chooses the plane of `view`. Up is the axis that the necks lie along from the ankles (or hips), unless `up` says it.
-    /// Forward is the mean direction of travel; of a person who gets less far than the trunk is long, it is square to the
-    /// line through the hips.
+    /// Chooses the plane of `view`. Up is the axis that the necks lie along from the ankles (or
+    /// hips), unless `up` says it. Forward is the mean direction of travel; of a person who
+    /// gets less far than the trunk is long, it is square to the line through the hips.
     ///
     /// # Errors
     /// Neck and hips are in no frame together, or neither travel nor hips give a direction.
@@ -212,7 +214,8 @@ mod tests {
         assert!((plane.right[0].unwrap() + Vec3::x()).norm() < 1.0e-6, "{plane:?}");
     }
 
-    /// Left, up and forward are a right-handed system: what is to the left of the person has a positive x from before.
+    /// Left, up and forward are a right-handed system: what is to the left of the person has a
+    /// positive x from before.
     #[test]
     fn the_view_from_before_goes_with_that_from_the_side() {
         let frames = person(0.02);

@@ -13,8 +13,8 @@ const SAME_FRAME: f64 = 1.0e-6;
 /// `joints` at `to_hz` instead of `from_hz` frames a second. Frame f of the recording is
 /// frame f times `to_hz` over `from_hz` of the result, rounded at the first one.
 ///
-/// A rate that divides the other picks every n-th frame. Else each coordinate is a cubic spline through each run of
-/// frames in which the joint was seen; between runs it stays missing.
+/// A rate that divides the other picks every n-th frame. Else each coordinate is a cubic spline
+/// through each run of frames in which the joint was seen; between runs it stays missing.
 ///
 /// # Errors
 /// A rate that is not greater than zero, or more than ten million frames.
@@ -48,7 +48,8 @@ pub fn resample(joints: &ImageJoints, from_hz: f64, to_hz: f64) -> Result<ImageJ
             }
         }
     }
-    // A frame that no joint was seen in, between frames that the recording leaves out, is left out as well.
+    // A frame that no joint was seen in, between frames that the recording leaves out, is left out as
+    // well.
     frames.retain(|frame| frame.joints.iter().any(Option::is_some));
     Ok(ImageJoints { frames, unit: joints.unit })
 }

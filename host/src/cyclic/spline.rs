@@ -1,9 +1,11 @@
 //! Natural cubic splines through knots at rising, not necessarily even, places.
 //!
-//! Own code: the published crates are either parts of large numerical suites or no longer kept. The second derivatives at
-//! the knots solve a tridiagonal system (de Boor, "A Practical Guide to Splines", chapter IV).
+//! Own code: the published crates are either parts of large numerical suites or no longer kept. The
+//! second derivatives at the knots solve a tridiagonal system (de Boor, "A Practical Guide to
+//! Splines", chapter IV).
 
-/// A twice continuously differentiable curve of cubic pieces; its second derivative is zero at both ends.
+/// A twice continuously differentiable curve of cubic pieces; its second derivative is zero at both
+/// ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CubicSpline {
     places: Vec<f64>,
@@ -13,8 +15,8 @@ pub struct CubicSpline {
 }
 
 impl CubicSpline {
-    /// The spline through `values` at `places`; `None` unless there are at least two of them, finite, as many of the one
-    /// as of the other, and the places rise.
+    /// The spline through `values` at `places`; `None` unless there are at least two of them,
+    /// finite, as many of the one as of the other, and the places rise.
     #[must_use]
     pub fn natural(places: Vec<f64>, values: Vec<f64>) -> Option<Self> {
         let finite = places.iter().chain(&values).all(|value| value.is_finite());
@@ -85,7 +87,8 @@ mod tests {
         }
     }
 
-    /// Through (0, 0), (1, 1), (2, 0) the natural spline has curvature -3 at 1; worked by hand at 0.5.
+    /// Through (0, 0), (1, 1), (2, 0) the natural spline has curvature -3 at 1; worked by hand at
+    /// 0.5.
     #[test]
     fn three_knots_by_hand() {
         let spline = CubicSpline::natural(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, 0.0]).unwrap();

@@ -1,5 +1,5 @@
-//! People drawn from a motion model, who move as it says, each in their own way: for trying things without recordings. What is measured
-//! on them says nothing about real people.
+//! People drawn from a motion model, who move as it says, each in their own way: for trying things
+//! without recordings. What is measured on them says nothing about real people.
 
 use super::angle_table::{ANGLES, AngleTable};
 use super::model::CyclicModel;
@@ -10,7 +10,8 @@ use std::f64::consts::TAU;
 /// Largest relative difference of a cycle's duration from the model's mean.
 const DURATION_SPREAD: f64 = 0.1;
 
-/// One person: the model's mean cycle at their own pace, with a constant and a swing of each angle drawn from the model's spread.
+/// One person: the model's mean cycle at their own pace, with a constant and a swing of each angle
+/// drawn from the model's spread.
 #[derive(Debug, Clone)]
 pub struct SyntheticPerson<'m> {
     model: &'m CyclicModel,
@@ -58,7 +59,8 @@ impl<'m> SyntheticPerson<'m> {
         })
     }
 
-    /// What a detector would measure over some cycles: independent normal errors of `noise_rad`, and missing angles.
+    /// What a detector would measure over some cycles: independent normal errors of `noise_rad`,
+    /// and missing angles.
     ///
     /// # Errors
     /// Zero cycles.

@@ -32,9 +32,11 @@ pub fn unwrap_along_time<'a>(angles_rad: impl IntoIterator<Item = &'a mut Option
     }
 }
 
-/// Mean of angles on the circle: the arithmetic mean after each was moved to the turn nearest to the mean direction.
+/// Mean of angles on the circle: the arithmetic mean after each was moved to the turn nearest to
+/// the mean direction.
 ///
-/// `None` where there is no angle. Where the angles cancel, the mean direction is that of the first.
+/// `None` where there is no angle. Where the angles cancel, the mean direction is that of the
+/// first.
 #[must_use]
 pub fn circular_mean(angles_rad: &[f64]) -> Option<f64> {
     let first = *angles_rad.first()?;

@@ -49,7 +49,8 @@ fn video(path: &Path) -> Diagnosis {
     diagnosis
 }
 
-/// A configuration of arms or of bodies; the problem reported is that of the kind whose sections it has.
+/// A configuration of arms or of bodies; the problem reported is that of the kind whose sections it
+/// has.
 fn configuration(path: &Path) -> Diagnosis {
     let mut diagnosis = Diagnosis::new(path, "configuration");
     let (arm, body) = (Config::load(path), tuning_file::load(path));

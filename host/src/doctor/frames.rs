@@ -14,7 +14,8 @@ use std::path::{Path, PathBuf};
 const SAMPLES: usize = 8;
 /// Mean of the brightest colour of a pixel below which a frame counts as dark.
 const DARK: f64 = 50.0;
-/// Share of a frame that may be skin-coloured: less and no hand is seen, more and the background is.
+/// Share of a frame that may be skin-coloured: less and no hand is seen, more and the background
+/// is.
 const SKIN_SHARES: [f64; 2] = [0.002, 0.35];
 
 pub(super) fn examine(path: &Path, files: &[PathBuf]) -> Diagnosis {

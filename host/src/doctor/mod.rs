@@ -1,4 +1,5 @@
-//! What is wrong with an input, before a run: folders, configurations, models, tables, run directories.
+//! What is wrong with an input, before a run: folders, configurations, models, tables, run
+//! directories.
 
 mod diagnosis;
 mod files;

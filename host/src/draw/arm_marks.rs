@@ -1,4 +1,5 @@
-//! What the picture and the view from above draw of an arm, and the sizes and lines that they share.
+//! What the picture and the view from above draw of an arm, and the sizes and lines that they
+//! share.
 
 use super::colour::SHADE;
 use super::lettering::Lettering;
@@ -17,7 +18,8 @@ const SMALLEST_LETTERED_PX: u32 = 120;
 pub struct OverlayArm {
     /// The person's own side; gives the colour.
     pub side: Side,
-    /// Solid lines where tracking, thin dashes where predicted, only a note and the particles' hands where lost.
+    /// Solid lines where tracking, thin dashes where predicted, only a note and the particles'
+    /// hands where lost.
     pub status: Status,
     /// Images of shoulder, elbow and hand.
     pub joints_px: Option<[Pixel; 3]>,
@@ -27,7 +29,8 @@ pub struct OverlayArm {
     pub particle_hands: Vec<(Pixel, f32)>,
     /// Shoulder, elbow and hand of the heaviest particles.
     pub best_arms: Vec<[Pixel; 3]>,
-    /// Two points of the ray through the carrying blob, metres in camera axes, the nearer one first.
+    /// Two points of the ray through the carrying blob, metres in camera axes, the nearer one
+    /// first.
     pub ray: Option<[Vec3; 2]>,
 }
 

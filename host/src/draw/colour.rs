@@ -1,6 +1,7 @@
 //! Colours and words for sides and states: the same ones in overlays and plots.
 //!
-//! Orange and blue stay apart for all common kinds of colour blindness, on dark video as well as on white paper.
+//! Orange and blue stay apart for all common kinds of colour blindness, on dark video as well as on
+//! white paper.
 
 use image::Rgb;
 use sinew_core::skeleton::Side;

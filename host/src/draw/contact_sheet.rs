@@ -17,7 +17,8 @@ const BACKGROUND: Rgb<u8> = Rgb([32, 32, 36]);
 
 /// Collects thumbnails while a run goes on; holds no more pixels than the sheet shows.
 ///
-/// Invariant: the chosen frames are distinct, evenly spaced up to rounding, and include the first and the last.
+/// Invariant: the chosen frames are distinct, evenly spaced up to rounding, and include the first
+/// and the last.
 #[derive(Debug, Clone)]
 pub struct ContactSheet {
     frames: usize,
@@ -46,7 +47,8 @@ impl ContactSheet {
         (0..self.tiles).any(|tile| (tile.saturating_mul(last) + intervals / 2) / intervals == index)
     }
 
-    /// Takes the picture of the frame at `index` (from 0); does nothing with one that it does not want.
+    /// Takes the picture of the frame at `index` (from 0); does nothing with one that it does not
+    /// want.
     pub fn add(&mut self, index: usize, image: &RgbImage) {
         if self.wants(index) && !self.thumbnails.iter().any(|(known, _)| *known == index) {
             self.thumbnails.push((index, thumbnail(image)));

@@ -63,7 +63,8 @@ impl Lettering {
         });
     }
 
-    /// Gives `draw` each glyph of `text` at its place beside the ones before it; returns the width of all, pixels.
+    /// Gives `draw` each glyph of `text` at its place beside the ones before it; returns the width
+    /// of all, pixels.
     fn lay_out(self, text: &str, mut draw: impl FnMut(&OutlinedGlyph)) -> u32 {
         let Some(font) = font().filter(|_| !text.is_empty()) else { return 0 };
         let scale = PxScale::from(self.size_px);

@@ -37,7 +37,8 @@ pub struct Overlay<'a> {
     pub caption: &'a str,
 }
 
-/// `image` with `overlay` drawn on it; same size. Images with a side below 120 pixels get no letters.
+/// `image` with `overlay` drawn on it; same size. Images with a side below 120 pixels get no
+/// letters.
 #[must_use]
 pub fn draw(image: &RgbImage, overlay: &Overlay) -> RgbImage {
     let mut image = image.clone();
@@ -95,7 +96,8 @@ fn draw_blob(image: &mut RgbImage, blob: &OverlayBlob, scale: Scale) {
     }
 }
 
-/// Hands as dots, the more opaque the heavier (light ones below heavy ones), and the heaviest particles' arms.
+/// Hands as dots, the more opaque the heavier (light ones below heavy ones), and the heaviest
+/// particles' arms.
 fn draw_particles(image: &mut RgbImage, arm: &OverlayArm, scale: Scale) {
     let colour = of_side(arm.side);
     let mut hands: Vec<&(Pixel, f32)> = arm.particle_hands.iter().collect();

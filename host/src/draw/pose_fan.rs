@@ -84,7 +84,8 @@ fn bounds(panel: &PoseFan) -> Option<[Vec3; 2]> {
     })
 }
 
-/// Pixels a metre at which all of the panel's bones are inside; bones that are not finite do not count.
+/// Pixels a metre at which all of the panel's bones are inside; bones that are not finite do not
+/// count.
 fn fitting_scale(panel: &PoseFan) -> f32 {
     let Some([low, high]) = bounds(panel) else { return LARGEST_SCALE };
     let sides = [(across(panel.look), WIDTH_PX), (1, HEIGHT_PX)];

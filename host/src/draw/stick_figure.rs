@@ -29,7 +29,8 @@ const GREY: Rgb<u8> = Rgb([150, 150, 156]);
 /// Joints that begin with the left and the right arm and leg, in the order of [`HUMAN`].
 const LIMBS: [(std::ops::Range<usize>, Rgb<u8>); 4] = [(2..5, LEFT), (8..11, LEFT), (5..8, RIGHT), (11..14, RIGHT)];
 
-/// Draws `joints`: left limbs first, then the trunk, right limbs last. A segment with an end that is not known is left out.
+/// Draws `joints`: left limbs first, then the trunk, right limbs last. A segment with an end that
+/// is not known is left out.
 pub fn draw_figure(image: &mut RgbImage, joints: &FigureJoints, style: FigureStyle) {
     let smaller = f64::from(image.width().min(image.height()));
     let factor = (smaller / 240.0).sqrt().clamp(0.35, 4.0);
@@ -71,7 +72,8 @@ fn segment(
     disc(image, end, 0.8 * width_px, colour, 1.0);
 }
 
-/// Writes `text` on a dark plate in the upper left corner; not on pictures with a side below 120 pixels.
+/// Writes `text` on a dark plate in the upper left corner; not on pictures with a side below 120
+/// pixels.
 pub fn caption(image: &mut RgbImage, text: &str) {
     let smaller = image.width().min(image.height());
     let size_px = (11.5 * (f64::from(smaller) / 240.0).sqrt()).clamp(10.0, 46.0) as f32;
@@ -87,7 +89,8 @@ mod tests {
 
     const WHITE: Rgb<u8> = Rgb([255; 3]);
 
-    /// Neck above the hips, left knee to the left, right knee to the right; the right ankle is not known.
+    /// Neck above the hips, left knee to the left, right knee to the right; the right ankle is not
+    /// known.
     fn figure() -> FigureJoints {
         let mut joints = [None; 14];
         let mut set = |joint: usize, u: f32, v: f32| joints[joint] = Some(Pixel::new(u, v));

@@ -1,7 +1,8 @@
 //! Smooth thick lines and discs, clipped before they are drawn.
 //!
-//! A line is the set of points within half its width of a segment; a pixel's share of the colour falls off linearly
-//! over one pixel across the rim. `imageproc` draws smooth or thick lines, but not both, and no dashes.
+//! A line is the set of points within half its width of a segment; a pixel's share of the colour
+//! falls off linearly over one pixel across the rim. `imageproc` draws smooth or thick lines, but
+//! not both, and no dashes.
 
 use image::{Rgb, RgbImage};
 use sinew_core::camera::Pixel;
@@ -31,7 +32,8 @@ impl Stroke {
         Self { colour, width_px, ..self }
     }
 
-    /// The same with dashes if `dashed`: three widths of line, four of gap (the round ends take one of them).
+    /// The same with dashes if `dashed`: three widths of line, four of gap (the round ends take one
+    /// of them).
     pub fn with_dashes(self, dashed: bool) -> Self {
         Self { dash_px: dashed.then_some((3.0 * self.width_px).max(1.0)), ..self }
     }
@@ -39,7 +41,8 @@ impl Stroke {
 
 type Point = (f64, f64);
 
-/// Draws the line between `from` and `to` (pixel axes) as far as it lies in the image; nothing if either is not finite.
+/// Draws the line between `from` and `to` (pixel axes) as far as it lies in the image; nothing if
+/// either is not finite.
 pub fn line(image: &mut RgbImage, from: Pixel, to: Pixel, stroke: &Stroke) {
     let (a, b) = (point(from), point(to));
     let reach = 0.5 * stroke.width_px + 1.0;

@@ -1,4 +1,5 @@
-//! The scene from above, in a corner: a ray through the camera is a point in the image, and a line only from elsewhere.
+//! The scene from above, in a corner: a ray through the camera is a point in the image, and a line
+//! only from elsewhere.
 
 use super::arm_marks::{OverlayArm, Scale, lighter, outlined};
 use super::colour::{BLOB, INK, SHADE, of_side};
@@ -13,7 +14,8 @@ const SMALLEST_PX: u32 = 64;
 /// Rim and lines that are neither arm nor ray.
 const GREY: Rgb<u8> = Rgb([150, 150, 155]);
 
-/// Draws x (to the right) and z (upwards) of joints and rays at the bottom right; nothing without any.
+/// Draws x (to the right) and z (upwards) of joints and rays at the bottom right; nothing without
+/// any.
 pub fn draw(image: &mut RgbImage, arms: &[OverlayArm], scale: Scale) {
     let (width, height) = image.dimensions();
     let seen: Vec<&OverlayArm> = arms.iter().filter(|arm| arm.status != Status::Lost).collect();

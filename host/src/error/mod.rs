@@ -23,7 +23,7 @@ use sinew_formats::images::{ImageFileError, InputError, VideoError};
 use sinew_formats::motion::MotionError;
 use sinew_formats::motion::export::ExportError;
 use sinew_record::RecordError;
-use std::fmt::{self, Display};
+use std::fmt::Display;
 
 /// What a function of the library returns.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -140,15 +140,14 @@ impl Error {
     }
 
     /// The error and its causes, each after a colon: what the command prints.
-    pub fn chain(&self) -> impl Display {
-        fmt::from_fn(move |formatter| {
-            write!(formatter, "{self}")?;
-            let mut cause = std::error::Error::source(self);
-            while let Some(error) = cause {
-                write!(formatter, ": {error}")?;
-                cause = error.source();
-            }
-            Ok(())
-        })
+    pub fn chain(&self) -> String {
+        let mut text = self.to_string();
+        let mut cause = std::error::Error::source(self);
+        while let Some(error) = cause {
+            text.push_str(": ");
+            text.push_str(&error.to_string());
+            cause = error.source();
+        }
+        text
     }
 }

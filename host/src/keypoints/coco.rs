@@ -1,5 +1,5 @@
-//! One JSON file for all frames: COCO results (a list of detections), COCO annotations, MMPose predictions, or bare lists of
-//! points.
+//! One JSON file for all frames: COCO results (a list of detections), COCO annotations, MMPose
+//! predictions, or bare lists of points.
 
 use super::error::{KeypointError, json, read_text};
 use super::layout::{self, DetectedFrame};
@@ -9,8 +9,8 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Reads a JSON file: a list of results, an object with `annotations` (and `images`) or with `instance_info`
-/// (MMPose), one OpenPose frame, or a list of lists of numbers ([`point_lists`]).
+/// Reads a JSON file: a list of results, an object with `annotations` (and `images`) or with
+/// `instance_info` (MMPose), one OpenPose frame, or a list of lists of numbers ([`point_lists`]).
 ///
 /// # Errors
 /// Names the file, the entry and the rule that it broke.
@@ -77,8 +77,9 @@ fn image_names(value: &Value) -> BTreeMap<String, String> {
     images.into_iter().flatten().filter_map(name).collect()
 }
 
-/// Groups entries by image, images in natural order. The number at the end of each name is the number of its frame if they
-/// rise; else images are counted from 0. Images of `listed` without an entry are frames without a person.
+/// Groups entries by image, images in natural order. The number at the end of each name is the
+/// number of its frame if they rise; else images are counted from 0. Images of `listed` without an
+/// entry are frames without a person.
 fn by_frame(entries: Vec<(String, Vec<layout::Keypoint>)>, listed: impl Iterator<Item = String>) -> Vec<DetectedFrame> {
     let mut names: Vec<String> = entries.iter().map(|entry| entry.0.clone()).chain(listed).collect();
     names.sort_by(|a, b| natord::compare(a, b).then_with(|| a.cmp(b)));

@@ -51,7 +51,8 @@ const fn joint(number: usize) -> Part {
     Part::Joint(number)
 }
 
-/// Head and arms of a swimmer, 7 points: head, shoulder, elbow and wrist of the right arm, then of the left.
+/// Head and arms of a swimmer, 7 points: head, shoulder, elbow and wrist of the right arm, then of
+/// the left.
 const HEAD_AND_ARMS: [Part; 7] = [Part::Other, joint(5), joint(6), joint(7), joint(2), joint(3), joint(4)];
 
 /// COCO, 17 points: face, then left and right shoulders, elbows, wrists, hips, knees, ankles.
@@ -169,8 +170,8 @@ pub fn unknown_count(count: usize) -> String {
     )
 }
 
-/// A person from a flat list x, y, confidence; points that are not finite, or all zero as detectors write what they did not
-/// find, are left out.
+/// A person from a flat list x, y, confidence; points that are not finite, or all zero as detectors
+/// write what they did not find, are left out.
 ///
 /// # Errors
 /// Says what is wrong with the list.
@@ -187,7 +188,8 @@ pub fn person(values: &[f64]) -> Result<Vec<Keypoint>, String> {
     Ok(parts.into_iter().zip(values.chunks(3)).filter_map(keypoint).collect())
 }
 
-/// The frame without points of which the detector was less sure than `min_confidence`, and without people of none.
+/// The frame without points of which the detector was less sure than `min_confidence`, and without
+/// people of none.
 #[must_use]
 pub fn sure_of(frame: &DetectedFrame, min_confidence: f64) -> DetectedFrame {
     let keep = |person: &Vec<Keypoint>| -> Vec<Keypoint> {
@@ -198,7 +200,8 @@ pub fn sure_of(frame: &DetectedFrame, min_confidence: f64) -> DetectedFrame {
     DetectedFrame { frame: frame.frame, people }
 }
 
-/// The joints of the stick figure; neck and hip centre are the middle of shoulders and hips where the detector has none.
+/// The joints of the stick figure; neck and hip centre are the middle of shoulders and hips where
+/// the detector has none.
 #[must_use]
 pub fn stick_joints(person: &[Keypoint]) -> [Option<Point>; JOINTS] {
     let mut joints = [None; JOINTS];

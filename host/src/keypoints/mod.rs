@@ -23,7 +23,8 @@ use std::path::Path;
 /// How sure a detector has to be of a keypoint unless something else is said.
 pub const DEFAULT_MIN_CONFIDENCE: f64 = 0.3;
 
-/// Reads keypoints: a folder of OpenPose files, one such file, a file of COCO results or annotations, or a CSV table.
+/// Reads keypoints: a folder of OpenPose files, one such file, a file of COCO results or
+/// annotations, or a CSV table.
 ///
 /// # Errors
 /// Names the file, the place in it and the rule that it broke.
@@ -58,7 +59,8 @@ pub struct Track {
     pub most_people: usize,
 }
 
-/// Follows one person through `frames`; keypoints of which the detector was less sure than `min_confidence` are missing.
+/// Follows one person through `frames`; keypoints of which the detector was less sure than
+/// `min_confidence` are missing.
 ///
 /// # Errors
 /// If no frame has a person with a usable keypoint; `path` is for the message.

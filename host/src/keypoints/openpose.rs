@@ -1,4 +1,5 @@
-//! OpenPose JSON: one file a frame, each with everybody in it. Pose2Sim and RTMLib write the same form.
+//! OpenPose JSON: one file a frame, each with everybody in it. Pose2Sim and RTMLib write the same
+//! form.
 
 use super::error::{KeypointError, json, read_text};
 use super::layout::{self, DetectedFrame};

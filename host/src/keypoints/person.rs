@@ -1,9 +1,11 @@
-//! Which of several people is followed: the one that takes the most room at first, then the nearest from frame to frame.
+//! Which of several people is followed: the one that takes the most room at first, then the nearest
+//! from frame to frame.
 
 use super::layout::{DetectedFrame, Keypoint, Part};
 use crate::cyclic::image_joints::Point;
 
-/// How far a person may move between frames, in their own height, before another one is believed to be seen.
+/// How far a person may move between frames, in their own height, before another one is believed to
+/// be seen.
 const FARTHEST_STEP: f64 = 0.25;
 /// How much farther for each frame in which the person was not seen, and at most.
 const FARTHER_PER_FRAME: f64 = 0.05;
@@ -66,7 +68,8 @@ fn height(person: &[Keypoint]) -> f64 {
     width.hypot(height).max(20.0)
 }
 
-/// The person whose points moved least since `before`, if on the mean not farther than `reach` pixels.
+/// The person whose points moved least since `before`, if on the mean not farther than `reach`
+/// pixels.
 fn nearest(before: &[Keypoint], people: &[Vec<Keypoint>], reach: f64) -> Option<usize> {
     let mut best: Option<(usize, f64)> = None;
     for (index, person) in people.iter().enumerate() {

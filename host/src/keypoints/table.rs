@@ -1,4 +1,5 @@
-//! CSV tables of keypoints: for each joint the columns `JOINT_x_px` and `JOINT_y_px`, and `JOINT_confidence` if there is one.
+//! CSV tables of keypoints: for each joint the columns `JOINT_x_px` and `JOINT_y_px`, and
+//! `JOINT_confidence` if there is one.
 
 use super::error::{KeypointError, read_text};
 use super::layout::{DetectedFrame, Keypoint, Part, Side};
@@ -16,8 +17,8 @@ struct Columns {
     confidence: Option<usize>,
 }
 
-/// Reads a table: a header, then one row a frame. `frame` is a column or the rows are counted from 0. An empty or NaN cell is
-/// a missing point.
+/// Reads a table: a header, then one row a frame. `frame` is a column, or
+/// rows are counted from zero. An empty or NaN cell is a missing point.
 ///
 /// # Errors
 /// Names the file, the line and the rule that it broke.

@@ -68,7 +68,8 @@ impl ArmRun {
         Ok(Self { frames, skin, config, setup, rate_hz })
     }
 
-    /// Shows every frame with its time in microseconds, once and in order; `None` is an image that cannot be read. Gives their number.
+    /// Shows every frame with its time in microseconds, once and in order; `None` is an image that
+    /// cannot be read. Gives their number.
     pub fn each_frame(&mut self, mut show: impl FnMut(usize, u64, Option<RgbImage>) -> Result<()>) -> Result<usize> {
         let mut frame = 0;
         loop {

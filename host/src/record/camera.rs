@@ -8,8 +8,9 @@ use image::RgbImage;
 use sinew_core::camera::Pixel;
 use sinew_record::{ArmInput, ArmSetup, CameraLine, CameraSetup, LINE_PIXELS};
 
-/// The stream of a run's images and their number. Wider ones than firmware's lines are made smaller by the mean of square blocks. Skin is what the run's
-/// Gaussian says in the light of the first image.
+/// The stream of a run's images and their number. Wider ones than firmware's lines are made smaller
+/// by the mean of square blocks. Skin is what the run's Gaussian says in the light of the first
+/// image.
 pub(super) fn camera_stream(run: &mut ArmRun) -> Result<(Vec<u8>, usize)> {
     let (width, _) = run.frames.size_px();
     let block = width.div_ceil(LINE_PIXELS as u32);
@@ -64,7 +65,8 @@ fn arm_setup(setup: &ArmSetup, block: u32) -> ArmSetup {
     }
 }
 
-/// Means of blocks of `block` x `block` pixels; what is left at the right and at the bottom is cut off.
+/// Means of blocks of `block` x `block` pixels; what is left at the right and at the bottom is cut
+/// off.
 fn smaller(image: &RgbImage, block: u32) -> RgbImage {
     RgbImage::from_fn(image.width() / block, image.height() / block, |u, v| {
         let mut sum = [0_u32; 3];
@@ -82,7 +84,8 @@ fn rgb565([red, green, blue]: [u8; 3]) -> u16 {
     u16::from(red >> 3) << 11 | u16::from(green >> 2) << 5 | u16::from(blue >> 3)
 }
 
-/// Puts the angles of a cyclic recording into a camera's: before each frame of the arm, one of the cyclic tracker.
+/// Puts the angles of a cyclic recording into a camera's: before each frame of the arm, one of the
+/// cyclic tracker.
 ///
 /// # Errors
 /// A stream that is broken.

@@ -1,4 +1,5 @@
-//! Recorded input for firmware: what the trackers of a run were given, bit for bit (see [`sinew_record`]).
+//! Recorded input for firmware: what the trackers of a run were given, bit for bit (see
+//! [`sinew_record`]).
 
 mod arm;
 mod arm_run;

@@ -33,10 +33,12 @@ pub struct Recorded {
     pub what: String,
 }
 
-/// Makes the stream of the run in `folder`: one of `sinew track arm` or `sinew demo`, or a report of `sinew track cyclic --report`.
+/// Makes the stream of the run in `folder`: one of `sinew track arm` or `sinew demo`, or a report
+/// of `sinew track cyclic --report`.
 ///
 /// # Errors
-/// A folder that holds no run, a run that firmware cannot play, an input of the run that is not there any more.
+/// A folder that holds no run, a run that firmware cannot play, an input of the run that is not
+/// there any more.
 pub fn record(folder: &Path, form: Form) -> Result<Recorded> {
     const REMEDY: &str = "give one that `sinew track arm`, `sinew demo` or `sinew track cyclic --report` wrote";
     ensure!(folder.is_dir(), "`{}` is no folder; {REMEDY}", folder.display());

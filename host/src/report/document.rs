@@ -103,7 +103,8 @@ pub struct Player {
 pub struct Figure {
     /// What is seen, and from where.
     pub title: String,
-    /// Smallest x, smallest y, largest x, largest y of the drawing; from the places where there are none.
+    /// Smallest x, smallest y, largest x, largest y of the drawing; from the places where there are
+    /// none.
     pub bounds: Option<[f64; 4]>,
     /// Whether y points down.
     pub y_down: bool,
@@ -163,7 +164,8 @@ impl Colour {
         ALL[index % ALL.len()]
     }
 
-    /// The colour of the side `left` or `right`, or of what begins with `l_` or `r_`; of neither for any other word.
+    /// The colour of the side `left` or `right`, or of what begins with `l_` or `r_`; of neither
+    /// for any other word.
     #[must_use]
     pub fn of_side(word: &str) -> Self {
         match word {
@@ -218,7 +220,8 @@ pub struct Plot {
     pub from_zero: bool,
     /// Whether x is the frame that the player shows.
     pub over_frames: bool,
-    /// Smallest x, smallest y, largest x, largest y that are shown; from the values where there are none.
+    /// Smallest x, smallest y, largest x, largest y that are shown; from the values where there are
+    /// none.
     pub bounds: Option<[f64; 4]>,
     /// What is drawn.
     pub series: Vec<Series>,

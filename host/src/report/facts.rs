@@ -38,7 +38,8 @@ pub fn text(value: &Value) -> String {
     }
 }
 
-/// A fact for each of the fields that the record has and that is not null: name of the field, label.
+/// A fact for each of the fields that the record has and that is not null: name of the field,
+/// label.
 #[must_use]
 pub fn facts_of(record: &Value, fields: &[(&str, &str)]) -> Vec<Fact> {
     let known = fields.iter().filter(|(field, _)| !record[*field].is_null());

@@ -130,7 +130,8 @@ impl RunFolder {
         Some(table)
     }
 
-    /// Where a path of a run's record leads: as it stands, or as seen from a folder above the run directory.
+    /// Where a path of a run's record leads: as it stands, or as seen from a folder above the run
+    /// directory.
     #[must_use]
     pub fn find(&self, recorded: &str) -> Option<PathBuf> {
         let recorded = Path::new(recorded);

@@ -1,6 +1,8 @@
-//! One page about one run or several: what was run, its frames, plots and tables, in a file that loads nothing.
+//! One page about one run or several: what was run, its frames, plots and tables, in a file that
+//! loads nothing.
 //!
-//! Each kind of run directory has a file that turns it into a [`document::Run`]; the page's own script draws that.
+//! Each kind of run directory has a file that turns it into a [`document::Run`]; the page's own
+//! script draws that.
 
 pub mod arm;
 pub mod arm_plots;

@@ -10,7 +10,8 @@ use serde_json::Value;
 /// Maximum number of pictures of such a folder that are shown.
 const MAX_PICTURES: usize = 24;
 
-/// Evaluations whose folders hold nothing but tables: a file that each has, and its name on the page.
+/// Evaluations whose folders hold nothing but tables: a file that each has, and its name on the
+/// page.
 const PLAIN_EVALUATIONS: [(&str, &str); 2] =
     [("hands.json", "Evaluation of both hands on real frames"), ("skin.json", "Evaluation of a skin model")];
 

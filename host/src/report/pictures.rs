@@ -96,7 +96,8 @@ pub fn block_name(index: usize) -> String {
     format!("pictures-{index}")
 }
 
-/// The finest rung by which all pictures fit, as far as a sample shows, and of how many pictures one has to do.
+/// The finest rung by which all pictures fit, as far as a sample shows, and of how many pictures
+/// one has to do.
 fn choose(all: &[&PathBuf], bytes: usize) -> Result<(usize, usize)> {
     let step = all.len().div_ceil(SAMPLES).max(1);
     let sample: Vec<RgbImage> = all.iter().step_by(step).filter_map(|path| load(path)).collect();

@@ -9,8 +9,8 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Layout in which this is kept: of its own fields, and of the options. Options are named as in a configuration file,
-/// so a new name of a key is a new layout.
+/// Layout in which this is kept: of its own fields, and of the options. Options are named as in a
+/// configuration file, so a new name of a key is a new layout.
 const VERSION: u32 = 3;
 
 /// Command, version, options and inputs of a run.
@@ -107,7 +107,8 @@ impl Begun {
         Ok(())
     }
 
-    /// Refuses options and a place of the input that would give other results than the run in `out` was begun for.
+    /// Refuses options and a place of the input that would give other results than the run in `out`
+    /// was begun for.
     ///
     /// # Errors
     /// Names the first difference.

@@ -1,4 +1,5 @@
-//! Cells of an evaluation: each is kept as it ends, so that an evaluation which was broken off goes on with the missing ones.
+//! Cells of an evaluation: each is kept as it ends, so that an evaluation which was broken off goes
+//! on with the missing ones.
 
 use super::{Begun, Interrupted, REMEDY};
 use crate::error::{Context, Error, Result, WriteContext};
@@ -55,11 +56,13 @@ impl<'a> Cells<'a> {
         Self::default()
     }
 
-    /// Keeps cells below `out` until [`Cells::end`]; no more are measured once `stop` says so. With `resume` those that an evaluation
-    /// begun in the same way left there are taken for measured. Without it they are removed.
+    /// Keeps cells below `out` until [`Cells::end`]; no more are measured once `stop` says so. With
+    /// `resume` those that an evaluation begun in the same way left there are taken for
+    /// measured. Without it they are removed.
     ///
     /// # Errors
-    /// Nothing to resume in `out`, or it was begun with other options, by another command or version; a folder that cannot be written.
+    /// Nothing to resume in `out`, or it was begun with other options, by another command or
+    /// version; a folder that cannot be written.
     pub fn keep(out: &OutputDir, begun: &Begun, resume: bool, stop: Stop<'a>) -> Result<Self> {
         let path = out.join(CELLS_FOLDER);
         if resume {
@@ -86,8 +89,8 @@ impl<'a> Cells<'a> {
         before.check_inputs(now)
     }
 
-    /// The value of a cell: that which was kept under `key`, or else what `measure` gives, which is then kept. A cell whose file cannot be
-    /// used is measured.
+    /// The value of a cell: that which was kept under `key`, or else what `measure` gives, which is
+    /// then kept. A cell whose file cannot be used is measured.
     ///
     /// # Errors
     /// As `measure`; [`Interrupted`] once `stop` says so; a file that cannot be written.
@@ -167,7 +170,8 @@ fn hash(key: &Value) -> u64 {
     hasher.finish()
 }
 
-/// A key's part that stands for data: CRC-32 of how they are written for programmers, which differs for any two numbers.
+/// A key's part that stands for data: CRC-32 of how they are written for programmers, which differs
+/// for any two numbers.
 #[must_use]
 pub fn crc32_of(data: &impl Debug) -> Value {
     json!(super::text_crc32(&format!("{data:?}")))
@@ -193,7 +197,7 @@ mod tests {
         assert!(cells.cell(&json!(["b", 1]), || -> Result<f64> { Ok(f64::NAN) }).unwrap().is_nan());
         ended.store(true, Ordering::Relaxed);
         let error = cells.cell(&json!(["a", 2]), never).unwrap_err();
-        assert_eq!(error.downcast_ref::<Interrupted>().unwrap().finished, 3);
+        assert_eq!(error.interrupted().unwrap().finished, 3);
         assert_eq!(cells.cell(&json!(["a", 1]), never).unwrap(), third, "a known cell is returned");
         ended.store(false, Ordering::Relaxed);
 

@@ -63,7 +63,8 @@ impl<S> Left<S> {
         Ok(csv::Writer::from_writer(pending))
     }
 
-    /// Refuses another input for the last finished frame, `name`, than there was; `crc32` is that of the present one.
+    /// Refuses another input for the last finished frame, `name`, than there was; `crc32` is that
+    /// of the present one.
     ///
     /// # Errors
     /// It is another.

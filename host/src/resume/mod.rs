@@ -1,7 +1,9 @@
-//! Going on with a run that Ctrl-C ended: what such a run leaves beside its results, and what it is compared with when it is taken up.
+//! Going on with a run that Ctrl-C ended: what such a run leaves beside its results, and what it is
+//! compared with when it is taken up.
 //!
-//! [`Begun`] says how a run was begun, [`Left`] adds how far it got and in which state it was, [`ResumeFile`] is where that is kept.
-//! A state is text ([`to_text`]) by way of the core's saved states, so that it comes back bit for bit. Evaluations keep [`Cells`] instead.
+//! [`Begun`] says how a run was begun, [`Left`] adds how far it got and in which state it was,
+//! [`ResumeFile`] is where that is kept. A state is text ([`to_text`]) by way of the core's saved
+//! states, so that it comes back bit for bit. Evaluations keep [`Cells`] instead.
 
 mod begun;
 mod cells;

@@ -71,7 +71,8 @@ impl Body {
         }
     }
 
-    /// `point`, given in body heights to the left, up and to the front of the middle of the shoulders.
+    /// `point`, given in body heights to the left, up and to the front of the middle of the
+    /// shoulders.
     fn at(&self, left: f32, up: f32, front: f32) -> Vec3 {
         self.shoulder_middle_m + to_camera(&Vec3::new(left, up, front)) * self.height_m
     }

@@ -1,4 +1,5 @@
-//! A picture with depth: shaded shapes are drawn into it, then it goes through a lens blur and sensor noise.
+//! A picture with depth: shaded shapes are drawn into it, then it goes through a lens blur and
+//! sensor noise.
 
 use super::palette::{Rgb, encode};
 use super::shape::{NEAREST_DEPTH_M, Shape};
@@ -10,7 +11,8 @@ use sinew_core::random::Stream;
 /// Levels of the picture are kept in this many parts of one level of 255.
 pub const FINE: i16 = 64;
 const ENCODING_STEPS: usize = 4096;
-/// Noise values that are drawn once for a scene; each row of each frame starts somewhere else in them.
+/// Noise values that are drawn once for a scene; each row of each frame starts somewhere else in
+/// them.
 const NOISE_VALUES: usize = 1 << 16;
 
 /// How a surface looks.
@@ -191,7 +193,8 @@ impl Canvas {
         self.depth_m[y as usize * self.width + x as usize] < depth_m
     }
 
-    /// The picture as a camera gives it: each channel blurred by (1, 2, 1)/4 along rows and columns, with noise.
+    /// The picture as a camera gives it: each channel blurred by (1, 2, 1)/4 along rows and
+    /// columns, with noise.
     #[must_use]
     pub fn developed(&self, noise: &Noise, stream: &mut Stream) -> RgbImage {
         let row_length = 3 * self.width;

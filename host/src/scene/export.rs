@@ -7,7 +7,8 @@ use crate::output::OutputDir;
 use rayon::prelude::*;
 
 impl Scene {
-    /// The configuration that describes this camera and this body, as `track arm --config` reads it.
+    /// The configuration that describes this camera and this body, as `track arm --config` reads
+    /// it.
     #[must_use]
     pub fn config_toml(&self) -> String {
         let (camera, body, options) = (self.camera(), self.body(), self.options());

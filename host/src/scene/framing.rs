@@ -13,7 +13,8 @@ const FARTHEST_M: f32 = 2.2;
 const DISTANCE_STEP_M: f32 = 0.05;
 /// Heights of the shoulders over the line of sight that are tried, metres (camera y is down).
 const SHOULDER_Y_M: [f32; 9] = [-0.1, -0.05, -0.15, 0.0, -0.2, 0.05, 0.1, 0.15, 0.2];
-/// Share of hand positions that have to be inside the image with a margin of a twentieth of its height.
+/// Share of hand positions that have to be inside the image with a margin of a twentieth of its
+/// height.
 const INSIDE_SHARE: f32 = 0.97;
 
 /// Places the shoulders at a random distance of 1.0 to 1.5 m. Then moves them farther in steps

@@ -1,4 +1,5 @@
-//! The hand: a palm, four fingers of two phalanges each, a thumb and the bare wrist; it opens, closes and turns slowly.
+//! The hand: a palm, four fingers of two phalanges each, a thumb and the bare wrist; it opens,
+//! closes and turns slowly.
 
 use super::body::{ArmJoints, Body};
 use super::shape::Shape;
@@ -6,8 +7,8 @@ use crate::motion::{ArmSide, anthropometry};
 use sinew_core::math::{Mat3, Vec3, axis_rotation, clamp, sin_cos, unit};
 use sinew_core::random::Stream;
 
-/// Finger roots over the palm's width and finger lengths (index to little), shares of the hand's length; 0.45 of a
-/// hand is fingers.
+/// Finger roots over the palm's width and finger lengths (index to little), shares of the hand's
+/// length; 0.45 of a hand is fingers.
 const FINGERS: [(f32, f32); 4] = [(0.165, 0.42), (0.055, 0.46), (-0.055, 0.43), (-0.160, 0.34)];
 
 /// Share of its length by which the hand is drawn beyond the wrist. The half-open hand, seen flat,
@@ -129,7 +130,8 @@ mod tests {
     use super::*;
     use crate::scene::body::to_camera;
 
-    /// Mean of the surface points that a camera sees of an upright hand before it, relative to the hand's point.
+    /// Mean of the surface points that a camera sees of an upright hand before it, relative to the
+    /// hand's point.
     fn middle_of_silhouette(side: ArmSide, pose: &HandPose) -> Vec3 {
         let body = Body { height_m: 1.75, shoulder_middle_m: Vec3::new(0.0, 0.0, 1.0) };
         let hand_m = Vec3::new(0.0, 0.0, 1.0);

@@ -1,7 +1,8 @@
-//! Rendered scenes with known truth: a person in front of a webcam whose arms perform an [`ArmMotion`].
+//! Rendered scenes with known truth: a person in front of a webcam whose arms perform an
+//! [`ArmMotion`].
 //!
-//! A frame depends on options and number only, so frames can be rendered in any order and by many threads. The same
-//! options give the same bytes in every build.
+//! A frame depends on options and number only, so frames can be rendered in any order and by many
+//! threads. The same options give the same bytes in every build.
 
 pub mod background;
 pub mod body;
@@ -281,7 +282,8 @@ impl MovingArm {
 /// The card before a hand.
 fn card(joints: &ArmJoints) -> Shape {
     let hand = joints.hand_m;
-    // Nearer to the camera on the hand's own line of sight, so that it covers the hand from everywhere in the image.
+    // Nearer to the camera on the hand's own line of sight, so that it covers the hand from everywhere
+    // in the image.
     Shape::Card { centre: hand * ((hand.z - 0.13).max(0.1) / hand.z), half: CARD_HALF_M }
 }
 

@@ -56,11 +56,14 @@ pub struct SceneOptions {
     pub sides: Sides,
     /// Body height, metres; it sets all lengths.
     pub body_height_m: f32,
-    /// Share of the frames in which face and neck show their skin; in the others a hood covers both.
+    /// Share of the frames in which face and neck show their skin; in the others a hood covers
+    /// both.
     pub false_blob_fraction: f32,
-    /// Share of the frames in which a hand is hidden by a glove or a card, in runs of 3 to 10 frames.
+    /// Share of the frames in which a hand is hidden by a glove or a card, in runs of 3 to 10
+    /// frames.
     pub hidden_fraction: f32,
-    /// Frames in which the arm is behind the back and shows no skin; in the frame after them it is back.
+    /// Frames in which the arm is behind the back and shows no skin; in the frame after them it is
+    /// back.
     pub away: Option<Range<usize>>,
     /// Standard deviation of the sensor noise, levels of 255.
     pub noise_std: f32,

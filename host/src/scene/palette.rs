@@ -6,10 +6,11 @@ use sinew_core::random::Stream;
 /// Linear red, green, blue.
 pub type Rgb = Vec3;
 
-/// Diffuse reflectances `Skin1` and `Skin2`, measured by Jensen et al., "A practical model for subsurface light
-/// transport" (2001), figure 5.
+/// Diffuse reflectances `Skin1` and `Skin2`, measured by Jensen et al., "A practical model for
+/// subsurface light transport" (2001), figure 5.
 const MEASURED_SKIN: [[f32; 3]; 2] = [[0.44, 0.22, 0.13], [0.63, 0.44, 0.34]];
-/// Absorption of melanin at 600, 540 and 450 nm relative to 600 nm: wavelength to the power of -3.33 (Jacques, 1998).
+/// Absorption of melanin at 600, 540 and 450 nm relative to 600 nm: wavelength to the power of
+/// -3.33 (Jacques, 1998).
 const MELANIN: [f32; 3] = [1.0, 1.42, 2.61];
 /// Maximum melanin that is added, as optical depth at 600 nm.
 const MAX_MELANIN: f32 = 0.5;
@@ -33,9 +34,11 @@ pub fn hair(stream: &mut Stream) -> Rgb {
     Rgb::from(SHADES[stream.below(5) as usize]) * (0.7 + 0.6 * stream.uniform())
 }
 
-/// A garment's colour that differs from all of `others` by at least 0.15 in encoded RGB where that can be had.
+/// A garment's colour that differs from all of `others` by at least 0.15 in encoded RGB where that
+/// can be had.
 ///
-/// Its hue lies from yellow-green over blue to purple, or it is nearly grey: no clothes have the colour of skin.
+/// Its hue lies from yellow-green over blue to purple, or it is nearly grey: no clothes have the
+/// colour of skin.
 pub fn garment(stream: &mut Stream, others: &[Rgb]) -> Rgb {
     let mut colour = Rgb::zeros();
     for _ in 0..TRIES {

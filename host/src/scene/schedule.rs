@@ -7,9 +7,11 @@ fn between(stream: &mut Stream, low: usize, high: usize) -> usize {
     low + stream.below((high - low + 1) as u32) as usize
 }
 
-/// Marks `round(fraction * frames)` of `frames` frames, in runs of `shortest..=longest` frames at random places.
+/// Marks `round(fraction * frames)` of `frames` frames, in runs of `shortest..=longest` frames at
+/// random places.
 ///
-/// The count is exact. Two runs may touch, and the last one may be shorter than `shortest` where the count asks for it.
+/// The count is exact. Two runs may touch, and the last one may be shorter than `shortest` where
+/// the count asks for it.
 #[must_use]
 pub fn runs(stream: &mut Stream, frames: usize, fraction: f32, shortest: usize, longest: usize) -> Vec<bool> {
     let wanted = ((fraction * frames as f32 + 0.5) as usize).min(frames);

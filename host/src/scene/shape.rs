@@ -44,8 +44,8 @@ pub struct Hit {
     pub depth_m: f32,
     /// Unit normal, towards the camera's side.
     pub normal: Vec3,
-    /// Place on the surface: unit-sphere coordinates of an ellipsoid; metres along a capsule (x); metres from a card's
-    /// centre (x, y).
+    /// Place on the surface: unit-sphere coordinates of an ellipsoid; metres along a capsule (x);
+    /// metres from a card's centre (x, y).
     pub place: Vec3,
 }
 
@@ -126,7 +126,8 @@ fn first_root(a: f32, b: f32, c: f32) -> Option<f32> {
 }
 
 impl Prepared {
-    /// First point where the ray through `direction` (its z is 1) meets the shape, beyond [`NEAREST_DEPTH_M`].
+    /// First point where the ray through `direction` (its z is 1) meets the shape, beyond
+    /// [`NEAREST_DEPTH_M`].
     #[must_use]
     #[inline]
     pub fn hit(&self, direction: &Vec3) -> Option<Hit> {

@@ -13,13 +13,14 @@ pub struct SideTruth {
     pub side: ArmSide,
     /// Joints in camera axes, metres.
     pub joints: ArmJoints,
-    /// Whether the hand's skin can be seen: not hidden, and at least half of its parts inside the image and not behind
-    /// something.
+    /// Whether the hand's skin can be seen: not hidden, and at least half of its parts inside the
+    /// image and not behind something.
     pub hand_visible: bool,
 }
 
 impl SideTruth {
-    /// Pixel of the middle of the hand, also where it is hidden or outside the image; `None` behind the camera.
+    /// Pixel of the middle of the hand, also where it is hidden or outside the image; `None` behind
+    /// the camera.
     #[must_use]
     pub fn hand_px(&self, camera: &Camera) -> Option<Pixel> {
         camera.project(&self.joints.hand_m)
@@ -45,7 +46,8 @@ shoulder_x_m,shoulder_y_m,shoulder_z_m,elbow_x_m,elbow_y_m,elbow_z_m,hand_x_m,ha
 shoulder_u_px,shoulder_v_px,elbow_u_px,elbow_v_px,hand_u_px,hand_v_px,hand_visible,false_blob";
 
 impl FrameTruth {
-    /// One line per moving arm, in the order of [`HEADER`]; a pixel behind the camera is an empty cell.
+    /// One line per moving arm, in the order of [`HEADER`]; a pixel behind the camera is an empty
+    /// cell.
     #[must_use]
     pub fn csv_lines(&self, camera: &Camera) -> String {
         let mut text = String::new();

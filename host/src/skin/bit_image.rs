@@ -6,7 +6,8 @@ use sinew_core::vision::frame::{DEFAULT_CLOSING_FRACTION, closing_steps};
 use sinew_core::vision::mask::{Mask, MaskMut, words_per_row};
 use sinew_core::vision::morphology::{close_by, open, scratch_words};
 
-/// A one-bit image that owns its words; pixels are read and written by the views of [`sinew_core::vision::mask`].
+/// A one-bit image that owns its words; pixels are read and written by the views of
+/// [`sinew_core::vision::mask`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BitImage {
     words: Vec<u32>,
@@ -61,7 +62,8 @@ impl BitImage {
         Ok(MaskMut::new(&mut self.words, self.width, self.height)?)
     }
 
-    /// Opening by the 3x3 square, then a closing in proportion to the width: the morphology of the tracker.
+    /// Opening by the 3x3 square, then a closing in proportion to the width: the morphology of the
+    /// tracker.
     ///
     /// # Errors
     /// None in practice: the scratch memory fits.

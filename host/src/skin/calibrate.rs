@@ -16,7 +16,8 @@ const TRAINED_PIXELS: f64 = 30.0;
 const MAX_RECTANGLE_PART: f64 = 0.8;
 /// Rounds of trimming.
 const TRIMMING_ROUNDS: usize = 5;
-/// Squared Mahalanobis distance beyond which a pixel is trimmed: 99 % of a two-dimensional normal distribution.
+/// Squared Mahalanobis distance beyond which a pixel is trimmed: 99 % of a two-dimensional normal
+/// distribution.
 const TRIM_SQUARED: f64 = 9.21;
 /// Part of the scene's skin that is taken to look like the rectangle, in the histogram.
 const RECTANGLE_SHARE: f64 = 0.3;
@@ -91,7 +92,8 @@ impl SkinModel {
     }
 }
 
-/// Blends the trained moments with the rectangle's, trimmed of what is not skin in it (rings, glare, background).
+/// Blends the trained moments with the rectangle's, trimmed of what is not skin in it (rings,
+/// glare, background).
 fn adapt_gaussian(trained: &GaussianModel, colours: &[[u8; 3]], gains: Gains) -> Result<GaussianModel> {
     let points: Vec<[f64; 2]> = colours.iter().filter_map(|&rgb| chromaticity(gains.apply(rgb))).collect();
     let (mean, covariance, kept) = trimmed_moments(&points)?;
@@ -152,7 +154,8 @@ fn squared_distance(point: [f64; 2], mean: [f64; 2], [rr, rg, gg]: [f64; 3]) -> 
     (gg * r * r - 2.0 * rg * r * g + rr * g * g) / (rr * gg - rg * rg)
 }
 
-/// Makes [`RECTANGLE_SHARE`] of all skin look like the rectangle, in all [`SHADES`]; the rest looks as it was trained.
+/// Makes [`RECTANGLE_SHARE`] of all skin look like the rectangle, in all [`SHADES`]; the rest looks
+/// as it was trained.
 fn adapt_histogram(trained: &HistogramModel, colours: &[[u8; 3]]) -> Result<HistogramModel> {
     let mut density = vec![0.0; CELLS];
     for rgb in colours.iter().flat_map(|&rgb| SHADES.iter().filter_map(move |&gain| relit(rgb, gain, [1.0; 3]))) {

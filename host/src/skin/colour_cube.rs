@@ -21,8 +21,8 @@ pub fn centre_of(cell: usize) -> [f64; 3] {
     [r, g, b].map(|channel| channel as f64 * 8.0 + 3.5)
 }
 
-/// `rgb` under light that is `gain` times as strong, with a `tint` for each channel; `None` where a channel would be
-/// clipped that was not before.
+/// `rgb` under light that is `gain` times as strong, with a `tint` for each channel; `None` where a
+/// channel would be clipped that was not before.
 #[must_use]
 pub fn relit(rgb: [u8; 3], gain: f64, tint: [f64; 3]) -> Option<[u8; 3]> {
     let scaled = [0, 1, 2].map(|i| f64::from(rgb[i]) * gain * tint[i]);
@@ -37,7 +37,8 @@ fn kernel(std: f64) -> [f64; 4] {
     raw.map(|weight| weight / sum)
 }
 
-/// Smooths `values` along the axis whose neighbours are `stride` apart and which is `side` long; what leaves is lost.
+/// Smooths `values` along the axis whose neighbours are `stride` apart and which is `side` long;
+/// what leaves is lost.
 fn smooth_axis(values: &[f64], stride: usize, side: usize, kernel: [f64; 4]) -> Vec<f64> {
     let at = |index: usize| {
         let place = index / stride % side;
@@ -64,7 +65,8 @@ pub fn smooth(cube: &[f64], std: f64) -> Vec<f64> {
     smooth_axis(&along_g, CUBE_SIDE * CUBE_SIDE, CUBE_SIDE, kernel)
 }
 
-/// For each cell of the cube the (smoothed) mass of all cells of about its chromaticity, bright or dark.
+/// For each cell of the cube the (smoothed) mass of all cells of about its chromaticity, bright or
+/// dark.
 #[must_use]
 pub fn over_brightness(cube: &[f64]) -> Vec<f64> {
     let plane_cell = |cell: usize| {

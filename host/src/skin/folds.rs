@@ -2,7 +2,8 @@
 
 use sinew_core::random::Stream;
 
-/// Assigns each of `count` items to one of `folds` folds of nearly equal size, in an order drawn from `seed`.
+/// Assigns each of `count` items to one of `folds` folds of nearly equal size, in an order drawn
+/// from `seed`.
 #[must_use]
 pub fn assign(count: usize, folds: usize, seed: u64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..count).collect();

@@ -44,7 +44,8 @@ impl GaussianModel {
         Ok(GaussianSkin::new(mean_r, mean_g, covariance, self.threshold as f32, self.min_sum)?)
     }
 
-    /// The Gaussian of raw chromaticities that becomes this one when balanced by `gains`, to first order around its mean.
+    /// The Gaussian of raw chromaticities that becomes this one when balanced by `gains`, to first
+    /// order around its mean.
     #[must_use]
     pub fn before_balance(&self, gains: &Gains) -> Self {
         let (mean, covariance) = gains.raw_moments(self.mean, self.covariance);
@@ -74,7 +75,8 @@ impl Moments {
             [self.products[0] + weight * r * r, self.products[1] + weight * r * g, self.products[2] + weight * g * g];
     }
 
-    /// Mean (r, g) and covariance (rr, rg, gg, with a small floor on the diagonal); `None` without any weight.
+    /// Mean (r, g) and covariance (rr, rg, gg, with a small floor on the diagonal); `None` without
+    /// any weight.
     pub(super) fn mean_and_covariance(&self) -> Option<([f64; 2], [f64; 3])> {
         if self.weight <= 0.0 {
             return None;
@@ -92,7 +94,8 @@ pub(super) fn chromaticity(rgb: [f64; 3]) -> Option<[f64; 2]> {
     (sum > 0.0).then(|| [rgb[0] / sum, rgb[1] / sum])
 }
 
-/// Fits mean, covariance and the darkest sum to the skin of `units`; the threshold is left at `threshold`.
+/// Fits mean, covariance and the darkest sum to the skin of `units`; the threshold is left at
+/// `threshold`.
 fn fit(units: &[&Unit], threshold: f64) -> Result<GaussianModel> {
     let mut moments = Moments::default();
     let mut count_of_sum = vec![0_u64; 766];
@@ -120,7 +123,8 @@ fn fit(units: &[&Unit], threshold: f64) -> Result<GaussianModel> {
     })
 }
 
-/// The set with the colours of each image balanced; a list of pixels has no image to balance by and stays as it is.
+/// The set with the colours of each image balanced; a list of pixels has no image to balance by and
+/// stays as it is.
 fn balanced(set: &TrainingSet) -> TrainingSet {
     let mut set = set.clone();
     if set.source == Source::PixelList {

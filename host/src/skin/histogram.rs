@@ -50,7 +50,8 @@ impl HistogramModel {
         table
     }
 
-    /// The model of given skin and other masses (in images), which already include all prior evidence.
+    /// The model of given skin and other masses (in images), which already include all prior
+    /// evidence.
     pub(super) fn from_masses(skin: &[f64], other: &[f64], min_probability: u8) -> Self {
         let quantise = |(&s, &o): (&f64, &f64)| ((s / (s + o)) * TOP).round() as u8;
         let level = |(&s, &o): (&f64, &f64)| ((s + o).log2().round() + 10.0).clamp(0.0, 15.0) as u8;
@@ -81,7 +82,8 @@ pub fn is_skin(table: &[u32; CUBE_WORDS], rgb: [u8; 3]) -> bool {
     HistogramSkin::new(table).is_skin(rgb)
 }
 
-/// Adds a unit's colours to the cubes, under all [`GAINS`] and [`TINTS`]; the unit as a whole counts as one image.
+/// Adds a unit's colours to the cubes, under all [`GAINS`] and [`TINTS`]; the unit as a whole
+/// counts as one image.
 fn count(unit: &Unit, skin: &mut [f64], other: &mut [f64]) {
     let mut total = 0.0;
     let mut counted = Vec::with_capacity(unit.colours.len() * GAINS.len() * TINTS.len());

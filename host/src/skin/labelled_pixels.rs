@@ -1,4 +1,5 @@
-//! Labelled pixels in the form of the UCI "Skin Segmentation" set: rows `B G R label`, 1 = skin, 2 = not skin.
+//! Labelled pixels in the form of the UCI "Skin Segmentation" set: rows `B G R label`,
+//! where 1 is skin and 2 is not.
 
 use crate::error::{Context, Result, bail};
 use std::fs;
@@ -22,7 +23,8 @@ pub struct LabelledPixels {
     pub row_count: usize,
 }
 
-/// Reads rows `B G R label` separated by white space; empty lines are passed over, duplicates are dropped.
+/// Reads rows `B G R label` separated by white space; empty lines are passed over, duplicates are
+/// dropped.
 ///
 /// # Errors
 /// Names the file, the line and what is wrong there; or says which label is missing.

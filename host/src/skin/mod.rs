@@ -1,4 +1,5 @@
-//! Skin colour: models trained from labelled pixels or image-mask pairs, calibrated to a scene, and applied to whole images.
+//! Skin colour: models trained from labelled pixels or image-mask pairs, calibrated to a scene, and
+//! applied to whole images.
 //!
 //! The decisions taken here are written down in `docs/skin.md`.
 

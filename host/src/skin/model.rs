@@ -58,7 +58,8 @@ pub struct TrainedOn {
     pub folds: u64,
     /// Seed of the shuffling.
     pub seed: u64,
-    /// Pooled scores at the chosen threshold, each unit judged by a model that was not trained on it.
+    /// Pooled scores at the chosen threshold, each unit judged by a model that was not trained on
+    /// it.
     pub cross_validated: Scores,
 }
 

@@ -44,7 +44,8 @@ struct HistogramText {
 }
 
 impl SkinModel {
-    /// The model that `--skin` names: `gaussian`, `histogram` (the shipped ones), or a file made by `sinew train skin`.
+    /// The model that `--skin` names: `gaussian`, `histogram` (the shipped ones), or a file made by
+    /// `sinew train skin`.
     ///
     /// # Errors
     /// Says what is wrong with the file and how to make one.

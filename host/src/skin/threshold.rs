@@ -4,16 +4,20 @@ use super::confusion::{Confusion, Scores};
 use super::folds;
 use super::training_set::{Source, TrainingSet, Unit};
 
-/// Thresholds whose F1 is at least this part of the best one are taken as equally good: for a list of many pixels.
+/// Thresholds whose F1 is at least this part of the best one are taken as equally good: for a list
+/// of many pixels.
 pub const LIST_PLATEAU: f64 = 0.99;
-/// The same for images, of which there are few: with other folds the best threshold's F1 moves by about this much.
+/// The same for images, of which there are few: with other folds the best threshold's F1 moves by
+/// about this much.
 pub const IMAGES_PLATEAU: f64 = 0.98;
 
 /// A trained colour model whose threshold is still open.
 ///
-/// A colour of level n is skin for the threshold levels n and above; levels rise from the tightest threshold.
+/// A colour of level n is skin for the threshold levels n and above; levels rise from the tightest
+/// threshold.
 pub trait ColourLevels {
-    /// The tightest threshold level that accepts `rgb`; a number beyond the last level where none does.
+    /// The tightest threshold level that accepts `rgb`; a number beyond the last level where none
+    /// does.
     fn level(&self, rgb: [u8; 3]) -> usize;
 }
 
@@ -34,7 +38,8 @@ pub struct Choice {
     pub scores: Scores,
 }
 
-/// Trains on all folds but one, judges that one, and adds up over all folds: no unit is judged by a model trained on it.
+/// Trains on all folds but one, judges that one, and adds up over all folds: no unit is judged by a
+/// model trained on it.
 pub fn cross_validate<M: ColourLevels>(
     set: &TrainingSet,
     fold_count: usize,
@@ -78,7 +83,8 @@ fn judge(model: &impl ColourLevels, unit: &Unit, levels: &mut [Confusion]) {
 }
 
 impl Curve {
-    /// Mean over the groups of the pooled F1 at `level`: each source counts the same, however many pixels it has.
+    /// Mean over the groups of the pooled F1 at `level`: each source counts the same, however many
+    /// pixels it has.
     fn mean_f1(&self, level: usize) -> f64 {
         let sum: f64 = self.groups.iter().map(|levels| levels[level].scores().f1).sum();
         sum / self.groups.len().max(1) as f64
@@ -86,9 +92,9 @@ impl Curve {
 
     /// Chooses a level on the plateau around the best one, where F1 is nearly the best.
     ///
-    /// Whole images show all that a camera sees, so the plateau's middle is taken: the peak itself is noise. A pixel list
-    /// says little of the background that skin is separated from, so its F1 flatters loose thresholds: there the plateau's
-    /// tightest level is taken.
+    /// Whole images show all that a camera sees, so the plateau's middle is taken: the peak itself
+    /// is noise. A pixel list says little of the background that skin is separated from, so its
+    /// F1 flatters loose thresholds: there the plateau's tightest level is taken.
     #[must_use]
     pub fn choose(&self) -> Choice {
         let level_count = self.groups.first().map_or(0, Vec::len);

@@ -34,7 +34,8 @@ pub fn pixels_set(path: &Path, seed: u64) -> Result<TrainingSet> {
     Ok(TrainingSet::from_pixels(short_name(path), &pixels, seed))
 }
 
-/// The training set of image-mask pairs, and the files that could not be read with the reason, in order.
+/// The training set of image-mask pairs, and the files that could not be read with the reason, in
+/// order.
 ///
 /// # Errors
 /// A mask whose size is not that of its image; no pair that can be read.

@@ -85,8 +85,8 @@ impl TrainingSet {
 }
 
 impl Unit {
-    /// Samples an image of the given `group`: one pixel of each of up to [`SAMPLED_PIXELS_PER_IMAGE`] equal stretches,
-    /// chosen by `seed` and `index`.
+    /// Samples an image of the given `group`: one pixel of each of up to
+    /// [`SAMPLED_PIXELS_PER_IMAGE`] equal stretches, chosen by `seed` and `index`.
     #[must_use]
     pub fn from_image(image: &RgbImage, mask: &BitImage, group: usize, seed: u64, index: u32) -> Self {
         let gray = mask.to_gray();

@@ -1,4 +1,5 @@
-//! How a skin model follows the tint of an image; the correction is [`sinew_core::vision::white_balance`].
+//! How a skin model follows the tint of an image; the correction is
+//! [`sinew_core::vision::white_balance`].
 
 use image::RgbImage;
 use serde::{Deserialize, Serialize};

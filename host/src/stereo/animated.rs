@@ -40,8 +40,8 @@ pub fn goal(bone: usize, position_m: Vec3, precision: f32) -> Goal {
 }
 
 impl AnimatedBody {
-    /// An adult of the standard proportions with the given `angles` (name and radians or metres; all others zero), cut to the
-    /// limits.
+    /// An adult of the standard proportions with the given `angles` (name and radians or metres;
+    /// all others zero), cut to the limits.
     ///
     /// # Errors
     /// None for the height that is built in.

@@ -5,8 +5,9 @@ use sinew_core::math::Vec3;
 
 /// A level stereo camera; points are in the axes of its left, the reference, camera.
 ///
-/// The default is like a Bumblebee2 with its wide lens: 640x480 pixels, 65 degrees across, 12 cm between the cameras, disparities
-/// matched to a fifth of a pixel. So a depth of 3 m has a standard deviation of 3 cm.
+/// The default is like a Bumblebee2 with its wide lens: 640x480 pixels, 65 degrees across, 12 cm
+/// between the cameras, disparities matched to a fifth of a pixel. So a depth of 3 m has a standard
+/// deviation of 3 cm.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct StereoCamera {
     /// Width of the picture, pixels.
@@ -55,8 +56,8 @@ impl StereoCamera {
         (point_m.z > 1.0e-6).then(|| Pixel::new(at(point_m.x, centre.u_px), at(point_m.y, centre.v_px)))
     }
 
-    /// Standard deviation of the depth of a point `z_m` away, metres: z^2 over focal length and baseline, times that of the
-    /// disparity.
+    /// Standard deviation of the depth of a point `z_m` away, metres: z^2 over focal length and
+    /// baseline, times that of the disparity.
     #[must_use]
     pub fn depth_std_m(&self, z_m: f32) -> f32 {
         z_m * z_m * self.disparity_std_px / (self.focal_px * self.baseline_m)

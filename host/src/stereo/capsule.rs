@@ -19,7 +19,8 @@ pub struct Capsule {
 const ALONG_SQUARED: f32 = 1.0e-10;
 
 impl Capsule {
-    /// Where the ray from the origin along `direction` enters: the factor of `direction`; `None` where it misses, or begins inside.
+    /// Where the ray from the origin along `direction` enters: the factor of `direction`; `None`
+    /// where it misses, or begins inside.
     ///
     /// A capsule is the union of two balls and of a cylinder whose flat ends lie inside the balls.
     /// So the first entry of the three is that of the capsule.
@@ -56,7 +57,8 @@ impl Capsule {
 fn enters_ball(centre: &Vec3, direction: &Vec3, radius_m: f32) -> Option<f32> {
     let squared = direction.norm_squared();
     let middle = centre.dot(direction) / squared;
-    // From the nearest point of the ray, not by b^2 - 4ac: a thin bone far away would be lost in rounding.
+    // From the nearest point of the ray, not by b^2 - 4ac: a thin bone far away would be lost in
+    // rounding.
     let half_chord_squared = radius_m * radius_m - (centre - direction * middle).norm_squared();
     (half_chord_squared >= 0.0).then(|| middle - sqrt(half_chord_squared / squared))
 }

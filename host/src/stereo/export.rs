@@ -1,4 +1,5 @@
-//! Writes a scene as a folder: the points of each frame, the truth, who is seen, and the first pose.
+//! Writes a scene as a folder: the points of each frame, the truth, who is seen, and the first
+//! pose.
 
 use super::camera::StereoCamera;
 use super::hidden::Hidden;
@@ -56,8 +57,8 @@ pub struct StereoReport<'a> {
 }
 
 impl StereoScene {
-    /// Writes `points/000000.ply` and on, `truth.csv`, `body.json`, `first_pose.json`, with a stick `stick.csv`, and at last
-    /// `run.json`.
+    /// Writes `points/000000.ply` and on, `truth.csv`, `body.json`, `first_pose.json`, with a stick
+    /// `stick.csv`, and at last `run.json`.
     ///
     /// # Errors
     /// A file that cannot be written, by name.

@@ -1,4 +1,5 @@
-//! Virtual markers: fixed places on the skin of the true capsules, for the error measure (34) of the PIK paper.
+//! Virtual markers: fixed places on the skin of the true capsules, for the error measure (34) of
+//! the PIK paper.
 
 use crate::body::BodyJoints;
 use sinew_core::math::{Vec3, unit};
@@ -16,10 +17,12 @@ const DOWN: BodyDirection = [0.0, -1.0, 0.0];
 const FRONT: BodyDirection = [0.0, 0.0, 1.0];
 const BACK: BodyDirection = [0.0, 0.0, -1.0];
 
-/// Share of the way along the bone, and where the skin faces when the bone lies in its rest direction.
+/// Share of the way along the bone, and where the skin faces when the bone lies in its rest
+/// direction.
 type Place = (f32, BodyDirection);
 
-/// Arms are at rest when stretched out to the sides, legs when hanging: directions that lie opposite are out of reach.
+/// Arms are at rest when stretched out to the sides, legs when hanging: directions that lie
+/// opposite are out of reach.
 const UPPER_ARM: [Place; 3] = [(0.35, UP), (0.6, FRONT), (0.6, BACK)];
 const FOREARM: [Place; 3] = [(0.3, UP), (0.6, FRONT), (0.8, BACK)];
 const THIGH: [Place; 3] = [(0.35, FRONT), (0.55, OUT), (0.7, BACK)];
@@ -46,8 +49,9 @@ fn layout() -> impl Iterator<Item = (usize, usize, BodyDirection, Place)> {
     sides.chain(head).chain(trunk)
 }
 
-/// Markers of one frame, metres: three on each upper arm, forearm, thigh and shank (left limbs first), two on the head, four on
-/// the trunk. `None` where a joint that a marker needs was not recorded.
+/// Markers of one frame, metres: three on each upper arm, forearm, thigh and shank (left limbs
+/// first), two on the head, four on the trunk. `None` where a joint that a marker needs was not
+/// recorded.
 ///
 /// A marker's direction turns with its bone by the smallest rotation from the bone's rest
 /// direction. The frame is that of the trunk's axis and the line of the shoulders (of the hips for
@@ -79,7 +83,8 @@ fn axes(joints: &BodyJoints, pair: [usize; 2]) -> Option<[Vec3; 3]> {
     Some([left, up, left.cross(&up)])
 }
 
-/// `direction`, square to `from`, after the smallest rotation that turns `from` into `to`; `None` where they are opposite.
+/// `direction`, square to `from`, after the smallest rotation that turns `from` into `to`; `None`
+/// where they are opposite.
 fn carried(from: &Vec3, to: &Vec3, direction: &Vec3) -> Option<Vec3> {
     let room = 1.0 + from.dot(to);
     if room < 1.0e-4 {

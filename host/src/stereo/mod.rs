@@ -1,4 +1,5 @@
-//! A small-baseline stereo camera that sees a body made of capsules: points with known truth, and two built-in motions.
+//! A small-baseline stereo camera that sees a body made of capsules: points with known truth, and
+//! two built-in motions.
 
 pub mod animated;
 pub mod camera;

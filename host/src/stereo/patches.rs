@@ -1,4 +1,5 @@
-//! Missing patches: discs of the picture, moving slowly over the body, in which a stereo camera finds no points.
+//! Missing patches: discs of the picture, moving slowly over the body, in which a stereo camera
+//! finds no points.
 
 use sinew_core::camera::Pixel;
 use sinew_core::math::sin_cos;

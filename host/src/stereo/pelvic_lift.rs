@@ -1,4 +1,5 @@
-//! Built-in motion `pelvic-lift`: a person who lies on the back lifts the pelvis six times; feet, hands and head stay.
+//! Built-in motion `pelvic-lift`: a person who lies on the back lifts the pelvis six times; feet,
+//! hands and head stay.
 
 use super::animated::{AnimatedBody, FIRM, goal};
 use crate::body::BodyRecording;
@@ -14,16 +15,18 @@ pub const REPETITIONS: usize = 6;
 const PERIOD_S: f32 = 2.2;
 /// How far the pelvis goes up, metres.
 const LIFT_M: f32 = 0.24;
-/// The head points to the picture's left and away from the camera: seen from the side and a little from the feet. Radians from the line of
-/// sight.
+/// The head points to the picture's left and away from the camera: seen from the side and a little
+/// from the feet. Radians from the line of sight.
 const DIRECTION_RAD: f32 = 1.1;
 /// Ankles from the pelvis towards the feet, and apart from the middle, metres.
 const ANKLES_M: [f32; 2] = [0.42, 0.12];
-/// Wrists from the pelvis towards the head, and apart from the middle, metres: the arms are nearly straight.
+/// Wrists from the pelvis towards the head, and apart from the middle, metres: the arms are nearly
+/// straight.
 const WRISTS_M: [f32; 2] = [-0.04, 0.28];
 /// Knees apart from the middle, metres.
 const KNEES_M: f32 = 0.11;
-/// Inverse variance of goals that give way where they have to, 1 / m^2: the neck, and the knees' distance from the middle.
+/// Inverse variance of goals that give way where they have to, 1 / m^2: the neck, and the knees'
+/// distance from the middle.
 const SOFT: f32 = 1.0e5;
 /// Frames in which the solver settles before the motion begins.
 const SETTLING: usize = 20;
@@ -87,7 +90,8 @@ struct Places {
 impl Places {
     fn new(body: &AnimatedBody, floor_m: f32, distance_m: f32) -> Self {
         let turn = axis_rotation(&-Vec3::y(), DIRECTION_RAD);
-        // Before the turn the head points away from the camera: the person's left is to the picture's right.
+        // Before the turn the head points away from the camera: the person's left is to the picture's
+        // right.
         let place = |left: f32, above_floor: f32, headward: f32| {
             turn * Vec3::new(left, 0.0, headward) + Vec3::new(0.0, floor_m - above_floor, distance_m)
         };
@@ -115,7 +119,8 @@ impl Places {
         }
     }
 
-    /// Goals with the pelvis `lift_m` higher: only its height is asked for, and the neck gives way where it has to.
+    /// Goals with the pelvis `lift_m` higher: only its height is asked for, and the neck gives way
+    /// where it has to.
     fn goals(&self, lift_m: f32) -> Vec<Goal> {
         let mut goals: Vec<Goal> = self.fixed.iter().map(|&(bone, place)| goal(bone, place, FIRM)).collect();
         let height_only = Mat3::from_diagonal(&Vec3::new(1.0, FIRM, 1.0));

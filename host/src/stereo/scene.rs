@@ -14,7 +14,8 @@ use sinew_core::random::Stream;
 use sinew_core::skeleton::BodyMeasures;
 use sinew_core::skeleton::full_body::BODY_BONES;
 
-/// Draws of a pixel for one point before the point is left out: nearly all of the body is behind patches.
+/// Draws of a pixel for one point before the point is left out: nearly all of the body is behind
+/// patches.
 const MAX_TRIES: usize = 16;
 /// Outliers fill the body's box with this much more at each side, metres.
 const OUTLIER_MARGIN_M: f32 = 0.3;
@@ -73,7 +74,8 @@ impl StereoScene {
     /// The person of `recording`, as thick as their measures say.
     ///
     /// # Errors
-    /// No frame, a share of outliers outside of 0 to 1, more points than [`MAX_POINTS`], a segment that no frame shows.
+    /// No frame, a share of outliers outside of 0 to 1, more points than [`MAX_POINTS`], a segment
+    /// that no frame shows.
     pub fn new(recording: BodyRecording, options: StereoOptions) -> Result<Self> {
         let (outliers, points) = (options.outliers, options.points);
         ensure!((0.0..=1.0).contains(&outliers), "`outliers` has to be from 0 to 1, not {outliers}");
@@ -142,8 +144,9 @@ impl StereoScene {
         markers(self.joints_m(frame), &self.radii_m)
     }
 
-    /// What the camera measures in a frame: points in camera axes, metres. Each belongs to a stream of its own (seed, frame,
-    /// index), so neither the order of frames nor a hidden limb changes the others.
+    /// What the camera measures in a frame: points in camera axes, metres. Each belongs to a stream
+    /// of its own (seed, frame, index), so neither the order of frames nor a hidden limb
+    /// changes the others.
     ///
     /// # Panics
     /// As [`Self::joints_m`].

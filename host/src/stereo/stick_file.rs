@@ -43,7 +43,8 @@ pub fn stick_csv(camera: &StereoCamera, stick_m: &[StickEnds]) -> String {
     text
 }
 
-/// Reads a stick.csv; cells may be empty where the stick, or one of both kinds of ends, was not seen.
+/// Reads a stick.csv; cells may be empty where the stick, or one of both kinds of ends, was not
+/// seen.
 ///
 /// # Errors
 /// Names the file, the line, and the columns or number that are wrong.

@@ -18,7 +18,8 @@ const GRIP_M: f32 = 0.5;
 const DURATION_S: f32 = 20.0;
 /// Middle of the stick before the middle of the shoulders at rest: left, down, front, metres.
 const REST_M: [f32; 3] = [0.0, 0.15, 0.38];
-/// Amplitudes: the middle to the left, down and to the front, metres; the stick's slope and turn, radians.
+/// Amplitudes: the middle to the left, down and to the front, metres; the stick's slope and turn,
+/// radians.
 const AMPLITUDES: [f32; 5] = [0.22, 0.32, 0.12, 1.1, 0.6];
 /// Each of these is a sum of this many sines.
 const SINES: usize = 3;

@@ -28,7 +28,8 @@ pub fn columns() -> Vec<String> {
     points.flat_map(|point| ["x", "y", "z"].map(|axis| format!("{point}_{axis}_m"))).collect()
 }
 
-/// Truth of a scene as CSV, to a hundredth of a millimetre; a joint that was not recorded is three empty cells.
+/// Truth of a scene as CSV, to a hundredth of a millimetre; a joint that was not recorded is three
+/// empty cells.
 #[must_use]
 pub fn truth_csv(scene: &StereoScene) -> String {
     let mut text = format!("frame,{}\n", columns().join(","));

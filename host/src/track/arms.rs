@@ -25,7 +25,8 @@ pub enum SideChoice {
     Both,
 }
 
-/// The trackers of a run: one arm, or two that share their blobs. The capacity is the particle count, rounded up.
+/// The trackers of a run: one arm, or two that share their blobs. The capacity is the particle
+/// count, rounded up.
 #[derive(Debug)]
 enum Trackers<const CAPACITY: usize> {
     One(Box<ArmTracker<CAPACITY>>),

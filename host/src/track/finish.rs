@@ -16,7 +16,8 @@ use std::time::Instant;
 pub struct RunOutcome {
     /// The content of `run.json`.
     pub report: RunReport,
-    /// Every side's answer to every finished frame, in the order of frames; places are given for a lost arm, too.
+    /// Every side's answer to every finished frame, in the order of frames; places are given for a
+    /// lost arm, too.
     pub samples: Vec<HandSample>,
 }
 
@@ -24,8 +25,8 @@ impl TrackRun {
     /// Tracks all frames, or those before `stop` is set, and writes the run directory.
     ///
     /// # Errors
-    /// [`Interrupted`] if `stop` was set, or an output that cannot be written; the table of the finished frames is written all
-    /// the same.
+    /// [`Interrupted`] if `stop` was set, or an output that cannot be written; the table of the
+    /// finished frames is written all the same.
     pub fn run(mut self, stop: &AtomicBool, notify: &mut dyn FnMut(Event<'_>)) -> Result<RunOutcome> {
         let start = Instant::now();
         let out = self.out.path().to_path_buf();
@@ -56,8 +57,8 @@ impl TrackRun {
         Ok(outcome)
     }
 
-    /// Gives the tables their names and writes plot, sheet and report. Each file is tried, also where another one failed. An
-    /// interrupted run leaves what [`TrackRun::resume`] needs.
+    /// Gives the tables their names and writes plot, sheet and report. Each file is tried, also
+    /// where another one failed. An interrupted run leaves what [`TrackRun::resume`] needs.
     fn write_results(mut self, interrupted: bool) -> Result<RunOutcome> {
         let left = if interrupted { Some(resume::left(&mut self)?) } else { None };
         let Self { out, track, particles, pictures, report, samples, .. } = self;

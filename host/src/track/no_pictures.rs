@@ -1,4 +1,5 @@
-//! In the place of `pictures` where the feature `plots` is off: a run that is to be drawn is refused.
+//! In the place of `pictures` where the feature `plots` is off: a run that is to be drawn is
+//! refused.
 
 use super::arms::{ArmSet, ArmView};
 use super::source::FrameSource;

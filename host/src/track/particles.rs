@@ -27,8 +27,9 @@ pub const PARTICLE_HEADER: [&str; 17] = [
 
 /// One row a particle, in the order of [`PARTICLE_HEADER`].
 ///
-/// The driving blob is counted from 0, the most likely first; the cell is empty for a particle that no blob drives. With both
-/// sides tracked it counts among the blobs that this side was given, its own first.
+/// The driving blob is counted from 0, the most likely first; the cell is empty for a particle that
+/// no blob drives. With both sides tracked it counts among the blobs that this side was given, its
+/// own first.
 pub fn particle_rows<'a>(
     frame: usize,
     view: &'a ArmView,

@@ -61,7 +61,8 @@ impl Pictures {
         Ok(Self { names, folder, sheet })
     }
 
-    /// Draws and writes the overlays of some frames, in parallel; what is written does not depend on the threads.
+    /// Draws and writes the overlays of some frames, in parallel; what is written does not depend
+    /// on the threads.
     ///
     /// # Errors
     /// The first frame whose overlay cannot be written; those of the others are.
@@ -123,7 +124,8 @@ impl Names {
     }
 }
 
-/// File name and overlay name of each frame: the stem with `.png`, or the whole name where two files share a stem.
+/// File name and overlay name of each frame: the stem with `.png`, or the whole name where two
+/// files share a stem.
 pub(crate) fn overlay_names(files: &[PathBuf]) -> Vec<(String, String)> {
     let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
     let stem = |file: &Path| part(file.file_stem());

@@ -41,7 +41,8 @@ pub(super) fn left(run: &mut TrackRun) -> Result<Left<ArmState>> {
     Ok(Left::new(begun, run.report.frames_finished, run.seconds, run.last_image_crc32, state))
 }
 
-/// Writes what is left beside the tables that it belongs to; without anything left removes that of an earlier run.
+/// Writes what is left beside the tables that it belongs to; without anything left removes that of
+/// an earlier run.
 pub(super) fn put(left: Option<Left<ArmState>>, options: &TrackOptions, out: &OutputDir) -> Result<()> {
     let tables: &[&str] = if options.particles_csv { &["track.csv", "particles.csv"] } else { &["track.csv"] };
     let left = left.map(|left| left.with_tables(out, tables)).transpose()?;
@@ -65,7 +66,8 @@ impl TrackRun {
     /// `frames_per_second` in `run.json`.
     ///
     /// # Errors
-    /// As [`TrackRun::prepare`]; there is no such run in `out`, or it was begun with other options, images or another version.
+    /// As [`TrackRun::prepare`]; there is no such run in `out`, or it was begun with other options,
+    /// images or another version.
     pub fn resume(options: TrackOptions, out: &Path) -> Result<Self> {
         let left: Left<ArmState> = ResumeFile::in_folder(out, COMMAND).read(out)?;
         let now = begun(&options)?;
@@ -95,7 +97,8 @@ impl TrackRun {
         Ok(run)
     }
 
-    /// Shows the front end the last finished frame, so that the next one has the edges that it would have had.
+    /// Shows the front end the last finished frame, so that the next one has the edges that it
+    /// would have had.
     fn look_again(&mut self, left: &Left<ArmState>) -> Result<()> {
         let Some(last) = self.report.frames_finished.checked_sub(1) else { return Ok(()) };
         let image = self.frames.load(last, 1)?.pop().and_then(Result::ok);

@@ -211,7 +211,8 @@ impl TrackRun {
     }
 }
 
-/// Pictures among the frames would be frames of the next run, and overlays could replace the frames themselves.
+/// Pictures among the frames would be frames of the next run, and overlays could replace the frames
+/// themselves.
 fn refuse_output_in_input(folder: &Path, out: &Path) -> Result<()> {
     let Ok(input) = folder.canonicalize() else { return Ok(()) };
     for output in [out.to_path_buf(), out.join("overlay")] {

@@ -68,7 +68,8 @@ impl FrameSource {
         }
     }
 
-    /// What distinguishes these frames from others, beside the path: the names of a folder's files, the size of a video's.
+    /// What distinguishes these frames from others, beside the path: the names of a folder's files,
+    /// the size of a video's.
     #[must_use]
     pub fn identity(&self) -> Vec<String> {
         match self {
@@ -107,10 +108,12 @@ impl FrameSource {
         }
     }
 
-    /// Reads the frames from `begin` on, `most` of them, decoded in parallel where that can be done. None is the end.
+    /// Reads the frames from `begin` on, `most` of them, decoded in parallel where that can be
+    /// done. None is the end.
     ///
     /// # Errors
-    /// A video that is broken, once all frames before the break were given; a frame of a video that was passed already.
+    /// A video that is broken, once all frames before the break were given; a frame of a video that
+    /// was passed already.
     pub fn load(&mut self, begin: usize, most: usize) -> Result<Vec<Result<RgbImage, SkippedImage>>> {
         match self {
             Self::Folder(folder) => {

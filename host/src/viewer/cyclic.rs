@@ -1,4 +1,5 @@
-//! Runs of `sinew track cyclic --report`: the figure, angles, cadence, pictures where they were drawn.
+//! Runs of `sinew track cyclic --report`: the figure, angles, cadence, pictures where they were
+//! drawn.
 
 use super::marks::{Shown, colour, jpeg, scalars};
 use super::numbers::Numbers;

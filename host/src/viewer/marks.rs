@@ -24,7 +24,8 @@ const QUALITY: u8 = 85;
 /// Radius of a particle that has all of the weight, metres.
 const PARTICLE_RADIUS_M: f64 = 0.03;
 
-/// Red, green, blue, opacity of a side or of a joint whose name begins with one: left orange, right blue, as in the report.
+/// Red, green, blue, opacity of a side or of a joint whose name begins with one: left orange, right
+/// blue, as in the report.
 pub(super) fn colour(word: &str) -> u32 {
     match Colour::of_side(word) {
         Colour::Left => 0xe6_7e_22_ff,

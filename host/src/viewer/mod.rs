@@ -1,6 +1,7 @@
 //! A run for the Rerun viewer (rerun.io): its directory becomes one .rrd file. Feature `rerun`.
 //!
-//! Of Rerun only the crates that write the file are used, not its SDK with its server and its threads.
+//! Of Rerun only the crates that write the file are used, not its SDK with its server and its
+//! threads.
 
 mod arm;
 mod body;
@@ -24,7 +25,8 @@ use std::path::Path;
 /// Writes the run in the directory `run` as the Rerun recording `file`.
 ///
 /// # Errors
-/// A directory without a finished run of `sinew track` or `sinew demo`, or a file that cannot be written.
+/// A directory without a finished run of `sinew track` or `sinew demo`, or a file that cannot be
+/// written.
 pub fn write(run: &Path, file: &Path) -> Result<Shown> {
     let folder = RunFolder::new(run);
     let kind = Kind::of(&folder);

@@ -1,4 +1,5 @@
-//! The file itself: rows of entities in chunks. Ids are counted and not taken from a clock, so the same run gives the same ids.
+//! The file itself: rows of entities in chunks. Ids are counted and not taken from a clock, so the
+//! same run gives the same ids.
 
 use crate::error::{Context, Result};
 use re_chunk::{Chunk, ChunkId, RowId, TimePoint, Timeline};

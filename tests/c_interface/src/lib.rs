@@ -13,7 +13,8 @@ pub fn workspace_root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the package lies in the workspace")
 }
 
-/// The text of a source of the interface, with the functions of its macros written out: cbindgen expands no macros.
+/// The text of a source of the interface, with the functions of its macros written out: cbindgen
+/// expands no macros.
 ///
 /// # Panics
 /// If the file cannot be read, or does not use the macros as `c_api/stateful.rs` defines them.
@@ -39,7 +40,8 @@ pub fn expanded_source(path: &Path) -> String {
     source
 }
 
-/// Whether `tool` runs; where it does not, says what is left out, and fails in CI, which has to have all tools.
+/// Whether `tool` runs; where it does not, says what is left out, and fails in CI, which has to
+/// have all tools.
 ///
 /// # Panics
 /// With `CI=true`, if the tool is missing.
@@ -75,7 +77,8 @@ fn missing(what: &str) {
     eprintln!("left out: there is no {what}");
 }
 
-/// Whether the targets come from Debian's compiler, which builds their core library from source (`.ci/run` says so).
+/// Whether the targets come from Debian's compiler, which builds their core library from source
+/// (`.ci/run` says so).
 fn builds_with_debian() -> bool {
     std::env::var("SINEW_BARE_METAL").as_deref() == Ok("debian")
 }

@@ -1,4 +1,5 @@
-//! The examples in C: on this computer with sanitizers, and on an emulated Cortex-M4F. They print the same.
+//! The examples in C: on this computer with sanitizers, and on an emulated Cortex-M4F. They print
+//! the same.
 
 use sinew_c_interface::{expect_success, has_target, has_tool, static_library, workspace_root};
 use std::fs;
@@ -75,7 +76,8 @@ fn the_examples_run_on_an_emulated_cortex_m4f() {
     if !(tools.into_iter().all(has_tool) && has_target(TARGET)) {
         return;
     }
-    // Linked with the library in which a panic would be missing at link time: the link itself is a proof.
+    // Linked with the library in which a panic would be missing at link time: the link itself is a
+    // proof.
     let library = static_library("sinew-core", Some(TARGET), "3", "c-api,walking-model,prove-no-panic");
     let scratch = tempfile::tempdir().unwrap();
     for example in EXAMPLES {

@@ -1,8 +1,9 @@
 //! No function of the interface can panic, nor what firmware in Rust calls each frame
 //! (`rust_entry_points.rs`). The linker finds no way to a panic in the library that firmware ships.
 //!
-//! The library is built with `prove-no-panic`, in which a panic calls a function that is defined nowhere. Each public function is linked
-//! alone and everything that it does not reach is dropped; what is left must not miss that function.
+//! The library is built with `prove-no-panic`, in which a panic calls a function that is defined
+//! nowhere. Each public function is linked alone and everything that it does not reach is dropped;
+//! what is left must not miss that function.
 
 use sinew_c_interface::{cargo, expanded_source, expect_success, has_target, has_tool, static_library, workspace_root};
 use std::fs;
@@ -100,7 +101,8 @@ pub extern "C" fn checked(list: &[u8; 4], index: usize) -> u8 { list.get(index).
 pub extern "C" fn unchecked(list: &[u8; 4], index: usize) -> u8 { list[index] }
 "#;
 
-/// A library in which one function indexes by an unchecked number has to be distinguished from the others.
+/// A library in which one function indexes by an unchecked number has to be distinguished from the
+/// others.
 #[test]
 fn the_check_finds_a_function_that_can_panic() {
     if !(has_tool(LINKER) && has_target(TARGET)) {

@@ -1,6 +1,7 @@
 //! Prints the digests: on the host as any program, on an emulated Cortex-M by semihosting.
 //!
-//! For bare metal it is linked without an allocator, which succeeds only where neither the core nor a crate that it builds on asks for one.
+//! For bare metal it is linked without an allocator, which succeeds only where neither the core nor
+//! a crate that it builds on asks for one.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

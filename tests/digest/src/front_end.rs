@@ -36,7 +36,8 @@ const YUYV: Palette = Palette {
     noise: 0x0003,
 };
 
-/// Digest of blobs, edges and losses; half of the frames in each format, the tables adapted to the scene on the way.
+/// Digest of blobs, edges and losses; half of the frames in each format, the tables adapted to the
+/// scene on the way.
 pub fn digest(frames: u32) -> Result<u64, ParameterError> {
     let mut bits = Bits::new();
     read::<Rgb565>(frames / 2, &RGB565, |seen| take(&mut bits, seen))?;
@@ -44,7 +45,8 @@ pub fn digest(frames: u32) -> Result<u64, ParameterError> {
     Ok(bits.digest())
 }
 
-/// Reads frames of one format and hands on what each shows. What the table learns shows in the blobs.
+/// Reads frames of one format and hands on what each shows. What the table learns shows in the
+/// blobs.
 fn read<F: PixelFormat>(
     frames: u32,
     palette: &Palette,

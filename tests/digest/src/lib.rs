@@ -1,7 +1,9 @@
-//! Whether the trackers give the same bits everywhere: each reads a made-up stream of frames, and one number stands for all that it answers.
+//! Whether the trackers give the same bits everywhere: each reads a made-up stream of frames, and
+//! one number stands for all that it answers.
 //!
-//! The streams come from the core's random numbers and the core's mathematics alone, so a target that computes anything differently gets
-//! another digest. `expected.txt` holds the digests over [`FRAMES`] frames; every target's test reads that one file.
+//! The streams come from the core's random numbers and the core's mathematics alone, so a target
+//! that computes anything differently gets another digest. `expected.txt` holds the digests over
+//! [`FRAMES`] frames; every target's test reads that one file.
 
 #![no_std]
 

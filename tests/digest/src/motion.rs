@@ -19,7 +19,8 @@ const MEAN_DURATION: f32 = 64.0;
 /// The model's numbers.
 pub type Table = ModelTable<POSITIONS, HUMAN_ANGLES, PACKED>;
 
-/// Angle `index` of the mean cycle, radians, unwrapped: the last winds once a cycle, the others swing.
+/// Angle `index` of the mean cycle, radians, unwrapped: the last winds once a cycle, the others
+/// swing.
 pub fn mean_angle_rad(index: usize, position: f32) -> f32 {
     let i = index as f32;
     let phase = TAU * (position + 0.07 * i);
@@ -68,7 +69,8 @@ pub struct Person {
 /// What a frame shows of the person.
 #[derive(Debug)]
 pub struct Shown {
-    /// Angles with noise; some frames are empty, some angles missing, one frame in fifty is wrong, a few are not numbers.
+    /// Angles with noise; some frames are empty, some angles missing, one frame in fifty is wrong,
+    /// a few are not numbers.
     pub angles_rad: [Option<f32>; HUMAN_ANGLES],
     /// Frames of the model's rate since the last one.
     pub step_frames: f32,

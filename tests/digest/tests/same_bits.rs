@@ -18,7 +18,8 @@ fn text(mut digest: impl FnMut(Subject) -> u64) -> String {
     Subject::ALL.map(|subject| format!("{}\n", Line { subject, digest: digest(subject) })).concat()
 }
 
-/// The digests that every target has to give: those of this build where the file is being written anew.
+/// The digests that every target has to give: those of this build where the file is being written
+/// anew.
 fn expected() -> String {
     if regenerates() { here() } else { std::fs::read_to_string(package().join("expected.txt")).unwrap() }
 }
@@ -49,8 +50,8 @@ fn has_target(target: &str) -> bool {
     output.status.success() && Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir()
 }
 
-/// An example's file for `target`: the one that the environment `variable` names, or `file` built now in release; `None` without a
-/// compiler for it.
+/// An example's file for `target`: the one that the environment `variable` names, or `file` built
+/// now in release; `None` without a compiler for it.
 fn example(example: &str, target: &str, variable: &str, file: &str) -> Option<PathBuf> {
     if let Some(path) = env::var_os(variable) {
         return Some(path.into());

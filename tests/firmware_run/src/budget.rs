@@ -16,7 +16,8 @@ use std::process::Command;
 
 /// A cell may grow by this part before the check fails.
 const GROWTH: f64 = 0.05;
-/// What a cell may come to at all: by this much a processor of 168 MHz is busy for a third of the time at 15 frames a second.
+/// What a cell may come to at all: by this much a processor of 168 MHz is busy for a third of the
+/// time at 15 frames a second.
 const LIMITS: [(&str, u64); 10] = [
     ("cyclic cyclic step, worst", 120_000),
     ("cyclic, static RAM, bytes", 4 * 1024),

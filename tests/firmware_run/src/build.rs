@@ -7,7 +7,8 @@ use std::process::Command;
 /// The target of all images.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
-/// Builds all images in release; `arguments` go to cargo. `SINEW_CARGO` names another cargo, whose arguments may follow.
+/// Builds all images in release; `arguments` go to cargo. `SINEW_CARGO` names another cargo, whose
+/// arguments may follow.
 ///
 /// # Errors
 /// Cargo fails.

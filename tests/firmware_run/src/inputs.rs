@@ -29,7 +29,8 @@ pub fn of_image(name: &str) -> Result<Option<Vec<u8>>> {
 
 /// Frames of the synthetic walk.
 const WALK_FRAMES: u64 = 1200;
-/// Frames that are left out: a few, a second, more than the filter believes its position for, and more than it counts.
+/// Frames that are left out: a few, a second, more than the filter believes its position for, and
+/// more than it counts.
 const LEFT_OUT: [std::ops::Range<u64>; 4] = [150..153, 330..390, 420..480, 520..1140];
 /// Noise of its angles, radians.
 const WALK_NOISE_RAD: f32 = 0.1;
@@ -74,7 +75,8 @@ const SCENE_FRAMES: usize = 60;
 /// Its frames per second.
 const SCENE_HZ: f32 = 15.0;
 
-/// Renders a person who reaches about into `folder`, one of the images broken, and tracks the arm as `sinew track arm` does.
+/// Renders a person who reaches about into `folder`, one of the images broken, and tracks the arm
+/// as `sinew track arm` does.
 ///
 /// # Errors
 /// A folder that cannot be written.

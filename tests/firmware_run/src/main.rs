@@ -1,4 +1,5 @@
-//! `sinew-firmware-run`: what `cargo run` calls in the folder `firmware-sim`, and what runs all images.
+//! `sinew-firmware-run`: what `cargo run` calls in the folder `firmware-sim`, and what runs all
+//! images.
 
 use anyhow::{Context, Result, ensure};
 use clap::{Parser, Subcommand};

@@ -1,4 +1,5 @@
-//! The images `arm` and `camera` answer what the host answers, bit for bit, and take bad input without losing their state.
+//! The images `arm` and `camera` answer what the host answers, bit for bit, and take bad input
+//! without losing their state.
 
 use sinew::record::StreamWriter;
 use sinew_core::camera::Pixel;

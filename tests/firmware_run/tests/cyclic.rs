@@ -1,4 +1,5 @@
-//! The image `cyclic` answers what the host's tracker answers, bit for bit, and takes bad input without losing its state.
+//! The image `cyclic` answers what the host's tracker answers, bit for bit, and takes bad input
+//! without losing its state.
 
 use sinew::cyclic::CyclicModel;
 use sinew::cyclic::tracking::{TrackingOptions, track};

@@ -1,9 +1,10 @@
 //! One angle's deviation from the mean cycle in the phase-coupled filter: five coefficients given
 //! (c, v).
 //!
-//! The five are a, p, q of `a + p cos 2 pi c + q sin 2 pi c`, the rest d and its slope per cycle. Their density given
-//! z = (c, v) is normal with mean `mean + regression (z - z_mean)` and covariance `covariance`: angles are independent of
-//! each other given z, so no covariance between angles is stored.
+//! The five are a, p, q of `a + p cos 2 pi c + q sin 2 pi c`, the rest d and its slope per cycle.
+//! Their density given z = (c, v) is normal with mean `mean + regression (z - z_mean)` and
+//! covariance `covariance`: angles are independent of each other given z, so no covariance between
+//! angles is stored.
 
 use crate::math::{exp, max, sin_cos};
 use crate::numeric::semi_definite::{packed_index, packed_len};

@@ -1,4 +1,5 @@
-//! The phase-coupled filter: measurements move the cycle position, and a person's own cycle is learned.
+//! The phase-coupled filter: measurements move the cycle position, and a person's own cycle is
+//! learned.
 
 pub mod block;
 mod correct;

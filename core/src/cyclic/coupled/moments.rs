@@ -32,8 +32,8 @@ pub struct BlockTransition {
     pub noise: [[f32; PARTS]; PARTS],
 }
 
-/// A step of the phase-coupled filter as a linear map with noise. (c, v) move by [1, `step_frames`; 0, 1]; the angles' parts move
-/// on each by themselves.
+/// A step of the phase-coupled filter as a linear map with noise. (c, v) move by [1, `step_frames`;
+/// 0, 1]; the angles' parts move on each by themselves.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {

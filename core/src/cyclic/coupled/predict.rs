@@ -14,7 +14,8 @@ const FORGETTING: f32 = 0.02;
 pub const MAX_SUBSTEPS: u8 = 6;
 
 impl<const N: usize> CoupledFilter<N> {
-    /// Moves on by `step_frames`, in substeps of one frame, longer ones where that would be more than [`MAX_SUBSTEPS`].
+    /// Moves on by `step_frames`, in substeps of one frame, longer ones where that would be more
+    /// than [`MAX_SUBSTEPS`].
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn predict(&mut self, model: &MotionModel<'_>, step_frames: f32) {
         for step in Substeps::few(step_frames, MAX_SUBSTEPS) {

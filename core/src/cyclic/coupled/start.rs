@@ -26,7 +26,8 @@ impl<const N: usize> CoupledFilter<N> {
     /// `velocity`, cycles per frame, the model's mean.
     ///
     /// # Errors
-    /// At most `N` angles, a model with a deviation, a finite position, a velocity within +-0.5 cycles a frame.
+    /// At most `N` angles, a model with a deviation, a finite position, a velocity within +-0.5
+    /// cycles a frame.
     pub fn new(
         model: &MotionModel<'_>,
         first: &AngleMeasurement<N>,
@@ -67,7 +68,8 @@ impl<const N: usize> CoupledFilter<N> {
         Ok(())
     }
 
-    /// A start anywhere in the cycle at any speed, with the first row as a measurement among others.
+    /// A start anywhere in the cycle at any speed, with the first row as a measurement among
+    /// others.
     ///
     /// # Errors
     /// At most `N` angles, a model with a deviation.

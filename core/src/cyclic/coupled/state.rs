@@ -1,8 +1,9 @@
 //! State of the phase-coupled filter: measurements move the cycle position, and a person's
 //! deviation is learned.
 //!
-//! An angle is the mean cycle at c plus its deviation ([`crate::cyclic::Deviation`]). Given (c, v) the angles are taken as
-//! independent of each other: each has a block of five numbers, all together inform (c, v), and (c, v) informs each.
+//! An angle is the mean cycle at c plus its deviation ([`crate::cyclic::Deviation`]). Given (c, v)
+//! the angles are taken as independent of each other: each has a block of five numbers, all
+//! together inform (c, v), and (c, v) informs each.
 
 use crate::angle::split_turns;
 use crate::cyclic::MotionModel;

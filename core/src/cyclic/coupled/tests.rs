@@ -21,7 +21,8 @@ fn person(index: usize, position: f32) -> f32 {
     mean_angle(index, position) + 0.1 * sign + 0.06 * (TAU * position).cos()
 }
 
-/// Ten cycles at a cadence 8 % above the model's, with noise of 0.1 rad and every seventh frame missing.
+/// Ten cycles at a cadence 8 % above the model's, with noise of 0.1 rad and every seventh frame
+/// missing.
 #[test]
 fn it_follows_another_person_at_another_cadence() {
     let table = table(0.001, 9);
@@ -123,7 +124,8 @@ fn a_lost_phase_is_found_again() {
     assert!(last.abs() < 0.05, "off by {last} cycles");
 }
 
-/// Way from the person's position to the filter's after each of `positions` was shown with noise of 0.1 rad.
+/// Way from the person's position to the filter's after each of `positions` was shown with noise of
+/// 0.1 rad.
 fn ways(filter: &mut CoupledFilter<N>, model: &MotionModel<'_>, seed: u64, positions: &[f32]) -> Vec<f32> {
     let mut stream = Stream::new(seed, 0, 0);
     let mut way = |&position: &f32| {

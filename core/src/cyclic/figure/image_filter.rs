@@ -2,9 +2,11 @@
 
 use crate::error::{ParameterError, not_negative, positive};
 
-/// A Kalman filter of one number that walks at random, with a velocity if its acceleration is not zero.
+/// A Kalman filter of one number that walks at random, with a velocity if its acceleration is not
+/// zero.
 ///
-/// Segment lengths in pixels have no velocity (`acceleration_std` 0, a small `walk_std`); the root's coordinates have one.
+/// Segment lengths in pixels have no velocity (`acceleration_std` 0, a small `walk_std`); the
+/// root's coordinates have one.
 ///
 /// ```
 /// use sinew_core::cyclic::figure::image_filter::ScalarFilter;
@@ -37,10 +39,12 @@ pub struct ScalarFilter {
 const MAX_VARIANCE: f32 = 1.0e12;
 
 impl ScalarFilter {
-    /// Begins at `value` known to `std`, at rest if `acceleration_std` is 0, else at a velocity of 0 known to `std` a frame.
+    /// Begins at `value` known to `std`, at rest if `acceleration_std` is 0, else at a velocity of
+    /// 0 known to `std` a frame.
     ///
     /// # Errors
-    /// `std` positive, `walk_std` and `acceleration_std` (per frame, per frame^2) not negative, `value` finite.
+    /// `std` positive, `walk_std` and `acceleration_std` (per frame, per frame^2) not negative,
+    /// `value` finite.
     pub fn new(value: f32, std: f32, walk_std: f32, acceleration_std: f32) -> Result<Self, ParameterError> {
         crate::error::finite("first value", value)?;
         positive("std", std)?;
@@ -58,7 +62,8 @@ impl ScalarFilter {
         })
     }
 
-    /// One step of `step_frames`: predict, then correct by the value `seen` with standard deviation `std`, if any.
+    /// One step of `step_frames`: predict, then correct by the value `seen` with standard deviation
+    /// `std`, if any.
     ///
     /// A value or a deviation that is not a finite number counts as missing.
     pub fn step(&mut self, step_frames: f32, seen: Option<f32>, std: f32) {

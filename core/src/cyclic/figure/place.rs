@@ -58,10 +58,12 @@ pub struct PlaceOptions {
 }
 
 impl PlaceOptions {
-    /// For a person whose trunk is `trunk_px` long, a pixel `metres_per_px`, at `rate_hz` frames a second.
+    /// For a person whose trunk is `trunk_px` long, a pixel `metres_per_px`, at `rate_hz` frames a
+    /// second.
     ///
-    /// The noise of a keypoint follows from that of an angle, `sigma_rad`: an angle that is off by sigma is that of a segment whose
-    /// ends are off by sigma times its length / sqrt(2) each, and the trunk gives the scale.
+    /// The noise of a keypoint follows from that of an angle, `sigma_rad`: an angle that is off by
+    /// sigma is that of a segment whose ends are off by sigma times its length / sqrt(2) each,
+    /// and the trunk gives the scale.
     ///
     /// # Errors
     /// All four have to be positive.
@@ -174,8 +176,9 @@ impl<const N: usize> FigurePlace<N> {
         self.lengths.map(|filter| filter.map(|filter| filter.value()))
     }
 
-    /// Writes the joints of `figure` at these angles, px. A joint is missing without the root or a length on the way to it;
-    /// places in `joints_px` beyond the figure's joints are left alone.
+    /// Writes the joints of `figure` at these angles, px. A joint is missing without the root or a
+    /// length on the way to it; places in `joints_px` beyond the figure's joints are left
+    /// alone.
     pub fn joints_px(&self, figure: &StickFigure<'_>, angles_rad: &[f32; N], joints_px: &mut [Option<ImagePoint>]) {
         for (index, joint) in figure.joints().iter().enumerate() {
             let place = match joint.parent {

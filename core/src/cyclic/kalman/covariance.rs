@@ -24,13 +24,14 @@ pub(super) const MAX_ANGLE_VARIANCE: f32 = 158.0;
 /// Largest variance of an angular velocity, (rad per frame)^2. Chosen: pi^2, half a turn a frame.
 pub(super) const MAX_VELOCITY_VARIANCE: f32 = 9.87;
 
-/// Rows and columns of the squares that the velocities' covariance is worked on in: sixteen sums stay in registers.
+/// Rows and columns of the squares that the velocities' covariance is worked on in: sixteen sums
+/// stay in registers.
 pub(super) const SQUARE: usize = 4;
 
 /// Symmetric covariance of N angles and N velocities.
 ///
-/// Invariant: the whole is positive semi-definite. The two symmetric blocks are kept as whole rows, which may differ from
-/// their columns by rounding; [`Self::entry`] reads one of the two.
+/// Invariant: the whole is positive semi-definite. The two symmetric blocks are kept as whole rows,
+/// which may differ from their columns by rounding; [`Self::entry`] reads one of the two.
 ///
 /// ```
 /// use sinew_core::cyclic::kalman::covariance::KinematicCovariance;
@@ -150,7 +151,8 @@ fn interpolate<const N: usize>(matrix: &mut [[f32; N]; N], before: &[f32], after
     mirror(matrix);
 }
 
-/// Numbers of a row that come first, whole blocks: the rows of a triangle that begin or end there need the other half alone.
+/// Numbers of a row that come first, whole blocks: the rows of a triangle that begin or end there
+/// need the other half alone.
 pub(super) const fn half<const N: usize>() -> usize {
     let half = (N / 2).div_ceil(SQUARE) * SQUARE;
     if half < N { half } else { N }
@@ -167,7 +169,8 @@ fn fill_row<const N: usize>(
 ) {
     let from = packed_index(i, 0);
     let numbers = |values| <[f32]>::get(values, from..).and_then(<[f32]>::first_chunk::<N>);
-    // Where the triangles have N rows, N numbers are at hand from there; those beyond the diagonal are written over.
+    // Where the triangles have N rows, N numbers are at hand from there; those beyond the diagonal are
+    // written over.
     if let (Some(before), Some(after)) = (numbers(before), numbers(after)) {
         for (j, value) in row.iter_mut().enumerate() {
             *value = between((&before[j], &after[j]));

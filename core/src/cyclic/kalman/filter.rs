@@ -21,7 +21,8 @@ use core::f32::consts::PI;
 
 /// State of the filters `paper` and `paper-cut` for models of up to `N` angles.
 ///
-/// Invariants: all numbers finite, angles in (-pi, pi], covariance symmetric and positive semi-definite.
+/// Invariants: all numbers finite, angles in (-pi, pi], covariance symmetric and positive
+/// semi-definite.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -80,7 +81,8 @@ const _: () = assert!(size_of::<KalmanFilter<HUMAN_ANGLES>>() <= 2560, "the stat
 pub struct Innovation {
     /// ln of the density of the measurement given those before; 0 where nothing was seen.
     pub log_likelihood: f32,
-    /// Normalised innovation squared, chi-square distributed with [`Self::present`] degrees of freedom.
+    /// Normalised innovation squared, chi-square distributed with [`Self::present`] degrees of
+    /// freedom.
     pub squared: f32,
     /// Angles seen.
     pub present: usize,
@@ -123,8 +125,9 @@ impl<const N: usize> KalmanFilter<N> {
         })
     }
 
-    /// One frame: predict over the measurement's step, then correct by the angles seen. On x86-64 all of it is inlined, so that
-    /// a caller compiled for wider vectors than the crate has them; elsewhere it would cost flash.
+    /// One frame: predict over the measurement's step, then correct by the angles seen. On x86-64
+    /// all of it is inlined, so that a caller compiled for wider vectors than the crate has
+    /// them; elsewhere it would cost flash.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn step(
         &mut self,

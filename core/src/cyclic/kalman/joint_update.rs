@@ -111,7 +111,8 @@ struct Columns<const N: usize> {
 impl<const N: usize> KinematicCovariance<N> {
     /// The update by all angles seen.
     ///
-    /// With `keeps_velocities` the gain moves the angles only (Joseph's form): the velocities keep their covariance.
+    /// With `keeps_velocities` the gain moves the angles only (Joseph's form): the velocities keep
+    /// their covariance.
     #[inline(always)]
     pub(super) fn correct(&mut self, seen: &SeenAngles<N>, keeps_velocities: bool) -> MeanShift<N> {
         let count = seen.count.min(N);
@@ -186,7 +187,8 @@ impl<const N: usize> Columns<N> {
         columns
     }
 
-    /// Finds the columns of the measurement at `place` from those before; returns the variance of its innovation.
+    /// Finds the columns of the measurement at `place` from those before; returns the variance of
+    /// its innovation.
     #[inline(always)]
     fn find(
         &mut self,
@@ -379,7 +381,8 @@ impl<const N: usize> Columns<N> {
         shift
     }
 
-    /// [`Self::reduce_velocities`] for `WIDE` squares side by side, the first at row `block` and column `part`.
+    /// [`Self::reduce_velocities`] for `WIDE` squares side by side, the first at row `block` and
+    /// column `part`.
     #[inline(always)]
     fn reduce_squares<const WIDE: usize>(
         &self,

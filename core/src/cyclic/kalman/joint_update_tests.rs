@@ -1,4 +1,5 @@
-//! The update by all angles seen against the textbook's, for capacities that fill registers and for those that do not.
+//! The update by all angles seen against the textbook's, for capacities that fill registers and for
+//! those that do not.
 
 use crate::cyclic::AngleMeasurement;
 use crate::cyclic::kalman::covariance::KinematicCovariance;
@@ -7,7 +8,8 @@ use crate::random::Stream;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
-/// A covariance with correlations between all of its numbers; angles vary by a tenth of a radian, velocities by a hundredth.
+/// A covariance with correlations between all of its numbers; angles vary by a tenth of a radian,
+/// velocities by a hundredth.
 fn any_covariance<const N: usize>(stream: &mut Stream) -> (KinematicCovariance<N>, DMatrix<f64>) {
     let scale = |i: usize| if i < N { 0.1 } else { 0.01 };
     let factor = DMatrix::from_fn(2 * N, 2 * N, |i, _| scale(i) * f64::from(stream.normal()) / (2.0 * N as f64).sqrt());

@@ -3,8 +3,8 @@
 use crate::error::{ParameterError, not_negative, positive};
 use crate::numeric::chi_square::DEFAULT_GATE_SIGMAS;
 
-/// How far the Kalman gain reaches: the paper's "meaning that only these quantities of the state vector are updated" has
-/// two readings.
+/// How far the Kalman gain reaches: the paper's "meaning that only these quantities of the state
+/// vector are updated" has two readings.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -65,7 +65,8 @@ pub enum CovarianceScaling {
     Square,
 }
 
-/// Options of a Kalman filter; [`Default`] gives the paper's with the decisions named in `docs/cyclic_tracker.md`.
+/// Options of a Kalman filter; [`Default`] gives the paper's with the decisions named in
+/// `docs/cyclic_tracker.md`.
 ///
 /// ```
 /// use sinew_core::cyclic::{GainReach, KalmanOptions};
@@ -95,7 +96,8 @@ pub struct KalmanOptions {
     pub cycle_velocity_variance: f32,
     /// Width of the innovation gate in standard deviations of a normal.
     pub gate_sigmas: f32,
-    /// Whether a measurement beyond the gate leaves the state as predicted; otherwise it is only flagged.
+    /// Whether a measurement beyond the gate leaves the state as predicted; otherwise it is only
+    /// flagged.
     pub protect_from_outliers: bool,
 }
 
@@ -125,7 +127,8 @@ impl KalmanOptions {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// Variances of angles and velocities and the gate have to be positive, the others not negative.
+    /// Variances of angles and velocities and the gate have to be positive, the others not
+    /// negative.
     pub fn check(&self) -> Result<(), ParameterError> {
         positive("angle_variance", self.angle_variance)?;
         positive("velocity_variance", self.velocity_variance)?;

@@ -135,7 +135,8 @@ fn the_structured_filter_gives_the_numbers_of_the_dense_one() {
     }
 }
 
-/// Asserts that the structured filter's numbers are the dense one's: angles to 1e-4 rad, covariances to 1 % of the spread.
+/// Asserts that the structured filter's numbers are the dense one's: angles to 1e-4 rad,
+/// covariances to 1 % of the spread.
 fn assert_same(dense: &Dense, filter: &KalmanFilter<N>, estimate: &CyclicEstimate<N>, place: &str) {
     let spread = |i: usize| dense.p[(i, i)].sqrt();
     for i in 0..N {

@@ -1,6 +1,7 @@
 //! A motion model as bytes: made on a host, put into flash, read where it lies.
 //!
-//! Little-endian words of four bytes, so that a processor reads the numbers in place if the first byte lies at a multiple of four:
+//! Little-endian words of four bytes, so that a processor reads the numbers in place if the first
+//! byte lies at a multiple of four:
 //!
 //! | words | what |
 //! |---|---|
@@ -200,8 +201,8 @@ impl ModelHeader {
     }
 }
 
-/// Writes `model` into `bytes` and gives the number of bytes written; `None` where they are too few (see
-/// [`ModelHeader::byte_count`]) or the model has no deviation.
+/// Writes `model` into `bytes` and gives the number of bytes written; `None` where they are too few
+/// (see [`ModelHeader::byte_count`]) or the model has no deviation.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -264,7 +265,8 @@ impl<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> ModelTabl
     /// The table of a model in bytes; for a `static`, so that it is read when the program is built.
     ///
     /// # Errors
-    /// See [`ModelBytesError`]; [`ModelBytesError::Shape`] for a model of another shape than the table's.
+    /// See [`ModelBytesError`]; [`ModelBytesError::Shape`] for a model of another shape than the
+    /// table's.
     pub const fn from_bytes(bytes: &[u8]) -> Result<Self, ModelBytesError> {
         let header = match ModelHeader::read(bytes) {
             Ok(header) => header,

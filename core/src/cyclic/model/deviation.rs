@@ -36,7 +36,8 @@ pub struct Deviation<'a> {
     pub swing_std_rad: &'a [f32],
     /// Standard deviation of the rest d, radians.
     pub rest_std_rad: &'a [f32],
-    /// Rate of the rest per cycle: its correlation after a part x of a cycle is (1 + rate x) exp(-rate x).
+    /// Rate of the rest per cycle: its correlation after a part x of a cycle is (1 + rate x)
+    /// exp(-rate x).
     pub rest_rate_per_cycle: &'a [f32],
 }
 

@@ -42,7 +42,8 @@ impl MotionModel<'_> {
         CyclePoint { before, after: if before + 1 == count { 0 } else { before + 1 }, fraction }
     }
 
-    /// As [`Self::point`] for number `index`, below `count`, of `count` positions evenly along the cycle: exact, in whole numbers.
+    /// As [`Self::point`] for number `index`, below `count`, of `count` positions evenly along the
+    /// cycle: exact, in whole numbers.
     #[inline(always)]
     pub(in crate::cyclic) fn point_among(&self, index: usize, count: usize) -> CyclePoint {
         let stored = self.position_count();
@@ -65,7 +66,8 @@ impl MotionModel<'_> {
         self.row(self.parts().mean_velocity, point)
     }
 
-    /// Mean pose, radians, unwrapped along the cycle (not in (-pi, pi]); entries beyond the model's angles are zero.
+    /// Mean pose, radians, unwrapped along the cycle (not in (-pi, pi]); entries beyond the model's
+    /// angles are zero.
     ///
     /// From the last stored position on it leads to the first one plus the angle's turns.
     #[inline(never)]
@@ -74,7 +76,8 @@ impl MotionModel<'_> {
         self.pose_at(point)
     }
 
-    /// As [`Self::mean_pose_rad`], written out where it is asked for: for a loop over many points, elsewhere it costs flash.
+    /// As [`Self::mean_pose_rad`], written out where it is asked for: for a loop over many points,
+    /// elsewhere it costs flash.
     #[inline(always)]
     pub(in crate::cyclic) fn pose_at<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
         let mut pose = self.row(self.parts().mean_pose_rad, point);
@@ -86,8 +89,8 @@ impl MotionModel<'_> {
         pose
     }
 
-    /// Standard deviation of each angle about the mean cycle, radians, the same along the cycle; zero where the model has
-    /// none.
+    /// Standard deviation of each angle about the mean cycle, radians, the same along the cycle;
+    /// zero where the model has none.
     #[must_use]
     pub fn deviation_std_rad<const N: usize>(&self) -> [f32; N] {
         let deviation = &self.parts().deviation;
@@ -101,11 +104,12 @@ impl MotionModel<'_> {
         std
     }
 
-    /// Standard deviation of each angle's velocity about the mean cycle's, rad per reference frame, at the model's mean speed; zero
-    /// where the model has none.
+    /// Standard deviation of each angle's velocity about the mean cycle's, rad per reference frame,
+    /// at the model's mean speed; zero where the model has none.
     ///
-    /// Follows from the deviation's parts: a swing moves by 2 pi of itself in a cycle, the rest by its rate (the derivative of a
-    /// Matern process of order 3/2, which is rough: people's velocities differ by about six tenths of this).
+    /// Follows from the deviation's parts: a swing moves by 2 pi of itself in a cycle, the rest by
+    /// its rate (the derivative of a Matern process of order 3/2, which is rough: people's
+    /// velocities differ by about six tenths of this).
     ///
     /// ```
     /// # #[cfg(feature = "walking-model")] {
@@ -161,7 +165,8 @@ impl MotionModel<'_> {
         slope.map(|way| inverse * way)
     }
 
-    /// Writes the covariance of the acceleration, rad^2 per reference frame^4, as a packed lower triangle.
+    /// Writes the covariance of the acceleration, rad^2 per reference frame^4, as a packed lower
+    /// triangle.
     #[inline]
     pub fn acceleration_covariance(&self, point: CyclePoint, packed: &mut [f32]) {
         let (before, after) = self.covariance_pair(point);

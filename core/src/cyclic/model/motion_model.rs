@@ -1,9 +1,10 @@
 //! The motion model: moments of the training cycles at every position of the cycle (cyclic paper,
 //! section 2.3).
 //!
-//! Immutable and borrowed: the numbers lie in flash (a `static` [`crate::cyclic::ModelTable`]) or in a host's vectors, the filters
-//! only read them. All derivatives are per frame of the reference cycle, in which the cycle takes l frames; a person who
-//! goes through the cycle k = v l times as fast has k times the velocity and k^2 times the acceleration.
+//! Immutable and borrowed: the numbers lie in flash (a `static` [`crate::cyclic::ModelTable`]) or
+//! in a host's vectors, the filters only read them. All derivatives are per frame of the reference
+//! cycle, in which the cycle takes l frames; a person who goes through the cycle k = v l times as
+//! fast has k times the velocity and k^2 times the acceleration.
 
 use crate::cyclic::model::deviation::Deviation;
 use crate::error::{ParameterError, Rule, finite, positive};
@@ -94,7 +95,8 @@ pub struct ModelParts<'a> {
     pub mean_pose_rad: &'a [f32],
     /// Mean angular velocity, rad per reference frame: l rows of n.
     pub mean_velocity: &'a [f32],
-    /// Whole turns that each angle makes in a cycle, n: 0 for an angle that swings, +-1 for one that winds.
+    /// Whole turns that each angle makes in a cycle, n: 0 for an angle that swings, +-1 for one
+    /// that winds.
     pub turns_per_cycle: &'a [i8],
     /// Mean duration of the training cycles, frames at [`Self::rate_hz`].
     pub mean_duration_frames: f32,
@@ -105,7 +107,8 @@ pub struct ModelParts<'a> {
 }
 
 impl<'a> ModelParts<'a> {
-    /// All tables of real numbers, those of the cycle first; the order is that of [`crate::cyclic::model::bytes`].
+    /// All tables of real numbers, those of the cycle first; the order is that of
+    /// [`crate::cyclic::model::bytes`].
     #[must_use]
     pub const fn tables(&self) -> [&'a [f32]; 8] {
         let Deviation { offset_std_rad, swing_std_rad, rest_std_rad, rest_rate_per_cycle } = self.deviation;
@@ -124,7 +127,8 @@ impl<'a> ModelParts<'a> {
 
 /// A checked motion model.
 ///
-/// Invariants: all numbers are finite, the lengths agree, each covariance is positive semi-definite.
+/// Invariants: all numbers are finite, the lengths agree, each covariance is positive
+/// semi-definite.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -151,8 +155,9 @@ impl<'a> MotionModel<'a> {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// From 1 to [`MAX_ANGLES`] angles, at least 4 positions, lengths that agree, finite numbers, a positive duration
-    /// and rate, covariances without a negative eigenvalue, spreads and rates of the deviation positive.
+    /// From 1 to [`MAX_ANGLES`] angles, at least 4 positions, lengths that agree, finite numbers, a
+    /// positive duration and rate, covariances without a negative eigenvalue, spreads and rates
+    /// of the deviation positive.
     pub fn new(parts: ModelParts<'a>) -> Result<Self, ModelError> {
         let n = parts.angle_count;
         let fail = |parameter, rule| Err(ModelError::of_all(ParameterError::new(parameter, rule)));

@@ -8,7 +8,8 @@ use crate::skeleton::stick_figure::HUMAN_ANGLES;
 /// Positions l of the reference cycle: cyclic paper, section 3.1.
 pub const PAPER_POSITIONS: usize = 100;
 
-/// A motion model of `ANGLES` angles and `POSITIONS` positions, `PACKED` = `ANGLES` (`ANGLES` + 1) / 2, as plain arrays.
+/// A motion model of `ANGLES` angles and `POSITIONS` positions, `PACKED` = `ANGLES` (`ANGLES` + 1)
+/// / 2, as plain arrays.
 ///
 /// ```
 /// use sinew_core::cyclic::ModelTable;

@@ -1,4 +1,5 @@
-//! The walking model: ten cycles of three people, the same numbers as the host's shipped model of that name.
+//! The walking model: ten cycles of three people, the same numbers as the host's shipped model of
+//! that name.
 
 use crate::cyclic::model::table::HumanModelTable;
 

@@ -1,4 +1,5 @@
-//! Angles in blocks of eight: loops over a block's numbers become vector instructions on any target that has them.
+//! Angles in blocks of eight: loops over a block's numbers become vector instructions on any target
+//! that has them.
 
 use crate::cyclic::model::motion_model::MAX_ANGLES;
 

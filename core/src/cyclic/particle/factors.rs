@@ -1,9 +1,10 @@
 //! Mean acceleration and Cholesky factor at each stored position, laid out for steps of several
 //! angles at once.
 //!
-//! The angles are cut into blocks of eight, the last one filled up with zeros. A position holds its mean acceleration, block
-//! after block, then its covariance's Cholesky factor in squares of eight rows and eight columns, those on and below the diagonal
-//! row after row of squares, each by columns.
+//! The angles are cut into blocks of eight, the last one filled up with zeros. A position holds its
+//! mean acceleration, block after block, then its covariance's Cholesky factor in squares of eight
+//! rows and eight columns, those on and below the diagonal row after row of squares, each by
+//! columns.
 
 use crate::cyclic::MotionModel;
 use crate::cyclic::model::motion_model::MAX_ANGLES;
@@ -38,9 +39,11 @@ pub const fn factors_len(model: &MotionModel<'_>) -> usize {
     len_of_position(model.angle_count()) * model.position_count()
 }
 
-/// Writes mean accelerations and the Cholesky factors of the covariances at all positions, computed once a model.
+/// Writes mean accelerations and the Cholesky factors of the covariances at all positions, computed
+/// once a model.
 ///
-/// `factors` has [`factors_len`] numbers; what does not fit is left out, and particles there move without noise.
+/// `factors` has [`factors_len`] numbers; what does not fit is left out, and particles there move
+/// without noise.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -104,9 +107,10 @@ impl<'a> ParticleTable<'a> {
         (mean.as_chunks().0, factor.as_chunks().0)
     }
 
-    /// `mean_scale` mean + `noise_scale` factor draws: the mean a `fraction` of the way from position `before` to `after`,
-    /// the factor that of position `place`. The model has up to `N` angles; `draws` beyond them are zero, and the factor's columns
-    /// there are not looked at.
+    /// `mean_scale` mean + `noise_scale` factor draws: the mean a `fraction` of the way from
+    /// position `before` to `after`, the factor that of position `place`. The model has up to
+    /// `N` angles; `draws` beyond them are zero, and the factor's columns there are not looked
+    /// at.
     #[inline(always)]
     pub(super) fn accelerations<const N: usize>(
         &self,

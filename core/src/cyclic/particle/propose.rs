@@ -1,7 +1,8 @@
-//! The particle filter of the cyclic paper, section 3.3: stages that work on slices, so that a caller may split them.
+//! The particle filter of the cyclic paper, section 3.3: stages that work on slices, so that a
+//! caller may split them.
 //!
-//! Each particle draws from its own stream. [`crate::cyclic::particle::sweep`] moves, weighs and sums them, [`crate::cyclic::particle::resample`]
-//! chooses the next generation.
+//! Each particle draws from its own stream. [`crate::cyclic::particle::sweep`] moves, weighs and
+//! sums them, [`crate::cyclic::particle::resample`] chooses the next generation.
 
 use crate::angle::angle_difference;
 use crate::cyclic::MotionModel;
@@ -79,10 +80,11 @@ pub enum Spread {
     /// About the start, with the standard deviations of [`ParticleOptions`].
     #[default]
     Standard,
-    /// Any position of the cycle, as far as the first pose allows (see [`fill_positions`]), each particle with the mean
-    /// velocities of its own position.
+    /// Any position of the cycle, as far as the first pose allows (see [`fill_positions`]), each
+    /// particle with the mean velocities of its own position.
     UniformPosition,
-    /// Angles and velocities uniform in [-pi, pi], cycle position uniform: the paper's random start.
+    /// Angles and velocities uniform in [-pi, pi], cycle position uniform: the paper's random
+    /// start.
     Random,
 }
 
@@ -106,7 +108,8 @@ pub struct ParticleOptions {
     /// First standard deviation of each angle (rad), and of the velocity (rad per frame) of an
     /// angle without deviation in the model.
     pub start_std: f32,
-    /// First standard deviation of each other velocity, as a share of [`MotionModel::deviation_velocity_std`].
+    /// First standard deviation of each other velocity, as a share of
+    /// [`MotionModel::deviation_velocity_std`].
     pub deviation_velocity_share: f32,
     /// First standard deviation of the cycle position, cycles.
     pub position_std: f32,
@@ -203,11 +206,13 @@ pub fn first_particle<const N: usize>(
     particle
 }
 
-/// Writes how far a uniform start is spread over the model's stored positions, as running sums: each has a weight by how well
-/// its mean pose, with the model's spread between people, agrees with the angles that the first frame shows.
+/// Writes how far a uniform start is spread over the model's stored positions, as running sums:
+/// each has a weight by how well its mean pose, with the model's spread between people, agrees with
+/// the angles that the first frame shows.
 ///
-/// Every position is as likely as any other before the first frame, which is known when the particles are drawn. Without any
-/// angle seen, or a spread in the model, the sums rise evenly. `positions` has one number for each stored position.
+/// Every position is as likely as any other before the first frame, which is known when the
+/// particles are drawn. Without any angle seen, or a spread in the model, the sums rise evenly.
+/// `positions` has one number for each stored position.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -245,7 +250,8 @@ pub fn fill_positions<const N: usize>(model: &MotionModel<'_>, start: &CycleStar
     }
 }
 
-/// The position at which the running sums reach `uniform` of their last; `uniform` itself without sums.
+/// The position at which the running sums reach `uniform` of their last; `uniform` itself without
+/// sums.
 fn drawn_position(sums: &[f32], uniform: f32) -> f32 {
     let Some(&total) = sums.last() else { return uniform };
     let wanted = uniform * total;
@@ -260,8 +266,8 @@ fn drawn_position(sums: &[f32], uniform: f32) -> f32 {
 /// A draw for each of up to [`LANES`] particles from the transition of cyclic (11) over `step` <= 1
 /// frame.
 ///
-/// Between two stored positions the noise is that of one of them, drawn with the probabilities of linear
-/// interpolation: the covariance is then exactly the interpolated one.
+/// Between two stored positions the noise is that of one of them, drawn with the probabilities of
+/// linear interpolation: the covariance is then exactly the interpolated one.
 #[inline(always)]
 pub(super) fn advance<const N: usize>(
     model: &MotionModel<'_>,
@@ -302,7 +308,8 @@ pub(super) fn advance<const N: usize>(
 }
 
 impl<const N: usize> CyclicParticle<N> {
-    /// Moves angles and cycle over `step` with constant accelerations. An angle beyond the model's keeps its velocity.
+    /// Moves angles and cycle over `step` with constant accelerations. An angle beyond the model's
+    /// keeps its velocity.
     #[inline(always)]
     fn move_by(&mut self, accelerations: &AngleBlocks, temporal: f32, step: f32) {
         let half_square = 0.5 * step * step;
@@ -340,7 +347,8 @@ mod tests {
             rest_std_rad: &[0.05; 13],
             rest_rate_per_cycle: &[20.0; 13],
         });
-        // A swing of 0.2 rad moves by 1.26 rad in a cycle, the rest by 1; a person's velocity by six tenths of both.
+        // A swing of 0.2 rad moves by 1.26 rad in a cycle, the rest by 1; a person's velocity by six tenths
+        // of both.
         let of_people = 0.6 * 1.26_f32.hypot(1.0) * known.mean_cycle_velocity();
         for (model, wanted) in [(unknown, 0.01), (known, of_people)] {
             let start = CycleStart::<13>::standard(&model, &[Some(0.0); 13], Some(0.3), None).unwrap();

@@ -1,10 +1,11 @@
-//! Systematic resampling over chunks of particles, each by itself: where a chunk's part of the next generation begins follows from
-//! the weights of the chunks before it.
+//! Systematic resampling over chunks of particles, each by itself: where a chunk's part of the next
+//! generation begins follows from the weights of the chunks before it.
 
 use crate::cyclic::particle::propose::CyclicParticle;
 use crate::cyclic::particle::weights::WeightShare;
 
-/// A comb of `count` equidistant teeth over the sum of all weights: each tooth takes the particle that it hits.
+/// A comb of `count` equidistant teeth over the sum of all weights: each tooth takes the particle
+/// that it hits.
 ///
 /// ```
 /// use sinew_core::cyclic::particle::propose::CyclicParticle;
@@ -87,8 +88,8 @@ impl Comb {
         })
     }
 
-    /// Writes the next generation's particles that a chunk gives; `next` begins with the chunk's first tooth. `weights` are relative
-    /// to the chunk's greatest.
+    /// Writes the next generation's particles that a chunk gives; `next` begins with the chunk's
+    /// first tooth. `weights` are relative to the chunk's greatest.
     pub fn choose<const N: usize>(
         &self,
         particles: &[CyclicParticle<N>],

@@ -4,8 +4,8 @@
 //! vectors than its target has: the bits stay the same, as every operation is one of single
 //! numbers.
 //!
-//! A chunk's result depends on its particles alone and chunks are added in their order: the bits are the same however the
-//! chunks are spread over threads.
+//! A chunk's result depends on its particles alone and chunks are added in their order: the bits
+//! are the same however the chunks are spread over threads.
 
 use crate::cyclic::MotionModel;
 use crate::cyclic::particle::angle_blocks::AngleBlocks;
@@ -21,10 +21,11 @@ use crate::random::lanes::LANES;
 /// Particles whose sums are taken together.
 pub const CHUNK: usize = 1024;
 
-/// Moves `particles`, of which the first has number `first_index`, over the measurement's step. Writes their weights relative to
-/// the greatest and returns their sums.
+/// Moves `particles`, of which the first has number `first_index`, over the measurement's step.
+/// Writes their weights relative to the greatest and returns their sums.
 ///
-/// `factors` is what [`crate::cyclic::particle::factors::fill_factors`] wrote; `key` is (seed, frame, `first_index`).
+/// `factors` is what [`crate::cyclic::particle::factors::fill_factors`] wrote; `key` is (seed,
+/// frame, `first_index`).
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {

@@ -1,4 +1,5 @@
-//! The particle filter with a capacity known at compile time: for firmware, a few hundred particles, nothing allocated.
+//! The particle filter with a capacity known at compile time: for firmware, a few hundred
+//! particles, nothing allocated.
 
 use crate::angle::split_turns;
 use crate::cyclic::particle::moments::ParticleMoments;
@@ -42,13 +43,16 @@ const MAX_CHUNKS: usize = 8;
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct ParticleTables<'a> {
-    /// Written by [`crate::cyclic::particle::propose::fill_factors`]; borrowed in every step, best from a `static`.
+    /// Written by [`crate::cyclic::particle::propose::fill_factors`]; borrowed in every step, best
+    /// from a `static`.
     pub factors: &'a [f32],
-    /// Written by [`crate::cyclic::particle::propose::fill_positions`]; read at the start alone. Empty for a start that is not uniform.
+    /// Written by [`crate::cyclic::particle::propose::fill_positions`]; read at the start alone.
+    /// Empty for a start that is not uniform.
     pub positions: &'a [f32],
 }
 
-/// `P` particles of up to `N` angles. The same seed and number of particles give the bits of the host's parallel filter.
+/// `P` particles of up to `N` angles. The same seed and number of particles give the bits of the
+/// host's parallel filter.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {

@@ -81,7 +81,8 @@ fn pose_distance<const N: usize>(measurement: &AngleMeasurement<N>, pose_rad: &[
     pose_rad.iter().enumerate().filter_map(distance).sum()
 }
 
-/// Recursive comparison of up to `MOTIONS` motions of up to `N` angles with each other and with "none of these".
+/// Recursive comparison of up to `MOTIONS` motions of up to `N` angles with each other and with
+/// "none of these".
 ///
 /// The likeliest motion is the one whose mean cycle is nearest to the pose, by one spread for all
 /// motions. It is recognised if its mean cycle, at the filter's position, explains a third or more

@@ -11,9 +11,9 @@ use heapless::Vec;
 /// Chosen: a tenth of a millimetre, far below the noise of points.
 const MIN_VARIANCE_M2: f32 = 1.0e-8;
 
-/// Each end-effector goes on from the place that it *reached*, with a share of the filter's velocity: those that the root carries
-/// (head, hands) relative to it, the others (feet, which stand) in space. Carried ones may go on along an arc about the joint that their limb
-/// hangs on.
+/// Each end-effector goes on from the place that it *reached*, with a share of the filter's
+/// velocity: those that the root carries (head, hands) relative to it, the others (feet, which
+/// stand) in space. Carried ones may go on along an arc about the joint that their limb hangs on.
 ///
 /// ```
 /// use sinew_core::math::Vec3;
@@ -43,10 +43,12 @@ pub struct LinearGoals {
     joints: Vec<usize, MAX_GOALS>,
     /// How each goal moves.
     pub process: LinearExtrapolation,
-    /// Standard deviations of the first end-effectors after one second, metres, in place of the process's.
+    /// Standard deviations of the first end-effectors after one second, metres, in place of the
+    /// process's.
     std_m_per_sqrt_s: Vec<f32, MAX_GOALS>,
-    /// How closely a goal is reached along each axis, metres: W = 1 / std^2, of a limb that has all of its noise. A drawn goal of one at
-    /// rest, which has less, is reached as much more closely; what is expected of it is not.
+    /// How closely a goal is reached along each axis, metres: W = 1 / std^2, of a limb that has all
+    /// of its noise. A drawn goal of one at rest, which has less, is reached as much more
+    /// closely; what is expected of it is not.
     pub reach_std_m: f32,
 }
 
@@ -54,7 +56,8 @@ impl LinearGoals {
     /// The process of the ends of the bones `end_effectors`, of a skeleton with `bones` bones.
     ///
     /// # Errors
-    /// At most [`MAX_GOALS`] end-effectors, each in the skeleton; the standard deviation has to be positive.
+    /// At most [`MAX_GOALS`] end-effectors, each in the skeleton; the standard deviation has to be
+    /// positive.
     pub fn new(
         end_effectors: &[usize],
         bones: usize,
@@ -71,15 +74,17 @@ impl LinearGoals {
         })
     }
 
-    /// The first `count` end-effectors are carried by the root, whose place is the first bone's end.
+    /// The first `count` end-effectors are carried by the root, whose place is the first bone's
+    /// end.
     #[must_use]
     pub fn carrying(mut self, count: usize) -> Self {
         self.carried = count;
         self
     }
 
-    /// The first end-effectors, as far as they are carried, swing about the ends of the bones `joints`, one each, of a skeleton with `bones`
-    /// bones: they go on along arcs about them ([`LinearExtrapolation::mean_about`]).
+    /// The first end-effectors, as far as they are carried, swing about the ends of the bones
+    /// `joints`, one each, of a skeleton with `bones` bones: they go on along arcs about them
+    /// ([`LinearExtrapolation::mean_about`]).
     ///
     /// # Errors
     /// At most [`MAX_GOALS`] bones, each in the skeleton.
@@ -88,7 +93,8 @@ impl LinearGoals {
         Ok(self)
     }
 
-    /// The first end-effectors spread by standard deviations of their own: hands are quicker than a head.
+    /// The first end-effectors spread by standard deviations of their own: hands are quicker than a
+    /// head.
     ///
     /// # Errors
     /// At most [`MAX_GOALS`] numbers, metres by root second, none below zero.
@@ -108,7 +114,8 @@ impl LinearGoals {
         LinearExtrapolation { std_m_per_sqrt_s, ..self.process }
     }
 
-    /// Where each end-effector goes on the mean, how far it spreads and how closely it is reached, metres, with its bone.
+    /// Where each end-effector goes on the mean, how far it spreads and how closely it is reached,
+    /// metres, with its bone.
     fn means<'p, const BONES: usize>(
         &'p self,
         past: &'p GoalPast<'_, BONES>,
@@ -143,7 +150,8 @@ struct Looseness {
     reach_std_m: f32,
 }
 
-/// The goal of a bone's end that is missed by so much along each axis; a tenth of a millimetre counts as none.
+/// The goal of a bone's end that is missed by so much along each axis; a tenth of a millimetre
+/// counts as none.
 fn goal(bone: usize, position_m: Vec3, variance_m2: f32) -> Goal {
     Goal { bone, position_m, precision: Mat3::identity() / max(variance_m2, MIN_VARIANCE_M2) }
 }

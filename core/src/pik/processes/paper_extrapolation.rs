@@ -1,4 +1,5 @@
-//! Linear extrapolation as PIK (33) prints it: of the particle's own sampled goals, with full velocity.
+//! Linear extrapolation as PIK (33) prints it: of the particle's own sampled goals, with full
+//! velocity.
 
 use crate::kinematics::inverse::Goal;
 use crate::math::{Mat3, Vec3};
@@ -8,7 +9,8 @@ use crate::random::Stream;
 /// Goals that are remembered: two triples each.
 const MOST: usize = MEMORY / 6;
 
-/// g_t+1 ~ N(g_t + (g_t - g_t-1), sigma^2 I). The goal of the frame before the first is the place reached there.
+/// g_t+1 ~ N(g_t + (g_t - g_t-1), sigma^2 I). The goal of the frame before the first is the place
+/// reached there.
 ///
 /// ```
 /// use sinew_core::math::Vec3;

@@ -1,5 +1,5 @@
-//! The pelvic lift: hands, feet and head stay where they were at first (PIK (38), section 7.3). The root's part,
-//! PIK (39), is [`crate::pik::root::RootProcess::pelvic_lift`].
+//! The pelvic lift: hands, feet and head stay where they were at first (PIK (38), section 7.3). The
+//! root's part, PIK (39), is [`crate::pik::root::RootProcess::pelvic_lift`].
 
 use crate::kinematics::inverse::Goal;
 use crate::math::Mat3;

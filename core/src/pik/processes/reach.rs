@@ -1,4 +1,5 @@
-//! A straight reach: the goal runs along the line from the hand to a target (PIK paper, section 4.3, first example).
+//! A straight reach: the goal runs along the line from the hand to a target (PIK paper, section
+//! 4.3, first example).
 
 use crate::kinematics::inverse::Goal;
 use crate::math::{Mat3, Vec3, length, min, sqrt};

@@ -1,4 +1,5 @@
-//! Both hands on a stick whose ends are known, in space or in the image (PIK (36) and PIK (37), section 7.2).
+//! Both hands on a stick whose ends are known, in space or in the image (PIK (36) and PIK (37),
+//! section 7.2).
 
 use super::extrapolation::LinearGoals;
 use crate::kinematics::inverse::Goal;
@@ -49,14 +50,15 @@ const UNKNOWN: f32 = 0.0;
 pub enum StickSight {
     /// Both end points in space, metres.
     Ends([Vec3; 2]),
-    /// Only the directions in which the camera sees both end points: unit vectors from its centre, in camera axes.
+    /// Only the directions in which the camera sees both end points: unit vectors from its centre,
+    /// in camera axes.
     Rays([Vec3; 2]),
     /// The stick was not seen: hands go on as if there were none.
     Unseen,
 }
 
-/// Each hand lies at its share gamma of the way along the stick, which walks a little from frame to frame inside [0, 1]; other
-/// end-effectors (the head) go on linearly.
+/// Each hand lies at its share gamma of the way along the stick, which walks a little from frame to
+/// frame inside [0, 1]; other end-effectors (the head) go on linearly.
 ///
 /// ```
 /// use sinew_core::math::Vec3;
@@ -159,8 +161,8 @@ fn share_along(ends_m: &[Vec3; 2], place_m: &Vec3) -> f32 {
     clamp((place_m - ends_m[1]).dot(&along) / squared, f32::EPSILON, 1.0)
 }
 
-/// The place nearest to `place_m` in the plane through the camera and both rays, inside the wedge between them; parallel rays
-/// make a wedge that is a ray.
+/// The place nearest to `place_m` in the plane through the camera and both rays, inside the wedge
+/// between them; parallel rays make a wedge that is a ray.
 fn into_wedge(camera_m: &Vec3, rays: &[Vec3; 2], place_m: &Vec3) -> Vec3 {
     let from = place_m - camera_m;
     if let Some(normal) = unit(rays[0].cross(&rays[1])) {

@@ -1,4 +1,5 @@
-//! Walking: one foot is planted, the other never below the floor (PIK paper, section 4.3, second example).
+//! Walking: one foot is planted, the other never below the floor (PIK paper, section 4.3, second
+//! example).
 
 use crate::kinematics::inverse::Goal;
 use crate::math::{Mat3, Vec3, length, sqrt};
@@ -47,7 +48,8 @@ pub struct WalkingGoals {
 }
 
 impl WalkingGoals {
-    /// Which of the two ankles is planted: the slower one by the filter's velocities, or the lower one where both stand.
+    /// Which of the two ankles is planted: the slower one by the filter's velocities, or the lower
+    /// one where both stand.
     #[must_use]
     pub fn planted<const BONES: usize>(&self, past: &GoalPast<'_, BONES>) -> usize {
         let speeds = self.ankles.map(|bone| past.velocity_m_per_s.get(bone).map_or(0.0, length));

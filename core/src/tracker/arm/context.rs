@@ -9,8 +9,8 @@ use crate::pik::goal::LinearExtrapolation;
 use crate::vision::candidate::HandCandidate;
 use heapless::Vec;
 
-/// A square that exceeds another one this many times has the greater root, however both are rounded.
-/// Chosen: several roundings of `f32`.
+/// A square that exceeds another one this many times has the greater root, however both are
+/// rounded. Chosen: several roundings of `f32`.
 const CLEARLY_MORE: f32 = 1.0 + 1.0e-6;
 
 /// What all particles of one frame share.
@@ -47,8 +47,9 @@ impl FrameContext<'_> {
         }
     }
 
-    /// H1 with its spread: the extrapolated hand on the ray of candidate `index`, its depth drawn towards what the
-    /// blob's area gives where that is wanted. `forearm` is where the forearm is thought to point, a unit vector.
+    /// H1 with its spread: the extrapolated hand on the ray of candidate `index`, its depth drawn
+    /// towards what the blob's area gives where that is wanted. `forearm` is where the forearm
+    /// is thought to point, a unit vector.
     pub fn corrected_hand(
         &self,
         extrapolated_m: &Vec3,

@@ -152,8 +152,9 @@ impl FrameContext<'_> {
         cluster
     }
 
-    /// How far the particles at no candidate are a cluster: 1 where they fill no more than a disc of the least cluster
-    /// radius, else the disc's share of what they fill. Scattered particles agree on nothing.
+    /// How far the particles at no candidate are a cluster: 1 where they fill no more than a disc
+    /// of the least cluster radius, else the disc's share of what they fill. Scattered
+    /// particles agree on nothing.
     fn concentration(&self, particles: &[Particle], weights: &[f32]) -> f32 {
         let camera = self.model.camera();
         let (mut mass, mut sum, mut square) = (0.0, [0.0; 2], 0.0);

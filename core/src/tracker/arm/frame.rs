@@ -67,9 +67,11 @@ pub struct ArmFrame<'a> {
     pub shoulder_m: Vec3,
 }
 
-/// The most likely candidates, in descending order of likelihood, and the count of those that found no room.
+/// The most likely candidates, in descending order of likelihood, and the count of those that found
+/// no room.
 ///
-/// Candidates whose numbers are not finite, or that are less likely than [`MIN_LIKELIHOOD`], are dropped as well.
+/// Candidates whose numbers are not finite, or that are less likely than [`MIN_LIKELIHOOD`], are
+/// dropped as well.
 #[must_use]
 pub fn most_likely(candidates: &[HandCandidate]) -> (Vec<HandCandidate, MAX_CANDIDATES>, usize) {
     let mut kept: Vec<HandCandidate, MAX_CANDIDATES> = Vec::new();

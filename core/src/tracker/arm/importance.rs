@@ -1,4 +1,5 @@
-//! Importance ratio of a goal (`pik-weighted`): the goal transition over the proposal it was drawn from.
+//! Importance ratio of a goal (`pik-weighted`): the goal transition over the proposal it was drawn
+//! from.
 
 use super::context::FrameContext;
 use crate::correction::hand::log_density_on_ray;
@@ -6,7 +7,8 @@ use crate::math::{Vec3, exp, length, ln, max};
 use crate::random::Stream;
 use crate::random::normal::LOG_SQRT_TAU;
 
-/// A draw from the goal transition: (1 - rho) of the goal process + rho uniform over the reachable space.
+/// A draw from the goal transition: (1 - rho) of the goal process + rho uniform over the reachable
+/// space.
 pub(super) fn draw_transition(context: &FrameContext<'_>, extrapolated_m: &Vec3, stream: &mut Stream) -> Vec3 {
     if stream.uniform() < context.model.options().teleport_share {
         return draw_reachable(context, stream);

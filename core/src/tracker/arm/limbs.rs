@@ -1,8 +1,9 @@
 //! What moving edges say of the limbs, for every place where the hand may be.
 //!
-//! Edge pixels are sorted to the limbs of a supposed arm. The last estimate is one such arm; each blob that particles are
-//! sent to gives another (the last estimate with its hand corrected to the blob). So a blob whose arm moves is
-//! preferred to one at which nothing moves, also when the last estimate was wrong.
+//! Edge pixels are sorted to the limbs of a supposed arm. The last estimate is one such arm; each
+//! blob that particles are sent to gives another (the last estimate with its hand corrected to the
+//! blob). So a blob whose arm moves is preferred to one at which nothing moves, also when the last
+//! estimate was wrong.
 
 use super::context::FrameContext;
 use super::estimate::ArmJoints;
@@ -47,7 +48,8 @@ impl LimbDensities {
     }
 }
 
-/// Where a frame's hypotheses are measured: part of the tracker, so that a step takes less stack. Holds nothing between frames.
+/// Where a frame's hypotheses are measured: part of the tracker, so that a step takes less stack.
+/// Holds nothing between frames.
 #[derive(Debug, Clone)]
 pub(super) struct LimbRoom {
     pub hypotheses: LimbHypotheses,
@@ -63,7 +65,8 @@ impl LimbRoom {
     }
 }
 
-/// Measures all hypotheses in `room`, whose estimate is what is still known from before of the last estimate's arm.
+/// Measures all hypotheses in `room`, whose estimate is what is still known from before of the last
+/// estimate's arm.
 #[inline(never)]
 pub(super) fn observe(
     context: &FrameContext<'_>,

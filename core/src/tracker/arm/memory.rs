@@ -1,9 +1,10 @@
 //! What is remembered of the blobs: which were not the hand, and which have not moved for long.
 //!
-//! A face has nearly the likelihood of a hand, frame after frame. While the hand is seen at another blob, a blob that
-//! stays where it is loses belief fast, and wins it back slowly; and a blob that rests is less likely a hand than one that
-//! moves. So a known face does not take the particles when the hand is hidden or fast. A blob that is new, or that moved
-//! on, has full belief, so a returning hand is not held back.
+//! A face has nearly the likelihood of a hand, frame after frame. While the hand is seen at another
+//! blob, a blob that stays where it is loses belief fast, and wins it back slowly; and a blob that
+//! rests is less likely a hand than one that moves. So a known face does not take the particles
+//! when the hand is hidden or fast. A blob that is new, or that moved on, has full belief, so a
+//! returning hand is not held back.
 
 use super::frame::MAX_CANDIDATES;
 use super::options::BlobMemoryOptions;
@@ -48,7 +49,8 @@ impl BlobMemory {
         best.0
     }
 
-    /// Share of its likelihood that a blob at `centre` keeps: belief times activity; 1 for a blob that is new.
+    /// Share of its likelihood that a blob at `centre` keeps: belief times activity; 1 for a blob
+    /// that is new.
     pub fn share(&self, centre: Pixel, radius_px: f32, options: &BlobMemoryOptions) -> f32 {
         self.recall(centre, radius_px).map_or(1.0, |blob| {
             let activity = options.rest_share + (1.0 - options.rest_share) * exp(-blob.still_s / options.rest_time_s);

@@ -1,8 +1,8 @@
 //! The arm tracker: particles of arm poses, some of whose hands are sent to skin-coloured blobs.
 //!
-//! [`ArmModel`] is what does not change (camera, arm, options); [`ArmTracker`] is the small state of one arm, and
-//! [`ArmPair`] that of two arms that share one list of blobs. A frame goes in as an [`ArmFrame`], an [`ArmEstimate`] comes out, for
-//! every frame.
+//! [`ArmModel`] is what does not change (camera, arm, options); [`ArmTracker`] is the small state
+//! of one arm, and [`ArmPair`] that of two arms that share one list of blobs. A frame goes in as an
+//! [`ArmFrame`], an [`ArmEstimate`] comes out, for every frame.
 
 mod context;
 mod estimate;

@@ -24,7 +24,8 @@ use crate::skeleton::arm::ARM_ANGLES;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum LimbCombination {
-    /// The product where the shoulder's place is known, else the mean ([`ArmOptions::for_shoulder`]).
+    /// The product where the shoulder's place is known, else the mean
+    /// ([`ArmOptions::for_shoulder`]).
     #[default]
     Auto,
     /// Half of the sum, arm (3).
@@ -33,7 +34,8 @@ pub enum LimbCombination {
     Product,
 }
 
-/// Continuity gate: exp(-d^2 / 2 s^2) + floor, d from the corrected hand to the particle's own prediction.
+/// Continuity gate: exp(-d^2 / 2 s^2) + floor, d from the corrected hand to the particle's own
+/// prediction.
 ///
 /// ```
 /// use sinew_core::tracker::arm::{ArmOptions, options::{DEFAULT_GATE, Gate}};
@@ -54,14 +56,15 @@ pub struct Gate {
     pub growth_m_per_s: f32,
     /// What a jump of any length keeps.
     pub floor: f32,
-    /// Share of visible hands that give no blob: what a particle that ignores the blobs keeps beside a blob that is surely
-    /// the hand.
+    /// Share of visible hands that give no blob: what a particle that ignores the blobs keeps
+    /// beside a blob that is surely the hand.
     pub missed_share: f32,
     /// Blobs are allotted particles by likelihood times nearness; nearness falls over this many s.
     pub allotment_reach: f32,
 }
 
-/// Area cue: the blob's area measures the hand's distance, since area times squared depth is about constant.
+/// Area cue: the blob's area measures the hand's distance, since area times squared depth is about
+/// constant.
 ///
 /// ```
 /// use sinew_core::tracker::arm::options::AreaCue;
@@ -76,20 +79,22 @@ pub struct Gate {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct AreaCue {
     /// Length-weighted area of the image of a hand seen from the side of its forearm (see
-    /// [`crate::vision::candidate::HandCandidate::length_weighted_area_px`]) times squared depth over
-    /// squared focal length, square metres.
+    /// [`crate::vision::candidate::HandCandidate::length_weighted_area_px`]) times squared depth
+    /// over squared focal length, square metres.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub hand_area_m2: f32,
     /// Weight of the image's long axis in that area; the short axis has the rest.
     pub length_share: f32,
-    /// How much smaller, in the area's logarithm, a hand is that points at the camera or away from it.
+    /// How much smaller, in the area's logarithm, a hand is that points at the camera or away from
+    /// it.
     pub foreshortening: f32,
     /// Standard deviation of the logarithm of the area.
     pub log_std: f32,
 }
 
 impl AreaCue {
-    /// The area to expect where the forearm's direction and the line of sight have the cosine `pointing`, square metres.
+    /// The area to expect where the forearm's direction and the line of sight have the cosine
+    /// `pointing`, square metres.
     #[must_use]
     pub fn expected_area_m2(&self, pointing: f32) -> f32 {
         self.hand_area_m2 * exp(-self.foreshortening * pointing * pointing)
@@ -144,7 +149,8 @@ pub struct BlobMemoryOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum EstimateRule {
-    /// Weighted mean of the heaviest cluster: the particles whose hand lies near one blob's centre, or near none.
+    /// Weighted mean of the heaviest cluster: the particles whose hand lies near one blob's centre,
+    /// or near none.
     #[default]
     Cluster,
     /// Weighted mean of all particles.
@@ -168,8 +174,8 @@ pub const DEFAULT_AREA_CUE: AreaCue =
     AreaCue { hand_area_m2: 0.0194, length_share: 0.65, foreshortening: 0.85, log_std: 0.3 };
 /// Default of the cluster's radius: 25 pixels of a 640 pixel image with 60 degrees.
 pub const DEFAULT_RADIUS_PER_FOCAL: f32 = 0.045;
-/// Multiple of the area cue's standard deviation where the shoulder is guessed: the depth that fits the arm may be far from
-/// the one that the area gives. Chosen: the cue still orders near and far.
+/// Multiple of the area cue's standard deviation where the shoulder is guessed: the depth that fits
+/// the arm may be far from the one that the area gives. Chosen: the cue still orders near and far.
 const GUESSED_AREA_DOUBT: f32 = 3.0;
 
 impl Default for Gate {
@@ -219,8 +225,8 @@ pub struct ArmOptions {
     /// Area cue, or none.
     #[cfg_attr(feature = "serde", serde(with = "super::switch"))]
     pub area_cue: Option<AreaCue>,
-    /// Whether a goal of a weight without correction is drawn along the ray from prediction and area together (needs the area cue), which then
-    /// does not stand in the weight again.
+    /// Whether a goal of a weight without correction is drawn along the ray from prediction and
+    /// area together (needs the area cue), which then does not stand in the weight again.
     pub depth_from_area: bool,
     /// Memory of blobs that are not the hand, or none.
     #[cfg_attr(feature = "serde", serde(with = "super::switch"))]
@@ -229,7 +235,8 @@ pub struct ArmOptions {
     pub estimate: EstimateRule,
     /// Radius around a blob's centre of its cluster, as a share of the focal length.
     pub cluster_radius_per_focal: f32,
-    /// Whether the pose keeps the arm's joint limits; without them it may bend as no arm does, for comparisons.
+    /// Whether the pose keeps the arm's joint limits; without them it may bend as no arm does, for
+    /// comparisons.
     pub joint_limits: bool,
     /// Share of the estimated velocity that goes on.
     pub velocity_persistence: f32,
@@ -237,11 +244,13 @@ pub struct ArmOptions {
     pub velocity_gain: f32,
     /// Spread of the hand's goal after one second, metres along each axis.
     pub hand_std_m_per_sqrt_s: f32,
-    /// Spread of the predicted elbow after one second (`corrected` and `standard`), metres along each axis.
+    /// Spread of the predicted elbow after one second (`corrected` and `standard`), metres along
+    /// each axis.
     pub elbow_std_m_per_sqrt_s: f32,
     /// Spread along the ray of a hand that a blob corrected, after one second, metres.
     pub ray_std_m_per_sqrt_s: f32,
-    /// What a frame's path adds to that spread, as a share of the path: a fast hand may turn towards the camera.
+    /// What a frame's path adds to that spread, as a share of the path: a fast hand may turn
+    /// towards the camera.
     pub ray_std_per_path: f32,
     /// Error of a blob's centre as the hand's place, as a share of the focal length.
     pub centre_std_per_focal: f32,
@@ -257,7 +266,8 @@ pub struct ArmOptions {
     pub limb_band_m: f32,
     /// Settings of the dynamic Hough transform.
     pub hough: HoughSettings,
-    /// Time in which a limb's old orientation density fades by 1/e while the limb shows no moving edges, seconds.
+    /// Time in which a limb's old orientation density fades by 1/e while the limb shows no moving
+    /// edges, seconds.
     pub orientation_memory_s: f32,
     /// Share of the goal process that is uniform over the reachable space (`pik-weighted`).
     pub teleport_share: f32,
@@ -303,8 +313,8 @@ impl Default for ArmOptions {
 }
 
 impl ArmOptions {
-    /// The options for a shoulder whose place is known, or only guessed: settles [`LimbCombination::Auto`] and widens the
-    /// area cue of a guessed one.
+    /// The options for a shoulder whose place is known, or only guessed: settles
+    /// [`LimbCombination::Auto`] and widens the area cue of a guessed one.
     #[must_use]
     pub fn for_shoulder(mut self, is_known: bool) -> Self {
         if self.combination == LimbCombination::Auto {

@@ -1,4 +1,5 @@
-//! Two arms that share one list of blobs: a blob serves one hand, unless hands touch. Beyond the arm paper, which tracks one arm.
+//! Two arms that share one list of blobs: a blob serves one hand, unless hands touch. Beyond the
+//! arm paper, which tracks one arm.
 //!
 //! ```
 //! use sinew_core::camera::{Camera, Pixel};
@@ -131,7 +132,8 @@ struct Expected {
 }
 
 impl<const CAPACITY: usize> ArmPair<CAPACITY> {
-    /// Trackers of a left and a right arm that have seen nothing yet. `models` and `shoulders_m` are left, right.
+    /// Trackers of a left and a right arm that have seen nothing yet. `models` and `shoulders_m`
+    /// are left, right.
     ///
     /// # Errors
     /// As [`ArmTracker::new`].
@@ -141,7 +143,8 @@ impl<const CAPACITY: usize> ArmPair<CAPACITY> {
         Ok(pair)
     }
 
-    /// Trackers without particles, so that those in static memory can begin there; see [`ArmTracker::empty`].
+    /// Trackers without particles, so that those in static memory can begin there; see
+    /// [`ArmTracker::empty`].
     #[must_use]
     pub const fn empty() -> Self {
         Self { trackers: [ArmTracker::empty(), ArmTracker::empty()] }
@@ -218,7 +221,8 @@ fn nearest_index(candidates: &[HandCandidate], centre: Pixel) -> Option<usize> {
 
 /// ln of odds times nearness; a side without expectation finds every place alike.
 ///
-/// Odds, since a blob that is given to no hand has to be explained as something else, with probability 1 - likelihood.
+/// Odds, since a blob that is given to no hand has to be explained as something else, with
+/// probability 1 - likelihood.
 fn log_fit(candidate: &HandCandidate, expected: Option<&Expected>) -> f32 {
     let nearness = expected.map_or(1.0, |e| {
         let miss = candidate.centre.distance_px(e.hand) / e.std_px;
@@ -277,8 +281,8 @@ fn own_and_free(candidates: &[HandCandidate], own: Option<usize>, others: Option
     list
 }
 
-/// The blob in which both hands lie, and its halves for left and right: one side has it, the other has none, and
-/// both expect their hand inside.
+/// The blob in which both hands lie, and its halves for left and right: one side has it, the other
+/// has none, and both expect their hand inside.
 fn touching(
     candidates: &[HandCandidate],
     expected: &[Option<Expected>; 2],

@@ -14,19 +14,21 @@ use crate::pik::proposal::{LaplaceProposal, LimitMass};
 use crate::random::Stream;
 use crate::skeleton::arm::{ARM_ANGLES, FOREARM, UPPER_ARM};
 
-/// Greatest part of a corrected weight that the importance ratio of the pose may decide. The expansion's tails are thinner than
-/// those of the density, so without a bound rare draws take the whole weight, more so with more particles.
-/// Chosen: a factor of twenty.
+/// Greatest part of a corrected weight that the importance ratio of the pose may decide. The
+/// expansion's tails are thinner than those of the density, so without a bound rare draws take the
+/// whole weight, more so with more particles. Chosen: a factor of twenty.
 const MAX_LOG_RATIO: f32 = 3.0;
 
 /// A particle before it is weighted.
 pub(super) struct Proposed {
     pub particle: Particle,
-    /// Distance from the particle's own extrapolation to where a blob sent its hand; zero where none did.
+    /// Distance from the particle's own extrapolation to where a blob sent its hand; zero where
+    /// none did.
     pub jump_m: f32,
     /// Where the forearm was thought to point when the depth was drawn, a unit vector.
     pub supposed_forearm: Vec3,
-    /// ln of the importance ratio of goal and pose where the weight is corrected (`pik-weighted`), else zero.
+    /// ln of the importance ratio of goal and pose where the weight is corrected (`pik-weighted`),
+    /// else zero.
     pub log_importance: f32,
 }
 
@@ -43,8 +45,8 @@ impl FrameContext<'_> {
         proposed
     }
 
-    /// The arm paper: elbow and hand by a first-order linear model, made reachable; a driven hand is corrected on the
-    /// ray and the elbow goes to the nearest point of its circle.
+    /// The arm paper: elbow and hand by a first-order linear model, made reachable; a driven hand
+    /// is corrected on the ray and the elbow goes to the nearest point of its circle.
     fn propose_by_joints(&self, ancestor: &Particle, driver: Option<usize>, stream: &mut Stream) -> Proposed {
         let (options, geometry) = (self.model.options(), self.model.geometry());
         let extrapolated_m = self.hand_process().mean(&ancestor.hand_m, &self.hand_velocity_m_per_s, self.dt_s);
@@ -91,7 +93,8 @@ impl FrameContext<'_> {
         Proposed { particle, jump_m, supposed_forearm: ancestor.forearm(), log_importance: 0.0 }
     }
 
-    /// As [`Self::propose_by_goal`], but goals stay as drawn and the weight has their importance ratio.
+    /// As [`Self::propose_by_goal`], but goals stay as drawn and the weight has their importance
+    /// ratio.
     fn propose_weighted(&self, ancestor: &Particle, driver: Option<usize>, stream: &mut Stream) -> Proposed {
         let process = self.hand_process();
         let extrapolated_m = process.mean(&ancestor.hand_m, &self.hand_velocity_m_per_s, self.dt_s);
@@ -112,16 +115,17 @@ impl FrameContext<'_> {
         Goal { bone: FOREARM, position_m, precision: Mat3::identity() / (std_m * std_m) }
     }
 
-    /// A goal of a blob or of the transition alike, so that both have the same pose density. It is reached with the
-    /// geometric mean of both spreads: much wider than a blob's error, and the blob term would let hardly a draw live.
+    /// A goal of a blob or of the transition alike, so that both have the same pose density. It is
+    /// reached with the geometric mean of both spreads: much wider than a blob's error, and the
+    /// blob term would let hardly a draw live.
     fn weighted_goal(&self, position_m: Vec3) -> Goal {
         let options = self.model.options();
         let precision = Mat3::identity() / (options.reach_std_m * options.reach_across_std_m);
         Goal { bone: FOREARM, position_m, precision }
     }
 
-    /// A goal that is wanted more closely across the ray than along it: where limits forbid its depth, the hand slides
-    /// along the ray.
+    /// A goal that is wanted more closely across the ray than along it: where limits forbid its
+    /// depth, the hand slides along the ray.
     fn driven_goal(&self, position_m: Vec3, ray: &Ray) -> Goal {
         let options = self.model.options();
         let along = ray.direction * ray.direction.transpose();
@@ -130,7 +134,8 @@ impl FrameContext<'_> {
         Goal { bone: FOREARM, position_m, precision }
     }
 
-    /// Mode and Laplace draw for one goal, with the log importance ratio of the draw where the weight is corrected.
+    /// Mode and Laplace draw for one goal, with the log importance ratio of the draw where the
+    /// weight is corrected.
     fn pose_for(&self, ancestor: &Particle, goal: &Goal, stream: &mut Stream) -> (Particle, f32) {
         let options = self.model.options();
         let jump_rad = length(&(goal.position_m - ancestor.hand_m)) / self.model.geometry().reach_m();
@@ -147,7 +152,8 @@ impl FrameContext<'_> {
         let mut mode = density.mode_from(&self.starts(ancestor, &goal.position_m), options.solver_steps);
         let corrects_weight = options.variant.traits().corrects_weight;
         if !corrects_weight {
-            // The draw spreads as far as a frame's stiffness lets it: wider, the expansion would leave the goal.
+            // The draw spreads as far as a frame's stiffness lets it: wider, the expansion would leave the
+            // goal.
             for (i, variance) in variances.iter().enumerate() {
                 mode.hessian[i][i] += 1.0 / variance - density.stiffness[i];
             }
@@ -170,7 +176,8 @@ impl FrameContext<'_> {
         (particle, proposal.log_importance_ratio(&draw, log_density, LimitMass::Neglected))
     }
 
-    /// Poses whose hand is at the goal: with the elbow as near to the ancestor's as can be, and with a hanging elbow.
+    /// Poses whose hand is at the goal: with the elbow as near to the ancestor's as can be, and
+    /// with a hanging elbow.
     fn starts(&self, ancestor: &Particle, goal_m: &Vec3) -> [[f32; ARM_ANGLES]; 2] {
         let geometry = self.model.geometry();
         let hand_m = self.reachable.nearest(goal_m);

@@ -6,7 +6,8 @@ use crate::particle::resampling::{permute, systematic};
 use crate::random::Stream;
 use heapless::Vec;
 
-/// Systematic resampling, then a permutation, so that the order of the ancestors does not decide who drives them.
+/// Systematic resampling, then a permutation, so that the order of the ancestors does not decide
+/// who drives them.
 pub(super) fn select_ancestors<const CAPACITY: usize>(weights: &[f32], mut stream: Stream) -> Vec<u16, CAPACITY> {
     let mut ancestors: Vec<u16, CAPACITY> = Vec::new();
     // As many as there are particles, so it always fits.
@@ -19,8 +20,9 @@ pub(super) fn select_ancestors<const CAPACITY: usize>(weights: &[f32], mut strea
 impl FrameContext<'_> {
     /// Which candidate drives each ancestor's hand, if any.
     ///
-    /// Unpaid, an ancestor that is at a blob stays with it while that blob has particles left: sent elsewhere it would
-    /// only meet the gate. The others, and all where the weight corrects for goals, are assigned in the given (permuted) order.
+    /// Unpaid, an ancestor that is at a blob stays with it while that blob has particles left: sent
+    /// elsewhere it would only meet the gate. The others, and all where the weight corrects for
+    /// goals, are assigned in the given (permuted) order.
     pub fn assign_drivers<'p, const CAPACITY: usize>(
         &self,
         ancestors: impl Iterator<Item = Option<&'p Particle>>,

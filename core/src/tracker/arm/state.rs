@@ -80,7 +80,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         Ok(tracker)
     }
 
-    /// A tracker without particles, so that one in static memory can begin there; it takes no stack. Its answers mean nothing.
+    /// A tracker without particles, so that one in static memory can begin there; it takes no
+    /// stack. Its answers mean nothing.
     #[must_use]
     pub const fn empty() -> Self {
         let nowhere = ArmJoints { shoulder_m: ORIGIN_M, elbow_m: ORIGIN_M, hand_m: ORIGIN_M };
@@ -153,7 +154,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         self.ever_seen
     }
 
-    /// Where the hand is expected at `timestamp_us`, metres, and how far off that may be (standard deviation, metres).
+    /// Where the hand is expected at `timestamp_us`, metres, and how far off that may be (standard
+    /// deviation, metres).
     #[must_use]
     pub fn predicted_hand(&self, model: &ArmModel, timestamp_us: u64) -> (Vec3, f32) {
         let dt_s = self.elapsed_s(timestamp_us);

@@ -27,8 +27,8 @@ const LIMB_STREAMS: u32 = u32::MAX - 64;
 impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     /// Answers one frame: the algorithm box of the arm paper, joined with PIK.
     ///
-    /// A timestamp that does not lie after the last one counts as the shortest step. Every frame gets an answer; where
-    /// nothing was seen it is a prediction and says so.
+    /// A timestamp that does not lie after the last one counts as the shortest step. Every frame
+    /// gets an answer; where nothing was seen it is a prediction and says so.
     pub fn step(&mut self, model: &ArmModel, frame: &ArmFrame<'_>) -> ArmEstimate {
         let dt_s = self.elapsed_s(frame.timestamp_us);
         let image = frame.image.unwrap_or_default();
@@ -127,7 +127,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         candidate.likelihood * self.memory.share(candidate.centre, model.cluster_radius_px(candidate), memory)
     }
 
-    /// What a candidate on `ray` keeps of its chance, less where it is far from what the last estimate lets expect.
+    /// What a candidate on `ray` keeps of its chance, less where it is far from what the last
+    /// estimate lets expect.
     fn nearness(&self, model: &ArmModel, ray: &Ray, dt_s: f32) -> f32 {
         let Some(gate) = model.options().gate.filter(|_| self.knows_hand(model)) else { return 1.0 };
         let hand_m = self.extrapolated_hand_m(model, dt_s);
@@ -157,7 +158,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         self.current ^= 1;
     }
 
-    /// Keeps what the next frame needs of the estimate: its place, its velocity, when a blob last carried it.
+    /// Keeps what the next frame needs of the estimate: its place, its velocity, when a blob last
+    /// carried it.
     fn remember(&mut self, context: &FrameContext<'_>, cluster: &Cluster, dt_s: f32) -> Status {
         self.limbs = *self.limb_room.hypotheses.at(cluster.candidate);
         if let Some(memory) = &context.model.options().blob_memory {

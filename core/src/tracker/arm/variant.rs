@@ -68,7 +68,8 @@ pub struct VariantTraits {
     pub drives_hands: bool,
     /// How poses follow from hands.
     pub pose: PoseRule,
-    /// Whether the weight has the importance ratio of the goal and of the pose; goals then stay as drawn.
+    /// Whether the weight has the importance ratio of the goal and of the pose; goals then stay as
+    /// drawn.
     pub corrects_weight: bool,
     /// Whether the likelihood has the blob term p(blobs | hand), with the area cue as a factor.
     pub has_blob_term: bool,

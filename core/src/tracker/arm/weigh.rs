@@ -38,7 +38,8 @@ impl FrameContext<'_> {
         log_weight
     }
 
-    /// Continuity: what a jump to a blob costs, and what it costs to ignore one that is likely the hand.
+    /// Continuity: what a jump to a blob costs, and what it costs to ignore one that is likely the
+    /// hand.
     fn log_gate(&self, proposed: &Proposed) -> f32 {
         let options = self.model.options();
         let Some(gate) = options.gate.filter(|_| options.variant.traits().has_gate) else { return 0.0 };
@@ -49,8 +50,8 @@ impl FrameContext<'_> {
         ln(exp(-0.5 * jumps * jumps) + gate.floor)
     }
 
-    /// Observation density of both limbs, arm (3) or the product; uniform where a limb has no orientation.
-    /// Chosen: fewer pixels have no direction.
+    /// Observation density of both limbs, arm (3) or the product; uniform where a limb has no
+    /// orientation. Chosen: fewer pixels have no direction.
     fn log_orientation(&self, image: Option<&ArmImagePoints>, limbs: &LimbDensities) -> f32 {
         let limb = |density: &OrientationDensity, a: Pixel, b: Pixel| {
             if a.distance_px(b) < MIN_LIMB_IMAGE_PX { 1.0 } else { density.at(atan2(b.v_px - a.v_px, b.u_px - a.u_px)) }
@@ -67,8 +68,8 @@ impl FrameContext<'_> {
         }
     }
 
-    /// Squared deviation of a blob's log area from what the hand's depth lets expect, in standard deviations; zero
-    /// without the cue.
+    /// Squared deviation of a blob's log area from what the hand's depth lets expect, in standard
+    /// deviations; zero without the cue.
     fn area_deviation(&self, particle: &Particle, forearm: &Vec3, candidate: &HandCandidate) -> f32 {
         let Some(cue) = self.model.options().area_cue else { return 0.0 };
         let focal_px = self.model.camera().focal_px();
@@ -79,10 +80,11 @@ impl FrameContext<'_> {
         deviation * deviation
     }
 
-    /// The area cue where the likelihood has no blob term: the blob that drove the particle, or the one its hand lies on.
+    /// The area cue where the likelihood has no blob term: the blob that drove the particle, or the
+    /// one its hand lies on.
     ///
-    /// A particle at no blob gets what a fitting one has on average. With `depth_from_area` the area already placed the
-    /// driven hands and is not counted again.
+    /// A particle at no blob gets what a fitting one has on average. With `depth_from_area` the
+    /// area already placed the driven hands and is not counted again.
     fn log_area_cue(&self, proposed: &Proposed, hand: Option<Pixel>) -> f32 {
         const AVERAGE: f32 = -0.5;
         let options = self.model.options();
@@ -100,9 +102,10 @@ impl FrameContext<'_> {
         log_area
     }
 
-    /// ln p(blobs | hand) times the image's area: clutter + sum_b pi_b N(u(hand); CoG_b, R_b), with the area cue as a
-    /// factor of each blob. What the blobs' beliefs leave of one is clutter too: a blob that was not the hand before is
-    /// not the hand only because it is the only one.
+    /// ln p(blobs | hand) times the image's area: clutter + sum_b pi_b N(u(hand); CoG_b, R_b), with
+    /// the area cue as a factor of each blob. What the blobs' beliefs leave of one is clutter
+    /// too: a blob that was not the hand before is not the hand only because it is the only
+    /// one.
     fn log_blob_term(&self, particle: &Particle, hand: Option<Pixel>) -> f32 {
         let hand_share = 1.0 - self.model.options().clutter_share;
         let sum_of_beliefs: f32 = self.beliefs.iter().sum();

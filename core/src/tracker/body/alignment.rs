@@ -1,7 +1,9 @@
-//! Where the body is, by the points: the expected pose is fitted to them before any particle is drawn.
+//! Where the body is, by the points: the expected pose is fitted to them before any particle is
+//! drawn.
 //!
-//! The PIK paper's subjects stand still. A root that moves has six coordinates that move everything, and particles that guess them
-//! one by one are lost on it; so every motion model may begin with the same look at the points.
+//! The PIK paper's subjects stand still. A root that moves has six coordinates that move
+//! everything, and particles that guess them one by one are lost on it; so every motion model may
+//! begin with the same look at the points.
 
 use crate::kinematics::inverse::{PoseDensity, Solve};
 use crate::math::Vec3;
@@ -37,24 +39,28 @@ use crate::skeleton::tree::SHIFTS;
 pub struct RootAlignment {
     /// Most steps of the solver.
     pub steps: usize,
-    /// Whether coarse steps come first, for limbs that are farther off than points reach ([`GuidedDensity::mode_coarse_to_fine`]).
+    /// Whether coarse steps come first, for limbs that are farther off than points reach
+    /// ([`GuidedDensity::mode_coarse_to_fine`]).
     pub coarse_to_fine: bool,
     /// How far the root is believed to get off its expected place, metres by root second.
     pub shift_std_m_per_sqrt_s: f32,
     /// How far it is believed to turn, radians by root second.
     pub turn_std_rad_per_sqrt_s: f32,
-    /// How far the other angles are believed to change, radians by root second: they give way, so that a moving arm does not
-    /// carry the root along. How far a limb explains points is asked beside the whole pose.
+    /// How far the other angles are believed to change, radians by root second: they give way, so
+    /// that a moving arm does not carry the root along. How far a limb explains points is asked
+    /// beside the whole pose.
     pub angle_std_rad_per_sqrt_s: f32,
     /// Most blocks of points that pull.
     pub pulling_blocks: usize,
-    /// Whether particles take over the fitted trunk, and not the root alone: limbs then hang where the points show the trunk.
+    /// Whether particles take over the fitted trunk, and not the root alone: limbs then hang where
+    /// the points show the trunk.
     pub fit_trunk: bool,
 }
 
 impl RootAlignment {
-    /// The pose `expected_rad` fitted to the points `blocks`, `dt_s` seconds after the last one. In coarse steps the angles of limbs that
-    /// are `unseen` hold still: points of whatever hides a limb are not its own.
+    /// The pose `expected_rad` fitted to the points `blocks`, `dt_s` seconds after the last one. In
+    /// coarse steps the angles of limbs that are `unseen` hold still: points of whatever hides
+    /// a limb are not its own.
     #[must_use]
     pub fn fit_root<const BONES: usize, const ANGLES: usize>(
         &self,

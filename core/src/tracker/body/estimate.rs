@@ -32,14 +32,16 @@ pub struct BodyEstimate<const BONES: usize, const ANGLES: usize> {
     pub angles_rad: [f32; ANGLES],
     /// Ends of all bones in that pose, metres.
     pub ends_m: [Vec3; BONES],
-    /// Standard deviation of each bone's end over the particles, metres (root of the summed variances).
+    /// Standard deviation of each bone's end over the particles, metres (root of the summed
+    /// variances).
     pub spread_m: [f32; BONES],
     /// Whether the points show each bone; `false` as well where the frame had no points.
     pub observed: [bool; BONES],
     /// Effective number of particles; limb by limb that of the group with the fewest.
     pub effective_sample_size: f32,
-    /// ln of the mean weight of whole poses, a frame's part of the log evidence. Without points only what a proposal owes its motion model
-    /// is left in it: zero for models that draw from themselves.
+    /// ln of the mean weight of whole poses, a frame's part of the log evidence. Without points
+    /// only what a proposal owes its motion model is left in it: zero for models that draw from
+    /// themselves.
     pub log_evidence: f32,
     /// Exponent that the weights of whole poses were flattened with; 1 where they were not.
     pub tempering: f32,
@@ -47,8 +49,8 @@ pub struct BodyEstimate<const BONES: usize, const ANGLES: usize> {
     pub is_degenerate: bool,
 }
 
-/// Puts the weighted mean of one group's coordinates into `mean_rad`: shifts and hinges by their mean, balls by their mean rotation, then
-/// inside the limits.
+/// Puts the weighted mean of one group's coordinates into `mean_rad`: shifts and hinges by their
+/// mean, balls by their mean rotation, then inside the limits.
 ///
 /// An angle that winds (a free root's turn) is given the turn nearest to the heaviest particle's.
 pub(super) fn mean_of_group<const BONES: usize, const ANGLES: usize>(
@@ -126,8 +128,9 @@ fn mean_ball<const BONES: usize, const ANGLES: usize>(
     }
 }
 
-/// Puts the standard deviation of the ends of one group's bones into `spread_m`, and that of their means into `standard_error_m`, metres:
-/// particles of so many weights scatter their mean by the root of the summed squares of weight times distance.
+/// Puts the standard deviation of the ends of one group's bones into `spread_m`, and that of their
+/// means into `standard_error_m`, metres: particles of so many weights scatter their mean by the
+/// root of the summed squares of weight times distance.
 pub(super) fn spread_of_group<const BONES: usize, const ANGLES: usize>(
     (particles, weights): (&[BodyParticle<BONES, ANGLES>], &[f32]),
     (limbs, group): (&Limbs<BONES>, usize),
@@ -160,8 +163,8 @@ mod tests {
     use crate::skeleton::arm::FOREARM;
     use crate::skeleton::{ArmGeometry, Side};
 
-    /// Sets of particles of unlike weights: how far their means are from the place that they were drawn about, root mean square, beside the
-    /// standard error that each set estimates.
+    /// Sets of particles of unlike weights: how far their means are from the place that they were
+    /// drawn about, root mean square, beside the standard error that each set estimates.
     #[test]
     fn means_are_off_by_their_standard_error() {
         let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35).unwrap().skeleton().unwrap();
@@ -182,7 +185,8 @@ mod tests {
             estimated += standard_error_m[FOREARM] * standard_error_m[FOREARM];
             assert!((0.05..0.12).contains(&spread_m[FOREARM]), "{spread_m:?}");
         }
-        // The mean that distances are taken from is the set's own, so that the estimated error is a little small.
+        // The mean that distances are taken from is the set's own, so that the estimated error is a little
+        // small.
         assert!((0.85..1.05).contains(&(estimated / off)), "{}", estimated / off);
     }
 }

@@ -7,16 +7,17 @@ use crate::pik::root::RootProcess;
 use crate::skeleton::Limbs;
 use crate::skeleton::limbs::TRUNK_GROUP;
 
-/// Share of the estimate's velocity with which the body is expected to go on: between staying and going on.
-/// Chosen: the middle of both.
+/// Share of the estimate's velocity with which the body is expected to go on: between staying and
+/// going on. Chosen: the middle of both.
 const EXPECTED_PERSISTENCE: f32 = 0.5;
 
 impl<const BONES: usize, const ANGLES: usize, const N: usize, S> BodyTracker<BONES, ANGLES, N, S>
 where
     S: AsRef<[BodyParticle<BONES, ANGLES>]> + AsMut<[BodyParticle<BONES, ANGLES>]>,
 {
-    /// Where the body is expected: it goes on as it moved, and where the root is aligned that pose is fitted to the points. The root of every
-    /// particle sets out from there; limbs are weighed by what they explain beside it.
+    /// Where the body is expected: it goes on as it moved, and where the root is aligned that pose
+    /// is fitted to the points. The root of every particle sets out from there; limbs are
+    /// weighed by what they explain beside it.
     pub(super) fn expected_pose(
         &self,
         (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),

@@ -8,8 +8,8 @@ const POLAR_STEPS: usize = 12;
 /// Chosen: above the rounding of `f32`, far below the determinant of any cluster.
 const MIN_DETERMINANT: f32 = 1.0e-4;
 
-/// The rotation nearest to `sum`, the weighted sum of rotation matrices: the mean that makes the sum of squared chords least.
-/// `None` where the rotations point all ways.
+/// The rotation nearest to `sum`, the weighted sum of rotation matrices: the mean that makes the
+/// sum of squared chords least. `None` where the rotations point all ways.
 ///
 /// ```
 /// use sinew_core::math::{Mat3, Vec3, axis_rotation};
@@ -38,7 +38,8 @@ fn inverse_transpose(m: &Mat3) -> Option<Mat3> {
     (determinant > 1.0e-9).then(|| Mat3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)]) / determinant)
 }
 
-/// Angles with R = R(axis 0) R(axis 1) R(axis 2); the axes are square to one another. The middle one lies in [-pi/2, pi/2].
+/// Angles with R = R(axis 0) R(axis 1) R(axis 2); the axes are square to one another. The middle
+/// one lies in [-pi/2, pi/2].
 ///
 /// ```
 /// use sinew_core::math::{Vec3, axis_rotation};

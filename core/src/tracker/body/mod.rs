@@ -1,7 +1,9 @@
-//! The body tracker: particles of whole poses, weighed by a frame's 3D points (PIK paper, sections 5 to 7).
+//! The body tracker: particles of whole poses, weighed by a frame's 3D points (PIK paper, sections
+//! 5 to 7).
 //!
-//! [`BodyScene`](crate::pik::motion::BodyScene) is what does not change, a [`BodyMotion`](crate::pik::motion::BodyMotion) says how
-//! particles move, [`BodyTracker`] is the state. A frame goes in as a [`BodyFrame`], a [`BodyEstimate`] comes out, for every frame.
+//! [`BodyScene`](crate::pik::motion::BodyScene) is what does not change, a
+//! [`BodyMotion`](crate::pik::motion::BodyMotion) says how particles move, [`BodyTracker`] is the
+//! state. A frame goes in as a [`BodyFrame`], a [`BodyEstimate`] comes out, for every frame.
 //!
 //! ```
 //! use sinew_core::math::Vec3;

@@ -11,12 +11,12 @@ use crate::skeleton::limbs::{MAX_GROUPS, TRUNK_GROUP};
 /// A point nearer to a bone's skin than this belongs to it, metres.
 /// Chosen: above the noise of points.
 const NEAR_M: f32 = 0.06;
-/// A point speaks for a limb if the skin of every other limb and of the trunk is farther by this at least, metres.
-/// Chosen: more than a point's noise.
+/// A point speaks for a limb if the skin of every other limb and of the trunk is farther by this at
+/// least, metres. Chosen: more than a point's noise.
 const CLEARER_M: f32 = 0.03;
-/// It is also farther by this many times the points' mean distance from the skin: those of a body far away are scattered in depth. A limb of one bone, a
-/// head, cannot reach in front of other skin and needs no more than the least.
-/// Chosen: scatter beyond it is rare.
+/// It is also farther by this many times the points' mean distance from the skin: those of a body
+/// far away are scattered in depth. A limb of one bone, a head, cannot reach in front of other skin
+/// and needs no more than the least. Chosen: scatter beyond it is rare.
 const CLEARER_SCATTERS: f32 = 2.5;
 /// A point farther from all skin than this says nothing about the scatter, metres.
 /// Chosen: beyond the noise of every sensor in use; such a point lies on another object.
@@ -25,11 +25,13 @@ const SCATTERED_M: f32 = 0.2;
 /// Chosen: a limb half hidden is observed.
 const MIN_SHARE: f32 = 0.25;
 
-/// Whether the points show each bone: enough of them lie on its skin and, where it is part of a limb, clearly on no other limb's nor the
-/// trunk's. A limb that is hidden before the trunk, say, would else be shown by the trunk's points.
+/// Whether the points show each bone: enough of them lie on its skin and, where it is part of a
+/// limb, clearly on no other limb's nor the trunk's. A limb that is hidden before the trunk, say,
+/// would else be shown by the trunk's points.
 ///
-/// What to expect follows from the size in which each bone would appear to the camera, as if none hid another: a limb behind the
-/// trunk is not observed. Without points nothing is; a bone without flesh has no skin to show.
+/// What to expect follows from the size in which each bone would appear to the camera, as if none
+/// hid another: a limb behind the trunk is not observed. Without points nothing is; a bone without
+/// flesh has no skin to show.
 #[must_use]
 pub fn observed<const BONES: usize>(
     surface: &BodySurface<BONES>,
@@ -100,8 +102,8 @@ mod tests {
     use crate::skeleton::BodyMeasures;
     use crate::skeleton::full_body::{BODY_ANGLES, BODY_BONES, FOREARMS, TRUNK, body_radii_m, full_body};
 
-    /// Which bones a standing body 2.5 m away shows if the points lie on the visible skin of those that are not in `hidden`, while the
-    /// left arm is believed to lie across the trunk.
+    /// Which bones a standing body 2.5 m away shows if the points lie on the visible skin of those
+    /// that are not in `hidden`, while the left arm is believed to lie across the trunk.
     fn shown(hidden: &[usize]) -> [bool; BODY_BONES] {
         let measures = BodyMeasures::of_height(1.75).unwrap();
         let (skeleton, radii_m) = (full_body(&measures).unwrap(), body_radii_m(&measures));

@@ -28,22 +28,24 @@ use crate::error::{ParameterError, Rule};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyOptions {
-    /// Weights are flattened until at least this share of a hundred particles is effective, and of others a number that grows with the
-    /// root of theirs: many particles separate a sharper likelihood from chance. Zero never flattens.
+    /// Weights are flattened until at least this share of a hundred particles is effective, and of
+    /// others a number that grows with the root of theirs: many particles separate a sharper
+    /// likelihood from chance. Zero never flattens.
     pub least_effective_share: f32,
     /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
     pub limb_by_limb: bool,
-    /// How the expected pose is fitted to the points before particles are drawn, so that their root, and trunk if asked for, set out from
-    /// there; `None` leaves them to their process.
+    /// How the expected pose is fitted to the points before particles are drawn, so that their
+    /// root, and trunk if asked for, set out from there; `None` leaves them to their process.
     pub alignment: Option<RootAlignment>,
     /// Deadband of the reported pose at rest, in standard errors of the particles' mean.
     pub jitter_std_errors: f32,
-    /// Part of the deadband that no number of particles reduces, metres. With both zero each frame's mean is reported.
+    /// Part of the deadband that no number of particles reduces, metres. With both zero each
+    /// frame's mean is reported.
     pub jitter_std_m: f32,
     /// How the noise of a limb follows its pace; `None` leaves every limb the motion model's own.
     pub pace: Option<SpeedScaledNoise>,
-    /// Share of the velocity's last change that goes on, in [0, 1]: motion models are given a velocity that changes on as it did. Zero is the
-    /// velocity of the last two frames.
+    /// Share of the velocity's last change that goes on, in [0, 1]: motion models are given a
+    /// velocity that changes on as it did. Zero is the velocity of the last two frames.
     pub acceleration_share: f32,
 }
 

@@ -1,7 +1,9 @@
-//! How far a limb may stray from where its motion takes it: at rest less than when it is swung, and unseen more and more.
+//! How far a limb may stray from where its motion takes it: at rest less than when it is swung, and
+//! unseen more and more.
 //!
-//! A motion model has one noise for each joint, wide enough for a hand that is thrown. Most limbs rest most of the time, and particles that are
-//! drawn that wide about them mostly measure their own sparsity.
+//! A motion model has one noise for each joint, wide enough for a hand that is thrown. Most limbs
+//! rest most of the time, and particles that are drawn that wide about them mostly measure their
+//! own sparsity.
 
 use crate::error::{ParameterError, Rule, positive};
 use crate::math::{Vec3, exp, max, min, sqrt};
@@ -41,7 +43,8 @@ const MAX_SCALE: f32 = 100.0;
 pub struct SpeedScaledNoise {
     /// Noise of a limb at rest, as a share of the motion model's; in (0, 1].
     pub rest_share: f32,
-    /// Speed that would alone make all of the noise, metres a second: root mean square over the ends of a limb's bones, against the root.
+    /// Speed that would alone make all of the noise, metres a second: root mean square over the
+    /// ends of a limb's bones, against the root.
     pub full_speed_m_per_s: f32,
     /// The noise of a limb that is seen is no more than this many times the model's; 1 to 100.
     pub max_scale_seen: f32,
@@ -80,7 +83,8 @@ impl SpeedScaledNoise {
         min(self.max_scale_seen, sqrt(self.rest_share * self.rest_share + swing * swing))
     }
 
-    /// The share one frame on: at once what a faster limb asks for, by and by what a slower one does; of an unseen limb, more.
+    /// The share one frame on: at once what a faster limb asks for, by and by what a slower one
+    /// does; of an unseen limb, more.
     fn follow(&self, share: f32, speed_m_per_s: Option<f32>, dt_s: f32) -> f32 {
         let Some(speed_m_per_s) = speed_m_per_s else {
             return min(max(share, self.max_scale_unseen), share + dt_s / self.unseen_growth_s);
@@ -118,7 +122,8 @@ impl LimbNoise {
         core::array::from_fn(|bone| self.shares.get(limbs.group(bone)).copied().unwrap_or(1.0))
     }
 
-    /// Follows the limbs through a frame: how fast their bones' ends went, and which bones were observed of those that have flesh.
+    /// Follows the limbs through a frame: how fast their bones' ends went, and which bones were
+    /// observed of those that have flesh.
     pub(super) fn follow<const BONES: usize>(
         &mut self,
         (noise, limbs): (&SpeedScaledNoise, &Limbs<BONES>),
@@ -163,7 +168,8 @@ mod tests {
     };
     const DT_S: f32 = 1.0 / 15.0;
 
-    /// Shares by bone after `frames` of a body whose left forearm's end goes at `speed_m_per_s`, and of whose right arm nothing is seen.
+    /// Shares by bone after `frames` of a body whose left forearm's end goes at `speed_m_per_s`,
+    /// and of whose right arm nothing is seen.
     fn followed(frames: usize, speed_m_per_s: f32, noise: LimbNoise) -> (LimbNoise, [f32; BODY_BONES]) {
         let measures = BodyMeasures::of_height(1.75).unwrap();
         let (limbs, radii_m) = (Limbs::of(&full_body(&measures).unwrap()), body_radii_m(&measures));

@@ -40,7 +40,8 @@ pub struct Advance<'a, M, const BONES: usize, const ANGLES: usize> {
 }
 
 impl<M: BodyMotion<BONES, ANGLES>, const BONES: usize, const ANGLES: usize> Advance<'_, M, BONES, ANGLES> {
-    /// Makes particle `index` of the new set, with its log-weights: that of the whole pose, then of each limb.
+    /// Makes particle `index` of the new set, with its log-weights: that of the whole pose, then of
+    /// each limb.
     pub fn particle(&self, index: usize, slot: &mut BodyParticle<BONES, ANGLES>) {
         let ancestor = self.ancestors.get(index).and_then(|&ancestor| self.particles.get(usize::from(ancestor)));
         let Some(ancestor) = ancestor else { return };

@@ -1,7 +1,9 @@
-//! Resampling limb by limb: a new particle has its trunk from one particle of the last set and each limb from another.
+//! Resampling limb by limb: a new particle has its trunk from one particle of the last set and each
+//! limb from another.
 //!
-//! A limb that the points like lives on whatever became of the particle's other limbs, so a hundred particles hold a hundred guesses about
-//! each of them. What is lost is how a limb's angles go together with its trunk's: after the root is fitted to the points trunks differ little.
+//! A limb that the points like lives on whatever became of the particle's other limbs, so a hundred
+//! particles hold a hundred guesses about each of them. What is lost is how a limb's angles go
+//! together with its trunk's: after the root is fitted to the points trunks differ little.
 
 use super::state::BodyTracker;
 use crate::particle::resampling::{permute, systematic};
@@ -14,8 +16,9 @@ impl<const BONES: usize, const ANGLES: usize, const N: usize, S> BodyTracker<BON
 where
     S: AsRef<[BodyParticle<BONES, ANGLES>]> + AsMut<[BodyParticle<BONES, ANGLES>]>,
 {
-    /// Takes the coordinates of one group over into the next set, by the present weights. The order is shuffled, so that no two limbs go
-    /// together because of their places in the set; what the motion model keeps goes with the trunk.
+    /// Takes the coordinates of one group over into the next set, by the present weights. The order
+    /// is shuffled, so that no two limbs go together because of their places in the set; what
+    /// the motion model keeps goes with the trunk.
     pub(super) fn resample_group(
         &mut self,
         skeleton: &Skeleton<BONES, ANGLES>,

@@ -32,8 +32,8 @@ impl<const BONES: usize, const ANGLES: usize, const N: usize, S> SavedState for 
 where
     S: AsMut<[BodyParticle<BONES, ANGLES>]>,
 {
-    /// A state is for a tracker with as many particles. The other set, the ancestors and where the body is expected are written before they are
-    /// read.
+    /// A state is for a tracker with as many particles. The other set, the ancestors and where the
+    /// body is expected are written before they are read.
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         visitor.long(&mut self.seed);
         visitor.long(&mut self.frame);

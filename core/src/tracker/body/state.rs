@@ -11,7 +11,8 @@ use crate::particle::Weights;
 use crate::pik::motion::BodyParticle;
 use crate::skeleton::Limbs;
 
-/// State of the tracker: up to `N` particles, kept in two sets `S` (arrays in firmware, vectors on a host).
+/// State of the tracker: up to `N` particles, kept in two sets `S` (arrays in firmware, vectors on
+/// a host).
 ///
 /// ```
 /// use sinew_core::pik::example::{arm_points, arm_scene, bending_elbow, guided_arm, hand_goals};
@@ -55,7 +56,8 @@ impl<const BONES: usize, const ANGLES: usize, const N: usize, S> BodyTracker<BON
 where
     S: AsRef<[BodyParticle<BONES, ANGLES>]> + AsMut<[BodyParticle<BONES, ANGLES>]>,
 {
-    /// A tracker whose particles, as many as `particles` and `next` have room for, all are at `first`.
+    /// A tracker whose particles, as many as `particles` and `next` have room for, all are at
+    /// `first`.
     ///
     /// # Errors
     /// Both sets have to be of the same size, from 1 to `N`; options finite, the share in [0, 1].
@@ -98,7 +100,8 @@ where
         self.particles.as_ref()
     }
 
-    /// Their weights, which sum to one; equal after a step limb by limb, which ends with the resampling.
+    /// Their weights, which sum to one; equal after a step limb by limb, which ends with the
+    /// resampling.
     #[must_use]
     pub fn weights(&self) -> &[f32] {
         self.weights.normalised()

@@ -34,7 +34,8 @@ where
         })
     }
 
-    /// One frame whose particles `advance_all` moves: it has to call [`Advance::particle`] once for each slot, in any order.
+    /// One frame whose particles `advance_all` moves: it has to call [`Advance::particle`] once for
+    /// each slot, in any order.
     pub fn step_with<M: BodyMotion<BONES, ANGLES>>(
         &mut self,
         scene: &BodyScene<BONES, ANGLES>,

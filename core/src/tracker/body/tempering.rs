@@ -6,8 +6,8 @@ use crate::particle::Weights;
 /// Halvings of the exponent's interval.
 const HALVINGS: usize = 14;
 
-/// The greatest exponent in (0, 1] that leaves at least `least` effective particles when all log-weights are multiplied by it;
-/// 2^-14 where none does.
+/// The greatest exponent in (0, 1] that leaves at least `least` effective particles when all
+/// log-weights are multiplied by it; 2^-14 where none does.
 #[must_use]
 pub fn temper<const N: usize>(weights: &Weights<N>, least: f32) -> f32 {
     let greatest = weights.log().iter().copied().fold(f32::NEG_INFINITY, |a, b| if b > a { b } else { a });

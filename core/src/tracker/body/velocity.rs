@@ -1,13 +1,14 @@
 //! How fast the estimate moves: what motion models go on with.
 //!
-//! A velocity from the last two frames is that of half a frame ago, and a limb that swings has another one by the next. Where it changed by as much
-//! as from the frame before it, it is likely to go on changing.
+//! A velocity from the last two frames is that of half a frame ago, and a limb that swings has
+//! another one by the next. Where it changed by as much as from the frame before it, it is likely
+//! to go on changing.
 
 use crate::math::{Vec3, min};
 use crate::pik::motion::BodyParticle;
 
-/// Velocities are not followed for longer than this across a gap, seconds; the noise grows all the same.
-/// Chosen: a limb turns back within a few tenths of a second.
+/// Velocities are not followed for longer than this across a gap, seconds; the noise grows all the
+/// same. Chosen: a limb turns back within a few tenths of a second.
 const MAX_STRIDE_S: f32 = 0.2;
 
 /// Velocities of one frame, by coordinate and by bone.
@@ -54,8 +55,8 @@ impl<const BONES: usize, const ANGLES: usize> EstimateVelocity<BONES, ANGLES> {
     /// Nothing moved yet.
     pub(super) const REST: Self = Self { last: Velocity::ZERO, change: Velocity::ZERO, is_known: false };
 
-    /// Takes in the way from one estimate to the next. The first velocity is no change: who is in motion when tracking begins did not start just
-    /// then.
+    /// Takes in the way from one estimate to the next. The first velocity is no change: who is in
+    /// motion when tracking begins did not start just then.
     pub(super) fn follow(
         &mut self,
         before: &BodyParticle<BONES, ANGLES>,
@@ -67,7 +68,8 @@ impl<const BONES: usize, const ANGLES: usize> EstimateVelocity<BONES, ANGLES> {
         (self.last, self.is_known) = (next, true);
     }
 
-    /// What is gone on with over a frame of `dt_s`: the last velocity and `acceleration_share` of its change.
+    /// What is gone on with over a frame of `dt_s`: the last velocity and `acceleration_share` of
+    /// its change.
     pub(super) fn expected(&self, acceleration_share: f32, dt_s: f32) -> Velocity<BONES, ANGLES> {
         self.last.plus(&self.change, acceleration_share, min(1.0, MAX_STRIDE_S / dt_s))
     }

@@ -39,8 +39,8 @@ impl<const N: usize> From<AngleMeasurement<N>> for CyclicFrameInput<N> {
 }
 
 impl<const N: usize> CyclicFrameInput<N> {
-    /// From the joints of `figure` as a picture shows them, each coordinate with a standard deviation of `keypoint_std_px`, one
-    /// frame after the last.
+    /// From the joints of `figure` as a picture shows them, each coordinate with a standard
+    /// deviation of `keypoint_std_px`, one frame after the last.
     ///
     /// An angle's standard deviation is sqrt(2) times that over the segment's length, at most pi.
     ///

@@ -1,4 +1,5 @@
-//! The cyclic tracker: pose and phase by a filter, the cycles counted, the cadence, root and segment lengths.
+//! The cyclic tracker: pose and phase by a filter, the cycles counted, the cadence, root and
+//! segment lengths.
 //!
 //! ```
 //! # #[cfg(feature = "walking-model")] {

@@ -27,7 +27,8 @@ pub struct CyclicTrackerOptions {
     pub place: Option<PlaceOptions>,
 }
 
-/// First position and velocity in the cycle; where absent the position fits best and the velocity is the model's mean.
+/// First position and velocity in the cycle; where absent the position fits best and the velocity
+/// is the model's mean.
 ///
 /// ```
 /// use sinew_core::cyclic::AngleMeasurement;

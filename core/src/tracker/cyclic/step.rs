@@ -89,8 +89,8 @@ impl<const N: usize> CyclicTracker<N> {
         CyclicFrame::new(model, estimate, &self.counter, cycle_step)
     }
 
-    /// Writes the joints of `figure`, px, at the angles of an estimate; see [`FigurePlace::joints_px`]. All are missing where the
-    /// tracker follows angles only.
+    /// Writes the joints of `figure`, px, at the angles of an estimate; see
+    /// [`FigurePlace::joints_px`]. All are missing where the tracker follows angles only.
     pub fn joints_px(
         &self,
         figure: &StickFigure<'_>,

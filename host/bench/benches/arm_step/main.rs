@@ -1,5 +1,6 @@
-//! One step of the arm tracker on rendered frames: with the edges of both limbs (dynamic Hough transforms of every
-//! hypothesis) and without, by variant. Prints medians over all frames, then runs criterion on the default.
+//! One step of the arm tracker on rendered frames: with the edges of both limbs (dynamic Hough
+//! transforms of every hypothesis) and without, by variant. Prints medians over all frames, then
+//! runs criterion on the default.
 
 use criterion::Criterion;
 use sinew::config::Config;

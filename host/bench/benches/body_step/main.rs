@@ -17,7 +17,8 @@ const FRAMES: usize = 60;
 /// Passes; prints the median time of a frame over all.
 const PASSES: u64 = 3;
 
-/// Seconds of each step of one pass with what is done to its points before, every `stride`-th of them kept.
+/// Seconds of each step of one pass with what is done to its points before, every `stride`-th of
+/// them kept.
 fn pass_s(
     seen: &SeenMotion,
     kind: BodyModelKind,

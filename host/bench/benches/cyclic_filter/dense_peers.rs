@@ -1,6 +1,7 @@
 //! Dense filters of other crates on the same 28 states and 13 measurements, single precision.
 //!
-//! Their process noise is constant, which spares them the model's covariance that the cyclic filters rebuild in every step.
+//! Their process noise is constant, which spares them the model's covariance that the cyclic
+//! filters rebuild in every step.
 
 use kfilter::kalman::{KalmanLinearNoInput, KalmanPredict, KalmanUpdate};
 use kfilter::measurement::{LinearMeasurement, Measurement};

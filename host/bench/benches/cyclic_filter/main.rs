@@ -2,8 +2,9 @@
 //! against dense filters of other crates. Also the particle filter by stage, on one thread and two.
 //! It is compared with numpy and the Python package `particles` where they are installed.
 //!
-//! Medians and smallest times, measured in turns in this process, and their ratios. One thread where no other number is given. The Python filters run
-//! between two halves of the particle filter's rounds; `PYTHON` names the interpreter (default: python3).
+//! Medians and smallest times, measured in turns in this process, and their ratios. One thread
+//! where no other number is given. The Python filters run between two halves of the particle
+//! filter's rounds; `PYTHON` names the interpreter (default: python3).
 
 mod dense_peers;
 mod particle_step;
@@ -59,7 +60,8 @@ fn microseconds<T>(first: usize, mut step: impl FnMut(usize) -> T) -> f64 {
     start.elapsed().as_secs_f64() * 1.0e6 / STEPS as f64
 }
 
-/// One round of every filter in turn: `paper`, `coupled`, `kfilter`, `minikalman`, and the first two with SSE2 alone.
+/// One round of every filter in turn: `paper`, `coupled`, `kfilter`, `minikalman`, and the first
+/// two with SSE2 alone.
 fn kalman_rounds(model: &MotionModel<'_>, walk: &Walk) -> Vec<[f64; 6]> {
     let options = KalmanOptions::default();
     let start = CycleStart::standard(model, walk.angles(0), None, None).expect("a sound start");

@@ -1,4 +1,5 @@
-//! One step of the particle filter on one thread, stage by stage, with the shipped model of walking.
+//! One step of the particle filter on one thread, stage by stage, with the shipped model of
+//! walking.
 
 use sinew::cyclic::tracking::wide_vectors::particle_sweep;
 use sinew_core::cyclic::particle::moments::ParticleMoments;

@@ -19,7 +19,8 @@ pub struct KPeer<T: Number> {
 }
 
 impl<T: Number> KPeer<T> {
-    /// The chain of `skeleton`; a goal counts as reached within `tolerance_m`, in `most_steps` of `step_share` of a whole step each.
+    /// The chain of `skeleton`; a goal counts as reached within `tolerance_m`, in `most_steps` of
+    /// `step_share` of a whole step each.
     pub fn new<const BONES: usize, const ANGLES: usize>(
         skeleton: &Skeleton<BONES, ANGLES>,
         tolerance_m: f64,

@@ -1,4 +1,5 @@
-//! Segmentation, morphology, components with features and temporal edges: this crate against imageproc.
+//! Segmentation, morphology, components with features and temporal edges: this crate against
+//! imageproc.
 //!
 //! Prints a table of medians, measured in turns in this process on one thread. Then runs criterion
 //! on the whole chain of each. imageproc's chain is what its functions offer for the same steps,

@@ -65,7 +65,8 @@ impl SinewChain {
         self.edges.as_slice().len() as u32 + self.edges.dropped
     }
 
-    /// Analyses a frame as a tracker does; both frames take turns, so that the edges are those between them.
+    /// Analyses a frame as a tracker does; both frames take turns, so that the edges are those
+    /// between them.
     pub fn whole(&mut self, pair: &FramePair) {
         let mut buffers = FrameBuffers {
             mask: &mut self.mask,

@@ -3,8 +3,8 @@
 use sinew_core::math::Vec3;
 use sinew_core::observation::point_cloud::MIN_RANGE_M;
 
-/// Maximum number of points of a frame that a tracker is given; [`PointCloud::limit`] draws them from a larger
-/// cloud.
+/// Maximum number of points of a frame that a tracker is given; [`PointCloud::limit`] draws them
+/// from a larger cloud.
 pub const MAX_POINTS: usize = 20_000;
 /// Radius around the camera's centre in which no point can be: matching that failed is often
 /// written as the origin.

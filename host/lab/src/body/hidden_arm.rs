@@ -51,13 +51,14 @@ pub struct Course {
     pub spread_hidden_m: f64,
     /// Hidden frames in which the forearm is said to be observed.
     pub frames_said_observed: usize,
-    /// How many frames after its return (1 is the first with points) its error is below twice the level before; absent where none of
-    /// the first ten is.
+    /// How many frames after its return (1 is the first with points) its error is below twice the
+    /// level before; absent where none of the first ten is.
     pub back_after_frames: Option<usize>,
 }
 
 impl Course {
-    /// Whether the spread grew, the arm was said to be unobserved in all hidden frames, and it came back.
+    /// Whether the spread grew, the arm was said to be unobserved in all hidden frames, and it came
+    /// back.
     #[must_use]
     pub fn is_as_wanted(&self) -> bool {
         self.spread_grows() && self.frames_said_observed == 0 && self.back_after_frames.is_some()
@@ -68,8 +69,8 @@ impl Course {
     }
 }
 
-/// Left and right arm in turns, hidden for `length` frames as often as a motion of `frames` frames lets them be; seeds differ in which
-/// arm begins.
+/// Left and right arm in turns, hidden for `length` frames as often as a motion of `frames` frames
+/// lets them be; seeds differ in which arm begins.
 #[must_use]
 pub fn windows(frames: usize, length: usize, seed: u64) -> Vec<Hidden> {
     let first = 1 + SETTLING + BEFORE;
@@ -78,7 +79,8 @@ pub fn windows(frames: usize, length: usize, seed: u64) -> Vec<Hidden> {
     (0..).zip(starts).map(|(turn, start)| Hidden { limb: limb(turn), frames: start..=start + length - 1 }).collect()
 }
 
-/// Tracks `seen`, the `motion` in which arms are hidden as `windows` says, and follows each of these arms; all of them are a cell.
+/// Tracks `seen`, the `motion` in which arms are hidden as `windows` says, and follows each of
+/// these arms; all of them are a cell.
 ///
 /// # Errors
 /// Names a parameter of the tracker that broke a rule; as [`Cells::cell`].
@@ -100,8 +102,8 @@ pub fn follow(
     Ok(windows.iter().zip(courses).filter_map(arm).collect())
 }
 
-/// The course of one hidden arm in a track whose first estimate is that of the frame 1; `None` where the truth misses the arm or the track
-/// ends before its return.
+/// The course of one hidden arm in a track whose first estimate is that of the frame 1; `None`
+/// where the truth misses the arm or the track ends before its return.
 #[must_use]
 pub fn course(seen: &SeenMotion, estimates: &[WholeBodyEstimate], hidden: &Hidden) -> Option<Course> {
     let arm: Vec<usize> = [UPPER_ARMS, FOREARMS].concat().into_iter().filter(|&bone| hidden.limb.has(bone)).collect();

@@ -14,7 +14,8 @@ pub struct Measured {
     pub mean: f64,
     /// Standard deviation over the trials; zero for a single one.
     pub std: f64,
-    /// Half width of the 95 % confidence interval of the mean (Student's t); zero for a single trial.
+    /// Half width of the 95 % confidence interval of the mean (Student's t); zero for a single
+    /// trial.
     pub ci95: f64,
 }
 
@@ -47,7 +48,8 @@ pub struct BodyResult {
     /// Eq. (34) over the markers of a .c3d, metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recorded_error_m: Option<Measured>,
-    /// The same of the poses nearest to the true joints, metres: what no tracker of this body gets below.
+    /// The same of the poses nearest to the true joints, metres: what no tracker of this body gets
+    /// below.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recorded_floor_m: Option<f64>,
     /// Joints from the true ones, metres.
@@ -110,8 +112,8 @@ impl BodyReport {
         counts
     }
 
-    /// Particles that `model` needs for an error of `wanted_m`, on the line between its counts in the logarithm; `None` where no count
-    /// reaches it or all are below it.
+    /// Particles that `model` needs for an error of `wanted_m`, on the line between its counts in
+    /// the logarithm; `None` where no count reaches it or all are below it.
     #[must_use]
     pub fn particles_for(&self, model: BodyModelKind, wanted_m: f64) -> Option<f64> {
         let counts = self.counts(model);

@@ -29,7 +29,8 @@ pub struct SeenMotion {
     pub joints_m: Vec<BodyJoints>,
     /// Markers of each frame, metres.
     pub markers_m: Vec<Vec<Option<Vec3>>>,
-    /// Markers of each frame that were recorded on the person, metres: of a .c3d; empty of other files.
+    /// Markers of each frame that were recorded on the person, metres: of a .c3d; empty of other
+    /// files.
     pub recorded_markers_m: MarkerFrames,
     /// Points of each frame, metres.
     pub clouds_m: Vec<Vec<Vec3>>,
@@ -74,8 +75,9 @@ impl SeenMotion {
         crc32_of(&(&self.joints_m, &self.recorded_markers_m, &self.measures, &self.first_rad, &self.stick))
     }
 
-    /// Eq. (34) of the poses nearest to the true joints, over the recorded markers and from the second frame on, metres: what no tracker of this body
-    /// gets below. `None` without such markers.
+    /// Eq. (34) of the poses nearest to the true joints, over the recorded markers and from the
+    /// second frame on, metres: what no tracker of this body gets below. `None` without such
+    /// markers.
     ///
     /// # Errors
     /// Measures that no body has.
@@ -161,7 +163,8 @@ pub fn trial(
     Ok((result, estimates))
 }
 
-/// Eq. (35) from the second frame on: the mean over bones of how far a_l, the bone's start, goes in a frame.
+/// Eq. (35) from the second frame on: the mean over bones of how far a_l, the bone's start, goes in
+/// a frame.
 fn smoothness_m(part: BodyPart, frames: impl Iterator<Item = BodyJoints>) -> f64 {
     let mut sum = RunningMean::default();
     let mut before: Option<BodyJoints> = None;

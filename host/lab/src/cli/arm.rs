@@ -73,7 +73,8 @@ struct Report {
 /// Renders the scenes, tracks them with everything that is compared, and writes tables and plots.
 ///
 /// # Errors
-/// A clip that is missing, an option out of range, an output that cannot be written, or [`sinew::resume::Interrupted`].
+/// A clip that is missing, an option out of range, an output that cannot be written, or
+/// [`sinew::resume::Interrupted`].
 pub fn run(args: &EvaluateArmArgs, console: &Console) -> Result<()> {
     let flag = stop_flag()?;
     console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))

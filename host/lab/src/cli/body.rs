@@ -48,16 +48,20 @@ pub struct EvaluateBodyArgs {
     /// Trials of each cell, with seeds 1, 2, ... for camera and tracker.
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub trials: u64,
-    /// Turn the persons of motion files to their left, degrees: at 90 the trunk is before the left arm.
+    /// Turn the persons of motion files to their left, degrees: at 90 the trunk is before the left
+    /// arm.
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
     pub heading: f32,
-    /// Leave out the points on a limb (l_arm, r_arm, l_leg, r_leg) from one frame to another, both included; may be repeated.
+    /// Leave out the points on a limb (l_arm, r_arm, l_leg, r_leg) from one frame to another, both
+    /// included; may be repeated.
     #[arg(long, value_name = "LIMB:FIRST-LAST")]
     pub hide: Vec<Hidden>,
-    /// Also hide the points of the left and the right arm in turns, for this many frames at a time, and report how they are found again.
+    /// Also hide the points of the left and the right arm in turns, for this many frames at a time,
+    /// and report how they are found again.
     #[arg(long, value_name = "FRAMES")]
     pub hide_arms: Option<usize>,
-    /// Numbers of the models, as `sinew track body --config` reads them [default: the shipped ones].
+    /// Numbers of the models, as `sinew track body --config` reads them [default: the shipped
+    /// ones].
     #[arg(long, value_name = "FILE.toml")]
     pub config: Option<PathBuf>,
     /// Folder for report.json, table.csv and figures.
@@ -71,7 +75,8 @@ pub struct EvaluateBodyArgs {
 /// Tracks every motion with every model and count, and writes what came out.
 ///
 /// # Errors
-/// A motion or configuration that cannot be read, an output that cannot be written, or [`sinew::resume::Interrupted`].
+/// A motion or configuration that cannot be read, an output that cannot be written, or
+/// [`sinew::resume::Interrupted`].
 pub fn run(args: &EvaluateBodyArgs, console: &Console) -> Result<()> {
     let flag = stop_flag()?;
     console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))
@@ -186,7 +191,8 @@ fn evaluate(
     Ok((report, prediction_figures.unwrap_or_default()))
 }
 
-/// All trials of one cell, one after the other: a step takes all threads. The motion comes by its name and its own smoothness, metres.
+/// All trials of one cell, one after the other: a step takes all threads. The motion comes by its
+/// name and its own smoothness, metres.
 fn cell(
     (name, truth_smoothness_m): &(String, f64),
     seen: &[SeenMotion],

@@ -25,10 +25,12 @@ pub struct EvaluateCyclicArgs {
     /// Model that is tested: a shipped one, or a file of `sinew train cyclic`.
     #[arg(long, value_name = MODEL_VALUE, default_value = "walking")]
     pub model: String,
-    /// Cut list of the cycles to test on [default: synthetic cycles drawn from the model, which only show that it runs].
+    /// Cut list of the cycles to test on [default: synthetic cycles drawn from the model, which
+    /// only show that it runs].
     #[arg(long, value_name = "CUTS.csv")]
     pub test: Option<PathBuf>,
-    /// Cut list of cycles that follow each other: how well the position in the cycle holds without a break.
+    /// Cut list of cycles that follow each other: how well the position in the cycle holds without
+    /// a break.
     #[arg(long, value_name = "CUTS.csv")]
     pub long: Option<PathBuf>,
     /// Frames per second of the tables.
@@ -54,7 +56,8 @@ const SPARSE_PARTICLES: [usize; 2] = [10_000, 50_000];
 /// Measures all tables and figures and writes them.
 ///
 /// # Errors
-/// A list, table or model that cannot be read, an output that cannot be written, or [`sinew::resume::Interrupted`].
+/// A list, table or model that cannot be read, an output that cannot be written, or
+/// [`sinew::resume::Interrupted`].
 pub fn run(args: &EvaluateCyclicArgs, console: &Console) -> Result<()> {
     let flag = stop_flag()?;
     console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))

@@ -16,7 +16,8 @@ use sinew::cli::console::Console;
 use skin::EvaluateSkinArgs;
 use tables::TablesArgs;
 
-/// What `sinew evaluate ARGS...` starts, as `sinew-lab evaluate ARGS...`: its help names the former.
+/// What `sinew evaluate ARGS...` starts, as `sinew-lab evaluate ARGS...`: its help names the
+/// former.
 #[derive(Debug, Parser)]
 #[command(name = "sinew-lab", bin_name = "sinew", version, arg_required_else_help = true)]
 pub struct Cli {
@@ -48,7 +49,8 @@ pub enum Command {
 pub enum Evaluate {
     /// Compare the trackers on rendered scenes with known truth.
     Arm(EvaluateArmArgs),
-    /// Make the PIK paper's comparison of motion models on real motion before a simulated stereo camera.
+    /// Make the PIK paper's comparison of motion models on real motion before a simulated stereo
+    /// camera.
     Body(EvaluateBodyArgs),
     /// Make the cyclic paper's tables and figures on cut cycles with known angles.
     Cyclic(EvaluateCyclicArgs),

@@ -30,7 +30,8 @@ pub struct EvaluateSkinArgs {
     /// Skin model: gaussian or histogram (shipped), or a FILE made by `sinew train skin`.
     #[arg(long, value_name = "gaussian|histogram|FILE", default_value = DEFAULT_SKIN)]
     pub skin: String,
-    /// Train anew on K folds of these images, and score each image by a model that was not trained on it.
+    /// Train anew on K folds of these images, and score each image by a model that was not trained
+    /// on it.
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=1000), conflicts_with = "skin")]
     pub cross_validate: Option<u32>,
     /// Kind of model that --cross-validate trains.
@@ -39,7 +40,8 @@ pub struct EvaluateSkinArgs {
     /// Seed of the folds.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Score masks after the tracker's opening and closing; without it, each pixel by its own colour.
+    /// Score masks after the tracker's opening and closing; without it, each pixel by its own
+    /// colour.
     #[arg(long)]
     pub morphology: bool,
     /// Folder for the scores as skin.csv and skin.json.

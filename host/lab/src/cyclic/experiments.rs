@@ -173,7 +173,8 @@ impl Setting<'_> {
         self.measure(Protocol::ExactMean, &options, Density::Every(every))
     }
 
-    /// Figure 4b: fewer and fewer measurements at sigma 29 degrees, and two a cycle at sigma 6, for the Kalman filters.
+    /// Figure 4b: fewer and fewer measurements at sigma 29 degrees, and two a cycle at sigma 6, for
+    /// the Kalman filters.
     ///
     /// # Errors
     /// As [`pooled`] and [`Cells::cell`].

@@ -1,7 +1,7 @@
 //! Whole recordings without a break: does the position in the cycle stay with the person?
 //!
-//! A list cuts the cycles of each recording one after the other. The true position in each is the time since its start over
-//! its duration.
+//! A list cuts the cycles of each recording one after the other. The true position in each is the
+//! time since its start over its duration.
 
 use super::protocol::{Protocol, TestCycle, measurements};
 use anyhow::{Result, ensure};
@@ -30,8 +30,8 @@ pub struct LongRun {
     pub phase_spread: f64,
     /// Largest error of the position, cycles.
     pub phase_max: f64,
-    /// Relative error of the mean of the reported cadence from the third cycle on, beside the true number of cycles in that
-    /// time.
+    /// Relative error of the mean of the reported cadence from the third cycle on, beside the true
+    /// number of cycles in that time.
     pub cadence_error: f64,
 }
 
@@ -78,7 +78,8 @@ fn recordings(list: &CutList) -> Result<Vec<Recording>> {
     Ok(all)
 }
 
-/// Tracks every recording of `list` with every filter, with measurements whose noise of `sigma_deg` degrees is drawn from `seed`.
+/// Tracks every recording of `list` with every filter, with measurements whose noise of `sigma_deg`
+/// degrees is drawn from `seed`.
 ///
 /// # Errors
 /// A table that cannot be read, no three cycles in a row, a filter that cannot start.
@@ -122,7 +123,8 @@ fn long_run(
             error - error.round()
         })
         .collect();
-    // A frame's velocity belongs to the way to it, so the first frame of the third cycle is the first one left out.
+    // A frame's velocity belongs to the way to it, so the first frame of the third cycle is the first
+    // one left out.
     let settled: Vec<&TrackedFrame> = tracked.frames.iter().filter(|frame| true_cycles(frame.frame) > 2.0).collect();
     let velocities =
         settled.iter().map(|frame| f64::from(frame.estimate.cycle_velocity_per_frame) * tracked.step_frames);

@@ -1,4 +1,5 @@
-//! The cyclic tracker where the true angles are known: the paper's tables and figures on any cut cycles.
+//! The cyclic tracker where the true angles are known: the paper's tables and figures on any cut
+//! cycles.
 
 pub mod experiments;
 pub mod figures;

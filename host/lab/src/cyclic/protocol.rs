@@ -1,4 +1,5 @@
-//! The paper's protocol: a filter over one cut cycle, its errors against the true angles (cyclic paper, section 4).
+//! The paper's protocol: a filter over one cut cycle, its errors against the true angles (cyclic
+//! paper, section 4).
 
 use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
@@ -8,7 +9,8 @@ use sinew::cyclic::tracking::{Tracked, TrackingOptions, track};
 use sinew::cyclic::{AngleRow, AngleTable, CutList, CyclicModel};
 use std::f64::consts::TAU;
 
-/// Angles of the long parts, trunk, arms and legs: links of hips and shoulders are short in a side view.
+/// Angles of the long parts, trunk, arms and legs: links of hips and shoulders are short in a side
+/// view.
 pub const LONG_ANGLES: [usize; 9] = [0, 2, 3, 5, 6, 8, 9, 11, 12];
 
 /// What the measurement is.
@@ -170,7 +172,8 @@ impl Errors {
     }
 }
 
-/// The measurements of `truth` under `protocol`; the first row stays as it is, since it gives the first state.
+/// The measurements of `truth` under `protocol`; the first row stays as it is, since it gives the
+/// first state.
 #[must_use]
 pub fn measurements(truth: &AngleTable, protocol: Protocol, sigma_rad: f64, seed: u64) -> AngleTable {
     match protocol {
@@ -190,7 +193,8 @@ pub fn run(cycle: &TestCycle, model: &CyclicModel, protocol: Protocol, options: 
     Ok(Errors::of(&track(&measured, model, options)?, &cycle.truth))
 }
 
-/// All cycles with all seeds, pooled; a cycle starts at position 0 of the model. The same on any number of threads.
+/// All cycles with all seeds, pooled; a cycle starts at position 0 of the model. The same on any
+/// number of threads.
 ///
 /// # Errors
 /// As [`run`].

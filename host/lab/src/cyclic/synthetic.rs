@@ -1,5 +1,5 @@
-//! Test cycles drawn from a model: people who move as the model says, each in their own way. For trying the command without
-//! recordings; the errors say nothing about real people.
+//! Test cycles drawn from a model: people who move as the model says, each in their own way. For
+//! trying the command without recordings; the errors say nothing about real people.
 
 use super::protocol::TestCycle;
 use anyhow::Result;
@@ -9,7 +9,8 @@ use sinew::cyclic::{AngleTable, CyclicModel, SyntheticPerson};
 /// Number of cycles.
 pub const CYCLES: u64 = 13;
 
-/// [`CYCLES`] cycles at `rate_hz`: the mean cycle, a constant and a swing of each angle drawn from the model's spread.
+/// [`CYCLES`] cycles at `rate_hz`: the mean cycle, a constant and a swing of each angle drawn from
+/// the model's spread.
 ///
 /// # Errors
 /// A model without a spread between people.

@@ -41,7 +41,8 @@ pub struct Table {
     pub page: &'static str,
     /// How long it takes.
     pub cost: Cost,
-    /// The folder of recordings that it is measured on; none where it is measured on built-in motions.
+    /// The folder of recordings that it is measured on; none where it is measured on built-in
+    /// motions.
     pub recordings: Option<&'static str>,
     /// Makes the rows from the folder of all recordings.
     pub rows: fn(&Path) -> Result<Rows>,

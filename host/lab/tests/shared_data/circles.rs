@@ -5,7 +5,8 @@ use sinew::cyclic::training::{TrainingOptions, train};
 use sinew::cyclic::{AngleTable, CutList, CyclicModel};
 use std::path::Path;
 
-/// First and end frames of the circles, found by `sinew cut` in the frames of that direction, at 60 frames a second.
+/// First and end frames of the circles, found by `sinew cut` in the frames of that direction, at 60
+/// frames a second.
 pub type Circles = &'static [(u64, u64)];
 
 /// Each recording with its circles.

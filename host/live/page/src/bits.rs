@@ -1,4 +1,5 @@
-//! Some frames and what this machine answers to them, so that the module's answers can be compared with it bit for bit.
+//! Some frames and what this machine answers to them, so that the module's answers can be compared
+//! with it bit for bit.
 
 use crate::builtin::BuiltinScene;
 use crate::recording::Player;

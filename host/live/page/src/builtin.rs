@@ -12,7 +12,8 @@ use sinew_live::person::Shoulder;
 pub const RATE_HZ: f32 = 30.0;
 /// Frames.
 pub const FRAMES: usize = 240;
-/// Standard deviation of the fake camera's noise, levels of 255; the page's own frames have none, which keeps them small.
+/// Standard deviation of the fake camera's noise, levels of 255; the page's own frames have none,
+/// which keeps them small.
 pub const CAMERA_NOISE_STD: f32 = 2.5;
 /// Seed of motion and looks. Its frames make a small file.
 const SEED: u64 = 5;

@@ -1,4 +1,5 @@
-//! The built-in scene as a file that Chromium takes for a camera (`--use-file-for-fake-video-capture`): YUV4MPEG2, 4:2:0, Rec. 601.
+//! The built-in scene as a file that Chromium takes for a camera
+//! (`--use-file-for-fake-video-capture`): YUV4MPEG2, 4:2:0, Rec. 601.
 //!
 //! The file runs to and fro, so that nothing jumps where it begins anew. A fake camera repeats and
 //! drops frames, so each carries its number as squares along its upper edge. The first is white,

@@ -1,6 +1,7 @@
 //! Builds the live page: `cargo run --release -p sinew-live-page -- --out out/live`.
 //!
-//! One HTML file with the tracker as WebAssembly and the built-in scene. It loads nothing, and its own rules forbid it to.
+//! One HTML file with the tracker as WebAssembly and the built-in scene. It loads nothing, and its
+//! own rules forbid it to.
 
 mod bits;
 mod builtin;

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 const TARGET: &str = "wasm32-unknown-unknown";
-/// Vector instructions of WebAssembly, which every browser has had since 2023: vision takes half the time.
+/// Vector instructions of WebAssembly, which every browser has had since 2023: vision takes half
+/// the time.
 const FLAGS: &str = "-C target-feature=+simd128";
 
 /// What cargo reports of a file that it made.
@@ -17,7 +18,8 @@ struct Message {
     filenames: Vec<PathBuf>,
 }
 
-/// Builds the module and gives its bytes. `SINEW_CARGO` names another cargo, whose arguments may follow.
+/// Builds the module and gives its bytes. `SINEW_CARGO` names another cargo, whose arguments may
+/// follow.
 ///
 /// # Errors
 /// Cargo is missing, or lacks the target.

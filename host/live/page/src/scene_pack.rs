@@ -1,4 +1,5 @@
-//! The built-in scene as the page holds it: a still picture and, for each frame, the rectangle that differs, as JPEG.
+//! The built-in scene as the page holds it: a still picture and, for each frame, the rectangle that
+//! differs, as JPEG.
 
 use crate::builtin::{BuiltinScene, RATE_HZ};
 use crate::recording::{RecordedFrame, recorded};
@@ -31,7 +32,8 @@ pub struct ScenePack {
     frames: Vec<PackedFrame>,
 }
 
-/// One frame: what differs from the still picture, where the hand is, and what the tracker made of it.
+/// One frame: what differs from the still picture, where the hand is, and what the tracker made of
+/// it.
 #[derive(Debug, Serialize)]
 struct PackedFrame {
     x: u32,
@@ -80,7 +82,8 @@ fn median(frames: &[RgbImage]) -> Result<RgbImage> {
     RgbImage::from_raw(first.width(), first.height(), bytes.collect()).context("the frames differ in size")
 }
 
-/// Place and JPEG of the smallest rectangle of whole squares that holds what differs; one square where nothing does.
+/// Place and JPEG of the smallest rectangle of whole squares that holds what differs; one square
+/// where nothing does.
 fn patch(frame: &RgbImage, still: &RgbImage) -> Result<(u32, u32, String)> {
     let differs = frame.enumerate_pixels().zip(still.pixels()).filter(|((.., here), there)| here != there);
     let bounds = differs.fold(None, |bounds, ((x, y, _), _)| {

@@ -14,7 +14,8 @@ use sinew_core::skeleton::full_body::BODY_JOINT_NAMES;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Frames without a file that an animation repeats the pose before for, all in all; longer gaps are cut out of it.
+/// Frames without a file that an animation repeats the pose before for, all in all; longer gaps are
+/// cut out of it.
 const MAX_REPEATED_FRAMES: u64 = 100_000;
 
 impl BodyTrackRun {
@@ -50,8 +51,8 @@ impl BodyTrackRun {
         Ok(report)
     }
 
-    /// Gives the tables their names and writes the other files. Each one is tried, also where another one failed. An interrupted run leaves
-    /// what [`BodyTrackRun::resume`] needs.
+    /// Gives the tables their names and writes the other files. Each one is tried, also where
+    /// another one failed. An interrupted run leaves what [`BodyTrackRun::resume`] needs.
     fn write_results(mut self, interrupted: bool) -> Result<BodyRunReport> {
         let left = if interrupted { Some(resume::left(&mut self)?) } else { None };
         self.report.seconds_per_step = self.step_s / self.report.frames_finished.max(1) as f64;

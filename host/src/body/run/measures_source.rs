@@ -14,8 +14,8 @@ use std::path::Path;
 /// Farthest joint from the pelvis of a standing person, metres.
 const MAX_REACH_M: f32 = 2.0;
 
-/// Reads measures from a .json as `simulate stereo` writes it, or measures the person of a motion. Of a .asf without motion the rest pose
-/// is measured.
+/// Reads measures from a .json as `simulate stereo` writes it, or measures the person of a motion.
+/// Of a .asf without motion the rest pose is measured.
 ///
 /// # Errors
 /// Names the file, and what is missing in it or breaks a rule.

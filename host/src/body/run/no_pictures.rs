@@ -1,4 +1,5 @@
-//! In the place of `pictures` where the feature `plots` is off: a run that is to be drawn is refused.
+//! In the place of `pictures` where the feature `plots` is off: a run that is to be drawn is
+//! refused.
 
 use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;

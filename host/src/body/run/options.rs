@@ -16,13 +16,15 @@ pub const MAX_THREADS: usize = 256;
 pub struct BodyTrackOptions {
     /// Folder of clouds, or a folder that holds them in `points/`.
     pub folder: PathBuf,
-    /// How much of the body is tracked; what the folder's `run.json` says, or all, where there is none.
+    /// How much of the body is tracked; what the folder's `run.json` says, or all, where there is
+    /// none.
     pub part: Option<BodyPart>,
     /// The motion model.
     pub model: BodyModelKind,
     /// Number of particles.
     pub particles: usize,
-    /// File with the person's measures or with a motion to measure; `body.json` of the folder where there is none.
+    /// File with the person's measures or with a motion to measure; `body.json` of the folder where
+    /// there is none.
     pub skeleton: Option<PathBuf>,
     /// Height of the person instead of measures, metres.
     pub height_m: Option<f32>,

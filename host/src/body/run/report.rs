@@ -50,7 +50,8 @@ pub struct BodyRunReport {
     pub frames: usize,
     /// Rows of the table.
     pub frames_finished: usize,
-    /// Frame numbers between the first and the last that have no file: they have no row, and time runs on.
+    /// Frame numbers between the first and the last that have no file: they have no row, and time
+    /// runs on.
     pub frames_missing: u64,
     /// Frames in a second of the camera.
     pub rate_hz: f32,
@@ -62,7 +63,8 @@ pub struct BodyRunReport {
     pub degenerate_frames: usize,
     /// Mean share of effective particles.
     pub effective_share: f64,
-    /// Mean distance of the true markers from the skin of the estimate, PIK (34), from the second frame on, metres.
+    /// Mean distance of the true markers from the skin of the estimate, PIK (34), from the second
+    /// frame on, metres.
     pub error_m: Option<f64>,
     /// Mean distance of the joints from the true ones, from the second frame on, metres.
     pub joint_error_m: Option<f64>,

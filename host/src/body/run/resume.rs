@@ -1,6 +1,8 @@
-//! Going on with a run that Ctrl-C ended: the tracker's state and what each frame was answered with.
+//! Going on with a run that Ctrl-C ended: the tracker's state and what each frame was answered
+//! with.
 //!
-//! Animation, markers, errors and pictures are made anew from the answers; of clouds only those on the contact sheet are read again.
+//! Animation, markers, errors and pictures are made anew from the answers; of clouds only those on
+//! the contact sheet are read again.
 
 use super::answer::NO_ANSWER;
 use super::options::BodyTrackOptions;
@@ -43,14 +45,16 @@ pub(super) fn left(run: &mut BodyTrackRun) -> Result<Left<BodyState>> {
     Ok(Left::new(begun, run.report.frames_finished, run.seconds, run.last_cloud_crc32(), state))
 }
 
-/// Writes what is left beside the tables that it belongs to; without anything left removes that of an earlier run.
+/// Writes what is left beside the tables that it belongs to; without anything left removes that of
+/// an earlier run.
 pub(super) fn put(left: Option<Left<BodyState>>, options: &BodyTrackOptions, out: &OutputDir) -> Result<()> {
     let tables: &[&str] = if options.particles_csv { &["track.csv", "particles.csv"] } else { &["track.csv"] };
     let left = left.map(|left| left.with_tables(out, tables)).transpose()?;
     ResumeFile::in_folder(out.path(), COMMAND).put(left.as_ref())
 }
 
-/// How a run with these options is begun, before anything is read. Results do not depend on the threads.
+/// How a run with these options is begun, before anything is read. Results do not depend on the
+/// threads.
 fn begun(options: &BodyTrackOptions) -> Result<Begun> {
     Begun::new(COMMAND, options, &["folder", "threads"])?.on(&options.folder)
 }
@@ -75,7 +79,8 @@ impl BodyTrackRun {
     /// times in `run.json`.
     ///
     /// # Errors
-    /// As [`BodyTrackRun::prepare`]; there is no such run in `out`, or it was begun with other options, inputs or another version.
+    /// As [`BodyTrackRun::prepare`]; there is no such run in `out`, or it was begun with other
+    /// options, inputs or another version.
     pub fn resume(options: BodyTrackOptions, out: &Path) -> Result<Self> {
         let left: Left<BodyState> = ResumeFile::in_folder(out, COMMAND).read(out)?;
         let now = begun(&options)?;

@@ -36,7 +36,8 @@ pub struct BodyScore {
 }
 
 impl BodyScore {
-    /// Compares one frame with its true joints and markers, metres; returns the mean distance of its joints, metres.
+    /// Compares one frame with its true joints and markers, metres; returns the mean distance of
+    /// its joints, metres.
     pub fn add(
         &mut self,
         filter: &BodyFilter,

@@ -1,4 +1,5 @@
-//! The first pose where only points are known: upright, facing the camera, then fitted to the points.
+//! The first pose where only points are known: upright, facing the camera, then fitted to the
+//! points.
 
 use crate::body::BodyPart;
 use crate::body::tracking::tuning::PointTuning;

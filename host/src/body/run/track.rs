@@ -156,7 +156,8 @@ impl BodyTrackRun {
         Ok(())
     }
 
-    /// Counts a cloud's points; one that could not be read is nothing, or an error if the run is strict.
+    /// Counts a cloud's points; one that could not be read is nothing, or an error if the run is
+    /// strict.
     fn counted(&mut self, cloud: Result<ReadCloud, SkippedCloud>, notify: Notify<'_>) -> Result<Option<ReadCloud>> {
         let cloud = match cloud {
             Ok(cloud) => cloud,
@@ -225,7 +226,8 @@ impl BodyTrackRun {
     }
 }
 
-/// The first frame: the first pose is its pose, and one step from there shows which bones its points observe.
+/// The first frame: the first pose is its pose, and one step from there shows which bones its
+/// points observe.
 fn first_look(filter: &BodyFilter, blocks: &[PointBlock], stick: StickSight) -> WholeBodyEstimate {
     let mut estimate = filter.clone().step(blocks, 0.0, stick);
     if let Some(first) = filter.particles().0.first() {
@@ -234,7 +236,8 @@ fn first_look(filter: &BodyFilter, blocks: &[PointBlock], stick: StickSight) -> 
     estimate
 }
 
-/// Reads one cloud, at most [`MAX_POINTS`] of it: as it is, and in the blocks in which it is weighed.
+/// Reads one cloud, at most [`MAX_POINTS`] of it: as it is, and in the blocks in which it is
+/// weighed.
 pub(super) fn read_cloud(
     frame: &CloudFrame,
     seed: u64,

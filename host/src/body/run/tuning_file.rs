@@ -1,4 +1,5 @@
-//! `--config` of `sinew track body`: a TOML file with any of the numbers of [`BodyTuning`]; the others keep their defaults.
+//! `--config` of `sinew track body`: a TOML file with any of the numbers of [`BodyTuning`]; the
+//! others keep their defaults.
 
 use crate::body::tracking::BodyTuning;
 use crate::error::{Context, Error, Result, bail, ensure};
@@ -31,7 +32,8 @@ const FORMER: [(&str, &str); 5] = [
 /// Reads a configuration.
 ///
 /// # Errors
-/// Names the file, and the key that is not known (with the nearest one that is) or whose value is out of range.
+/// Names the file, and the key that is not known (with the nearest one that is) or whose value is
+/// out of range.
 pub fn load(path: &Path) -> Result<BodyTuning> {
     let text = std::fs::read_to_string(path).with_context(|| {
         format!("configuration `{}` cannot be read; `sinew track body --print-config` writes one", path.display())
@@ -124,7 +126,7 @@ fn check(prefix: &str, table: &Table) -> Result<()> {
                 ensure!((1..=most).contains(count), "`{full}` has to be from 1 to {most}, not {count}");
             }
             Value::Float(number) => {
-                check_number(key, &full, *number).map_err(|rule| Error::Invalid(format!("`{full}` {rule}")))?
+                check_number(key, &full, *number).map_err(|rule| Error::Invalid(format!("`{full}` {rule}")))?;
             }
             _ => {}
         }

@@ -1,4 +1,5 @@
-//! A body or its upper part, tracked: one tracker of the core for each size, and its answers in the order of a whole body's bones.
+//! A body or its upper part, tracked: one tracker of the core for each size, and its answers in the
+//! order of a whole body's bones.
 
 use super::model_kind::BodyModelKind;
 use super::sized::{SeenFrame, SizedBody, SizedFilter};
@@ -151,7 +152,8 @@ impl BodyFilter {
         }
     }
 
-    /// Puts the tracker into a state that was saved with the same part, model, numbers and count of particles.
+    /// Puts the tracker into a state that was saved with the same part, model, numbers and count of
+    /// particles.
     ///
     /// # Errors
     /// The text is not whole, or of another tracker.
@@ -163,7 +165,8 @@ impl BodyFilter {
         }
     }
 
-    /// How the points of a frame are smoothed before they are weighed; `None` where they are taken as they are.
+    /// How the points of a frame are smoothed before they are weighed; `None` where they are taken
+    /// as they are.
     #[must_use]
     pub fn smoothing(&self) -> Option<&RangeSmoothing> {
         self.smoothing.as_ref()
@@ -175,7 +178,8 @@ impl BodyFilter {
         blocks_of(points_m, self.smoothing())
     }
 
-    /// One frame, `dt_s` seconds after the one before; `stick` is what is known of the stick, which only the stick model asks.
+    /// One frame, `dt_s` seconds after the one before; `stick` is what is known of the stick, which
+    /// only the stick model asks.
     pub fn step(&mut self, blocks: &[PointBlock], dt_s: f32, stick: StickSight) -> WholeBodyEstimate {
         let seen = SeenFrame { frame: BodyFrame { dt_s, blocks }, stick, floor_y_m: self.floor_y_m };
         match &mut self.tracked {
@@ -189,7 +193,8 @@ impl BodyFilter {
     }
 }
 
-/// Coordinates of an upper body that is posed as a whole one: its root turns as root and trunk together.
+/// Coordinates of an upper body that is posed as a whole one: its root turns as root and trunk
+/// together.
 fn upper_pose(whole: &BodySkeleton, angles_rad: &[f32; BODY_ANGLES]) -> [f32; UPPER_ANGLES] {
     let mut pose = upper_coordinates(angles_rad);
     let (Joint::Free([_, _, _, a, b, c]), Joint::Ball(trunk)) =

@@ -1,4 +1,5 @@
-//! Tracking a body from point clouds: which motion model, its numbers, and the core's step over many threads.
+//! Tracking a body from point clouds: which motion model, its numbers, and the core's step over
+//! many threads.
 
 pub mod end_effectors;
 pub mod filter;

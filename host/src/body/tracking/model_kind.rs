@@ -24,7 +24,8 @@ pub enum BodyModelKind {
 }
 
 impl BodyModelKind {
-    /// Whether it is a model with the settings that the paper prints, which sees the points as they are.
+    /// Whether it is a model with the settings that the paper prints, which sees the points as they
+    /// are.
     #[must_use]
     pub fn is_printed(self) -> bool {
         matches!(self, Self::EndEffectorPaper | Self::AngularPaper)

@@ -1,6 +1,7 @@
 //! The core's body tracker for one size of skeleton, its particles over many threads.
 //!
-//! Every particle draws from its own stream and results are stored by index, so the bits do not depend on the threads.
+//! Every particle draws from its own stream and results are stored by index, so the bits do not
+//! depend on the threads.
 
 use super::end_effectors::{CARRIED, END_EFFECTORS, JOINTS, MAX_BODY_PARTICLES};
 use super::model_kind::BodyModelKind;

@@ -1,4 +1,5 @@
-//! Numbers of the motion models, tuned on motions that no result is reported on (docs/body_tracker.md).
+//! Numbers of the motion models, tuned on motions that no result is reported on
+//! (docs/body_tracker.md).
 
 use super::end_effectors::END_EFFECTORS;
 use super::model_kind::BodyModelKind;
@@ -10,7 +11,8 @@ use sinew_core::pik::root::{NO_PLANES, RootProcess};
 use sinew_core::skeleton::full_body::BODY_ANGLES;
 use sinew_core::tracker::body::{BodyOptions, RootAlignment, SpeedScaledNoise};
 
-/// Standard deviations of angles after one second, by the joint they belong to; radians by root second.
+/// Standard deviations of angles after one second, by the joint they belong to; radians by root
+/// second.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JointStd {
@@ -78,11 +80,13 @@ pub struct RootTuning {
     pub aligned_turn_std_rad: f32,
     /// How far other angles may change while the root is aligned, radians by root second.
     pub aligned_angle_std_rad: f32,
-    /// Whether a coarse-to-fine search looks for a limb that is farther off than the likelihood reaches.
+    /// Whether a coarse-to-fine search looks for a limb that is farther off than the likelihood
+    /// reaches.
     pub aligned_from_afar: bool,
     /// Whether the trunk is fitted to the points with the root.
     pub aligned_trunk: bool,
-    /// Process noise of the trunk about the fitted place, radians by root second; in the place of its `joint_std`.
+    /// Process noise of the trunk about the fitted place, radians by root second; in the place of
+    /// its `joint_std`.
     pub trunk_std_rad: f32,
 }
 
@@ -101,7 +105,8 @@ impl RootTuning {
         })
     }
 
-    /// The process of a guided root: it is moved by the points like every angle, from as far as an aligned one.
+    /// The process of a guided root: it is moved by the points like every angle, from as far as an
+    /// aligned one.
     #[must_use]
     pub fn guided_process(&self) -> RootProcess {
         let (s, t) = (self.aligned_shift_std_m, self.aligned_turn_std_rad);
@@ -144,7 +149,8 @@ pub struct GoalTuning {
     pub persistence: f32,
     /// Share of the velocities' last change that goes on.
     pub acceleration_share: f32,
-    /// How closely a goal is reached, metres, by a limb that has all of its noise; as much more closely by one at rest.
+    /// How closely a goal is reached, metres, by a limb that has all of its noise; as much more
+    /// closely by one at rest.
     pub reach_std_m: f32,
     /// Spread of the goals.
     pub goal_std: GoalStd,
@@ -171,7 +177,8 @@ impl GoalTuning {
 pub struct DrawTuning {
     /// Whether the weights take the importance ratio.
     pub corrects_weight: bool,
-    /// Width of the draw relative to the Laplace expansion's, in (0, 1]; read where weights are not corrected.
+    /// Width of the draw relative to the Laplace expansion's, in (0, 1]; read where weights are not
+    /// corrected.
     pub share: f32,
 }
 
@@ -195,8 +202,8 @@ pub struct PointTuning {
     pub std_m: f32,
     /// Root of tau of PIK (29), metres.
     pub outlier_m: f32,
-    /// Smallest share of effective particles of a hundred; of others their least number grows with the root of theirs. Zero never flattens the
-    /// weights.
+    /// Smallest share of effective particles of a hundred; of others their least number grows with
+    /// the root of theirs. Zero never flattens the weights.
     pub least_effective_share: f32,
     /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
     pub limb_by_limb: bool,
@@ -212,8 +219,8 @@ pub struct SmoothingTuning {
     pub skin_std_m: f32,
 }
 
-/// The deadband of the reported pose at rest, in all models but the printed ones. With both zero each
-/// frame's mean is reported.
+/// The deadband of the reported pose at rest, in all models but the printed ones. With both zero
+/// each frame's mean is reported.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeadbandTuning {
@@ -241,8 +248,9 @@ pub struct BodyTuning {
     pub angular: AngularTuning,
     /// Points of all models but the printed ones, before they are weighed.
     pub smoothing: SmoothingTuning,
-    /// How the noise of a limb follows its speed, in all models but the printed ones. A `rest_share`, a `max_scale_seen` and
-    /// a `max_scale_unseen` of one leave every limb the model's own.
+    /// How the noise of a limb follows its speed, in all models but the printed ones. A
+    /// `rest_share`, a `max_scale_seen` and a `max_scale_unseen` of one leave every limb the
+    /// model's own.
     pub pace: SpeedScaledNoise,
     /// The deadband of the reported pose.
     pub deadband: DeadbandTuning,
@@ -250,13 +258,15 @@ pub struct BodyTuning {
     pub points: PointTuning,
     /// Points of the guided model.
     pub guided_points: PointTuning,
-    /// How far limbs may give way where they meet, metres: less flesh in flesh is likelier; zero lets them pass through one another.
+    /// How far limbs may give way where they meet, metres: less flesh in flesh is likelier; zero
+    /// lets them pass through one another.
     pub self_penetration_std_m: f32,
     /// Walk of a hand along the stick, shares by root second.
     pub stick_gamma_std: f32,
     /// How closely a hand is on the stick, metres.
     pub stick_reach_std_m: f32,
-    /// Pelvic lift: the root's sideways standard deviation, metres by root second; four times as much up and down.
+    /// Pelvic lift: the root's sideways standard deviation, metres by root second; four times as
+    /// much up and down.
     pub lift_std_m: f32,
     /// Pelvic lift: how closely hands, feet and head stay where they are, metres.
     pub lift_reach_std_m: f32,
@@ -298,7 +308,8 @@ impl BodyTuning {
         }
     }
 
-    /// The core's options of the tracker of `kind`, of which these are the numbers ([`Self::of_kind`]).
+    /// The core's options of the tracker of `kind`, of which these are the numbers
+    /// ([`Self::of_kind`]).
     #[must_use]
     pub fn options(&self, kind: BodyModelKind) -> BodyOptions {
         let (points, goals) = self.points_and_goals(kind);
@@ -328,8 +339,8 @@ impl BodyTuning {
     }
 }
 
-/// Found by a random search for the least error (34) with 100 particles on 18 clips that no result is reported on
-/// (docs/body_tracker.md); so was [`ANGULAR_JOINTS`].
+/// Found by a random search for the least error (34) with 100 particles on 18 clips that no result
+/// is reported on (docs/body_tracker.md); so was [`ANGULAR_JOINTS`].
 const GOAL_JOINTS: JointStd =
     JointStd { trunk: 0.268, head: 0.6, shoulder: 1.02, elbow: 1.31, hip: 0.65, knee: 1.2, ankle: 0.062 };
 /// The angular model's noise.

@@ -39,7 +39,8 @@ const ARMS: [[usize; 2]; 2] = [[2, 3], [5, 6]];
 /// Thigh and shank of one side.
 const LEGS: [[usize; 2]; 2] = [[8, 9], [11, 12]];
 
-/// Anatomical angles of one pose, degrees in (-180, 180]; `None` where a segment that it needs is missing.
+/// Anatomical angles of one pose, degrees in (-180, 180]; `None` where a segment that it needs is
+/// missing.
 #[must_use]
 pub fn of_pose(angles_rad: &[Option<f64>; ANGLES]) -> [Option<f64>; COUNT] {
     let neck = angles_rad[NECK];
@@ -93,8 +94,8 @@ impl AnatomicalSeries {
         Self { frames, angles_deg, rate_hz }
     }
 
-    /// Angle `angle` at a moment between frames, degrees, on the straight line between the frames beside it; `None` where one
-    /// of these is not there or lacks the angle.
+    /// Angle `angle` at a moment between frames, degrees, on the straight line between the frames
+    /// beside it; `None` where one of these is not there or lacks the angle.
     #[must_use]
     pub fn at(&self, angle: usize, frame: f64) -> Option<f64> {
         let below = frame.floor();

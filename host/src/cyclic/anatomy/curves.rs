@@ -11,7 +11,8 @@ pub const POINTS: usize = 101;
 pub struct CyclePointStatistics {
     /// Mean over the cycles, degrees; `None` where no cycle has the angle.
     pub mean_deg: Option<f64>,
-    /// Standard deviation over the cycles (divided by their number less one), degrees; `None` with less than two cycles.
+    /// Standard deviation over the cycles (divided by their number less one), degrees; `None` with
+    /// less than two cycles.
     pub std_deg: Option<f64>,
     /// Cycles that have the angle here.
     pub cycles: usize,
@@ -25,8 +26,8 @@ pub struct CycleCurves {
 }
 
 impl CycleCurves {
-    /// Curves of `series` over the frames `[start, end]` of each cycle. A winding angle is counted from the turn in which the
-    /// cycle starts.
+    /// Curves of `series` over the frames `[start, end]` of each cycle. A winding angle is counted
+    /// from the turn in which the cycle starts.
     #[must_use]
     pub fn new(series: &AnatomicalSeries, cycles: &[[f64; 2]]) -> Self {
         let curve = |angle: usize| (0..POINTS).map(|percent| point(series, cycles, angle, percent)).collect();

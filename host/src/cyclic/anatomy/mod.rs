@@ -1,7 +1,8 @@
-//! Anatomical angles in degrees, and what is read off them: range of motion, tempo, curves over the cycle, symmetry.
+//! Anatomical angles in degrees, and what is read off them: range of motion, tempo, curves over the
+//! cycle, symmetry.
 //!
-//! All angles are those of the side view of a person who faces right (x forward, y down). Zero is standing upright with
-//! hanging arms; the signs are in [`ANATOMICAL_ANGLES`].
+//! All angles are those of the side view of a person who faces right (x forward, y down). Zero is
+//! standing upright with hanging arms; the signs are in [`ANATOMICAL_ANGLES`].
 
 pub mod angles;
 pub mod curves;

@@ -35,8 +35,8 @@ pub struct Repetition {
     pub ranges: [Option<Range>; COUNT],
 }
 
-/// The repetitions of `series` between the frames `[start, end]` of each cycle; these may lie between frames. Cycles that do
-/// not last are left out.
+/// The repetitions of `series` between the frames `[start, end]` of each cycle; these may lie
+/// between frames. Cycles that do not last are left out.
 #[must_use]
 pub fn repetitions(series: &AnatomicalSeries, cycles: &[[f64; 2]]) -> Vec<Repetition> {
     let lasting = cycles.iter().filter(|[start, end]| end > start);
@@ -61,7 +61,8 @@ fn range(series: &AnatomicalSeries, angle: usize, start: f64, end: f64) -> Optio
     (values.len() >= 2).then_some(Range { min_deg: fold(f64::min)?, max_deg: fold(f64::max)? })
 }
 
-/// The repetitions as CSV: `repetition,start_s,duration_s,tempo_per_min`, then least, greatest and range of each angle.
+/// The repetitions as CSV: `repetition,start_s,duration_s,tempo_per_min`, then least, greatest and
+/// range of each angle.
 #[must_use]
 pub fn to_csv(repetitions: &[Repetition]) -> String {
     let mut text = "repetition,start_s,duration_s,tempo_per_min".to_owned();

@@ -14,11 +14,12 @@ pub struct Symmetry {
     pub left_range_deg: Option<f64>,
     /// Mean range of motion of the right side, degrees.
     pub right_range_deg: Option<f64>,
-    /// Symmetry index of the ranges: 200 (left - right) / (left + right) percent, 0 for equal sides (Robinson, Herzog and
-    /// Nigg, 1987).
+    /// Symmetry index of the ranges: 200 (left - right) / (left + right) percent, 0 for equal sides
+    /// (Robinson, Herzog and Nigg, 1987).
     pub symmetry_index_percent: Option<f64>,
-    /// By how much of a cycle the right side follows the left, in [0, 1): 0.5 for walking, 0 for sides that move together. The
-    /// shift at which the mean curves about their means are most alike.
+    /// By how much of a cycle the right side follows the left, in [0, 1): 0.5 for walking, 0 for
+    /// sides that move together. The shift at which the mean curves about their means are most
+    /// alike.
     pub right_lag_cycles: Option<f64>,
     /// Root mean square difference of the mean curves at that shift, degrees.
     pub curve_difference_deg: Option<f64>,

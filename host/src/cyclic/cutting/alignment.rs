@@ -1,7 +1,8 @@
 //! Brings the starts of all cycles of a recording to one phase.
 //!
-//! Each start was found from the one before, so that small errors add up over a long recording. Here every start is compared
-//! with the mean motion round all of them, which none of them can drift away from.
+//! Each start was found from the one before, so that small errors add up over a long recording.
+//! Here every start is compared with the mean motion round all of them, which none of them can
+//! drift away from.
 
 use super::channels::Channels;
 use std::ops::Range;
@@ -72,7 +73,8 @@ impl Template {
         candidates.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |best| best.0)
     }
 
-    /// Sum of squared differences from the window that begins at frame `from`, and how many there are.
+    /// Sum of squared differences from the window that begins at frame `from`, and how many there
+    /// are.
     fn difference(&self, channels: &Channels, from: i64) -> (f64, usize) {
         let (mut sum, mut count) = (0.0, 0);
         for (signal, mean) in channels.signals().iter().zip(&self.means) {

@@ -1,4 +1,5 @@
-//! An angle table as signals that can be compared: cosine and sine of each angle that moves, about their means.
+//! An angle table as signals that can be compared: cosine and sine of each angle that moves, about
+//! their means.
 
 use crate::cyclic::angle_table::{ANGLES, AngleTable};
 
@@ -69,8 +70,8 @@ impl Channels {
         self.frames == 0
     }
 
-    /// Correlation of the frames of `at` with those `lag` later, over all signals, from -1 to 1; `None` where less than half
-    /// of the values are there twice.
+    /// Correlation of the frames of `at` with those `lag` later, over all signals, from -1 to 1;
+    /// `None` where less than half of the values are there twice.
     #[must_use]
     pub fn correlation(&self, at: std::ops::Range<usize>, lag: usize) -> Option<f64> {
         let (mut product, mut here, mut there, mut count) = (0.0, 0.0, 0.0, 0_usize);
@@ -91,7 +92,8 @@ impl Channels {
         (enough && here > 0.0 && there > 0.0).then(|| product / (here * there).sqrt())
     }
 
-    /// Mean squared difference of the frames of `at` and those `lag` later; `None` where nothing can be compared.
+    /// Mean squared difference of the frames of `at` and those `lag` later; `None` where nothing
+    /// can be compared.
     #[must_use]
     pub fn difference(&self, at: std::ops::Range<usize>, lag: usize) -> Option<f64> {
         let (mut sum, mut count) = (0.0, 0_usize);
@@ -108,7 +110,8 @@ impl Channels {
     }
 }
 
-/// Each value less the mean of those known in the window of `period` frames round it, which is shifted inwards at the ends.
+/// Each value less the mean of those known in the window of `period` frames round it, which is
+/// shifted inwards at the ends.
 fn about_running_mean(signal: &[f64], period: usize) -> Vec<f64> {
     let (mut sums, mut counts) = (vec![0.0], vec![0_usize]);
     for (index, value) in signal.iter().enumerate() {

@@ -37,7 +37,8 @@ impl Default for CuttingOptions {
 /// The cycles of `table`, one after the other; `file` is the name that they get in a cut list.
 ///
 /// # Errors
-/// Says why there is no cycle: too short, nothing moves, nothing comes back; or which option is out of range.
+/// Says why there is no cycle: too short, nothing moves, nothing comes back; or which option is out
+/// of range.
 pub fn cycles(table: &AngleTable, file: &str, options: CuttingOptions) -> Result<Vec<Cut>, CyclicError> {
     let CuttingOptions { rate_hz, shortest_s, longest_s } = options;
     if !(rate_hz > 0.0 && rate_hz.is_finite()) {

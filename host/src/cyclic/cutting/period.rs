@@ -4,7 +4,8 @@ use super::channels::Channels;
 
 /// Correlation of the motion with itself one period later, below which there is no period.
 const MIN_CORRELATION: f64 = 0.4;
-/// A shorter lag is the period if it is nearly as good as the best: multiples of the period are as good as it.
+/// A shorter lag is the period if it is nearly as good as the best: multiples of the period are as
+/// good as it.
 const NEARLY: f64 = 0.8;
 /// Share of the recording by which it may be shifted against itself: about a third has to overlap.
 const LONGEST_SHIFT: f64 = 0.67;

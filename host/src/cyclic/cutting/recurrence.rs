@@ -5,8 +5,8 @@ use super::channels::Channels;
 use crate::cyclic::angle_table::AngleTable;
 use std::f64::consts::TAU;
 
-/// Angles whose swing gives the first start, best first: left and right thigh, left and right upper arm, shanks, forearms,
-/// trunk.
+/// Angles whose swing gives the first start, best first: left and right thigh, left and right upper
+/// arm, shanks, forearms, trunk.
 const ANCHORS: [usize; 9] = [8, 11, 2, 5, 9, 12, 3, 6, 0];
 /// Share of the frames in which the anchor has to be there.
 const MIN_SHARE: f64 = 0.6;
@@ -47,8 +47,8 @@ pub fn boundaries(table: &AngleTable, channels: &Channels, period: usize) -> Vec
     starts.windows(2).zip(follows.iter().skip(1)).filter_map(cycle).collect()
 }
 
-/// By how many frames the swing's peaks lie later than the starts: the middle one of all, so that no single step decides where
-/// a person's cycles begin.
+/// By how many frames the swing's peaks lie later than the starts: the middle one of all, so that
+/// no single step decides where a person's cycles begin.
 fn to_peaks(starts: &[usize], peaks: &[usize], period: usize) -> isize {
     let from_start = |&start: &usize| {
         let distances = peaks.iter().map(|&peak| peak as i64 - start as i64);
@@ -106,7 +106,8 @@ fn swing_peaks(table: &AngleTable, frames: usize, period: usize) -> Vec<usize> {
     peaks(&fundamental(&chosen, period))
 }
 
-/// The part of `signal` that has the period, by projection on cosine and sine over one period round each frame.
+/// The part of `signal` that has the period, by projection on cosine and sine over one period round
+/// each frame.
 fn fundamental(signal: &[Option<f64>], period: usize) -> Vec<f64> {
     let half = period / 2;
     (0..signal.len())

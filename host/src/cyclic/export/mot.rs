@@ -3,7 +3,8 @@
 use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, AnatomicalSeries};
 use std::fmt::Write as _;
 
-/// The text of a MOT file called `name` inside. Programs that read MOT know no missing value: NaN stands there.
+/// The text of a MOT file called `name` inside. Programs that read MOT know no missing value: NaN
+/// stands there.
 #[must_use]
 pub fn to_mot(series: &AnatomicalSeries, name: &str) -> String {
     let columns = ANATOMICAL_ANGLES.len() + 1;

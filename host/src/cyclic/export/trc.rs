@@ -7,7 +7,8 @@ use crate::motion::export::{self, TrcFrame, TrcHeading, TrcUnit};
 use crate::motion::joint_names::JOINTS;
 use sinew_core::skeleton::stick_figure::HUMAN;
 
-/// Marker names in the order of the joints; the names that Pose2Sim and OpenPose models of OpenSim have.
+/// Marker names in the order of the joints; the names that Pose2Sim and OpenPose models of OpenSim
+/// have.
 pub const MARKERS: [&str; JOINTS] = [
     "Hip",
     "Neck",
@@ -28,8 +29,8 @@ pub const MARKERS: [&str; JOINTS] = [
 /// Places of all joints in one frame.
 pub type JointPositions = [Option<Point>; JOINTS];
 
-/// Segment lengths in the side view of an adult of `height_m` metres: hip and shoulder links point at the camera and are
-/// short there. For angles that came without lengths.
+/// Segment lengths in the side view of an adult of `height_m` metres: hip and shoulder links point
+/// at the camera and are short there. For angles that came without lengths.
 #[must_use]
 pub fn standard_lengths_m(height_m: f64) -> [f64; ANGLES] {
     const LINK: f32 = 0.02;
@@ -40,8 +41,8 @@ pub fn standard_lengths_m(height_m: f64) -> [f64; ANGLES] {
     [fraction::TRUNK, s, u, f, s, u, f, h, t, c, h, t, c].map(|share| f64::from(share) * height_m)
 }
 
-/// Joints of a pose: x right, y down, in the unit of `root` and `lengths`. A joint is `None` where its angle or its parent
-/// is.
+/// Joints of a pose: x right, y down, in the unit of `root` and `lengths`. A joint is `None` where
+/// its angle or its parent is.
 #[must_use]
 pub fn joint_positions(
     root: Option<Point>,
@@ -60,8 +61,8 @@ pub fn joint_positions(
     joints
 }
 
-/// The text of a TRC file in metres: x forward, y up, z zero. `frames` hold each frame's number and joints in units of
-/// `metres_per_unit` metres, x right and y down. Missing joints are empty cells.
+/// The text of a TRC file in metres: x forward, y up, z zero. `frames` hold each frame's number and
+/// joints in units of `metres_per_unit` metres, x right and y down. Missing joints are empty cells.
 #[must_use]
 pub fn to_trc(frames: &[(u64, JointPositions)], rate_hz: f64, metres_per_unit: f64, name: &str) -> String {
     let place_m = |[x, y]: Point| [x * metres_per_unit, -y * metres_per_unit, 0.0];

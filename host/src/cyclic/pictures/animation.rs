@@ -1,4 +1,5 @@
-//! The figure alone on a blank canvas, walking on the spot, as a GIF that plays at the recording's own speed.
+//! The figure alone on a blank canvas, walking on the spot, as a GIF that plays at the recording's
+//! own speed.
 
 use super::figure::{measured, pixels};
 use crate::cyclic::AngleTable;
@@ -38,7 +39,8 @@ struct Picture {
     ticks: u32,
 }
 
-/// Rows that are shown: each as long as it takes to the next one, rounded so that no rounding adds up.
+/// Rows that are shown: each as long as it takes to the next one, rounded so that no rounding adds
+/// up.
 fn schedule(frames: &[u64], rate_hz: f64) -> Vec<Picture> {
     let mut shown = vec![(0, 0.0)];
     let (mut time, mut due) = (0.0, 1.0 / PICTURES_PER_S);
@@ -96,8 +98,8 @@ impl Framing {
     }
 }
 
-/// Writes the animation of `figures` (one a row of `table`) to `path`: what was measured thin and grey behind the estimate. Facing
-/// right, whichever way the person went.
+/// Writes the animation of `figures` (one a row of `table`) to `path`: what was measured thin and
+/// grey behind the estimate. Facing right, whichever way the person went.
 ///
 /// # Errors
 /// Names the path with what the operating system refused.

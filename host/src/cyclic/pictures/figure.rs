@@ -8,7 +8,8 @@ use crate::cyclic::{AngleRow, AngleTable};
 use crate::draw::stick_figure::FigureJoints;
 use sinew_core::camera::Pixel;
 
-/// The figure as it was measured in a row, about `root`. A length that was not seen is that of the body.
+/// The figure as it was measured in a row, about `root`. A length that was not seen is that of the
+/// body.
 #[must_use]
 pub fn measured(row: &AngleRow, body: &Body, root: Option<Point>) -> JointPositions {
     let lengths: [f64; ANGLES] =

@@ -60,8 +60,9 @@ impl OverlayFrames {
         Err(CyclicError::parameter("overlay", rule))
     }
 
-    /// Draws `figures` (one a row of `table`) on their images and writes them into `folder`. A frame without an image, an image that
-    /// cannot be read, and one of another size than the first are skipped and reported. Nothing more is drawn once `stop` is set.
+    /// Draws `figures` (one a row of `table`) on their images and writes them into `folder`. A
+    /// frame without an image, an image that cannot be read, and one of another size than the
+    /// first are skipped and reported. Nothing more is drawn once `stop` is set.
     ///
     /// # Errors
     /// A picture that cannot be written.

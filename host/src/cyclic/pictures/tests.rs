@@ -13,7 +13,8 @@ use std::io::BufReader;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// The shipped walk; hips at (100 + f, 90), trunk 60 px, the other lengths those of a person of that size; frames from `first` on.
+/// The shipped walk; hips at (100 + f, 90), trunk 60 px, the other lengths those of a person of
+/// that size; frames from `first` on.
 fn keypoints(first: u64, frames: u64, mirrored: bool) -> AngleTable {
     let model = CyclicModel::from_option("walking").unwrap();
     let columns = ["hip_center_u_px", "hip_center_v_px", "neck_length_px", "mirrored"].map(str::to_owned);
@@ -68,7 +69,8 @@ fn the_figure_stands_where_the_person_is_on_the_image_of_its_number() {
     }
 }
 
-/// A broken image, one of another size, and rows beyond the last image: reported, and the others are there.
+/// A broken image, one of another size, and rows beyond the last image: reported, and the others
+/// are there.
 #[test]
 fn what_cannot_be_drawn_is_skipped_and_reported() {
     let folder = tempfile::tempdir().unwrap();

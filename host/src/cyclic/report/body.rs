@@ -58,7 +58,8 @@ impl Body {
         self.columns.as_ref().is_some_and(|columns| columns.unit == "px")
     }
 
-    /// 1 where the image's x points forward, -1 where the person faces left, from the extra cells of a row.
+    /// 1 where the image's x points forward, -1 where the person faces left, from the extra cells
+    /// of a row.
     #[must_use]
     pub fn side(&self, extra: &[String]) -> f64 {
         let mirrored = self.columns.as_ref().is_some_and(|columns| extra[columns.mirrored] == "1");
@@ -91,7 +92,8 @@ impl Columns {
     }
 }
 
-/// Size of a pixel at the person's distance from the longer leg or else the trunk; one metre where neither was seen.
+/// Size of a pixel at the person's distance from the longer leg or else the trunk; one metre where
+/// neither was seen.
 fn metres_per_px(lengths_px: &[Option<f64>; ANGLES], height_m: f64) -> f64 {
     let leg = LEGS.iter().filter_map(|[thigh, shank]| Some(lengths_px[*thigh]? + lengths_px[*shank]?));
     let leg = leg.reduce(f64::max).map(|leg_px| f64::from(THIGH + SHANK) * height_m / leg_px);

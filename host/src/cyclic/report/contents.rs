@@ -43,7 +43,8 @@ pub struct Report {
     pub summary: Summary,
     /// Share of the rows in which each angle of the stick figure was measured and used, 0 to 1.
     pub measured_shares: [f64; ANGLES],
-    /// Anatomical angles of the estimate; those that need an angle which was never measured are missing.
+    /// Anatomical angles of the estimate; those that need an angle which was never measured are
+    /// missing.
     pub series: AnatomicalSeries,
     /// First and last frame of each whole cycle, between frames.
     pub cycles: Vec<[f64; 2]>,

@@ -17,7 +17,8 @@ pub const ESTIMATES: &str = "estimates.csv";
 pub const MEASURED: &str = "measured.csv";
 
 impl Report {
-    /// Writes all files, each under a temporary name that is then changed to its own; the summary comes last.
+    /// Writes all files, each under a temporary name that is then changed to its own; the summary
+    /// comes last.
     ///
     /// # Errors
     /// Names the file that cannot be written.

@@ -1,4 +1,5 @@
-//! Joint positions of the estimate: root and segment lengths filtered beside the angles by the core.
+//! Joint positions of the estimate: root and segment lengths filtered beside the angles by the
+//! core.
 
 use super::body::Body;
 use super::contents::Report;
@@ -21,7 +22,8 @@ const TRUNK: usize = 0;
 pub struct Figure {
     /// Number of the frame.
     pub frame: u64,
-    /// Where the root is; (0, 0) where the table has no place, `None` where it is not known any more.
+    /// Where the root is; (0, 0) where the table has no place, `None` where it is not known any
+    /// more.
     pub root: Option<Point>,
     /// Length of each segment.
     pub lengths: [f64; ANGLES],
@@ -96,8 +98,8 @@ pub fn in_image(joints: &JointPositions, side: f64) -> JointPositions {
     })
 }
 
-/// `frame`, then x and y of each joint in the pixels of the image. Of a person who faces left, too, left is their own left here:
-/// the mirroring of the table is undone.
+/// `frame`, then x and y of each joint in the pixels of the image. Of a person who faces left, too,
+/// left is their own left here: the mirroring of the table is undone.
 #[must_use]
 pub fn to_csv_px(positions: &[(u64, JointPositions)], table: &AngleTable, body: &Body) -> String {
     let names: Vec<&str> = std::iter::once("hip_center").chain(HUMAN.angle_names()).collect();

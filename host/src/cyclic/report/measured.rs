@@ -6,7 +6,8 @@ use crate::cyclic::tracking::{Tracked, Updates};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-/// The angle that was measured in row `index` and seen by the filter, in the turn that is nearest to the estimate, radians.
+/// The angle that was measured in row `index` and seen by the filter, in the turn that is nearest
+/// to the estimate, radians.
 #[must_use]
 pub fn measured_rad(
     table: &AngleTable,

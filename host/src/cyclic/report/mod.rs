@@ -1,4 +1,5 @@
-//! What a coach or a gait lab reads off a tracked recording: a folder with tables, plots and files for other programs.
+//! What a coach or a gait lab reads off a tracked recording: a folder with tables, plots and files
+//! for other programs.
 
 pub mod body;
 pub mod contents;

@@ -22,7 +22,8 @@ const GROUPS: [(&str, &[usize]); 5] = [
     ("right leg", &[11, 12]),
 ];
 
-/// Every plot with its file name. Those that need cycles or measured angles that are not there are left out.
+/// Every plot with its file name. Those that need cycles or measured angles that are not there are
+/// left out.
 ///
 /// # Errors
 /// A plot that cannot be drawn.
@@ -85,7 +86,8 @@ fn banded(name: &str, points: impl Iterator<Item = (f64, f64, f64)>) -> Curve {
     Curve { name: name.to_owned(), points: line, low: Some(low), high: Some(high), marks: Vec::new() }
 }
 
-/// The estimate with its band; what the filter saw stands beside it as dots, in the turn that is nearest.
+/// The estimate with its band; what the filter saw stands beside it as dots, in the turn that is
+/// nearest.
 fn trajectory(table: &AngleTable, tracked: &Tracked, updates: &Updates, angle: usize) -> Curve {
     let name = COLUMNS[angle + 1].trim_end_matches("_rad");
     let points = tracked.frames.iter().map(|frame| {

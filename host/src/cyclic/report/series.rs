@@ -19,7 +19,8 @@ pub fn measured_shares(table: &AngleTable, updates: &Updates) -> [f64; ANGLES] {
     })
 }
 
-/// Anatomical angles of the estimate. An angle that was never measured is the model's, not the person's, and is left out.
+/// Anatomical angles of the estimate. An angle that was never measured is the model's, not the
+/// person's, and is left out.
 #[must_use]
 pub fn estimated(tracked: &Tracked, summary: &Summary, measured_shares: &[f64; ANGLES]) -> AnatomicalSeries {
     let pose = |angles: &[f64; ANGLES]| std::array::from_fn(|i| (measured_shares[i] > 0.0).then_some(angles[i]));

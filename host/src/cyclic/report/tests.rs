@@ -79,7 +79,8 @@ fn the_folder_holds_every_file() {
     assert!(json["repetitions"][0]["range_of_motion"]["l_knee_flexion"]["range_deg"].as_f64().unwrap() > 30.0);
 }
 
-/// Keypoints of a person who faces left, 2 m high: trunk 60 px, leg 49 and 49.2 px, hips at (100 - f, 50).
+/// Keypoints of a person who faces left, 2 m high: trunk 60 px, leg 49 and 49.2 px, hips at (100 -
+/// f, 50).
 fn keypoints(frames: u64, hidden: std::ops::Range<u64>) -> AngleTable {
     let mut columns = vec!["hip_center_u_px".to_owned(), "hip_center_v_px".to_owned()];
     columns.extend(["neck", "l_knee", "l_ankle"].map(|name| format!("{name}_length_px")));

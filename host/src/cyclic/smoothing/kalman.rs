@@ -1,5 +1,5 @@
-//! Going back over the paper's filters: angles and angular velocities. No measurement moves the cycle in them, so that nothing
-//! later bears on it either.
+//! Going back over the paper's filters: angles and angular velocities. No measurement moves the
+//! cycle in them, so that nothing later bears on it either.
 
 use super::pass::{Link, Smoothable, Smoothed};
 use super::recursion::Moments;
@@ -11,7 +11,8 @@ use std::f64::consts::TAU;
 
 /// `paper` or `paper-cut` after a frame.
 ///
-/// Of `paper-cut` only angles are smoothed, as it corrects only angles: its velocities are the model's.
+/// Of `paper-cut` only angles are smoothed, as it corrects only angles: its velocities are the
+/// model's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KalmanState<const N: usize> {
     /// The filter.
@@ -41,7 +42,8 @@ impl<const N: usize> KalmanState<N> {
         DMatrix::from_fn(2 * count, 2 * count, |i, j| f64::from(self.filter.covariance().entry(index(i), index(j))))
     }
 
-    /// Noise of a step by cyclic (8) and (9), part by part as the filter takes it, each carried on to the step's end.
+    /// Noise of a step by cyclic (8) and (9), part by part as the filter takes it, each carried on
+    /// to the step's end.
     fn noise(&self, model: &MotionModel<'_>, step_frames: f32) -> DMatrix<f64> {
         let count = model.angle_count().min(N);
         let parts: Vec<f32> = Substeps::of(step_frames).collect();

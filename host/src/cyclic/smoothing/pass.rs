@@ -41,10 +41,12 @@ pub trait Smoothable<const N: usize> {
     /// Mean and covariance given the measurements up to this frame.
     fn moments(&self, model: &MotionModel<'_>) -> Moments;
 
-    /// The step to the state `next`, which came out of `measurement`; `None` where that one does not follow from this.
+    /// The step to the state `next`, which came out of `measurement`; `None` where that one does
+    /// not follow from this.
     fn link(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, next: &Self) -> Option<Link>;
 
-    /// The estimate of the frame from moments of this kind of state. Numbers that no later measurement changes are those of this state.
+    /// The estimate of the frame from moments of this kind of state. Numbers that no later
+    /// measurement changes are those of this state.
     fn smoothed(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N>;
 }
 

@@ -11,11 +11,12 @@ pub struct Moments {
     pub covariance: DMatrix<f64>,
 }
 
-/// Parts of its diagonal by which a predicted covariance is raised until it can be inverted: what `f32` states leave open.
+/// Parts of its diagonal by which a predicted covariance is raised until it can be inverted: what
+/// `f32` states leave open.
 const RIDGES: [f64; 3] = [0.0, 1.0e-9, 1.0e-6];
 
-/// The moments of x(k) given everything: m + G `surprise`, P + G (P(k+1, smoothed) - P(k+1, predicted)) G' with
-/// G = `cross` / P(k+1, predicted).
+/// The moments of x(k) given everything: m + G `surprise`, P + G (P(k+1, smoothed) - P(k+1,
+/// predicted)) G' with G = `cross` / P(k+1, predicted).
 ///
 /// `filtered` are the moments of x(k) given the measurements up to k. `cross` is the covariance of
 /// x(k) with x(k+1) before the measurement k+1, and `predicted_covariance` that of x(k+1).
@@ -54,8 +55,8 @@ mod tests {
     use super::*;
     use sinew_core::random::Stream;
 
-    /// Random walk with velocity, its position measured at every second step: forward and back, against the joint Gaussian of all
-    /// states given all measurements.
+    /// Random walk with velocity, its position measured at every second step: forward and back,
+    /// against the joint Gaussian of all states given all measurements.
     #[test]
     fn forward_and_back_is_the_joint_posterior() {
         const STEPS: usize = 12;

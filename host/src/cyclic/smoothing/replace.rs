@@ -6,10 +6,12 @@ use crate::cyclic::tracking::TrackedFrame;
 use crate::cyclic::turns::least_angle;
 use std::f64::consts::TAU;
 
-/// Replaces the forward estimates of `frames` by the smoothed ones: angles, position, velocity and their variances. Likelihood and
-/// outlier flags stay those of the forward pass. Cycles count from the smoothed position of the first frame.
+/// Replaces the forward estimates of `frames` by the smoothed ones: angles, position, velocity and
+/// their variances. Likelihood and outlier flags stay those of the forward pass. Cycles count from
+/// the smoothed position of the first frame.
 ///
-/// The one of `smoothed` at an index belongs to the frame at that index; frames beyond keep the estimate that they have.
+/// The one of `smoothed` at an index belongs to the frame at that index; frames beyond keep the
+/// estimate that they have.
 pub fn replace_estimates<const N: usize>(frames: &mut [TrackedFrame], smoothed: &[Smoothed<N>]) {
     let mut first_shift = None;
     for (frame, smoothed) in frames.iter_mut().zip(smoothed) {

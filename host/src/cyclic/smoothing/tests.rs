@@ -31,7 +31,8 @@ fn linear_model(work: impl FnOnce(&MotionModel<'_>)) {
     work(&model.unwrap());
 }
 
-/// F, the mean's shift and Q of a step of parts of at most a frame: part by part, by cyclic (6) to (9).
+/// F, the mean's shift and Q of a step of parts of at most a frame: part by part, by cyclic (6) to
+/// (9).
 fn dense_step(step: f64) -> (DMatrix<f64>, DVector<f64>, DMatrix<f64>) {
     let k = 5.0 / 4.0_f64;
     let (mut f, mut shift, mut q) = (DMatrix::identity(4, 4), DVector::zeros(4), DMatrix::zeros(4, 4));
@@ -54,7 +55,8 @@ fn dense_step(step: f64) -> (DMatrix<f64>, DVector<f64>, DMatrix<f64>) {
     (f, shift, q)
 }
 
-/// `paper` forward and back against the joint Gaussian of all states given all measurements, gaps and parts of frames included.
+/// `paper` forward and back against the joint Gaussian of all states given all measurements, gaps
+/// and parts of frames included.
 #[test]
 fn the_smoothed_paper_filter_is_the_joint_posterior() {
     let steps = [1.0, 1.0, 2.5, 1.0, 0.25, 3.0, 1.0, 1.0, 1.0, 1.5];
@@ -111,7 +113,8 @@ fn the_smoothed_paper_filter_is_the_joint_posterior() {
     });
 }
 
-/// The shipped walk at 60 cycles a minute: frame f is at f / 60 of a cycle and `jump` of a cycle further from frame `at` on.
+/// The shipped walk at 60 cycles a minute: frame f is at f / 60 of a cycle and `jump` of a cycle
+/// further from frame `at` on.
 fn walk(frames: u64, at: u64, jump: f64) -> AngleTable {
     let model = CyclicModel::from_option("walking").unwrap();
     let rows = (0..frames).map(|frame| {
@@ -156,8 +159,9 @@ fn what_looks_back_only_stays() {
     }
 }
 
-/// After five seconds without a measurement the position is searched for anew. What comes after then says nothing about what was
-/// before: those frames are answered to the bit as if the recording ended there.
+/// After five seconds without a measurement the position is searched for anew. What comes after
+/// then says nothing about what was before: those frames are answered to the bit as if the
+/// recording ended there.
 #[test]
 fn a_position_found_anew_does_not_drag_the_frames_before_it() {
     let mut rows = walk(550, 400, 0.4).with_noise(0.05, 9).rows().to_vec();

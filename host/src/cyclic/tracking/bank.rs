@@ -1,4 +1,5 @@
-//! Several motions at once: every model's filter over the same table, and which motion each frame shows.
+//! Several motions at once: every model's filter over the same table, and which motion each frame
+//! shows.
 
 use super::measurements::Measurements;
 use super::options::TrackingOptions;
@@ -60,8 +61,8 @@ fn name<const N: usize>(bank: &MotionBank<MAX_MOTIONS, N>, shown: usize) -> Name
     NamedMotion { motion, probability: f64::from(probability), shown }
 }
 
-/// The frames of the shown motions as one run. Angles are unwrapped across a change of motion; the cycles go on by the way to the other
-/// motion's position.
+/// The frames of the shown motions as one run. Angles are unwrapped across a change of motion; the
+/// cycles go on by the way to the other motion's position.
 pub(super) fn shown(runs: &[Tracked], motions: &[NamedMotion]) -> Tracked {
     let mut frames: Vec<TrackedFrame> = Vec::with_capacity(motions.len());
     let mut counter: Option<CycleCounter> = None;

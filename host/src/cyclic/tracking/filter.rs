@@ -27,8 +27,8 @@ enum Kind<const N: usize> {
 }
 
 impl<'m, const N: usize> Filter<'m, N> {
-    /// The filter of `options` at its first state; `first` is the first row, `step_frames` a frame of the recording in frames
-    /// of the model.
+    /// The filter of `options` at its first state; `first` is the first row, `step_frames` a frame
+    /// of the recording in frames of the model.
     ///
     /// # Errors
     /// A position or velocity out of range.

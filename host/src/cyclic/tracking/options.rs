@@ -43,7 +43,8 @@ impl FilterName {
 #[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum StartName {
-    /// The first row's angles, the model's velocities, the best matching (or given) position in the cycle.
+    /// The first row's angles, the model's velocities, the best matching (or given) position in the
+    /// cycle.
     #[default]
     Standard,
     /// Nothing of the position in the cycle (coupled, particle).
@@ -93,7 +94,8 @@ pub struct TrackingOptions {
     pub start: StartName,
     /// First position in the cycle, [0, 1); the best match where `None`.
     pub initial_cycle_position: Option<f64>,
-    /// First velocity, cycles per frame of the recording; that of the model's mean cycle where `None`.
+    /// First velocity, cycles per frame of the recording; that of the model's mean cycle where
+    /// `None`.
     pub initial_cycle_velocity: Option<f64>,
     /// Rows that are used.
     pub updates: Updates,
@@ -103,7 +105,8 @@ pub struct TrackingOptions {
     pub particles: usize,
     /// Seed of everything that is drawn.
     pub seed: u64,
-    /// Whether each estimate is the one given the whole recording, by a pass backwards over the filter's.
+    /// Whether each estimate is the one given the whole recording, by a pass backwards over the
+    /// filter's.
     pub smooth: bool,
 }
 

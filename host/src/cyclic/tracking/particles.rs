@@ -1,7 +1,8 @@
-//! The paper's particle filter over many threads: the core's stages on chunks of particles (cyclic paper, section 3.3).
+//! The paper's particle filter over many threads: the core's stages on chunks of particles (cyclic
+//! paper, section 3.3).
 //!
-//! Every particle draws from its own stream and the chunks' sums are added in their order, so the result has the same bits on
-//! any number of threads.
+//! Every particle draws from its own stream and the chunks' sums are added in their order, so the
+//! result has the same bits on any number of threads.
 
 use super::saved_estimate::visit_estimate;
 use super::wide_vectors::particle_sweep;

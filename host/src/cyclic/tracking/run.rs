@@ -52,7 +52,8 @@ pub(super) fn first_seen(table: &AngleTable) -> Result<usize> {
     Ok(first)
 }
 
-/// Frames of the model from one row to the next. A gap longer than the longest step says no more than that one.
+/// Frames of the model from one row to the next. A gap longer than the longest step says no more
+/// than that one.
 pub(super) fn step_of(before: &AngleRow, row: &AngleRow, step_frames: f64) -> f64 {
     (step_frames * (row.frame - before.frame) as f64).min(f64::from(MAX_STEP_FRAMES))
 }

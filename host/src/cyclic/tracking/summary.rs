@@ -24,8 +24,8 @@ pub struct Summary {
     pub outliers: usize,
     /// Sum of the rows' log-likelihoods.
     pub log_likelihood: f64,
-    /// When the cycle began anew, seconds from the first row, between frames by the velocity. A cycle that is taken back and
-    /// begun again counts once.
+    /// When the cycle began anew, seconds from the first row, between frames by the velocity. A
+    /// cycle that is taken back and begun again counts once.
     pub cycle_starts_s: Vec<f64>,
 }
 
@@ -71,7 +71,8 @@ fn cycle_starts_s(tracked: &Tracked) -> Vec<f64> {
     let mut starts = Vec::new();
     for pair in tracked.frames.windows(2) {
         let [before, after] = [&pair[0], &pair[1]].map(|frame| frame.cycles + origin);
-        // A step holds more than one start only where many frames were skipped; then the first one is reported.
+        // A step holds more than one start only where many frames were skipped; then the first one is
+        // reported.
         if after >= next && after > before {
             let share = ((next - before) / (after - before)).clamp(0.0, 1.0);
             let frame = (pair[0].frame - first.frame) as f64 + share * (pair[1].frame - pair[0].frame) as f64;

@@ -1,4 +1,5 @@
-//! The estimates as a CSV table: the columns of an angle table first, so that every tool for those reads it.
+//! The estimates as a CSV table: the columns of an angle table first, so that every tool for those
+//! reads it.
 
 use super::run::Tracked;
 use crate::cyclic::angle_table::{ANGLES, COLUMNS, SPACE_ANGLES, angle_columns};
@@ -25,8 +26,9 @@ pub const NO_MOTION: &str = "none";
 /// Name and probability of the motion of each row.
 pub type MotionCells = Vec<(String, f64)>;
 
-/// The text of the table; after [`ESTIMATE_COLUMNS`] come the angles' standard deviations. A model with two angles a joint gives the angles out of
-/// the plane after those in it. `motions`, if there are any, come last.
+/// The text of the table; after [`ESTIMATE_COLUMNS`] come the angles' standard deviations. A model
+/// with two angles a joint gives the angles out of the plane after those in it. `motions`, if there
+/// are any, come last.
 ///
 /// `cycle_velocity_per_frame` is per frame of the recording; `outlier` is 0 or 1.
 ///

@@ -11,7 +11,8 @@ use crate::resume::{REMEDY, from_text, to_text};
 use sinew_core::saved_state::{SavedState, StateKind, StateVisitor};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Tracks `table`. The first row with an angle gives the first state (see [`super::StartName`]) and is answered with it.
+/// Tracks `table`. The first row with an angle gives the first state (see [`super::StartName`]) and
+/// is answered with it.
 ///
 /// # Errors
 /// An option out of range, a rate so low that a step is too long, a table without any angle.
@@ -40,8 +41,9 @@ enum Walks<'a> {
 }
 
 impl<'a> TableRun<'a> {
-    /// Filters at the first row with an angle (see [`super::StartName`]), which is answered with the first state. With several models the
-    /// likeliest motion of each row is named and shown.
+    /// Filters at the first row with an angle (see [`super::StartName`]), which is answered with
+    /// the first state. With several models the likeliest motion of each row is named and
+    /// shown.
     ///
     /// # Errors
     /// An option out of range, a rate so low that a step is too long, or a table without any angle.
@@ -85,7 +87,8 @@ impl<'a> TableRun<'a> {
         self.table.rows().len()
     }
 
-    /// Answers all rows, or those before `stop` is set; `notify` gets their number after each. Returns whether the last one was reached.
+    /// Answers all rows, or those before `stop` is set; `notify` gets their number after each.
+    /// Returns whether the last one was reached.
     ///
     /// # Errors
     /// None for rows of the table.
@@ -107,7 +110,8 @@ impl<'a> TableRun<'a> {
         }
     }
 
-    /// What was answered so far, as if the table ended there, and where there are several models the motion of each row.
+    /// What was answered so far, as if the table ended there, and where there are several models
+    /// the motion of each row.
     ///
     /// # Errors
     /// None for rows of the table.
@@ -129,8 +133,9 @@ impl<'a> TableRun<'a> {
         Ok((shown(&runs, &motions), Some(motions)))
     }
 
-    /// The state after the last row that is answered as text, which [`TableRun::restore`] takes; `None` where the whole recording is asked
-    /// for: the way back needs the states of all rows, which are sooner computed again than read.
+    /// The state after the last row that is answered as text, which [`TableRun::restore`] takes;
+    /// `None` where the whole recording is asked for: the way back needs the states of all
+    /// rows, which are sooner computed again than read.
     ///
     /// # Errors
     /// None that a user can bring about.
@@ -141,7 +146,8 @@ impl<'a> TableRun<'a> {
         Ok(Some(to_text(StateKind::Cyclic, &mut self.walks)?))
     }
 
-    /// Goes on from a state that was saved after `finished` rows with the same table, models and options.
+    /// Goes on from a state that was saved after `finished` rows with the same table, models and
+    /// options.
     ///
     /// # Errors
     /// The text is not whole, or of another run.

@@ -1,15 +1,17 @@
-//! The filters' steps in the widest vectors that serve them on the processor at hand, chosen when the program runs.
+//! The filters' steps in the widest vectors that serve them on the processor at hand, chosen when
+//! the program runs.
 //!
-//! No operation is contracted or taken in another order, so the bits are those of any other processor. Speeds of both ways:
-//! `docs/measurements.md`.
+//! No operation is contracted or taken in another order, so the bits are those of any other
+//! processor. Speeds of both ways: `docs/measurements.md`.
 
 use sinew_core::cyclic::particle::moments::ParticleMoments;
 use sinew_core::cyclic::particle::propose::{CyclicParticle, ParticleOptions};
 use sinew_core::cyclic::particle::{sweep::sweep, weigh::ParticleTarget};
 use sinew_core::cyclic::{AngleMeasurement, CoupledFilter, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel};
 
-/// [`KalmanFilter::step`], with AVX2 on AMD's processors, which `sse4a` identifies: there it takes a fifth off the step. An Intel Xeon
-/// took a third longer with it, as rows of 13 numbers then straddle what was just stored.
+/// [`KalmanFilter::step`], with AVX2 on AMD's processors, which `sse4a` identifies: there it takes
+/// a fifth off the step. An Intel Xeon took a third longer with it, as rows of 13 numbers then
+/// straddle what was just stored.
 #[multiversion::multiversion(targets("x86_64+avx2+sse4a"))]
 pub fn kalman_step<const N: usize>(
     filter: &mut KalmanFilter<N>,

@@ -14,7 +14,8 @@ const LONGEST_CYCLE_FRAMES: u64 = 1_000_000;
 /// Longest gap that is bridged, as a fraction of the cycle.
 const LONGEST_GAP: f64 = 0.1;
 
-/// One cycle: each angle as a curve over the position, 0 at the cut's first frame and 1 at the first frame after it.
+/// One cycle: each angle as a curve over the position, 0 at the cut's first frame and 1 at the
+/// first frame after it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrainingCycle {
     start_frame: f64,
@@ -30,7 +31,8 @@ impl TrainingCycle {
     /// own other end.
     ///
     /// # Errors
-    /// The cut lies outside of the table, is shorter than four frames or longer than a million, or an angle is missing for more than a tenth of it.
+    /// The cut lies outside of the table, is shorter than four frames or longer than a million, or
+    /// an angle is missing for more than a tenth of it.
     pub fn new(table: &AngleTable, cut: &Cut) -> Result<Self, String> {
         let (start, end) = (cut.start_frame, cut.end_frame);
         if start < table.first_frame() || end > table.end_frame() {
@@ -61,7 +63,8 @@ impl TrainingCycle {
         self.curves.len()
     }
 
-    /// Angle `angle` at `position`, radians, unwrapped; positions a few frames outside of 0 to 1 are known too.
+    /// Angle `angle` at `position`, radians, unwrapped; positions a few frames outside of 0 to 1
+    /// are known too.
     #[must_use]
     pub fn angle_at(&self, angle: usize, position: f64) -> f64 {
         self.curves[angle].at(self.start_frame + position * self.duration_frames)
@@ -100,20 +103,21 @@ fn curve(table: &AngleTable, angle: usize, start: u64, end: u64) -> Result<Cubic
         .ok_or_else(|| format!("`{}` has less than two values", angle_columns().nth(angle).unwrap_or_default()))
 }
 
-/// Knots before the first frame of `series`, as (frames back, value), from the end of the cycle of `duration` frames that
-/// begins there.
+/// Knots before the first frame of `series`, as (frames back, value), from the end of the cycle of
+/// `duration` frames that begins there.
 fn continued_before(series: &[Option<f64>], duration: usize) -> Vec<(f64, f64)> {
     let known = |index: usize| series.get(index).copied().flatten();
     let Some(first) = known(0) else { return Vec::new() };
-    // Value one cycle later: measured if the recording goes on, else the first one plus the cycle's whole turns.
+    // Value one cycle later: measured if the recording goes on, else the first one plus the cycle's
+    // whole turns.
     let closing = known(duration).or_else(|| Some(first + whole_turns(known(duration - 1)? - first)));
     let Some(closing) = closing else { return Vec::new() };
     let back = 1..=(MARGIN_FRAMES as usize).min(duration - 1);
     back.filter_map(|back| Some((back as f64, first + known(duration - back)? - closing))).collect()
 }
 
-/// Knots from the frame after `series` on, as (frames ahead, value), from the beginning of the cycle of `duration`
-/// frames that ends there.
+/// Knots from the frame after `series` on, as (frames ahead, value), from the beginning of the
+/// cycle of `duration` frames that ends there.
 fn continued_after(series: &[Option<f64>], duration: usize) -> Vec<(f64, f64)> {
     let start = series.len() - duration;
     let known = |index: usize| series.get(index).copied().flatten();

@@ -1,4 +1,5 @@
-//! How people differ from the mean cycle, learned from a few cycles of a few people (see [`sinew_core::cyclic::Deviation`]).
+//! How people differ from the mean cycle, learned from a few cycles of a few people (see
+//! [`sinew_core::cyclic::Deviation`]).
 //!
 //! Each cycle's deviation from the mean is split into a constant, a swing with the cycle's own
 //! period, and a rest. Variances are taken from pairs of cycles: half the squared difference of two
@@ -18,10 +19,12 @@ use std::f64::consts::TAU;
 const INFLATION: f64 = 4.0;
 /// Part of the variance of constant and swing that is replaced by the mean over the angles.
 const SHRINKAGE: f64 = 0.2;
-/// The same for the rest, which differs from cycle to cycle as well and is known from more than a few people.
+/// The same for the rest, which differs from cycle to cycle as well and is known from more than a
+/// few people.
 const REST_INFLATION: f64 = 2.0;
-/// The same part of the rest's variance. It is more: how much of an angle's fine movement is a person's own depends on how the
-/// joints were placed, which for short links differs most between sources.
+/// The same part of the rest's variance. It is more: how much of an angle's fine movement is a
+/// person's own depends on how the joints were placed, which for short links differs most between
+/// sources.
 const REST_SHRINKAGE: f64 = 0.35;
 /// Smallest standard deviation, radians (a third of a degree): labels are no better.
 const MIN_STD_RAD: f64 = 0.006;
@@ -65,7 +68,8 @@ pub fn of_cycles(cycles: &[TrainingCycle], length: usize) -> DeviationNumbers {
     }
 }
 
-/// Least-squares fit of constant, cosine and sine to the deviation at equidistant positions, where they are orthogonal.
+/// Least-squares fit of constant, cosine and sine to the deviation at equidistant positions, where
+/// they are orthogonal.
 fn split(cycle: &TrainingCycle, angle: usize, poses: &[Vec<f64>], length: usize) -> Parts {
     let place = |position: usize| position as f64 / length as f64;
     let mut deviation: Vec<f64> =
@@ -81,7 +85,8 @@ fn split(cycle: &TrainingCycle, angle: usize, poses: &[Vec<f64>], length: usize)
     Parts { coefficients, rest: deviation }
 }
 
-/// The half of the pairs of cycles that differ most, each coefficient of each angle relative to its own spread.
+/// The half of the pairs of cycles that differ most, each coefficient of each angle relative to its
+/// own spread.
 fn far_pairs(parts: &[Vec<Parts>]) -> Vec<(usize, usize)> {
     let all: Vec<(usize, usize)> = (0..parts.len()).flat_map(|i| (0..i).map(move |k| (i, k))).collect();
     let squares = |&(i, k): &(usize, usize)| -> Vec<f64> {
@@ -116,7 +121,8 @@ fn slope_variance(a: &Parts, b: &Parts) -> f64 {
     difference.windows(3).map(slope).sum::<f64>() / (length - 2) as f64
 }
 
-/// Standard deviations of variances, moved by the part `shrinkage` to their mean and multiplied by `factor`.
+/// Standard deviations of variances, moved by the part `shrinkage` to their mean and multiplied by
+/// `factor`.
 fn stds(variances: &[f64], factor: f64, shrinkage: f64) -> Vec<f32> {
     let mean = variances.iter().sum::<f64>() / variances.len() as f64;
     let std = |variance: &f64| (factor * ((1.0 - shrinkage) * variance + shrinkage * mean)).sqrt().max(MIN_STD_RAD);
@@ -130,7 +136,8 @@ mod tests {
     use crate::cyclic::angle_table::AngleTable;
     use crate::cyclic::cuts::Cut;
 
-    /// Angle 0 differs by `offset`, angle 1 by `swing` times a cosine, angle 2 by a ripple of three periods a cycle.
+    /// Angle 0 differs by `offset`, angle 1 by `swing` times a cosine, angle 2 by a ripple of three
+    /// periods a cycle.
     fn cycle(offset: f64, swing: f64, ripple: f64) -> TrainingCycle {
         let row = |frame: u32| {
             let phase = TAU * f64::from(frame) / 60.0;
@@ -160,7 +167,8 @@ mod tests {
         assert!((f64::from(numbers.rest_rate_per_cycle[2]) - 3.0 * TAU).abs() < 0.5, "a sine has its own rate");
     }
 
-    /// Three cycles of one person and one of another: the pairs of both people count, those of one do not.
+    /// Three cycles of one person and one of another: the pairs of both people count, those of one
+    /// do not.
     #[test]
     fn cycles_of_one_person_do_not_hide_how_people_differ() {
         let cycles = [cycle(0.0, 0.0, 0.0), cycle(0.01, 0.0, 0.0), cycle(0.02, 0.0, 0.0), cycle(0.8, 0.0, 0.0)];

@@ -1,4 +1,5 @@
-//! Mean and covariance over the training cycles at each position of the reference cycle (cyclic paper, section 2.3).
+//! Mean and covariance over the training cycles at each position of the reference cycle (cyclic
+//! paper, section 2.3).
 
 use super::cycle::TrainingCycle;
 use crate::cyclic::turns::{circular_mean, unwrap_along_time};
@@ -10,7 +11,8 @@ use std::f64::consts::TAU;
 pub struct PositionStatistics {
     /// Mean angular acceleration, rad per reference frame squared.
     pub mean_acceleration: Vec<f64>,
-    /// Covariance of the acceleration as a packed lower triangle, rad^2 per reference frame^4; divided by cycles - 1.
+    /// Covariance of the acceleration as a packed lower triangle, rad^2 per reference frame^4;
+    /// divided by cycles - 1.
     pub acceleration_covariance: Vec<f64>,
     /// Mean angles, radians; see [`mean_pose`].
     pub mean_pose_rad: Vec<f64>,
@@ -67,7 +69,8 @@ pub fn mean_pose(cycles: &[TrainingCycle], length: usize) -> Vec<Vec<f64>> {
     poses
 }
 
-/// The cycles in which an angle makes as many whole turns as in most; all where no number is the most frequent one.
+/// The cycles in which an angle makes as many whole turns as in most; all where no number is the
+/// most frequent one.
 fn usual_cycles(cycles: &[TrainingCycle], angle: usize) -> Vec<&TrainingCycle> {
     let turns =
         |cycle: &TrainingCycle| ((cycle.angle_at(angle, 1.0) - cycle.angle_at(angle, 0.0)) / TAU).round() as i32;
@@ -135,7 +138,8 @@ mod tests {
     use crate::cyclic::angle_table::AngleTable;
     use crate::cyclic::cuts::Cut;
 
-    /// A swing of `amplitude` whose angles are all `turns` whole turns off, and an angle that winds.
+    /// A swing of `amplitude` whose angles are all `turns` whole turns off, and an angle that
+    /// winds.
     fn cycle(amplitude: f64, turns: f64, frames: u64) -> TrainingCycle {
         let row = |frame: u64| {
             let phase = TAU * frame as f64 / frames as f64;

@@ -15,7 +15,8 @@ pub struct UnevenTurns {
     pub cycles_of_turns: BTreeMap<i32, usize>,
 }
 
-/// Every angle that makes more whole turns in one cycle than in another, in the order of the columns.
+/// Every angle that makes more whole turns in one cycle than in another, in the order of the
+/// columns.
 #[must_use]
 pub fn uneven_turns(cycles: &[TrainingCycle]) -> Vec<UnevenTurns> {
     let all = angle_columns().take(angle_count(cycles)).enumerate().map(|(index, angle)| {

@@ -16,7 +16,8 @@ pub struct Axis {
     pub reversed: bool,
 }
 
-/// Largest size of a number that is plotted; greater ones are left out like those that are not finite.
+/// Largest size of a number that is plotted; greater ones are left out like those that are not
+/// finite.
 pub const LARGEST: f64 = 1.0e30;
 
 /// Whether `value` can be plotted.
@@ -44,7 +45,8 @@ impl Axis {
         Self { low, high, ticks: linear_ticks(low, high, 8), reversed: false }
     }
 
-    /// A logarithmic axis over all of `values` (not logarithms) that can be plotted, with some room; 1..10 without any.
+    /// A logarithmic axis over all of `values` (not logarithms) that can be plotted, with some
+    /// room; 1..10 without any.
     pub fn logarithmic(values: impl Iterator<Item = f64>) -> Self {
         let (low, high) = bounds(values.filter_map(log_place)).unwrap_or((0.0, 1.0));
         let room = (0.05 * (high - low)).max(0.05);
@@ -111,7 +113,8 @@ fn number(value: f64, decimals: usize) -> String {
     text
 }
 
-/// 1, 2 and 5 times powers of ten; powers alone over many decades, and every few of them over very many.
+/// 1, 2 and 5 times powers of ten; powers alone over many decades, and every few of them over very
+/// many.
 fn log_ticks(low: f64, high: f64) -> Vec<(f64, String)> {
     let factors: &[f64] = if high - low < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
     let every = (((high - low) / 10.0).ceil() as i32).max(1);

@@ -12,7 +12,8 @@ const FILL: RGBColor = RGBColor(0, 114, 178);
 /// Maximum number of bars of a plot.
 const MAX_BARS: usize = 200;
 
-/// Plots one bar a pair of name and value, with the value written on it; "-" where it is not finite.
+/// Plots one bar a pair of name and value, with the value written on it; "-" where it is not
+/// finite.
 ///
 /// # Errors
 /// There have to be 1 to 200 bars.

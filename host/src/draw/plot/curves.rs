@@ -33,7 +33,8 @@ pub struct Curve {
     pub low: Option<Vec<f64>>,
     /// Upper rim of the band, one for each point.
     pub high: Option<Vec<f64>>,
-    /// Points that stand beside the line, such as what was measured: small dots in its colour. Those that are not finite are absent.
+    /// Points that stand beside the line, such as what was measured: small dots in its colour.
+    /// Those that are not finite are absent.
     pub marks: Vec<(f64, f64)>,
 }
 
@@ -64,10 +65,12 @@ impl Curve {
     }
 }
 
-/// Plots `curves` over a linear or logarithmic x axis, with bands where given and a legend for more than one.
+/// Plots `curves` over a linear or logarithmic x axis, with bands where given and a legend for more
+/// than one.
 ///
 /// # Errors
-/// Bands need as many values as points, logarithmic axes positive x; one point at least has to be finite.
+/// Bands need as many values as points, logarithmic axes positive x; one point at least has to be
+/// finite.
 pub fn curves_plot(title: &str, x_label: &str, y_label: &str, log_x: bool, curves: &[Curve]) -> Result<RgbImage> {
     curves.iter().try_for_each(|curve| curve.check(log_x))?;
     let place = |x: f64| if log_x { log_place(x) } else { plottable(x).then_some(x) };

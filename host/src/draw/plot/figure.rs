@@ -1,4 +1,5 @@
-//! The sheet that plots are drawn on, and what all of them share: font, axes, lines with gaps, legends.
+//! The sheet that plots are drawn on, and what all of them share: font, axes, lines with gaps,
+//! legends.
 
 use super::axis::Axis;
 use crate::error::{Result, ensure};

@@ -27,7 +27,8 @@ type Track = (Side, Vec<HandSample>);
 /// their column, row and depth with one standard deviation, the likelihood of the carrying blob
 /// shaded by status, and the effective sample size.
 ///
-/// Samples of both sides may be mixed. Numbers that are not finite leave gaps, no samples at all leave empty axes.
+/// Samples of both sides may be mixed. Numbers that are not finite leave gaps, no samples at all
+/// leave empty axes.
 ///
 /// # Errors
 /// The library that draws reports one; the input cannot be wrong.
@@ -84,7 +85,8 @@ fn draw_path<'b>(area: &Area<'b>, tracks: &[Track], image_size: (u32, u32)) -> R
     Ok(below)
 }
 
-/// Thick where tracking, thin where either end is a prediction, nothing where either is lost or has no `place`.
+/// Thick where tracking, thin where either end is a prediction, nothing where either is lost or has
+/// no `place`.
 fn draw_line(
     chart: &mut Chart,
     samples: &[HandSample],

@@ -25,7 +25,8 @@ const NEGATIVE: [f64; 3] = [200.0, 80.0, 0.0];
 /// not finite is grey. Thick lines are drawn where a block of `blocks` rows each ends.
 ///
 /// # Errors
-/// There have to be 1 to 100 rows, each with a name and an entry for every column, and blocks that cover no more.
+/// There have to be 1 to 100 rows, each with a name and an entry for every column, and blocks that
+/// cover no more.
 pub fn matrix_plot(title: &str, names: &[&str], rows: &[Vec<f64>], blocks: &[usize]) -> Result<RgbImage> {
     let count = names.len();
     ensure!((1..=MAX_ROWS).contains(&count), "plot `{title}`: {count} rows; give 1 to {MAX_ROWS}");

@@ -1,4 +1,5 @@
-//! Arbitrary calls of the interface for C: no panic, no result that is no number, and an object that can be used on.
+//! Arbitrary calls of the interface for C: no panic, no result that is no number, and an object
+//! that can be used on.
 #![allow(unsafe_code)]
 
 mod arm;

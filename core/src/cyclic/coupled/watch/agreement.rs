@@ -11,15 +11,16 @@ use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 pub(super) const MIN_MODE_WEIGHT: f32 = 0.9;
 /// Weight of a mode from which its agreement counts. Chosen: likelier than all others together.
 const MIN_AGREED_WEIGHT: f32 = 0.5;
-/// Phase difference beyond the mean offset up to which filter and grid agree, cycles. Chosen: half of
-/// [`MIN_DISAGREEMENT_CYCLES`].
+/// Phase difference beyond the mean offset up to which filter and grid agree, cycles. Chosen: half
+/// of [`MIN_DISAGREEMENT_CYCLES`].
 const MAX_AGREEMENT_CYCLES: f32 = 0.06;
-/// Phase difference beyond the mean offset from which filter and grid disagree, cycles. Chosen: below
-/// [`crate::cyclic::coupled::state::LOST_STD`], where the linearisation ends.
+/// Phase difference beyond the mean offset from which filter and grid disagree, cycles. Chosen:
+/// below [`crate::cyclic::coupled::state::LOST_STD`], where the linearisation ends.
 const MIN_DISAGREEMENT_CYCLES: f32 = 0.12;
 /// Frames over which the mean phase offset is averaged. Chosen: two seconds at 60 Hz.
 const OFFSET_AVERAGING_FRAMES: f32 = 120.0;
-/// Largest mean phase offset, cycles. Chosen: a person is a little early or late against the mean cycle, not more.
+/// Largest mean phase offset, cycles. Chosen: a person is a little early or late against the mean
+/// cycle, not more.
 const MAX_PHASE_OFFSET: f32 = 0.1;
 
 /// State of the filter's comparison with the grid.
@@ -27,7 +28,8 @@ const MAX_PHASE_OFFSET: f32 = 0.1;
 pub(in crate::cyclic::coupled) struct Watch {
     /// Frames since the grid last moved.
     pub(in crate::cyclic::coupled) unwatched_frames: f32,
-    /// Mean of grid's phase minus filter's, cycles: the grid has the mean person, the filter this one.
+    /// Mean of grid's phase minus filter's, cycles: the grid has the mean person, the filter this
+    /// one.
     pub(super) mean_phase_offset: f32,
     /// Frames in a row of disagreement.
     pub(super) disagreement_frames: f32,

@@ -1,8 +1,10 @@
 //! When the coupled filter takes the grid's phase in place of its own: all conditions for a jump.
 //!
-//! 1. While the filter is searching, it relocks as soon as one mode of the grid holds [`MIN_MODE_WEIGHT`].
-//! 2. While it is locked, it relocks when such a mode has disagreed with it for [`MAX_DISAGREEMENT_FRAMES`] in a
-//!    row, unless the filter overrules the grid: its NIS is good and its lock is not spurious.
+//! 1. While the filter is searching, it relocks as soon as one mode of the grid holds
+//!    [`MIN_MODE_WEIGHT`].
+//! 2. While it is locked, it relocks when such a mode has disagreed with it for
+//!    [`MAX_DISAGREEMENT_FRAMES`] in a row, unless the filter overrules the grid: its NIS is good
+//!    and its lock is not spurious.
 //! 3. For [`FUSION_CYCLES`] after a relock, the grid's phase is fused with the filter's.
 
 use super::agreement::MIN_MODE_WEIGHT;
@@ -15,13 +17,15 @@ use crate::math::clamp;
 
 /// Frames between two updates of the grid while the filter is locked.
 ///
-/// Chosen: the grid costs as much as the filter, and neighbouring frames carry nearly the same evidence.
+/// Chosen: the grid costs as much as the filter, and neighbouring frames carry nearly the same
+/// evidence.
 const GRID_INTERVAL_FRAMES: f32 = 3.0;
 /// Frames in a row of disagreement after which the filter relocks.
 ///
 /// Chosen: a tenth of a second at 60 Hz.
 const MAX_DISAGREEMENT_FRAMES: f32 = 6.0;
-/// Cycles at the mean speed in which the filter learns a person. After them it may overrule the grid.
+/// Cycles at the mean speed in which the filter learns a person. After them it may overrule the
+/// grid.
 ///
 /// Chosen: a little more than one cycle, so that every position was seen once.
 const LEARNING_CYCLES: f32 = 1.5;
@@ -31,12 +35,14 @@ const LEARNING_CYCLES: f32 = 1.5;
 const FUSION_CYCLES: f32 = 1.2;
 /// Share of the variance seen that the mean cycle may leave unexplained at the filter's phase.
 ///
-/// Chosen between two measurements: at the right phase at most two thirds are unexplained, at a wrong one or
-/// backwards at least nine tenths.
+/// Chosen between two measurements: at the right phase at most two thirds are unexplained, at a
+/// wrong one or backwards at least nine tenths.
 const MAX_UNEXPLAINED_SHARE: f32 = 0.9;
-/// Smallest swing, as a share of the cycle's, from which a lock can be spurious. Chosen: who stands does not swing.
+/// Smallest swing, as a share of the cycle's, from which a lock can be spurious. Chosen: who stands
+/// does not swing.
 const MIN_SWING_SHARE: f32 = 0.15;
-/// Smallest filled part of the swing's memory from which a lock can be spurious. Chosen: a third of a cycle.
+/// Smallest filled part of the swing's memory from which a lock can be spurious. Chosen: a third of
+/// a cycle.
 const MIN_FILLED_SHARE: f32 = 0.28;
 /// Positions at which the cycle's own variance is computed. Chosen: few, since each update checks
 /// it.
@@ -105,14 +111,15 @@ impl<const N: usize> CoupledFilter<N> {
         self.swing.add(frames * model.mean_cycle_velocity(), measurement, &expected_rad);
     }
 
-    /// Whether the filter has learned the person and predicts well by it. The grid knows the mean person only.
+    /// Whether the filter has learned the person and predicts well by it. The grid knows the mean
+    /// person only.
     fn overrules_grid(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
         self.watch.nis.is_good(LEARNING_CYCLES / model.mean_cycle_velocity())
             && !self.is_spurious_lock(model, measurement)
     }
 
-    /// Whether the person swings and the mean cycle, at the filter's phase, explains nothing of it. A good NIS is
-    /// then due to deviations that follow any motion.
+    /// Whether the person swings and the mean cycle, at the filter's phase, explains nothing of it.
+    /// A good NIS is then due to deviations that follow any motion.
     fn is_spurious_lock(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
         if self.swing.filled_share() < MIN_FILLED_SHARE {
             return false;

@@ -32,8 +32,8 @@ impl<const N: usize> CoupledFilter<N> {
         self.move_by(clamp(shift[0], -0.5, 0.5));
     }
 
-    /// Learns from one measurement how the person differs from the mean cycle at the present phase. The phase does not
-    /// move.
+    /// Learns from one measurement how the person differs from the mean cycle at the present phase.
+    /// The phase does not move.
     pub(super) fn learn_offsets_here(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
         let (velocity, pair) = (self.velocity, self.pair);
         self.pair = CyclePair { cc: 1.0e-8, cv: 0.0, vv: 1.0e-12 };

@@ -45,7 +45,8 @@ fn every_model_follows_a_wave_inside_the_limits() {
     assert!(few < 0.08, "guided with 20: {few}");
 }
 
-/// A person who leans to the side, by an angular model that holds the trunk: particles lean where it is fitted to the points.
+/// A person who leans to the side, by an angular model that holds the trunk: particles lean where
+/// it is fitted to the points.
 #[test]
 fn particles_take_over_the_trunk_as_it_was_laid() {
     let scene = scene();

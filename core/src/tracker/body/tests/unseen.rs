@@ -8,15 +8,17 @@ fn a_hidden_arm_grows_uncertain_is_said_to_be_unseen_and_comes_back() {
     let goals = goals();
     let guided = hidden_arms_found(&guided(&goals), 60, BodyOptions { pace: Some(PACE), ..OPTIONS });
     assert!(guided >= 4, "{guided} of 6");
-    // Twice the reach of a limb in full swing: at rest, with two fifths of it, about what a goal without a pace has.
+    // Twice the reach of a limb in full swing: at rest, with two fifths of it, about what a goal
+    // without a pace has.
     let mut goals = goals;
     goals.reach_std_m = 0.10;
     let by_goals = hidden_arms_found(&end_effector(&goals), 200, BodyOptions { pace: Some(PACE), ..LIMB_BY_LIMB });
     assert!(by_goals >= 5, "{by_goals} of 6");
 }
 
-/// Of six runs those in which a hand is where it is 15 frames after its arm was hidden for 15 frames. In all of them its spread grows
-/// meanwhile, and it is said to be unseen but for a frame or two.
+/// Of six runs those in which a hand is where it is 15 frames after its arm was hidden for 15
+/// frames. In all of them its spread grows meanwhile, and it is said to be unseen but for a frame
+/// or two.
 fn hidden_arms_found(motion: &impl BodyMotion<BODY_BONES, BODY_ANGLES>, count: usize, options: BodyOptions) -> usize {
     let (scene, hand, arm) = (scene(), FOREARMS[0], [UPPER_ARMS[0], FOREARMS[0]]);
     let mut found = 0;
@@ -68,7 +70,8 @@ fn frames_without_points(options: BodyOptions) {
     assert!(estimate.log_evidence.is_finite());
 }
 
-/// Weighted mean depth of the left forearm in the trunk, metres, while the arm is hidden beside the body.
+/// Weighted mean depth of the left forearm in the trunk, metres, while the arm is hidden beside the
+/// body.
 fn mean_depth_m(self_penetration: Option<SelfPenetration<BODY_BONES>>, options: BodyOptions) -> f32 {
     let scene = Scene { self_penetration, ..scene() };
     let goals = goals();

@@ -23,7 +23,8 @@ use sinew_core::tracker::body::{BodyFrame, BodyTracker, DEFAULT_BODY_OPTIONS};
 pub const POSES: usize = 100;
 /// Concentration of the noise of each angle; also the stiffness lambda of the model with goals.
 pub const KAPPA: f32 = 500.0;
-/// How closely each of the goals (head, wrists, ankles, where they are in the first pose) is reached, metres.
+/// How closely each of the goals (head, wrists, ankles, where they are in the first pose) is
+/// reached, metres.
 pub const REACH_STD_M: f32 = 0.005;
 /// Maximum number of steps of the solver.
 const SOLVER_STEPS: usize = 4;
@@ -37,7 +38,8 @@ type Scene = BodyScene<BODY_BONES, BODY_ANGLES>;
 pub struct JointSpread {
     /// The joint.
     pub joint: &'static str,
-    /// Standard deviation of its place (root of the summed variances) under noise of the angles, metres.
+    /// Standard deviation of its place (root of the summed variances) under noise of the angles,
+    /// metres.
     pub angular_m: f64,
     /// The same where head, wrists and ankles have goals, metres.
     pub end_effector_m: f64,
@@ -102,7 +104,8 @@ pub fn draw(measures: &BodyMeasures, first_rad: [f32; BODY_ANGLES], seed: u64) -
     Ok((spread, ChainPoses { scene, angular, end_effector }))
 }
 
-/// Poses drawn by `motion`, and the spread of each bone's end, metres: a frame of a second without points.
+/// Poses drawn by `motion`, and the spread of each bone's end, metres: a frame of a second without
+/// points.
 fn poses(
     scene: &Scene,
     motion: &impl BodyMotion<BODY_BONES, BODY_ANGLES>,
@@ -159,8 +162,8 @@ mod tests {
         }
     }
 
-    /// Three angles turn the neck about the pelvis, one of them (turning) not at all: two standard deviations of 1/sqrt(kappa) times the
-    /// trunk's length.
+    /// Three angles turn the neck about the pelvis, one of them (turning) not at all: two standard
+    /// deviations of 1/sqrt(kappa) times the trunk's length.
     #[test]
     fn the_necks_spread_is_that_of_two_angles() {
         let measures = BodyMeasures::of_height(1.75).unwrap();

@@ -1,4 +1,5 @@
-//! Figures 19 and 20 of the PIK paper: ten samples of a pelvic lift, and the precision of what they are drawn from.
+//! Figures 19 and 20 of the PIK paper: ten samples of a pelvic lift, and the precision of what they
+//! are drawn from.
 
 use crate::body::trial::SeenMotion;
 use anyhow::{Context, Result};
@@ -33,7 +34,8 @@ const PARTICLES: usize = 100;
 /// Joints whose spread is reported.
 const TOLD: [usize; 8] = [PELVIS, THIGHS[0], THIGHS[1], HEAD, FOREARMS[0], FOREARMS[1], SHANKS[0], SHANKS[1]];
 
-/// Angles of one cluster of joints. Goals are behind each but the trunk, whose angles move head and arms too.
+/// Angles of one cluster of joints. Goals are behind each but the trunk, whose angles move head and
+/// arms too.
 pub const ANGLE_BLOCKS: [(&str, Range<usize>); 6] = [
     ("trunk", 6..9),
     ("head", 9..12),
@@ -150,7 +152,8 @@ fn ancestor(filter: &BodyFilter, share: f32) -> &WholeBodyParticle {
     &particles[passes.unwrap_or(particles.len() - 1)]
 }
 
-/// One sample's posture and the precision that it was drawn with; `None` where that is not positive definite.
+/// One sample's posture and the precision that it was drawn with; `None` where that is not positive
+/// definite.
 fn sample(
     filter: &BodyFilter,
     tuning: &BodyTuning,
@@ -234,7 +237,8 @@ mod tests {
     /// Seeds that are pooled: the variance of ten samples alone is known to a factor of two.
     const SEEDS: u64 = 6;
 
-    /// The caption of figure 19: the pelvis varies up and down, the knees all ways, head, hands and feet little. And figure 20: blocks.
+    /// The caption of figure 19: the pelvis varies up and down, the knees all ways, head, hands and
+    /// feet little. And figure 20: blocks.
     #[test]
     fn samples_vary_where_nothing_is_known_and_their_precision_has_blocks() {
         let drawn: Vec<_> = (1..=SEEDS).map(|seed| draw(&BodyTuning::default(), seed).unwrap()).collect();

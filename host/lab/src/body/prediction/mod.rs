@@ -21,12 +21,13 @@ const SEED: u64 = 1;
 pub struct PredictionReport {
     /// Figure 2: how far joints spread under noise of angles and under goals.
     pub chain_spread: ChainSpread,
-    /// Figures 19 and 20: what is drawn in a pelvic lift, and the blocks of the importance distribution's precision.
+    /// Figures 19 and 20: what is drawn in a pelvic lift, and the blocks of the importance
+    /// distribution's precision.
     pub pelvic_lift: LiftPrediction,
 }
 
-/// Draws poses of the person of `motion` from the first pose (figure 2) and of the built-in pelvic lift (figures 19 and 20), and the
-/// figures with their file names.
+/// Draws poses of the person of `motion` from the first pose (figure 2) and of the built-in pelvic
+/// lift (figures 19 and 20), and the figures with their file names.
 ///
 /// # Errors
 /// Measures or numbers of a model that break a rule.
