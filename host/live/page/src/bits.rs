@@ -38,7 +38,9 @@ pub fn write(scene: &BuiltinScene, out: &OutputDir) -> Result<()> {
     };
     out.write("frames.rgba", |writer| {
         for (number, image) in scene.frames.iter().take(FRAMES).enumerate() {
-            let session = player.play(image, number as u64 * STEP_US)?;
+            let session = player
+                .play(image, number as u64 * STEP_US)
+                .map_err(|error| sinew::Error::Invalid(format!("{error:#}")))?;
             bits.answers.push(session.answer.map(f32::to_bits).to_vec());
             let numbers = session.candidates.iter().flat_map(|blob| {
                 let [uu, uv, vv] = blob.moments_px2;
@@ -49,5 +51,5 @@ pub fn write(scene: &BuiltinScene, out: &OutputDir) -> Result<()> {
         }
         Ok(())
     })?;
-    out.write("bits.json", |writer| Ok(serde_json::to_writer(writer, &bits)?))
+    Ok(out.write("bits.json", |writer| Ok(serde_json::to_writer(writer, &bits)?))?)
 }

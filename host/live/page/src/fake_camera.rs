@@ -64,7 +64,7 @@ pub fn write(scene: &BuiltinScene, out: &OutputDir) -> Result<()> {
         distance,
         hands: scene.hands()?.into_iter().map(|hand| tenths([hand.u_px, hand.v_px])).collect(),
     };
-    out.write("camera.json", |writer| Ok(serde_json::to_writer(writer, &truth)?))
+    Ok(out.write("camera.json", |writer| Ok(serde_json::to_writer(writer, &truth)?))?)
 }
 
 /// The frame with its number.
