@@ -60,8 +60,8 @@ fn configuration(path: &Path) -> Diagnosis {
     match (arm, body) {
         (Ok(_), _) => diagnosis.add(Severity::Good, "`sinew track arm --config` takes it"),
         (_, Ok(_)) => diagnosis.add(Severity::Good, "`sinew track body --config` takes it"),
-        (_, Err(error)) if is_body => diagnosis.add(Severity::Problem, error.chain().to_string()),
-        (Err(error), _) => diagnosis.add(Severity::Problem, error.chain().to_string()),
+        (_, Err(error)) if is_body => diagnosis.add(Severity::Problem, error.chain()),
+        (Err(error), _) => diagnosis.add(Severity::Problem, error.chain()),
     }
     diagnosis
 }

@@ -36,7 +36,7 @@ fn run(path: &Path) -> Diagnosis {
     let page = match Page::read(&[path]) {
         Ok(page) => page,
         Err(error) => {
-            diagnosis.add(Severity::Problem, error.chain().to_string());
+            diagnosis.add(Severity::Problem, error.chain());
             return diagnosis;
         }
     };

@@ -19,12 +19,12 @@ fn a_chain_is_printed_cause_by_cause() {
     let error = failed.unwrap_err();
     assert_eq!(error.to_string(), "run `b`");
     assert_eq!(format!("{error:#}"), "run `b`: `a` cannot be read: permission denied");
-    assert_eq!(error.chain().to_string(), format!("{error:#}"));
+    assert_eq!(error.chain(), format!("{error:#}"));
     let unfinished = Error::Unfinished { error: Box::new(error), kept: "2 frames are kept".into() };
     assert_eq!(unfinished.to_string(), "run `b`: `a` cannot be read: permission denied; 2 frames are kept");
-    assert_eq!(unfinished.chain().to_string(), unfinished.to_string());
+    assert_eq!(unfinished.chain(), unfinished.to_string());
     let missing: Result<u8> = None.context("there is none");
-    assert_eq!(missing.unwrap_err().chain().to_string(), "there is none");
+    assert_eq!(missing.unwrap_err().chain(), "there is none");
 }
 
 #[cfg(feature = "command")]
@@ -32,7 +32,7 @@ fn a_chain_is_printed_cause_by_cause() {
 fn the_command_prints_the_same_chain() {
     let failed = || -> Result<()> { Err(refused()).context("`a` cannot be read").writing(|| "`b` cannot be written") };
     let error = anyhow::Error::from(failed().unwrap_err());
-    assert_eq!(format!("{error:#}"), failed().unwrap_err().chain().to_string());
+    assert_eq!(format!("{error:#}"), failed().unwrap_err().chain());
     let anyhow_only = anyhow::Error::from(refused()).context("`a` cannot be read").context("`b` cannot be written");
     assert_eq!(format!("{error:#}"), format!("{anyhow_only:#}"));
     assert_eq!(format!("{error:?}"), format!("{anyhow_only:?}"));

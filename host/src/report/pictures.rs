@@ -77,7 +77,7 @@ impl Pictures {
                 .enumerate()
                 .map(|(index, path)| match path {
                     Some(path) if wanted(index) => match load(path) {
-                        Some(image) => jpeg(&image, rung).map(Some).map_err(|error| error.chain().to_string()),
+                        Some(image) => jpeg(&image, rung).map(Some).map_err(|error| error.chain()),
                         None => Err(path.display().to_string()),
                     },
                     _ => Ok(None),

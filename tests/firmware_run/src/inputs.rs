@@ -22,7 +22,7 @@ pub fn of_image(name: &str) -> Result<Option<Vec<u8>>> {
     match name {
         "cyclic" => cyclic().map(Some),
         "arm" => arm_run(Form::Tracker).map(Some),
-        "camera" => interleaved(&arm_run(Form::Camera)?, &cyclic()?).map(Some),
+        "camera" => Ok(Some(interleaved(&arm_run(Form::Camera)?, &cyclic()?)?)),
         _ => Ok(None),
     }
 }
@@ -67,7 +67,7 @@ pub fn synthetic_walk(model: &CyclicModel) -> Result<AngleTable> {
 fn cyclic() -> Result<Vec<u8>> {
     let model = CyclicModel::from_option("walking")?;
     let table = synthetic_walk(&model)?;
-    cyclic_stream(&table, &model, &TrackingOptions::default())
+    Ok(cyclic_stream(&table, &model, &TrackingOptions::default())?)
 }
 
 /// Frames of the rendered scene: four seconds.
@@ -105,7 +105,7 @@ pub fn tracked_scene(folder: &Path) -> Result<RunOutcome> {
         strict: false,
         config: Config::load(&scene.join("camera.toml"))?,
     };
-    TrackRun::prepare(options, folder)?.run(&AtomicBool::new(false), &mut |_| ())
+    Ok(TrackRun::prepare(options, folder)?.run(&AtomicBool::new(false), &mut |_| ())?)
 }
 
 fn arm_run(form: Form) -> Result<Vec<u8>> {
