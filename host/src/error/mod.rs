@@ -104,6 +104,14 @@ pub enum Error {
     /// The threads of a run cannot be started.
     #[error(transparent)]
     Threads(#[from] rayon::ThreadPoolBuildError),
+    /// A row of a recording for the Rerun viewer cannot be made.
+    #[cfg(feature = "rerun")]
+    #[error(transparent)]
+    ViewerRow(#[from] re_chunk::ChunkError),
+    /// A recording for the Rerun viewer cannot be encoded.
+    #[cfg(feature = "rerun")]
+    #[error(transparent)]
+    ViewerFile(#[from] re_log_encoding::EncodeError),
     /// Ctrl-C ended the run.
     #[error(transparent)]
     Interrupted(#[from] Interrupted),

@@ -3,6 +3,7 @@
 use super::marks::{Shown, colour, jpeg, scalars, weighted_points};
 use super::numbers::Numbers;
 use super::recording::{Moment, Recording};
+use crate::error::Result;
 use crate::frames::FrameReader;
 use crate::record::SeenFrames;
 use crate::track::{FrameFolder, FrameSource};
