@@ -99,7 +99,8 @@
 #define SINEW_PIXEL_RGB565 0
 
 /**
- * The same with both bytes swapped, as cameras with an 8-bit port and a little-endian processor have it.
+ * The same with both bytes swapped, as cameras with an 8-bit port and a little-endian processor
+ * have it.
  */
 #define SINEW_PIXEL_RGB565_SWAPPED 1
 
@@ -204,22 +205,26 @@ typedef int32_t SinewStatus;
 #endif // __cplusplus
 
 /**
- * An arm tracker; see `sinew_arm_init`. Saved states fit the same configuration; seed and shoulders may differ.
+ * An arm tracker; see `sinew_arm_init`. Saved states fit the same configuration; seed and
+ * shoulders may differ.
  */
 typedef struct SinewArm SinewArm;
 
 /**
- * A tracker of both arms; see `sinew_arm_pair_init`. Saved states fit the same configuration; seed and shoulders may differ.
+ * A tracker of both arms; see `sinew_arm_pair_init`. Saved states fit the same configuration; seed
+ * and shoulders may differ.
  */
 typedef struct SinewArmPair SinewArmPair;
 
 /**
- * A cyclic tracker; see `sinew_cyclic_init`. Saved states fit the same model. After a reset the next frame may have any timestamp.
+ * A cyclic tracker; see `sinew_cyclic_init`. Saved states fit the same model. After a reset the
+ * next frame may have any timestamp.
  */
 typedef struct SinewCyclic SinewCyclic;
 
 /**
- * A front end; see `sinew_vision_init`. Saved states hold the skin table, no frames, and fit the same pixel format.
+ * A front end; see `sinew_vision_init`. Saved states hold the skin table, no frames, and fit the
+ * same pixel format.
  */
 typedef struct SinewVision SinewVision;
 
@@ -266,7 +271,8 @@ typedef struct SinewCyclicResult {
    */
   float angle_std_rad[SINEW_MAX_ANGLES];
   /**
-   * Whole turns of each angle since the start: the unwrapped angle is `angles_rad` + 2 pi `turns`.
+   * Whole turns of each angle since the start: the unwrapped angle is `angles_rad` + 2 pi
+   * `turns`.
    */
   int32_t turns[SINEW_MAX_ANGLES];
   /**
@@ -336,8 +342,8 @@ typedef struct SinewArmConfig {
    */
   float forearm_m;
   /**
-   * Left and right shoulder, metres in camera axes: x to the right of the image, y down, z along the line of sight. A tracker of one
-   * arm looks at its own side only.
+   * Left and right shoulder, metres in camera axes: x to the right of the image, y down, z along
+   * the line of sight. A tracker of one arm looks at its own side only.
    */
   float shoulders_m[2][3];
 } SinewArmConfig;
@@ -402,7 +408,8 @@ typedef struct SinewArmFrame {
    */
   uint64_t timestamp_us;
   /**
-   * Blobs that may be a hand, as `sinew_vision_end_frame` gives them; not looked at if `candidate_count` is zero.
+   * Blobs that may be a hand, as `sinew_vision_end_frame` gives them; not looked at if
+   * `candidate_count` is zero.
    */
   const struct SinewHandCandidate *candidates;
   /**
@@ -422,7 +429,8 @@ typedef struct SinewArmFrame {
    */
   uint32_t has_image;
   /**
-   * Left and right shoulder, metres in camera axes; a tracker of one arm looks at its own side only.
+   * Left and right shoulder, metres in camera axes; a tracker of one arm looks at its own side
+   * only.
    */
   float shoulders_m[2][3];
 } SinewArmFrame;
@@ -636,14 +644,16 @@ size_t sinew_cyclic_size(void);
 size_t sinew_cyclic_align(void);
 
 /**
- * Makes a cyclic tracker in `memory`, which it needs as long as it is used; there is nothing to free.
+ * Makes a cyclic tracker in `memory`, which it needs as long as it is used; there is nothing to
+ * free.
  *
- * `model` is a motion model in bytes (the command `sinew export` makes one), aligned to four, which has to stay where it is as long as the tracker is
- * used. Null and zero bytes stand for the walking model that the library was built with. All numbers of the model are checked
- * once, here.
+ * `model` is a motion model in bytes (the command `sinew export` makes one), aligned to four,
+ * which has to stay where it is as long as the tracker is used. Null and zero bytes stand for the
+ * walking model that the library was built with. All numbers of the model are checked once, here.
  *
- * Returns SINEW_STATUS_BAD_MODEL for bytes that are no model of at most `SINEW_MAX_ANGLES` angles, SINEW_STATUS_NO_MODEL if the
- * library was built without the walking model. `tracker` is written only if the status is SINEW_STATUS_OK.
+ * Returns SINEW_STATUS_BAD_MODEL for bytes that are no model of at most `SINEW_MAX_ANGLES` angles,
+ * SINEW_STATUS_NO_MODEL if the library was built without the walking model. `tracker` is written
+ * only if the status is SINEW_STATUS_OK.
  *
  * Caller's duty:
  * `memory` and `model` have the sizes that are said.
@@ -657,8 +667,9 @@ SinewStatus sinew_cyclic_init(void *memory,
 /**
  * Takes in one frame, and writes what is known then.
  *
- * A frame more than 600 frames of the model after the last counts as that much later. Returns SINEW_STATUS_WAITING, and writes no
- * result, until a first frame shows an angle. Every other status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or
+ * A frame more than 600 frames of the model after the last counts as that much later. Returns
+ * SINEW_STATUS_WAITING, and writes no result, until a first frame shows an angle. Every other
+ * status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or
  * out of range, more angles than the model has, a timestamp not after the last one.
  *
  * Caller's duty:
@@ -669,20 +680,19 @@ SinewStatus sinew_cyclic_step(struct SinewCyclic *tracker,
                               struct SinewCyclicResult *result);
 
 /**
- * Writes the model's mean pose at a position of the cycle (any number; 1 is one cycle on) into the first `angle_count` of `angles_rad`, radians.
+ * Writes the model's mean pose at a position of the cycle (any number; 1 is one cycle on) into the
+ * first `angle_count` of `angles_rad`, radians.
  *
  * Returns SINEW_STATUS_OVER_CAPACITY for more angles than the model has.
  *
  * Caller's duty:
  * `tracker` comes from `sinew_cyclic_init`, `angles_rad` has room for as many numbers as is said.
  */
-SinewStatus sinew_cyclic_mean_pose(struct SinewCyclic *tracker,
-                                   float cycle_position,
-                                   float *angles_rad,
-                                   size_t angle_count);
+SinewStatus sinew_cyclic_mean_pose(struct SinewCyclic *tracker, float cycle_position, float *angles_rad, size_t angle_count);
 
 /**
- * Forgets all frames, as after the object's `init` with the same configuration. A front end keeps its skin table.
+ * Forgets all frames, as after the object's `init` with the same configuration. A front
+ * end keeps its skin table.
  *
  * Caller's duty:
  * `tracker` comes from the object's `init`.
@@ -690,10 +700,12 @@ SinewStatus sinew_cyclic_mean_pose(struct SinewCyclic *tracker,
 SinewStatus sinew_cyclic_reset(struct SinewCyclic *tracker);
 
 /**
- * Writes the state into `buffer`. An object of the same kind and configuration can go on from it, on this
- * processor or another. The object's type says what is saved, and which of its configuration may differ.
+ * Writes the state into `buffer`. An object of the same kind and configuration can go on
+ * from it, on this processor or another. The object's type says what is saved, and which
+ * of its configuration may differ.
  *
- * Writes into `written` how many bytes the state takes, also where the buffer is too small. The object is not changed.
+ * Writes into `written` how many bytes the state takes, also where the buffer is too
+ * small. The object is not changed.
  *
  * Caller's duty:
  * `tracker` comes from the object's `init`, `buffer` has the size that is said.
@@ -703,9 +715,10 @@ SinewStatus sinew_cyclic_save(struct SinewCyclic *tracker, uint8_t *buffer, size
 /**
  * Goes on from a state that was saved, all of `state_bytes`.
  *
- * A state that is not whole, of another version or configuration is refused, and the object is as before.
- * A whole state may hold a number that cannot be (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the
- * skin table of its configuration.
+ * A state that is not whole, of another version or configuration is refused, and the
+ * object is as before. A whole state may hold a number that cannot be
+ * (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the skin table of
+ * its configuration.
  *
  * Caller's duty:
  * `tracker` comes from the object's `init`, `state` has the size that is said.
@@ -713,7 +726,8 @@ SinewStatus sinew_cyclic_save(struct SinewCyclic *tracker, uint8_t *buffer, size
 SinewStatus sinew_cyclic_restore(struct SinewCyclic *tracker, const uint8_t *state, size_t state_bytes);
 
 /**
- * Writes a configuration: a camera with square pixels, an adult who faces it at 1.25 metres, seed 1.
+ * Writes a configuration: a camera with square pixels, an adult who faces it at 1.25 metres, seed
+ * 1.
  *
  * Returns SINEW_STATUS_OUT_OF_RANGE for a field of view that does not lie between 0 and pi.
  *
@@ -736,7 +750,8 @@ size_t sinew_arm_size(void);
 size_t sinew_arm_align(void);
 
 /**
- * Makes an arm tracker in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
+ * Makes an arm tracker in `memory`, which it needs as long as it is used; there is nothing to
+ * free. `config` is copied.
  *
  * `side` is SINEW_SIDE_LEFT or SINEW_SIDE_RIGHT, the person's own.
  * `tracker` is written only if the status is SINEW_STATUS_OK.
@@ -753,8 +768,8 @@ SinewStatus sinew_arm_init(void *memory,
 /**
  * Takes in one frame, and writes where the arm is then.
  *
- * Every status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or out of range, lists over
- * capacity, a timestamp not after the last one.
+ * Every status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or
+ * out of range, lists over capacity, a timestamp not after the last one.
  *
  * Caller's duty:
  * `tracker` comes from `sinew_arm_init`; the frame's lists have as many elements as it says.
@@ -762,7 +777,8 @@ SinewStatus sinew_arm_init(void *memory,
 SinewStatus sinew_arm_step(struct SinewArm *tracker, const struct SinewArmFrame *frame, struct SinewArmResult *result);
 
 /**
- * Forgets all frames, as after the object's `init` with the same configuration. A front end keeps its skin table.
+ * Forgets all frames, as after the object's `init` with the same configuration. A front
+ * end keeps its skin table.
  *
  * Caller's duty:
  * `tracker` comes from the object's `init`.
@@ -770,10 +786,12 @@ SinewStatus sinew_arm_step(struct SinewArm *tracker, const struct SinewArmFrame 
 SinewStatus sinew_arm_reset(struct SinewArm *tracker);
 
 /**
- * Writes the state into `buffer`. An object of the same kind and configuration can go on from it, on this
- * processor or another. The object's type says what is saved, and which of its configuration may differ.
+ * Writes the state into `buffer`. An object of the same kind and configuration can go on
+ * from it, on this processor or another. The object's type says what is saved, and which
+ * of its configuration may differ.
  *
- * Writes into `written` how many bytes the state takes, also where the buffer is too small. The object is not changed.
+ * Writes into `written` how many bytes the state takes, also where the buffer is too
+ * small. The object is not changed.
  *
  * Caller's duty:
  * `tracker` comes from the object's `init`, `buffer` has the size that is said.
@@ -783,9 +801,10 @@ SinewStatus sinew_arm_save(struct SinewArm *tracker, uint8_t *buffer, size_t buf
 /**
  * Goes on from a state that was saved, all of `state_bytes`.
  *
- * A state that is not whole, of another version or configuration is refused, and the object is as before.
- * A whole state may hold a number that cannot be (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the
- * skin table of its configuration.
+ * A state that is not whole, of another version or configuration is refused, and the
+ * object is as before. A whole state may hold a number that cannot be
+ * (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the skin table of
+ * its configuration.
  *
  * Caller's duty:
  * `tracker` comes from the object's `init`, `state` has the size that is said.
@@ -803,7 +822,8 @@ size_t sinew_arm_pair_size(void);
 size_t sinew_arm_pair_align(void);
 
 /**
- * Makes a tracker of both arms in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
+ * Makes a tracker of both arms in `memory`, which it needs as long as it is used; there is nothing
+ * to free. `config` is copied.
  *
  * `tracker` is written only if the status is SINEW_STATUS_OK.
  *
@@ -818,16 +838,18 @@ SinewStatus sinew_arm_pair_init(void *memory,
 /**
  * Takes in one frame, and writes where both arms are then, left and right.
  *
- * Every status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or out of range, lists over
- * capacity, a timestamp not after the last one.
+ * Every status but SINEW_STATUS_OK leaves the tracker as it was: a number that is NaN, infinite or
+ * out of range, lists over capacity, a timestamp not after the last one.
  *
  * Caller's duty:
- * `tracker` comes from `sinew_arm_pair_init`; the frame's lists have as many elements as it says. `results` has room for two.
+ * `tracker` comes from `sinew_arm_pair_init`; the frame's lists have as many elements as it says.
+ * `results` has room for two.
  */
 SinewStatus sinew_arm_pair_step(struct SinewArmPair *tracker, const struct SinewArmFrame *frame, struct SinewArmResult *results);
 
 /**
- * Forgets all frames, as after the object's `init` with the same configuration. A front end keeps its skin table.
+ * Forgets all frames, as after the object's `init` with the same configuration. A front
+ * end keeps its skin table.
  *
  * Caller's duty:
  * `tracker` comes from the object's `init`.
@@ -835,10 +857,12 @@ SinewStatus sinew_arm_pair_step(struct SinewArmPair *tracker, const struct Sinew
 SinewStatus sinew_arm_pair_reset(struct SinewArmPair *tracker);
 
 /**
- * Writes the state into `buffer`. An object of the same kind and configuration can go on from it, on this
- * processor or another. The object's type says what is saved, and which of its configuration may differ.
+ * Writes the state into `buffer`. An object of the same kind and configuration can go on
+ * from it, on this processor or another. The object's type says what is saved, and which
+ * of its configuration may differ.
  *
- * Writes into `written` how many bytes the state takes, also where the buffer is too small. The object is not changed.
+ * Writes into `written` how many bytes the state takes, also where the buffer is too
+ * small. The object is not changed.
  *
  * Caller's duty:
  * `tracker` comes from the object's `init`, `buffer` has the size that is said.
@@ -848,9 +872,10 @@ SinewStatus sinew_arm_pair_save(struct SinewArmPair *tracker, uint8_t *buffer, s
 /**
  * Goes on from a state that was saved, all of `state_bytes`.
  *
- * A state that is not whole, of another version or configuration is refused, and the object is as before.
- * A whole state may hold a number that cannot be (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the
- * skin table of its configuration.
+ * A state that is not whole, of another version or configuration is refused, and the
+ * object is as before. A whole state may hold a number that cannot be
+ * (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the skin table of
+ * its configuration.
  *
  * Caller's duty:
  * `tracker` comes from the object's `init`, `state` has the size that is said.
@@ -876,10 +901,12 @@ size_t sinew_vision_size(void);
 size_t sinew_vision_align(void);
 
 /**
- * Makes a front end in `memory`, which it needs as long as it is used; there is nothing to free. `config` is copied.
+ * Makes a front end in `memory`, which it needs as long as it is used; there is nothing to free.
+ * `config` is copied.
  *
- * Fills the skin table, one decision for each of 65536 colours, which takes some time. `vision` is written only if the status is
- * SINEW_STATUS_OK. Returns SINEW_STATUS_OVER_CAPACITY for frames larger than 320 x 240.
+ * Fills the skin table, one decision for each of 65536 colours, which takes some time. `vision` is
+ * written only if the status is SINEW_STATUS_OK. Returns SINEW_STATUS_OVER_CAPACITY for frames
+ * larger than 320 x 240.
  *
  * Caller's duty:
  * `memory` has the size that is said.
@@ -898,29 +925,30 @@ SinewStatus sinew_vision_init(void *memory,
 SinewStatus sinew_vision_learn_skin(struct SinewVision *vision, const struct SinewSkin *skin);
 
 /**
- * Begins to calibrate: from the next line on, until `sinew_vision_end_calibration`, the pixels inside of `box_px` are looked at, 256 of them, evenly. It has to show
- * nothing but skin, a hand held into it; the lines of one frame suffice.
+ * Begins to calibrate: from the next line on, until `sinew_vision_end_calibration`, the pixels
+ * inside of `box_px` are looked at, 256 of them, evenly. It has to show nothing but skin, a hand
+ * held into it; the lines of one frame suffice.
  *
- * A calibration that was begun before is given up. Returns SINEW_STATUS_OUT_OF_RANGE for a box that is empty or reaches beyond the frame.
+ * A calibration that was begun before is given up. Returns SINEW_STATUS_OUT_OF_RANGE for a box
+ * that is empty or reaches beyond the frame.
  *
  * Caller's duty:
  * `vision` comes from `sinew_vision_init`.
  */
-SinewStatus sinew_vision_begin_calibration(struct SinewVision *vision,
-                                           const struct SinewBox *box_px);
+SinewStatus sinew_vision_begin_calibration(struct SinewVision *vision, const struct SinewBox *box_px);
 
 /**
- * Ends a calibration: adapts the skin of the configuration, or the last one of `sinew_vision_learn_skin`, to what the box showed, takes it
- * over from the next line on, and writes it into `skin`, which may be null.
+ * Ends a calibration: adapts the skin of the configuration, or the last one of
+ * `sinew_vision_learn_skin`, to what the box showed, takes it over from the next line on, and
+ * writes it into `skin`, which may be null.
  *
- * Returns SINEW_STATUS_NO_SAMPLE where no calibration was begun or no line of the box came since, SINEW_STATUS_OUT_OF_RANGE where all of its
- * pixels were black; the skin is as before then.
+ * Returns SINEW_STATUS_NO_SAMPLE where no calibration was begun or no line of the box came since,
+ * SINEW_STATUS_OUT_OF_RANGE where all of its pixels were black; the skin is as before then.
  *
  * Caller's duty:
  * `vision` comes from `sinew_vision_init`.
  */
-SinewStatus sinew_vision_end_calibration(struct SinewVision *vision,
-                                         struct SinewSkin *skin);
+SinewStatus sinew_vision_end_calibration(struct SinewVision *vision, struct SinewSkin *skin);
 
 /**
  * Begins a frame; what was read of one that did not end is dropped.
@@ -931,34 +959,33 @@ SinewStatus sinew_vision_end_calibration(struct SinewVision *vision,
 SinewStatus sinew_vision_begin_frame(struct SinewVision *vision);
 
 /**
- * Reads a line of the frame: `row` from 0 at the top, `pixel_count` pixels of 16 bits from the left.
+ * Reads a line of the frame: `row` from 0 at the top, `pixel_count` pixels of 16 bits from the
+ * left.
  *
- * Lines come in order. A line that is left out or too short counts as without skin where pixels are missing, one that comes twice or too
- * late is ignored; the frame's result says how many. Returns SINEW_STATUS_NO_FRAME before `sinew_vision_begin_frame`, and SINEW_STATUS_OUT_OF_RANGE
+ * Lines come in order. A line that is left out or too short counts as without skin where pixels
+ * are missing, one that comes twice or too late is ignored; the frame's result says how many.
+ * Returns SINEW_STATUS_NO_FRAME before `sinew_vision_begin_frame`, and SINEW_STATUS_OUT_OF_RANGE
  * for a row or pixels beyond the frame, which change nothing.
  *
  * Caller's duty:
  * `vision` comes from `sinew_vision_init`, `pixels` points at as many as is said.
  */
-SinewStatus sinew_vision_line(struct SinewVision *vision,
-                              uint32_t row,
-                              const uint16_t *pixels,
-                              size_t pixel_count);
+SinewStatus sinew_vision_line(struct SinewVision *vision, uint32_t row, const uint16_t *pixels, size_t pixel_count);
 
 /**
- * Ends the frame, and writes what it showed. The lists of the result lie in the front end's memory and are good until the next frame
- * begins.
+ * Ends the frame, and writes what it showed. The lists of the result lie in the front end's memory
+ * and are good until the next frame begins.
  *
  * Returns SINEW_STATUS_NO_FRAME before `sinew_vision_begin_frame`.
  *
  * Caller's duty:
  * `vision` comes from `sinew_vision_init`.
  */
-SinewStatus sinew_vision_end_frame(struct SinewVision *vision,
-                                   struct SinewVisionResult *result);
+SinewStatus sinew_vision_end_frame(struct SinewVision *vision, struct SinewVisionResult *result);
 
 /**
- * Forgets all frames, as after the object's `init` with the same configuration. A front end keeps its skin table.
+ * Forgets all frames, as after the object's `init` with the same configuration. A front
+ * end keeps its skin table.
  *
  * Caller's duty:
  * `vision` comes from the object's `init`.
@@ -966,10 +993,12 @@ SinewStatus sinew_vision_end_frame(struct SinewVision *vision,
 SinewStatus sinew_vision_reset(struct SinewVision *vision);
 
 /**
- * Writes the state into `buffer`. An object of the same kind and configuration can go on from it, on this
- * processor or another. The object's type says what is saved, and which of its configuration may differ.
+ * Writes the state into `buffer`. An object of the same kind and configuration can go on
+ * from it, on this processor or another. The object's type says what is saved, and which
+ * of its configuration may differ.
  *
- * Writes into `written` how many bytes the state takes, also where the buffer is too small. The object is not changed.
+ * Writes into `written` how many bytes the state takes, also where the buffer is too
+ * small. The object is not changed.
  *
  * Caller's duty:
  * `vision` comes from the object's `init`, `buffer` has the size that is said.
@@ -979,9 +1008,10 @@ SinewStatus sinew_vision_save(struct SinewVision *vision, uint8_t *buffer, size_
 /**
  * Goes on from a state that was saved, all of `state_bytes`.
  *
- * A state that is not whole, of another version or configuration is refused, and the object is as before.
- * A whole state may hold a number that cannot be (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the
- * skin table of its configuration.
+ * A state that is not whole, of another version or configuration is refused, and the
+ * object is as before. A whole state may hold a number that cannot be
+ * (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the skin table of
+ * its configuration.
  *
  * Caller's duty:
  * `vision` comes from the object's `init`, `state` has the size that is said.

@@ -38,7 +38,8 @@ impl Arm {
     ///
     /// # Errors
     /// A parameter out of its range, more particles than there is room for.
-    // Not inlined: what begins a tracker and what steps it need their stack one after the other, not at once.
+    // Not inlined: what begins a tracker and what steps it need their stack one after the other,
+    // not at once.
     #[inline(never)]
     pub fn begin(&mut self, setup: &ArmSetup) -> Result<(), Refusal> {
         let model = setup.model()?;

@@ -47,8 +47,8 @@ impl CameraApp {
         }
     }
 
-    // Not inlined: what begins a tracker and what steps it need their stack one after the other, not at
-    // once.
+    // Not inlined: what begins a tracker and what steps it need their stack one after the other,
+    // not at once.
     #[inline(never)]
     fn begin(&mut self, setup: &CameraSetup) -> Result<(), Refusal> {
         let [width, height] = setup.size_px.map(usize::from);

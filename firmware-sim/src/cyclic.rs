@@ -42,7 +42,8 @@ impl CyclicApp {
     }
 
     /// Begins a recording: its first frame begins the tracker.
-    // Not inlined: what begins a tracker and what steps it need their stack one after the other, not at once.
+    // Not inlined: what begins a tracker and what steps it need their stack one after the other,
+    // not at once.
     #[inline(never)]
     fn begin(&mut self, setup: &CyclicSetup) -> Result<(), Refusal> {
         let model = WALKING.model()?;

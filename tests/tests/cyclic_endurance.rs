@@ -72,8 +72,8 @@ fn check_coupled(filter: &CoupledFilter<N>, step: u32) {
         let entry = |i: usize, j: usize| f64::from(block.covariance(i, j));
         let scaled = DMatrix::from_fn(PARTS, PARTS, |i, j| entry(i, j) / (entry(i, i) * entry(j, j)).sqrt());
         assert!(scaled.iter().all(|value| value.is_finite()), "angle {angle} at step {step}");
-        // Rounding of single precision about a matrix that is singular: what was measured is known, its
-        // parts are not.
+        // Rounding of single precision about a matrix that is singular: what was measured is known,
+        // its parts are not.
         let least = scaled.symmetric_eigenvalues().min();
         assert!(least > -1.0e-5, "angle {angle}: eigenvalue {least:e} at step {step}");
     }

@@ -53,6 +53,8 @@ fn above<'a>(lines: &'a [&str], index: usize) -> impl Iterator<Item = &'a str> {
 fn every_public_item_of_the_core_has_an_example() {
     let mut files = Vec::new();
     rust_files(&workspace_root().join("core/src"), &mut files);
+    // What an `example.rs` holds is the set-up of other items' examples.
+    files.retain(|path| !path.ends_with("example.rs"));
     let (mut count, mut without) = (0, Vec::new());
     for path in files {
         let text = fs::read_to_string(&path).unwrap();

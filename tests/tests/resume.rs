@@ -140,8 +140,8 @@ fn both_arms_with_every_output_go_on_wherever_they_were_broken_off() {
 fn one_arm_with_any_number_of_particles_goes_on() {
     Scene::new(SideChoice::Left, 7, false).resumes(&[&[11]]);
     Scene::new(SideChoice::Right, 200, false).resumes(&[&[12]]);
-    // Trackers with thousands of particles are built on a large stack, as programs have it and threads
-    // of tests have not.
+    // Trackers with thousands of particles are built on a large stack, as programs have it and
+    // threads of tests have not.
     let many = || Scene::new(SideChoice::Right, 1500, false).resumes(&[&[5]]);
     std::thread::scope(|scope| {
         std::thread::Builder::new().stack_size(32 << 20).spawn_scoped(scope, many).unwrap().join().unwrap();

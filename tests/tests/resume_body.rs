@@ -134,8 +134,8 @@ fn assert_same(whole: &BTreeMap<String, Vec<u8>>, resumed: &BTreeMap<String, Vec
 #[test]
 fn a_run_with_every_output_goes_on_wherever_it_was_broken_off() {
     let scene = Scene::new();
-    // Before the first frame, after it, beside the broken cloud, beside the gap, twice, and before the
-    // last.
+    // Before the first frame, after it, beside the broken cloud, beside the gap, twice, and before
+    // the last.
     let breaks: [&[usize]; 6] = [&[0], &[1], &[BROKEN], &[BROKEN + 1, MISSING], &[2, 3, 8], &[9]];
     scene.resumes(&scene.options(BodyModelKind::Stick, true), &breaks);
 }

@@ -35,8 +35,8 @@ pub(super) unsafe fn read_model(model: *const c_void, bytes: usize) -> Result<Mo
     let (_, numbers) = bytes.split_at_checked(HEADER_BYTES).ok_or(SinewStatus::BadModel)?;
     let (numbers, turns) = numbers.split_at_checked(4 * header.number_count()).ok_or(SinewStatus::BadModel)?;
     let turns = turns.get(..header.angle_count).ok_or(SinewStatus::BadModel)?;
-    // SAFETY: any bits make an f32 or an i8, which live as long as the bytes; the numbers begin at a
-    // multiple of four.
+    // SAFETY: any bits make an f32 or an i8, which live as long as the bytes; the numbers begin at
+    // a multiple of four.
     let (numbers, turns) = unsafe { (numbers.align_to::<f32>().1, turns.align_to::<i8>().1) };
     Ok(header.lend(numbers, turns)?)
 }

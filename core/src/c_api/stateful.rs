@@ -114,8 +114,8 @@ macro_rules! size_functions {
 /// The functions that reset, save and restore an object.
 macro_rules! state_functions {
     ($Object:ident, $object:ident, $reset:ident, $save:ident, $restore:ident) => {
-        /// Forgets all frames, as after the object's `init` with the same configuration. A front end keeps
-        /// its skin table.
+        /// Forgets all frames, as after the object's `init` with the same configuration. A front
+        /// end keeps its skin table.
         ///
         /// # Safety
         /// `$object` comes from the object's `init`.
@@ -125,12 +125,12 @@ macro_rules! state_functions {
             unsafe { $crate::c_api::stateful::reset_object($object) }
         }
 
-        /// Writes the state into `buffer`. An object of the same kind and configuration can go on from it,
-        /// on this processor or another. The object's type says what is saved, and which of its
-        /// configuration may differ.
+        /// Writes the state into `buffer`. An object of the same kind and configuration can go on
+        /// from it, on this processor or another. The object's type says what is saved, and which
+        /// of its configuration may differ.
         ///
-        /// Writes into `written` how many bytes the state takes, also where the buffer is too small. The
-        /// object is not changed.
+        /// Writes into `written` how many bytes the state takes, also where the buffer is too
+        /// small. The object is not changed.
         ///
         /// # Safety
         /// `$object` comes from the object's `init`, `buffer` has the size that is said.
@@ -147,9 +147,10 @@ macro_rules! state_functions {
 
         /// Goes on from a state that was saved, all of `state_bytes`.
         ///
-        /// A state that is not whole, of another version or configuration is refused, and the object is as
-        /// before. A whole state may hold a number that cannot be (SINEW_STATUS_BAD_STATE too). Its object
-        /// begins anew, a front end with the skin table of its configuration.
+        /// A state that is not whole, of another version or configuration is refused, and the
+        /// object is as before. A whole state may hold a number that cannot be
+        /// (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the skin table of
+        /// its configuration.
         ///
         /// # Safety
         /// `$object` comes from the object's `init`, `state` has the size that is said.

@@ -47,8 +47,8 @@ impl Sink for File {
 
 impl Source for InputFile {
     fn read(&mut self, bytes: &mut [u8]) -> usize {
-        // SAFETY: pointer and length are those of a slice without another owner. The answer is what was not
-        // read.
+        // SAFETY: pointer and length are those of a slice without another owner. The answer is what
+        // was not read.
         let left = unsafe { syscall!(READ, self.0.handle, bytes.as_mut_ptr(), bytes.len()) };
         bytes.len().saturating_sub(left)
     }

@@ -83,7 +83,8 @@ fn fifty_guided_particles_do_what_a_hundred_do_by_goals_or_angles() {
     let cells = [(BodyModelKind::EndEffector, 100), (BodyModelKind::Angular, 100), (BodyModelKind::Guided, 50)];
     let [end_effector, angular, guided] = mean_errors_m(&folder, (&MOTIONS, BodyPart::Whole), 1..=1, cells);
     println!("end-effector {end_effector:.4}, angular {angular:.4}, guided with 50 {guided:.4} m");
-    // Which of both is better depends on the motions (docs/measurements.md); neither is lost on any.
+    // Which of both is better depends on the motions (docs/measurements.md); neither is lost on
+    // any.
     for (model, error_m) in [("end-effector", end_effector), ("angular", angular)] {
         assert!((0.0055..=LARGEST_UNGUIDED_M).contains(&error_m), "{model} {error_m} m");
     }

@@ -52,7 +52,8 @@ fn turns_of_circling_arms_are_counted_both_ways() {
     assert_eq!(backwards.view().parts().turns_per_cycle[6], -1, "the right forearm goes round once");
     let [first, second] = FORWARDS.map(|recording| trained(folder, &[recording]));
     assert_eq!([&first, &second].map(|model| model.view().parts().turns_per_cycle[6]), [1, 1]);
-    // Each recording by the model of the other one; of the way backwards there are two cycles in all.
+    // Each recording by the model of the other one; of the way backwards there are two cycles in
+    // all.
     let cases = [
         (&second, frames(folder, "13_29", 639..821)),
         (&first, frames(folder, "13_31", 1031..1124)),
@@ -71,7 +72,8 @@ fn turns_of_circling_arms_are_counted_both_ways() {
                 let first = truth.first_frame();
                 println!("{first}: {protocol:?} {sigma_deg}, seed {seed}: {wrong} wrong, {error_deg:.1} degrees");
                 assert!(error_deg > 0.1 && error_deg < most_deg, "{first}: {error_deg}");
-                // With noise of half a radian a joint of an arm that points at the camera may go round either way.
+                // With noise of half a radian a joint of an arm that points at the camera may go
+                // round either way.
                 assert!(wrong <= usize::from(sigma_deg > 10.0), "{first}: {wrong} angles");
             }
         }

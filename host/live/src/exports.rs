@@ -4,8 +4,8 @@
 //! Functions that can be refused give 0 for success and else the length of a text at [`text`] that
 //! says what is wrong.
 
-// Names are exported as they are in the module only, which has nothing else that they could clash with. The state is in
-// locks that have no other user.
+// Names are exported as they are in the module only, which has nothing else that they could clash
+// with. The state is in locks that have no other user.
 #![allow(unsafe_code)]
 // A page gives numbers one by one.
 #![allow(clippy::too_many_arguments)]

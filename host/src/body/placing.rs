@@ -108,8 +108,8 @@ fn mean_front(frames: &[BodyJoints], up: Vec3) -> Option<Vec3> {
     let front = |joints: &BodyJoints| {
         let [left, right] = HIPS.map(|hip| joints[hip]);
         let across = left? - right?;
-        // Of a person who lies on the back the hips alone would do; the trunk says the same where it is
-        // upright.
+        // Of a person who lies on the back the hips alone would do; the trunk says the same where
+        // it is upright.
         unit(across.cross(&up))
     };
     let fronts: Vec<Vec3> = frames.iter().filter_map(front).collect();

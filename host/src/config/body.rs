@@ -116,8 +116,8 @@ impl BodyConfig {
 
     /// Body axes to camera axes.
     fn torso(&self) -> Mat3 {
-        // Yaw about up (camera -y), then pitch about the camera's x axis, which tips the upper body towards
-        // the camera.
+        // Yaw about up (camera -y), then pitch about the camera's x axis, which tips the upper body
+        // towards the camera.
         let yaw = axis_rotation(&-Vec3::y(), self.torso_yaw_deg.to_radians());
         let pitch = axis_rotation(&Vec3::x(), self.torso_pitch_deg.to_radians());
         pitch * yaw * facing_camera()

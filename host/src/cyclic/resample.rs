@@ -48,8 +48,8 @@ pub fn resample(joints: &ImageJoints, from_hz: f64, to_hz: f64) -> Result<ImageJ
             }
         }
     }
-    // A frame that no joint was seen in, between frames that the recording leaves out, is left out as
-    // well.
+    // A frame that no joint was seen in, between frames that the recording leaves out, is left out
+    // as well.
     frames.retain(|frame| frame.joints.iter().any(Option::is_some));
     Ok(ImageJoints { frames, unit: joints.unit })
 }

@@ -30,7 +30,8 @@ impl<'m> SyntheticPerson<'m> {
             "the model does not say how people differ, so no cycles can be drawn from it; train it anew, or give recorded cycles",
         )?;
         let mean_frames = f64::from(model.numbers().mean_duration_frames) * rate_hz / f64::from(model.view().rate_hz());
-        // The stored spread is that of unseen people, wider than the one among those that were seen.
+        // The stored spread is that of unseen people, wider than the one among those that were
+        // seen.
         let narrow = f64::from(spread.inflation.max(1.0)).sqrt();
         let mut stream = Stream::new(seed, 0, 0);
         let pace = 1.0 + DURATION_SPREAD * (2.0 * f64::from(stream.uniform()) - 1.0);

@@ -282,8 +282,8 @@ impl MovingArm {
 /// The card before a hand.
 fn card(joints: &ArmJoints) -> Shape {
     let hand = joints.hand_m;
-    // Nearer to the camera on the hand's own line of sight, so that it covers the hand from everywhere
-    // in the image.
+    // Nearer to the camera on the hand's own line of sight, so that it covers the hand from
+    // everywhere in the image.
     Shape::Card { centre: hand * ((hand.z - 0.13).max(0.1) / hand.z), half: CARD_HALF_M }
 }
 

@@ -90,8 +90,8 @@ struct Places {
 impl Places {
     fn new(body: &AnimatedBody, floor_m: f32, distance_m: f32) -> Self {
         let turn = axis_rotation(&-Vec3::y(), DIRECTION_RAD);
-        // Before the turn the head points away from the camera: the person's left is to the picture's
-        // right.
+        // Before the turn the head points away from the camera: the person's left is to the
+        // picture's right.
         let place = |left: f32, above_floor: f32, headward: f32| {
             turn * Vec3::new(left, 0.0, headward) + Vec3::new(0.0, floor_m - above_floor, distance_m)
         };

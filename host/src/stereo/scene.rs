@@ -242,7 +242,8 @@ mod tests {
                 count += 1.0;
             }
             assert!(count > 2900.0, "{count}");
-            // The variance of n squares of standard normals is 2 n; depth is not quite linear in disparity.
+            // The variance of n squares of standard normals is 2 n; depth is not quite linear in
+            // disparity.
             assert!((sum / count - 1.0).abs() < 5.0 * (2.0 / count).sqrt(), "{}", sum / count);
         }
     }

@@ -92,7 +92,8 @@ impl FrameFolder {
     pub fn load(&self, frame: usize) -> Result<RgbImage, SkippedImage> {
         let skipped = |reason: String| SkippedImage { frame, file: self.name(frame), reason };
         let image = load_rgb(&self.files[frame]).map_err(|error| skipped(error.reason))?;
-        // Sizes were checked before the run; a file that was exchanged since then is not part of it.
+        // Sizes were checked before the run; a file that was exchanged since then is not part of
+        // it.
         if image.dimensions() != self.size_px {
             return Err(skipped("its size changed after the run began".to_owned()));
         }

@@ -196,7 +196,8 @@ impl PhaseGrid {
         for (speed, (weights, &travelled)) in self.weights.iter().zip(&self.travelled).enumerate() {
             let (below, rest) = cells_and_rest(wrap_position(position - travelled), POSITIONS);
             for ahead in 0..NEAR_CELLS {
-                // From five cells before the position to six behind it: no other can be near enough.
+                // From five cells before the position to six behind it: no other can be near
+                // enough.
                 let way = (ahead as f32 - 5.0 - rest) / POSITIONS as f32;
                 if abs(way) <= MODE_REACH {
                     take(speed, weights[(below + POSITIONS + ahead - 5) % POSITIONS], way);

@@ -169,8 +169,8 @@ fn fill_row<const N: usize>(
 ) {
     let from = packed_index(i, 0);
     let numbers = |values| <[f32]>::get(values, from..).and_then(<[f32]>::first_chunk::<N>);
-    // Where the triangles have N rows, N numbers are at hand from there; those beyond the diagonal are
-    // written over.
+    // Where the triangles have N rows, N numbers are at hand from there; those beyond the diagonal
+    // are written over.
     if let (Some(before), Some(after)) = (numbers(before), numbers(after)) {
         for (j, value) in row.iter_mut().enumerate() {
             *value = between((&before[j], &after[j]));

@@ -203,7 +203,8 @@ proptest! {
 
     #[test]
     fn a_mirrored_person_is_tracked_as_the_mirror_image(seed in 0_u64..1000) {
-        // Mirroring the model: angle i becomes pi - angle of the other side, so accelerations change sign.
+        // Mirroring the model: angle i becomes pi - angle of the other side, so accelerations
+        // change sign.
         let table = synthetic::table(4.0e-3, 9);
         let mut mirrored = table.clone();
         let other: [usize; N] = core::array::from_fn(|i| usize::from(HUMAN.joints()[i + 1].mirror) - 1);

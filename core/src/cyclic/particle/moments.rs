@@ -11,8 +11,8 @@ use core::f32::consts::TAU;
 /// Partial sums that are taken side by side.
 const PARTS: usize = 8;
 
-/// Weighted sums over the angles that particles are off: of half the sine, half the versed sine, which
-/// is 1 - cosine, and the square.
+/// Weighted sums over the angles that particles are off: of half the sine, half the versed sine,
+/// which is 1 - cosine, and the square.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct AngleSums {
     half_sine: [f32; PARTS],

@@ -347,8 +347,8 @@ mod tests {
             rest_std_rad: &[0.05; 13],
             rest_rate_per_cycle: &[20.0; 13],
         });
-        // A swing of 0.2 rad moves by 1.26 rad in a cycle, the rest by 1; a person's velocity by six tenths
-        // of both.
+        // A swing of 0.2 rad moves by 1.26 rad in a cycle, the rest by 1; a person's velocity by
+        // six tenths of both.
         let of_people = 0.6 * 1.26_f32.hypot(1.0) * known.mean_cycle_velocity();
         for (model, wanted) in [(unknown, 0.01), (known, of_people)] {
             let start = CycleStart::<13>::standard(&model, &[Some(0.0); 13], Some(0.3), None).unwrap();

@@ -103,7 +103,8 @@ impl Comb {
         for (tooth, slot) in (teeth.first..).zip(next) {
             let place = (tooth as f32 + self.offset) * self.spacing - teeth.below;
             while place >= sum {
-                // Rounding may let the last teeth end beyond the chunk: they take its last particle.
+                // Rounding may let the last teeth end beyond the chunk: they take its last
+                // particle.
                 let Some((particle, weight)) = candidates.next() else { break };
                 chosen = particle;
                 sum += teeth.scale * weight;

@@ -269,7 +269,8 @@ mod tests {
     }
 
     proptest! {
-        /// About its joint a place keeps its distance but for what it goes out or in, and goes the way that it went.
+        /// About its joint a place keeps its distance but for what it goes out or in, and goes the
+        /// way that it went.
         #[test]
         fn what_swings_goes_along_an_arc(x in -1.0_f32..1.0, y in -1.0_f32..1.0, z in -3.0_f32..3.0, out in -0.5_f32..0.5) {
             let process = LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s: 0.0 };

@@ -137,7 +137,8 @@ impl StickGoals<'_> {
                         *gamma = share_along(&ends_m, &reached_m);
                     }
                     let std = self.gamma_std_per_sqrt_s * sqrt(past.dt_s);
-                    // Strictly inside, so that a hand at the very end is not taken for an unknown one.
+                    // Strictly inside, so that a hand at the very end is not taken for an unknown
+                    // one.
                     let z = stream.truncated_normal((f32::EPSILON - *gamma) / std, (1.0 - *gamma) / std);
                     *gamma = clamp(*gamma + std * z, f32::EPSILON, 1.0);
                     // gamma is the share of the first end, as in PIK (36).

@@ -80,7 +80,8 @@ impl BlobMemory {
             let fallen = before.belief * exp(-dt_s * away / options.fall_time_s);
             let recovery = 1.0 - exp(-dt_s * (1.0 - away) / options.rise_time_s);
             let moved = before.anchor.distance_px(candidate.centre) > options.moved_per_radius * radius_px;
-            // What moves may be the hand after all, also where the tracker sits on something that rests.
+            // What moves may be the hand after all, also where the tracker sits on something that
+            // rests.
             let belief = if moved { 1.0 } else { max(fallen + recovery * (1.0 - fallen), options.floor) };
             let (anchor, still_s) =
                 if moved { (candidate.centre, 0.0) } else { (before.anchor, before.still_s + dt_s) };

@@ -152,8 +152,8 @@ impl FrameContext<'_> {
         let mut mode = density.mode_from(&self.starts(ancestor, &goal.position_m), options.solver_steps);
         let corrects_weight = options.variant.traits().corrects_weight;
         if !corrects_weight {
-            // The draw spreads as far as a frame's stiffness lets it: wider, the expansion would leave the
-            // goal.
+            // The draw spreads as far as a frame's stiffness lets it: wider, the expansion would
+            // leave the goal.
             for (i, variance) in variances.iter().enumerate() {
                 mode.hessian[i][i] += 1.0 / variance - density.stiffness[i];
             }

@@ -185,8 +185,8 @@ mod tests {
             estimated += standard_error_m[FOREARM] * standard_error_m[FOREARM];
             assert!((0.05..0.12).contains(&spread_m[FOREARM]), "{spread_m:?}");
         }
-        // The mean that distances are taken from is the set's own, so that the estimated error is a little
-        // small.
+        // The mean that distances are taken from is the set's own, so that the estimated error is a
+        // little small.
         assert!((0.85..1.05).contains(&(estimated / off)), "{}", estimated / off);
     }
 }

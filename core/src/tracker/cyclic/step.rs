@@ -47,7 +47,8 @@ impl<const N: usize> CyclicTracker<N> {
     /// A tracker that begins with the frame `first`.
     ///
     /// # Errors
-    /// Those of [`CyclicFilter::new`] and [`PlaceOptions::check`].
+    /// Those of [`CyclicFilter::new`] and
+    /// [`PlaceOptions::check`](crate::cyclic::PlaceOptions::check).
     pub fn new(
         model: &MotionModel<'_>,
         options: CyclicTrackerOptions,

@@ -32,6 +32,9 @@ use crate::vision::edges::EdgePixel;
 pub struct FrameLosses {
     /// Components that found no room in the table of open ones, see
     /// [`ComponentScanner::dropped_components`].
+    ///
+    /// [`ComponentScanner::dropped_components`]:
+    /// crate::vision::component_scanner::ComponentScanner::dropped_components
     pub dropped_components: u32,
     /// Pixels of those, and of runs that found no room in their line.
     pub dropped_px: u32,

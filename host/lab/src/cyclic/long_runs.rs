@@ -123,8 +123,8 @@ fn long_run(
             error - error.round()
         })
         .collect();
-    // A frame's velocity belongs to the way to it, so the first frame of the third cycle is the first
-    // one left out.
+    // A frame's velocity belongs to the way to it, so the first frame of the third cycle is the
+    // first one left out.
     let settled: Vec<&TrackedFrame> = tracked.frames.iter().filter(|frame| true_cycles(frame.frame) > 2.0).collect();
     let velocities =
         settled.iter().map(|frame| f64::from(frame.estimate.cycle_velocity_per_frame) * tracked.step_frames);

@@ -83,7 +83,8 @@ impl BodyTrackRun {
         let mut before: Option<(u64, BvhFrame)> = None;
         for Answer { frame, estimate } in &self.answers {
             if let (Some((number, last)), true) = (before, is_short) {
-                // An animation has a frame for every number: what has no file keeps the pose before.
+                // An animation has a frame for every number: what has no file keeps the pose
+                // before.
                 frames.extend((number + 1..*frame).map(|_| last.clone()));
             }
             let pose = bvh_frame(part, &self.filter.scene().skeleton, &estimate.angles_rad);

@@ -258,7 +258,8 @@ mod tests {
         let measures = BodyMeasures::of_height(1.7).unwrap();
         let (whole, upper) = (full_body(&measures).unwrap(), upper_body(&measures).unwrap());
         let mut lying = [0.0; BODY_ANGLES];
-        // As the pelvic lift begins: the trunk's bend on top of the pelvis' is more than half a turn.
+        // As the pelvic lift begins: the trunk's bend on top of the pelvis' is more than half a
+        // turn.
         (lying[3], lying[5], lying[6]) = (7.0, 3.1, 1.5);
         for angles in [std::array::from_fn(|index| 0.4 * (index as f32).sin()), lying] {
             an_upper_body_is_as(&whole.clamp(angles), &whole, &upper);

@@ -133,8 +133,8 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
             }
             angle_variance_rad2[angle] = f64::from(self.0.band_calibration()) * variance.max(0.0);
         }
-        // An angle that is judged by itself moves its own parts but not (c, v): what looks back adds that
-        // up as if it knew less of them.
+        // An angle that is judged by itself moves its own parts but not (c, v): what looks back
+        // adds that up as if it knew less of them.
         let filtered = self.0.cycle();
         let variance = |index: usize, filtered: f32| moments.covariance[(index, index)].clamp(0.0, f64::from(filtered));
         Smoothed {

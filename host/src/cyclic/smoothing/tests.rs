@@ -216,7 +216,8 @@ fn a_gap_is_bridged_from_both_sides() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
-    /// Any pattern of gaps and rates: finite, on the circle, no surer of the cycle without the later frames than with them.
+    /// Any pattern of gaps and rates: finite, on the circle, no surer of the cycle without the
+    /// later frames than with them.
     #[test]
     fn it_stays_sound(seed in 0_u64..1000, sigma in 0.02_f64..1.5, drop in 1_u64..9, slow in 1_u64..3) {
         let noisy = walk(120, 80, 0.3).with_noise(sigma, seed);

@@ -71,8 +71,8 @@ fn cycle_starts_s(tracked: &Tracked) -> Vec<f64> {
     let mut starts = Vec::new();
     for pair in tracked.frames.windows(2) {
         let [before, after] = [&pair[0], &pair[1]].map(|frame| frame.cycles + origin);
-        // A step holds more than one start only where many frames were skipped; then the first one is
-        // reported.
+        // A step holds more than one start only where many frames were skipped; then the first one
+        // is reported.
         if after >= next && after > before {
             let share = ((next - before) / (after - before)).clamp(0.0, 1.0);
             let frame = (pair[0].frame - first.frame) as f64 + share * (pair[1].frame - pair[0].frame) as f64;
