@@ -66,7 +66,7 @@ pub struct ArmSetup {
     pub particles: u16,
     /// Floor of the product of both limbs' densities; `None` for their mean.
     pub product_floor: Option<f32>,
-    /// What a blob's area tells.
+    /// What a blob's area says of its distance.
     pub area_cue: Option<AreaCue>,
     /// Seed of all that is random.
     pub seed: u64,

@@ -25,7 +25,7 @@ pub const LINE_PIXELS: usize = 320;
 /// };
 /// let skin = setup.skin()?;
 /// assert!(skin.distance([200, 150, 125]).is_some_and(|distance| distance < setup.skin_threshold));
-/// assert_eq!(skin.distance([20, 15, 12]), None, "too dark to tell");
+/// assert_eq!(skin.distance([20, 15, 12]), None, "too dark to have a colour");
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]

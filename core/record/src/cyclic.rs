@@ -30,7 +30,8 @@ pub struct CyclicSetup {
     pub first: FirstPhase,
 }
 
-/// Checksum of a model's numbers: firmware tells by it whether it holds the model of a recording.
+/// Checksum of a model's numbers: firmware finds by it whether it holds the model of a
+/// recording.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {

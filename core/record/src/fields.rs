@@ -75,7 +75,7 @@ impl<'a> FieldWriter<'a> {
         values.iter().for_each(|&value| self.f32(value));
     }
 
-    /// A byte that tells whether there is a number, and the number or zero.
+    /// A byte that says whether there is a number, and the number or zero.
     pub fn optional_f32(&mut self, value: Option<f32>) {
         self.u8(u8::from(value.is_some()));
         self.f32(value.unwrap_or(0.0));

@@ -95,7 +95,7 @@ fn checksum(header: &[u8; HEADER_BYTES], payload: &[u8]) -> u32 {
     covered.iter().chain(payload).fold(Crc32::new(), |sum, &byte| sum.and(byte)).value()
 }
 
-/// Length of the record that `bytes` begin with, header included, as the header tells it.
+/// Length of the record that `bytes` begin with, header included, as the header says.
 ///
 /// # Errors
 /// [`RecordError::Truncated`] where the header is not there as a whole, else
@@ -135,8 +135,8 @@ pub fn decode(bytes: &[u8]) -> Result<(Record<'_>, usize), RecordError> {
     let length = announced_len(bytes)?;
     let record = bytes.get(..length).ok_or(RecordError::Truncated)?;
     let (header, payload) = record.split_first_chunk::<HEADER_BYTES>().ok_or(RecordError::Truncated)?;
-    let told = header.last_chunk::<4>().map_or(0, |bytes| u32::from_le_bytes(*bytes));
-    if told != checksum(header, payload) {
+    let stored = header.last_chunk::<4>().map_or(0, |bytes| u32::from_le_bytes(*bytes));
+    if stored != checksum(header, payload) {
         return Err(RecordError::Checksum);
     }
     let mut fields = FieldReader::new(header.get(6..).unwrap_or_default());

@@ -45,7 +45,7 @@ use crate::kind::Kind;
 /// # Ok::<(), sinew_record::RecordError>(())
 /// ```
 pub trait Source {
-    /// Fills the start of `bytes` and tells how many bytes it filled; none at the end.
+    /// Fills the start of `bytes` and returns how many bytes it filled; none at the end.
     fn read(&mut self, bytes: &mut [u8]) -> usize;
 }
 
@@ -100,8 +100,8 @@ pub struct RecordStream<S, const BYTES: usize> {
     records: u32,
     /// Whether the last sound record was [`End`].
     ended: bool,
-    /// A missing [`End`] was told.
-    told: bool,
+    /// A missing [`End`] was reported.
+    reported_end: bool,
 }
 
 /// What lies at the start of the buffer.
@@ -123,7 +123,7 @@ impl<S: Source, const BYTES: usize> RecordStream<S, BYTES> {
             lost: false,
             records: 0,
             ended: false,
-            told: false,
+            reported_end: false,
         }
     }
 
@@ -141,9 +141,9 @@ impl<S: Source, const BYTES: usize> RecordStream<S, BYTES> {
                 return Some(Err(error));
             }
             Ahead::Nothing => {
-                let untold = !(self.ended || self.told);
-                self.told = true;
-                return untold.then_some(Err(RecordError::Truncated));
+                let is_missing = !(self.ended || self.reported_end);
+                self.reported_end = true;
+                return is_missing.then_some(Err(RecordError::Truncated));
             }
         };
         let start = self.start;
@@ -153,8 +153,8 @@ impl<S: Source, const BYTES: usize> RecordStream<S, BYTES> {
         let record = decode(self.buffer.get(start..).unwrap_or_default()).map(|(record, _)| record);
         self.ended = matches!(record, Ok(Record { kind: Kind::End, .. }));
         if self.ended {
-            let told = record.and_then(|record| record.read::<End>());
-            return match told {
+            let end = record.and_then(|record| record.read::<End>());
+            return match end {
                 Ok(End { records }) if records == before => None,
                 Ok(_) => Some(Err(RecordError::Lost)),
                 Err(error) => Some(Err(error)),

@@ -61,7 +61,7 @@ proptest! {
     }
 
     #[test]
-    fn a_changed_byte_costs_one_record_and_is_told(place in 0_usize..5 * 132, change in 1_u8..) {
+    fn a_changed_byte_costs_one_record_and_is_reported(place in 0_usize..5 * 132, change in 1_u8..) {
         let (mut bytes, starts) = stream(5);
         prop_assert_eq!(starts[1], 132);
         bytes[place] ^= change;
@@ -97,7 +97,7 @@ fn a_whole_stream_has_no_error() {
 }
 
 #[test]
-fn versions_kinds_and_lengths_are_told_apart() {
+fn versions_kinds_and_lengths_are_distinguished() {
     let (mut bytes, _) = stream(1);
     bytes[4] = 2;
     assert_eq!(read_all(&bytes), (vec![], vec![RecordError::WrongVersion { found: 2 }, RecordError::Lost]));
