@@ -14,7 +14,7 @@ use crate::random::Stream;
 use crate::vision::candidate::HandCandidate;
 use heapless::Vec;
 
-/// Fastest hand, metres per second: a sprinter's punch stays below.
+/// Fastest hand, metres per second. Chosen: a sprinter's punch stays below.
 const MAX_SPEED_M_PER_S: f32 = 6.0;
 /// What a blob at any distance keeps of its chance.
 /// Chosen: a hand that is found far away still attracts particles.

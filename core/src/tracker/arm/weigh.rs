@@ -86,6 +86,7 @@ impl FrameContext<'_> {
     /// A particle at no blob gets what a fitting one has on average. With `depth_from_area` the
     /// area already placed the driven hands and is not counted again.
     fn log_area_cue(&self, proposed: &Proposed, hand: Option<Pixel>) -> f32 {
+        /// Mean of the logarithm of a normal density about its top: half of chi-square's mean, 1.
         const AVERAGE: f32 = -0.5;
         let options = self.model.options();
         if options.area_cue.is_none() || self.candidates.is_empty() {
