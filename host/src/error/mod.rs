@@ -12,7 +12,7 @@ pub use error_kind::ErrorKind;
 pub(crate) use macros::{bail, ensure, ensure_option};
 
 use crate::cyclic::CyclicError;
-use crate::keypoints::KeypointError;
+use crate::keypoints::error::KeypointError;
 use crate::resume::Interrupted;
 use context::with_causes;
 use sinew_core::cyclic::ModelError;
