@@ -22,6 +22,6 @@ function setSide(side) {
 }
 
 // Rows of a list of names and values.
-function tellRows(list, rows) {
+function showRows(list, rows) {
   list.replaceChildren(...Object.entries(rows).flatMap(([name, value]) => [made('dt', name), made('dd', value)]));
 }
