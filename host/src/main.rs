@@ -1,8 +1,12 @@
 //! The command `sinew`.
 
 use clap::Parser;
+use sinew::cli::{Cli, exit_code, exit_code_of_usage, run};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    sinew::cli::exit_code(sinew::cli::run(&sinew::cli::Cli::parse()))
+    match Cli::try_parse() {
+        Ok(cli) => exit_code(run(&cli), &cli.console),
+        Err(error) => exit_code_of_usage(&error),
+    }
 }

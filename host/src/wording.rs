@@ -1,7 +1,11 @@
-//! The words for sides and statuses, the same in tables, reports and pictures.
+//! Words that stand in several places: sides and statuses in tables, reports and pictures, and a
+//! remedy.
 
 use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::Status;
+
+/// What to do where a run cannot be gone on with.
+pub const REMEDY: &str = "leave --resume out to begin anew";
 
 /// Word for `side`.
 #[must_use]

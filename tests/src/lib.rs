@@ -9,6 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
+use std::time::SystemTime;
 
 /// The command `sinew` of this workspace, freshly built in the profile of the running test.
 ///
@@ -129,4 +130,22 @@ pub fn shared_data(path: &str) -> Option<PathBuf> {
     }
     eprintln!("skipped: the development data `{path}` is not there (looked in {})", from.display());
     None
+}
+
+/// When a file was last changed.
+///
+/// # Panics
+/// If there is no such file.
+#[must_use]
+pub fn modified(file: &Path) -> SystemTime {
+    fs::metadata(file).and_then(|facts| facts.modified()).unwrap()
+}
+
+/// Gives a file the time of its last change.
+///
+/// # Panics
+/// If that cannot be done.
+pub fn set_modified(file: &Path, at: SystemTime) {
+    let file = fs::File::options().write(true).open(file).unwrap();
+    file.set_times(fs::FileTimes::new().set_modified(at)).unwrap();
 }

@@ -109,8 +109,10 @@ fn quiet_silences_notes_and_not_errors() {
         assert_eq!(stderr("--quiet"), "", "{words}");
     }
     let output = sinew(root.path(), "track arm nowhere --out run --quiet --json");
-    assert!(output.status.code() == Some(1) && output.stdout.is_empty());
-    assert!(String::from_utf8_lossy(&output.stderr).starts_with("error: "));
+    assert!(output.status.code() == Some(66) && output.stdout.is_empty());
+    let error: serde_json::Value = serde_json::from_slice(&output.stderr).unwrap();
+    assert_eq!((&error["error"]["kind"], &error["error"]["exit_status"]), (&"no-input".into(), &66.into()));
+    assert!(error["error"]["message"].as_str().unwrap().contains("nowhere"));
 }
 
 /// What a command prints on a terminal, both streams together, by util-linux' `script`.

@@ -27,7 +27,7 @@ fn a_valid_scene_and_its_run_have_no_problem_and_a_cut_one_has() {
     }
     fs::remove_file(run.join("track.csv")).unwrap();
     let output = sinew(&["doctor", paths[0], "--json"]);
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(65));
     let json: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!(json[0]["findings"][0]["severity"], "problem");
     assert!(json[0]["findings"][0]["text"].as_str().unwrap().starts_with("track.csv is not there"));
@@ -55,7 +55,7 @@ fn shipped_models_are_taken_and_typing_errors_are_reported() {
     let output = sinew(&["doctor", model.to_str().unwrap()]);
     assert!(output.status.success() && stdout(&output).contains("motion model"), "{}", stdout(&output));
     let output = sinew(&["doctor", "no/such/folder"]);
-    assert!(output.status.code() == Some(1) && stdout(&output).contains("no such file or folder"));
+    assert!(output.status.code() == Some(65) && stdout(&output).contains("no such file or folder"));
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use image::{Rgb, RgbImage};
 use sinew::config::Config;
 use sinew::track::{Event, SideChoice, TrackOptions, TrackRun};
-use sinew_tests::{files_below, sinew_command};
+use sinew_tests::{files_below, modified, set_modified, sinew_command};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -176,12 +176,21 @@ fn a_run_begun_otherwise_is_refused_by_what_differs() {
     fs::write(&state, &kept).unwrap();
 
     fs::rename(scene.input().join("5.png"), scene.input().join("5b.png")).unwrap();
-    refused(&[], &["number 5 was 5.png and is 5b.png", anew]);
+    refused(&[], &["number 5 was 5.png (", "and is 5b.png (", anew]);
     fs::rename(scene.input().join("5b.png"), scene.input().join("5.png")).unwrap();
-    let image = fs::read(scene.input().join("8.png")).unwrap();
-    fs::copy(scene.input().join("0.png"), scene.input().join("8.png")).unwrap();
+    let path = scene.input().join("8.png");
+    let (mut image, changed) = (fs::read(&path).unwrap(), modified(&path));
+    fs::write(&path, &image).unwrap();
+    refused(&[], &["number 8 was 8.png", "changed", anew]);
+    // The same size and time: the pixels of the last finished frame are compared.
+    let middle = image.len() / 2;
+    image[middle] ^= 1;
+    fs::write(&path, &image).unwrap();
+    set_modified(&path, changed);
     refused(&[], &["`8.png` has changed", anew]);
-    fs::write(scene.input().join("8.png"), image).unwrap();
+    image[middle] ^= 1;
+    fs::write(&path, image).unwrap();
+    set_modified(&path, changed);
 
     fs::write(scene.out("run").join("track.csv"), "frame\n").unwrap();
     let (good, message) = scene.command("run", &["--resume"]);
@@ -197,7 +206,7 @@ fn without_a_broken_run_there_is_nothing_to_resume() {
         let (good, message) = scene.command("run", &["--resume"]);
         assert!(!good && message.contains(part) && message.contains("leave --resume out"), "{message}");
     };
-    refused("holds no run that Ctrl-C ended");
+    refused("holds no unfinished run");
     assert!(!scene.out("run").exists());
     scene.begin("run", 4);
     assert!(has_state(&scene.out("run")));

@@ -4,7 +4,7 @@
 use sinew::body::BodyPart;
 use sinew::body::run::{BodyEvent, BodyTrackOptions, BodyTrackRun};
 use sinew::body::tracking::{BodyModelKind, BodyTuning};
-use sinew_tests::{files_below, sinew_command};
+use sinew_tests::{files_below, modified, set_modified, sinew_command};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -168,7 +168,7 @@ fn a_run_begun_otherwise_is_refused_by_what_differs() {
     let scene = Scene::new();
     let anew = "leave --resume out";
     let (good, message) = scene.command(&["--resume"]);
-    assert!(!good && message.contains("holds no run that Ctrl-C ended") && message.contains(anew), "{message}");
+    assert!(!good && message.contains("holds no unfinished run") && message.contains(anew), "{message}");
     assert!(!scene.path("run").exists());
     let options = scene.options(BodyModelKind::Stick, false);
     break_off(BodyTrackRun::prepare(options, &scene.path("run")).unwrap(), 5);
@@ -184,11 +184,14 @@ fn a_run_begun_otherwise_is_refused_by_what_differs() {
     refused(&["--pictures"], &["pictures = false, not true", anew]);
     let changed = |name: &str, change: fn(&Path), parts: &[&str]| {
         let path = scene.path(name);
-        let kept = fs::read(&path).ok();
+        let kept = fs::read(&path).ok().map(|bytes| (bytes, modified(&path)));
         change(&path);
         refused(&[], parts);
         match kept {
-            Some(bytes) => fs::write(path, bytes).unwrap(),
+            Some((bytes, changed)) => {
+                fs::write(&path, bytes).unwrap();
+                set_modified(&path, changed);
+            }
             None => fs::remove_file(path).unwrap(),
         }
     };
@@ -202,9 +205,9 @@ fn a_run_begun_otherwise_is_refused_by_what_differs() {
     changed(
         "in/points/000006.ply",
         |path| fs::write(path, "").unwrap(),
-        &["number 6 was 000007.ply and is 000006.ply", anew],
+        &["number 6 was 000007.ply (", "and is 000006.ply (", anew],
     );
-    changed("in/points/000004.ply", append, &["000004.ply` has changed since the run was ended", anew]);
+    changed("in/points/000004.ply", append, &["number 4 was 000004.ply (", anew]);
     append(&scene.path("run/track.csv"));
     let (good, message) = scene.command(&["--resume"]);
     assert!(!good && message.contains("track.csv` has changed since the run was ended"), "{message}");

@@ -153,7 +153,7 @@ fn a_run_begun_otherwise_is_refused_by_what_differs() {
         let (good, message) = walker.command("run", &[more, &["--resume"]].concat());
         assert!(!good && parts.iter().all(|part| message.contains(part)), "{more:?}: {message}");
     };
-    refused(&model, &["holds no run that Ctrl-C ended", "est_resume.json", anew]);
+    refused(&model, &["holds no unfinished run", "est_resume.json", anew]);
     walker.break_off("run", &model, 33);
     let estimates = fs::read(walker.path("run/est.csv")).unwrap();
     refused(&["--model", "running"], &["model = [\"walking\"], not [\"running\"]", anew]);

@@ -101,5 +101,5 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         "notes": found.notes,
         "out": args.out,
     });
-    console.answer(&report, &json)
+    console.answer_beside(&args.out, &report, &json)
 }

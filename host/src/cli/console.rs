@@ -3,11 +3,14 @@
 
 use super::interrupted;
 use super::stdout::write_all;
+use crate::output::Target;
 use anyhow::Result;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
+use std::borrow::Cow;
 use std::fmt::Display;
+use std::path::Path;
 use std::time::Duration;
 
 /// How often a spinner turns.
@@ -35,7 +38,7 @@ impl Console {
     /// given.
     pub fn note(&self, text: impl Display) {
         if !self.quiet {
-            eprintln!("{text}");
+            eprintln!("{}", printable(&text.to_string()));
         }
     }
 
@@ -50,7 +53,20 @@ impl Console {
             line.push(b'\n');
             return write_all(&line);
         }
-        write_all(text.as_bytes())
+        write_all(printable(text).as_bytes())
+    }
+
+    /// As [`Console::answer`], on standard error where results went to standard output.
+    ///
+    /// # Errors
+    /// As [`Console::answer`].
+    pub fn answer_beside(&self, out: &Path, text: &str, json: &impl Serialize) -> Result<()> {
+        if Target::of(out)? != Target::Standard {
+            return self.answer(text, json);
+        }
+        let line = if self.json { serde_json::to_string(json)? } else { text.trim_end().to_owned() };
+        self.note(line);
+        Ok(())
     }
 
     /// A progress bar on standard error; hidden where that is no terminal, and with `--quiet`.
@@ -65,7 +81,7 @@ impl Console {
         Ok(bar)
     }
 
-    /// Passes on how a run ended, and says where Ctrl-C ended it that it can be gone on with.
+    /// Passes on how a run ended, and says where a signal ended it that it can be gone on with.
     ///
     /// # Errors
     /// That of the run.
@@ -90,5 +106,30 @@ impl Console {
         let done = work();
         spinner.finish_and_clear();
         done
+    }
+}
+
+/// `text` with its control characters, but for line breaks and tabs, written as `\u{1b}`: names of
+/// files cannot move the cursor or change the title of a terminal.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    let is_harmful = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');
+    if !text.contains(is_harmful) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len());
+    for letter in text.chars() {
+        if is_harmful(letter) { shown.extend(letter.escape_unicode()) } else { shown.push(letter) }
+    }
+    Cow::Owned(shown)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::printable;
+
+    #[test]
+    fn control_characters_are_written_out() {
+        assert_eq!(printable("a `b.png`\n\tok é"), "a `b.png`\n\tok é");
+        assert_eq!(printable("\u{1b}]0;x\u{7}\r\u{9b}1m"), "\\u{1b}]0;x\\u{7}\\u{d}\\u{9b}1m");
     }
 }

@@ -75,7 +75,7 @@ pub fn run(args: &CutArgs, console: &Console) -> Result<()> {
     }
     cuts::write(&args.out, &all)?;
     writeln!(report, "wrote {}", args.out.display())?;
-    console.answer(&report, &json!({ "tables": tables, "left_out": left_out, "out": args.out }))
+    console.answer_beside(&args.out, &report, &json!({ "tables": tables, "left_out": left_out, "out": args.out }))
 }
 
 /// How a list at `list` names `table`: relative where the table lies in the list's folder or below

@@ -2,7 +2,7 @@
 
 use super::console::Console;
 use crate::doctor::{Diagnosis, Severity, examine};
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -29,7 +29,10 @@ pub fn run(args: &DoctorArgs, console: &Console) -> Result<()> {
     let ill = all.iter().filter(|diagnosis| diagnosis.worst() == Severity::Problem).count();
     match ill {
         0 => Ok(()),
-        _ => bail!("{ill} of {} have a problem; the lines above tell the remedy", all.len()),
+        _ => {
+            let text = format!("{ill} of {} have a problem; the lines above tell the remedy", all.len());
+            Err(crate::Error::Invalid(text).into())
+        }
     }
 }
 

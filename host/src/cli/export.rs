@@ -70,7 +70,7 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<()> {
         "bytes": bytes.len(),
         "out": args.out,
     });
-    console.answer(&report, &json)
+    console.answer_beside(&args.out, &report, &json)
 }
 
 /// The file's name without its ending, which has to be a name in C.

@@ -6,9 +6,9 @@
 
 pub mod angles;
 pub mod blobs;
+pub mod checkpoint_args;
 pub mod completions;
 pub mod console;
-pub mod ctrl_c;
 pub mod cut;
 pub mod demo;
 pub mod doctor;
@@ -19,6 +19,7 @@ pub mod record;
 pub mod report;
 mod scene_args;
 pub mod segment;
+pub mod signals;
 pub mod simulate;
 pub mod simulate_cyclic;
 pub mod simulate_stereo;
@@ -34,10 +35,11 @@ pub mod train_skin;
 pub mod variant_arg;
 pub mod viewer_args;
 
-use crate::error::Error as LibraryError;
+use crate::error::{Error as LibraryError, ErrorKind};
 use crate::resume::Interrupted;
 use clap::{Parser, Subcommand};
-use console::Console;
+use console::{Console, printable};
+use serde_json::json;
 use std::process::ExitCode;
 
 /// Estimates how a human body moves, from a camera.
@@ -126,26 +128,40 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
     }
 }
 
-/// How far a command came that Ctrl-C ended; none if it failed otherwise.
+/// How far a command came that a signal ended; none if it failed otherwise.
 #[must_use]
 pub fn interrupted(error: &anyhow::Error) -> Option<&Interrupted> {
     error.downcast_ref::<Interrupted>().or_else(|| error.downcast_ref::<LibraryError>()?.interrupted())
 }
 
-/// How the program ends: an error is printed on standard error.
-pub fn exit_code(ended: anyhow::Result<()>) -> ExitCode {
-    match ended {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) if interrupted(&error).is_some() => {
-            eprintln!("{error}");
-            // 128 + SIGINT, what shells expect of a program that Ctrl-C ended.
-            ExitCode::from(130)
-        }
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::FAILURE
-        }
+/// How the program ends: an error is printed on standard error, and with `--json` as one line of
+/// JSON.
+pub fn exit_code(ended: anyhow::Result<()>, console: &Console) -> ExitCode {
+    let Err(error) = ended else { return ExitCode::SUCCESS };
+    let kind = kind_of(&error);
+    let status = if kind == ErrorKind::Interrupted { signals::interrupted_status() } else { kind.exit_status() };
+    let text = format!("{error:#}");
+    if console.json {
+        let json = json!({ "error": { "kind": kind.name(), "exit_status": status, "message": text } });
+        eprintln!("{json}");
+    } else if kind == ErrorKind::Interrupted {
+        eprintln!("{}", printable(&text));
+    } else {
+        eprintln!("error: {}", printable(&text));
     }
+    ExitCode::from(status)
+}
+
+/// What went wrong. The command's own checks are of its options.
+fn kind_of(error: &anyhow::Error) -> ErrorKind {
+    error.chain().find_map(ErrorKind::of).unwrap_or(ErrorKind::Usage)
+}
+
+/// How the program ends on a command line that cannot be parsed; `--help` and `--version` are none.
+pub fn exit_code_of_usage(error: &clap::Error) -> ExitCode {
+    // A closed standard output is no reason to fail.
+    let _ = error.print();
+    if error.use_stderr() { ExitCode::from(ErrorKind::Usage.exit_status()) } else { ExitCode::SUCCESS }
 }
 
 #[cfg(test)]

@@ -37,5 +37,5 @@ pub fn run(args: &RecordArgs, console: &Console) -> Result<()> {
     write_atomically(&args.out, |writer| Ok(writer.write_all(&recorded.bytes)?))?;
     let bytes = recorded.bytes.len();
     let text = format!("{}: {bytes} bytes in `{}`\n", recorded.what, args.out.display());
-    console.answer(&text, &json!({ "what": recorded.what, "bytes": bytes, "out": args.out }))
+    console.answer_beside(&args.out, &text, &json!({ "what": recorded.what, "bytes": bytes, "out": args.out }))
 }

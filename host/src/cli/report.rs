@@ -60,5 +60,5 @@ pub fn run(args: &ReportArgs, console: &Console) -> Result<()> {
         }));
     }
     text.push_str(&format!("page of {:.1} MB: {}\n", bytes as f64 / 1.0e6, args.out.display()));
-    console.answer(&text, &json!({ "runs": runs, "bytes": bytes, "out": args.out }))
+    console.answer_beside(&args.out, &text, &json!({ "runs": runs, "bytes": bytes, "out": args.out }))
 }

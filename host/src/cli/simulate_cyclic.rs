@@ -65,5 +65,5 @@ pub fn run(args: &SimulateCyclicArgs, console: &Console) -> Result<()> {
         "cycle_frames": person.cycle_frames(),
         "out": args.out,
     });
-    console.answer(&text, &json)
+    console.answer_beside(&args.out, &text, &json)
 }

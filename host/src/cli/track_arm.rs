@@ -1,7 +1,8 @@
 //! `sinew track arm`: shoulder, elbow and hand for every frame of a folder.
 
+use super::checkpoint_args::CheckpointArgs;
 use super::console::Console;
-use super::ctrl_c::stop_flag;
+use super::signals::stop_flag;
 use super::skin_args::SkinArgs;
 use super::variant_arg::variant_parser;
 use super::viewer_args::ViewerArgs;
@@ -72,9 +73,13 @@ pub struct TrackArmArgs {
     /// missing.
     #[arg(long)]
     pub strict: bool,
-    /// Go on with the run in --out that Ctrl-C ended; the other options have to be the same.
+    /// Go on with the run in --out that did not reach its end; the other options have to be the
+    /// same.
     #[arg(long)]
     pub resume: bool,
+    /// When the state is saved.
+    #[command(flatten)]
+    pub checkpoint: CheckpointArgs,
     /// The run for a viewer.
     #[command(flatten)]
     pub viewer: ViewerArgs,
@@ -121,6 +126,7 @@ pub fn run(args: &TrackArmArgs, console: &Console) -> Result<()> {
         config: effective_config(args)?,
     };
     let run = if args.resume { TrackRun::resume(options, out)? } else { TrackRun::prepare(options, out)? };
+    let run = run.checkpoint_every(args.checkpoint.interval());
     let report = console.resumable(run_with_progress(run, console))?;
     let report = report.report;
     let viewer = args.viewer.write(out, console)?;
@@ -137,7 +143,7 @@ fn effective_config(args: &TrackArmArgs) -> Result<Config> {
     Ok(config)
 }
 
-/// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the
+/// Tracks with a progress bar on standard error, if that is a terminal; a signal stops it after the
 /// current frame.
 ///
 /// # Errors

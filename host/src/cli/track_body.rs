@@ -1,7 +1,8 @@
 //! `sinew track body`: a whole body from point clouds.
 
+use super::checkpoint_args::CheckpointArgs;
 use super::console::Console;
-use super::ctrl_c::stop_flag;
+use super::signals::stop_flag;
 use super::viewer_args::ViewerArgs;
 use crate::body::BodyPart;
 use crate::body::run::{BodyEvent, BodyRunReport, BodyTrackOptions, BodyTrackRun, tuning_file};
@@ -82,10 +83,13 @@ pub struct TrackBodyArgs {
     /// points.
     #[arg(long)]
     pub strict: bool,
-    /// Go on with the run in --out that Ctrl-C ended; the other options have to be the same, but
-    /// for --threads.
+    /// Go on with the run in --out that did not reach its end; the other options have to be the
+    /// same, but for --threads.
     #[arg(long)]
     pub resume: bool,
+    /// When the state is saved.
+    #[command(flatten)]
+    pub checkpoint: CheckpointArgs,
     /// The run for a viewer.
     #[command(flatten)]
     pub viewer: ViewerArgs,
@@ -120,6 +124,7 @@ pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
         tuning: args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?,
     };
     let run = if args.resume { BodyTrackRun::resume(options, out)? } else { BodyTrackRun::prepare(options, out)? };
+    let run = run.checkpoint_every(args.checkpoint.interval());
     let report = console.resumable(run_with_progress(run, console))?;
     let viewer = args.viewer.write(out, console)?;
     let names = contents(&report);
@@ -127,7 +132,7 @@ pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
     console.answer(&text, &json!({ "out": out, "contents": names, "viewer": args.viewer.rerun, "run": report }))
 }
 
-/// Tracks with a progress bar on standard error, if that is a terminal; Ctrl-C stops after the
+/// Tracks with a progress bar on standard error, if that is a terminal; a signal stops it after the
 /// current frame.
 fn run_with_progress(run: BodyTrackRun, console: &Console) -> Result<BodyRunReport> {
     let bar = console.bar(run.frame_count() as u64, "{wide_bar} frame {pos} of {len}, {per_sec}")?;

@@ -1,7 +1,8 @@
 //! `sinew track cyclic`: angles, phase and cadence from an angle table.
 
+use super::checkpoint_args::CheckpointArgs;
 use super::console::Console;
-use super::ctrl_c::stop_flag;
+use super::signals::stop_flag;
 use super::viewer_args::ViewerArgs;
 use crate::cyclic::model_file::MODEL_VALUE;
 use crate::cyclic::pictures::{OverlayFrames, animation};
@@ -11,11 +12,12 @@ use crate::cyclic::report::{Origin, OverlayOrigin, Report};
 use crate::cyclic::tracking::table::{self, MotionCells, NO_MOTION};
 use crate::cyclic::tracking::{FilterName, NamedMotion, StartName, TableRun, Tracked, TrackingOptions, Updates};
 use crate::cyclic::{AngleTable, CyclicModel};
-use crate::output::{OutputDir, check_writable_file};
-use crate::resume::{Begun, Interrupted, Left, ResumeFile, file_crc32, text_crc32};
-use anyhow::{Result, ensure};
+use crate::output::{OutputDir, OutputLock, Target, check_writable_file};
+use crate::resume::{Begun, Checkpoints, Interrupted, Left, ResumeFile, file_crc32, text_crc32};
+use anyhow::{Result, bail, ensure};
 use clap::Args;
 use serde_json::json;
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -86,10 +88,13 @@ pub struct TrackCyclicArgs {
     /// Height of the person, metres: the scale of the report's joints.trc.
     #[arg(long, value_name = "METRES", default_value_t = 1.75)]
     pub height: f64,
-    /// Go on with the run to --out that Ctrl-C ended; what decides the estimates has to be the
-    /// same.
+    /// Go on with the run to --out that did not reach its end; what decides the estimates has to be
+    /// the same.
     #[arg(long)]
     pub resume: bool,
+    /// When the state is saved.
+    #[command(flatten)]
+    pub checkpoint: CheckpointArgs,
     /// The run for a viewer.
     #[command(flatten)]
     pub viewer: ViewerArgs,
@@ -107,7 +112,7 @@ pub fn run(args: &TrackCyclicArgs, console: &Console) -> Result<()> {
     console.resumable(run_until(args, console, stop_flag()?, &mut |_| ()))
 }
 
-/// As [`run`], ended by `stop` in the place of Ctrl-C; `notify` gets the number of finished rows.
+/// As [`run`], ended by `stop` in the place of a signal; `notify` gets the number of finished rows.
 ///
 /// # Errors
 /// As [`run`].
@@ -121,8 +126,18 @@ pub fn run_until(
     options.check()?;
     check(args)?;
     let frames = args.overlay.as_deref().map(OverlayFrames::open).transpose()?;
-    let file = ResumeFile::beside(&args.out, COMMAND);
-    let left: Option<Left<Option<String>>> = args.resume.then(|| file.read(&args.out)).transpose()?;
+    let file = match Target::of(&args.out)? {
+        Target::File(path) => {
+            Some((ResumeFile::beside(&path, COMMAND), OutputLock::of_table(&path, "sinew track cyclic")?))
+        }
+        Target::Fifo(_) | Target::Standard => None,
+    };
+    let file = file.as_ref().map(|(file, _)| file);
+    let left: Option<Left<Option<String>>> = match (args.resume, file) {
+        (false, _) => None,
+        (true, Some(file)) => Some(file.read(&args.out)?),
+        (true, None) => bail!("--resume goes on with a file; give --out one"),
+    };
     let output = args.report.as_deref().map(OutputDir::create).transpose()?;
     let models = args.model.iter().map(|name| CyclicModel::from_option(name)).collect::<crate::Result<Vec<_>>>()?;
     let angles = AngleTable::read(&args.table)?;
@@ -135,13 +150,21 @@ pub fn run_until(
     }
     let overlay = frames.as_ref().map(|frames| with_output(frames, &angles, &args.out)).transpose()?;
     let start = Instant::now();
+    let seconds_before = left.map_or(0.0, |left| left.seconds);
+    let save = |run: &mut TableRun<'_>| -> crate::Result<()> {
+        let Some(file) = file else { return Ok(()) };
+        let seconds = seconds_before + start.elapsed().as_secs_f64();
+        file.put(&Left::new(begun.clone(), run.finished(), seconds, None, run.saved()?))
+    };
     let shown = Shown { args, angles: &angles, options: &options, output, overlay };
-    let ended =
-        follow(&mut run, stop, notify, console).and_then(|is_complete| shown.write(&run, is_complete, stop, console));
-    let seconds = left.map_or(0.0, |left| left.seconds) + start.elapsed().as_secs_f64();
-    let is_interrupted = ended.as_ref().is_err_and(|error| super::interrupted(error).is_some());
-    let left = if is_interrupted { Some(Left::new(begun, run.finished(), seconds, None, run.saved()?)) } else { None };
-    file.put(left.as_ref())?;
+    let ended = follow(&mut run, stop, notify, args, console, &save)
+        .and_then(|is_complete| shown.write(&run, is_complete, stop, console));
+    match (&ended, file) {
+        (Ok(()), Some(file)) => file.remove()?,
+        // The error says more than one that comes of saving.
+        (Err(_), _) => drop(save(&mut run)),
+        (Ok(()), None) => (),
+    }
     ended
 }
 
@@ -169,16 +192,35 @@ fn begun(args: &TrackCyclicArgs, models: &[CyclicModel]) -> Result<Begun> {
     }))
 }
 
-/// Tracks with a progress bar on standard error, if that is a terminal, until the last row or
-/// Ctrl-C; whether it was the last row.
-fn follow(run: &mut TableRun<'_>, stop: &AtomicBool, notify: &mut dyn FnMut(usize), console: &Console) -> Result<bool> {
+/// Tracks with a progress bar on standard error, if that is a terminal, until the last row or a
+/// signal; whether it was the last row.
+fn follow(
+    run: &mut TableRun<'_>,
+    stop: &AtomicBool,
+    notify: &mut dyn FnMut(usize),
+    args: &TrackCyclicArgs,
+    console: &Console,
+    save: &dyn Fn(&mut TableRun<'_>) -> crate::Result<()>,
+) -> Result<bool> {
     let bar = console.bar(run.rows() as u64, "{wide_bar} row {pos} of {len}, {per_sec}")?;
     bar.set_position(run.finished() as u64);
     bar.reset_eta();
-    let ended = run.run(stop, &mut |finished| {
-        bar.set_position(finished as u64);
-        notify(finished);
-    });
+    let is_stopped = || stop.load(Ordering::Relaxed);
+    let checkpoints = RefCell::new(Checkpoints::every(args.checkpoint.interval()));
+    let mut all = || -> crate::Result<bool> {
+        loop {
+            let pause = || is_stopped() || checkpoints.borrow_mut().is_due();
+            let is_complete = run.run(&pause, &mut |finished| {
+                bar.set_position(finished as u64);
+                notify(finished);
+            })?;
+            if is_complete || is_stopped() {
+                return Ok(is_complete);
+            }
+            save(run)?;
+        }
+    };
+    let ended = all();
     bar.finish_and_clear();
     Ok(ended?)
 }
@@ -230,7 +272,7 @@ impl Shown<'_> {
             "animation": args.animation,
             "viewer": args.viewer.rerun,
         });
-        console.answer(&text, &json)
+        console.answer_beside(&args.out, &text, &json)
     }
 
     fn write_report(

@@ -66,5 +66,5 @@ pub fn run(args: &TrainCyclicArgs, console: &Console) -> Result<()> {
         "trained_on": on,
         "out": args.out,
     });
-    console.answer(&report, &json)
+    console.answer_beside(&args.out, &report, &json)
 }

@@ -61,7 +61,11 @@ pub fn run(args: &TrainSkinArgs, console: &Console) -> Result<()> {
     let json = model_file::to_json(&model)?;
     write_atomically(&args.out, |writer| Ok(writer.write_all(json.as_bytes())?))?;
     let report = summary(&model) + &format!("wrote {}\n", args.out.display());
-    console.answer(&report, &json!({ "kind": model.kind(), "trained_on": model.trained_on, "out": args.out }))
+    console.answer_beside(
+        &args.out,
+        &report,
+        &json!({ "kind": model.kind(), "trained_on": model.trained_on, "out": args.out }),
+    )
 }
 
 fn read_pairs(args: &TrainSkinArgs, console: &Console) -> Result<TrainingSet> {

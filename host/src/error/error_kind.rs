@@ -1,41 +1,137 @@
-//! Whose fault an error is, as far as its variant says.
+//! What went wrong, as far as a caller acts on it.
 
 use super::Error;
-use crate::cyclic::CyclicError;
+use sinew_formats::images::InputError;
+use std::error::Error as StdError;
+use std::io;
 
-/// Whose fault an error is.
+/// What went wrong. The command ends with the number of `sysexits.h` that stands for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// What was to be read is missing or broken.
-    Input,
-    /// Results cannot be written.
-    Output,
     /// An option has a value that it cannot have, or does not go with another.
-    Options,
-    /// Ctrl-C ended the run.
+    Usage,
+    /// What was read breaks a rule.
+    Data,
+    /// What was to be read is not there.
+    NoInput,
+    /// A file or folder of results cannot be created.
+    CannotCreate,
+    /// The operating system failed to read or write.
+    Io,
+    /// Another process is at it; the same command may work later.
+    TryAgain,
+    /// A signal ended the run.
     Interrupted,
 }
 
-impl Error {
-    /// Whose fault the error is; none where that is not known.
+impl ErrorKind {
+    /// The kind of an error of any type, by what stands at its bottom.
     #[must_use]
-    pub fn kind(&self) -> Option<ErrorKind> {
+    pub fn of(error: &(dyn StdError + 'static)) -> Option<Self> {
+        let mut cause = Some(error);
+        while let Some(error) = cause {
+            if let Some(io) = error.downcast_ref::<io::Error>() {
+                return Some(Self::of_reading(io));
+            }
+            if let Some(known) = error.downcast_ref::<Error>() {
+                return Some(known.kind());
+            }
+            cause = error.source();
+        }
+        None
+    }
+
+    fn of_reading(error: &io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory | io::ErrorKind::IsADirectory => Self::NoInput,
+            // What was read is too short, or no UTF-8.
+            io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidInput => Self::Data,
+            io::ErrorKind::PermissionDenied => Self::NoInput,
+            _ => Self::Io,
+        }
+    }
+
+    fn of_writing(error: io::ErrorKind) -> Self {
+        match error {
+            io::ErrorKind::NotFound
+            | io::ErrorKind::NotADirectory
+            | io::ErrorKind::IsADirectory
+            | io::ErrorKind::AlreadyExists
+            | io::ErrorKind::PermissionDenied
+            | io::ErrorKind::ReadOnlyFilesystem => Self::CannotCreate,
+            _ => Self::Io,
+        }
+    }
+
+    /// The exit status that `sysexits.h` has for this; of a run that a signal ended that of SIGINT.
+    #[must_use]
+    pub fn exit_status(self) -> u8 {
         match self {
-            Self::Interrupted(_) => Some(ErrorKind::Interrupted),
-            Self::Option(_) => Some(ErrorKind::Options),
-            Self::Motion(_)
-            | Self::Cloud(_)
-            | Self::Video(_)
-            | Self::Input(_)
-            | Self::ImageFile(_)
-            | Self::Keypoints(_) => Some(ErrorKind::Input),
-            Self::Cyclic(CyclicError::Parameter { .. }) => None,
-            Self::Cyclic(_) => Some(ErrorKind::Input),
+            Self::Usage => 64,
+            Self::Data => 65,
+            Self::NoInput => 66,
+            Self::CannotCreate => 73,
+            Self::Io => 74,
+            Self::TryAgain => 75,
+            Self::Interrupted => 130,
+        }
+    }
+
+    /// One word for scripts.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Usage => "usage",
+            Self::Data => "data",
+            Self::NoInput => "no-input",
+            Self::CannotCreate => "cannot-create",
+            Self::Io => "io",
+            Self::TryAgain => "try-again",
+            Self::Interrupted => "interrupted",
+        }
+    }
+}
+
+impl Error {
+    /// What went wrong. A rule that is broken in a way that no variant tells counts as
+    /// [`ErrorKind::Data`].
+    #[must_use]
+    pub fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Interrupted(_) => ErrorKind::Interrupted,
+            Self::Option(_) => ErrorKind::Usage,
+            Self::InUse { .. } => ErrorKind::TryAgain,
             // What fills a file may fail by itself.
-            Self::Write { source, .. } => source.kind().or(Some(ErrorKind::Output)),
+            Self::Write { .. } => match self.innermost() {
+                Self::Io(error) => ErrorKind::of_writing(error.kind()),
+                Self::Csv(error) => match error.kind() {
+                    csv::ErrorKind::Io(error) => ErrorKind::of_writing(error.kind()),
+                    _ => ErrorKind::Io,
+                },
+                Self::Json(error) => error.io_error_kind().map_or(ErrorKind::Data, ErrorKind::of_writing),
+                other => other.kind(),
+            },
+            Self::Output(_) => ErrorKind::CannotCreate,
+            Self::Input(InputError::Missing(_)) => ErrorKind::NoInput,
             Self::Context { source, .. } | Self::Unfinished { error: source, .. } => source.kind(),
-            _ => None,
+            other => match StdError::source(other) {
+                Some(source) => ErrorKind::of(source).unwrap_or(ErrorKind::Data),
+                None => match other {
+                    Self::Io(error) => ErrorKind::of_reading(error),
+                    _ => ErrorKind::Data,
+                },
+            },
+        }
+    }
+
+    /// Whether results cannot be written.
+    #[must_use]
+    pub fn is_output(&self) -> bool {
+        match self {
+            Self::Write { .. } | Self::Output(_) => true,
+            Self::Context { source, .. } | Self::Unfinished { error: source, .. } => source.is_output(),
+            _ => false,
         }
     }
 
@@ -50,7 +146,7 @@ impl Error {
         }
     }
 
-    /// Who was interrupted, if Ctrl-C ended the run.
+    /// Who was interrupted, if a signal ended the run.
     #[must_use]
     pub fn interrupted(&self) -> Option<&crate::resume::Interrupted> {
         match self.innermost() {

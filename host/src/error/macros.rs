@@ -27,4 +27,11 @@ macro_rules! ensure_option {
     };
 }
 
-pub(crate) use {bail, ensure, ensure_option};
+/// Returns [`Error::Output`](super::Error::Output) with a text.
+macro_rules! bail_output {
+    ($($text:tt)+) => {
+        return Err($crate::error::Error::Output(format!($($text)+)))
+    };
+}
+
+pub(crate) use {bail, bail_output, ensure, ensure_option};

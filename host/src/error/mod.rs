@@ -9,7 +9,7 @@ mod tests;
 
 pub(crate) use context::{Context, WriteContext};
 pub use error_kind::ErrorKind;
-pub(crate) use macros::{bail, ensure, ensure_option};
+pub(crate) use macros::{bail, bail_output, ensure, ensure_option};
 
 use crate::cyclic::CyclicError;
 use crate::keypoints::error::KeypointError;
@@ -24,6 +24,7 @@ use sinew_formats::motion::MotionError;
 use sinew_formats::motion::export::ExportError;
 use sinew_record::RecordError;
 use std::fmt::Display;
+use std::path::PathBuf;
 
 /// What a function of the library returns.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -40,6 +41,9 @@ pub enum Error {
     /// An option has a value that it cannot have, or does not go with another.
     #[error("{0}")]
     Option(String),
+    /// An output is nothing that results can be written to.
+    #[error("{0}")]
+    Output(String),
     /// A parameter of the core breaks its rule.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
@@ -112,7 +116,15 @@ pub enum Error {
     #[cfg(feature = "rerun")]
     #[error(transparent)]
     ViewerFile(#[from] re_log_encoding::EncodeError),
-    /// Ctrl-C ended the run.
+    /// Another process writes the same results.
+    #[error("`{}` is in use by {owner}; wait until it ends, or give another --out", .output.display())]
+    InUse {
+        /// The folder or file.
+        output: PathBuf,
+        /// Command and number of the process.
+        owner: String,
+    },
+    /// SIGINT, SIGTERM or SIGHUP ended the run.
     #[error(transparent)]
     Interrupted(#[from] Interrupted),
     /// A file or folder of results cannot be written.

@@ -47,14 +47,14 @@ fn kinds_can_be_told_apart() {
     std::fs::write(&file, b"").unwrap();
     let unwritable = OutputDir::create(&file.join("inside")).unwrap_err();
     assert!(matches!(unwritable.innermost(), Error::Io(_)), "{unwritable:?}");
-    assert_eq!(unwritable.kind(), Some(ErrorKind::Output));
+    assert_eq!((unwritable.kind(), unwritable.is_output()), (ErrorKind::CannotCreate, true));
     let bad = Error::from(positive("rate_hz", -1.0).unwrap_err());
     assert!(matches!(bad, Error::Parameter(_)));
-    assert_eq!(bad.kind(), None);
+    assert_eq!(bad.kind(), ErrorKind::Data);
     let slow = crate::body::run::options::check_rate("--rate", 0.0).unwrap_err();
-    assert_eq!(slow.kind(), Some(ErrorKind::Options));
+    assert_eq!(slow.kind(), ErrorKind::Usage);
     let stopped = Err::<(), _>(interrupted()).writing(|| "`cells` cannot be written").unwrap_err();
-    assert_eq!((stopped.kind(), stopped.interrupted()), (Some(ErrorKind::Interrupted), Some(&interrupted())));
+    assert_eq!((stopped.kind(), stopped.interrupted()), (ErrorKind::Interrupted, Some(&interrupted())));
 }
 
 #[test]

@@ -1,13 +1,10 @@
-//! The error with which a run ends that Ctrl-C stopped.
+//! The error with which a run ends that a signal stopped.
 
 use std::path::PathBuf;
 
-/// What to do where a run cannot be gone on with.
-pub const REMEDY: &str = "leave --resume out to begin anew";
-
-/// Ctrl-C ended the run; what was finished is written.
+/// SIGINT (Ctrl-C), SIGTERM or SIGHUP ended the run; what was finished is written.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("stopped by Ctrl-C after {finished}{} {unit}; their results are in `{}`", of(.all), .out.display())]
+#[error("interrupted after {finished}{} {unit}; their results are in `{}`", of(.all), .out.display())]
 pub struct Interrupted {
     /// How many were finished.
     pub finished: usize,

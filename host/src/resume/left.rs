@@ -1,9 +1,9 @@
-//! What a run that Ctrl-C ended leaves: how far it got and its state, in a file beside its results.
+//! What a run leaves that did not reach its end: how far it got and its state, in a file beside its
+//! results.
 
-use super::begun::copy_with_crc32;
-use super::{Begun, REMEDY, file_crc32};
+use super::{Begun, REMEDY};
 use crate::error::{Context, Result, WriteContext, bail, ensure};
-use crate::output::{OutputDir, PendingFile, write_atomically};
+use crate::output::{Mark, OutputDir, PendingFile, write_atomically};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -25,27 +25,23 @@ pub struct Left<S> {
     pub seconds: f64,
     /// CRC-32 of the last finished frame's input; none where it could not be read.
     pub last_crc32: Option<u32>,
-    /// CRC-32 of each table that is written on.
-    tables_crc32: BTreeMap<String, u32>,
+    /// How far each table has grown.
+    tables: BTreeMap<String, Mark>,
     /// The rest.
     pub state: S,
 }
 
 impl<S> Left<S> {
-    /// A run that goes no further; [`Left::with_tables`] says what there is of its tables.
+    /// A run so far; [`Left::with_table`] adds what there is of its tables.
     pub fn new(begun: Begun, finished: usize, seconds: f64, last_crc32: Option<u32>, state: S) -> Self {
-        Self { begun, finished, seconds, last_crc32, tables_crc32: BTreeMap::new(), state }
+        Self { begun, finished, seconds, last_crc32, tables: BTreeMap::new(), state }
     }
 
-    /// Remembers the content of tables that were written into `out`.
-    ///
-    /// # Errors
-    /// One cannot be read.
-    pub fn with_tables(mut self, out: &OutputDir, names: &[&str]) -> Result<Self> {
-        for name in names {
-            self.tables_crc32.insert((*name).to_owned(), file_crc32(&out.join(name))?);
-        }
-        Ok(self)
+    /// Remembers how far the table `name` has grown.
+    #[must_use]
+    pub fn with_table(mut self, name: &str, mark: Mark) -> Self {
+        self.tables.insert(name.to_owned(), mark);
+        self
     }
 
     /// The table `name` of the finished frames, to be written on.
@@ -53,14 +49,8 @@ impl<S> Left<S> {
     /// # Errors
     /// It is no longer as it was left.
     pub fn reopened(&self, name: &str, out: &OutputDir) -> Result<csv::Writer<PendingFile>> {
-        let mut pending = out.begin(name)?;
-        let sum = copy_with_crc32(&out.join(name), &mut pending)?;
-        ensure!(
-            self.tables_crc32.get(name) == Some(&sum),
-            "`{}` has changed since the run was ended; {REMEDY}",
-            out.join(name).display()
-        );
-        Ok(csv::Writer::from_writer(pending))
+        let mark = self.tables.get(name).with_context(|| format!("the run left no `{name}`; {REMEDY}"))?;
+        Ok(csv::Writer::from_writer(PendingFile::reopen(&out.join(name), mark)?))
     }
 
     /// Refuses another input for the last finished frame, `name`, than there was; `crc32` is that
@@ -101,19 +91,24 @@ impl ResumeFile {
         &self.path
     }
 
-    /// Writes what is left; nothing left removes what an earlier run left.
+    /// Writes what is left.
     ///
     /// # Errors
-    /// The file cannot be written or removed.
-    pub fn put<S: Serialize>(&self, left: Option<&Left<S>>) -> Result<()> {
-        match left {
-            Some(left) => write_atomically(&self.path, |writer| Ok(serde_json::to_writer_pretty(writer, left)?)),
-            None => match fs::remove_file(&self.path) {
-                Err(error) if self.path.exists() => {
-                    Err(error).writing(|| format!("`{}` cannot be removed", self.path.display()))
-                }
-                _ => Ok(()),
-            },
+    /// The file cannot be written.
+    pub fn put<S: Serialize>(&self, left: &Left<S>) -> Result<()> {
+        write_atomically(&self.path, |writer| Ok(serde_json::to_writer_pretty(writer, left)?))
+    }
+
+    /// Removes what an earlier run left, if it left something.
+    ///
+    /// # Errors
+    /// The file cannot be removed.
+    pub fn remove(&self) -> Result<()> {
+        match fs::remove_file(&self.path) {
+            Err(error) if self.path.exists() => {
+                Err(error).writing(|| format!("`{}` cannot be removed", self.path.display()))
+            }
+            _ => Ok(()),
         }
     }
 
@@ -129,7 +124,7 @@ impl ResumeFile {
             if report.is_some_and(|report| report["complete"] == true) {
                 bail!("the run in `{}` is complete; {REMEDY}", out.display());
             }
-            bail!("`{}` holds no run that Ctrl-C ended (no `{path}`); {REMEDY}", out.display());
+            bail!("`{}` holds no unfinished run (no `{path}`); {REMEDY}", out.display());
         }
         let text = fs::read_to_string(&self.path).with_context(|| format!("`{path}` cannot be read; {REMEDY}"))?;
         // As a value first: its numbers are parsed exactly.
@@ -157,15 +152,15 @@ mod tests {
         let numbers = vec![0.1, 1.0 / 3.0, f64::MIN_POSITIVE, 6.283_185_307_179_586e-7, -1.0e300];
         let left = Left::new(begun, 3, 0.1 + 0.2, Some(9), numbers.clone());
         let file = ResumeFile::in_folder(folder.path(), "track arm");
-        file.put(Some(&left)).unwrap();
+        file.put(&left).unwrap();
         let back: Left<Vec<f64>> = file.read(folder.path()).unwrap();
         assert_eq!((back.finished, back.seconds.to_bits(), back.last_crc32), (3, (0.1_f64 + 0.2).to_bits(), Some(9)));
         assert_eq!(back.state, numbers);
         let other = ResumeFile::in_folder(folder.path(), "track body");
         let message = other.read::<Vec<f64>>(folder.path()).unwrap_err().to_string();
         assert!(message.contains("left by `sinew track arm`, not by `sinew track body`"), "{message}");
-        file.put::<()>(None).unwrap();
-        file.put::<()>(None).unwrap();
+        file.remove().unwrap();
+        file.remove().unwrap();
         assert!(file.read::<Vec<f64>>(folder.path()).unwrap_err().to_string().contains("holds no run"));
     }
 }

@@ -1,5 +1,5 @@
-//! Going on with a run that Ctrl-C ended: what such a run leaves beside its results, and what it is
-//! compared with when it is taken up.
+//! Going on with a run that did not reach its end: what it leaves beside its results, and what it
+//! is compared with when it is taken up.
 //!
 //! [`Begun`] says how a run was begun, [`Left`] adds how far it got and in which state it was,
 //! [`ResumeFile`] is where that is kept. A state is text ([`to_text`]) by way of the core's saved
@@ -7,12 +7,17 @@
 
 mod begun;
 mod cells;
+mod checkpoint;
+mod ended;
 mod interrupted;
 mod left;
 mod state_text;
 
-pub use begun::{Begun, absolute, file_crc32};
+pub use crate::wording::REMEDY;
+pub use begun::{Begun, absolute, file_crc32, identity};
 pub use cells::{CELLS_FOLDER, Cells, Stop, crc32_of};
-pub use interrupted::{Interrupted, REMEDY};
+pub use checkpoint::{Checkpoints, DEFAULT_CHECKPOINT};
+pub use ended::Ended;
+pub use interrupted::Interrupted;
 pub use left::{Left, RESUME_FILE, ResumeFile, text_crc32};
 pub use state_text::{List, from_text, long_real, optional, real, reals, to_text};

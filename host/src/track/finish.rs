@@ -5,9 +5,9 @@ use super::resume;
 use super::run::{Event, TrackRun};
 use super::sample::HandSample;
 use super::source::FrameSource;
-use crate::error::{Error, Result};
-use crate::output::finish_table;
-use crate::resume::Interrupted;
+use crate::error::Result;
+use crate::output::{finish_all, finished_table};
+use crate::resume::{Ended, Interrupted};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -22,13 +22,14 @@ pub struct RunOutcome {
 }
 
 impl TrackRun {
-    /// Tracks all frames, or those before `stop` is set, and writes the run directory.
+    /// Tracks all frames, or those before `stop` is set, and writes the run directory. A run that
+    /// does not reach its end leaves what [`TrackRun::resume`] needs.
     ///
     /// # Errors
-    /// [`Interrupted`] if `stop` was set, or an output that cannot be written; the table of the
-    /// finished frames is written all the same.
+    /// [`Interrupted`] if `stop` was set, an input that cannot be read any more, or an output that
+    /// cannot be written.
     pub fn run(mut self, stop: &AtomicBool, notify: &mut dyn FnMut(Event<'_>)) -> Result<RunOutcome> {
-        let start = Instant::now();
+        self.started = Instant::now();
         let out = self.out.path().to_path_buf();
         let tracked = self.track_all(stop, notify);
         let finished = self.report.frames_finished;
@@ -38,42 +39,34 @@ impl TrackRun {
             self.report.frames = if matches!(tracked, Ok(true)) { finished } else { self.report.frames.max(finished) };
         }
         let frames = self.report.frames;
-        self.seconds += start.elapsed().as_secs_f64();
-        self.report.frames_per_second = finished as f64 / self.seconds.max(1.0e-9);
+        let seconds = self.seconds + self.started.elapsed().as_secs_f64();
+        self.report.frames_per_second = finished as f64 / seconds.max(1.0e-9);
         self.report.complete = matches!(tracked, Ok(true));
-        let interrupted = matches!(tracked, Ok(false));
-        let written = self.write_results(interrupted);
-        if let Err(error) = tracked {
-            let kept = match &written {
-                Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
-                Err(other) => format!("and then {}", other.chain()),
-            };
-            return Err(Error::Unfinished { error: Box::new(error), kept });
+        let interrupted = Interrupted { finished, all: Some(frames), unit: "frames", out };
+        match Ended::of(tracked, &mut || self.save()) {
+            Ended::Unwritable(error) => Err(error),
+            ended => ended.conclude(self.write_results(), interrupted),
         }
-        let outcome = written?;
-        if interrupted {
-            return Err(Interrupted { finished, all: Some(frames), unit: "frames", out }.into());
-        }
-        Ok(outcome)
     }
 
-    /// Gives the tables their names and writes plot, sheet and report. Each file is tried, also
-    /// where another one failed. An interrupted run leaves what [`TrackRun::resume`] needs.
-    fn write_results(mut self, interrupted: bool) -> Result<RunOutcome> {
-        let left = if interrupted { Some(resume::left(&mut self)?) } else { None };
+    /// Gives the tables their names with plot, sheet and report, once all are written. A run that
+    /// is killed meanwhile can be resumed after its last frame.
+    fn write_results(mut self) -> Result<RunOutcome> {
+        self.save()?;
         let Self { out, track, particles, pictures, report, samples, .. } = self;
-        let mut results = vec![finish_table(track)];
-        results.extend(particles.map(finish_table));
+        let mut files = vec![finished_table(track)?];
+        files.extend(particles.map(finished_table).transpose()?);
         let json = serde_json::to_string_pretty(&report)? + "\n";
-        results.push(out.write("run.json", |writer| Ok(writer.write_all(json.as_bytes())?)));
+        files.push(out.pending("run.json", |writer| Ok(writer.write_all(json.as_bytes())?))?);
         #[cfg(feature = "plots")]
-        results.push(
-            crate::draw::plot::hand_plot(&samples, report.image_size_px)
-                .and_then(|plot| out.write_png("hand.png", &plot)),
-        );
-        results.extend(pictures.map(|pictures| out.write_png("contact_sheet.png", &pictures.contact_sheet())));
-        results.into_iter().collect::<Result<()>>()?;
-        resume::put(left, &report.options, &out)?;
+        files.push(out.pending_png("hand.png", &crate::draw::plot::hand_plot(&samples, report.image_size_px)?)?);
+        if let Some(pictures) = pictures {
+            files.push(out.pending_png("contact_sheet.png", &pictures.contact_sheet())?);
+        }
+        finish_all(files)?;
+        if report.complete {
+            resume::file_in(out.path()).remove()?;
+        }
         Ok(RunOutcome { report, samples })
     }
 }

@@ -1,11 +1,11 @@
-//! Going on with a run that Ctrl-C ended: the trackers' state and what the plots show.
+//! Going on with a run that did not reach its end: the trackers' state and what the plots show.
 
 use super::input::SkippedImage;
 use super::options::TrackOptions;
 use super::run::TrackRun;
 use super::sample::HandSample;
 use crate::error::Result;
-use crate::output::OutputDir;
+use crate::output::mark;
 use crate::resume::{Begun, Left, List, ResumeFile, from_text, optional, real, reals, text_crc32, to_text};
 use crate::skin::model_file;
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::Status;
 use std::path::Path;
 
-const COMMAND: &str = "track arm";
+pub(super) const COMMAND: &str = "track arm";
 
 /// What the tables of a run do not hold.
 #[derive(Debug, Serialize, Deserialize)]
@@ -28,7 +28,7 @@ pub(super) struct ArmState {
     samples: String,
 }
 
-/// What `run` leaves, but for its tables.
+/// What `run` leaves if it ends now.
 pub(super) fn left(run: &mut TrackRun) -> Result<Left<ArmState>> {
     let mut samples = List::new(std::mem::take(&mut run.samples), NO_SAMPLE);
     let state = ArmState {
@@ -37,16 +37,19 @@ pub(super) fn left(run: &mut TrackRun) -> Result<Left<ArmState>> {
         samples: to_text(StateKind::Arm, &mut samples)?,
     };
     run.samples = samples.entries;
-    let begun = read_by(begun(&run.report.options)?, run)?;
-    Ok(Left::new(begun, run.report.frames_finished, run.seconds, run.last_image_crc32, state))
+    let begun = run.begun()?;
+    let seconds = run.seconds + run.started.elapsed().as_secs_f64();
+    let left = Left::new(begun, run.report.frames_finished, seconds, run.last_image_crc32, state);
+    let left = left.with_table("track.csv", mark(&mut run.track)?);
+    Ok(match &mut run.particles {
+        Some(particles) => left.with_table("particles.csv", mark(particles)?),
+        None => left,
+    })
 }
 
-/// Writes what is left beside the tables that it belongs to; without anything left removes that of
-/// an earlier run.
-pub(super) fn put(left: Option<Left<ArmState>>, options: &TrackOptions, out: &OutputDir) -> Result<()> {
-    let tables: &[&str] = if options.particles_csv { &["track.csv", "particles.csv"] } else { &["track.csv"] };
-    let left = left.map(|left| left.with_tables(out, tables)).transpose()?;
-    ResumeFile::in_folder(out.path(), COMMAND).put(left.as_ref())
+/// Where a run in `out` keeps what it leaves.
+pub(super) fn file_in(out: &Path) -> ResumeFile {
+    ResumeFile::in_folder(out, COMMAND)
 }
 
 /// How a run with these options is begun, before anything is read.
@@ -61,23 +64,29 @@ fn read_by(begun: Begun, run: &TrackRun) -> Result<Begun> {
 }
 
 impl TrackRun {
-    /// Checks everything as [`TrackRun::prepare`] does, and resumes the run in `out` that was ended
-    /// by Ctrl-C. Its output is bit for bit that of a run without a break, except for
+    /// How this run was begun: with the inputs as they were then.
+    fn begun(&mut self) -> Result<Begun> {
+        if let Some(begun) = &self.begun {
+            return Ok(begun.clone());
+        }
+        let begun = read_by(begun(&self.report.options)?, self)?;
+        Ok(self.begun.insert(begun).clone())
+    }
+
+    /// Checks everything as [`TrackRun::prepare`] does, and resumes the run in `out` that did not
+    /// reach its end. Its output is bit for bit that of a run without a break, except for
     /// `frames_per_second` in `run.json`.
     ///
     /// # Errors
     /// As [`TrackRun::prepare`]; there is no such run in `out`, or it was begun with other options,
     /// images or another version.
     pub fn resume(options: TrackOptions, out: &Path) -> Result<Self> {
-        let left: Left<ArmState> = ResumeFile::in_folder(out, COMMAND).read(out)?;
+        let left: Left<ArmState> = file_in(out).read(out)?;
         let now = begun(&options)?;
         left.begun.check_options(&now, out)?;
-        let mut run = Self::prepare(options, out)?;
+        let mut run = Self::set_up(options, out, &|name, out, _| left.reopened(name, out))?;
         left.begun.check_inputs(&read_by(now, &run)?)?;
-        run.track = left.reopened("track.csv", &run.out)?;
-        if run.particles.is_some() {
-            run.particles = Some(left.reopened("particles.csv", &run.out)?);
-        }
+        run.begun = Some(left.begun.clone());
         run.arms.restore(&left.state.trackers)?;
         let mut samples = List::new(Vec::new(), NO_SAMPLE);
         from_text(StateKind::Arm, &left.state.samples, &mut samples)?;

@@ -6,17 +6,20 @@ use super::options::{RATES_HZ, TrackOptions};
 use super::particles::{PARTICLE_HEADER, particle_rows};
 use super::pictures::{Pictures, Shot};
 use super::report::RunReport;
+use super::resume;
 use super::sample::HandSample;
 use super::source::FrameSource;
 use super::table::{HEADER, TrackRow};
 use crate::error::{Context, Result, WriteContext, bail};
 use crate::frames::{FrameReader, FrameView};
-use crate::output::{OutputDir, PendingFile};
+use crate::output::{OutputDir, OutputLock, PendingFile};
+use crate::resume::{Begun, Checkpoints};
 use crate::skin::SkinModel;
 use image::RgbImage;
 use sinew_core::camera::Camera;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// Maximum number of frames that are read ahead.
 const MAX_CHUNK: usize = 32;
@@ -32,6 +35,9 @@ pub enum Event<'a> {
     Finished(usize),
 }
 
+/// Opens the table of a name in a folder, with its header if it is new.
+pub(super) type TableOpener<'a> = &'a dyn Fn(&str, &OutputDir, &[&str]) -> Result<csv::Writer<PendingFile>>;
+
 /// A run whose inputs were all checked.
 #[derive(Debug)]
 pub struct TrackRun {
@@ -41,6 +47,11 @@ pub struct TrackRun {
     pub(super) arms: ArmSet,
     camera: Camera,
     pub(super) out: OutputDir,
+    _lock: OutputLock,
+    checkpoints: Checkpoints,
+    /// How it was begun, once that was asked.
+    pub(super) begun: Option<Begun>,
+    pub(super) started: Instant,
     pub(super) pictures: Option<Pictures>,
     pub(super) track: csv::Writer<PendingFile>,
     pub(super) particles: Option<csv::Writer<PendingFile>>,
@@ -58,6 +69,15 @@ impl TrackRun {
     /// # Errors
     /// Names the option or file, the rule it broke, and the remedy.
     pub fn prepare(options: TrackOptions, out: &Path) -> Result<Self> {
+        Self::set_up(options, out, &|name, out, header| {
+            let mut writer = csv::Writer::from_writer(out.begin(name)?);
+            writer.write_record(header)?;
+            Ok(writer)
+        })
+    }
+
+    /// The same with tables that `table` opens.
+    pub(super) fn set_up(options: TrackOptions, out: &Path, table: TableOpener<'_>) -> Result<Self> {
         if !(RATES_HZ[0]..=RATES_HZ[1]).contains(&options.rate_hz) {
             bail!("`rate` must lie from {} to {} Hz, not {}", RATES_HZ[0], RATES_HZ[1], options.rate_hz);
         }
@@ -76,14 +96,18 @@ impl TrackRun {
         let reader = FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
-        let pictures = if options.overlay { Some(Pictures::new(&frames, out.subfolder("overlay")?)?) } else { None };
-        let table = |name: &str, header: &[&str]| -> Result<csv::Writer<PendingFile>> {
-            let mut writer = csv::Writer::from_writer(out.begin(name)?);
-            writer.write_record(header)?;
-            Ok(writer)
+        let lock = OutputLock::of_folder(out.path(), "sinew track arm")?;
+        let pictures = match options.overlay {
+            true => {
+                let folder = out.subfolder("overlay")?;
+                lock.sweep(folder.path());
+                Some(Pictures::new(&frames, folder)?)
+            }
+            false => None,
         };
-        let track = table("track.csv", &HEADER)?;
-        let particles = if options.particles_csv { Some(table("particles.csv", &PARTICLE_HEADER)?) } else { None };
+        let track = table("track.csv", &out, &HEADER)?;
+        let particles =
+            if options.particles_csv { Some(table("particles.csv", &out, &PARTICLE_HEADER)?) } else { None };
         let names = (0..frames.files().len()).map(|frame| frames.name(frame)).collect();
         let report = RunReport { frames: frames.count(), ..RunReport::new(options, names, frames.size_px()) };
         Ok(Self {
@@ -93,6 +117,10 @@ impl TrackRun {
             arms,
             camera,
             out,
+            _lock: lock,
+            checkpoints: Checkpoints::default(),
+            begun: None,
+            started: Instant::now(),
             pictures,
             track,
             particles,
@@ -101,6 +129,13 @@ impl TrackRun {
             seconds: 0.0,
             last_image_crc32: None,
         })
+    }
+
+    /// Saves the state at least so often, in place of every ten seconds.
+    #[must_use]
+    pub fn checkpoint_every(mut self, every: Duration) -> Self {
+        self.checkpoints = Checkpoints::every(every);
+        self
     }
 
     /// Number of frames; of a video, what it says.
@@ -117,12 +152,14 @@ impl TrackRun {
 
     /// Whether the last frame was reached.
     pub(super) fn track_all(&mut self, stop: &AtomicBool, notify: &mut dyn FnMut(Event<'_>)) -> Result<bool> {
+        self.save_if_due()?;
         let (most, mut begin) = (self.chunk_length(), self.report.frames_finished);
         loop {
             let images = self.frames.load(begin, most)?;
             if images.is_empty() {
                 return Ok(true);
             }
+            let read = images.len();
             let mut shots = Vec::new();
             for (frame, image) in (begin..).zip(images) {
                 if stop.load(Ordering::Relaxed) {
@@ -130,17 +167,32 @@ impl TrackRun {
                 }
                 shots.extend(self.track_frame(frame, image, notify)?);
                 notify(Event::Finished(self.report.frames_finished));
+                if self.pictures.is_none() {
+                    self.save_if_due()?;
+                }
             }
             if let Some(pictures) = &mut self.pictures {
+                // A resumed run has to find them.
                 pictures.draw(&shots, &self.arms)?;
+                self.save_if_due()?;
             }
-            begin += most;
+            begin += read;
             if stop.load(Ordering::Relaxed) {
                 // A folder's last frame is known as such.
                 let is_folder = matches!(self.frames, FrameSource::Folder(_));
                 return Ok(is_folder && self.report.frames_finished == self.frames.count());
             }
         }
+    }
+
+    fn save_if_due(&mut self) -> Result<()> {
+        if self.checkpoints.is_due() { self.save() } else { Ok(()) }
+    }
+
+    /// Saves the state, from which [`TrackRun::resume`] goes on.
+    pub(super) fn save(&mut self) -> Result<()> {
+        let left = resume::left(self)?;
+        resume::file_in(self.out.path()).put(&left)
     }
 
     /// One frame from pixels to its row of the table.

@@ -5,9 +5,9 @@ use crate::error::{Result, ensure};
 use crate::images::video::frame_name;
 use crate::images::{VideoError, VideoFrames, is_video};
 use crate::registry::{Kind, extensions};
+use crate::resume::identity;
 use image::RgbImage;
 use rayon::prelude::*;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Frames of one size, the first of which can be read.
@@ -68,16 +68,13 @@ impl FrameSource {
         }
     }
 
-    /// What distinguishes these frames from others, beside the path: the names of a folder's files,
-    /// the size of a video's.
+    /// What distinguishes these frames from others, beside the path: name, size and time of each
+    /// file of a folder, or of the video.
     #[must_use]
     pub fn identity(&self) -> Vec<String> {
         match self {
-            Self::Folder(folder) => (0..folder.files().len()).map(|frame| folder.name(frame)).collect(),
-            Self::Video(video) => {
-                let bytes = fs::metadata(video.frames.file()).map_or(0, |facts| facts.len());
-                vec![format!("a video of {bytes} bytes")]
-            }
+            Self::Folder(folder) => folder.files().iter().map(|file| identity(file)).collect(),
+            Self::Video(video) => vec![identity(video.frames.file())],
         }
     }
 

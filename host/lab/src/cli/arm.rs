@@ -8,7 +8,7 @@ use clap::Args;
 use serde::Serialize;
 use serde_json::json;
 use sinew::cli::console::Console;
-use sinew::cli::ctrl_c::stop_flag;
+use sinew::cli::signals::stop_flag;
 use sinew::cli::skin_args::SkinArgs;
 use sinew::cli::variant_arg::variant_parser;
 use sinew::config::Config;
@@ -51,7 +51,8 @@ pub struct EvaluateArmArgs {
     /// Folder for the tables and plots.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Go on with the evaluation in --out that Ctrl-C ended; the other options have to be the same.
+    /// Go on with the evaluation in --out that a signal ended; the other options have to be the
+    /// same.
     #[arg(long)]
     pub resume: bool,
 }
@@ -80,7 +81,7 @@ pub fn run(args: &EvaluateArmArgs, console: &Console) -> Result<()> {
     console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))
 }
 
-/// As [`run`], ended by `stop` in the place of Ctrl-C.
+/// As [`run`], ended by `stop` in the place of a signal.
 ///
 /// # Errors
 /// As [`run`].

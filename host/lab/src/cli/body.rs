@@ -13,7 +13,7 @@ use sinew::body::BodyPart;
 use sinew::body::run::{inputs::check_part, tuning_file};
 use sinew::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
 use sinew::cli::console::Console;
-use sinew::cli::ctrl_c::stop_flag;
+use sinew::cli::signals::stop_flag;
 use sinew::output::OutputDir;
 use sinew::registry::{MOTION, choice};
 use sinew::resume::{Begun, Cells, Stop};
@@ -67,7 +67,8 @@ pub struct EvaluateBodyArgs {
     /// Folder for report.json, table.csv and figures.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Go on with the evaluation in --out that Ctrl-C ended; the other options have to be the same.
+    /// Go on with the evaluation in --out that a signal ended; the other options have to be the
+    /// same.
     #[arg(long)]
     pub resume: bool,
 }
@@ -82,7 +83,7 @@ pub fn run(args: &EvaluateBodyArgs, console: &Console) -> Result<()> {
     console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))
 }
 
-/// As [`run`], ended by `stop` in the place of Ctrl-C.
+/// As [`run`], ended by `stop` in the place of a signal.
 ///
 /// # Errors
 /// As [`run`].

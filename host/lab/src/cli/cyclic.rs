@@ -6,7 +6,7 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use serde_json::json;
 use sinew::cli::console::Console;
-use sinew::cli::ctrl_c::stop_flag;
+use sinew::cli::signals::stop_flag;
 use sinew::cyclic::model_file::MODEL_VALUE;
 use sinew::cyclic::training::{TrainingOptions, train};
 use sinew::cyclic::{CutList, CyclicModel};
@@ -45,7 +45,8 @@ pub struct EvaluateCyclicArgs {
     /// Folder for the tables and plots.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Go on with the evaluation in --out that Ctrl-C ended; the other options have to be the same.
+    /// Go on with the evaluation in --out that a signal ended; the other options have to be the
+    /// same.
     #[arg(long)]
     pub resume: bool,
 }
@@ -63,7 +64,7 @@ pub fn run(args: &EvaluateCyclicArgs, console: &Console) -> Result<()> {
     console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))
 }
 
-/// As [`run`], ended by `stop` in the place of Ctrl-C.
+/// As [`run`], ended by `stop` in the place of a signal.
 ///
 /// # Errors
 /// As [`run`].

@@ -5,10 +5,10 @@ use super::report::BodyRunReport;
 use super::resume;
 use super::track::{BodyEvent, BodyTrackRun, Notify};
 use crate::body::export::{body_layout, bvh_frame, upwards};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::motion::export::{BvhFrame, TrcFrame, TrcHeading, TrcUnit, to_trc, write_bvh};
-use crate::output::finish_table;
-use crate::resume::Interrupted;
+use crate::output::{PendingFile, finish_all, finished_table};
+use crate::resume::{Ended, Interrupted};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::full_body::BODY_JOINT_NAMES;
 use std::sync::atomic::AtomicBool;
@@ -23,58 +23,51 @@ impl BodyTrackRun {
     ///
     /// # Errors
     /// [`Interrupted`] if `stop` was set, a broken cloud if the run is strict, or an output that
-    /// cannot be written. The results of the finished frames are written in each case.
+    /// cannot be written. In each case the run leaves what [`BodyTrackRun::resume`] needs.
     pub fn run(mut self, stop: &AtomicBool, notify: Notify<'_>) -> Result<BodyRunReport> {
-        let start = Instant::now();
+        self.started = Instant::now();
         let (frames, out) = (self.frame_count(), self.out.path().to_path_buf());
         for note in &self.report.notes {
             notify(BodyEvent::Note(note));
         }
         let tracked = self.track_all(stop, notify);
         let finished = self.report.frames_finished;
-        self.seconds += start.elapsed().as_secs_f64();
-        self.report.frames_per_second = finished as f64 / self.seconds.max(1.0e-9);
-        self.report.complete = tracked.is_ok() && finished == frames;
-        let interrupted = tracked.is_ok() && finished < frames;
-        let written = self.write_results(interrupted);
-        if let Err(error) = tracked {
-            let kept = match &written {
-                Ok(_) => format!("the results of the {finished} finished frames are in `{}`", out.display()),
-                Err(other) => format!("and then {}", other.chain()),
-            };
-            return Err(Error::Unfinished { error: Box::new(error), kept });
+        let seconds = self.seconds + self.started.elapsed().as_secs_f64();
+        self.report.frames_per_second = finished as f64 / seconds.max(1.0e-9);
+        self.report.complete = matches!(tracked, Ok(true));
+        let interrupted = Interrupted { finished, all: Some(frames), unit: "frames", out };
+        match Ended::of(tracked, &mut || self.save()) {
+            Ended::Unwritable(error) => Err(error),
+            ended => ended.conclude(self.write_results(), interrupted),
         }
-        let report = written?;
-        if interrupted {
-            return Err(Interrupted { finished, all: Some(frames), unit: "frames", out }.into());
-        }
-        Ok(report)
     }
 
-    /// Gives the tables their names and writes the other files. Each one is tried, also where
-    /// another one failed. An interrupted run leaves what [`BodyTrackRun::resume`] needs.
-    fn write_results(mut self, interrupted: bool) -> Result<BodyRunReport> {
-        let left = if interrupted { Some(resume::left(&mut self)?) } else { None };
+    /// Gives the tables their names with the other files, once all are written. A run that is
+    /// killed meanwhile can be resumed after its last frame.
+    fn write_results(mut self) -> Result<BodyRunReport> {
+        self.save()?;
         self.report.seconds_per_step = self.step_s / self.report.frames_finished.max(1) as f64;
         self.report.effective_share = self.effective_share.mean().unwrap_or(0.0);
         (self.report.error_m, self.report.joint_error_m) = (self.score.marker_m.mean(), self.score.joint_m.mean());
-        let mut results = vec![self.write_motion()];
-        results.push(finish_table(self.table));
-        results.extend(self.particles.map(finish_table));
-        results.extend(self.pictures.map(|pictures| pictures.write(&self.out)));
-        // Only what is there in full is called complete.
-        self.report.complete &= results.iter().all(Result::is_ok);
+        let mut files = self.motion_files()?;
+        files.push(finished_table(self.table)?);
+        files.extend(self.particles.map(finished_table).transpose()?);
+        if let Some(pictures) = self.pictures {
+            files.extend(pictures.files(&self.out)?);
+        }
         let json = serde_json::to_string_pretty(&self.report)? + "\n";
-        results.push(self.out.write("run.json", |writer| Ok(writer.write_all(json.as_bytes())?)));
-        results.into_iter().collect::<Result<()>>()?;
-        resume::put(left, &self.report.options, &self.out)?;
+        files.push(self.out.pending("run.json", |writer| Ok(writer.write_all(json.as_bytes())?))?);
+        finish_all(files)?;
+        if self.report.complete {
+            resume::file_in(self.out.path()).remove()?;
+        }
         Ok(self.report)
     }
 
     /// `track.bvh` and `track.trc`; no frame at all is no file.
-    fn write_motion(&self) -> Result<()> {
+    fn motion_files(&self) -> Result<Vec<PendingFile>> {
         if self.answers.is_empty() {
-            return Ok(());
+            return Ok(Vec::new());
         }
         let (part, rate_hz) = (self.inputs.part, f64::from(self.inputs.rate_hz));
         let is_short = self.inputs.clouds.missing() <= MAX_REPEATED_FRAMES;
@@ -97,10 +90,10 @@ impl BodyTrackRun {
             before = Some((*frame, pose));
         }
         let layout = body_layout(part, &self.filter.scene().skeleton)?;
-        self.out.write("track.bvh", |writer| Ok(write_bvh(&layout, &frames, rate_hz, writer)?))?;
+        let bvh = self.out.pending("track.bvh", |writer| Ok(write_bvh(&layout, &frames, rate_hz, writer)?))?;
         let heading =
             TrcHeading { name: "track.trc", markers: &BODY_JOINT_NAMES[..part.bones()], rate_hz, unit: TrcUnit::Metre };
         let text = to_trc(&heading, &markers);
-        self.out.write("track.trc", |writer| Ok(writer.write_all(text.as_bytes())?))
+        Ok(vec![bvh, self.out.pending("track.trc", |writer| Ok(writer.write_all(text.as_bytes())?))?])
     }
 }

@@ -4,7 +4,7 @@
 use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::error::{Result, bail};
-use crate::output::OutputDir;
+use crate::output::{OutputDir, PendingFile};
 use sinew_core::math::Vec3;
 
 /// There is none.
@@ -31,11 +31,11 @@ impl BodyPictures {
         match *self {}
     }
 
-    /// There is none that writes something.
+    /// There is none of which there are files.
     ///
     /// # Errors
     /// None.
-    pub fn write(&self, _: &OutputDir) -> Result<()> {
+    pub fn files(&self, _: &OutputDir) -> Result<Vec<PendingFile>> {
         match *self {}
     }
 }

@@ -6,7 +6,7 @@ use crate::draw::body_views::{body_views, drawn_bones, sheet};
 use crate::draw::contact_sheet::ContactSheet;
 use crate::draw::plot::{Curve, curves_plot};
 use crate::error::Result;
-use crate::output::OutputDir;
+use crate::output::{OutputDir, PendingFile};
 use image::RgbImage;
 use sinew_core::math::Vec3;
 
@@ -56,21 +56,22 @@ impl BodyPictures {
         }
     }
 
-    /// Writes `contact_sheet.png`, `effective_samples.png`, and with truth `joint_error.png`.
+    /// `contact_sheet.png`, `effective_samples.png`, and with truth `joint_error.png`, before they
+    /// have their names.
     ///
     /// # Errors
     /// A picture that cannot be written.
-    pub fn write(&self, out: &OutputDir) -> Result<()> {
-        out.write_png("contact_sheet.png", &sheet(&self.tiles, COLUMNS))?;
+    pub fn files(&self, out: &OutputDir) -> Result<Vec<PendingFile>> {
+        let mut files = vec![out.pending_png("contact_sheet.png", &sheet(&self.tiles, COLUMNS))?];
         for (name, y_name, points) in [
             ("effective_samples.png", "effective particles", &self.effective),
             ("joint_error.png", "mean joint error (cm)", &self.error_cm),
         ] {
             if !points.is_empty() {
                 let curve = Curve { name: y_name.to_owned(), points: points.clone(), ..Curve::default() };
-                out.write_png(name, &curves_plot(y_name, "time (s)", y_name, false, &[curve])?)?;
+                files.push(out.pending_png(name, &curves_plot(y_name, "time (s)", y_name, false, &[curve])?)?);
             }
         }
-        Ok(())
+        Ok(files)
     }
 }

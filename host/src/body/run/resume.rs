@@ -1,5 +1,5 @@
-//! Going on with a run that Ctrl-C ended: the tracker's state and what each frame was answered
-//! with.
+//! Going on with a run that did not reach its end: the tracker's state and what each frame was
+//! answered with.
 //!
 //! Animation, markers, errors and pictures are made anew from the answers; of clouds only those on
 //! the contact sheet are read again.
@@ -9,8 +9,8 @@ use super::options::BodyTrackOptions;
 use super::report::{PointCounts, SkippedCloud};
 use super::track::{BodyTrackRun, read_cloud};
 use crate::error::Result;
-use crate::output::OutputDir;
-use crate::resume::{Begun, Left, List, ResumeFile, file_crc32, from_text, to_text};
+use crate::output::mark;
+use crate::resume::{Begun, Left, List, ResumeFile, file_crc32, from_text, identity, to_text};
 use serde::{Deserialize, Serialize};
 use sinew_core::saved_state::StateKind;
 use std::path::Path;
@@ -30,7 +30,7 @@ pub(super) struct BodyState {
     answers: String,
 }
 
-/// What `run` leaves, but for its tables.
+/// What `run` leaves if it ends now.
 pub(super) fn left(run: &mut BodyTrackRun) -> Result<Left<BodyState>> {
     let mut answers = List::new(std::mem::take(&mut run.answers), NO_ANSWER);
     let state = BodyState {
@@ -41,16 +41,19 @@ pub(super) fn left(run: &mut BodyTrackRun) -> Result<Left<BodyState>> {
         answers: to_text(StateKind::Body, &mut answers)?,
     };
     run.answers = answers.entries;
-    let begun = read_by(begun(&run.report.options)?, run)?;
-    Ok(Left::new(begun, run.report.frames_finished, run.seconds, run.last_cloud_crc32(), state))
+    let begun = run.begun()?;
+    let seconds = run.seconds + run.started.elapsed().as_secs_f64();
+    let left = Left::new(begun, run.report.frames_finished, seconds, run.last_cloud_crc32(), state);
+    let left = left.with_table("track.csv", mark(&mut run.table)?);
+    Ok(match &mut run.particles {
+        Some(particles) => left.with_table("particles.csv", mark(particles)?),
+        None => left,
+    })
 }
 
-/// Writes what is left beside the tables that it belongs to; without anything left removes that of
-/// an earlier run.
-pub(super) fn put(left: Option<Left<BodyState>>, options: &BodyTrackOptions, out: &OutputDir) -> Result<()> {
-    let tables: &[&str] = if options.particles_csv { &["track.csv", "particles.csv"] } else { &["track.csv"] };
-    let left = left.map(|left| left.with_tables(out, tables)).transpose()?;
-    ResumeFile::in_folder(out.path(), COMMAND).put(left.as_ref())
+/// Where a run in `out` keeps what it leaves.
+pub(super) fn file_in(out: &Path) -> ResumeFile {
+    ResumeFile::in_folder(out, COMMAND)
 }
 
 /// How a run with these options is begun, before anything is read. Results do not depend on the
@@ -66,7 +69,7 @@ fn read_by(mut begun: Begun, run: &BodyTrackRun) -> Result<Begun> {
         begun = begun.reading(format!("`{}`", path.display()), file_crc32(path)?);
     }
     let clouds = &run.inputs.clouds.frames;
-    Ok(begun.with_frames(clouds.iter().map(|cloud| cloud_name(&cloud.path)).collect()))
+    Ok(begun.with_frames(clouds.iter().map(|cloud| identity(&cloud.path)).collect()))
 }
 
 fn cloud_name(path: &Path) -> String {
@@ -74,23 +77,29 @@ fn cloud_name(path: &Path) -> String {
 }
 
 impl BodyTrackRun {
-    /// Checks everything as [`BodyTrackRun::prepare`] does, and resumes the run in `out` that was
-    /// ended by Ctrl-C. Its output is bit for bit that of a run without a break, except for the
-    /// times in `run.json`.
+    /// How this run was begun: with the inputs as they were then.
+    fn begun(&mut self) -> Result<Begun> {
+        if let Some(begun) = &self.begun {
+            return Ok(begun.clone());
+        }
+        let begun = read_by(begun(&self.report.options)?, self)?;
+        Ok(self.begun.insert(begun).clone())
+    }
+
+    /// Checks everything as [`BodyTrackRun::prepare`] does, and resumes the run in `out` that did
+    /// not reach its end. Its output is bit for bit that of a run without a break, except for
+    /// the times in `run.json`.
     ///
     /// # Errors
     /// As [`BodyTrackRun::prepare`]; there is no such run in `out`, or it was begun with other
     /// options, inputs or another version.
     pub fn resume(options: BodyTrackOptions, out: &Path) -> Result<Self> {
-        let left: Left<BodyState> = ResumeFile::in_folder(out, COMMAND).read(out)?;
+        let left: Left<BodyState> = file_in(out).read(out)?;
         let now = begun(&options)?;
         left.begun.check_options(&now, out)?;
-        let mut run = Self::prepare(options, out)?;
+        let mut run = Self::set_up(options, out, &|name, out, _| left.reopened(name, out))?;
         left.begun.check_inputs(&read_by(now, &run)?)?;
-        run.table = left.reopened("track.csv", &run.out)?;
-        if run.particles.is_some() {
-            run.particles = Some(left.reopened("particles.csv", &run.out)?);
-        }
+        run.begun = Some(left.begun.clone());
         let mut answers = List::new(Vec::new(), NO_ANSWER);
         from_text(StateKind::Body, &left.state.answers, &mut answers)?;
         for (index, answer) in answers.entries.into_iter().enumerate() {

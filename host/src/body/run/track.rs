@@ -5,6 +5,7 @@ use super::inputs::BodyInputs;
 use super::options::BodyTrackOptions;
 use super::pictures::BodyPictures;
 use super::report::{BodyRunReport, SkippedCloud};
+use super::resume;
 use super::score::{BodyScore, RunningMean};
 use super::start::pose_from_points;
 use super::{particles, table};
@@ -12,7 +13,8 @@ use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::cloud::{self, CloudFrame, MAX_POINTS, blocks_of};
 use crate::error::{Context, Result, WriteContext, bail};
-use crate::output::{OutputDir, PendingFile};
+use crate::output::{OutputDir, OutputLock, PendingFile};
+use crate::resume::{Begun, Checkpoints};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sinew_core::math::Vec3;
@@ -22,7 +24,7 @@ use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::skeleton::full_body::BODY_ANGLES;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Clouds that are read ahead.
 const CHUNK: usize = 16;
@@ -45,6 +47,9 @@ pub enum BodyEvent<'a> {
 /// The receiver of these reports.
 pub type Notify<'a> = &'a mut (dyn FnMut(BodyEvent<'_>) + Send);
 
+/// Opens the table of a name in a folder, with its header if it is new.
+pub(super) type TableOpener<'a> = &'a dyn Fn(&str, &OutputDir, Vec<String>) -> Result<csv::Writer<PendingFile>>;
+
 /// A cloud ready for the tracker.
 #[derive(Debug)]
 pub(super) struct ReadCloud {
@@ -61,6 +66,11 @@ pub struct BodyTrackRun {
     pub(super) filter: BodyFilter,
     threads: ThreadPool,
     pub(super) out: OutputDir,
+    _lock: OutputLock,
+    checkpoints: Checkpoints,
+    /// How it was begun, once that was asked.
+    pub(super) begun: Option<Begun>,
+    pub(super) started: Instant,
     pub(super) table: csv::Writer<PendingFile>,
     pub(super) particles: Option<csv::Writer<PendingFile>>,
     pub(super) pictures: Option<BodyPictures>,
@@ -81,8 +91,18 @@ impl BodyTrackRun {
     /// # Errors
     /// Names the option or file, the rule it broke, and the remedy.
     pub fn prepare(options: BodyTrackOptions, out: &Path) -> Result<Self> {
+        Self::set_up(options, out, &|name, out, header| {
+            let mut writer = csv::Writer::from_writer(out.begin(name)?);
+            writer.write_record(header)?;
+            Ok(writer)
+        })
+    }
+
+    /// The same with tables that `table` opens.
+    pub(super) fn set_up(options: BodyTrackOptions, out: &Path, table: TableOpener<'_>) -> Result<Self> {
         options.check()?;
         let mut inputs = BodyInputs::read(&options)?;
+        check_readable(&inputs)?;
         let first_rad = match inputs.first_rad {
             Some(pose) => pose,
             None => found_start(&mut inputs, &options)?,
@@ -99,22 +119,22 @@ impl BodyTrackRun {
             .context("the threads cannot be started; give --threads a smaller number")?;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
-        let begin = |name: &str, header: Vec<String>| -> Result<csv::Writer<PendingFile>> {
-            let mut writer = csv::Writer::from_writer(out.begin(name)?);
-            writer.write_record(header)?;
-            Ok(writer)
-        };
+        let lock = OutputLock::of_folder(out.path(), "sinew track body")?;
         Ok(Self {
             filter,
             threads,
-            table: begin("track.csv", table::header(part))?,
+            table: table("track.csv", &out, table::header(part))?,
             particles: if options.particles_csv {
-                Some(begin("particles.csv", particles::header(part))?)
+                Some(table("particles.csv", &out, particles::header(part))?)
             } else {
                 None
             },
             pictures: if options.pictures { Some(BodyPictures::new(inputs.clouds.frames.len())?) } else { None },
             out,
+            _lock: lock,
+            checkpoints: Checkpoints::default(),
+            begun: None,
+            started: Instant::now(),
             report: BodyRunReport::new(options, &inputs),
             inputs,
             score: BodyScore::default(),
@@ -123,6 +143,13 @@ impl BodyTrackRun {
             seconds: 0.0,
             answers: Vec::new(),
         })
+    }
+
+    /// Saves the state at least so often, in place of every ten seconds.
+    #[must_use]
+    pub fn checkpoint_every(mut self, every: Duration) -> Self {
+        self.checkpoints = Checkpoints::every(every);
+        self
     }
 
     /// Number of clouds.
@@ -137,7 +164,9 @@ impl BodyTrackRun {
         self.report.frames_finished
     }
 
-    pub(super) fn track_all(&mut self, stop: &AtomicBool, notify: Notify<'_>) -> Result<()> {
+    /// Whether the last cloud was reached.
+    pub(super) fn track_all(&mut self, stop: &AtomicBool, notify: Notify<'_>) -> Result<bool> {
+        self.save_if_due()?;
         let (begin, seed) = (self.report.frames_finished, self.report.seed);
         let frames = self.inputs.clouds.frames[begin..].to_vec();
         for chunk in frames.chunks(CHUNK) {
@@ -146,14 +175,25 @@ impl BodyTrackRun {
                 self.threads.install(|| chunk.par_iter().map(|frame| read_cloud(frame, seed, smoothing)).collect());
             for (frame, cloud) in chunk.iter().zip(clouds) {
                 if stop.load(Ordering::Relaxed) {
-                    return Ok(());
+                    return Ok(false);
                 }
                 let cloud = self.counted(cloud, notify)?;
                 self.track_frame(frame.frame, cloud.as_ref())?;
                 notify(BodyEvent::Finished(self.report.frames_finished));
+                self.save_if_due()?;
             }
         }
-        Ok(())
+        Ok(true)
+    }
+
+    fn save_if_due(&mut self) -> Result<()> {
+        if self.checkpoints.is_due() { self.save() } else { Ok(()) }
+    }
+
+    /// Saves the state, from which [`BodyTrackRun::resume`] goes on.
+    pub(super) fn save(&mut self) -> Result<()> {
+        let left = resume::left(self)?;
+        resume::file_in(self.out.path()).put(&left)
     }
 
     /// Counts a cloud's points; one that could not be read is nothing, or an error if the run is
@@ -251,6 +291,22 @@ pub(super) fn read_cloud(
     let before_cap = read.limit(MAX_POINTS, seed, frame.frame);
     let blocks = blocks_of(&mut read.points_m.clone(), smoothing);
     Ok(ReadCloud { points_m: read.points_m, blocks, skipped: read.skipped, before_cap })
+}
+
+/// Refuses a folder of which no cloud can be read.
+fn check_readable(inputs: &BodyInputs) -> Result<()> {
+    let mut first = None;
+    for frame in &inputs.clouds.frames {
+        match cloud::read(&frame.path) {
+            Ok(_) => return Ok(()),
+            Err(error) => first = first.or(Some(error)),
+        }
+    }
+    let reason = first.map_or_else(String::new, |error| error.to_string());
+    bail!(
+        "no cloud in `{}` can be read; of the first one, {reason}; give a folder of intact clouds",
+        inputs.files.clouds.display()
+    )
 }
 
 /// A start from the first cloud that has points, and a note of it.

@@ -9,7 +9,6 @@ use crate::cyclic::{AngleTable, CyclicModel};
 use crate::error::{Result, ensure};
 use crate::resume::{REMEDY, from_text, to_text};
 use sinew_core::saved_state::{SavedState, StateKind, StateVisitor};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Tracks `table`. The first row with an angle gives the first state (see [`super::StartName`]) and
 /// is answered with it.
@@ -18,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// An option out of range, a rate so low that a step is too long, a table without any angle.
 pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions) -> Result<Tracked> {
     let mut run = TableRun::begin(table, std::slice::from_ref(model), options)?;
-    run.run(&AtomicBool::new(false), &mut |_| ())?;
+    run.run(&|| false, &mut |_| ())?;
     Ok(run.answered()?.0)
 }
 
@@ -87,14 +86,14 @@ impl<'a> TableRun<'a> {
         self.table.rows().len()
     }
 
-    /// Answers all rows, or those before `stop` is set; `notify` gets their number after each.
+    /// Answers all rows, or those before `stop` says so; `notify` gets their number after each.
     /// Returns whether the last one was reached.
     ///
     /// # Errors
     /// None for rows of the table.
-    pub fn run(&mut self, stop: &AtomicBool, notify: &mut dyn FnMut(usize)) -> Result<bool> {
+    pub fn run(&mut self, stop: &dyn Fn() -> bool, notify: &mut dyn FnMut(usize)) -> Result<bool> {
         while self.finished() < self.rows() {
-            if stop.load(Ordering::Relaxed) {
+            if stop() {
                 return Ok(false);
             }
             self.step()?;

@@ -1,0 +1,180 @@
+//! A folder of results.
+
+use super::file::{temporary_in, write_atomically};
+use super::pending::PendingFile;
+use super::{LOCK_PREFIX, TEMPORARY_PREFIX};
+use crate::error::{Result, WriteContext, bail_output};
+use image::{ImageFormat, RgbImage};
+use std::fs;
+use std::io::{Cursor, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Age from which a temporary file of one write is litter of a program that was killed.
+const LITTER_AGE: Duration = Duration::from_secs(600);
+
+/// A folder that was checked to be writable before the run starts.
+#[derive(Debug, Clone)]
+pub struct OutputDir {
+    path: PathBuf,
+}
+
+impl OutputDir {
+    /// Creates `path` with its parents if needed, checks that files can be made in it, and removes
+    /// what a killed program left of its temporary files.
+    ///
+    /// # Errors
+    /// Names the folder if it cannot be created, is a file, or refuses a file.
+    pub fn create(path: &Path) -> Result<Self> {
+        if path.exists() && !path.is_dir() {
+            bail_output!("output `{}` is a file; give a folder, or remove the file", path.display());
+        }
+        fs::create_dir_all(path).writing(|| {
+            format!("output folder `{}` cannot be created; choose one that can be written", path.display())
+        })?;
+        temporary_in(path)
+            .writing(|| format!("output folder `{}` cannot be written; choose another", path.display()))?;
+        sweep(path, LITTER_AGE);
+        Ok(Self { path: path.to_path_buf() })
+    }
+
+    /// The folder.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Path of `name` in this folder.
+    #[must_use]
+    pub fn join(&self, name: impl AsRef<Path>) -> PathBuf {
+        self.path.join(name)
+    }
+
+    /// A folder inside this one, created and checked likewise.
+    ///
+    /// # Errors
+    /// As [`OutputDir::create`].
+    pub fn subfolder(&self, name: impl AsRef<Path>) -> Result<Self> {
+        Self::create(&self.path.join(name))
+    }
+
+    /// Writes the file `name` of this folder by [`write_atomically`].
+    ///
+    /// # Errors
+    /// As [`write_atomically`].
+    pub fn write<F>(&self, name: impl AsRef<Path>, fill: F) -> Result<()>
+    where
+        F: FnOnce(&mut dyn Write) -> Result<()>,
+    {
+        write_atomically(&self.join(name), fill)
+    }
+
+    /// Writes `image` as the PNG file `name` of this folder.
+    ///
+    /// # Errors
+    /// As [`write_atomically`].
+    pub fn write_png(&self, name: impl AsRef<Path>, image: &RgbImage) -> Result<()> {
+        let bytes = png(image)?;
+        write_atomically(&self.join(name), |writer| Ok(writer.write_all(&bytes)?))
+    }
+
+    /// The file `name` of this folder, all written but without its name yet.
+    ///
+    /// # Errors
+    /// Names the file with what `fill` or the operating system refused.
+    pub fn pending(
+        &self,
+        name: impl AsRef<Path>,
+        fill: impl FnOnce(&mut dyn Write) -> Result<()>,
+    ) -> Result<PendingFile> {
+        let mut file = self.begin(name.as_ref())?;
+        fill(&mut file).writing(|| format!("`{}` cannot be written", self.join(name).display()))?;
+        Ok(file)
+    }
+
+    /// As [`OutputDir::pending`], with `image` as a PNG file.
+    ///
+    /// # Errors
+    /// As [`OutputDir::pending`].
+    pub fn pending_png(&self, name: impl AsRef<Path>, image: &RgbImage) -> Result<PendingFile> {
+        let bytes = png(image)?;
+        self.pending(name, |writer| Ok(writer.write_all(&bytes)?))
+    }
+
+    /// Begins the file `name` of this folder, which grows until [`PendingFile::finish`].
+    ///
+    /// # Errors
+    /// Names the file if the folder refuses it.
+    pub fn begin(&self, name: impl AsRef<Path>) -> Result<PendingFile> {
+        PendingFile::begin(&self.join(name))
+    }
+}
+
+fn png(image: &RgbImage) -> Result<Vec<u8>> {
+    let mut bytes = Cursor::new(Vec::new());
+    image.write_to(&mut bytes, ImageFormat::Png).writing(|| "a picture cannot be encoded")?;
+    Ok(bytes.into_inner())
+}
+
+/// Removes temporary files of single writes that have this age. Those that cannot be looked at or
+/// removed stay.
+pub(super) fn sweep(folder: &Path, min_age: Duration) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.filter_map(Result::ok) {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let is_temporary = name.starts_with(TEMPORARY_PREFIX) && !name.starts_with(LOCK_PREFIX);
+        let age = || entry.metadata().ok()?.modified().ok()?.elapsed().ok();
+        if is_temporary && age().is_some_and(|age| age >= min_age) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::bail;
+    use crate::output::check_writable_file;
+    use std::fs::FileTimes;
+    use std::time::SystemTime;
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_no_litter() {
+        let folder = tempfile::tempdir().unwrap();
+        let output = OutputDir::create(&folder.path().join("a/b")).unwrap();
+        output.write("x.txt", |writer| Ok(writer.write_all(b"old")?)).unwrap();
+        let failure = output.write("x.txt", |writer| {
+            writer.write_all(b"half")?;
+            bail!("no more")
+        });
+        assert!(format!("{:#}", failure.unwrap_err()).contains("x.txt"));
+        assert_eq!(fs::read(output.join("x.txt")).unwrap(), b"old");
+        assert_eq!(fs::read_dir(output.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_file_in_place_of_a_folder_is_refused_before_the_run() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        fs::write(&file, b"").unwrap();
+        assert!(OutputDir::create(&file).unwrap_err().to_string().contains("is a file"));
+        assert!(OutputDir::create(&file.join("inside")).is_err());
+        assert!(check_writable_file(folder.path()).unwrap_err().to_string().contains("is a folder"));
+    }
+
+    #[test]
+    fn old_temporary_files_are_swept_and_young_ones_are_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str, age_s: u64| {
+            let file = fs::File::create(folder.path().join(name)).unwrap();
+            file.set_times(FileTimes::new().set_modified(SystemTime::now() - Duration::from_secs(age_s))).unwrap();
+        };
+        file(".sinew-old", 3600);
+        file(".sinew-new", 0);
+        file("mine", 3600);
+        OutputDir::create(folder.path()).unwrap();
+        let is_there = |name: &str| folder.path().join(name).exists();
+        assert!(!is_there(".sinew-old") && is_there(".sinew-new") && is_there("mine"));
+    }
+}
