@@ -28,4 +28,5 @@ pub mod viewer;
 pub mod wording;
 
 pub use error::{Error, Result};
-pub use sinew_formats::{cloud, images, motion, registry};
+pub use sinew_formats::{cloud, images, limits, motion, registry};
+pub(crate) use sinew_formats::{file, quote};

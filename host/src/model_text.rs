@@ -1,8 +1,13 @@
 //! Model files as text, whatever the kind of model.
 
-use crate::error::{Context, Result, ensure};
+use crate::error::{Context as _, Error, Result, bail, ensure};
+use crate::file::{FileError, read_text_within};
+use crate::quote::with_short_quotes;
 use std::fs;
 use std::path::Path;
+
+/// Longest reason that is printed as it is, bytes.
+const MAX_REASON_BYTES: usize = 500;
 
 /// What a kind of model is called, how one is made, and how large its file may be.
 #[derive(Debug, Clone, Copy)]
@@ -26,11 +31,17 @@ pub fn read<T>(path: &Path, kind: &ModelFileKind, parse: impl FnOnce(&str) -> Re
         format!("`{path}` cannot be used as a {name} model; make one with `{command} --out {path}`")
     };
     let load = || -> Result<T> {
-        let metadata = fs::metadata(path)?;
-        ensure!(metadata.is_file(), "it is not a file");
-        ensure!(metadata.len() <= *max_file_bytes, "it is larger than {max_file_bytes} bytes");
-        let bytes = fs::read(path)?;
-        parse(std::str::from_utf8(&bytes).ok().context("it is not a text file")?)
+        ensure!(fs::metadata(path)?.is_file(), "it is not a file");
+        let text = match read_text_within(path, *max_file_bytes) {
+            Ok(text) => text,
+            Err(FileError::Io(reason)) => return Err(reason.into()),
+            Err(other) => bail!("{other}"),
+        };
+        parse(&text).map_err(|error| match error.chain() {
+            // It quotes the file.
+            long if long.len() > MAX_REASON_BYTES => Error::Invalid(with_short_quotes(&long)),
+            _ => error,
+        })
     };
     load().with_context(remedy)
 }

@@ -2,6 +2,10 @@
 //! videos.
 
 pub mod cloud;
+pub mod file;
 pub mod images;
+pub mod limits;
 pub mod motion;
+mod quiet_panic;
+pub mod quote;
 pub mod registry;

@@ -74,8 +74,11 @@ impl BodyRecording {
     /// # Errors
     /// As [`Self::read`].
     pub fn read_with_markers(path: &Path, options: &BodyRecordingOptions<'_>) -> Result<(Self, MarkerFrames)> {
-        let read =
-            ReadOptions { skeleton: options.skeleton, frames_per_second: options.input_rate_hz, metres_per_unit: None };
+        let read = ReadOptions {
+            skeleton: options.skeleton,
+            frames_per_second: options.input_rate_hz,
+            ..ReadOptions::default()
+        };
         let motion = motion::read_space(path, &read)?;
         let figure = JointSources::find(&motion.names, false, path)?.of_motion(&motion);
         let up = upwards(&figure, None).with_context(|| format!("`{}` cannot be placed", path.display()))?;
@@ -197,7 +200,7 @@ mod tests {
         let positions_m =
             vec![vec![None, Some(Vec3::x()), Some(Vec3::y())], vec![Some(Vec3::z()), None, Some(Vec3::y())]];
         let names = ["*0", "Someone:LFHD", "LSHO"].map(str::to_owned).to_vec();
-        let motion = MarkerMotion { frames_per_second: 120.0, names, positions_m };
+        let motion = MarkerMotion { frames_per_second: 120.0, names, positions_m, shortfall: None };
         let markers_m = labelled(Path::new("a/take.C3D"), &motion);
         assert_eq!(markers_m, [vec![Some(Vec3::x()), Some(Vec3::y())], vec![None, Some(Vec3::y())]]);
         assert!(labelled(Path::new("take.trc"), &motion).is_empty());

@@ -49,7 +49,8 @@ pub struct AnglesArgs {
     /// Keypoints of which the detector was less sure are missing.
     #[arg(long, value_name = "C", default_value_t = DEFAULT_MIN_CONFIDENCE)]
     pub min_confidence: f64,
-    /// Take a motion in space that lacks joints; their angles are missing.
+    /// Take a motion in space that lacks joints, whose angles are then missing, or that has fewer
+    /// frames than its header promises.
     #[arg(long)]
     pub partial: bool,
     /// Exchange the names of left and right: the same motion led by the other side, a second one to

@@ -4,7 +4,7 @@ use super::console::Console;
 use super::scene_args::{clear_frames, pair};
 use super::simulate_cyclic::{self, SimulateCyclicArgs};
 use super::simulate_stereo::{self, SimulateStereoArgs};
-use crate::motion::{self, ArmMotion, ArmSide, ReadOptions, reach};
+use crate::motion::{self, ArmMotion, ArmSide, ReadOptions, Shortfall, reach};
 use crate::output::OutputDir;
 use crate::registry::{Kind, choice};
 use crate::scene::{Scene, SceneOptions, Sides};
@@ -72,6 +72,9 @@ pub struct SimulateArmArgs {
     /// Part of the motion that is used, in seconds from its beginning.
     #[arg(long, value_name = "START,END", value_parser = pair::<f32>)]
     pub between: Option<(f32, f32)>,
+    /// Take a motion with fewer frames than its header promises.
+    #[arg(long)]
+    pub partial: bool,
     /// Exchange left and right of the motion.
     #[arg(long)]
     pub mirror: bool,
@@ -122,7 +125,9 @@ pub fn run(args: &SimulateArgs, console: &Console) -> Result<()> {
 }
 
 fn run_arm(args: &SimulateArmArgs, console: &Console) -> Result<()> {
-    let motion = arm_motion(args)?;
+    let (motion, shortfall) = arm_motion(args)?;
+    let notes: Vec<String> = shortfall.iter().map(ToString::to_string).collect();
+    notes.iter().for_each(|note| console.note(note));
     let options = SceneOptions {
         frames: args.frames.unwrap_or_else(|| motion.len()),
         frames_per_second: args.rate,
@@ -139,27 +144,30 @@ fn run_arm(args: &SimulateArmArgs, console: &Console) -> Result<()> {
     clear_frames(&output.join("frames"), "frame_", ".png", args.force)?;
     scene.write_folder(&output)?;
     let text = format!("{} frames, camera.toml and truth.csv in `{}`\n", scene.len(), args.out.display());
-    console.answer(&text, &json!({ "frames": scene.len(), "out": args.out }))
+    console.answer(&text, &json!({ "frames": scene.len(), "notes": notes, "out": args.out }))
 }
 
-/// The motion at the camera's rate.
-fn arm_motion(args: &SimulateArmArgs) -> Result<ArmMotion> {
+/// The motion at the camera's rate, and whether its recording ends early.
+fn arm_motion(args: &SimulateArmArgs) -> Result<(ArmMotion, Option<Shortfall>)> {
     if args.motion == Path::new("builtin") {
-        return Ok(reach::random_reaches(args.seed, args.rate, args.frames.unwrap_or(BUILTIN_FRAMES))?);
+        let motion = reach::random_reaches(args.seed, args.rate, args.frames.unwrap_or(BUILTIN_FRAMES))?;
+        return Ok((motion, None));
     }
     let options = ReadOptions {
         skeleton: args.skeleton.as_deref(),
         frames_per_second: Some(args.motion_rate),
         metres_per_unit: None,
+        partial: args.partial,
     };
-    let motion = ArmMotion::from_motion(&motion::read(&args.motion, &options)?, &args.motion)?;
+    let recorded = motion::read(&args.motion, &options)?;
+    let motion = ArmMotion::from_motion(&recorded, &args.motion)?;
     let motion = if args.mirror { motion.mirrored() } else { motion };
     let motion = match args.between {
         Some((start, end)) if start >= 0.0 && start < end => motion.between(start, end),
         Some(_) => bail!("--between START,END needs 0 <= START < END, in seconds"),
         None => motion,
     };
-    Ok(motion.resampled(args.rate)?)
+    Ok((motion.resampled(args.rate)?, recorded.shortfall))
 }
 
 #[cfg(test)]

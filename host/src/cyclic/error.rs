@@ -1,5 +1,7 @@
 //! What is wrong with a table, a cut list or a model, and where.
 
+use crate::file::{FileError, read_lines};
+use crate::quote::with_short_quotes;
 use std::path::{Path, PathBuf};
 
 /// Input of the cyclic tracker that cannot be read or used.
@@ -51,7 +53,7 @@ pub enum CyclicError {
 
 impl CyclicError {
     pub(crate) fn broken(path: &Path, line: u64, rule: impl Into<String>) -> Self {
-        Self::Broken { path: path.to_path_buf(), line, rule: rule.into() }
+        Self::Broken { path: path.to_path_buf(), line, rule: with_short_quotes(&rule.into()) }
     }
 
     pub(crate) fn parameter(parameter: &'static str, rule: impl Into<String>) -> Self {
@@ -59,9 +61,10 @@ impl CyclicError {
     }
 }
 
-/// Reads a text file; a byte order mark is dropped, bytes that are not UTF-8 are replaced.
+/// Reads the text of a table or cut list.
 pub(crate) fn read_text(path: &Path) -> Result<String, CyclicError> {
-    let bytes = std::fs::read(path).map_err(|reason| CyclicError::Unreadable { path: path.to_path_buf(), reason })?;
-    let text = String::from_utf8_lossy(&bytes);
-    Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned())
+    read_lines(path).map_err(|error| match error {
+        FileError::Io(reason) => CyclicError::Unreadable { path: path.to_path_buf(), reason },
+        other => CyclicError::broken(path, other.line() as u64, other.to_string()),
+    })
 }

@@ -114,7 +114,7 @@ pub fn read(path: &Path) -> Result<CyclicModel> {
 pub fn parse(text: &str) -> Result<CyclicModel> {
     let value: serde_json::Value = serde_json::from_str(text).context("it is not JSON")?;
     let format = value.get("format").and_then(serde_json::Value::as_str).unwrap_or("missing");
-    ensure!(format == FORMAT, "its field `format` is {format}, but has to be {FORMAT}");
+    ensure!(format == FORMAT, "its field `format` is `{format}`, but has to be {FORMAT}");
     let version = value.get("version").map_or_else(|| "missing".to_owned(), ToString::to_string);
     ensure!(
         version == VERSION.to_string(),
@@ -178,9 +178,19 @@ mod tests {
     }
 
     #[test]
+    fn a_byte_order_mark_is_no_part_of_a_model() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("model.json");
+        fs::write(&path, format!("\u{feff}{}", walking_json())).unwrap();
+        assert_eq!(to_json(&read(&path).unwrap()).unwrap(), walking_json());
+    }
+
+    #[test]
     fn what_is_no_model_is_refused_with_the_reason() {
+        let long = refusal(&format!(r#"{{"format": "{}"}}"#, "x".repeat(100_000)));
+        assert!(long.contains("`format` is `xxx") && long.len() < 1000, "{long}");
         assert!(refusal("no json").contains("not JSON"));
-        assert!(refusal("{}").contains("`format` is missing"));
+        assert!(refusal("{}").contains("`format` is `missing`"));
         assert!(changed(|v| v["version"] = 2.into()).contains("`version` is 2, but this program reads version 1"));
         assert!(changed(|v| v["rate_hz"] = 0.into()).contains("`rate_hz`"));
         assert!(

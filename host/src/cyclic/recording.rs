@@ -29,7 +29,7 @@ pub struct RecordingOptions {
     pub facing: Option<Facing>,
     /// Smallest confidence of a keypoint.
     pub min_confidence: f64,
-    /// Take a motion that lacks joints.
+    /// Take a motion that lacks joints, or frames that its header promises.
     pub partial: bool,
     /// Exchange the names of left and right.
     pub swap_sides: bool,
@@ -76,6 +76,7 @@ pub fn read_space(path: &Path, options: &RecordingOptions) -> Result<MarkerMotio
         skeleton: options.skeleton.as_deref(),
         frames_per_second: options.input_rate_hz.map(|rate| rate as f32),
         metres_per_unit: None,
+        partial: options.partial,
     };
     Ok(motion::read_space(path, &read)?)
 }
@@ -90,7 +91,7 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
     let covered = &frames[..(last.floor() as usize + 1).clamp(1, frames.len())];
     let plane = Plane::choose(covered, options.view, options.up, recorded_hz)
         .with_context(|| format!("`{}` cannot be seen from the side", path.display()))?;
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = motion.shortfall.iter().map(ToString::to_string).collect();
     match plane.forward {
         Forward::Travel => {}
         Forward::Hips => {

@@ -40,7 +40,8 @@ pub fn read(path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
         };
         let values = entry.get("keypoints").and_then(numbers);
         let values = values.ok_or_else(|| broken("`keypoints` has to be a list of numbers x, y, confidence"))?;
-        entries.push((image, layout::person(&values).map_err(|rule| broken(&rule))?));
+        let person = layout::person(&values).map_err(|rule| broken(&format!("image `{image}`: {rule}")))?;
+        entries.push((image, person));
     }
     if entries.is_empty() {
         return Err(KeypointError::unusable(path, "has no entry"));
@@ -161,6 +162,10 @@ mod tests {
         let refusal = |value: Value| read_text(&value.to_string()).unwrap_err();
         assert!(refusal(json!({ "a": 1 })).contains("neither a list of COCO results"));
         assert!(refusal(json!([])).contains("has no entry"));
+        let mut beyond = keypoints(1.0);
+        beyond[1] = 1.0e308;
+        let message = refusal(json!([{ "image_id": "f_7.png", "keypoints": beyond }]));
+        assert!(message.contains("k.json: entry 0: image `f_7.png`: keypoint `0` (nose) lies at"), "{message}");
         assert!(refusal(json!([{ "keypoints": [] }])).contains("entry 0: `image_id`"));
         assert!(refusal(json!([{ "image_id": 1 }])).contains("entry 0: `keypoints`"));
         assert!(refusal(json!([{ "image_id": 1, "keypoints": [[1, 2]] }])).contains("2 numbers; each keypoint needs"));

@@ -1,5 +1,7 @@
 //! What is wrong with a file of keypoints, and where.
 
+use crate::file::{self, FileError};
+use crate::quote::with_short_quotes;
 use std::path::{Path, PathBuf};
 
 /// Keypoints that cannot be read or used.
@@ -35,19 +37,36 @@ pub enum KeypointError {
 
 impl KeypointError {
     pub(crate) fn broken(path: &Path, place: impl Into<String>, rule: impl Into<String>) -> Self {
-        Self::Broken { path: path.to_path_buf(), place: place.into(), rule: rule.into() }
+        Self::Broken { path: path.to_path_buf(), place: place.into(), rule: with_short_quotes(&rule.into()) }
     }
 
     pub(crate) fn unusable(path: &Path, rule: impl Into<String>) -> Self {
-        Self::Unusable { path: path.to_path_buf(), rule: rule.into() }
+        Self::Unusable { path: path.to_path_buf(), rule: with_short_quotes(&rule.into()) }
+    }
+
+    fn of_file(path: &Path, error: FileError) -> Self {
+        match error {
+            FileError::Io(reason) => Self::Unreadable { path: path.to_path_buf(), reason },
+            FileError::LongLine { line, .. } => Self::broken(path, format!("line {line}"), error.to_string()),
+            FileError::TooLarge { .. } => Self::unusable(path, format!("cannot be read: {error}")),
+        }
+    }
+
+    /// Whether the operating system refused the file or folder, whatever its content.
+    #[must_use]
+    pub fn is_io(&self) -> bool {
+        matches!(self, Self::Unreadable { .. })
     }
 }
 
-/// Reads a text file; a byte order mark is dropped.
+/// Reads a text file, whose lines may be of any length.
 pub(crate) fn read_text(path: &Path) -> Result<String, KeypointError> {
-    let bytes = std::fs::read(path).map_err(|reason| KeypointError::Unreadable { path: path.to_path_buf(), reason })?;
-    let text = String::from_utf8_lossy(&bytes);
-    Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned())
+    file::read_text(path).map_err(|error| KeypointError::of_file(path, error))
+}
+
+/// Reads the text of a table.
+pub(crate) fn read_lines(path: &Path) -> Result<String, KeypointError> {
+    file::read_lines(path).map_err(|error| KeypointError::of_file(path, error))
 }
 
 /// Parses JSON.

@@ -1,7 +1,9 @@
 //! Which keypoint of a detector is which: the orders of COCO, OpenPose and HALPE.
 
 use crate::cyclic::image_joints::Point;
+use crate::limits::MAX_NUMBER;
 use crate::motion::joint_names::{HIP_CENTER, HIPS, JOINTS, NECK, SHOULDERS};
+use sinew_core::skeleton::stick_figure::HUMAN;
 
 /// A point of the body that a detector can find.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -181,11 +183,39 @@ pub fn person(values: &[f64]) -> Result<Vec<Keypoint>, String> {
     }
     let count = values.len() / 3;
     let parts = parts(count).ok_or_else(|| unknown_count(count))?;
-    let keypoint = |(part, value): (Part, &[f64])| {
-        let found = value.iter().all(|number| number.is_finite()) && (value[0] != 0.0 || value[1] != 0.0);
-        found.then(|| Keypoint { part, position_px: [value[0], value[1]], confidence: value[2] })
-    };
-    Ok(parts.into_iter().zip(values.chunks(3)).filter_map(keypoint).collect())
+    let mut found = Vec::with_capacity(count);
+    for (number, (part, value)) in parts.into_iter().zip(values.chunks(3)).enumerate() {
+        let is_found = value.iter().all(|number| number.is_finite()) && (value[0] != 0.0 || value[1] != 0.0);
+        if is_found {
+            check_position([value[0], value[1]], part, &number.to_string())?;
+            found.push(Keypoint { part, position_px: [value[0], value[1]], confidence: value[2] });
+        }
+    }
+    Ok(found)
+}
+
+/// Refuses a place that no picture has. `keypoint` is its number or column.
+///
+/// # Errors
+/// Names the keypoint, its part and the place.
+pub fn check_position(position_px: Point, part: Part, keypoint: &str) -> Result<(), String> {
+    if position_px.iter().all(|coordinate| coordinate.abs() <= f64::from(MAX_NUMBER)) {
+        return Ok(());
+    }
+    let [u, v] = position_px;
+    let name = part_name(part);
+    Err(format!("keypoint `{keypoint}` ({name}) lies at ({u:e}, {v:e}), and {MAX_NUMBER:e} pixels are the most"))
+}
+
+/// The part in words.
+fn part_name(part: Part) -> String {
+    match part {
+        Part::Joint(joint) => HUMAN.joints()[joint].name.to_owned(),
+        Part::Nose => "nose".to_owned(),
+        Part::Toe(side) => format!("{side:?} toe").to_lowercase(),
+        Part::Heel(side) => format!("{side:?} heel").to_lowercase(),
+        Part::Other => "not used".to_owned(),
+    }
 }
 
 /// The frame without points of which the detector was less sure than `min_confidence`, and without
@@ -246,6 +276,16 @@ mod tests {
         assert_eq!(joints(18), openpose_18.map(Some));
         assert!(person(&[0.0; 24]).unwrap_err().starts_with("8 keypoints; 7 (head and arms), 17 (COCO)"));
         assert!(person(&[0.0; 50]).unwrap_err().contains("x, y and confidence"));
+    }
+
+    #[test]
+    fn places_that_no_picture_has_are_refused_by_name() {
+        let mut values: Vec<f64> = (0..17).flat_map(|i| [f64::from(i) + 1.0, 10.0, 0.9]).collect();
+        values[3 * 9] = 1.0e308;
+        let message = person(&values).unwrap_err();
+        assert_eq!(message, "keypoint `9` (l_wrist) lies at (1e308, 1e1), and 1e9 pixels are the most");
+        values[3 * 9] = -1.0e9;
+        assert!(person(&values).is_ok());
     }
 
     #[test]

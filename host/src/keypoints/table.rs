@@ -1,8 +1,8 @@
 //! CSV tables of keypoints: for each joint the columns `JOINT_x_px` and `JOINT_y_px`, and
 //! `JOINT_confidence` if there is one.
 
-use super::error::{KeypointError, read_text};
-use super::layout::{DetectedFrame, Keypoint, Part, Side};
+use super::error::{KeypointError, read_lines};
+use super::layout::{DetectedFrame, Keypoint, Part, Side, check_position};
 use crate::csv_text::csv_reader;
 use crate::motion::joint_names::{HIP_CENTER, NECK};
 use sinew_core::skeleton::stick_figure::HUMAN;
@@ -23,7 +23,7 @@ struct Columns {
 /// # Errors
 /// Names the file, the line and the rule that it broke.
 pub fn read(path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
-    parse(&read_text(path)?, path)
+    parse(&read_lines(path)?, path)
 }
 
 /// Parses the text of a table; `path` is for messages only.
@@ -68,7 +68,8 @@ pub fn parse(text: &str, path: &Path) -> Result<Vec<DetectedFrame>, KeypointErro
                 format!("frame {frame} follows frame {}; frame numbers have to rise", before.frame),
             ));
         }
-        let person = person(&record, &header, &columns).map_err(|rule| broken(line, rule))?;
+        let person = person(&record, &header, &columns);
+        let person = person.map_err(|rule| broken(line, format!("frame {frame}: {rule}")))?;
         frames.push(DetectedFrame { frame, people: vec![person] });
     }
     if frames.is_empty() {
@@ -96,6 +97,7 @@ fn person(
     for point in columns {
         let confidence = point.confidence.map_or(Ok(Some(1.0)), number)?.unwrap_or(0.0);
         if let (Some(u), Some(v)) = (number(point.x)?, number(point.y)?) {
+            check_position([u, v], point.part, &header[point.x])?;
             person.push(Keypoint { part: point.part, position_px: [u, v], confidence });
         }
     }
@@ -194,7 +196,14 @@ mod tests {
             ("a,b\n1,2\n", "k.csv: line 1: no column is a known joint's"),
             ("neck_x,neck_y\n", "k.csv: line 2: the table is empty"),
             ("neck_x,neck_y\n1\n", "k.csv: line 2: a row needs 2 columns as the header has, found 1"),
-            ("neck_x,neck_y\n1,inf\n", "k.csv: line 2: `neck_y` has to be a finite number or empty, found `inf`"),
+            (
+                "neck_x,neck_y\n1,inf\n",
+                "k.csv: line 2: frame 0: `neck_y` has to be a finite number or empty, found `inf`",
+            ),
+            (
+                "frame,neck_x,neck_y\n7,1,-1e308\n",
+                "k.csv: line 2: frame 7: keypoint `neck_x` (neck) lies at (1e0, -1e308)",
+            ),
             ("frame,neck_x,neck_y\n3,1,2\n3,1,2\n", "k.csv: line 3: frame 3 follows frame 3"),
             ("frame,neck_x,neck_y\nx,1,2\n", "k.csv: line 2: `frame` has to be"),
         ];

@@ -1,11 +1,12 @@
 //! Pictures as JPEG inside the page, of a size that is bounded for the whole page.
 
 use crate::error::{Context, Result};
+use crate::images::load_rgb;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use image::RgbImage;
 use image::codecs::jpeg::JpegEncoder;
 use image::imageops::FilterType;
-use image::{DynamicImage, RgbImage};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -76,9 +77,9 @@ impl Pictures {
                 .par_iter()
                 .enumerate()
                 .map(|(index, path)| match path {
-                    Some(path) if wanted(index) => match load(path) {
-                        Some(image) => jpeg(&image, rung).map(Some).map_err(|error| error.chain()),
-                        None => Err(path.display().to_string()),
+                    Some(path) if wanted(index) => match load_rgb(path) {
+                        Ok(image) => jpeg(&image, rung).map(Some).map_err(|error| error.chain()),
+                        Err(_) => Err(path.display().to_string()),
                     },
                     _ => Ok(None),
                 })
@@ -100,7 +101,7 @@ pub fn block_name(index: usize) -> String {
 /// one has to do.
 fn choose(all: &[&PathBuf], bytes: usize) -> Result<(usize, usize)> {
     let step = all.len().div_ceil(SAMPLES).max(1);
-    let sample: Vec<RgbImage> = all.iter().step_by(step).filter_map(|path| load(path)).collect();
+    let sample: Vec<RgbImage> = all.iter().step_by(step).filter_map(|path| load_small(path)).collect();
     let mut mean = 0;
     for (rung, &by) in RUNGS.iter().enumerate() {
         let sizes =
@@ -113,17 +114,22 @@ fn choose(all: &[&PathBuf], bytes: usize) -> Result<(usize, usize)> {
     Ok((RUNGS.len() - 1, (mean * all.len()).div_ceil(bytes.max(1))))
 }
 
-fn load(path: &Path) -> Option<RgbImage> {
-    // By its content: the names of files say nothing for sure.
-    let reader = image::ImageReader::open(path).ok()?.with_guessed_format().ok()?;
-    reader.decode().ok().map(DynamicImage::into_rgb8)
+/// The picture, not wider than the finest rung: a sample of large ones would take gigabytes.
+fn load_small(path: &Path) -> Option<RgbImage> {
+    let image = load_rgb(path).ok()?;
+    Some(scaled(&image, RUNGS[0].0).unwrap_or(image))
+}
+
+/// The picture at this width; `None` if it is no wider.
+fn scaled(image: &RgbImage, width: u32) -> Option<RgbImage> {
+    (image.width() > width).then(|| {
+        let height = (u64::from(image.height()) * u64::from(width) / u64::from(image.width())).max(1) as u32;
+        image::imageops::resize(image, width, height, FilterType::Triangle)
+    })
 }
 
 fn jpeg(image: &RgbImage, (width, quality): (u32, u8)) -> Result<String> {
-    let scaled = (image.width() > width).then(|| {
-        let height = (u64::from(image.height()) * u64::from(width) / u64::from(image.width())).max(1) as u32;
-        image::imageops::resize(image, width, height, FilterType::Triangle)
-    });
+    let scaled = scaled(image, width);
     let mut bytes = Vec::new();
     let mut encoder = JpegEncoder::new_with_quality(&mut bytes, quality);
     encoder.encode_image(scaled.as_ref().unwrap_or(image)).context("a picture cannot be made a JPEG")?;
@@ -162,15 +168,18 @@ mod tests {
         let broken = folder.path().join("broken.png");
         std::fs::write(&broken, "no picture").unwrap();
         paths.push(Some(broken));
+        let huge = folder.path().join("huge.png");
+        image::GrayImage::new(crate::limits::MAX_SIDE_PX + 1, 2).save(&huge).unwrap();
+        paths.push(Some(huge));
         let mut pictures = Pictures::default();
         assert_eq!(pictures.add(paths), "pictures-0");
         let width = |text: &str| image::load_from_memory(&STANDARD.decode(text).unwrap()).unwrap().width();
 
         let fine = pictures.encode().unwrap();
-        assert_eq!((fine.every, fine.unreadable.len()), (1, 1));
+        assert_eq!((fine.every, fine.unreadable.len()), (1, 2));
         assert_eq!(
             fine.blocks[0].0.iter().map(Option::is_some).collect::<Vec<_>>(),
-            [true, true, true, true, true, true, false, false]
+            [true, true, true, true, true, true, false, false, false]
         );
         assert_eq!(width(fine.blocks[0].0[0].as_ref().unwrap()), 700);
 
@@ -178,7 +187,7 @@ mod tests {
         let small = pictures.encode_within(taken(&fine) / 3).unwrap();
         assert!(taken(&small) <= taken(&fine) / 3 && width(small.blocks[0].0[0].as_ref().unwrap()) < 700);
         let few = pictures.encode_within(20_000).unwrap();
-        assert!(taken(&few) <= 20_000 && few.every > 1 && few.blocks[0].0.len() == 8);
+        assert!(taken(&few) <= 20_000 && few.every > 1 && few.blocks[0].0.len() == 9);
     }
 
     #[test]

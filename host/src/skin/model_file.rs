@@ -92,7 +92,7 @@ pub fn read(path: &Path) -> Result<SkinModel> {
 pub fn parse(text: &str) -> Result<SkinModel> {
     let value: serde_json::Value = serde_json::from_str(text).context("it is not JSON")?;
     let format = value.get("format").and_then(serde_json::Value::as_str).unwrap_or("missing");
-    ensure!(format == FORMAT, "its field `format` is {format}, but has to be {FORMAT}");
+    ensure!(format == FORMAT, "its field `format` is `{format}`, but has to be {FORMAT}");
     let version = value.get("version").and_then(serde_json::Value::as_u64);
     ensure!(version == Some(VERSION), "its field `version` is {version:?}, but this program reads version {VERSION}");
     let file: ModelFile = serde_json::from_value(value)?;
@@ -168,9 +168,19 @@ mod tests {
     }
 
     #[test]
+    fn a_byte_order_mark_is_no_part_of_a_model() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("model.json");
+        fs::write(&path, format!("\u{feff}{}", gaussian_json())).unwrap();
+        assert_eq!(to_json(&read(&path).unwrap()).unwrap(), gaussian_json());
+    }
+
+    #[test]
     fn what_is_no_model_is_refused_with_the_reason() {
+        let long = refusal(&format!(r#"{{"format": "{}"}}"#, "x".repeat(100_000)));
+        assert!(long.contains("`format` is `xxx") && long.len() < 1000, "{long}");
         assert!(refusal("no json").contains("not JSON"));
-        assert!(refusal("{}").contains("`format` is missing"));
+        assert!(refusal("{}").contains("`format` is `missing`"));
         assert!(refusal(&gaussian_json().replace("\"version\": 1", "\"version\": 2")).contains("Some(2)"));
         assert!(
             refusal(&gaussian_json().replace("\"kind\": \"gaussian\"", "\"kind\": \"histogram\""))

@@ -1,8 +1,9 @@
 //! What is wrong with a cloud's file or folder.
 
-use super::file_size::MAX_FILE_BYTES;
+use crate::file::FileError;
+use crate::limits::MAX_FILE_BYTES;
 use crate::registry::{Kind, extensions};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A cloud, or a folder of clouds, that cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -23,14 +24,12 @@ pub enum CloudError {
     },
     /// The file is beyond all that one frame can hold.
     #[error(
-        "`{}` has {bytes} bytes, and a frame's points may have {MAX_FILE_BYTES} at most; write one file for each frame",
+        "`{}` has more than {MAX_FILE_BYTES} bytes, the most that a frame's points may have; write one file for each frame",
         path.display()
     )]
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// Its size.
-        bytes: u64,
     },
     /// The content breaks a rule of the format.
     #[error("`{}` is no cloud of points that can be read: {rule}; write the file again, or leave it out", path.display())]
@@ -75,6 +74,22 @@ pub enum CloudError {
         /// The rule.
         rule: &'static str,
     },
+}
+
+impl CloudError {
+    pub(crate) fn of_file(path: &Path, error: FileError) -> Self {
+        let path = path.to_path_buf();
+        match error {
+            FileError::Io(reason) => Self::Unreadable { path, reason },
+            FileError::TooLarge { .. } | FileError::LongLine { .. } => Self::TooLarge { path },
+        }
+    }
+
+    /// Whether the operating system refused the file or folder, whatever its content.
+    #[must_use]
+    pub fn is_io(&self) -> bool {
+        matches!(self, Self::Unreadable { .. })
+    }
 }
 
 fn extension_list() -> String {

@@ -3,10 +3,11 @@
 //! Coordinates are metres in the camera's axes: x right, y down, z forward, the camera's centre is
 //! the origin. They are used as they are; a PCD file's `VIEWPOINT` is not applied.
 
+pub use crate::limits::MAX_FILE_BYTES;
+
 pub mod blocks;
 pub mod csv;
 pub mod error;
-pub mod file_size;
 pub mod folder;
 pub mod frame_number;
 pub mod pcd;
@@ -17,7 +18,6 @@ pub mod subsample;
 
 pub use blocks::blocks_of;
 pub use error::CloudError;
-pub use file_size::MAX_FILE_BYTES;
 pub use folder::{CloudFolder, CloudFrame};
 pub use ply::write_ply;
 pub use point_cloud::{MAX_DISTANCE_M, MAX_POINTS, PointCloud};

@@ -1,8 +1,8 @@
 //! Clouds in PCD files, the format of the Point Cloud Library: the fields `x`, `y` and `z`; ascii,
 //! binary or compressed.
 
-use super::file_size::MAX_FILE_BYTES;
 use super::point_cloud::PointCloud;
+use crate::limits::MAX_FILE_BYTES;
 use pcd_rs::{DataKind, DynReader, DynRecord, Field, PcdMeta};
 use sinew_core::math::Vec3;
 

@@ -56,6 +56,9 @@ fn errors_name_the_file_and_the_remedy() {
     }
     let missing = read(Path::new("nowhere/a.ply")).unwrap_err().to_string();
     assert!(missing.contains("check the path"), "{missing}");
+    assert!(read(Path::new("nowhere/a.ply")).unwrap_err().is_io() && !read_as("a.ply", b"ply\n").unwrap_err().is_io());
+    let long = read_as("a.csv", format!("x,y,z\n1,{},3\n", "2".repeat(90_000) + "a").as_bytes()).unwrap_err();
+    assert!(long.to_string().len() < 500, "{long}");
 }
 
 #[test]

@@ -1,18 +1,16 @@
 //! Image files of a folder in natural order, and one file as 8-bit RGB.
 
 use super::jpeg::reaches_end_of_image;
-use super::side::MAX_SIDE_PX;
 use super::video::is_video;
+use crate::file::{FileError, read_bytes};
+use crate::limits::{MAX_DECODE_BYTES, MAX_FILE_BYTES, MAX_SIDE_PX};
 use crate::registry::{Kind, extensions, find};
 use image::{ImageFormat, ImageReader, Limits, RgbImage};
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Cursor;
+use std::io::{Cursor, ErrorKind};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
-
-/// Largest memory that decoding one image may take, bytes.
-const MAX_DECODE_BYTES: u64 = 1 << 30;
 
 /// A folder or file that cannot be an input of a run.
 #[derive(Debug, Error)]
@@ -55,6 +53,16 @@ pub struct ImageFileError {
     pub path: PathBuf,
     /// Why.
     pub reason: String,
+    /// What the operating system refused; `None` for a file whose content is no picture.
+    pub io: Option<ErrorKind>,
+}
+
+impl ImageFileError {
+    /// Whether the operating system refused the file, whatever its content.
+    #[must_use]
+    pub fn is_io(&self) -> bool {
+        self.io.is_some()
+    }
 }
 
 /// What a command was given.
@@ -132,8 +140,11 @@ pub fn list_images(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
 /// [`ImageFileError`] if the file cannot be opened, is truncated, is not an image, or is larger
 /// than [`MAX_SIDE_PX`].
 pub fn load_rgb(path: &Path) -> Result<RgbImage, ImageFileError> {
-    let failed = |reason: String| ImageFileError { path: path.to_path_buf(), reason };
-    let bytes = fs::read(path).map_err(|error| failed(error.to_string()))?;
+    let failed = |reason: String| ImageFileError { path: path.to_path_buf(), reason, io: None };
+    let bytes = read_bytes(path, MAX_FILE_BYTES).map_err(|error| match error {
+        FileError::Io(refusal) => ImageFileError { io: Some(refusal.kind()), ..failed(refusal.to_string()) },
+        other => failed(other.to_string()),
+    })?;
     let mut reader =
         ImageReader::new(Cursor::new(&bytes)).with_guessed_format().map_err(|error| failed(error.to_string()))?;
     if reader.format() == Some(ImageFormat::Jpeg) && !reaches_end_of_image(&bytes) {
@@ -247,6 +258,19 @@ mod tests {
             }
         }
         fs::write(folder.path().join("empty.png"), b"").unwrap();
-        assert!(load_rgb(&folder.path().join("empty.png")).is_err());
+        assert!(!load_rgb(&folder.path().join("empty.png")).unwrap_err().is_io());
+        assert!(load_rgb(&folder.path().join("missing.png")).unwrap_err().is_io());
+        assert!(load_rgb(folder.path()).unwrap_err().is_io());
+    }
+
+    #[test]
+    fn a_picture_beyond_the_limits_is_refused_by_its_header() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("wide.png");
+        GrayImage::new(MAX_SIDE_PX + 1, 1).save(&path).unwrap();
+        let error = load_rgb(&path).unwrap_err();
+        assert!(!error.is_io() && error.to_string().contains("wide.png"), "{error}");
+        GrayImage::new(MAX_SIDE_PX, 1).save(&path).unwrap();
+        assert!(load_rgb(&path).is_ok());
     }
 }

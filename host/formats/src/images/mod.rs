@@ -2,7 +2,6 @@
 
 pub mod folder;
 pub mod jpeg;
-pub mod side;
 pub mod video;
 
 pub use folder::{ImageFileError, ImageInput, InputError, list_images, load_rgb};

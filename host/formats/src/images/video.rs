@@ -1,6 +1,6 @@
 //! Frames of a video file, through a pipe from the installed `ffmpeg`: no frame is written to disk.
 
-use super::side::MAX_SIDE_PX;
+use crate::limits::MAX_SIDE_PX;
 use crate::registry::{Kind, find};
 use image::RgbImage;
 use serde_json::Value;

@@ -7,6 +7,7 @@ use super::asf::{self, Skeleton, about, rotation_axis};
 use super::error::{MotionError, number, read_text};
 use super::read_options::ReadOptions;
 use super::recording::Motion;
+use super::shortfall::check_positions;
 use sinew_core::math::{Mat3, Vec3};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -40,8 +41,9 @@ pub fn parse(text: &str, path: &Path, skeleton: &Skeleton, frames_per_second: f3
     let mut joints = vec!["root".to_string()];
     joints.extend(skeleton.bones.iter().map(|bone| bone.name.clone()));
     let index: BTreeMap<&str, usize> = skeleton.bones.iter().enumerate().map(|(i, b)| (b.name.as_str(), i)).collect();
-    let mut reader = Reader { path, skeleton, index, radians_per_unit: core::f32::consts::PI / 180.0, frame: None };
-    let mut motion = Motion { frames_per_second, joints, positions_m: Vec::new() };
+    let radians_per_unit = core::f32::consts::PI / 180.0;
+    let mut reader = Reader { path, skeleton, index, radians_per_unit, frame: None, bytes: text.len() };
+    let mut motion = Motion { frames_per_second, joints, positions_m: Vec::new(), shortfall: None };
     let mut line = 0;
     for content in text.lines() {
         line += 1;
@@ -76,6 +78,8 @@ struct Reader<'a> {
     index: BTreeMap<&'a str, usize>,
     radians_per_unit: f32,
     frame: Option<Frame>,
+    /// Bytes of the file.
+    bytes: usize,
 }
 
 impl Reader<'_> {
@@ -92,7 +96,7 @@ impl Reader<'_> {
     fn next_frame(&mut self, line: usize, word: &str, motion: &mut Motion) -> Result<(), MotionError> {
         let number: u64 = word.parse().unwrap_or(0);
         if let Some(before) = self.frame.as_ref().map(|frame| frame.number)
-            && number != before + 1
+            && Some(number) != before.checked_add(1)
         {
             return Err(self.broken(line, format!("frame {number} follows frame {before}; one is missing")));
         }
@@ -147,6 +151,7 @@ impl Reader<'_> {
 
     fn finish_frame(&mut self, line: usize, motion: &mut Motion) -> Result<(), MotionError> {
         let Some(frame) = self.frame.take() else { return Ok(()) };
+        check_positions(motion.joints.len(), motion.len() + 1, self.bytes, self.path, line)?;
         let lacks = |name: &str| self.broken(line, format!("frame {} ends without values of `{name}`", frame.number));
         let root = frame.root.ok_or_else(|| lacks("root"))?;
         let mut globals: Vec<(Vec3, Mat3)> = Vec::with_capacity(self.skeleton.bones.len());

@@ -204,6 +204,7 @@ mod tests {
             frames_per_second: 30.0,
             joints: NAMES.map(String::from).to_vec(),
             positions_m: positions_m.map(Vec3::from).to_vec(),
+            shortfall: None,
         }
     }
 

@@ -1,10 +1,14 @@
 //! Acclaim skeletons (ASF): bones with direction, length, local axis and degrees of freedom.
 
 use super::error::{MotionError, number, read_text};
+use crate::limits::MAX_JOINTS;
 use sinew_core::math::{Mat3, Vec3, axis_rotation};
 use std::path::{Path, PathBuf};
 
 const METRES_PER_INCH: f32 = 0.0254;
+/// Smallest `length` of `:units`. Chosen: with inches in a metre it is 0.025; smaller ones would
+/// put joints beyond all numbers.
+const MIN_LENGTH_UNIT: f32 = 1.0e-6;
 /// Metres per length unit of the CMU collection, whose files have `length 0.45`.
 pub const CMU_METRES_PER_UNIT: f32 = METRES_PER_INCH / 0.45;
 
@@ -87,6 +91,8 @@ struct Parser<'a> {
     block: Option<Block>,
     unordered: Vec<Bone>,
     links: Vec<(usize, String, Vec<String>)>,
+    /// Names in `links`.
+    linked: usize,
 }
 
 /// Parses the text of a skeleton; `path` is for messages only.
@@ -101,7 +107,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Skeleton, MotionError> {
         root_axes: Mat3::identity(),
         bones: Vec::new(),
     };
-    let mut parser = Parser { path, skeleton, block: None, unordered: Vec::new(), links: Vec::new() };
+    let mut parser = Parser { path, skeleton, block: None, unordered: Vec::new(), links: Vec::new(), linked: 0 };
     let mut section = String::new();
     let mut last_line = 1;
     for (index, raw) in text.lines().enumerate() {
@@ -119,7 +125,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Skeleton, MotionError> {
             "units" => parser.units(line, &words)?,
             "root" => parser.root(line, &words)?,
             "bonedata" => parser.bone(line, &words)?,
-            "hierarchy" => parser.link(line, &words),
+            "hierarchy" => parser.link(line, &words)?,
             _ => {}
         }
     }
@@ -135,8 +141,8 @@ impl Parser<'_> {
         match words {
             ["length", value, ..] => {
                 let length = number(self.path, line, value)?;
-                if length <= 0.0 {
-                    return Err(self.broken(line, "the length unit has to be greater than zero"));
+                if length < MIN_LENGTH_UNIT {
+                    return Err(self.broken(line, "the length unit has to be greater than zero (1e-6 at least)"));
                 }
                 self.skeleton.metres_per_unit = METRES_PER_INCH / length;
             }
@@ -217,6 +223,9 @@ impl Parser<'_> {
         let name = block.name.ok_or_else(|| missing("name"))?;
         let direction = block.direction.ok_or_else(|| missing("direction"))?;
         let length = block.length.ok_or_else(|| missing("length"))?;
+        if self.unordered.len() >= MAX_JOINTS {
+            return Err(self.broken(line, format!("the skeleton has more than {MAX_JOINTS} bones")));
+        }
         if self.unordered.iter().any(|bone| bone.name == name) {
             return Err(self.broken(line, format!("a second bone called `{name}`")));
         }
@@ -230,11 +239,17 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn link(&mut self, line: usize, words: &[&str]) {
+    fn link(&mut self, line: usize, words: &[&str]) -> Result<(), MotionError> {
         if words[0] != "begin" && words[0] != "end" {
+            self.linked += words.len();
+            // A bone's own name stands before its children's.
+            if self.linked > 2 * MAX_JOINTS {
+                return Err(self.broken(line, format!("the hierarchy links more than {MAX_JOINTS} bones")));
+            }
             let children = words[1..].iter().map(|w| (*w).to_string()).collect();
             self.links.push((line, words[0].to_string(), children));
         }
+        Ok(())
     }
 
     /// Orders the bones along the hierarchy.

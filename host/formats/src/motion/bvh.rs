@@ -2,9 +2,12 @@
 //! they are listed.
 
 use super::asf::{CMU_METRES_PER_UNIT, about};
-use super::error::{MotionError, number, read_text};
+use super::error::{MotionError, number, parsed_number, read_text};
 use super::landmarks::Arm;
+use super::read_options::ReadOptions;
 use super::recording::Motion;
+use super::shortfall::{Shortfall, check_positions, whole_rows};
+use crate::limits::{MAX_JOINTS, MAX_NAME_BYTES, MAX_SKELETON_DEPTH};
 use sinew_core::math::{Mat3, Vec3, abs, ln};
 use sinew_core::skeleton::Side as ArmSide;
 use std::iter::Enumerate;
@@ -35,8 +38,8 @@ struct Joint {
 ///
 /// # Errors
 /// Names the file, the line and the rule that it broke.
-pub fn read(path: &Path, metres_per_unit: Option<f32>) -> Result<Motion, MotionError> {
-    parse(&read_text(path)?, path, metres_per_unit)
+pub fn read_with(path: &Path, options: &ReadOptions<'_>) -> Result<Motion, MotionError> {
+    parse_with(&read_text(path)?, path, options)
 }
 
 /// Parses the text of a BVH file; `path` is for messages only. An End Site is a joint called
@@ -48,30 +51,52 @@ pub fn read(path: &Path, metres_per_unit: Option<f32>) -> Result<Motion, MotionE
 /// # Errors
 /// Names the file, the line and the rule that it broke.
 pub fn parse(text: &str, path: &Path, metres_per_unit: Option<f32>) -> Result<Motion, MotionError> {
+    parse_with(text, path, &ReadOptions { metres_per_unit, ..ReadOptions::default() })
+}
+
+/// As [`parse`], with `options` of which only the unit and `partial` count.
+///
+/// # Errors
+/// Names the file, the line and the rule that it broke.
+pub fn parse_with(text: &str, path: &Path, options: &ReadOptions<'_>) -> Result<Motion, MotionError> {
     let mut lines = LineReader { path, lines: text.lines().enumerate(), line: 0 };
     let joints = hierarchy(&mut lines)?;
-    let (frame_count, frame_time_s) = motion_header(&mut lines)?;
-    let width = joints.iter().map(|joint| joint.channels.len()).sum::<usize>();
+    let header = motion_header(&mut lines)?;
+    let rest = lines.lines.map(|(index, row)| (index + 1, row));
+    let rows = whole_rows(rest, text.ends_with('\n'), Some(header.frames));
+    let shortfall = Shortfall::check(rows.len(), Some(header.frames), options, path, header.line)?;
+    if rows.len() > header.frames {
+        let rule = format!("`Frames: {}` was promised, {} frames are there", header.frames, rows.len());
+        return Err(MotionError::broken(path, header.line, rule));
+    }
+    check_positions(joints.len(), rows.len(), text.len(), path, header.line)?;
     let mut motion = Motion {
-        frames_per_second: 1.0 / frame_time_s,
+        frames_per_second: 1.0 / header.frame_time_s,
         joints: joints.iter().map(|joint| joint.name.clone()).collect(),
-        positions_m: Vec::new(),
+        positions_m: Vec::with_capacity(joints.len() * rows.len()),
+        shortfall,
     };
-    let mut frames_read = 0;
-    while let Some(words) = lines.next_words() {
-        if words.len() != width {
-            return Err(lines.broken(format!("a frame needs {width} numbers, found {}", words.len())));
-        }
-        let values = words.iter().map(|word| number(path, lines.line, word)).collect::<Result<Vec<f32>, _>>()?;
-        motion.positions_m.extend(forward_kinematics(&joints, &values));
-        frames_read += 1;
+    for (line, row) in rows {
+        motion.positions_m.extend(forward_kinematics(&joints, &frame(row, &joints, path, line)?));
     }
-    if frames_read != frame_count {
-        return Err(lines.broken(format!("`Frames: {frame_count}` was promised, {frames_read} frames are there")));
-    }
-    let scale = metres_per_unit.unwrap_or_else(|| inferred_unit_m(&motion));
+    let scale = options.metres_per_unit.unwrap_or_else(|| inferred_unit_m(&motion));
     motion.positions_m.iter_mut().for_each(|position| *position *= scale);
     Ok(motion)
+}
+
+/// The numbers of one frame.
+fn frame(row: &str, joints: &[Joint], path: &Path, line: usize) -> Result<Vec<f32>, MotionError> {
+    let words: Vec<&str> = row.split_whitespace().collect();
+    let width = joints.iter().map(|joint| joint.channels.len()).sum::<usize>();
+    if words.len() != width {
+        let rule = format!("a frame needs {width} numbers, found {}", words.len());
+        return Err(MotionError::broken(path, line, rule));
+    }
+    let owners = joints.iter().flat_map(|joint| joint.channels.iter().map(|_| &joint.name));
+    let value = |(word, joint): (&&str, &String)| {
+        parsed_number(word).map_err(|rule| MotionError::broken(path, line, format!("{rule} (joint `{joint}`)")))
+    };
+    words.iter().zip(owners).map(value).collect()
 }
 
 fn forward_kinematics(joints: &[Joint], values: &[f32]) -> Vec<Vec3> {
@@ -171,6 +196,12 @@ fn push(
     name: &str,
 ) -> Result<(), MotionError> {
     let parent = open.last().copied();
+    if open.len() >= MAX_SKELETON_DEPTH || joints.len() >= MAX_JOINTS || name.len() > MAX_NAME_BYTES {
+        return Err(lines.broken(format!(
+            "joint `{name}` exceeds a limit: {MAX_JOINTS} joints, {MAX_SKELETON_DEPTH} of them below each other, \
+            names of {MAX_NAME_BYTES} bytes"
+        )));
+    }
     if lines.expect("`{`")? != ["{"] {
         return Err(lines.broken(format!("`{{` was expected after joint `{name}`")));
     }
@@ -195,18 +226,33 @@ fn channels(lines: &LineReader<'_>, count: &str, names: &[&str]) -> Result<Vec<C
     names.iter().map(channel).collect()
 }
 
-fn motion_header(lines: &mut LineReader<'_>) -> Result<(usize, f32), MotionError> {
-    let count = match lines.expect("`Frames:`")?.as_slice() {
+/// What stands between the hierarchy and the frames.
+#[derive(Debug)]
+struct MotionHeader {
+    frames: usize,
+    frame_time_s: f32,
+    /// The line that gives the number of frames.
+    line: usize,
+}
+
+fn motion_header(lines: &mut LineReader<'_>) -> Result<MotionHeader, MotionError> {
+    let frames = match lines.expect("`Frames:`")?.as_slice() {
         ["Frames:", count] => count.parse().ok().filter(|&count: &usize| count > 0),
         _ => None,
     };
-    let count = count.ok_or_else(|| lines.broken("`Frames:` with a count above zero was expected"))?;
+    let frames = frames.ok_or_else(|| lines.broken("`Frames:` with a count above zero was expected"))?;
+    let line = lines.line;
     let words = lines.expect("`Frame Time:`")?;
     let ["Frame", "Time:", seconds] = words.as_slice() else {
         return Err(lines.broken("`Frame Time:` was expected"));
     };
-    let seconds = number(lines.path, lines.line, seconds)?;
-    if seconds > 0.0 { Ok((count, seconds)) } else { Err(lines.broken("the frame time has to be greater than zero")) }
+    let frame_time_s = number(lines.path, lines.line, seconds)?;
+    // Times that are not normal numbers would give an infinite rate.
+    if frame_time_s >= f32::MIN_POSITIVE {
+        Ok(MotionHeader { frames, frame_time_s, line })
+    } else {
+        Err(lines.broken("the frame time has to be greater than zero"))
+    }
 }
 
 #[cfg(test)]
@@ -258,7 +304,8 @@ mod tests {
             ("  }\n }\n}\n", "  }\n }\n", "m.bvh:20: `MOTION` before the hierarchy is closed"),
             ("30 0 90 0", "30 0 90", "m.bvh:24: a frame needs 13 numbers, found 12"),
             ("30 0 90 0", "30 0 inf 0", "m.bvh:24: `inf` is not finite"),
-            ("Frames: 1", "Frames: 2", "m.bvh:24: `Frames: 2` was promised, 1 frames"),
+            ("Frames: 1", "Frames: 2", "m.bvh:22: the recording ends early: 1 of the 2 frames that its header"),
+            ("30 0 90 0", "30 0 1e10 0", "m.bvh:24: `1e10` is beyond 1e9; every value has to be within (joint `Hand`)"),
             ("Frame Time: 0.05", "Frame Time: 0", "m.bvh:23: the frame time has to be"),
             ("OFFSET 10 0 0", "OFFSET 10 0", "m.bvh:8: `OFFSET 10 0` has no place"),
             ("JOINT Arm\n {", "JOINT Arm\n", "m.bvh:8: `{` was expected after joint `Arm`"),
@@ -267,6 +314,56 @@ mod tests {
             let found = parsed(&BVH.replacen(from, to, 1)).unwrap_err().to_string();
             assert!(found.starts_with(message), "{found} does not start with {message}");
         }
+        let found = parsed(&format!("{BVH}1 2 3 0 0 90 90 0 0 30 0 90 0")).unwrap_err().to_string();
+        assert!(found.starts_with("m.bvh:22: `Frames: 1` was promised, 2 frames are there"), "{found}");
         assert!(parsed("HIERARCHY\nROOT a\n{\n").unwrap_err().to_string().contains("the file ends where"));
+    }
+    fn partial(text: &str) -> Result<Motion, MotionError> {
+        parse_with(text, Path::new("m.bvh"), &ReadOptions { partial: true, ..ReadOptions::default() })
+    }
+
+    #[test]
+    fn a_file_that_was_cut_is_read_as_far_as_it_is_whole() {
+        let row = "1 2 3 0 0 90 90 0 0 30 0 90 0\n";
+        let text = BVH.replace("Frames: 1", "Frames: 9") + row + row;
+        for missing in [0, 1, 3, row.len() - 1] {
+            let cut = &text[..text.len() - missing];
+            let message = parsed(cut).unwrap_err().to_string();
+            let frames = if missing == 0 { 3 } else { 2 };
+            assert!(
+                message.contains(&format!("{frames} of the 9 frames")) && message.contains("--partial"),
+                "{message}"
+            );
+            let motion = partial(cut).unwrap();
+            assert_eq!((motion.len(), motion.shortfall), (frames, Some(Shortfall { frames, promised: 9 })));
+        }
+        // A whole file whose last line has no end.
+        assert_eq!(partial(BVH.trim_end()).unwrap().shortfall, None);
+        let none = text.lines().take(23).collect::<Vec<_>>().join("\n") + "\n";
+        assert!(partial(&none).unwrap_err().to_string().contains("0 of the 9 frames"));
+    }
+
+    #[test]
+    fn depth_number_and_names_of_joints_are_bounded() {
+        let nested = |depth: usize| {
+            let open = "JOINT b\n{\nOFFSET 0 0 0\n".repeat(depth);
+            format!(
+                "HIERARCHY\nROOT a\n{{\nCHANNELS 1 Xrotation\n{open}{}}}\nMOTION\nFrames: 1\nFrame Time: 1\n0\n",
+                "}\n".repeat(depth)
+            )
+        };
+        assert_eq!(parsed(&nested(MAX_SKELETON_DEPTH - 1)).unwrap().joints.len(), MAX_SKELETON_DEPTH);
+        let message = parsed(&nested(MAX_SKELETON_DEPTH)).unwrap_err().to_string();
+        assert!(message.contains("256 of them below each other") && message.len() < 400, "{message}");
+        let many = format!("HIERARCHY\nROOT a\n{{\n{}", "End Site\n{\n}\n".repeat(MAX_JOINTS));
+        assert!(parsed(&many).unwrap_err().to_string().contains("4096 joints"));
+        let long = parsed(&BVH.replace("Arm", &"m".repeat(100_000))).unwrap_err().to_string();
+        assert!(long.contains("names of 256 bytes") && long.len() < 400, "{long}");
+        let ends = "End Site\n{\n}\n".repeat(4000);
+        let wide = format!(
+            "HIERARCHY\nROOT a\n{{\nCHANNELS 1 Xrotation\n{ends}}}\nMOTION\nFrames: 9000\nFrame Time: 1\n{}",
+            "0\n".repeat(9000)
+        );
+        assert!(parsed(&wide).unwrap_err().to_string().contains("more than a file of"));
     }
 }

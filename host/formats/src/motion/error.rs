@@ -1,5 +1,8 @@
 //! What is wrong with a motion file, and where.
 
+use crate::file::{FileError, read_lines};
+use crate::limits::MAX_NUMBER;
+use crate::quote::{listed, with_short_quotes};
 use std::path::{Path, PathBuf};
 
 /// A motion that cannot be read or used.
@@ -40,7 +43,7 @@ pub enum MotionError {
         found: String,
     },
     /// A joint that the arm needs is not in the file under any usual name.
-    #[error("motion `{}` has no joints that look like {wanted}; it has {}", path.display(), joints.join(", "))]
+    #[error("motion `{}` has no joints that look like {wanted}; it has {}", path.display(), listed(joints))]
     NoJoint {
         /// The file.
         path: PathBuf,
@@ -61,21 +64,44 @@ pub enum MotionError {
 
 impl MotionError {
     pub(crate) fn broken(path: &Path, line: usize, rule: impl Into<String>) -> Self {
-        Self::Broken { path: path.to_path_buf(), line, rule: rule.into() }
+        Self::Broken { path: path.to_path_buf(), line, rule: with_short_quotes(&rule.into()) }
+    }
+
+    pub(crate) fn of_file(path: &Path, error: FileError) -> Self {
+        match error {
+            FileError::Io(reason) => Self::Unreadable { path: path.to_path_buf(), reason },
+            other => Self::broken(path, other.line(), other.to_string()),
+        }
+    }
+
+    /// Whether the operating system refused the file, whatever its content.
+    #[must_use]
+    pub fn is_io(&self) -> bool {
+        matches!(self, Self::Unreadable { .. })
     }
 }
 
-/// Reads a text file; bytes that are not UTF-8 (old comments) are replaced.
+/// Reads the text of a format of lines.
 pub(crate) fn read_text(path: &Path) -> Result<String, MotionError> {
-    let bytes = std::fs::read(path).map_err(|reason| MotionError::Unreadable { path: path.to_path_buf(), reason })?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    read_lines(path).map_err(|error| MotionError::of_file(path, error))
 }
 
-/// Parses a finite number.
+/// Parses a number that is finite and not beyond [`MAX_NUMBER`].
 pub(crate) fn number(path: &Path, line: usize, word: &str) -> Result<f32, MotionError> {
+    parsed_number(word).map_err(|rule| MotionError::broken(path, line, rule))
+}
+
+/// As [`number`]; the error is the broken rule alone.
+pub(crate) fn parsed_number(word: &str) -> Result<f32, String> {
     match word.parse::<f32>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Err(MotionError::broken(path, line, format!("`{word}` is not finite; every value has to be"))),
-        Err(_) => Err(MotionError::broken(path, line, format!("a number was expected, found `{word}`"))),
+        Ok(value) if value.abs() <= MAX_NUMBER => Ok(value),
+        Ok(_) if names_no_finite_number(word) => Err(format!("`{word}` is not finite; every value has to be")),
+        Ok(_) => Err(format!("`{word}` is beyond {MAX_NUMBER:e}; every value has to be within")),
+        Err(_) => Err(format!("a number was expected, found `{word}`")),
     }
+}
+
+/// Whether `word` is `inf` or `nan` rather than digits.
+fn names_no_finite_number(word: &str) -> bool {
+    !word.contains(|letter: char| letter.is_ascii_digit())
 }

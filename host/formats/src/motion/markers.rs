@@ -2,6 +2,7 @@
 //! as such.
 
 use super::recording::Motion;
+use super::shortfall::Shortfall;
 use sinew_core::math::Vec3;
 
 /// Positions of named points over time.
@@ -13,6 +14,8 @@ pub struct MarkerMotion {
     pub names: Vec<String>,
     /// Positions in metres, one row of `names.len()` a frame; `None` where the point was not seen.
     pub positions_m: Vec<Vec<Option<Vec3>>>,
+    /// How many frames its header promises, where these are more than there are.
+    pub shortfall: Option<Shortfall>,
 }
 
 impl From<&Motion> for MarkerMotion {
@@ -23,6 +26,7 @@ impl From<&Motion> for MarkerMotion {
             positions_m: (0..motion.len())
                 .map(|frame| motion.frame(frame).iter().copied().map(Some).collect())
                 .collect(),
+            shortfall: motion.shortfall,
         }
     }
 }

@@ -11,6 +11,8 @@ pub mod asf;
 pub mod bvh;
 pub mod c3d;
 pub mod clips;
+#[cfg(test)]
+mod damaged_tests;
 pub mod error;
 pub mod exponential_map;
 pub mod export;
@@ -21,6 +23,7 @@ pub mod reach;
 pub mod read_options;
 mod reading;
 pub mod recording;
+pub mod shortfall;
 pub mod trc;
 
 pub use arm_motion::{ArmDirections, ArmMotion, ArmSide};
@@ -29,3 +32,4 @@ pub use markers::MarkerMotion;
 pub use read_options::{DEFAULT_FRAMES_PER_SECOND, ReadOptions};
 pub use reading::{endings_without_rate, has_skin_markers, needs_skeleton, read, read_space};
 pub use recording::Motion;
+pub use shortfall::Shortfall;

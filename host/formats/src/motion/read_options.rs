@@ -11,6 +11,9 @@ pub struct ReadOptions<'a> {
     pub frames_per_second: Option<f32>,
     /// Metres per length unit of a BVH file; inferred from the arms where there is none.
     pub metres_per_unit: Option<f32>,
+    /// Take a recording with fewer frames than its header promises, such as a file that was cut
+    /// off; an error if not.
+    pub partial: bool,
 }
 
 impl ReadOptions<'_> {

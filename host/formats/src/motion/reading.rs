@@ -38,7 +38,7 @@ pub fn read(path: &Path, options: &ReadOptions<'_>) -> Result<Motion, MotionErro
 /// Names the file, the line and the rule that it broke.
 pub fn read_space(path: &Path, options: &ReadOptions<'_>) -> Result<MarkerMotion, MotionError> {
     let mut motion = match find(path, MOTION).map(|format| format.reader) {
-        Some(Reader::Markers(reader)) => (reader.read)(path)?,
+        Some(Reader::Markers(reader)) => (reader.read)(path, options)?,
         Some(Reader::Joints(JointReader { read_whole_body: Some(read), .. })) => {
             MarkerMotion::from(&read(path, options)?)
         }

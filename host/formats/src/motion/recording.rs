@@ -1,5 +1,6 @@
 //! Positions of named joints over time: what the readers of skeleton motions give.
 
+use super::shortfall::Shortfall;
 use sinew_core::math::Vec3;
 
 /// Positions of named joints over time.
@@ -11,6 +12,8 @@ pub struct Motion {
     pub joints: Vec<String>,
     /// Positions in metres, `frames` rows of `joints.len()`, row by row; axes as in the file.
     pub positions_m: Vec<Vec3>,
+    /// How many frames its header promises, where these are more than there are.
+    pub shortfall: Option<Shortfall>,
 }
 
 impl Motion {

@@ -111,7 +111,7 @@ pub struct JointReader {
 #[derive(Debug, Clone, Copy)]
 pub struct MarkerReader {
     /// Reads the markers.
-    pub read: fn(&Path) -> Result<MarkerMotion, MotionError>,
+    pub read: fn(&Path, &ReadOptions<'_>) -> Result<MarkerMotion, MotionError>,
     /// Whether the markers are on the skin, as motion capture records them. Joints if not.
     pub is_on_skin: bool,
 }
