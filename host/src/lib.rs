@@ -15,6 +15,7 @@ pub mod frames;
 pub mod keypoints;
 pub mod model_text;
 pub mod output;
+mod reading_again;
 pub mod record;
 #[cfg(feature = "report")]
 pub mod report;

@@ -32,7 +32,7 @@ impl ErrorKind {
         let mut cause = Some(error);
         while let Some(error) = cause {
             if let Some(io) = error.downcast_ref::<io::Error>() {
-                return Some(Self::of_reading(io));
+                return Some(Self::of_reading(io.kind()));
             }
             if let Some(known) = error.downcast_ref::<Error>() {
                 return Some(known.kind());
@@ -42,8 +42,8 @@ impl ErrorKind {
         None
     }
 
-    fn of_reading(error: &io::Error) -> Self {
-        match error.kind() {
+    fn of_reading(error: io::ErrorKind) -> Self {
+        match error {
             io::ErrorKind::NotFound | io::ErrorKind::NotADirectory | io::ErrorKind::IsADirectory => Self::NoInput,
             // What was read is too short, or no UTF-8.
             io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidInput => Self::Data,
@@ -102,6 +102,8 @@ impl Error {
             Self::Interrupted(_) => ErrorKind::Interrupted,
             Self::Option(_) => ErrorKind::Usage,
             Self::InUse { .. } => ErrorKind::TryAgain,
+            Self::Unreadable(_) => ErrorKind::Io,
+            Self::ImageFile(error) => error.io.map_or(ErrorKind::Data, ErrorKind::of_reading),
             // What fills a file may fail by itself.
             Self::Write { .. } => match self.innermost() {
                 Self::Io(error) => ErrorKind::of_writing(error.kind()),
@@ -118,7 +120,7 @@ impl Error {
             other => match StdError::source(other) {
                 Some(source) => ErrorKind::of(source).unwrap_or(ErrorKind::Data),
                 None => match other {
-                    Self::Io(error) => ErrorKind::of_reading(error),
+                    Self::Io(error) => ErrorKind::of_reading(error.kind()),
                     _ => ErrorKind::Data,
                 },
             },

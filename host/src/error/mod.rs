@@ -80,6 +80,9 @@ pub enum Error {
     /// A table, cut list or model of the cyclic tracker cannot be used.
     #[error(transparent)]
     Cyclic(#[from] CyclicError),
+    /// An input of a run could be listed, and the operating system refuses to read it.
+    #[error("{0}; once it can be read again, the run can go on")]
+    Unreadable(String),
     /// The operating system refused a file or folder.
     #[error(transparent)]
     Io(#[from] std::io::Error),

@@ -2,6 +2,7 @@
 
 use crate::error::{Result, bail};
 use crate::images::{ImageFileError, list_images, load_rgb};
+use crate::reading_again::read_again;
 use image::{ImageReader, RgbImage};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -85,19 +86,22 @@ impl FrameFolder {
         (self.first.0, &self.first.1)
     }
 
-    /// Reads one frame.
+    /// Reads one frame, or says why it is no picture.
     ///
     /// # Errors
-    /// Why it cannot be read.
-    pub fn load(&self, frame: usize) -> Result<RgbImage, SkippedImage> {
+    /// The operating system refuses the file.
+    pub fn load(&self, frame: usize) -> Result<Result<RgbImage, SkippedImage>> {
         let skipped = |reason: String| SkippedImage { frame, file: self.name(frame), reason };
-        let image = load_rgb(&self.files[frame]).map_err(|error| skipped(error.reason))?;
+        let image = match read_again(|| load_rgb(&self.files[frame]), ImageFileError::is_io)? {
+            Ok(image) => image,
+            Err(error) => return Ok(Err(skipped(error.reason))),
+        };
         // Sizes were checked before the run; a file that was exchanged since then is not part of
         // it.
         if image.dimensions() != self.size_px {
-            return Err(skipped("its size changed after the run began".to_owned()));
+            return Ok(Err(skipped("its size changed after the run began".to_owned())));
         }
-        Ok(image)
+        Ok(Ok(image))
     }
 }
 

@@ -4,6 +4,7 @@ use super::input::{FrameFolder, SkippedImage};
 use crate::error::{Result, ensure};
 use crate::images::video::frame_name;
 use crate::images::{VideoError, VideoFrames, is_video};
+use crate::reading_again::until_failure;
 use crate::registry::{Kind, extensions};
 use crate::resume::identity;
 use image::RgbImage;
@@ -109,13 +110,13 @@ impl FrameSource {
     /// done. None is the end.
     ///
     /// # Errors
-    /// A video that is broken, once all frames before the break were given; a frame of a video that
-    /// was passed already.
+    /// A video that is broken, or a file that the operating system refuses, once all frames before
+    /// it were given; a frame of a video that was passed already.
     pub fn load(&mut self, begin: usize, most: usize) -> Result<Vec<Result<RgbImage, SkippedImage>>> {
         match self {
             Self::Folder(folder) => {
                 let end = folder.files().len().min(begin + most);
-                Ok((begin..end).into_par_iter().map(|frame| folder.load(frame)).collect())
+                until_failure((begin..end).into_par_iter().map(|frame| folder.load(frame)).collect())
             }
             Self::Video(video) => {
                 ensure!(begin >= video.next, "a video is read forwards; frame {begin} was passed");

@@ -105,8 +105,13 @@ impl BodyTrackRun {
         for (index, answer) in answers.entries.into_iter().enumerate() {
             let wants = run.pictures.as_ref().is_some_and(|pictures| pictures.wants(index));
             let cloud = run.inputs.clouds.frames.get(index).filter(|_| wants);
-            let points_m = cloud.and_then(|cloud| Some(read_cloud(cloud, run.report.seed, None).ok()?.points_m));
-            run.take(index, answer, &points_m.unwrap_or_default());
+            let points_m = match cloud {
+                Some(cloud) => {
+                    read_cloud(cloud, run.report.seed, None)?.map_or_else(|_| Vec::new(), |cloud| cloud.points_m)
+                }
+                None => Vec::new(),
+            };
+            run.take(index, answer, &points_m);
         }
         if let Some(last) = run.last_cloud() {
             left.check_last(&cloud_name(last), run.last_cloud_crc32())?;

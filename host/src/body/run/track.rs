@@ -11,9 +11,10 @@ use super::start::pose_from_points;
 use super::{particles, table};
 use crate::body::tracking::BodyFilter;
 use crate::body::tracking::filter::WholeBodyEstimate;
-use crate::cloud::{self, CloudFrame, MAX_POINTS, blocks_of};
+use crate::cloud::{self, CloudError, CloudFrame, MAX_POINTS, blocks_of};
 use crate::error::{Context, Result, WriteContext, bail};
 use crate::output::{OutputDir, OutputLock, PendingFile};
+use crate::reading_again::read_again;
 use crate::resume::{Begun, Checkpoints};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -171,13 +172,13 @@ impl BodyTrackRun {
         let frames = self.inputs.clouds.frames[begin..].to_vec();
         for chunk in frames.chunks(CHUNK) {
             let smoothing = self.filter.smoothing();
-            let clouds: Vec<Result<ReadCloud, SkippedCloud>> =
+            let clouds: Vec<Result<Result<ReadCloud, SkippedCloud>>> =
                 self.threads.install(|| chunk.par_iter().map(|frame| read_cloud(frame, seed, smoothing)).collect());
             for (frame, cloud) in chunk.iter().zip(clouds) {
                 if stop.load(Ordering::Relaxed) {
                     return Ok(false);
                 }
-                let cloud = self.counted(cloud, notify)?;
+                let cloud = self.counted(cloud?, notify)?;
                 self.track_frame(frame.frame, cloud.as_ref())?;
                 notify(BodyEvent::Finished(self.report.frames_finished));
                 self.save_if_due()?;
@@ -277,20 +278,28 @@ fn first_look(filter: &BodyFilter, blocks: &[PointBlock], stick: StickSight) -> 
 }
 
 /// Reads one cloud, at most [`MAX_POINTS`] of it: as it is, and in the blocks in which it is
-/// weighed.
+/// weighed; or why it is no cloud.
+///
+/// # Errors
+/// The operating system refuses the file.
 pub(super) fn read_cloud(
     frame: &CloudFrame,
     seed: u64,
     smoothing: Option<&RangeSmoothing>,
-) -> Result<ReadCloud, SkippedCloud> {
-    let mut read = cloud::read(&frame.path).map_err(|error| SkippedCloud {
-        frame: frame.frame,
-        file: frame.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-        reason: error.to_string(),
-    })?;
+) -> Result<Result<ReadCloud, SkippedCloud>> {
+    let mut read = match read_again(|| cloud::read(&frame.path), CloudError::is_io)? {
+        Ok(read) => read,
+        Err(error) => {
+            return Ok(Err(SkippedCloud {
+                frame: frame.frame,
+                file: frame.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+                reason: error.to_string(),
+            }));
+        }
+    };
     let before_cap = read.limit(MAX_POINTS, seed, frame.frame);
     let blocks = blocks_of(&mut read.points_m.clone(), smoothing);
-    Ok(ReadCloud { points_m: read.points_m, blocks, skipped: read.skipped, before_cap })
+    Ok(Ok(ReadCloud { points_m: read.points_m, blocks, skipped: read.skipped, before_cap }))
 }
 
 /// Refuses a folder of which no cloud can be read.
@@ -314,7 +323,7 @@ fn found_start(inputs: &mut BodyInputs, options: &BodyTrackOptions) -> Result<[f
     let clouds = inputs.clouds.frames.iter().take(START_CLOUDS);
     let smoothing = options.tuning.range_smoothing()?;
     let mut readable =
-        clouds.filter_map(|frame| Some((frame.frame, read_cloud(frame, options.seed, smoothing.as_ref()).ok()?)));
+        clouds.filter_map(|frame| Some((frame.frame, read_cloud(frame, options.seed, smoothing.as_ref()).ok()?.ok()?)));
     let found = readable.find(|(_, cloud)| !cloud.points_m.is_empty());
     let (points_m, blocks) = found.as_ref().map_or((&[][..], &[][..]), |(_, cloud)| (&cloud.points_m, &cloud.blocks));
     let pose = pose_from_points(inputs.part, &inputs.measures, &options.tuning.guided_points, points_m, blocks)?;
