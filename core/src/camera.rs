@@ -20,8 +20,9 @@
 //! # Ok::<(), sinew_core::error::ParameterError>(())
 //! ```
 
-use crate::error::{ParameterError, Rule, finite, positive};
+use crate::error::{ParameterError, Rule, finite, positive, within};
 use crate::math::{Vec3, sin_cos, unit};
+use crate::ranges::{MAX_FOCAL_PX, MAX_PX, length};
 
 /// Fixed-point steps that undo the distortion; the bound of the work.
 const UNDISTORT_STEPS: usize = 12;
@@ -150,12 +151,16 @@ impl Camera {
     /// A camera with focal lengths and principal point in pixels.
     ///
     /// # Errors
-    /// Focal lengths have to be positive, the principal point finite.
+    /// Focal lengths have to be positive and at most [`MAX_FOCAL_PX`], the principal point within
+    /// [`MAX_PX`].
     pub fn new(focal_u_px: f32, focal_v_px: f32, centre: Pixel) -> Result<Self, ParameterError> {
         Ok(Self {
-            focal_u_px: positive("focal_u_px", focal_u_px)?,
-            focal_v_px: positive("focal_v_px", focal_v_px)?,
-            centre: Pixel::new(finite("centre_u_px", centre.u_px)?, finite("centre_v_px", centre.v_px)?),
+            focal_u_px: length("focal_u_px", focal_u_px, MAX_FOCAL_PX)?,
+            focal_v_px: length("focal_v_px", focal_v_px, MAX_FOCAL_PX)?,
+            centre: Pixel::new(
+                within("centre_u_px", centre.u_px, -MAX_PX, MAX_PX)?,
+                within("centre_v_px", centre.v_px, -MAX_PX, MAX_PX)?,
+            ),
             distortion: None,
         })
     }

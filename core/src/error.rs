@@ -10,6 +10,11 @@
 //! ```
 
 use core::fmt;
+use core::ops::RangeInclusive;
+
+/// Range of a parameter that only has to be positive. Chosen: its square and the inverse of that
+/// are numbers of `f32` with room to spare.
+pub const POSITIVE: RangeInclusive<f32> = 1.0e-15..=1.0e15;
 
 /// The rule that a parameter broke.
 ///
@@ -137,22 +142,26 @@ pub fn finite(parameter: &'static str, value: f32) -> Result<f32, ParameterError
     if value.is_finite() { Ok(value) } else { Err(ParameterError::new(parameter, Rule::Finite)) }
 }
 
-/// Returns `value` if it is finite and greater than zero.
+/// Returns `value` if it is finite, greater than zero and within [`POSITIVE`].
 ///
 /// ```
 /// use sinew_core::error::{Rule, positive};
 ///
 /// assert_eq!(positive("sigma_rad", 0.1), Ok(0.1));
 /// assert!(positive("sigma_rad", 0.0).is_err_and(|error| error.rule == Rule::Positive));
+/// assert!(positive("sigma_rad", 1.0e30).is_err(), "its square is no number");
 /// ```
 ///
 /// # Errors
-/// [`Rule::Finite`] or [`Rule::Positive`] otherwise.
+/// [`Rule::Finite`], [`Rule::Positive`] or [`Rule::Within`] otherwise.
 pub fn positive(parameter: &'static str, value: f32) -> Result<f32, ParameterError> {
-    if finite(parameter, value)? > 0.0 { Ok(value) } else { Err(ParameterError::new(parameter, Rule::Positive)) }
+    if finite(parameter, value)? <= 0.0 {
+        return Err(ParameterError::new(parameter, Rule::Positive));
+    }
+    within(parameter, value, *POSITIVE.start(), *POSITIVE.end())
 }
 
-/// Returns `value` if it is finite and zero or greater.
+/// Returns `value` if it is finite, zero or greater, and no greater than [`POSITIVE`] allows.
 ///
 /// ```
 /// use sinew_core::error::{Rule, not_negative};
@@ -168,9 +177,12 @@ pub fn positive(parameter: &'static str, value: f32) -> Result<f32, ParameterErr
 /// ```
 ///
 /// # Errors
-/// [`Rule::Finite`] or [`Rule::NotNegative`] otherwise.
+/// [`Rule::Finite`], [`Rule::NotNegative`] or [`Rule::Within`] otherwise.
 pub fn not_negative(parameter: &'static str, value: f32) -> Result<f32, ParameterError> {
-    if finite(parameter, value)? >= 0.0 { Ok(value) } else { Err(ParameterError::new(parameter, Rule::NotNegative)) }
+    if finite(parameter, value)? < 0.0 {
+        return Err(ParameterError::new(parameter, Rule::NotNegative));
+    }
+    within(parameter, value, 0.0, *POSITIVE.end())
 }
 
 /// Returns `value` if it lies in `low..=high`.

@@ -16,6 +16,7 @@ pub mod observation;
 pub mod particle;
 pub mod pik;
 pub mod random;
+pub mod ranges;
 pub mod saved_state;
 pub mod skeleton;
 pub mod slot;

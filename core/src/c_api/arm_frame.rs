@@ -6,6 +6,7 @@ use crate::camera::{Camera, Pixel};
 use crate::checksum::Crc32;
 use crate::error::{finite, positive, within};
 use crate::math::Vec3;
+use crate::ranges::MAX_PX;
 use crate::saved_state::{SavedState, StateVisitor};
 use crate::skeleton::{ArmGeometry, Side};
 use crate::tracker::arm::{ArmEstimate, ArmImage, ArmModel, ArmOptions, Status};
@@ -148,23 +149,13 @@ impl<T: SavedState> SavedState for ArmMemory<T> {
     }
 }
 
-/// Greatest coordinate of a shoulder, metres.
-/// Chosen: a room is smaller.
-const MAX_M: f32 = 100.0;
-/// Greatest coordinate in an image, pixels, and side of it.
-/// Chosen: no camera has more, and `f32` still resolves 1/128 pixel there.
-const MAX_PX: f32 = 65_536.0;
-
 fn shoulder(shoulders_m: &[[f32; 3]; 2], side: Side) -> Result<Vec3, SinewStatus> {
     let [left, right] = *shoulders_m;
     let place = match side {
         Side::Left => left,
         Side::Right => right,
     };
-    for coordinate in place {
-        within("shoulders_m", coordinate, -MAX_M, MAX_M)?;
-    }
-    Ok(Vec3::from(place))
+    Ok(crate::ranges::place("shoulders_m", &Vec3::from(place))?)
 }
 
 impl SinewArmConfig {

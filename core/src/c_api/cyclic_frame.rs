@@ -76,19 +76,12 @@ impl SinewCyclicFrame {
         }
         for (index, (slot, std)) in std_rad.iter_mut().zip(self.std_rad).enumerate() {
             if self.seen >> index & 1 == 1 {
-                *slot = crate::error::within("std_rad", std, MIN_STD_RAD, MAX_STD_RAD)?;
+                *slot = std;
             }
         }
         Ok(AngleMeasurement::with_std(&angles_rad, &std_rad)?)
     }
 }
-
-/// Least standard deviation of an angle, radians: a filter in 32 bits believes nothing more exact.
-/// Chosen: below the noise of every sensor of angles.
-const MIN_STD_RAD: f32 = 1.0e-4;
-/// Greatest standard deviation of an angle, radians: beyond it an angle is as good as not seen.
-/// Chosen: hundreds of turns.
-const MAX_STD_RAD: f32 = 1.0e3;
 
 impl SinewCyclicResult {
     pub(super) fn of(timestamp_us: u64, frame: &CyclicFrame<SINEW_MAX_ANGLES>, is_searching: bool) -> Self {

@@ -1,5 +1,9 @@
 //! Estimate of every cyclic filter after a frame.
 
+use crate::cyclic::phase::POSITIONS_IN_CYCLE;
+use crate::saved_state::{FINITE, NOT_NEGATIVE, SavedState, StateVisitor};
+use core::f32::consts::PI;
+
 /// Pose and phase with their variances. `N` is a capacity; entries beyond the model's angles are
 /// zero.
 ///
@@ -55,5 +59,21 @@ impl<const N: usize> CyclicEstimate<N> {
             self.cycle_velocity_per_frame * per_minute,
             crate::math::sqrt(crate::math::max(self.cycle_velocity_variance, 0.0)) * per_minute,
         )
+    }
+}
+
+impl<const N: usize> SavedState for CyclicEstimate<N> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.reals(&mut self.angles_rad, &(-PI..=PI));
+        for turns in &mut self.turns {
+            visitor.integer(turns);
+        }
+        visitor.reals(&mut self.angle_variance_rad2, &NOT_NEGATIVE);
+        visitor.real(&mut self.cycle_position, &POSITIONS_IN_CYCLE);
+        visitor.real(&mut self.cycle_position_variance, &NOT_NEGATIVE);
+        visitor.real(&mut self.cycle_velocity_per_frame, &FINITE);
+        visitor.real(&mut self.cycle_velocity_variance, &NOT_NEGATIVE);
+        visitor.real(&mut self.log_likelihood, &FINITE);
+        visitor.flag(&mut self.outlier);
     }
 }

@@ -4,6 +4,7 @@ use crate::cyclic::{
     AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel,
 };
 use crate::error::ParameterError;
+use crate::saved_state::{SavedState, StateVisitor};
 
 /// Choice of filter with its options.
 ///
@@ -110,6 +111,22 @@ impl<const N: usize> CyclicFilter<N> {
         match self {
             Self::Coupled(filter) => filter.cycle().position,
             Self::Kalman(filter) => filter.cycle().position,
+        }
+    }
+}
+
+impl<const N: usize> SavedState for CyclicFilter<N> {
+    /// A state is for the same choice of filter.
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        let is_kalman = matches!(self, Self::Kalman(_));
+        let mut read = is_kalman;
+        visitor.flag(&mut read);
+        if read != is_kalman {
+            visitor.refuse();
+        }
+        match self {
+            Self::Coupled(filter) => filter.visit(visitor),
+            Self::Kalman(filter) => filter.visit(visitor),
         }
     }
 }

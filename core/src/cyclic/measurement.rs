@@ -11,6 +11,7 @@
 //! ```
 
 use crate::error::{ParameterError, positive};
+use crate::ranges::{angle_std, is_angle};
 
 /// Longest step, frames at the model's rate. Chosen: ten seconds at 60 Hz, after which the pose is
 /// unknown; it bounds the work.
@@ -18,7 +19,7 @@ pub const MAX_STEP_FRAMES: f32 = 600.0;
 
 /// One frame's measured angles; `N` is a capacity, angles beyond the model's are ignored.
 ///
-/// Invariant: the angles present are finite, all standard deviations finite and positive, the step
+/// Invariant: angles and standard deviations are within their ranges ([`crate::ranges`]), the step
 /// in (0, 600] frames.
 ///
 /// ```
@@ -45,30 +46,30 @@ impl<const N: usize> AngleMeasurement<N> {
         Self { angles_rad: [None; N], std_rad: [1.0; N], step_frames: 1.0 }
     }
 
-    /// `angles_rad` (any turn; NaN and infinity count as missing) with the same standard deviation
-    /// for all.
+    /// `angles_rad` (any turn; beyond [`MAX_ANGLE_RAD`](crate::ranges::MAX_ANGLE_RAD) and NaN count
+    /// as missing) with the same standard deviation for all.
     ///
     /// # Errors
-    /// `std_rad` has to be finite and positive.
+    /// `std_rad` has to lie within [`ANGLE_STD_RAD`](crate::ranges::ANGLE_STD_RAD).
     pub fn new(angles_rad: &[Option<f32>; N], std_rad: f32) -> Result<Self, ParameterError> {
-        positive("std_rad", std_rad)?;
+        angle_std("std_rad", std_rad)?;
         Ok(Self::checked(angles_rad, &[std_rad; N]))
     }
 
-    /// `angles_rad` (any turn; NaN and infinity count as missing) with a standard deviation each.
+    /// As [`Self::new`], with a standard deviation for each angle.
     ///
     /// # Errors
-    /// Each `std_rad` has to be finite and positive.
+    /// Each `std_rad` has to lie within [`ANGLE_STD_RAD`](crate::ranges::ANGLE_STD_RAD).
     pub fn with_std(angles_rad: &[Option<f32>; N], std_rad: &[f32; N]) -> Result<Self, ParameterError> {
         for &std in std_rad {
-            positive("std_rad", std)?;
+            angle_std("std_rad", std)?;
         }
         Ok(Self::checked(angles_rad, std_rad))
     }
 
     #[inline]
     fn checked(angles_rad: &[Option<f32>; N], std_rad: &[f32; N]) -> Self {
-        let angles_rad = angles_rad.map(|angle| angle.filter(|value| value.is_finite()));
+        let angles_rad = angles_rad.map(|angle| angle.filter(|angle| is_angle(*angle)));
         Self { angles_rad, std_rad: *std_rad, step_frames: 1.0 }
     }
 

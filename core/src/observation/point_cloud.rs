@@ -1,6 +1,7 @@
 //! A frame's 3D points in blocks of neighbours, so that a whole block is compared with few bones.
 
-use crate::math::{Vec3, floor, length, max};
+use crate::math::{Vec3, abs, floor, length, max};
+use crate::ranges::{MAX_M, is_place};
 use heapless::Vec;
 
 /// Points of a block: a few vectors of the processor.
@@ -61,6 +62,16 @@ impl PointBlock {
         }
     }
 
+    /// Whether count and points are within their ranges ([`crate::ranges`]), as those of a
+    /// [`PointCloud`] are.
+    pub(crate) fn is_usable(&self) -> bool {
+        let mut coordinates_m = self.x.iter().chain(&self.y).chain(&self.z);
+        usize::from(self.count) <= BLOCK_POINTS
+            && coordinates_m.all(|coordinate_m| abs(*coordinate_m) <= 2.0 * MAX_M)
+            && is_place(&(self.centre_m * 0.5))
+            && (0.0..=4.0 * MAX_M).contains(&self.radius_m)
+    }
+
     fn of(points_m: &[Vec3]) -> Self {
         let mut block = Self {
             x: [0.0; BLOCK_POINTS],
@@ -98,7 +109,7 @@ impl PointBlock {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LeftOut {
-    /// Points with a coordinate that is not finite.
+    /// Points with a coordinate that is not finite, or farther than [`MAX_M`] from the camera.
     pub not_finite: u32,
     /// Points within [`MIN_RANGE_M`] of the camera.
     pub at_camera: u32,
@@ -149,7 +160,7 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
     /// Becomes the cloud of `points_m`, which are brought into Morton order in place (those left
     /// out come last).
     ///
-    /// Points that are not finite or at the camera are left out, and those beyond the capacity, the
+    /// Points that are not finite, beyond [`MAX_M`] or at the camera are left out, and those beyond the capacity, the
     /// last given first; all are counted. No point at all is a frame without evidence.
     pub fn set(&mut self, points_m: &mut [Vec3], camera_m: &Vec3) -> LeftOut {
         let mut left_out = LeftOut::default();
@@ -157,7 +168,7 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
         for i in 0..points_m.len() {
             let Some(&point) = points_m.get(i) else { break };
             let distance = length(&(point - camera_m));
-            if !distance.is_finite() {
+            if !(distance <= MAX_M) {
                 left_out.not_finite += 1;
             } else if distance < MIN_RANGE_M {
                 left_out.at_camera += 1;

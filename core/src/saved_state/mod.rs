@@ -2,7 +2,7 @@
 //! before it is used again.
 //!
 //! A type says once, in [`SavedState::visit`], which numbers it consists of and what range each
-//! has. Writing, counting and reading are three visitors of that one list, so they cannot disagree.
+//! has. Writing, counting, reading and checking are visitors of that one list, so they cannot disagree.
 //! All is little-endian words of four bytes; a state saved on one processor is read by any other.
 //!
 //! ```
@@ -62,6 +62,9 @@ pub const NOT_NEGATIVE: RangeInclusive<f32> = 0.0..=f32::MAX;
 /// let mut again = Exercise { repetitions: 0, reach_m: 0.0 };
 /// restore(StateKind::Arm, 7, &mut again, &bytes[..length])?;
 /// assert_eq!(again, Exercise { repetitions: 12, reach_m: 0.4 });
+/// // The ranges also serve a self-test.
+/// assert!(again.is_finite());
+/// assert!(!Exercise { repetitions: 0, reach_m: f32::NAN }.is_finite());
 /// # Ok::<(), sinew_core::saved_state::StateError>(())
 /// ```
 pub trait SavedState {
@@ -69,6 +72,18 @@ pub trait SavedState {
     ///
     /// A reader replaces them as it goes, so a state that is refused half way is left mixed.
     fn visit(&mut self, visitor: &mut impl StateVisitor);
+
+    /// Whether every number lies within its range, as [`restore`] asks. NaN and infinity never do.
+    ///
+    /// Each step of a tracker keeps this, whatever its frame holds. Nothing is changed.
+    fn is_finite(&mut self) -> bool
+    where
+        Self: Sized,
+    {
+        let mut check = RangeCheck::default();
+        self.visit(&mut check);
+        !check.is_refused
+    }
 }
 
 /// Goes through the numbers of a state.
@@ -172,5 +187,20 @@ pub trait StateVisitor {
         self.index(&mut len, CAPACITY);
         // It is not more than fits.
         let _ = list.resize(len, fill);
+    }
+}
+
+/// Checks the numbers of a state.
+#[derive(Debug, Default)]
+struct RangeCheck {
+    /// Whether a number lies outside of its range.
+    is_refused: bool,
+}
+
+impl StateVisitor for RangeCheck {
+    fn word(&mut self, _: &mut u32) {}
+
+    fn refuse(&mut self) {
+        self.is_refused = true;
     }
 }

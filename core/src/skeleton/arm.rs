@@ -32,8 +32,9 @@
 //! ```
 
 use super::tree::{Bone, Joint, Limit, Skeleton};
-use crate::error::{ParameterError, Rule, finite, positive};
+use crate::error::{ParameterError, Rule, finite};
 use crate::math::{Mat3, Vec3, abs, acos, asin, atan2, axis_rotation, clamp, unit};
+use crate::ranges::{MAX_M, length};
 use core::f32::consts::{FRAC_1_SQRT_2, PI};
 
 /// Whose side: the person's own left or right, not the image's.
@@ -160,12 +161,12 @@ impl ArmGeometry {
     /// An arm of a person who faces the camera, with the default limits.
     ///
     /// # Errors
-    /// Both lengths have to be positive.
+    /// Both lengths have to be positive, at most [`MAX_M`].
     pub fn new(side: Side, upper_arm_m: f32, forearm_m: f32) -> Result<Self, ParameterError> {
         Ok(Self {
             side,
-            upper_arm_m: positive("upper_arm_m", upper_arm_m)?,
-            forearm_m: positive("forearm_m", forearm_m)?,
+            upper_arm_m: length("upper_arm_m", upper_arm_m, MAX_M)?,
+            forearm_m: length("forearm_m", forearm_m, MAX_M)?,
             limits: ARM_LIMITS,
             torso: facing_camera(),
         })

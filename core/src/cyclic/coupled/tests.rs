@@ -293,3 +293,24 @@ fn a_gap_in_few_parts_is_the_gap_frame_by_frame() {
         }
     }
 }
+
+/// While the phase is unknown, a precise measurement of an uncertain angle leaves no variance below
+/// zero.
+#[test]
+fn a_search_with_little_noise_reports_no_negative_variance() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let mut stream = Stream::new(8, 0, 0);
+    for _ in 0..200 {
+        let mut seen = || {
+            let seen = core::array::from_fn(|i| Some(mean_angle(i, 0.0) + stream.normal()));
+            AngleMeasurement::new(&seen, 1.0e-4).unwrap()
+        };
+        let mut filter = CoupledFilter::<N>::anywhere(&model, &seen()).unwrap();
+        for _ in 0..20 {
+            let estimate = filter.step(&model, &seen());
+            let variances = estimate.angle_variance_rad2;
+            assert!(variances.iter().all(|variance| *variance >= 0.0), "{variances:?}");
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! Kalman filter of one number in the image: a segment's length or a coordinate of the root.
 
 use crate::error::{ParameterError, not_negative, positive};
+use crate::saved_state::{FINITE, NOT_NEGATIVE, SavedState, StateVisitor};
 
 /// A Kalman filter of one number that walks at random, with a velocity if its acceleration is not
 /// zero.
@@ -38,7 +39,34 @@ pub struct ScalarFilter {
 /// image.
 const MAX_VARIANCE: f32 = 1.0e12;
 
+impl SavedState for ScalarFilter {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        for number in [&mut self.value, &mut self.velocity, &mut self.covariance] {
+            visitor.real(number, &FINITE);
+        }
+        for variance in [
+            &mut self.value_variance,
+            &mut self.velocity_variance,
+            &mut self.walk_variance,
+            &mut self.acceleration_variance,
+        ] {
+            visitor.real(variance, &NOT_NEGATIVE);
+        }
+    }
+}
+
 impl ScalarFilter {
+    /// At 0 without variance, to be filled by a saved state.
+    pub(super) const ZERO: Self = Self {
+        value: 0.0,
+        velocity: 0.0,
+        value_variance: 0.0,
+        covariance: 0.0,
+        velocity_variance: 0.0,
+        walk_variance: 0.0,
+        acceleration_variance: 0.0,
+    };
+
     /// Begins at `value` known to `std`, at rest if `acceleration_std` is 0, else at a velocity of
     /// 0 known to `std` a frame.
     ///

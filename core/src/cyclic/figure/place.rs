@@ -20,6 +20,8 @@
 use crate::cyclic::figure::image_filter::ScalarFilter;
 use crate::error::{ParameterError, positive};
 use crate::math::sqrt;
+use crate::ranges::is_pixel;
+use crate::saved_state::{SavedState, StateVisitor};
 use crate::skeleton::stick_figure::{ImagePoint, StickFigure};
 use core::f32::consts::SQRT_2;
 
@@ -139,11 +141,11 @@ impl<const N: usize> FigurePlace<N> {
         Ok(place)
     }
 
-    /// One step of `step_frames` (frames of the rate that the options are for). Missing and
-    /// non-finite values are bridged.
+    /// One step of `step_frames` (frames of the rate that the options are for). Missing values and
+    /// those out of range ([`crate::ranges`]) are bridged.
     pub fn step(&mut self, step_frames: f32, root_px: Option<ImagePoint>, lengths_px: &[Option<f32>; N]) {
         let options = self.options;
-        let root_px = root_px.filter(|root| root.iter().all(|value| value.is_finite()));
+        let root_px = root_px.filter(|root| root.iter().all(|coordinate_px| is_pixel(*coordinate_px)));
         if let Some(filters) = &mut self.root {
             for (axis, filter) in filters.iter_mut().enumerate() {
                 filter.step(step_frames, root_px.map(|seen| seen[axis]), options.keypoint_std_px);
@@ -152,7 +154,7 @@ impl<const N: usize> FigurePlace<N> {
             self.root = options.root_filter(x).zip(options.root_filter(y)).map(|(x, y)| [x, y]);
         }
         for (filter, &seen) in self.lengths.iter_mut().zip(lengths_px) {
-            let seen = seen.filter(|length| length.is_finite() && *length > 0.0);
+            let seen = seen.filter(|length_px| *length_px > 0.0 && is_pixel(*length_px));
             match (filter.as_mut(), seen) {
                 (Some(filter), seen) => filter.step(step_frames, seen, SQRT_2 * options.keypoint_std_px),
                 (None, Some(first)) => *filter = options.length_filter(first),
@@ -198,6 +200,28 @@ impl<const N: usize> FigurePlace<N> {
         let length_px = (*self.lengths.get(angle)?)?.value();
         let (sine, cosine) = crate::math::sin_cos(*angles_rad.get(angle)?);
         Some([x + length_px * cosine, y + length_px * sine])
+    }
+}
+
+impl<const N: usize> SavedState for FigurePlace<N> {
+    /// A state is for a place with the same options.
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visit_optional(&mut self.root, [ScalarFilter::ZERO; 2], visitor, |axes, visitor| {
+            axes.iter_mut().for_each(|axis| axis.visit(visitor));
+        });
+        for length in &mut self.lengths {
+            visit_optional(length, ScalarFilter::ZERO, visitor, ScalarFilter::visit);
+        }
+    }
+}
+
+/// A part that may be missing; a reader begins it as `fill`.
+fn visit_optional<T, V: StateVisitor>(part: &mut Option<T>, fill: T, visitor: &mut V, visit: impl Fn(&mut T, &mut V)) {
+    let mut is_there = part.is_some();
+    visitor.flag(&mut is_there);
+    *part = is_there.then(|| part.take().unwrap_or(fill));
+    if let Some(part) = part {
+        visit(part, visitor);
     }
 }
 

@@ -8,11 +8,12 @@ use crate::angle::angle_difference;
 use crate::cyclic::MotionModel;
 use crate::cyclic::particle::angle_blocks::{AngleBlocks, BLOCK, blocks_of, used_blocks, write_back};
 use crate::cyclic::particle::factors::ParticleTable;
-use crate::cyclic::phase::wrap_position;
+use crate::cyclic::phase::{POSITIONS_IN_CYCLE, wrap_position};
 use crate::cyclic::start::{CycleStart, MIN_SPREAD_RAD};
 use crate::math::{clamp, max, sqrt, wrap_angle, wrap_angle_small};
 use crate::random::lanes::LANES;
 use crate::random::{Stream, StreamLanes};
+use crate::saved_state::{FINITE, SavedState, StateVisitor};
 use core::f32::consts::PI;
 
 pub use crate::cyclic::particle::factors::{factors_len, fill_factors};
@@ -304,6 +305,15 @@ pub(super) fn advance<const N: usize>(
             &draws[lane],
         );
         particle.move_by(&accelerations, temporal_scale * temporal[lane], step);
+    }
+}
+
+impl<const N: usize> SavedState for CyclicParticle<N> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.reals(&mut self.angles_rad, &(-PI..=PI));
+        visitor.reals(&mut self.velocities, &FINITE);
+        visitor.real(&mut self.cycle_position, &POSITIONS_IN_CYCLE);
+        visitor.real(&mut self.cycle_velocity, &FINITE);
     }
 }
 

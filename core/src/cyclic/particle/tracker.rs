@@ -10,6 +10,7 @@ use crate::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
 use crate::math::ln;
 use crate::random::Stream;
 use crate::random::normal::LOG_SQRT_TAU;
+use crate::saved_state::{SavedState, StateVisitor};
 
 /// Stream that the resampling of a frame draws from; particles have the numbers below.
 const RESAMPLING_STREAM: u32 = u32::MAX;
@@ -161,6 +162,18 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
             rest = others;
         }
         core::mem::swap(&mut self.particles, &mut self.next);
+    }
+}
+
+impl<const N: usize, const P: usize> SavedState for ParticleTracker<N, P> {
+    /// The next generation and the weights are written before they are read.
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.long(&mut self.seed);
+        visitor.long(&mut self.frame);
+        for particle in &mut self.particles {
+            particle.visit(visitor);
+        }
+        self.last.visit(visitor);
     }
 }
 

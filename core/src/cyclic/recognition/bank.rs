@@ -23,9 +23,10 @@
 //! # }
 //! ```
 
-use crate::cyclic::recognition::explained_variance::{ExplainedVariance, cycle_variances_rad2};
+use crate::cyclic::recognition::explained_variance::{ExplainedVariance, STANDARD_ERRORS, cycle_variances_rad2};
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::math::{exp, max, min, wrap_angle};
+use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 
 /// Spread of people's poses about the mean cycle, rad (25 degrees). Chosen: one for all motions and
 /// angles, since a model of few people does not determine its own.
@@ -191,6 +192,21 @@ impl<const MOTIONS: usize, const N: usize> MotionBank<MOTIONS, N> {
     #[must_use]
     pub fn none_probability(&self) -> f32 {
         max(1.0 - self.probabilities().iter().sum::<f32>(), 0.0)
+    }
+}
+
+impl<const MOTIONS: usize, const N: usize> SavedState for MotionBank<MOTIONS, N> {
+    /// A state is for a bank of the same models.
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        visitor.reals(&mut self.distances, &NOT_NEGATIVE);
+        for motion in self.motions.iter_mut().flatten() {
+            motion.swing.visit(visitor);
+            let mut is_known = motion.unexplained_share.is_some();
+            visitor.flag(&mut is_known);
+            let mut share = motion.unexplained_share.unwrap_or_default();
+            visitor.real(&mut share, &(0.0..=1.0 + STANDARD_ERRORS));
+            motion.unexplained_share = is_known.then_some(share);
+        }
     }
 }
 

@@ -18,7 +18,7 @@ const MAX_VARIANCE_RAD2: f32 = PI * PI / 3.0;
 const REST_SHARE: f32 = 0.1;
 /// Standard errors of the measurement noise that are added to the unexplained share. Chosen: half
 /// of one, so that noise does not count as a motion.
-const STANDARD_ERRORS: f32 = 0.5;
+pub(super) const STANDARD_ERRORS: f32 = 0.5;
 /// Smallest squared length of a mean unit vector. Chosen: far below exp(-[`MAX_VARIANCE_RAD2`]).
 const MIN_LENGTH2: f32 = 1.0e-6;
 /// Largest variance of a measurement, rad^2. Chosen: exp(-13) is near [`MIN_LENGTH2`].

@@ -1,6 +1,7 @@
 //! What goes into a step.
 
-use crate::math::Vec3;
+use crate::math::{Vec3, abs};
+use crate::ranges::{MAX_PX, is_pixel};
 use crate::vision::candidate::HandCandidate;
 use crate::vision::edges::EdgePixel;
 use heapless::Vec;
@@ -63,24 +64,25 @@ pub struct ArmFrame<'a> {
     pub timestamp_us: u64,
     /// What the image showed; `None` where the image is missing.
     pub image: Option<ArmImage<'a>>,
-    /// Where the shoulder is, metres in camera axes.
+    /// Where the shoulder is, metres in camera axes. One that is
+    /// [no place](crate::ranges::is_place) counts as missing: the shoulder stays where it was.
     pub shoulder_m: Vec3,
 }
 
 /// The most likely candidates, in descending order of likelihood, and the count of those that found
 /// no room.
 ///
-/// Candidates whose numbers are not finite, or that are less likely than [`MIN_LIKELIHOOD`], are
-/// dropped as well.
+/// Candidates whose numbers are out of range ([`crate::ranges`]), or that are less likely than
+/// [`MIN_LIKELIHOOD`], are dropped as well.
 #[must_use]
 pub fn most_likely(candidates: &[HandCandidate]) -> (Vec<HandCandidate, MAX_CANDIDATES>, usize) {
     let mut kept: Vec<HandCandidate, MAX_CANDIDATES> = Vec::new();
     for candidate in candidates {
-        let usable = candidate.centre.u_px.is_finite()
-            && candidate.centre.v_px.is_finite()
+        let usable = is_pixel(candidate.centre.u_px)
+            && is_pixel(candidate.centre.v_px)
             && candidate.area_px > 0.0
-            && candidate.area_px.is_finite()
-            && candidate.moments_px2.iter().all(|moment| moment.is_finite())
+            && candidate.area_px <= MAX_PX * MAX_PX
+            && candidate.moments_px2.iter().all(|moment| abs(*moment) <= MAX_PX * MAX_PX)
             && candidate.likelihood >= MIN_LIKELIHOOD
             && candidate.likelihood <= 1.0;
         if !usable {

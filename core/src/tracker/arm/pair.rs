@@ -89,7 +89,7 @@ pub struct PairFrame<'a> {
     pub timestamp_us: u64,
     /// What the image showed; `None` where the image is missing.
     pub image: Option<ArmImage<'a>>,
-    /// Left and right shoulder, metres in camera axes.
+    /// Left and right shoulder, metres in camera axes; see [`ArmFrame::shoulder_m`].
     pub shoulders_m: [Vec3; 2],
 }
 

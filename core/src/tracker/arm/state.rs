@@ -74,7 +74,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     /// A tracker that has seen nothing yet: particles around the waiting pose.
     ///
     /// # Errors
-    /// The model's particle count has to be from 1 to `CAPACITY`.
+    /// The model's particle count has to be from 1 to `CAPACITY`, the shoulder within
+    /// [`MAX_M`](crate::ranges::MAX_M).
     pub fn new(model: &ArmModel, shoulder_m: Vec3, seed: u64) -> Result<Self, ParameterError> {
         let mut tracker = Self::empty();
         tracker.begin(model, shoulder_m, seed)?;
@@ -109,6 +110,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     /// # Errors
     /// Those of [`Self::new`]; the tracker is as before then.
     pub fn begin(&mut self, model: &ArmModel, shoulder_m: Vec3, seed: u64) -> Result<(), ParameterError> {
+        crate::ranges::place("shoulder_m", &shoulder_m)?;
         let uniform = OrientationDensity::uniform(model.options().hough.bins)?;
         self.weights.begin(model.options().particles)?;
         let waiting = model.waiting_pose();

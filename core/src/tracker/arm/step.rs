@@ -11,6 +11,7 @@ use crate::camera::Ray;
 use crate::correction::allocation::allot;
 use crate::math::{Vec3, clamp, exp, length, max};
 use crate::random::Stream;
+use crate::ranges::is_place;
 use crate::vision::candidate::HandCandidate;
 use heapless::Vec;
 
@@ -28,7 +29,9 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     /// Answers one frame: the algorithm box of the arm paper, joined with PIK.
     ///
     /// A timestamp that does not lie after the last one counts as the shortest step. Every frame
-    /// gets an answer; where nothing was seen it is a prediction and says so.
+    /// gets an answer; where nothing was seen it is a prediction and says so. Blobs and a shoulder
+    /// that are out of range ([`crate::ranges`]) count as missing, so that the state stays
+    /// [finite](crate::saved_state::SavedState::is_finite).
     pub fn step(&mut self, model: &ArmModel, frame: &ArmFrame<'_>) -> ArmEstimate {
         let dt_s = self.elapsed_s(frame.timestamp_us);
         let image = frame.image.unwrap_or_default();
@@ -103,10 +106,11 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             }
             free = allot(self.weights.len(), &chances, &mut counts);
         }
+        let shoulder_m = if is_place(&frame.shoulder_m) { frame.shoulder_m } else { self.estimate.shoulder_m };
         FrameContext {
             model,
-            shoulder_m: frame.shoulder_m,
-            reachable: model.reachable(&frame.shoulder_m),
+            shoulder_m,
+            reachable: model.reachable(&shoulder_m),
             dt_s,
             unseen_s: self.unseen_s,
             hand_velocity_m_per_s: self.hand_velocity_m_per_s,

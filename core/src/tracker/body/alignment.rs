@@ -5,6 +5,7 @@
 //! everything, and particles that guess them one by one are lost on it; so every motion model may
 //! begin with the same look at the points.
 
+use crate::error::{ParameterError, positive};
 use crate::kinematics::inverse::{PoseDensity, Solve};
 use crate::math::Vec3;
 use crate::observation::point_cloud::PointBlock;
@@ -58,6 +59,17 @@ pub struct RootAlignment {
 }
 
 impl RootAlignment {
+    /// The same.
+    ///
+    /// # Errors
+    /// Names the first standard deviation that is not positive.
+    pub fn checked(self) -> Result<Self, ParameterError> {
+        positive("shift_std_m_per_sqrt_s", self.shift_std_m_per_sqrt_s)?;
+        positive("turn_std_rad_per_sqrt_s", self.turn_std_rad_per_sqrt_s)?;
+        positive("angle_std_rad_per_sqrt_s", self.angle_std_rad_per_sqrt_s)?;
+        Ok(self)
+    }
+
     /// The pose `expected_rad` fitted to the points `blocks`, `dt_s` seconds after the last one. In
     /// coarse steps the angles of limbs that are `unseen` hold still: points of whatever hides
     /// a limb are not its own.

@@ -25,8 +25,11 @@ use crate::observation::point_cloud::PointBlock;
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct BodyFrame<'a> {
-    /// Time since the frame before, seconds; frames that were dropped are simply not given.
+    /// Time since the frame before, seconds; frames that were dropped are simply not given. Not a
+    /// number, no time, or time that runs back counts as the shortest time.
     pub dt_s: f32,
-    /// The points; none is a frame without evidence.
+    /// The points; none is a frame without evidence. A frame with a block that no
+    /// [`PointCloud`](crate::observation::point_cloud::PointCloud) holds counts as one without
+    /// points.
     pub blocks: &'a [PointBlock],
 }

@@ -61,7 +61,7 @@ pub const DEFAULT_BODY_OPTIONS: BodyOptions = BodyOptions {
 };
 
 impl BodyOptions {
-    /// Checks every value but the alignment's.
+    /// Checks every value.
     ///
     /// # Errors
     /// Names the first value that is out of its range.
@@ -78,6 +78,7 @@ impl BodyOptions {
                 return Err(ParameterError::new(name, Rule::NotNegative));
             }
         }
+        self.alignment.map(RootAlignment::checked).transpose()?;
         self.pace.map(SpeedScaledNoise::checked).transpose()?;
         Ok(())
     }

@@ -6,6 +6,7 @@ use super::observed::observed;
 use super::propose::Advance;
 use super::state::BodyTracker;
 use crate::math::{clamp, min};
+use crate::observation::point_cloud::PointBlock;
 use crate::particle::resampling::systematic;
 use crate::pik::motion::{BodyMotion, BodyParticle, BodyScene, FramePast};
 use crate::random::Stream;
@@ -15,6 +16,11 @@ use crate::skeleton::Limbs;
 const RESAMPLING_STREAM: u32 = u32::MAX;
 /// Stream of what is drawn limb by limb.
 const LIMB_STREAM: u32 = u32::MAX - 1;
+/// Shortest time between two frames, seconds: it still lets particles differ, and says nothing of
+/// their velocity. Chosen: no camera is as fast.
+const MIN_DT_S: f32 = 1.0e-4;
+/// Longest time between two frames, seconds. Chosen: the pose is unknown after it.
+const MAX_DT_S: f32 = 10.0;
 
 impl<const BONES: usize, const ANGLES: usize, const N: usize, S> BodyTracker<BONES, ANGLES, N, S>
 where
@@ -47,8 +53,9 @@ where
         self.frame += 1;
         let offset = Stream::new(self.seed, self.frame, RESAMPLING_STREAM).uniform();
         systematic(self.weights.normalised(), offset, &mut self.ancestors);
-        // No time, or time that runs back, is the shortest time that still lets particles differ.
-        let dt_s = clamp(frame.dt_s, 1.0e-4, 10.0);
+        let dt_s = if frame.dt_s.is_finite() { clamp(frame.dt_s, MIN_DT_S, MAX_DT_S) } else { MIN_DT_S };
+        let is_usable = frame.blocks.iter().all(PointBlock::is_usable);
+        let frame = &BodyFrame { dt_s, blocks: if is_usable { frame.blocks } else { &[] } };
         let limbs = Limbs::of(&scene.skeleton);
         let velocity = self.velocity.expected(self.options.acceleration_share, dt_s);
         let expected_rad = self.expected_pose((scene, &limbs), motion.root(), frame.blocks, dt_s);
@@ -77,15 +84,14 @@ where
         };
         advance_all(&advance, self.next.as_mut());
         core::mem::swap(&mut self.particles, &mut self.next);
-        self.conclude((scene, &limbs), frame, dt_s)
+        self.conclude((scene, &limbs), frame)
     }
 
     /// Weights, mean pose, spread and velocities of the new set.
     fn conclude(
         &mut self,
         (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
-        frame: &BodyFrame<'_>,
-        dt_s: f32,
+        &BodyFrame { dt_s, blocks }: &BodyFrame<'_>,
     ) -> BodyEstimate<BONES, ANGLES> {
         // One group of all bones where whole poses are weighed.
         let weighed_limbs = *self.expected.limbs();
@@ -111,8 +117,10 @@ where
         }
         let posture = scene.posture(&angles_rad);
         let mean = BodyParticle { angles_rad, ends_m: posture.ends, ..self.before };
-        let observed = observed(&scene.surface(&posture), limbs, frame.blocks);
-        self.velocity.follow(&self.before, &mean, dt_s);
+        let observed = observed(&scene.surface(&posture), limbs, blocks);
+        if dt_s > MIN_DT_S {
+            self.velocity.follow(&self.before, &mean, dt_s);
+        }
         if let Some(pace) = &self.options.pace {
             self.noise.follow((pace, limbs), &self.velocity.last.ends_m_per_s, (&observed, &scene.radii_m), dt_s);
         }

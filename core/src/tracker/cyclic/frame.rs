@@ -2,6 +2,8 @@
 
 use crate::cyclic::AngleMeasurement;
 use crate::error::ParameterError;
+use crate::math::max;
+use crate::ranges::{ANGLE_STD_RAD, is_pixel};
 use crate::skeleton::stick_figure::{ImagePoint, StickFigure};
 use core::f32::consts::{PI, SQRT_2};
 
@@ -42,7 +44,8 @@ impl<const N: usize> CyclicFrameInput<N> {
     /// From the joints of `figure` as a picture shows them, each coordinate with a standard
     /// deviation of `keypoint_std_px`, one frame after the last.
     ///
-    /// An angle's standard deviation is sqrt(2) times that over the segment's length, at most pi.
+    /// An angle's standard deviation is sqrt(2) times that over the segment's length, at most pi and
+    /// at least that of [`ANGLE_STD_RAD`]. A segment longer than [`MAX_PX`](crate::ranges::MAX_PX) is missing.
     ///
     /// # Errors
     /// `keypoint_std_px` has to be positive.
@@ -54,11 +57,11 @@ impl<const N: usize> CyclicFrameInput<N> {
         crate::error::positive("keypoint_std_px", keypoint_std_px)?;
         let (mut angles_rad, mut std_rad, mut lengths_px) = ([None; N], [PI; N], [None; N]);
         for index in 0..N {
-            if let Some(segment) = figure.segment(joints_px, index) {
+            if let Some(segment) = figure.segment(joints_px, index).filter(|segment| is_pixel(segment.length_px)) {
                 angles_rad[index] = segment.angle_rad;
                 lengths_px[index] = Some(segment.length_px);
                 if segment.length_px * PI > SQRT_2 * keypoint_std_px {
-                    std_rad[index] = SQRT_2 * keypoint_std_px / segment.length_px;
+                    std_rad[index] = max(SQRT_2 * keypoint_std_px / segment.length_px, *ANGLE_STD_RAD.start());
                 }
             }
         }

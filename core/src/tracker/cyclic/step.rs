@@ -7,6 +7,7 @@ use crate::cyclic::events::CycleCounter;
 use crate::cyclic::filter::CyclicFilter;
 use crate::cyclic::{CyclicEstimate, FigurePlace, MotionModel};
 use crate::error::ParameterError;
+use crate::saved_state::{SavedState, StateVisitor};
 use crate::skeleton::stick_figure::{ImagePoint, StickFigure};
 
 /// State of a tracker for models of up to `N` angles.
@@ -114,6 +115,17 @@ impl<const N: usize> CyclicTracker<N> {
     #[must_use]
     pub const fn place(&self) -> Option<&FigurePlace<N>> {
         self.place.as_ref()
+    }
+}
+
+impl<const N: usize> SavedState for CyclicTracker<N> {
+    /// A state is for a tracker with the same options.
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        self.filter.visit(visitor);
+        self.counter.visit(visitor);
+        if let Some(place) = &mut self.place {
+            place.visit(visitor);
+        }
     }
 }
 

@@ -35,7 +35,8 @@ impl<const N: usize> CoupledFilter<N> {
                 volume.multiply(TAU * total);
                 count += 1;
                 angle += variance[i] / total * residual;
-                variance[i] -= variance[i] * variance[i] / total;
+                // Rounding takes it below zero where the noise is small beside it.
+                variance[i] = max(variance[i] - variance[i] * variance[i] / total, 0.0);
             }
             self.turn_to(i, wrap_angle(angle));
         }
