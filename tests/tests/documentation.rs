@@ -55,7 +55,8 @@ fn every_sinew_command_of_the_pages_for_users_is_understood() {
         ("tuning.md", 4),
         ("pictures.md", 8),
         ("viewer.md", 3),
-        ("command.md", 6),
+        ("command.md", 4),
+        ("interruptions.md", 2),
     ];
     for (name, least) in pages {
         let page = fs::read_to_string(workspace_root().join("docs").join(name)).unwrap();

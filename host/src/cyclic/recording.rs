@@ -4,6 +4,7 @@ use super::angle_table::AngleTable;
 use super::image_joints::{ExtraColumns, ImageJoints};
 use super::projection::{Forward, Plane, UpAxis, View};
 use super::resample::resample;
+use crate::cyclic::CyclicError;
 use crate::error::{Context, Result, bail, ensure};
 use crate::keypoints::{self, Facing};
 use crate::motion::joint_names::JointSources;
@@ -56,6 +57,8 @@ pub fn angles(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
             ensure!(rate > 0.0 && rate.is_finite(), "`{name} {rate}`: a rate has to be greater than zero");
         }
     }
+    // Before its kind, which the name of a file that is not there may not show.
+    std::fs::metadata(path).map_err(|reason| CyclicError::Unreadable { path: path.to_path_buf(), reason })?;
     let is_2d = path.is_dir() || find(path, &[Kind::Keypoints]).is_some();
     if is_2d { from_keypoints(path, options) } else { from_space(path, options) }
 }

@@ -1,7 +1,11 @@
 //! What went wrong, as far as a caller acts on it.
 
 use super::Error;
-use sinew_formats::images::InputError;
+use crate::cyclic::CyclicError;
+use crate::keypoints::error::KeypointError;
+use sinew_formats::cloud::CloudError;
+use sinew_formats::images::{ImageFileError, InputError};
+use sinew_formats::motion::MotionError;
 use std::error::Error as StdError;
 use std::io;
 
@@ -31,8 +35,8 @@ impl ErrorKind {
     pub fn of(error: &(dyn StdError + 'static)) -> Option<Self> {
         let mut cause = Some(error);
         while let Some(error) = cause {
-            if let Some(io) = error.downcast_ref::<io::Error>() {
-                return Some(Self::of_reading(io.kind()));
+            if let Some(kind) = Self::of_reader(error) {
+                return Some(kind);
             }
             if let Some(known) = error.downcast_ref::<Error>() {
                 return Some(known.kind());
@@ -40,6 +44,34 @@ impl ErrorKind {
             cause = error.source();
         }
         None
+    }
+
+    /// The kind of an error of a reader, none of others.
+    fn of_reader(error: &(dyn StdError + 'static)) -> Option<Self> {
+        if let Some(io) = error.downcast_ref::<io::Error>() {
+            return Some(Self::of_reading(io.kind()));
+        }
+        let refusal = match error.downcast_ref::<CyclicError>() {
+            Some(CyclicError::Unreadable { reason, .. }) => Some(reason.kind()),
+            Some(CyclicError::Parameter { .. }) => return Some(Self::Usage),
+            Some(_) => return Some(Self::Data),
+            None => None,
+        };
+        let refusal = refusal.or_else(|| match error.downcast_ref::<KeypointError>() {
+            Some(KeypointError::Unreadable { reason, .. }) => Some(reason.kind()),
+            _ => None,
+        });
+        let refusal = refusal.or_else(|| match error.downcast_ref::<MotionError>() {
+            Some(MotionError::Unreadable { reason, .. }) => Some(reason.kind()),
+            _ => None,
+        });
+        let refusal = refusal.or_else(|| match error.downcast_ref::<CloudError>() {
+            Some(CloudError::Unreadable { reason, .. }) => Some(reason.kind()),
+            _ => None,
+        });
+        let refusal = refusal.or_else(|| error.downcast_ref::<ImageFileError>()?.io);
+        let is_missing = matches!(error.downcast_ref::<InputError>(), Some(InputError::Missing(_)));
+        refusal.map(Self::of_reading).or(is_missing.then_some(Self::NoInput))
     }
 
     fn of_reading(error: io::ErrorKind) -> Self {
@@ -103,7 +135,7 @@ impl Error {
             Self::Option(_) => ErrorKind::Usage,
             Self::InUse { .. } => ErrorKind::TryAgain,
             Self::Unreadable(_) => ErrorKind::Io,
-            Self::ImageFile(error) => error.io.map_or(ErrorKind::Data, ErrorKind::of_reading),
+            Self::ImageFile(error) => ErrorKind::of_reader(error).unwrap_or(ErrorKind::Data),
             // What fills a file may fail by itself.
             Self::Write { .. } => match self.innermost() {
                 Self::Io(error) => ErrorKind::of_writing(error.kind()),
@@ -115,7 +147,11 @@ impl Error {
                 other => other.kind(),
             },
             Self::Output(_) => ErrorKind::CannotCreate,
-            Self::Input(InputError::Missing(_)) => ErrorKind::NoInput,
+            Self::Motion(error) => ErrorKind::of_reader(error).unwrap_or(ErrorKind::Data),
+            Self::Cloud(error) => ErrorKind::of_reader(error).unwrap_or(ErrorKind::Data),
+            Self::Input(error) => ErrorKind::of_reader(error).unwrap_or(ErrorKind::Data),
+            Self::Keypoints(error) => ErrorKind::of_reader(error).unwrap_or(ErrorKind::Data),
+            Self::Cyclic(error) => ErrorKind::of_reader(error).unwrap_or(ErrorKind::Data),
             Self::Context { source, .. } | Self::Unfinished { error: source, .. } => source.kind(),
             other => match StdError::source(other) {
                 Some(source) => ErrorKind::of(source).unwrap_or(ErrorKind::Data),

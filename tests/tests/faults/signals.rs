@@ -46,7 +46,7 @@ fn survives(kind: &Kind) {
             }
             assert!(sent.status.success(), "{what}: {status}");
             let is_early = !is_unfinished(&kind.path(&out));
-            // Before signals are handled, and before the first checkpoint, there is nothing to lose.
+            // Before signals are handled, and before the first checkpoint, nothing can be lost.
             assert!(is_early || status.code() == code || status.signal() == Some(signal), "{what}: {status}");
             if is_early {
                 assert_eq!(Kind::ends(kind.command(&out, &[])).0, Some(0), "{what}");

@@ -33,7 +33,8 @@ impl Words {
         let [a, b, c, d] = *bytes.get(at..)?.first_chunk()?;
         Some(match self {
             Self::Intel => f32::from_le_bytes([a, b, c, d]),
-            // Its exponent has an offset of 128 before a fraction from 0.5: 4 times the IEEE number.
+            // Its exponent has an offset of 128 before a fraction from 0.5: 4 times the IEEE
+            // number.
             Self::Dec => f32::from_le_bytes([c, d, a, b]) / 4.0,
             Self::Mips => f32::from_be_bytes([a, b, c, d]),
         })
