@@ -3,6 +3,7 @@
 use super::console::Console;
 use super::image_run::{Skipped, load_each};
 use super::skin_args::SkinArgs;
+use crate::csv_text::name_cell;
 use crate::frames::FrameReader;
 use crate::images::ImageInput;
 use crate::images::video::frame_name;
@@ -50,7 +51,7 @@ pub enum TableFormat {
 }
 
 /// One blob: a row of the table, the most likely blob of an image first.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize)]
 struct BlobRow<'a> {
     image: &'a str,
     /// Number of the blob in its image, from 0.
@@ -211,7 +212,7 @@ fn csv_text(rows: &[BlobRow<'_>]) -> Result<String> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     writer.write_record(COLUMNS)?;
     for row in rows {
-        writer.serialize(row)?;
+        writer.serialize(BlobRow { image: &name_cell(row.image), ..*row })?;
     }
     Ok(String::from_utf8(writer.into_inner()?)?)
 }

@@ -20,7 +20,7 @@ const TICK: Duration = Duration::from_millis(100);
 #[derive(Debug, Clone, Copy, Default, Args)]
 #[command(next_help_heading = "Global options")]
 pub struct Console {
-    /// Tell errors only: no notes, no progress bar.
+    /// Print results and errors only: no notes, no progress bar.
     #[arg(long, short, global = true)]
     pub quiet: bool,
     /// Print results as JSON, for scripts.

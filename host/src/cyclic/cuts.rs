@@ -2,6 +2,7 @@
 
 use super::error::{CyclicError, read_text};
 use crate::csv_text::csv_reader;
+use crate::csv_text::{cell_name, name_cell};
 use crate::error::Result;
 use crate::output::write_atomically;
 use std::path::{Path, PathBuf};
@@ -109,7 +110,7 @@ fn cut(record: &csv::StringRecord, line: u64) -> Result<Cut, String> {
     if end_frame <= start_frame {
         return Err(format!("`end_frame` {end_frame} has to lie after `start_frame` {start_frame}"));
     }
-    Ok(Cut { file: file.to_owned(), start_frame, end_frame, line })
+    Ok(Cut { file: cell_name(file).to_owned(), start_frame, end_frame, line })
 }
 
 /// Writes a cut list under a temporary name, then renames it.
@@ -121,7 +122,7 @@ pub fn write(path: &Path, cuts: &[Cut]) -> Result<()> {
         let mut writer = csv::Writer::from_writer(output);
         writer.write_record(COLUMNS)?;
         for cut in cuts {
-            writer.write_record([&cut.file, &cut.start_frame.to_string(), &cut.end_frame.to_string()])?;
+            writer.write_record([&name_cell(&cut.file), &*cut.start_frame.to_string(), &*cut.end_frame.to_string()])?;
         }
         Ok(writer.flush()?)
     })

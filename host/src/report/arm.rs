@@ -6,6 +6,7 @@ use super::facts::{facts_of, number, options_table, text};
 use super::folder::RunFolder;
 use super::pictures::{Pictures, overlay_of};
 use super::table::Table;
+use crate::csv_text::cell_name;
 use crate::track::REPORT_VERSION;
 use serde_json::Value;
 
@@ -142,7 +143,7 @@ fn player(folder: &mut RunFolder, report: &Value, track: &Table, has_truth: bool
     let names = folder.path().join("overlay");
     if names.is_dir() {
         let image_of: std::collections::BTreeMap<&str, &str> =
-            track.rows.iter().map(|row| (track.cell(row, "frame"), track.cell(row, "image"))).collect();
+            track.rows.iter().map(|row| (track.cell(row, "frame"), cell_name(track.cell(row, "image")))).collect();
         let found: Vec<_> = frames
             .iter()
             .map(|frame| image_of.get(frame.as_str()).and_then(|image| overlay_of(&names, image)))

@@ -70,7 +70,7 @@ impl RunFolder {
             );
             return None;
         }
-        let parsed = fs::read(&path).map_err(|error| error.to_string());
+        let parsed = read_regular(&path);
         match parsed.and_then(|bytes| serde_json::from_slice(&bytes).map_err(|error| error.to_string())) {
             Ok(value) => Some(value),
             Err(reason) => {
@@ -99,10 +99,10 @@ impl RunFolder {
 
     /// Reads a CSV file that may lie elsewhere, as the table `name`.
     pub fn table_at(&mut self, path: &Path, name: &str, title: &str) -> Option<Table> {
-        let bytes = match fs::read(path) {
+        let bytes = match read_regular(path) {
             Ok(bytes) => bytes,
-            Err(error) => {
-                self.notice(Level::Missing, format!("{name} cannot be read ({error})"));
+            Err(reason) => {
+                self.notice(Level::Missing, format!("{name} cannot be read ({reason})"));
                 return None;
             }
         };
@@ -156,6 +156,16 @@ impl RunFolder {
     }
 }
 
+/// Bytes of a regular file. A link could bring any file of this machine into a page that is sent
+/// away.
+pub(super) fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
+    let facts = fs::symlink_metadata(path).map_err(|error| error.to_string())?;
+    if !facts.is_file() {
+        return Err("it is a link, or no regular file".to_owned());
+    }
+    fs::read(path).map_err(|error| error.to_string())
+}
+
 /// Names of the entries of a folder, in natural order; none of a folder that cannot be read.
 #[must_use]
 pub fn names_in(folder: &Path) -> Vec<String> {
@@ -197,6 +207,15 @@ mod tests {
             assert!(text.starts_with(start), "{texts:?}");
         }
         assert_eq!(notices[5].level, Level::Warning);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_left_out() {
+        let (folder, mut run) = folder_with(&[("secret.csv", b"a\n1\n")]);
+        std::os::unix::fs::symlink("secret.csv", folder.path().join("track.csv")).unwrap();
+        assert!(run.table("track.csv", "").is_none() && run.table("secret.csv", "").is_some());
+        assert!(run.into_notices()[0].text.contains("it is a link"));
     }
 
     #[test]

@@ -1,9 +1,8 @@
 //! Which command made a run directory.
 
-use super::folder::{RunFolder, names_in};
+use super::folder::{RunFolder, names_in, read_regular};
 use super::table::Table;
 use serde_json::Value;
-use std::fs;
 use std::path::Path;
 
 /// What a directory holds.
@@ -59,11 +58,11 @@ impl Kind {
 }
 
 fn value(path: &Path) -> Value {
-    fs::read(path).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default()
+    read_regular(path).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default()
 }
 
 fn heading(path: &Path) -> Option<Table> {
-    let bytes = fs::read(path).ok()?;
+    let bytes = read_regular(path).ok()?;
     let line = bytes.split(|byte| *byte == b'\n').next()?;
     Some(Table::parse("", "", line).0)
 }
@@ -71,6 +70,7 @@ fn heading(path: &Path) -> Option<Table> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn a_run_is_known_by_what_is_left_of_it() {

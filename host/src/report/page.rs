@@ -3,7 +3,10 @@
 use super::document::Document;
 use super::pictures::{Block, block_name};
 use crate::error::Result;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
+use sha2::{Digest, Sha256};
 use std::io::Write;
 
 /// What stands before the data; the policy lets the page ask for nothing from outside.
@@ -33,13 +36,21 @@ const SCRIPTS: [&str; 13] = [
 /// # Errors
 /// What the writer refuses.
 pub fn write_page(document: &Document, blocks: &[Block], writer: &mut dyn Write) -> Result<()> {
-    writeln!(writer, "{HEAD}<style>\n{}</style>\n</head>\n{BODY}", STYLES.concat())?;
+    let style = format!("\n{}", STYLES.concat());
+    let script = format!("\n'use strict';\n(() => {{\n{}}})();\n", SCRIPTS.concat());
+    let head = HEAD.replace("STYLE_HASH", &source_hash(&style)).replace("SCRIPT_HASH", &source_hash(&script));
+    writeln!(writer, "{head}<style>{style}</style>\n</head>\n{BODY}")?;
     write_data("data", document, writer)?;
     for (index, block) in blocks.iter().enumerate() {
         write_data(&block_name(index), block, writer)?;
     }
-    writeln!(writer, "<script>\n'use strict';\n(() => {{\n{}}})();\n</script>\n</body>\n</html>", SCRIPTS.concat())?;
+    writeln!(writer, "<script>{script}</script>\n</body>\n</html>")?;
     Ok(())
+}
+
+/// What a content security policy calls this text: nothing else runs, whatever a run is named.
+fn source_hash(text: &str) -> String {
+    format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text)))
 }
 
 fn write_data(id: &str, data: &impl Serialize, writer: &mut dyn Write) -> Result<()> {
@@ -72,6 +83,22 @@ mod tests {
         assert_eq!(back["runs"][0]["name"], evil);
         assert_eq!(page.matches("<script").count(), 3);
         assert_eq!(page.matches("</script>").count(), 3);
+    }
+
+    #[test]
+    fn the_policy_names_what_the_page_holds_and_nothing_else() {
+        let document = Document { format: FORMAT, sinew_version: "0", runs: Vec::new() };
+        let mut page = Vec::new();
+        write_page(&document, &[], &mut page).unwrap();
+        let page = String::from_utf8(page).unwrap();
+        let between = |from: &str, to: &str| page.split(from).nth(1).unwrap().split(to).next().unwrap();
+        let policy = between("Content-Security-Policy\" content=\"", "\"");
+        for part in [between("<style>", "</style>"), between("<script>", "</script>")] {
+            assert!(policy.contains(&source_hash(part)), "{policy}");
+        }
+        assert!(!policy.contains("unsafe") && policy.ends_with("base-uri 'none'; form-action 'none'"), "{policy}");
+        // The hash of no text, as `openssl dgst -sha256 -binary | base64` gives it.
+        assert_eq!(source_hash(""), "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='");
     }
 
     #[test]

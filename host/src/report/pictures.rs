@@ -77,9 +77,9 @@ impl Pictures {
                 .par_iter()
                 .enumerate()
                 .map(|(index, path)| match path {
-                    Some(path) if wanted(index) => match load_rgb(path) {
-                        Ok(image) => jpeg(&image, rung).map(Some).map_err(|error| error.chain()),
-                        Err(_) => Err(path.display().to_string()),
+                    Some(path) if wanted(index) => match load_regular(path) {
+                        Some(image) => jpeg(&image, rung).map(Some).map_err(|error| error.chain()),
+                        None => Err(path.display().to_string()),
                     },
                     _ => Ok(None),
                 })
@@ -114,9 +114,15 @@ fn choose(all: &[&PathBuf], bytes: usize) -> Result<(usize, usize)> {
     Ok((RUNGS.len() - 1, (mean * all.len()).div_ceil(bytes.max(1))))
 }
 
+/// The picture in a regular file; none where it cannot be read or a link leads away.
+fn load_regular(path: &Path) -> Option<RgbImage> {
+    let is_regular = std::fs::symlink_metadata(path).is_ok_and(|facts| facts.is_file());
+    is_regular.then(|| load_rgb(path).ok())?
+}
+
 /// The picture, not wider than the finest rung: a sample of large ones would take gigabytes.
 fn load_small(path: &Path) -> Option<RgbImage> {
-    let image = load_rgb(path).ok()?;
+    let image = load_regular(path)?;
     Some(scaled(&image, RUNGS[0].0).unwrap_or(image))
 }
 

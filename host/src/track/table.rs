@@ -1,6 +1,7 @@
 //! The rows of `track.csv`.
 
 use super::arms::ArmView;
+use crate::csv_text::name_cell;
 use crate::wording::{side_name, status_name};
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::Vec3;
@@ -67,7 +68,7 @@ impl TrackRow {
         let joints = [estimate.joints.hand_m, estimate.joints.elbow_m, estimate.joints.shoulder_m];
         let mut cells = vec![
             self.frame.to_string(),
-            self.image.clone(),
+            name_cell(&self.image).into_owned(),
             side_name(estimate.side).to_owned(),
             status_name(estimate.status).to_owned(),
             format!("{:.6}", self.time_s),
