@@ -32,7 +32,7 @@ impl Kind {
     pub fn body() -> Self {
         Self::new(
             "simulate stereo --motion stick-wave --points 300 --out scene",
-            "track body scene --particles 60 --particles-csv --pictures",
+            "track body scene --particles 20 --particles-csv --pictures",
             &BODY_TIMES,
         )
     }
