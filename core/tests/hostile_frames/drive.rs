@@ -44,7 +44,10 @@ pub enum Recovery {
 pub fn drive<S: Subject>(name: &str, clean_frames: usize, recovery: Recovery, new: impl Fn() -> S) {
     let passes: &[bool] = if recovery == Recovery::FromAll { &[false] } else { &[false, true] };
     for &only_refused in passes {
-        let mut corners = Corners::new(name.bytes().fold(7, |sum, byte| 31 * sum + u64::from(byte)), only_refused);
+        let mut corners = Corners::new(
+            name.bytes().fold(7, |sum: u64, byte| sum.wrapping_mul(31).wrapping_add(u64::from(byte))),
+            only_refused,
+        );
         let is_compared = only_refused || recovery == Recovery::FromAll;
         let (driven, mut failures) = bursts(frames() / passes.len(), (&mut corners, is_compared), clean_frames, &new);
         println!("{name}: {driven} hostile frames, {} failed bursts", failures.len());

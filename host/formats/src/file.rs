@@ -41,19 +41,26 @@ impl FileError {
     }
 }
 
-/// Reads a file of at most `max_bytes`.
+/// The name that stands for standard input.
+pub const STANDARD_INPUT: &str = "-";
+
+/// Reads a file, or standard input for [`STANDARD_INPUT`], of at most `max_bytes`.
 ///
 /// # Errors
 /// The operating system refuses the file, or it has more bytes.
 pub fn read_bytes(path: &Path, max_bytes: u64) -> Result<Vec<u8>, FileError> {
-    let file = File::open(path)?;
     let too_large = FileError::TooLarge { max_bytes };
-    if file.metadata()?.len() > max_bytes {
-        return Err(too_large);
-    }
     let mut bytes = Vec::new();
-    // Devices and pipes have no size.
-    file.take(max_bytes + 1).read_to_end(&mut bytes)?;
+    if path.as_os_str() == STANDARD_INPUT {
+        io::stdin().lock().take(max_bytes + 1).read_to_end(&mut bytes)?;
+    } else {
+        let file = File::open(path)?;
+        if file.metadata()?.len() > max_bytes {
+            return Err(too_large);
+        }
+        // Devices and pipes have no size.
+        file.take(max_bytes + 1).read_to_end(&mut bytes)?;
+    }
     if bytes.len() as u64 > max_bytes { Err(too_large) } else { Ok(bytes) }
 }
 

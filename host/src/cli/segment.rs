@@ -70,7 +70,7 @@ pub fn run(args: &SegmentArgs, console: &Console) -> Result<()> {
         mask.to_gray().write_to(&mut png, ImageFormat::Png)?;
         done += 1;
         let name = names.get(index).map_or_else(|| frame_name(&args.input, index).into(), |name| name.file.clone());
-        Ok(out.write(name, |writer| Ok(writer.write_all(png.get_ref())?))?)
+        Ok(out.write_frame(name, |writer| Ok(writer.write_all(png.get_ref())?))?)
     })?;
     let text = format!("{done} masks written to {}\n", out.path().display());
     console.answer(&text, &json!({ "masks": done, "skipped": skipped.reasons(), "out": out.path() }))?;

@@ -12,6 +12,7 @@ use crate::cyclic::report::{Origin, OverlayOrigin, Report};
 use crate::cyclic::tracking::table::{self, MotionCells, NO_MOTION};
 use crate::cyclic::tracking::{FilterName, NamedMotion, StartName, TableRun, Tracked, TrackingOptions, Updates};
 use crate::cyclic::{AngleTable, CyclicModel};
+use crate::file::STANDARD_INPUT;
 use crate::output::{OutputDir, OutputLock, Target, check_writable_file};
 use crate::resume::{Begun, Checkpoints, Interrupted, Left, ResumeFile, file_crc32, text_crc32};
 use anyhow::{Result, bail, ensure};
@@ -28,7 +29,8 @@ use std::time::Instant;
   sinew simulate cyclic --model walking --out walk.csv
   sinew track cyclic walk.csv --model walking --out est.csv --report run")]
 pub struct TrackCyclicArgs {
-    /// Angle table, made by `sinew angles` from a motion in space or from keypoints.
+    /// Angle table, made by `sinew angles` from a motion in space or from keypoints; - is standard
+    /// input.
     pub table: PathBuf,
     /// Motion: a shipped one, or a file of `sinew train cyclic`. Given several times, the motion of
     /// each frame is named, or none of these, and tracked by its own model.
@@ -127,6 +129,8 @@ pub fn run_until(
     check(args)?;
     let frames = args.overlay.as_deref().map(OverlayFrames::open).transpose()?;
     let file = match Target::of(&args.out)? {
+        // What came on standard input does not come again.
+        _ if is_stream(args) => None,
         Target::File(path) => {
             Some((ResumeFile::beside(&path, COMMAND), OutputLock::of_table(&path, "sinew track cyclic")?))
         }
@@ -136,7 +140,7 @@ pub fn run_until(
     let left: Option<Left<Option<String>>> = match (args.resume, file) {
         (false, _) => None,
         (true, Some(file)) => Some(file.read(&args.out)?),
-        (true, None) => bail!("--resume goes on with a file; give --out one"),
+        (true, None) => bail!("--resume goes on with files; give a table and --out as files"),
     };
     let output = args.report.as_deref().map(OutputDir::create).transpose()?;
     let models = args.model.iter().map(|name| CyclicModel::from_option(name)).collect::<crate::Result<Vec<_>>>()?;
@@ -168,6 +172,11 @@ pub fn run_until(
     ended
 }
 
+/// Whether the table comes on standard input.
+fn is_stream(args: &TrackCyclicArgs) -> bool {
+    args.table.as_os_str() == STANDARD_INPUT
+}
+
 /// How the estimates come about; what is made of them may differ from run to run.
 fn begun(args: &TrackCyclicArgs, models: &[CyclicModel]) -> Result<Begun> {
     let options = json!({
@@ -184,8 +193,10 @@ fn begun(args: &TrackCyclicArgs, models: &[CyclicModel]) -> Result<Begun> {
         "rate": args.rate,
         "seed": args.seed,
     });
-    let begun = Begun::new(COMMAND, &options, &[])?.on(&args.table)?;
-    let begun = begun.reading(format!("`{}`", args.table.display()), file_crc32(&args.table)?);
+    let mut begun = Begun::new(COMMAND, &options, &[])?;
+    if !is_stream(args) {
+        begun = begun.on(&args.table)?.reading(format!("`{}`", args.table.display()), file_crc32(&args.table)?);
+    }
     let named = args.model.iter().zip(models);
     Ok(named.fold(begun, |begun, (name, model)| {
         begun.reading(format!("the model `{name}`"), text_crc32(&format!("{:?}", model.numbers())))

@@ -34,13 +34,22 @@ where
 {
     // Once for all callers: `fill` is the only part that differs.
     let mut fill = Some(fill);
-    write_with(path, &mut |writer| fill.take().map_or(Ok(()), |fill| fill(writer)))
+    write_with(path, true, &mut |writer| fill.take().map_or(Ok(()), |fill| fill(writer)))
 }
 
-fn write_with(path: &Path, fill: &mut dyn FnMut(&mut dyn Write) -> Result<()>) -> Result<()> {
+/// As [`write_atomically`], without waiting for the disk.
+pub(super) fn write_unsynced<F>(path: &Path, fill: F) -> Result<()>
+where
+    F: FnOnce(&mut dyn Write) -> Result<()>,
+{
+    let mut fill = Some(fill);
+    write_with(path, false, &mut |writer| fill.take().map_or(Ok(()), |fill| fill(writer)))
+}
+
+fn write_with(path: &Path, is_synced: bool, fill: &mut dyn FnMut(&mut dyn Write) -> Result<()>) -> Result<()> {
     let mut inner = || -> Result<()> {
         match Target::of(path)? {
-            Target::File(file) => replace(&file, fill),
+            Target::File(file) => replace(&file, is_synced, fill),
             Target::Fifo(fifo) => through(File::options().write(true).open(fifo)?, fill),
             Target::Standard => through(std::io::stdout().lock(), fill),
         }
@@ -48,13 +57,17 @@ fn write_with(path: &Path, fill: &mut dyn FnMut(&mut dyn Write) -> Result<()>) -
     inner().writing(|| format!("`{}` cannot be written", path.display()))
 }
 
-fn replace(path: &Path, fill: &mut dyn FnMut(&mut dyn Write) -> Result<()>) -> Result<()> {
+fn replace(path: &Path, is_synced: bool, fill: &mut dyn FnMut(&mut dyn Write) -> Result<()>) -> Result<()> {
     let folder = parent_of(path);
     let mut temporary = temporary_in(folder)?;
     let mut writer = BufWriter::new(temporary.as_file_mut());
     fill(&mut writer)?;
     writer.flush()?;
     drop(writer);
+    if !is_synced {
+        temporary.persist(path)?;
+        return Ok(());
+    }
     temporary.as_file().sync_all()?;
     temporary.persist(path)?;
     sync_folder(folder)

@@ -1,6 +1,6 @@
 //! A folder of results.
 
-use super::file::{temporary_in, write_atomically};
+use super::file::{temporary_in, write_atomically, write_unsynced};
 use super::pending::PendingFile;
 use super::{LOCK_PREFIX, TEMPORARY_PREFIX};
 use crate::error::{Result, WriteContext, bail_output};
@@ -78,6 +78,38 @@ impl OutputDir {
         write_atomically(&self.join(name), |writer| Ok(writer.write_all(&bytes)?))
     }
 
+    /// As [`OutputDir::write`], for one of many files: not synced, which takes longer than making it.
+    ///
+    /// # Errors
+    /// As [`write_atomically`].
+    pub fn write_frame<F>(&self, name: impl AsRef<Path>, fill: F) -> Result<()>
+    where
+        F: FnOnce(&mut dyn Write) -> Result<()>,
+    {
+        write_unsynced(&self.join(name), fill)
+    }
+
+    /// As [`OutputDir::write_png`], for the picture of one frame of many.
+    ///
+    /// # Errors
+    /// As [`write_atomically`].
+    pub fn write_frame_png(&self, name: impl AsRef<Path>, image: &RgbImage) -> Result<()> {
+        let bytes = png(image)?;
+        self.write_frame(name, |writer| Ok(writer.write_all(&bytes)?))
+    }
+
+    /// A folder inside this one for the files of a series: it has its name once all are written.
+    ///
+    /// # Errors
+    /// As [`OutputDir::create`].
+    pub fn begin_series(&self, name: &str) -> Result<Series> {
+        let growing = self.join(format!("{name}.partial"));
+        if growing.exists() {
+            fs::remove_dir_all(&growing).writing(|| format!("`{}` cannot be removed", growing.display()))?;
+        }
+        Ok(Series { folder: Self::create(&growing)?, named: self.join(name) })
+    }
+
     /// The file `name` of this folder, all written but without its name yet.
     ///
     /// # Errors
@@ -114,6 +146,43 @@ fn png(image: &RgbImage) -> Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     image.write_to(&mut bytes, ImageFormat::Png).writing(|| "a picture cannot be encoded")?;
     Ok(bytes.into_inner())
+}
+
+/// Files that are made one after the other and appear together.
+#[derive(Debug)]
+pub struct Series {
+    folder: OutputDir,
+    named: PathBuf,
+}
+
+impl Series {
+    /// Where the files are written.
+    #[must_use]
+    pub fn folder(&self) -> &OutputDir {
+        &self.folder
+    }
+
+    /// Gives the folder its name. Files of others that a folder of this name holds stay.
+    ///
+    /// # Errors
+    /// The folder cannot be renamed.
+    pub fn finish(self) -> Result<()> {
+        let Self { folder, named } = self;
+        let inner = || -> std::io::Result<()> {
+            let is_free = fs::read_dir(&named).map_or(true, |mut entries| entries.next().is_none());
+            if is_free {
+                // What Windows refuses to replace.
+                let _ = fs::remove_dir(&named);
+                return fs::rename(folder.path(), &named);
+            }
+            for entry in fs::read_dir(folder.path())? {
+                let entry = entry?;
+                fs::rename(entry.path(), named.join(entry.file_name()))?;
+            }
+            fs::remove_dir(folder.path())
+        };
+        inner().writing(|| format!("`{}` cannot be written", named.display()))
+    }
 }
 
 /// Removes temporary files of single writes that have this age. Those that cannot be looked at or
@@ -161,6 +230,24 @@ mod tests {
         assert!(OutputDir::create(&file).unwrap_err().to_string().contains("is a file"));
         assert!(OutputDir::create(&file.join("inside")).is_err());
         assert!(check_writable_file(folder.path()).unwrap_err().to_string().contains("is a folder"));
+    }
+
+    #[test]
+    fn a_series_appears_at_once_and_leaves_files_of_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutputDir::create(folder.path()).unwrap();
+        let make = |text: &[u8]| {
+            let series = out.begin_series("frames").unwrap();
+            series.folder().write_frame("0.txt", |writer| Ok(writer.write_all(text)?)).unwrap();
+            series
+        };
+        drop(make(b"killed"));
+        assert!(!out.join("frames").exists());
+        make(b"one").finish().unwrap();
+        fs::write(out.join("frames/mine.txt"), "").unwrap();
+        make(b"two").finish().unwrap();
+        assert_eq!(fs::read(out.join("frames/0.txt")).unwrap(), b"two");
+        assert!(out.join("frames/mine.txt").exists() && !out.join("frames.partial").exists());
     }
 
     #[test]

@@ -11,7 +11,7 @@ mod pending;
 mod target;
 
 pub use file::{check_writable_file, write_atomically};
-pub use folder::OutputDir;
+pub use folder::{OutputDir, Series};
 pub use lock::OutputLock;
 pub use pending::{Mark, PendingFile, finish_all, finished_table, mark};
 pub use target::Target;

@@ -3,7 +3,7 @@
 
 use super::{Begun, Interrupted, REMEDY};
 use crate::error::{Context, Error, Result, WriteContext};
-use crate::output::OutputDir;
+use crate::output::{OutputDir, OutputLock};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -30,6 +30,7 @@ pub struct Cells<'a> {
 
 struct Kept<'a> {
     out: PathBuf,
+    _lock: OutputLock,
     folder: OutputDir,
     stop: Stop<'a>,
 }
@@ -67,12 +68,14 @@ impl<'a> Cells<'a> {
         let path = out.join(CELLS_FOLDER);
         if resume {
             Self::check(&path.join(BEGUN), begun, out.path())?;
-        } else {
+        }
+        let lock = OutputLock::of_folder(out.path(), &format!("sinew {}", begun.command()))?;
+        if !resume {
             remove(&path)?;
         }
         let folder = out.subfolder(CELLS_FOLDER)?;
         folder.write(BEGUN, |writer| Ok(serde_json::to_writer_pretty(writer, begun)?))?;
-        let kept = Kept { out: out.path().to_path_buf(), folder, stop };
+        let kept = Kept { out: out.path().to_path_buf(), _lock: lock, folder, stop };
         Ok(Self { kept: Some(kept), finished: AtomicUsize::new(0) })
     }
 
@@ -200,6 +203,7 @@ mod tests {
         assert_eq!(error.interrupted().unwrap().finished, 3);
         assert_eq!(cells.cell(&json!(["a", 1]), never).unwrap(), third, "a known cell is returned");
         ended.store(false, Ordering::Relaxed);
+        drop(cells);
 
         let again = Cells::keep(&out, &begun(1), true, &stop).unwrap();
         assert_eq!(again.cell(&json!(["a", 1]), never).unwrap().to_bits(), third.to_bits());

@@ -161,6 +161,6 @@ mod tests {
         assert!(message.contains("left by `sinew track arm`, not by `sinew track body`"), "{message}");
         file.remove().unwrap();
         file.remove().unwrap();
-        assert!(file.read::<Vec<f64>>(folder.path()).unwrap_err().to_string().contains("holds no run"));
+        assert!(file.read::<Vec<f64>>(folder.path()).unwrap_err().to_string().contains("holds no unfinished run"));
     }
 }

@@ -47,10 +47,11 @@ impl Scene {
     /// # Errors
     /// A file that cannot be written, by name.
     pub fn write_folder(&self, output: &OutputDir) -> Result<()> {
-        let frames = output.subfolder("frames")?;
-        (0..self.len())
-            .into_par_iter()
-            .try_for_each(|frame| frames.write_png(format!("frame_{frame:04}.png"), &self.render(frame)))?;
+        let frames = output.begin_series("frames")?;
+        (0..self.len()).into_par_iter().try_for_each(|frame| {
+            frames.folder().write_frame_png(format!("frame_{frame:04}.png"), &self.render(frame))
+        })?;
+        frames.finish()?;
         output.write("truth.csv", |writer| Ok(writer.write_all(self.truth_csv().as_bytes())?))?;
         output.write("camera.toml", |writer| Ok(writer.write_all(self.config_toml().as_bytes())?))
     }

@@ -69,15 +69,16 @@ impl StereoScene {
         stick_m: Option<&[StickEnds]>,
         output: &OutputDir,
     ) -> Result<()> {
-        let points = output.subfolder("points")?;
+        let points = output.begin_series("points")?;
         let counts = (0..self.len())
             .into_par_iter()
             .map(|frame| {
                 let cloud = self.points_m(frame);
-                points.write(format!("{frame:06}.ply"), |writer| Ok(write_ply(&cloud, writer)?))?;
+                points.folder().write_frame(format!("{frame:06}.ply"), |writer| Ok(write_ply(&cloud, writer)?))?;
                 Ok(cloud.len())
             })
             .collect::<Result<Vec<usize>>>()?;
+        points.finish()?;
         output.write("truth.csv", |writer| Ok(writer.write_all(truth_csv(self).as_bytes())?))?;
         let body = serde_json::to_string_pretty(&BodyFile::from(self.measures()))?;
         output.write("body.json", |writer| Ok(writer.write_all(body.as_bytes())?))?;

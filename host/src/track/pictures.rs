@@ -72,7 +72,7 @@ impl Pictures {
             .map(|shot| {
                 let overlay = self.names.of_overlay(shot.frame, &shot.name);
                 let picture = draw_shot(shot, &shot.name, arms);
-                self.folder.write_png(overlay, &picture)?;
+                self.folder.write_frame_png(overlay, &picture)?;
                 Ok(self.sheet.wants(shot.frame).then_some(picture))
             })
             .collect();

@@ -4,7 +4,7 @@ use sinew_tests::sinew_command;
 use std::fs;
 use std::io::Read;
 use std::os::unix::fs::symlink;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
 const SIMULATE: &str = "simulate cyclic --model walking --cycles 2 --out";
@@ -45,6 +45,21 @@ fn a_dash_is_standard_output_and_nothing_else_is_on_it() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(output.stdout == fs::read(folder.path().join("plain.csv")).unwrap());
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_table_comes_on_standard_input() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(run(&folder, "walk.csv").status.success());
+    let track = |table: &str, out: &str, input: Stdio| {
+        let mut command = sinew_command();
+        command.current_dir(folder.path()).args(["track", "cyclic", table, "--model", "walking", "--out", out]);
+        let output = command.stdin(input).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        fs::read(folder.path().join(out)).unwrap()
+    };
+    let table = fs::File::open(folder.path().join("walk.csv")).unwrap();
+    assert!(track("-", "a.csv", table.into()) == track("walk.csv", "b.csv", Stdio::null()));
 }
 
 #[test]

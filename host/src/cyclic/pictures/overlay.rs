@@ -96,7 +96,7 @@ impl OverlayFrames {
                     )));
                 }
                 draw_row(&mut picture, table, tracked, *row, figure, body);
-                folder.write_png(&names[figure.frame as usize].1, &picture)?;
+                folder.write_frame_png(&names[figure.frame as usize].1, &picture)?;
                 Ok(None)
             })
             .collect();
