@@ -33,18 +33,30 @@ pub const MAX_ANGLE_RAD: f32 = 1.0e6;
 pub const ANGLE_STD_RAD: RangeInclusive<f32> = 1.0e-4..=1.0e3;
 
 /// Whether a place lies within [`MAX_M`] along each axis; never with NaN or infinity.
+///
+/// ```
+/// assert!(!sinew_core::ranges::is_place(&sinew_core::math::Vec3::new(0.0, f32::NAN, 1.2)));
+/// ```
 #[must_use]
 pub fn is_place(place_m: &Vec3) -> bool {
-    place_m.iter().all(|coordinate_m| abs(*coordinate_m) <= MAX_M)
+    abs(place_m.x) <= MAX_M && abs(place_m.y) <= MAX_M && abs(place_m.z) <= MAX_M
 }
 
 /// Whether a coordinate lies within [`MAX_PX`]; NaN and infinity do not.
+///
+/// ```
+/// assert!(sinew_core::ranges::is_pixel(-3.5) && !sinew_core::ranges::is_pixel(1.0e6));
+/// ```
 #[must_use]
 pub fn is_pixel(coordinate_px: f32) -> bool {
     abs(coordinate_px) <= MAX_PX
 }
 
 /// Whether an angle lies within [`MAX_ANGLE_RAD`]; NaN and infinity do not.
+///
+/// ```
+/// assert!(sinew_core::ranges::is_angle(-7.0) && !sinew_core::ranges::is_angle(f32::NAN));
+/// ```
 #[must_use]
 pub fn is_angle(angle_rad: f32) -> bool {
     abs(angle_rad) <= MAX_ANGLE_RAD
@@ -52,16 +64,23 @@ pub fn is_angle(angle_rad: f32) -> bool {
 
 /// Returns `place_m` if it [is a place](is_place).
 ///
+/// ```
+/// let far_m = sinew_core::math::Vec3::new(0.0, 0.0, 1.0e35);
+/// assert!(sinew_core::ranges::place("shoulder_m", &far_m).is_err());
+/// ```
+///
 /// # Errors
 /// [`Rule::Finite`] or [`Rule::Within`] otherwise.
 pub fn place(parameter: &'static str, place_m: &Vec3) -> Result<Vec3, ParameterError> {
-    for coordinate_m in place_m {
-        within(parameter, *coordinate_m, -MAX_M, MAX_M)?;
-    }
-    Ok(*place_m)
+    let coordinate = |coordinate_m| within(parameter, coordinate_m, -MAX_M, MAX_M);
+    Ok(Vec3::new(coordinate(place_m.x)?, coordinate(place_m.y)?, coordinate(place_m.z)?))
 }
 
 /// Returns `length` if it is [`positive`] and at most `most`.
+///
+/// ```
+/// assert_eq!(sinew_core::ranges::length("forearm_m", 0.25, 100.0), Ok(0.25));
+/// ```
 ///
 /// # Errors
 /// Those of [`positive`], or [`Rule::Within`].
@@ -70,6 +89,10 @@ pub fn length(parameter: &'static str, length: f32, most: f32) -> Result<f32, Pa
 }
 
 /// Returns `std_rad` if it lies within [`ANGLE_STD_RAD`].
+///
+/// ```
+/// assert!(sinew_core::ranges::angle_std("std_rad", 1.0e30).is_err());
+/// ```
 ///
 /// # Errors
 /// [`Rule::Finite`], [`Rule::Positive`] or [`Rule::Within`] otherwise.

@@ -11,6 +11,9 @@ use std::process::Command;
 use std::sync::OnceLock;
 use std::time::SystemTime;
 
+/// Exit statuses of a command that refuses what it is given.
+pub const REFUSED: &[i32] = &[64, 65, 66, 73, 74];
+
 /// The command `sinew` of this workspace, freshly built in the profile of the running test.
 ///
 /// `CARGO_BIN_EXE_sinew` is set for the tests of the package that owns the binary only, and `cargo

@@ -105,7 +105,11 @@ fn rates_change_the_number_of_frames() {
     let root = tempfile::tempdir().unwrap();
     write_openpose(&root.path().join("k"), 61, 1.0, false);
     let mut command = sinew(root.path());
-    command.args(["k", "--rate", "60", "--out", "t.csv"]).assert().code(1).stderr(contains("--input-rate"));
+    command
+        .args(["k", "--rate", "60", "--out", "t.csv"])
+        .assert()
+        .code(sinew_tests::REFUSED)
+        .stderr(contains("--input-rate"));
     let mut command = sinew(root.path());
     command.args(["k", "--rate", "60", "--input-rate", "30", "--out", "t.csv"]).assert().success();
     assert_eq!(table(&root.path().join("t.csv")).rows().len(), 121);
@@ -113,7 +117,7 @@ fn rates_change_the_number_of_frames() {
     command
         .args(["k", "--rate", "0", "--out", "t.csv"])
         .assert()
-        .code(1)
+        .code(sinew_tests::REFUSED)
         .stderr(contains("`--rate 0`: a rate has to be"));
 }
 
@@ -150,7 +154,11 @@ fn bad_motions_are_refused_with_file_line_and_rule() {
     let refused = |name: &str, text: &str, message: &str| {
         fs::write(root.path().join(name), text).unwrap();
         let mut command = sinew(root.path());
-        command.args([name, "--out", "t.csv"]).assert().code(1).stderr(contains(name).and(contains(message)));
+        command
+            .args([name, "--out", "t.csv"])
+            .assert()
+            .code(sinew_tests::REFUSED)
+            .stderr(contains(name).and(contains(message)));
         assert!(!root.path().join("t.csv").exists());
     };
     refused("m.bvh", &BVH.replace(" }\n}\n", " }\n"), "m.bvh:11: `MOTION` before the hierarchy is closed by `}`");
@@ -181,9 +189,13 @@ fn bad_motions_are_refused_with_file_line_and_rule() {
     refused("m.trc", &trc.replace("\t6\n", "\n"), "m.trc:7: a frame needs 8 columns, found 7");
     fs::create_dir(root.path().join("empty")).unwrap();
     let mut command = sinew(root.path());
-    command.args(["empty", "--out", "t.csv"]).assert().code(1).stderr(contains("has no .json file"));
+    command.args(["empty", "--out", "t.csv"]).assert().code(sinew_tests::REFUSED).stderr(contains("has no .json file"));
     let mut command = sinew(root.path());
-    command.args(["gone.bvh", "--out", "t.csv"]).assert().code(1).stderr(contains("gone.bvh` cannot be read"));
+    command
+        .args(["gone.bvh", "--out", "t.csv"])
+        .assert()
+        .code(sinew_tests::REFUSED)
+        .stderr(contains("gone.bvh` cannot be read"));
 }
 
 #[test]

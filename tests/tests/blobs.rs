@@ -67,10 +67,10 @@ fn an_image_without_skin_gives_a_header_only() {
 #[test]
 fn bad_input_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    sinew().arg("blobs").arg(folder.path()).assert().code(1).stderr(contains("is empty"));
+    sinew().arg("blobs").arg(folder.path()).assert().code(sinew_tests::REFUSED).stderr(contains("is empty"));
     fs::write(folder.path().join("a.png"), b"no picture").unwrap();
-    sinew().arg("blobs").arg(folder.path()).assert().code(1).stderr(contains("a.png"));
-    sinew().arg("blobs").arg(folder.path()).args(["--format", "xml"]).assert().code(2);
+    sinew().arg("blobs").arg(folder.path()).assert().code(sinew_tests::REFUSED).stderr(contains("a.png"));
+    sinew().arg("blobs").arg(folder.path()).args(["--format", "xml"]).assert().code(64);
 }
 
 #[test]

@@ -69,7 +69,12 @@ fn what_has_no_cycle_is_refused_with_the_reason() {
     fs::write(root.path().join("still.csv"), format!("{header}\n{still}")).unwrap();
     fs::write(root.path().join("empty.csv"), format!("{header}\n")).unwrap();
     let refused = |arguments: &[&str], message: &str| {
-        sinew(root.path()).args(arguments).args(["--out", "c.csv"]).assert().code(1).stderr(contains(message));
+        sinew(root.path())
+            .args(arguments)
+            .args(["--out", "c.csv"])
+            .assert()
+            .code(sinew_tests::REFUSED)
+            .stderr(contains(message));
         assert!(!root.path().join("c.csv").exists());
     };
     refused(&["still.csv"], "no cycle in `still.csv`: no angle moves");
@@ -78,5 +83,5 @@ fn what_has_no_cycle_is_refused_with_the_reason() {
     refused(&["still.csv", "--rate", "0"], "`rate` has to be greater than zero");
     refused(&["still.csv", "--shortest", "3", "--longest", "2"], "`shortest cycle` has to be above zero and below");
     let mut command = sinew(root.path());
-    command.args(["still.csv"]).assert().code(2).stderr(contains("--out").and(contains("required")));
+    command.args(["still.csv"]).assert().code(64).stderr(contains("--out").and(contains("required")));
 }

@@ -44,7 +44,7 @@ fn hands_are_scored_and_floors_are_required() {
         .stdout(contains("(Evaluation of both hands on real frames): 0 plots").and(contains("notice").not()));
     fs::write(&boxes, "frame,x,y,w,h\n5,0,0,1,1\n").unwrap();
     hands(&folder, &boxes).assert().success();
-    hands(&folder, &boxes).arg("--require").assert().code(1).stderr(contains("misses the floors"));
+    hands(&folder, &boxes).arg("--require").assert().code(sinew_tests::REFUSED).stderr(contains("misses the floors"));
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn bad_boxes_and_windows_are_refused() {
     let root = tempfile::tempdir().unwrap();
     let (folder, boxes) = (frames(root.path()), root.path().join("boxes.csv"));
     let refused = |part: &str| {
-        hands(&folder, &boxes).assert().code(1).stderr(contains(part).and(contains("boxes.csv")));
+        hands(&folder, &boxes).assert().code(sinew_tests::REFUSED).stderr(contains(part).and(contains("boxes.csv")));
     };
     refused("boxes");
     for (table, part) in [
@@ -65,9 +65,13 @@ fn bad_boxes_and_windows_are_refused() {
         refused(part);
     }
     fs::write(&boxes, "frame,x,y,w,h\n0,1,2,3,4\n").unwrap();
-    hands(&folder, &boxes).args(["--window", "900,10"]).assert().code(1).stderr(contains("larger than the frames"));
-    hands(&folder, &boxes).args(["--window", "wide"]).assert().code(2).stderr(contains("440,360"));
-    hands(&folder.join("none"), &boxes).assert().code(1).stderr(contains("none"));
+    hands(&folder, &boxes)
+        .args(["--window", "900,10"])
+        .assert()
+        .code(sinew_tests::REFUSED)
+        .stderr(contains("larger than the frames"));
+    hands(&folder, &boxes).args(["--window", "wide"]).assert().code(64).stderr(contains("440,360"));
+    hands(&folder.join("none"), &boxes).assert().code(sinew_tests::REFUSED).stderr(contains("none"));
 }
 
 #[test]

@@ -69,7 +69,7 @@ fn bad_input_is_refused_with_file_line_and_rule() {
     let refused = |cuts: &str, more: &[&str], messages: &[&str]| {
         fs::write(root.path().join("c.csv"), format!("file,start_frame,end_frame\n{cuts}")).unwrap();
         let mut command = sinew(root.path());
-        let mut run = command.args(["--test", "c.csv", "--out", "out"]).args(more).assert().code(1);
+        let mut run = command.args(["--test", "c.csv", "--out", "out"]).args(more).assert().code(sinew_tests::REFUSED);
         for message in messages {
             run = run.stderr(contains(*message));
         }
@@ -88,5 +88,9 @@ fn bad_input_is_refused_with_file_line_and_rule() {
     refused(good, &["--train", "c.csv"], &["c.csv:2", "one training cycle only"]);
     fs::write(root.path().join("file"), "").unwrap();
     let mut command = sinew(root.path());
-    command.args(["--test", "gone.csv", "--out", "file"]).assert().code(1).stderr(contains("is a file"));
+    command
+        .args(["--test", "gone.csv", "--out", "file"])
+        .assert()
+        .code(sinew_tests::REFUSED)
+        .stderr(contains("is a file"));
 }

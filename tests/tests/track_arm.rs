@@ -187,16 +187,18 @@ fn images_that_are_all_skin_or_no_skin_or_one_pixel_are_tracked() {
 }
 
 #[test]
-fn an_overlay_that_cannot_be_written_leaves_the_table_of_finished_frames() {
+fn an_overlay_that_cannot_be_written_keeps_the_finished_frames() {
     let (_root, input, out) = scene(5);
     // A folder that holds something cannot be replaced by a file, whoever runs the test.
     fs::create_dir_all(out.join("overlay/f_3.png/inside")).unwrap();
-    let message = contains("f_3.png").and(contains("finished frames are in"));
-    track(&input, &out).arg("--overlay").assert().code(1).stderr(message);
-    assert_eq!(rows(&out).len(), 5);
-    assert_eq!(report(&out)["complete"], false);
+    let message = contains("f_3.png").and(contains("what is finished is kept")).and(contains("--resume"));
+    track(&input, &out).arg("--overlay").assert().code(sinew_tests::REFUSED).stderr(message);
     let litter = |name: &String| name.starts_with(".sinew");
     assert!(!names(&out).iter().any(litter) && !names(&out.join("overlay")).iter().any(litter));
+    assert!(out.join("track.csv.partial").exists() && !out.join("track.csv").exists());
+    fs::remove_dir_all(out.join("overlay/f_3.png")).unwrap();
+    track(&input, &out).args(["--overlay", "--resume"]).assert().success();
+    assert_eq!(rows(&out).len(), 5);
 }
 
 #[test]

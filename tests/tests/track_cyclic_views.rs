@@ -56,7 +56,10 @@ fn a_cloud_of_particles_is_not_looked_back_over() {
     let root = tempfile::tempdir().unwrap();
     walk(20, 1.0 / 63.0).write(&root.path().join("walk.csv")).unwrap();
     let mut command = sinew(root.path(), "walk.csv", "est.csv", &["--smooth", "--filter", "particle"]);
-    command.assert().code(1).stderr(contains("`smooth` needs a filter").and(contains("--filter coupled")));
+    command
+        .assert()
+        .code(sinew_tests::REFUSED)
+        .stderr(contains("`smooth` needs a filter").and(contains("--filter coupled")));
     assert!(!root.path().join("est.csv").exists());
 }
 
@@ -98,7 +101,7 @@ fn views_that_cannot_be_made_are_refused_before_the_run() {
     fs::create_dir(root.path().join("frames")).unwrap();
     image::RgbImage::new(40, 40).save(root.path().join("frames/0.png")).unwrap();
     let refused = |more: &[&str], message: &str| {
-        sinew(root.path(), "walk.csv", "est.csv", more).assert().code(1).stderr(contains(message));
+        sinew(root.path(), "walk.csv", "est.csv", more).assert().code(sinew_tests::REFUSED).stderr(contains(message));
         assert!(!root.path().join("est.csv").exists() && !root.path().join("est_overlay").exists(), "{more:?}");
     };
     refused(&["--overlay", "gone"], "no such folder");
@@ -114,5 +117,5 @@ fn two_angles_a_joint_need_a_motion_in_space() {
     let root = tempfile::tempdir().unwrap();
     let mut command = Command::from_std(sinew_command());
     command.current_dir(root.path()).args(["angles", "points.csv", "--view", "space", "--out", "t.csv"]);
-    command.assert().code(1).stderr(contains("`--view space` needs a motion in space"));
+    command.assert().code(sinew_tests::REFUSED).stderr(contains("`--view space` needs a motion in space"));
 }

@@ -65,7 +65,7 @@ fn bad_input_is_refused_with_file_line_and_rule() {
         fs::write(root.path().join("tables/c.csv"), tables).unwrap();
         fs::write(root.path().join("c.csv"), format!("file,start_frame,end_frame\n{cuts}")).unwrap();
         let mut command = sinew(root.path());
-        let mut run = command.args(["--cuts", "c.csv", "--out", "m.json"]).assert().code(1);
+        let mut run = command.args(["--cuts", "c.csv", "--out", "m.json"]).assert().code(sinew_tests::REFUSED);
         for message in messages {
             run = run.stderr(contains(*message));
         }
@@ -102,7 +102,12 @@ fn bad_input_is_refused_with_file_line_and_rule() {
     refused("no cut", &good, "", &["c.csv:1", "the list is empty"]);
     let option = |option: [&str; 2], message: &'static str| {
         let mut command = sinew(root.path());
-        command.args(["--cuts", "cuts.csv", "--out", "m.json"]).args(option).assert().code(1).stderr(contains(message));
+        command
+            .args(["--cuts", "cuts.csv", "--out", "m.json"])
+            .args(option)
+            .assert()
+            .code(sinew_tests::REFUSED)
+            .stderr(contains(message));
     };
     option(["--rate", "0"], "`rate` has to be greater than zero, not 0");
     option(["--rate", "NaN"], "`rate` has to be greater than zero");

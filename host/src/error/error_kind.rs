@@ -70,8 +70,15 @@ impl ErrorKind {
             _ => None,
         });
         let refusal = refusal.or_else(|| error.downcast_ref::<ImageFileError>()?.io);
-        let is_missing = matches!(error.downcast_ref::<InputError>(), Some(InputError::Missing(_)));
-        refusal.map(Self::of_reading).or(is_missing.then_some(Self::NoInput))
+        if matches!(error.downcast_ref::<InputError>(), Some(InputError::Missing(_))) {
+            return Some(Self::NoInput);
+        }
+        let is_reader = error.is::<KeypointError>()
+            || error.is::<MotionError>()
+            || error.is::<CloudError>()
+            || error.is::<ImageFileError>()
+            || error.is::<InputError>();
+        refusal.map(Self::of_reading).or(is_reader.then_some(Self::Data))
     }
 
     fn of_reading(error: io::ErrorKind) -> Self {

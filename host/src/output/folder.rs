@@ -78,7 +78,8 @@ impl OutputDir {
         write_atomically(&self.join(name), |writer| Ok(writer.write_all(&bytes)?))
     }
 
-    /// As [`OutputDir::write`], for one of many files: not synced, which takes longer than making it.
+    /// As [`OutputDir::write`], for one of many files: not synced, which takes longer than making
+    /// it.
     ///
     /// # Errors
     /// As [`write_atomically`].

@@ -54,12 +54,15 @@ impl<S> Left<S> {
     }
 
     /// Refuses another input for the last finished frame, `name`, than there was; `crc32` is that
-    /// of the present one.
+    /// of the present one. One that could not be read then is not compared.
     ///
     /// # Errors
     /// It is another.
     pub fn check_last(&self, name: &str, crc32: Option<u32>) -> Result<()> {
-        ensure!(self.last_crc32 == crc32, "`{name}` has changed since the run was ended; {REMEDY}");
+        ensure!(
+            self.last_crc32.is_none() || self.last_crc32 == crc32,
+            "`{name}` has changed since the run was ended; {REMEDY}"
+        );
         Ok(())
     }
 }

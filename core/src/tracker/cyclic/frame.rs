@@ -44,8 +44,9 @@ impl<const N: usize> CyclicFrameInput<N> {
     /// From the joints of `figure` as a picture shows them, each coordinate with a standard
     /// deviation of `keypoint_std_px`, one frame after the last.
     ///
-    /// An angle's standard deviation is sqrt(2) times that over the segment's length, at most pi and
-    /// at least that of [`ANGLE_STD_RAD`]. A segment longer than [`MAX_PX`](crate::ranges::MAX_PX) is missing.
+    /// An angle's standard deviation is sqrt(2) times that over the segment's length, at most pi
+    /// and at least that of [`ANGLE_STD_RAD`]. A segment longer than
+    /// [`MAX_PX`](crate::ranges::MAX_PX) is missing.
     ///
     /// # Errors
     /// `keypoint_std_px` has to be positive.

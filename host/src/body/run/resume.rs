@@ -43,7 +43,7 @@ pub(super) fn left(run: &mut BodyTrackRun) -> Result<Left<BodyState>> {
     run.answers = answers.entries;
     let begun = run.begun()?;
     let seconds = run.seconds + run.started.elapsed().as_secs_f64();
-    let left = Left::new(begun, run.report.frames_finished, seconds, run.last_cloud_crc32(), state);
+    let left = Left::new(begun, run.report.frames_finished, seconds, run.last_cloud_crc32, state);
     let left = left.with_table("track.csv", mark(&mut run.table)?);
     Ok(match &mut run.particles {
         Some(particles) => left.with_table("particles.csv", mark(particles)?),
@@ -114,9 +114,10 @@ impl BodyTrackRun {
             run.take(index, answer, &points_m);
         }
         if let Some(last) = run.last_cloud() {
-            left.check_last(&cloud_name(last), run.last_cloud_crc32())?;
+            left.check_last(&cloud_name(last), file_crc32(last).ok())?;
         }
         run.filter.restore(&left.state.tracker)?;
+        run.last_cloud_crc32 = left.last_crc32;
         run.seconds = left.seconds;
         run.step_s = left.state.step_s;
         (run.report.skipped, run.report.points) = (left.state.skipped, left.state.points);
@@ -127,9 +128,5 @@ impl BodyTrackRun {
     fn last_cloud(&self) -> Option<&Path> {
         let last = self.report.frames_finished.checked_sub(1)?;
         Some(&self.inputs.clouds.frames.get(last)?.path)
-    }
-
-    fn last_cloud_crc32(&self) -> Option<u32> {
-        file_crc32(self.last_cloud()?).ok()
     }
 }

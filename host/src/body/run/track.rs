@@ -15,7 +15,7 @@ use crate::cloud::{self, CloudError, CloudFrame, MAX_POINTS, blocks_of};
 use crate::error::{Context, Result, WriteContext, bail};
 use crate::output::{OutputDir, OutputLock, PendingFile};
 use crate::reading_again::read_again;
-use crate::resume::{Begun, Checkpoints};
+use crate::resume::{Begun, Checkpoints, file_crc32};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sinew_core::math::Vec3;
@@ -58,6 +58,8 @@ pub(super) struct ReadCloud {
     blocks: Vec<PointBlock>,
     skipped: usize,
     before_cap: usize,
+    /// CRC-32 of its file.
+    crc32: Option<u32>,
 }
 
 /// A run whose inputs were all checked.
@@ -82,6 +84,8 @@ pub struct BodyTrackRun {
     pub(super) step_s: f64,
     /// Time that was spent before a resumption, seconds.
     pub(super) seconds: f64,
+    /// CRC-32 of the last finished frame's file; none where it could not be read.
+    pub(super) last_cloud_crc32: Option<u32>,
     /// The answers so far.
     pub(super) answers: Vec<Answer>,
 }
@@ -142,6 +146,7 @@ impl BodyTrackRun {
             effective_share: RunningMean::default(),
             step_s: 0.0,
             seconds: 0.0,
+            last_cloud_crc32: None,
             answers: Vec::new(),
         })
     }
@@ -178,7 +183,9 @@ impl BodyTrackRun {
                 if stop.load(Ordering::Relaxed) {
                     return Ok(false);
                 }
-                let cloud = self.counted(cloud?, notify)?;
+                let cloud = cloud?;
+                self.last_cloud_crc32 = cloud.as_ref().map_or(None, |cloud| cloud.crc32);
+                let cloud = self.counted(cloud, notify)?;
                 self.track_frame(frame.frame, cloud.as_ref())?;
                 notify(BodyEvent::Finished(self.report.frames_finished));
                 self.save_if_due()?;
@@ -297,9 +304,10 @@ pub(super) fn read_cloud(
             }));
         }
     };
+    let crc32 = file_crc32(&frame.path).ok();
     let before_cap = read.limit(MAX_POINTS, seed, frame.frame);
     let blocks = blocks_of(&mut read.points_m.clone(), smoothing);
-    Ok(Ok(ReadCloud { points_m: read.points_m, blocks, skipped: read.skipped, before_cap }))
+    Ok(Ok(ReadCloud { points_m: read.points_m, blocks, skipped: read.skipped, before_cap, crc32 }))
 }
 
 /// Refuses a folder of which no cloud can be read.
