@@ -168,7 +168,7 @@ fn bad_motions_are_refused_with_file_line_and_rule() {
     refused("m.bvh", &BVH.replace(" OFFSET 0 0 0\n CHANNELS 3", " OFFSET 0 0\n CHANNELS 3"), "m.bvh:4: ");
     refused("m.bvh", &BVH.replace("CHANNELS 1 Zrotation", "CHANNELS 2 Zrotation"), "m.bvh:9: ");
     refused("m.bvh", &BVH.replace("1 2 3 0", "1 2 x 0"), "m.bvh:15: ");
-    refused("m.bvh", &BVH.replace("Frames: 1", "Frames: 2"), "`Frames: 2` was promised, 1 frames are there");
+    refused("m.bvh", &BVH.replace("Frames: 1", "Frames: 2"), "1 of the 2 frames that its header promises");
     refused("m.bvh", BVH, "left shoulder (leftarm");
     refused("m.amc", "1\n", "--skeleton FILE.asf");
     refused("m.txt", "1,2\n", "m.txt:1: a row needs 117 numbers");

@@ -3,7 +3,8 @@
 //!
 //! A type says once, in [`SavedState::visit`], which numbers it consists of and what range each
 //! has. Writing, counting, reading and checking are visitors of that one list, so they cannot
-//! disagree. All is little-endian words of four bytes; a state saved on one processor is read by any other.
+//! disagree. All is little-endian words of four bytes; a state saved on one processor is read by
+//! any other.
 //!
 //! ```
 //! use sinew_core::cyclic::events::CycleCounter;
