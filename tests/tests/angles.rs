@@ -180,7 +180,7 @@ fn bad_motions_are_refused_with_file_line_and_rule() {
     refused("m.csv", "a,b\n1,2\n", "line 1: no column is a known joint's");
     refused("m.csv", "neck_x,neck_y\n1,2,3\n", "line 2: a row needs 2 columns as the header has, found 3");
     refused("m.csv", "neck_x,neck_y\n1,2\n1\n", "line 3: a row needs 2 columns as the header has, found 1");
-    refused("m.csv", "neck_x,neck_y\n1,inf\n", "line 2: `neck_y` has to be a finite number or empty, found `inf`");
+    refused("m.csv", "neck_x,neck_y\n1,inf\n", "line 2: frame 0: `neck_y` has to be a finite number or empty, found `inf`");
     refused("m.csv", "frame,neck_x,neck_y\n4,1,2\n3,1,2\n", "line 3: frame 3 follows frame 4; frame numbers have to");
     refused("m.csv", "neck_x,neck_y\n", "line 2: the table is empty");
     refused("m.csv", "neck_x,neck_y\nNaN,2\n", "has no person with a keypoint");

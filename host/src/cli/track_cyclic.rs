@@ -131,9 +131,7 @@ pub fn run_until(
     let file = match Target::of(&args.out)? {
         // What came on standard input does not come again.
         _ if is_stream(args) => None,
-        Target::File(path) => {
-            Some((ResumeFile::beside(&path, COMMAND), OutputLock::of_table(&path, "sinew track cyclic")?))
-        }
+        Target::File(path) => Some((ResumeFile::beside(&path, COMMAND), OutputLock::of_table(&path, COMMAND)?)),
         Target::Fifo(_) | Target::Standard => None,
     };
     let file = file.as_ref().map(|(file, _)| file);

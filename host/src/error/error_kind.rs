@@ -51,34 +51,33 @@ impl ErrorKind {
         if let Some(io) = error.downcast_ref::<io::Error>() {
             return Some(Self::of_reading(io.kind()));
         }
-        let refusal = match error.downcast_ref::<CyclicError>() {
-            Some(CyclicError::Unreadable { reason, .. }) => Some(reason.kind()),
-            Some(CyclicError::Parameter { .. }) => return Some(Self::Usage),
-            Some(_) => return Some(Self::Data),
-            None => None,
-        };
-        let refusal = refusal.or_else(|| match error.downcast_ref::<KeypointError>() {
-            Some(KeypointError::Unreadable { reason, .. }) => Some(reason.kind()),
-            _ => None,
-        });
-        let refusal = refusal.or_else(|| match error.downcast_ref::<MotionError>() {
-            Some(MotionError::Unreadable { reason, .. }) => Some(reason.kind()),
-            _ => None,
-        });
-        let refusal = refusal.or_else(|| match error.downcast_ref::<CloudError>() {
-            Some(CloudError::Unreadable { reason, .. }) => Some(reason.kind()),
-            _ => None,
-        });
-        let refusal = refusal.or_else(|| error.downcast_ref::<ImageFileError>()?.io);
-        if matches!(error.downcast_ref::<InputError>(), Some(InputError::Missing(_))) {
-            return Some(Self::NoInput);
+        let by_reason = |reason: Option<io::ErrorKind>| Some(reason.map_or(Self::Data, Self::of_reading));
+        if let Some(error) = error.downcast_ref::<CyclicError>() {
+            return match error {
+                CyclicError::Unreadable { reason, .. } => by_reason(Some(reason.kind())),
+                CyclicError::Parameter { .. } => Some(Self::Usage),
+                _ => by_reason(None),
+            };
         }
-        let is_reader = error.is::<KeypointError>()
-            || error.is::<MotionError>()
-            || error.is::<CloudError>()
-            || error.is::<ImageFileError>()
-            || error.is::<InputError>();
-        refusal.map(Self::of_reading).or(is_reader.then_some(Self::Data))
+        if let Some(error) = error.downcast_ref::<KeypointError>() {
+            let KeypointError::Unreadable { reason, .. } = error else { return by_reason(None) };
+            return by_reason(Some(reason.kind()));
+        }
+        if let Some(error) = error.downcast_ref::<MotionError>() {
+            let MotionError::Unreadable { reason, .. } = error else { return by_reason(None) };
+            return by_reason(Some(reason.kind()));
+        }
+        if let Some(error) = error.downcast_ref::<CloudError>() {
+            let CloudError::Unreadable { reason, .. } = error else { return by_reason(None) };
+            return by_reason(Some(reason.kind()));
+        }
+        if let Some(error) = error.downcast_ref::<ImageFileError>() {
+            return by_reason(error.io);
+        }
+        match error.downcast_ref::<InputError>()? {
+            InputError::Missing(_) => Some(Self::NoInput),
+            _ => by_reason(None),
+        }
     }
 
     fn of_reading(error: io::ErrorKind) -> Self {

@@ -32,9 +32,7 @@ pub fn write_atomically<F>(path: &Path, fill: F) -> Result<()>
 where
     F: FnOnce(&mut dyn Write) -> Result<()>,
 {
-    // Once for all callers: `fill` is the only part that differs.
-    let mut fill = Some(fill);
-    write_with(path, true, &mut |writer| fill.take().map_or(Ok(()), |fill| fill(writer)))
+    write(path, true, fill)
 }
 
 /// As [`write_atomically`], without waiting for the disk.
@@ -42,8 +40,16 @@ pub(super) fn write_unsynced<F>(path: &Path, fill: F) -> Result<()>
 where
     F: FnOnce(&mut dyn Write) -> Result<()>,
 {
+    write(path, false, fill)
+}
+
+fn write<F>(path: &Path, is_synced: bool, fill: F) -> Result<()>
+where
+    F: FnOnce(&mut dyn Write) -> Result<()>,
+{
+    // Once for all callers: `fill` is the only part that differs.
     let mut fill = Some(fill);
-    write_with(path, false, &mut |writer| fill.take().map_or(Ok(()), |fill| fill(writer)))
+    write_with(path, is_synced, &mut |writer| fill.take().map_or(Ok(()), |fill| fill(writer)))
 }
 
 fn write_with(path: &Path, is_synced: bool, fill: &mut dyn FnMut(&mut dyn Write) -> Result<()>) -> Result<()> {

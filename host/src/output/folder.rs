@@ -134,6 +134,20 @@ impl OutputDir {
         self.pending(name, |writer| Ok(writer.write_all(&bytes)?))
     }
 
+    /// Begins the table `name` of this folder with its header.
+    ///
+    /// # Errors
+    /// As [`OutputDir::begin`]; a header that cannot be written.
+    pub fn begin_table<H: AsRef<[u8]>>(
+        &self,
+        name: &str,
+        header: impl IntoIterator<Item = H>,
+    ) -> Result<csv::Writer<PendingFile>> {
+        let mut table = csv::Writer::from_writer(self.begin(name)?);
+        table.write_record(header)?;
+        Ok(table)
+    }
+
     /// Begins the file `name` of this folder, which grows until [`PendingFile::finish`].
     ///
     /// # Errors

@@ -19,8 +19,8 @@ pub struct OutputLock {
 }
 
 impl OutputLock {
-    /// Takes `folder` for the run of `command`, and removes what a killed one left of its temporary
-    /// files.
+    /// Takes `folder` for the run of the subcommand `command`, and removes what a killed one left of
+    /// its temporary files.
     ///
     /// # Errors
     /// [`Error::InUse`] if another process has it; a folder that refuses the file.
@@ -55,7 +55,7 @@ impl OutputLock {
             match file.try_lock() {
                 Ok(()) if !is_at(&file, &path) => continue,
                 Ok(()) => {
-                    let owner = format!("`{command}`, process {} on {}\n", std::process::id(), host());
+                    let owner = format!("`sinew {command}`, process {} on {}\n", std::process::id(), host());
                     file.set_len(0).and_then(|()| file.write_all(owner.as_bytes())).writing(cannot)?;
                     return Ok(Self { path, file: Some(file) });
                 }
@@ -106,12 +106,12 @@ mod tests {
     #[test]
     fn a_folder_has_one_owner_who_is_named() {
         let folder = tempfile::tempdir().unwrap();
-        let first = OutputLock::of_folder(folder.path(), "sinew track arm").unwrap();
-        let message = OutputLock::of_folder(folder.path(), "sinew track body").unwrap_err().to_string();
+        let first = OutputLock::of_folder(folder.path(), "track arm").unwrap();
+        let message = OutputLock::of_folder(folder.path(), "track body").unwrap_err().to_string();
         let owner = format!("`sinew track arm`, process {}", std::process::id());
         assert!(message.contains(&owner) && message.contains("another --out"), "{message}");
         drop(first);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
-        OutputLock::of_folder(folder.path(), "sinew track body").unwrap();
+        OutputLock::of_folder(folder.path(), "track body").unwrap();
     }
 }

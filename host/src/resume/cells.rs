@@ -69,7 +69,7 @@ impl<'a> Cells<'a> {
         if resume {
             Self::check(&path.join(BEGUN), begun, out.path())?;
         }
-        let lock = OutputLock::of_folder(out.path(), &format!("sinew {}", begun.command()))?;
+        let lock = OutputLock::of_folder(out.path(), begun.command())?;
         if !resume {
             remove(&path)?;
         }

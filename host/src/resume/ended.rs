@@ -17,12 +17,13 @@ pub enum Ended {
 }
 
 impl Ended {
-    /// How it ended; where results cannot be written, `save` tries to keep the state.
-    pub fn of(tracked: Result<bool>, save: &mut dyn FnMut() -> Result<()>) -> Self {
+    /// How it ended; where results cannot be written, `save` tries to keep the state and says
+    /// whether it did.
+    pub fn of(tracked: Result<bool>, save: &mut dyn FnMut() -> bool) -> Self {
         match tracked {
             Ok(true) => Self::Complete,
             Ok(false) => Self::Stopped,
-            Err(error) if error.is_output() => Self::Unwritable(unwritable(error, save().is_ok())),
+            Err(error) if error.is_output() => Self::Unwritable(unwritable(error, save())),
             Err(error) => Self::Failed(error),
         }
     }

@@ -3,7 +3,7 @@
 
 use super::{Begun, REMEDY};
 use crate::error::{Context, Result, WriteContext, bail, ensure};
-use crate::output::{Mark, OutputDir, PendingFile, write_atomically};
+use crate::output::{Mark, OutputDir, PendingFile, mark, write_atomically};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -13,6 +13,10 @@ use std::path::{Path, PathBuf};
 
 /// Name of the file in a run directory.
 pub const RESUME_FILE: &str = "resume.json";
+/// The table of answers.
+pub const TRACK_TABLE: &str = "track.csv";
+/// The table of particles, of runs that write them.
+pub const PARTICLE_TABLE: &str = "particles.csv";
 
 /// A run as it was left; `S` is what the command needs of it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -32,16 +36,25 @@ pub struct Left<S> {
 }
 
 impl<S> Left<S> {
-    /// A run so far; [`Left::with_table`] adds what there is of its tables.
+    /// A run so far; [`Left::with_tables`] adds what there is of its tables.
     pub fn new(begun: Begun, finished: usize, seconds: f64, last_crc32: Option<u32>, state: S) -> Self {
         Self { begun, finished, seconds, last_crc32, tables: BTreeMap::new(), state }
     }
 
-    /// Remembers how far the table `name` has grown.
-    #[must_use]
-    pub fn with_table(mut self, name: &str, mark: Mark) -> Self {
-        self.tables.insert(name.to_owned(), mark);
-        self
+    /// Writes out the rows of the tables, and remembers how far these have grown.
+    ///
+    /// # Errors
+    /// One cannot be written.
+    pub fn with_tables(
+        mut self,
+        track: &mut csv::Writer<PendingFile>,
+        particles: Option<&mut csv::Writer<PendingFile>>,
+    ) -> Result<Self> {
+        self.tables.insert(TRACK_TABLE.to_owned(), mark(track)?);
+        if let Some(particles) = particles {
+            self.tables.insert(PARTICLE_TABLE.to_owned(), mark(particles)?);
+        }
+        Ok(self)
     }
 
     /// The table `name` of the finished frames, to be written on.

@@ -19,5 +19,5 @@ pub use cells::{CELLS_FOLDER, Cells, Stop, crc32_of};
 pub use checkpoint::{Checkpoints, DEFAULT_CHECKPOINT};
 pub use ended::Ended;
 pub use interrupted::Interrupted;
-pub use left::{Left, RESUME_FILE, ResumeFile, text_crc32};
+pub use left::{Left, PARTICLE_TABLE, RESUME_FILE, ResumeFile, TRACK_TABLE, text_crc32};
 pub use state_text::{List, from_text, long_real, optional, real, reals, to_text};

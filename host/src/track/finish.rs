@@ -5,7 +5,7 @@ use super::resume;
 use super::run::{Event, TrackRun};
 use super::sample::HandSample;
 use super::source::FrameSource;
-use crate::error::{Result, bail};
+use crate::error::Result;
 use crate::output::{finish_all, finished_table};
 use crate::resume::{Ended, Interrupted};
 use std::sync::atomic::AtomicBool;
@@ -44,8 +44,7 @@ impl TrackRun {
         self.report.complete = matches!(tracked, Ok(true));
         let interrupted = Interrupted { finished, all: Some(frames), unit: "frames", out };
         // Overlays of the last frames may not be there, and a resumed run has to find them.
-        let mut save = || if self.pictures.is_some() { bail!("no new checkpoint") } else { self.save() };
-        match Ended::of(tracked, &mut save) {
+        match Ended::of(tracked, &mut || self.pictures.is_none() && self.save().is_ok()) {
             Ended::Unwritable(error) => Err(error),
             ended => ended.conclude(self.write_results(), interrupted),
         }

@@ -5,7 +5,6 @@ use super::options::TrackOptions;
 use super::run::TrackRun;
 use super::sample::HandSample;
 use crate::error::Result;
-use crate::output::mark;
 use crate::resume::{Begun, Left, List, ResumeFile, from_text, optional, real, reals, text_crc32, to_text};
 use crate::skin::model_file;
 use serde::{Deserialize, Serialize};
@@ -39,12 +38,8 @@ pub(super) fn left(run: &mut TrackRun) -> Result<Left<ArmState>> {
     run.samples = samples.entries;
     let begun = run.begun()?;
     let seconds = run.seconds + run.started.elapsed().as_secs_f64();
-    let left = Left::new(begun, run.report.frames_finished, seconds, run.last_image_crc32, state);
-    let left = left.with_table("track.csv", mark(&mut run.track)?);
-    Ok(match &mut run.particles {
-        Some(particles) => left.with_table("particles.csv", mark(particles)?),
-        None => left,
-    })
+    Left::new(begun, run.report.frames_finished, seconds, run.last_image_crc32, state)
+        .with_tables(&mut run.track, run.particles.as_mut())
 }
 
 /// Where a run in `out` keeps what it leaves.

@@ -13,7 +13,7 @@ use super::table::{HEADER, TrackRow};
 use crate::error::{Context, Result, WriteContext, bail};
 use crate::frames::{FrameReader, FrameView};
 use crate::output::{OutputDir, OutputLock, PendingFile};
-use crate::resume::{Begun, Checkpoints};
+use crate::resume::{Begun, Checkpoints, PARTICLE_TABLE, TRACK_TABLE};
 use crate::skin::SkinModel;
 use image::RgbImage;
 use sinew_core::camera::Camera;
@@ -69,11 +69,7 @@ impl TrackRun {
     /// # Errors
     /// Names the option or file, the rule it broke, and the remedy.
     pub fn prepare(options: TrackOptions, out: &Path) -> Result<Self> {
-        Self::set_up(options, out, &|name, out, header| {
-            let mut writer = csv::Writer::from_writer(out.begin(name)?);
-            writer.write_record(header)?;
-            Ok(writer)
-        })
+        Self::set_up(options, out, &|name, out, header| out.begin_table(name, header))
     }
 
     /// The same with tables that `table` opens.
@@ -96,7 +92,7 @@ impl TrackRun {
         let reader = FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
-        let lock = OutputLock::of_folder(out.path(), "sinew track arm")?;
+        let lock = OutputLock::of_folder(out.path(), resume::COMMAND)?;
         let pictures = match options.overlay {
             true => {
                 let folder = out.subfolder("overlay")?;
@@ -105,9 +101,8 @@ impl TrackRun {
             }
             false => None,
         };
-        let track = table("track.csv", &out, &HEADER)?;
-        let particles =
-            if options.particles_csv { Some(table("particles.csv", &out, &PARTICLE_HEADER)?) } else { None };
+        let track = table(TRACK_TABLE, &out, &HEADER)?;
+        let particles = if options.particles_csv { Some(table(PARTICLE_TABLE, &out, &PARTICLE_HEADER)?) } else { None };
         let names = (0..frames.files().len()).map(|frame| frames.name(frame)).collect();
         let report = RunReport { frames: frames.count(), ..RunReport::new(options, names, frames.size_px()) };
         Ok(Self {

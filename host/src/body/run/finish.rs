@@ -36,7 +36,7 @@ impl BodyTrackRun {
         self.report.frames_per_second = finished as f64 / seconds.max(1.0e-9);
         self.report.complete = matches!(tracked, Ok(true));
         let interrupted = Interrupted { finished, all: Some(frames), unit: "frames", out };
-        match Ended::of(tracked, &mut || self.save()) {
+        match Ended::of(tracked, &mut || self.save().is_ok()) {
             Ended::Unwritable(error) => Err(error),
             ended => ended.conclude(self.write_results(), interrupted),
         }

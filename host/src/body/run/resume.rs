@@ -9,13 +9,12 @@ use super::options::BodyTrackOptions;
 use super::report::{PointCounts, SkippedCloud};
 use super::track::{BodyTrackRun, read_cloud};
 use crate::error::Result;
-use crate::output::mark;
 use crate::resume::{Begun, Left, List, ResumeFile, file_crc32, from_text, identity, to_text};
 use serde::{Deserialize, Serialize};
 use sinew_core::saved_state::StateKind;
 use std::path::Path;
 
-const COMMAND: &str = "track body";
+pub(super) const COMMAND: &str = "track body";
 
 /// What the tables of a run do not hold.
 #[derive(Debug, Serialize, Deserialize)]
@@ -43,12 +42,8 @@ pub(super) fn left(run: &mut BodyTrackRun) -> Result<Left<BodyState>> {
     run.answers = answers.entries;
     let begun = run.begun()?;
     let seconds = run.seconds + run.started.elapsed().as_secs_f64();
-    let left = Left::new(begun, run.report.frames_finished, seconds, run.last_cloud_crc32, state);
-    let left = left.with_table("track.csv", mark(&mut run.table)?);
-    Ok(match &mut run.particles {
-        Some(particles) => left.with_table("particles.csv", mark(particles)?),
-        None => left,
-    })
+    Left::new(begun, run.report.frames_finished, seconds, run.last_cloud_crc32, state)
+        .with_tables(&mut run.table, run.particles.as_mut())
 }
 
 /// Where a run in `out` keeps what it leaves.

@@ -15,7 +15,7 @@ use crate::cloud::{self, CloudError, CloudFrame, MAX_POINTS, blocks_of};
 use crate::error::{Context, Result, WriteContext, bail};
 use crate::output::{OutputDir, OutputLock, PendingFile};
 use crate::reading_again::read_again;
-use crate::resume::{Begun, Checkpoints, file_crc32};
+use crate::resume::{Begun, Checkpoints, PARTICLE_TABLE, TRACK_TABLE, file_crc32};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sinew_core::math::Vec3;
@@ -96,11 +96,7 @@ impl BodyTrackRun {
     /// # Errors
     /// Names the option or file, the rule it broke, and the remedy.
     pub fn prepare(options: BodyTrackOptions, out: &Path) -> Result<Self> {
-        Self::set_up(options, out, &|name, out, header| {
-            let mut writer = csv::Writer::from_writer(out.begin(name)?);
-            writer.write_record(header)?;
-            Ok(writer)
-        })
+        Self::set_up(options, out, &|name, out, header| out.begin_table(name, header))
     }
 
     /// The same with tables that `table` opens.
@@ -124,13 +120,13 @@ impl BodyTrackRun {
             .context("the threads cannot be started; give --threads a smaller number")?;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
-        let lock = OutputLock::of_folder(out.path(), "sinew track body")?;
+        let lock = OutputLock::of_folder(out.path(), resume::COMMAND)?;
         Ok(Self {
             filter,
             threads,
-            table: table("track.csv", &out, table::header(part))?,
+            table: table(TRACK_TABLE, &out, table::header(part))?,
             particles: if options.particles_csv {
-                Some(table("particles.csv", &out, particles::header(part))?)
+                Some(table(PARTICLE_TABLE, &out, particles::header(part))?)
             } else {
                 None
             },
