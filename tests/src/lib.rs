@@ -11,8 +11,8 @@ use std::process::Command;
 use std::sync::OnceLock;
 use std::time::SystemTime;
 
-/// Exit statuses of a command that refuses what it is given.
-pub const REFUSED: &[i32] = &[64, 65, 66, 73, 74];
+/// Exit statuses of a command that refuses an option or an input.
+pub const REFUSED: &[i32] = &[64, 65, 66];
 
 /// The command `sinew` of this workspace, freshly built in the profile of the running test.
 ///

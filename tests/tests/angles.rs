@@ -105,11 +105,7 @@ fn rates_change_the_number_of_frames() {
     let root = tempfile::tempdir().unwrap();
     write_openpose(&root.path().join("k"), 61, 1.0, false);
     let mut command = sinew(root.path());
-    command
-        .args(["k", "--rate", "60", "--out", "t.csv"])
-        .assert()
-        .code(sinew_tests::REFUSED)
-        .stderr(contains("--input-rate"));
+    command.args(["k", "--rate", "60", "--out", "t.csv"]).assert().code(65).stderr(contains("--input-rate"));
     let mut command = sinew(root.path());
     command.args(["k", "--rate", "60", "--input-rate", "30", "--out", "t.csv"]).assert().success();
     assert_eq!(table(&root.path().join("t.csv")).rows().len(), 121);
@@ -117,7 +113,7 @@ fn rates_change_the_number_of_frames() {
     command
         .args(["k", "--rate", "0", "--out", "t.csv"])
         .assert()
-        .code(sinew_tests::REFUSED)
+        .code(65)
         .stderr(contains("`--rate 0`: a rate has to be"));
 }
 
@@ -154,11 +150,7 @@ fn bad_motions_are_refused_with_file_line_and_rule() {
     let refused = |name: &str, text: &str, message: &str| {
         fs::write(root.path().join(name), text).unwrap();
         let mut command = sinew(root.path());
-        command
-            .args([name, "--out", "t.csv"])
-            .assert()
-            .code(sinew_tests::REFUSED)
-            .stderr(contains(name).and(contains(message)));
+        command.args([name, "--out", "t.csv"]).assert().code(65).stderr(contains(name).and(contains(message)));
         assert!(!root.path().join("t.csv").exists());
     };
     refused("m.bvh", &BVH.replace(" }\n}\n", " }\n"), "m.bvh:11: `MOTION` before the hierarchy is closed by `}`");
@@ -180,7 +172,11 @@ fn bad_motions_are_refused_with_file_line_and_rule() {
     refused("m.csv", "a,b\n1,2\n", "line 1: no column is a known joint's");
     refused("m.csv", "neck_x,neck_y\n1,2,3\n", "line 2: a row needs 2 columns as the header has, found 3");
     refused("m.csv", "neck_x,neck_y\n1,2\n1\n", "line 3: a row needs 2 columns as the header has, found 1");
-    refused("m.csv", "neck_x,neck_y\n1,inf\n", "line 2: frame 0: `neck_y` has to be a finite number or empty, found `inf`");
+    refused(
+        "m.csv",
+        "neck_x,neck_y\n1,inf\n",
+        "line 2: frame 0: `neck_y` has to be a finite number or empty, found `inf`",
+    );
     refused("m.csv", "frame,neck_x,neck_y\n4,1,2\n3,1,2\n", "line 3: frame 3 follows frame 4; frame numbers have to");
     refused("m.csv", "neck_x,neck_y\n", "line 2: the table is empty");
     refused("m.csv", "neck_x,neck_y\nNaN,2\n", "has no person with a keypoint");
@@ -189,13 +185,9 @@ fn bad_motions_are_refused_with_file_line_and_rule() {
     refused("m.trc", &trc.replace("\t6\n", "\n"), "m.trc:7: a frame needs 8 columns, found 7");
     fs::create_dir(root.path().join("empty")).unwrap();
     let mut command = sinew(root.path());
-    command.args(["empty", "--out", "t.csv"]).assert().code(sinew_tests::REFUSED).stderr(contains("has no .json file"));
+    command.args(["empty", "--out", "t.csv"]).assert().code(65).stderr(contains("has no .json file"));
     let mut command = sinew(root.path());
-    command
-        .args(["gone.bvh", "--out", "t.csv"])
-        .assert()
-        .code(sinew_tests::REFUSED)
-        .stderr(contains("gone.bvh` cannot be read"));
+    command.args(["gone.bvh", "--out", "t.csv"]).assert().code(66).stderr(contains("gone.bvh` cannot be read"));
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn hands_are_scored_and_floors_are_required() {
         .stdout(contains("(Evaluation of both hands on real frames): 0 plots").and(contains("notice").not()));
     fs::write(&boxes, "frame,x,y,w,h\n5,0,0,1,1\n").unwrap();
     hands(&folder, &boxes).assert().success();
-    hands(&folder, &boxes).arg("--require").assert().code(sinew_tests::REFUSED).stderr(contains("misses the floors"));
+    hands(&folder, &boxes).arg("--require").assert().code(64).stderr(contains("misses the floors"));
 }
 
 #[test]
@@ -65,13 +65,9 @@ fn bad_boxes_and_windows_are_refused() {
         refused(part);
     }
     fs::write(&boxes, "frame,x,y,w,h\n0,1,2,3,4\n").unwrap();
-    hands(&folder, &boxes)
-        .args(["--window", "900,10"])
-        .assert()
-        .code(sinew_tests::REFUSED)
-        .stderr(contains("larger than the frames"));
+    hands(&folder, &boxes).args(["--window", "900,10"]).assert().code(64).stderr(contains("larger than the frames"));
     hands(&folder, &boxes).args(["--window", "wide"]).assert().code(64).stderr(contains("440,360"));
-    hands(&folder.join("none"), &boxes).assert().code(sinew_tests::REFUSED).stderr(contains("none"));
+    hands(&folder.join("none"), &boxes).assert().code(66).stderr(contains("none"));
 }
 
 #[test]

@@ -65,8 +65,8 @@ fn unreadable_images_are_skipped_named_and_counted() {
     let run = |path: &Path, more: &[&str]| sinew().arg("segment").arg(path).arg("--out").arg(&out).args(more).assert();
     run(&input, &[]).success().stderr(contains("b.png").and(contains("1 of 2 images were skipped")));
     assert_eq!(skin_pixels(&out.join("a.png")), 400);
-    run(&input, &["--strict"]).code(sinew_tests::REFUSED).stderr(contains("b.png"));
-    run(&input.join("b.png"), &[]).code(sinew_tests::REFUSED).stderr(contains("b.png"));
+    run(&input, &["--strict"]).code(64).stderr(contains("b.png"));
+    run(&input.join("b.png"), &[]).code(65).stderr(contains("b.png"));
 }
 
 #[test]
@@ -74,35 +74,19 @@ fn bad_input_is_refused_with_the_reason() {
     let root = tempfile::tempdir().unwrap();
     let (input, out) = (root.path().join("in"), root.path().join("out"));
     let run = |path: &Path, more: &[&str]| sinew().arg("segment").arg(path).arg("--out").arg(&out).args(more).assert();
-    run(&input, &[]).code(sinew_tests::REFUSED).stderr(contains("no such folder"));
+    run(&input, &[]).code(66).stderr(contains("no such folder"));
     fs::create_dir(&input).unwrap();
-    run(&input, &[]).code(sinew_tests::REFUSED).stderr(contains("is empty"));
+    run(&input, &[]).code(65).stderr(contains("is empty"));
     fs::write(input.join("notes.txt"), b"x").unwrap();
-    run(&input, &[]).code(sinew_tests::REFUSED).stderr(contains("*.txt").and(contains(".png")));
+    run(&input, &[]).code(65).stderr(contains("*.txt").and(contains(".png")));
     picture(50, 40).save(input.join("a.png")).unwrap();
-    run(&input, &["--skin", "nowhere.json"]).code(sinew_tests::REFUSED).stderr(contains("sinew train skin"));
+    run(&input, &["--skin", "nowhere.json"]).code(65).stderr(contains("sinew train skin"));
     let notes = input.join("notes.txt");
-    run(&input, &["--skin", notes.to_str().unwrap()])
-        .code(sinew_tests::REFUSED)
-        .stderr(contains("cannot be used as a skin model"));
+    run(&input, &["--skin", notes.to_str().unwrap()]).code(65).stderr(contains("cannot be used as a skin model"));
     run(&input, &["--calibrate", "1,2,3"]).code(64).stderr(contains("X,Y,W,H"));
-    run(&input, &["--calibrate", "45,0,10,10"]).code(sinew_tests::REFUSED).stderr(contains("50x40"));
-    sinew()
-        .arg("segment")
-        .arg(&input)
-        .arg("--out")
-        .arg(&notes)
-        .assert()
-        .code(sinew_tests::REFUSED)
-        .stderr(contains("is a file"));
-    sinew()
-        .arg("segment")
-        .arg(&input)
-        .arg("--out")
-        .arg(&input)
-        .assert()
-        .code(sinew_tests::REFUSED)
-        .stderr(contains("overwrite"));
+    run(&input, &["--calibrate", "45,0,10,10"]).code(65).stderr(contains("50x40"));
+    sinew().arg("segment").arg(&input).arg("--out").arg(&notes).assert().code(73).stderr(contains("is a file"));
+    sinew().arg("segment").arg(&input).arg("--out").arg(&input).assert().code(64).stderr(contains("overwrite"));
 }
 
 #[test]

@@ -55,5 +55,5 @@ fn bad_options_are_refused_with_a_remedy() {
     }
     simulate(&out, &["--frames", "1"]).assert().success();
     let message = contains("already holds files").and(contains("--force"));
-    simulate(&out, &["--frames", "1"]).assert().code(sinew_tests::REFUSED).stderr(message);
+    simulate(&out, &["--frames", "1"]).assert().code(64).stderr(message);
 }

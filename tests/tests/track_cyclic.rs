@@ -181,8 +181,7 @@ fn broken_tables_are_refused_with_file_line_and_rule() {
     let refused = |text: &str, messages: &[&str]| {
         fs::write(root.path().join("bad.csv"), text).unwrap();
         let mut command = sinew(root.path());
-        let mut run =
-            command.args(["bad.csv", "--model", "walking", "--out", "est.csv"]).assert().code(sinew_tests::REFUSED);
+        let mut run = command.args(["bad.csv", "--model", "walking", "--out", "est.csv"]).assert().code(65);
         for message in messages {
             run = run.stderr(contains(*message));
         }
@@ -240,15 +239,11 @@ fn an_output_that_cannot_be_written_is_refused_first() {
     fs::create_dir(root.path().join("folder")).unwrap();
     for (out, message) in [("folder", "is a folder"), ("file/est.csv", "is a file")] {
         let mut command = sinew(root.path());
-        command
-            .args(["gone.csv", "--model", "walking", "--out", out])
-            .assert()
-            .code(sinew_tests::REFUSED)
-            .stderr(contains(message));
+        command.args(["gone.csv", "--model", "walking", "--out", out]).assert().code(73).stderr(contains(message));
     }
     let mut command = sinew(root.path());
     command.args(["gone.csv", "--model", "walking", "--out", "est.csv", "--report", "file"]);
-    command.assert().code(sinew_tests::REFUSED).stderr(contains("`file` is a file"));
+    command.assert().code(73).stderr(contains("`file` is a file"));
     assert_eq!(files(root.path()), ["file", "folder"]);
 }
 

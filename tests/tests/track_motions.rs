@@ -220,7 +220,7 @@ fn one_model_has_no_motion_and_unlike_models_are_refused() {
     let mut other: serde_json::Value = serde_json::from_str(&other).unwrap();
     other["rate_hz"] = 50.0.into();
     fs::write(root.path().join("slow.json"), other.to_string()).unwrap();
-    track(&["walking", "slow.json"]).code(sinew_tests::REFUSED).stderr(contains("models of one rate"));
-    track(&["walking", "wlaking"]).code(sinew_tests::REFUSED).stderr(contains("--model wlaking"));
+    track(&["walking", "slow.json"]).code(65).stderr(contains("models of one rate"));
+    track(&["walking", "wlaking"]).code(65).stderr(contains("--model wlaking"));
     track(&[]).code(64).stderr(contains("--model"));
 }

@@ -106,7 +106,7 @@ fn bad_input_is_refused_with_file_line_and_rule() {
             .args(["--cuts", "cuts.csv", "--out", "m.json"])
             .args(option)
             .assert()
-            .code(sinew_tests::REFUSED)
+            .code(64)
             .stderr(contains(message));
     };
     option(["--rate", "0"], "`rate` has to be greater than zero, not 0");

@@ -32,7 +32,10 @@ impl Target {
         }
         let kind = match fs::metadata(path) {
             Ok(facts) => facts.file_type(),
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Self::File(followed(path)?)),
+            // Whoever makes the folder above says what is wrong with it.
+            Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                return Ok(Self::File(followed(path)?));
+            }
             Err(error) => return Err(error).writing(|| format!("output `{}` cannot be used", path.display())),
         };
         if kind.is_file() {
