@@ -44,6 +44,17 @@ impl FileError {
 /// The name that stands for standard input.
 pub const STANDARD_INPUT: &str = "-";
 
+/// A file, or standard input for [`STANDARD_INPUT`], to be read bit by bit.
+///
+/// # Errors
+/// The operating system refuses the file.
+pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
+    if path.as_os_str() == STANDARD_INPUT {
+        return Ok(Box::new(io::stdin()));
+    }
+    Ok(Box::new(File::open(path)?))
+}
+
 /// Reads a file, or standard input for [`STANDARD_INPUT`], of at most `max_bytes`.
 ///
 /// # Errors

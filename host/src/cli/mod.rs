@@ -154,6 +154,9 @@ pub fn exit_code(ended: anyhow::Result<()>, console: &Console) -> ExitCode {
 
 /// What went wrong. The command's own checks are of its options.
 fn kind_of(error: &anyhow::Error) -> ErrorKind {
+    if interrupted(error).is_some() {
+        return ErrorKind::Interrupted;
+    }
     error.chain().find_map(ErrorKind::of).unwrap_or(ErrorKind::Usage)
 }
 

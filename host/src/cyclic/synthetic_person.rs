@@ -4,6 +4,7 @@
 use super::angle_table::{ANGLES, AngleTable};
 use super::model::CyclicModel;
 use crate::error::{Context, Result};
+use sinew_core::cyclic::MotionModel;
 use sinew_core::random::Stream;
 use std::f64::consts::TAU;
 
@@ -14,7 +15,7 @@ const DURATION_SPREAD: f64 = 0.1;
 /// drawn from the model's spread.
 #[derive(Debug, Clone)]
 pub struct SyntheticPerson<'m> {
-    model: &'m CyclicModel,
+    model: MotionModel<'m>,
     cycle_frames: f64,
     /// Constant, cosine and sine part of each angle's own deviation, radians.
     parts_rad: [[f64; 3]; ANGLES],
@@ -29,7 +30,8 @@ impl<'m> SyntheticPerson<'m> {
         let spread = model.numbers().deviation.as_ref().context(
             "the model does not say how people differ, so no cycles can be drawn from it; train it anew, or give recorded cycles",
         )?;
-        let mean_frames = f64::from(model.numbers().mean_duration_frames) * rate_hz / f64::from(model.view().rate_hz());
+        let view = model.view();
+        let mean_frames = f64::from(model.numbers().mean_duration_frames) * rate_hz / f64::from(view.rate_hz());
         // The stored spread is that of unseen people, wider than the one among those that were
         // seen.
         let narrow = f64::from(spread.inflation.max(1.0)).sqrt();
@@ -39,7 +41,7 @@ impl<'m> SyntheticPerson<'m> {
             let mut draw = |std: f32| f64::from(std) / narrow * f64::from(stream.normal());
             [draw(spread.offset_std_rad[i]), draw(spread.swing_std_rad[i]), draw(spread.swing_std_rad[i])]
         });
-        Ok(Self { model, cycle_frames: (mean_frames * pace).round().max(2.0), parts_rad })
+        Ok(Self { model: view, cycle_frames: (mean_frames * pace).round().max(2.0), parts_rad })
     }
 
     /// Duration of a cycle, whole frames.
@@ -51,8 +53,8 @@ impl<'m> SyntheticPerson<'m> {
     /// Angles at a frame, radians; frame 0 begins a cycle.
     #[must_use]
     pub fn pose_rad(&self, frame: f64) -> [f64; ANGLES] {
-        let (view, position) = (self.model.view(), frame / self.cycle_frames);
-        let mean = view.mean_pose_rad::<ANGLES>(view.point(position.fract() as f32));
+        let position = frame / self.cycle_frames;
+        let mean = self.model.mean_pose_rad::<ANGLES>(self.model.point(position.fract() as f32));
         let (sine, cosine) = (TAU * position).sin_cos();
         std::array::from_fn(|i| {
             let [constant, p, q] = self.parts_rad[i];

@@ -179,6 +179,20 @@ impl Error {
         }
     }
 
+    /// Whether whoever read the output has gone away, as after `| head`.
+    #[must_use]
+    pub fn is_closed_pipe(&self) -> bool {
+        let kind = match self.innermost() {
+            Self::Io(error) => error.kind(),
+            Self::Csv(error) => match error.kind() {
+                csv::ErrorKind::Io(error) => error.kind(),
+                _ => return false,
+            },
+            _ => return false,
+        };
+        kind == io::ErrorKind::BrokenPipe
+    }
+
     /// The error below every context.
     #[must_use]
     pub fn innermost(&self) -> &Self {

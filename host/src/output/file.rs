@@ -57,7 +57,11 @@ fn write_with(path: &Path, is_synced: bool, fill: &mut dyn FnMut(&mut dyn Write)
         match Target::of(path)? {
             Target::File(file) => replace(&file, is_synced, fill),
             Target::Fifo(fifo) => through(File::options().write(true).open(fifo)?, fill),
-            Target::Standard => through(std::io::stdout().lock(), fill),
+            // A reader that has gone away wants no more.
+            Target::Standard => match through(std::io::stdout().lock(), fill) {
+                Err(error) if error.is_closed_pipe() => Ok(()),
+                other => other,
+            },
         }
     };
     inner().writing(|| format!("`{}` cannot be written", path.display()))
@@ -65,7 +69,7 @@ fn write_with(path: &Path, is_synced: bool, fill: &mut dyn FnMut(&mut dyn Write)
 
 fn replace(path: &Path, is_synced: bool, fill: &mut dyn FnMut(&mut dyn Write) -> Result<()>) -> Result<()> {
     let folder = parent_of(path);
-    let mut temporary = temporary_in(folder)?;
+    let mut temporary = temporary_in(folder, &temporary_prefix(path))?;
     let mut writer = BufWriter::new(temporary.as_file_mut());
     fill(&mut writer)?;
     writer.flush()?;
@@ -100,10 +104,15 @@ pub(super) fn parent_of(path: &Path) -> &Path {
     }
 }
 
+/// How the names of the temporary files of `path` begin.
+pub(super) fn temporary_prefix(path: &Path) -> String {
+    format!("{TEMPORARY_PREFIX}{}-", path.file_name().unwrap_or_default().to_string_lossy())
+}
+
 /// A new temporary file in `folder` with the permissions that an ordinary new file gets.
-pub(super) fn temporary_in(folder: &Path) -> std::io::Result<NamedTempFile> {
+pub(super) fn temporary_in(folder: &Path, prefix: &str) -> std::io::Result<NamedTempFile> {
     let mut builder = Builder::new();
-    builder.prefix(TEMPORARY_PREFIX);
+    builder.prefix(prefix);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

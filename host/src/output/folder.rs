@@ -32,9 +32,9 @@ impl OutputDir {
         fs::create_dir_all(path).writing(|| {
             format!("output folder `{}` cannot be created; choose one that can be written", path.display())
         })?;
-        temporary_in(path)
+        temporary_in(path, TEMPORARY_PREFIX)
             .writing(|| format!("output folder `{}` cannot be written; choose another", path.display()))?;
-        sweep(path, LITTER_AGE);
+        sweep(path, TEMPORARY_PREFIX, LITTER_AGE);
         Ok(Self { path: path.to_path_buf() })
     }
 
@@ -200,14 +200,14 @@ impl Series {
     }
 }
 
-/// Removes temporary files of single writes that have this age. Those that cannot be looked at or
-/// removed stay.
-pub(super) fn sweep(folder: &Path, min_age: Duration) {
+/// Removes temporary files of single writes that have this age, and names that begin with `prefix`.
+/// Those that cannot be looked at or removed stay.
+pub(super) fn sweep(folder: &Path, prefix: &str, min_age: Duration) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.filter_map(Result::ok) {
         let name = entry.file_name();
         let name = name.to_string_lossy();
-        let is_temporary = name.starts_with(TEMPORARY_PREFIX) && !name.starts_with(LOCK_PREFIX);
+        let is_temporary = name.starts_with(prefix) && !name.starts_with(LOCK_PREFIX);
         let age = || entry.metadata().ok()?.modified().ok()?.elapsed().ok();
         if is_temporary && age().is_some_and(|age| age >= min_age) {
             let _ = fs::remove_file(entry.path());

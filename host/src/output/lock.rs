@@ -1,7 +1,8 @@
 //! One run at a time in a folder of results, or at a table.
 
-use super::LOCK_PREFIX;
+use super::file::{parent_of, temporary_prefix};
 use super::folder::sweep;
+use super::{LOCK_PREFIX, TEMPORARY_PREFIX};
 use crate::error::{Error, Result, WriteContext};
 use std::fs::{self, File, TryLockError};
 use std::io::{Read, Write};
@@ -34,7 +35,14 @@ impl OutputLock {
     /// below; without locks they may be another run's.
     pub fn sweep(&self, folder: &Path) {
         if self.file.is_some() {
-            sweep(folder, Duration::ZERO);
+            sweep(folder, TEMPORARY_PREFIX, Duration::ZERO);
+        }
+    }
+
+    /// As [`OutputLock::sweep`], of the files that were to become `file`.
+    pub fn sweep_of(&self, file: &Path) {
+        if self.file.is_some() {
+            sweep(parent_of(file), &temporary_prefix(file), Duration::ZERO);
         }
     }
 

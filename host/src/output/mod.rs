@@ -6,12 +6,14 @@
 
 mod file;
 mod folder;
+mod growing;
 mod lock;
 mod pending;
 mod target;
 
 pub use file::{check_writable_file, write_atomically};
 pub use folder::{OutputDir, Series};
+pub use growing::GrowingOutput;
 pub use lock::OutputLock;
 pub use pending::{Mark, PendingFile, finish_all, finished_table, mark};
 pub use target::Target;

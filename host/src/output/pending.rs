@@ -5,7 +5,7 @@ use crate::error::{Result, WriteContext, ensure};
 use crate::wording::REMEDY;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
-use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -82,9 +82,22 @@ impl PendingFile {
         Ok(pending)
     }
 
+    /// Removes what a run that did not reach its end left of the file `path`.
+    ///
+    /// # Errors
+    /// It cannot be removed.
+    pub fn remove_left(path: &Path) -> Result<()> {
+        match fs::remove_file(partial(path)) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                Err(error).writing(|| format!("`{}` cannot be removed", partial(path).display()))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// How far the file has grown, what was written being synced; the partial file stays from now
     /// on.
-    fn mark(&self) -> Result<Mark> {
+    pub(super) fn mark(&self) -> Result<Mark> {
         let synced = self.writer.get_ref().sync_data();
         synced.writing(|| format!("`{}` cannot be written", self.path.display()))?;
         self.is_kept.store(true, Ordering::Relaxed);

@@ -23,7 +23,7 @@ pub fn cyclic_stream(table: &AngleTable, model: &CyclicModel, options: &Tracking
     let measurements = Measurements::<ANGLES>::new(table, &view, options)?;
     let position = options.initial_cycle_position.map(|position| position as f32);
     let velocity_per_frame =
-        options.initial_cycle_velocity.map(|velocity| (velocity / measurements.step_frames()) as f32);
+        options.initial_cycle_velocity.map(|velocity| (velocity / measurements.steps().step_frames()) as f32);
     let mut stream = StreamWriter::default();
     let first = FirstPhase { position, velocity_per_frame };
     stream.push(&CyclicSetup { model_checksum: model_checksum(&view), first })?;

@@ -3,7 +3,7 @@
 
 use super::{Begun, REMEDY};
 use crate::error::{Context, Result, WriteContext, bail, ensure};
-use crate::output::{Mark, OutputDir, PendingFile, mark, write_atomically};
+use crate::output::{Mark, PendingFile, mark, write_atomically};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -57,13 +57,25 @@ impl<S> Left<S> {
         Ok(self)
     }
 
-    /// The table `name` of the finished frames, to be written on.
+    /// Remembers how far the table `name` has grown.
+    #[must_use]
+    pub fn with_table(mut self, name: &str, mark: Mark) -> Self {
+        self.tables.insert(name.to_owned(), mark);
+        self
+    }
+
+    /// Whether it has tables to go on with.
+    pub fn has_tables(&self) -> bool {
+        !self.tables.is_empty()
+    }
+
+    /// The table `name` of the finished frames, to be written on; its file is `path`.
     ///
     /// # Errors
     /// It is no longer as it was left.
-    pub fn reopened(&self, name: &str, out: &OutputDir) -> Result<csv::Writer<PendingFile>> {
+    pub fn reopened(&self, name: &str, path: &Path) -> Result<PendingFile> {
         let mark = self.tables.get(name).with_context(|| format!("the run left no `{name}`; {REMEDY}"))?;
-        Ok(csv::Writer::from_writer(PendingFile::reopen(&out.join(name), mark)?))
+        PendingFile::reopen(path, mark)
     }
 
     /// Refuses another input for the last finished frame, `name`, than there was; `crc32` is that

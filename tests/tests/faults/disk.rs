@@ -1,6 +1,6 @@
 //! A disk that is full, inputs that vanish.
 
-use crate::kinds::{Kind, is_unfinished};
+use crate::kinds::Kind;
 use std::fs;
 use std::process::Stdio;
 use std::time::Duration;
@@ -11,16 +11,16 @@ const SMALL_FILES: &str = "trap '' XFSZ; ulimit -f 1000";
 
 #[test]
 fn a_full_disk_keeps_what_was_finished_and_an_older_run() {
-    for kind in [Kind::arm(), Kind::body()] {
+    for kind in [Kind::arm(), Kind::body(), Kind::rows()] {
         assert_eq!(Kind::ends(kind.command("whole", &[])).0, Some(0));
         let whole = kind.files("whole");
         let (code, message) = Kind::ends(kind.command("run", &["--seed", "9"]));
         assert_eq!(code, Some(0), "{message}");
         let older = kind.files("run");
-        let (code, message) = Kind::ends(kind.shell(SMALL_FILES, "run", &["--checkpoint", "0"]));
+        let (code, message) = Kind::ends(kind.shell(SMALL_FILES, "run", kind.often()));
         assert_eq!(code, Some(74), "{message}");
         assert!(message.contains("--resume") && message.contains("cannot be written"), "{message}");
-        assert!(is_unfinished(&kind.path("run")));
+        assert!(kind.is_unfinished("run"));
         let after = kind.files("run");
         for (name, bytes) in older.iter().filter(|(name, _)| !name.starts_with("overlay/")) {
             assert!(after[name] == *bytes, "{name} of the older run has changed");
@@ -35,7 +35,7 @@ fn a_folder_that_vanishes_ends_a_run_that_can_be_resumed() {
         assert_eq!(Kind::ends(kind.command("whole", &[])).0, Some(0));
         let whole = kind.files("whole");
         let mut child = kind.command("run", &["--checkpoint", "0"]).stderr(Stdio::piped()).spawn().unwrap();
-        while !is_unfinished(&kind.path("run")) {
+        while !kind.is_unfinished("run") {
             std::thread::sleep(Duration::from_millis(1));
         }
         fs::rename(kind.path(folder), kind.path("away")).unwrap();

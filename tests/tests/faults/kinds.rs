@@ -2,8 +2,7 @@
 
 use sinew_tests::{files_below, sinew_command};
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 use tempfile::TempDir;
 
@@ -16,7 +15,15 @@ pub struct Kind {
     root: TempDir,
     words: &'static str,
     times: &'static [&'static str],
+    /// What `--out` names in the folder of the results; nothing where it is that folder.
+    table: &'static str,
+    /// How the state is saved often.
+    often: &'static [&'static str],
+    /// What is in the folder of results until the run has reached its end.
+    unfinished: &'static str,
 }
+
+const OFTEN: &[&str] = &["--checkpoint", "0.02"];
 
 impl Kind {
     /// An arm in rendered frames, with every output.
@@ -24,8 +31,8 @@ impl Kind {
         Self::new(
             "simulate arm --motion builtin --frames 40 --out scene",
             "track arm scene/frames --config scene/camera.toml --side both --particles-csv --overlay --particles 200",
-            &TIMES,
         )
+        .with_times(&TIMES)
     }
 
     /// A body in clouds, with every output.
@@ -33,15 +40,42 @@ impl Kind {
         Self::new(
             "simulate stereo --motion stick-wave --points 300 --out scene",
             "track body scene --particles 20 --particles-csv --pictures",
-            &BODY_TIMES,
         )
+        .with_times(&BODY_TIMES)
     }
 
-    fn new(simulate: &str, words: &'static str, times: &'static [&'static str]) -> Self {
+    /// Rows that are written as they are read.
+    pub fn rows() -> Self {
+        let track = "track cyclic walk.csv --model walking";
+        Self::new("simulate cyclic --model walking --cycles 800 --out walk.csv", track).with_table()
+    }
+
+    /// Rows that are kept until the end.
+    pub fn motions() -> Self {
+        let track = "track cyclic walk.csv --model walking --model running --filter particle --particles 50";
+        Self::new("simulate cyclic --model walking --cycles 20 --out walk.csv", track).with_table()
+    }
+
+    /// Cells of an evaluation.
+    pub fn evaluation() -> Self {
+        let evaluate = "evaluate cyclic --model running --seeds 1 --particles none";
+        let kind = Self::new("simulate cyclic --model walking --cycles 2 --out unused.csv", evaluate);
+        Self { often: &[], unfinished: "unfinished", ..kind }
+    }
+
+    fn with_times(self, times: &'static [&'static str]) -> Self {
+        Self { times, ..self }
+    }
+
+    fn with_table(self) -> Self {
+        Self { table: "/est.csv", unfinished: "est_resume.json", ..self }
+    }
+
+    fn new(simulate: &str, words: &'static str) -> Self {
         let root = tempfile::tempdir().unwrap();
         let made = sinew_command().current_dir(root.path()).args(simulate.split(' ')).output().unwrap();
         assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
-        Self { root, words, times }
+        Self { root, words, times: &[], table: "", often: OFTEN, unfinished: "resume.json" }
     }
 
     /// A path in the folder in which the command runs.
@@ -51,8 +85,9 @@ impl Kind {
 
     /// The command line as words, with `--out` and more.
     pub fn words(&self, out: &str, more: &[&str]) -> Vec<String> {
-        let words = self.words.split(' ').chain(["--quiet", "--out", out]);
-        words.chain(more.iter().copied()).map(str::to_owned).collect()
+        let words = self.words.split(' ').chain(["--quiet", "--out"]).map(str::to_owned);
+        let out = format!("{out}{}", self.table);
+        words.chain([out]).chain(more.iter().map(|word| (*word).to_owned())).collect()
     }
 
     /// The command.
@@ -60,6 +95,16 @@ impl Kind {
         let mut command = sinew_command();
         command.current_dir(self.root.path()).args(self.words(out, more));
         command
+    }
+
+    /// The option that saves the state often.
+    pub const fn often(&self) -> &'static [&'static str] {
+        self.often
+    }
+
+    /// Whether a run in `out` was begun and has not reached its end.
+    pub fn is_unfinished(&self, out: &str) -> bool {
+        self.path(out).join(self.unfinished).exists()
     }
 
     /// The command in a shell that first runs `before`.
@@ -92,11 +137,4 @@ impl Kind {
             assert!(resumed[name] == *bytes, "{what}: {name} differs");
         }
     }
-}
-
-/// Whether `folder` has a file of a run that did not end.
-pub fn is_unfinished(folder: &Path) -> bool {
-    fs::read_dir(folder).is_ok_and(|entries| {
-        entries.filter_map(Result::ok).any(|entry| entry.file_name().to_string_lossy() == "resume.json")
-    })
 }

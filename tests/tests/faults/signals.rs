@@ -1,6 +1,6 @@
 //! Signals at any moment.
 
-use crate::kinds::{Kind, is_unfinished};
+use crate::kinds::Kind;
 use sinew_core::random::Stream;
 use std::os::unix::process::ExitStatusExt;
 use std::process::{Command, Stdio};
@@ -23,6 +23,21 @@ fn a_body_goes_on_after_any_signal() {
     survives(&Kind::body());
 }
 
+#[test]
+fn rows_that_are_written_at_once_go_on_after_any_signal() {
+    survives(&Kind::rows());
+}
+
+#[test]
+fn rows_that_are_kept_go_on_after_any_signal() {
+    survives(&Kind::motions());
+}
+
+#[test]
+fn an_evaluation_goes_on_after_any_signal() {
+    survives(&Kind::evaluation());
+}
+
 /// Sends each signal at random moments of a run, resumes, and compares every byte.
 fn survives(kind: &Kind) {
     let start = Instant::now();
@@ -36,7 +51,7 @@ fn survives(kind: &Kind) {
         {
             let (out, share) = (format!("{name}{number}"), stream.uniform());
             let what = format!("{name} after {share} of {duration_s} s");
-            let mut child = kind.command(&out, &["--checkpoint", "0.02"]).stderr(Stdio::null()).spawn().unwrap();
+            let mut child = kind.command(&out, kind.often()).stderr(Stdio::null()).spawn().unwrap();
             std::thread::sleep(Duration::from_secs_f32(share * duration_s));
             let sent = Command::new("kill").args([&format!("-{name}"), &child.id().to_string()]).output().unwrap();
             let status = child.wait().unwrap();
@@ -45,7 +60,7 @@ fn survives(kind: &Kind) {
                 continue;
             }
             assert!(sent.status.success(), "{what}: {status}");
-            let is_early = !is_unfinished(&kind.path(&out));
+            let is_early = !kind.is_unfinished(&out);
             // Before signals are handled, and before the first checkpoint, nothing can be lost.
             assert!(is_early || status.code() == code || status.signal() == Some(signal), "{what}: {status}");
             if is_early {

@@ -1,6 +1,6 @@
 //! Two runs at once in one folder.
 
-use crate::kinds::{Kind, is_unfinished};
+use crate::kinds::Kind;
 use std::process::Stdio;
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use std::time::Duration;
 fn a_second_run_in_the_same_folder_is_told_who_is_there() {
     let kind = Kind::body();
     let mut first = kind.command("run", &[]).stderr(Stdio::null()).spawn().unwrap();
-    while !is_unfinished(&kind.path("run")) {
+    while !kind.is_unfinished("run") {
         std::thread::sleep(Duration::from_millis(1));
     }
     for more in [&[][..], &["--resume"][..]] {

@@ -92,7 +92,9 @@ impl BodyTrackRun {
         let left: Left<BodyState> = file_in(out).read(out)?;
         let now = begun(&options)?;
         left.begun.check_options(&now, out)?;
-        let mut run = Self::set_up(options, out, &|name, out, _| left.reopened(name, out))?;
+        let mut run = Self::set_up(options, out, &|name, out, _| {
+            Ok(csv::Writer::from_writer(left.reopened(name, &out.join(name))?))
+        })?;
         left.begun.check_inputs(&read_by(now, &run)?)?;
         run.begun = Some(left.begun.clone());
         let mut answers = List::new(Vec::new(), NO_ANSWER);

@@ -54,9 +54,9 @@ pub fn repetitions(series: &AnatomicalSeries, cycles: &[[f64; 2]]) -> Vec<Repeti
 }
 
 fn range(series: &AnatomicalSeries, angle: usize, start: f64, end: f64) -> Option<Range> {
-    let inside = series.frames.iter().zip(&series.angles_deg);
-    let inside = inside.filter(|(frame, _)| (**frame as f64) >= start && (**frame as f64) <= end);
-    let values: Vec<f64> = inside.filter_map(|(_, pose)| pose[angle]).collect();
+    let from = series.frames.partition_point(|frame| (*frame as f64) < start);
+    let to = series.frames.partition_point(|frame| (*frame as f64) <= end);
+    let values: Vec<f64> = series.angles_deg[from..to.max(from)].iter().filter_map(|pose| pose[angle]).collect();
     let fold = |best: fn(f64, f64) -> f64| values.iter().copied().reduce(best);
     (values.len() >= 2).then_some(Range { min_deg: fold(f64::min)?, max_deg: fold(f64::max)? })
 }

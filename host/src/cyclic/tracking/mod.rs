@@ -2,11 +2,14 @@
 
 pub mod bank;
 pub mod filter;
+mod kept;
 pub mod measurements;
 pub mod options;
 pub mod particles;
 pub mod run;
 mod saved_estimate;
+pub mod steps;
+pub mod stream_run;
 pub mod summary;
 pub mod table;
 pub mod table_run;
@@ -17,5 +20,6 @@ pub use bank::NamedMotion;
 pub use measurements::Measurements;
 pub use options::{FilterName, StartName, TrackingOptions, Updates};
 pub use run::{SideEstimate, Tracked, TrackedFrame};
+pub use stream_run::StreamRun;
 pub use summary::Summary;
 pub use table_run::{TableRun, track};

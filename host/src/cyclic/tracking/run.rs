@@ -1,11 +1,10 @@
 //! One pass of a filter over an angle table.
 
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
-use crate::cyclic::{AngleRow, AngleTable};
-use crate::error::{Result, bail};
+use crate::cyclic::{AngleRow, AngleTable, CyclicModel};
+use crate::error::{Result, bail, ensure};
 use sinew_core::cyclic::CyclicEstimate;
 use sinew_core::cyclic::events::CycleCounter;
-use sinew_core::cyclic::measurement::MAX_STEP_FRAMES;
 use std::f64::consts::TAU;
 
 /// What the filter answered to one row.
@@ -43,19 +42,36 @@ pub struct Tracked {
     pub step_frames: f64,
 }
 
+/// What is said of rows without any angle.
+pub(super) const NO_ANGLE: &str =
+    "the table has no angle in any row, so there is nothing to track; see `sinew angles --min-confidence`";
+
+/// Whether the row has an angle.
+pub(super) fn is_seen(row: &AngleRow) -> bool {
+    row.angles_rad.iter().any(Option::is_some)
+}
+
 /// Index of the first row with an angle.
 pub(super) fn first_seen(table: &AngleTable) -> Result<usize> {
-    let seen = |row: &AngleRow| row.angles_rad.iter().any(Option::is_some);
-    let Some(first) = table.rows().iter().position(seen) else {
-        bail!("the table has no angle in any row, so there is nothing to track; see `sinew angles --min-confidence`")
-    };
+    let Some(first) = table.rows().iter().position(is_seen) else { bail!("{NO_ANGLE}") };
     Ok(first)
 }
 
-/// Frames of the model from one row to the next. A gap longer than the longest step says no more
-/// than that one.
-pub(super) fn step_of(before: &AngleRow, row: &AngleRow, step_frames: f64) -> f64 {
-    (step_frames * (row.frame - before.frame) as f64).min(f64::from(MAX_STEP_FRAMES))
+/// Whether the model has two angles a joint.
+pub(super) fn is_spatial(model: &CyclicModel) -> bool {
+    model.numbers().angle_count > ANGLES
+}
+
+/// Refuses rows with one angle a joint for a model with two.
+///
+/// # Errors
+/// Says so.
+pub(super) fn check_angles(model: &CyclicModel, is_table_spatial: bool) -> Result<()> {
+    ensure!(
+        is_table_spatial || !is_spatial(model),
+        "the model has two angles a joint, the table one; make the table with `sinew angles --view space`, or train a model on such tables"
+    );
+    Ok(())
 }
 
 /// Cycles since the start, with their part.

@@ -1,10 +1,11 @@
 //! The estimates as a CSV table: the columns of an angle table first, so that every tool for those
 //! reads it.
 
-use super::run::Tracked;
+use super::run::{Tracked, TrackedFrame};
 use crate::cyclic::angle_table::{ANGLES, COLUMNS, SPACE_ANGLES, angle_columns};
 use crate::error::{Error, Result};
 use crate::output::write_atomically;
+use std::io::Write;
 use std::path::Path;
 
 /// Columns after the angles.
@@ -26,27 +27,52 @@ pub const NO_MOTION: &str = "none";
 /// Name and probability of the motion of each row.
 pub type MotionCells = Vec<(String, f64)>;
 
-/// The text of the table; after [`ESTIMATE_COLUMNS`] come the angles' standard deviations. A model
-/// with two angles a joint gives the angles out of the plane after those in it. `motions`, if there
-/// are any, come last.
+/// A table of estimates that grows row by row.
 ///
+/// After [`ESTIMATE_COLUMNS`] come the angles' standard deviations. A model with two angles a joint
+/// gives the angles out of the plane after those in it. Motions, if there are any, come last.
 /// `cycle_velocity_per_frame` is per frame of the recording; `outlier` is 0 or 1.
-///
-/// # Errors
-/// None in practice: text can always be written to memory.
-pub fn to_csv(tracked: &Tracked, motions: Option<&MotionCells>) -> Result<String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let is_spatial = tracked.frames.iter().any(|frame| frame.side.is_some());
-    let count = if is_spatial { SPACE_ANGLES } else { ANGLES };
-    let columns = COLUMNS[..1].iter().copied().chain(angle_columns().take(count)).chain(ESTIMATE_COLUMNS);
-    let std_columns = angle_columns().take(count).map(|name| name.replace("_rad", "_std_rad"));
-    let motion_columns = motions.iter().flat_map(|_| MOTION_COLUMNS.map(str::to_owned));
-    writer.write_record(columns.map(str::to_owned).chain(std_columns).chain(motion_columns))?;
-    for (index, frame) in tracked.frames.iter().enumerate() {
+#[derive(Debug)]
+pub struct EstimateTable<W: Write> {
+    writer: csv::Writer<W>,
+    rate_hz: f64,
+    step_frames: f64,
+}
+
+impl<W: Write> EstimateTable<W> {
+    /// Begins a table with its header; rates as in [`Tracked`].
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn begin(
+        mut writer: csv::Writer<W>,
+        (rate_hz, step_frames): (f64, f64),
+        is_spatial: bool,
+        has_motions: bool,
+    ) -> Result<Self> {
+        let count = if is_spatial { SPACE_ANGLES } else { ANGLES };
+        let columns = COLUMNS[..1].iter().copied().chain(angle_columns().take(count)).chain(ESTIMATE_COLUMNS);
+        let std_columns = angle_columns().take(count).map(|name| name.replace("_rad", "_std_rad"));
+        let motion_columns = MOTION_COLUMNS.into_iter().filter(|_| has_motions).map(str::to_owned);
+        writer.write_record(columns.map(str::to_owned).chain(std_columns).chain(motion_columns))?;
+        Ok(Self::go_on(writer, (rate_hz, step_frames)))
+    }
+
+    /// Goes on with a table that was begun.
+    #[must_use]
+    pub const fn go_on(writer: csv::Writer<W>, (rate_hz, step_frames): (f64, f64)) -> Self {
+        Self { writer, rate_hz, step_frames }
+    }
+
+    /// Adds a row, with name and probability of its motion where several are told apart.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn add(&mut self, frame: &TrackedFrame, motion: Option<&(String, f64)>) -> Result<()> {
         let estimate = &frame.estimate;
-        let velocity = f64::from(estimate.cycle_velocity_per_frame) * tracked.step_frames;
-        let per_min = 60.0 * tracked.rate_hz;
-        let velocity_std = f64::from(estimate.cycle_velocity_variance.max(0.0).sqrt()) * tracked.step_frames;
+        let velocity = f64::from(estimate.cycle_velocity_per_frame) * self.step_frames;
+        let per_min = 60.0 * self.rate_hz;
+        let velocity_std = f64::from(estimate.cycle_velocity_variance.max(0.0).sqrt()) * self.step_frames;
         let derived = [
             position_cell(f64::from(estimate.cycle_position)),
             format!("{velocity:.8}"),
@@ -65,26 +91,53 @@ pub fn to_csv(tracked: &Tracked, motions: Option<&MotionCells>) -> Result<String
             .iter()
             .chain(side_variances)
             .map(|variance| format!("{:.6}", variance.max(0.0).sqrt()));
-        let motion = motions.and_then(|motions| motions.get(index));
         let motion = motion.into_iter().flat_map(|(name, probability)| [name.clone(), format!("{probability:.6}")]);
         let cells = std::iter::once(frame.frame.to_string()).chain(angles).chain(derived).chain(stds).chain(motion);
-        writer.write_record(cells)?;
+        Ok(self.writer.write_record(cells)?)
     }
-    String::from_utf8(writer.into_inner()?).map_err(Error::invalid)
+
+    /// The writer beneath.
+    pub const fn writer(&mut self) -> &mut csv::Writer<W> {
+        &mut self.writer
+    }
+
+    /// The writer beneath, after the last row.
+    pub fn into_writer(self) -> csv::Writer<W> {
+        self.writer
+    }
+}
+
+/// Writes the table of a whole run under a temporary name, then renames it.
+///
+/// # Errors
+/// Names the path with what the operating system refused.
+pub fn write(tracked: &Tracked, motions: Option<&MotionCells>, path: &Path) -> Result<()> {
+    write_atomically(path, |writer| write_to(tracked, motions, writer))
+}
+
+/// The text of the table of a whole run.
+///
+/// # Errors
+/// None in practice: text can always be written to memory.
+pub fn to_csv(tracked: &Tracked, motions: Option<&MotionCells>) -> Result<String> {
+    let mut bytes = Vec::new();
+    write_to(tracked, motions, &mut bytes)?;
+    String::from_utf8(bytes).map_err(Error::invalid)
+}
+
+fn write_to(tracked: &Tracked, motions: Option<&MotionCells>, writer: &mut dyn Write) -> Result<()> {
+    let is_spatial = tracked.frames.iter().any(|frame| frame.side.is_some());
+    let rates = (tracked.rate_hz, tracked.step_frames);
+    let mut table = EstimateTable::begin(csv::Writer::from_writer(writer), rates, is_spatial, motions.is_some())?;
+    for (index, frame) in tracked.frames.iter().enumerate() {
+        table.add(frame, motions.and_then(|motions| motions.get(index)))?;
+    }
+    Ok(table.into_writer().flush()?)
 }
 
 /// Six decimals in [0, 1): what would round up to one is the start of the next cycle.
 fn position_cell(position: f64) -> String {
     format!("{:.6}", if position < 0.999_999_5 { position } else { 0.0 })
-}
-
-/// Writes the table under a temporary name, then renames it.
-///
-/// # Errors
-/// Names the path with what the operating system refused.
-pub fn write(tracked: &Tracked, motions: Option<&MotionCells>, path: &Path) -> Result<()> {
-    let text = to_csv(tracked, motions)?;
-    write_atomically(path, |writer| Ok(writer.write_all(text.as_bytes())?))
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! A run over an angle table that may be stopped between rows and taken up again.
 
 use super::bank::{MAX_MOTIONS, NamedMotion, named, shown};
+use super::kept::Kept;
 use super::options::TrackingOptions;
-use super::run::Tracked;
-use super::walk::Walk;
+use super::run::{Tracked, check_angles, is_spatial};
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
 use crate::cyclic::{AngleTable, CyclicModel};
 use crate::error::{Result, ensure};
@@ -35,8 +35,8 @@ pub struct TableRun<'a> {
 /// One filter a model.
 #[derive(Debug)]
 enum Walks<'a> {
-    Plane(Vec<Walk<'a, ANGLES>>),
-    Space(Vec<Walk<'a, SPACE_ANGLES>>),
+    Plane(Vec<Kept<'a, ANGLES>>),
+    Space(Vec<Kept<'a, SPACE_ANGLES>>),
 }
 
 impl<'a> TableRun<'a> {
@@ -59,16 +59,17 @@ impl<'a> TableRun<'a> {
             models.iter().all(|model| kind(model) == kind(&models[0])),
             "`--model`: motions can be told apart by models of one rate and one number of angles; train them alike"
         );
-        if models[0].numbers().angle_count > ANGLES {
-            ensure!(
-                table.angle_count() == SPACE_ANGLES,
-                "the model has two angles a joint, the table one; make the table with `sinew angles --view space`, or train a model on such tables"
-            );
+        check_angles(&models[0], table.angle_count() == SPACE_ANGLES)?;
+        let (walks, rates) = if is_spatial(&models[0]) {
             let walks = walks(table, models, options)?;
-            return Ok(Self { table, models, options, rates: rates(&walks), walks: Walks::Space(walks) });
-        }
-        let walks = walks(table, models, options)?;
-        Ok(Self { table, models, options, rates: rates(&walks), walks: Walks::Plane(walks) })
+            let rates = walks[0].rates();
+            (Walks::Space(walks), rates)
+        } else {
+            let walks = walks(table, models, options)?;
+            let rates = walks[0].rates();
+            (Walks::Plane(walks), rates)
+        };
+        Ok(Self { table, models, options, rates, walks })
     }
 
     /// Rows that are answered.
@@ -104,8 +105,8 @@ impl<'a> TableRun<'a> {
 
     fn step(&mut self) -> Result<()> {
         match &mut self.walks {
-            Walks::Plane(walks) => walks.iter_mut().try_for_each(Walk::step),
-            Walks::Space(walks) => walks.iter_mut().try_for_each(Walk::step),
+            Walks::Plane(walks) => walks.iter_mut().try_for_each(Kept::step),
+            Walks::Space(walks) => walks.iter_mut().try_for_each(Kept::step),
         }
     }
 
@@ -121,9 +122,9 @@ impl<'a> TableRun<'a> {
         }
     }
 
-    fn collected<const N: usize>(&self, walks: &[Walk<'_, N>]) -> Result<(Tracked, Option<Vec<NamedMotion>>)> {
+    fn collected<const N: usize>(&self, walks: &[Kept<'_, N>]) -> Result<(Tracked, Option<Vec<NamedMotion>>)> {
         let (rate_hz, step_frames) = self.rates;
-        let run = |walk: &Walk<'_, N>| Tracked { frames: walk.frames(), rate_hz, step_frames };
+        let run = |walk: &Kept<'_, N>| Tracked { frames: walk.frames(), rate_hz, step_frames };
         let mut runs: Vec<Tracked> = walks.iter().map(run).collect();
         if runs.len() == 1 {
             return Ok((runs.remove(0), None));
@@ -152,7 +153,10 @@ impl<'a> TableRun<'a> {
     /// The text is not whole, or of another run.
     pub fn restore(&mut self, finished: usize, saved: Option<&str>) -> Result<()> {
         match saved {
-            Some(text) => from_text(StateKind::Cyclic, text, &mut self.walks)?,
+            Some(text) => {
+                from_text(StateKind::Cyclic, text, &mut self.walks)?;
+                self.walks.go_on();
+            }
             None => {
                 while self.finished() < finished.min(self.rows()) {
                     self.step()?;
@@ -161,6 +165,15 @@ impl<'a> TableRun<'a> {
         }
         ensure!(self.finished() == finished, "what the run left does not fit its number of rows; {REMEDY}");
         Ok(())
+    }
+}
+
+impl Walks<'_> {
+    fn go_on(&mut self) {
+        match self {
+            Self::Plane(walks) => walks.iter_mut().for_each(Kept::go_on),
+            Self::Space(walks) => walks.iter_mut().for_each(Kept::go_on),
+        }
     }
 }
 
@@ -177,11 +190,6 @@ fn walks<'a, const N: usize>(
     table: &'a AngleTable,
     models: &'a [CyclicModel],
     options: &'a TrackingOptions,
-) -> Result<Vec<Walk<'a, N>>> {
-    models.iter().map(|model| Walk::begin(table, model.view(), options)).collect()
-}
-
-fn rates<const N: usize>(walks: &[Walk<'_, N>]) -> (f64, f64) {
-    let measurements = walks[0].measurements();
-    (measurements.rate_hz(), measurements.step_frames())
+) -> Result<Vec<Kept<'a, N>>> {
+    models.iter().map(|model| Kept::begin(table, model.view(), options)).collect()
 }

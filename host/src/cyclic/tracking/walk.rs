@@ -1,14 +1,13 @@
-//! One filter on its way over an angle table, row by row.
+//! One filter on its way from row to row.
 
+use super::TrackingOptions;
 use super::filter::{Filter, Pass};
-use super::measurements::Measurements;
-use super::options::TrackingOptions;
-use super::run::{TrackedFrame, cycles, tracked};
+use super::run::cycles;
 use super::saved_estimate::visit_estimate;
-use crate::cyclic::AngleTable;
-use crate::cyclic::smoothing::replace_estimates;
+use super::steps::Steps;
+use crate::cyclic::smoothing::Smoothed;
 use crate::error::Result;
-use crate::resume::{List, long_real};
+use crate::resume::long_real;
 use sinew_core::cyclic::events::CycleCounter;
 use sinew_core::cyclic::{CyclicEstimate, MotionModel};
 use sinew_core::saved_state::{SavedState, StateVisitor};
@@ -16,78 +15,78 @@ use sinew_core::saved_state::{SavedState, StateVisitor};
 /// A filter for `N` angles that begins at the first row with an angle.
 #[derive(Debug)]
 pub(super) struct Walk<'a, const N: usize> {
-    table: &'a AngleTable,
-    measurements: Measurements<'a, N>,
+    steps: Steps<'a>,
     filter: Filter<'a, N>,
     /// The states for the way back, if there is one.
     pass: Option<Pass<'a, N>>,
     counter: CycleCounter,
-    answers: Vec<Answer<N>>,
+    /// Numbers of the recording's first frame and of the last one that is answered.
+    frames: [u64; 2],
 }
 
 /// What the filter answered to a row.
 #[derive(Debug, Clone, PartialEq)]
-struct Answer<const N: usize> {
-    estimate: CyclicEstimate<N>,
+pub(super) struct Answer<const N: usize> {
+    pub estimate: CyclicEstimate<N>,
     /// Cycles since the first row with an angle.
-    cycles: f64,
+    pub cycles: f64,
 }
 
 impl<'a, const N: usize> Walk<'a, N> {
-    /// A filter that has answered the rows up to the first one with an angle.
+    /// A filter that has answered `frame`, the first one with an angle, in a recording that begins
+    /// at `first_frame`.
     ///
     /// # Errors
-    /// An option out of range, a rate so low that a step is too long, a table without any angle.
-    pub fn begin(table: &'a AngleTable, view: MotionModel<'a>, options: &'a TrackingOptions) -> Result<Self> {
-        let measurements = Measurements::new(table, &view, options)?;
-        let filter = Filter::new(view, options, &measurements.first_angles_rad(), measurements.step_frames())?;
-        // Rows before the first one with an angle are answered with the first state as well.
-        let estimate = filter.first_estimate();
-        let answers = vec![Answer { estimate, cycles: 0.0 }; measurements.first() + 1];
+    /// An option out of range, a rate so low that a step is too long.
+    pub fn begin(
+        view: MotionModel<'a>,
+        options: &'a TrackingOptions,
+        [first_frame, frame]: [u64; 2],
+        angles_rad: &[Option<f32>; N],
+    ) -> Result<Self> {
+        let steps = Steps::new(&view, options)?;
+        let filter = Filter::new(view, options, angles_rad, steps.step_frames())?;
         let pass = if options.smooth { Pass::begin(&filter) } else { None };
-        Ok(Self { table, measurements, filter, pass, counter: CycleCounter::new(estimate.cycle_position), answers })
+        let counter = CycleCounter::new(filter.first_estimate().cycle_position);
+        Ok(Self { steps, filter, pass, counter, frames: [first_frame, frame] })
     }
 
-    /// The measurements.
-    pub const fn measurements(&self) -> &Measurements<'a, N> {
-        &self.measurements
+    /// Steps from row to row.
+    pub const fn steps(&self) -> &Steps<'a> {
+        &self.steps
     }
 
-    /// Rows that are answered.
-    pub fn finished(&self) -> usize {
-        self.answers.len()
+    /// The answer to the first row with an angle, and to those before it.
+    pub const fn first_answer(&self) -> Answer<N> {
+        Answer { estimate: self.filter.first_estimate(), cycles: 0.0 }
     }
 
-    /// Answers the next row; there has to be one.
+    /// Answers `frame`, which follows the last one.
     ///
     /// # Errors
-    /// None for rows of the table.
-    pub fn step(&mut self) -> Result<()> {
-        let measurement = self.measurements.at(self.answers.len())?;
+    /// None for rows of a table.
+    pub fn step(&mut self, frame: u64, angles_rad: &[Option<f32>; N]) -> Result<Answer<N>> {
+        let [first_frame, before] = self.frames;
+        let measurement = self.steps.later(first_frame, before, frame, angles_rad)?;
         let estimate = self.filter.step(&measurement);
         if let Some(pass) = &mut self.pass {
             pass.add(&self.filter, measurement);
         }
         let velocity = estimate.cycle_velocity_per_frame;
         self.counter.advance(estimate.cycle_position, velocity, measurement.step_frames());
-        self.answers.push(Answer { estimate, cycles: cycles(&self.counter) });
-        Ok(())
+        self.frames[1] = frame;
+        Ok(Answer { estimate, cycles: cycles(&self.counter) })
     }
 
-    /// The answers as if the table ended with the last row that is answered.
-    pub fn frames(&self) -> Vec<TrackedFrame> {
-        let rows = self.table.rows().iter().zip(&self.answers);
-        let mut frames: Vec<TrackedFrame> =
-            rows.map(|(row, answer)| tracked(row.frame, &answer.estimate, answer.cycles)).collect();
-        if let Some(pass) = &self.pass {
-            let first = self.measurements.first();
-            replace_estimates(&mut frames[first..], &pass.smoothed());
-            let start = frames[first].clone();
-            for frame in &mut frames[..first] {
-                *frame = TrackedFrame { frame: frame.frame, ..start.clone() };
-            }
-        }
-        frames
+    /// After a saved state: the number of the last frame that is answered.
+    pub fn go_on_after(&mut self, frame: u64) {
+        self.frames[1] = frame;
+    }
+
+    /// The estimates from the first row with an angle on, given all that are answered; `None`
+    /// unless the options ask for that.
+    pub fn smoothed(&self) -> Option<Vec<Smoothed<N>>> {
+        self.pass.as_ref().map(Pass::smoothed)
     }
 }
 
@@ -96,10 +95,6 @@ impl<const N: usize> SavedState for Walk<'_, N> {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         self.filter.visit(visitor);
         self.counter.visit(visitor);
-        let fill = Answer { estimate: self.filter.first_estimate(), cycles: 0.0 };
-        let mut answers = List::new(std::mem::take(&mut self.answers), fill);
-        answers.visit(visitor);
-        self.answers = answers.entries;
     }
 }
 

@@ -5,6 +5,8 @@ function fill(node, attributes, children) {
     if (value === undefined || value === null || value === false) continue;
     if (name.startsWith('on')) node.addEventListener(name.slice(2), value);
     else if (name.startsWith('--')) node.style.setProperty(name, value);
+    // As a text it would be an attribute, which the page's policy forbids.
+    else if (name === 'style') Object.assign(node.style, value);
     else node.setAttribute(name, value === true ? '' : value);
   }
   for (const child of children.flat()) {

@@ -25,7 +25,7 @@ class FigureView {
   sides() {
     const used = new Set(this.bones.filter(({ bone }) => !bone.truth).map(({ bone }) => bone.colour));
     const named = ['left', 'right'].filter((side) => used.has(side));
-    return named.map((side) => element('span', { style: `color:${colourOf(side)}` }, `  \u25cf ${side}`));
+    return named.map((side) => element('span', { style: { color: colourOf(side) } }, `  \u25cf ${side}`));
   }
 
   ownBounds() {

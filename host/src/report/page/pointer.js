@@ -8,7 +8,7 @@ function showPointer(event, heading, rows) {
       element(
         'div',
         { class: 'row', 'data-series': series.name, 'data-raw': rawNumber },
-        element('span', { style: `color:${colourOf(series.colour)}` }, series.name),
+        element('span', { style: { color: colourOf(series.colour) } }, series.name),
         element('span', {}, value, raw ? element('span', { class: 'raw' }, `  ${raw}`) : null),
       ),
     ),

@@ -7,7 +7,7 @@ async function copyText(text) {
     await navigator.clipboard.writeText(text);
     return true;
   } catch {
-    const area = element('textarea', { style: 'position:fixed;opacity:0' });
+    const area = element('textarea', { style: { position: 'fixed', opacity: 0 } });
     area.value = text;
     document.body.append(area);
     area.select();

@@ -1,204 +1,66 @@
-//! `sinew track cyclic`: angles, phase and cadence from an angle table.
+//! A recording that is kept whole, for what needs all rows at once: a report, pictures, several
+//! motions, smoothing.
 
-use super::checkpoint_args::CheckpointArgs;
-use super::console::Console;
-use super::signals::stop_flag;
-use super::viewer_args::ViewerArgs;
-use crate::cyclic::model_file::MODEL_VALUE;
+use super::args::TrackCyclicArgs;
+use super::place::Place;
+use super::told::cycles_line;
+use crate::cli::console::Console;
+use crate::cyclic::AngleTable;
 use crate::cyclic::pictures::{OverlayFrames, animation};
 use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::figures;
 use crate::cyclic::report::{Origin, OverlayOrigin, Report};
 use crate::cyclic::tracking::table::{self, MotionCells, NO_MOTION};
-use crate::cyclic::tracking::{FilterName, NamedMotion, StartName, TableRun, Tracked, TrackingOptions, Updates};
-use crate::cyclic::{AngleTable, CyclicModel};
-use crate::file::STANDARD_INPUT;
-use crate::output::{OutputDir, OutputLock, Target, check_writable_file};
-use crate::resume::{Begun, Checkpoints, Interrupted, Left, ResumeFile, file_crc32, text_crc32};
-use anyhow::{Result, bail, ensure};
-use clap::Args;
+use crate::cyclic::tracking::{NamedMotion, TableRun, Tracked, TrackingOptions};
+use crate::output::OutputDir;
+use crate::resume::{Checkpoints, Interrupted, Left};
+use anyhow::{Result, ensure};
 use serde_json::json;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Options of `sinew track cyclic`.
-#[derive(Debug, Args)]
-#[command(after_help = "Examples:
-  sinew simulate cyclic --model walking --out walk.csv
-  sinew track cyclic walk.csv --model walking --out est.csv --report run")]
-pub struct TrackCyclicArgs {
-    /// Angle table, made by `sinew angles` from a motion in space or from keypoints; - is standard
-    /// input.
-    pub table: PathBuf,
-    /// Motion: a shipped one, or a file of `sinew train cyclic`. Given several times, the motion of
-    /// each frame is named, or none of these, and tracked by its own model.
-    #[arg(long, value_name = MODEL_VALUE, required = true)]
-    pub model: Vec<String>,
-    /// Filter.
-    #[arg(long, value_enum, default_value_t = FilterName::Coupled)]
-    pub filter: FilterName,
-    /// Standard deviation of a measured angle, degrees.
-    #[arg(long, value_name = "DEGREES", default_value_t = 6.0)]
-    pub sigma_deg: f64,
-    /// Number of particles.
-    #[arg(long, value_name = "N", default_value_t = 10_000)]
-    pub particles: usize,
-    /// What is known of the first state.
-    #[arg(long, value_enum, default_value_t = StartName::Standard)]
-    pub init: StartName,
-    /// Position in the cycle at the first frame, [0, 1) [default: where the model's pose fits
-    /// best].
-    #[arg(long, value_name = "X")]
-    pub initial_cycle_position: Option<f64>,
-    /// Cycles per frame at the first frame [default: the model's mean].
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
-    pub initial_cycle_velocity: Option<f64>,
-    /// Use only every K-th measurement after the first.
-    #[arg(long, value_name = "K", conflicts_with = "update_at")]
-    pub update_every: Option<u64>,
-    /// Use only the measurements of these frames.
-    #[arg(long, value_name = "F1,F2,...", value_delimiter = ',')]
-    pub update_at: Option<Vec<u64>>,
-    /// Give each frame the estimate that the whole recording speaks for, later frames included (not
-    /// with `particle`).
-    #[arg(long)]
-    pub smooth: bool,
-    /// Frames per second of the recording [default: those of the model].
-    #[arg(long, value_name = "HZ")]
-    pub rate: Option<f64>,
-    /// Seed of everything that is drawn.
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// Table of estimates to write.
-    #[arg(long, value_name = "EST.csv")]
-    pub out: PathBuf,
-    /// Folder for what a coach reads: summary, repetitions, curves over the cycle, symmetry, plots,
-    /// TRC and MOT files.
-    #[arg(long, value_name = "DIR")]
-    pub report: Option<PathBuf>,
-    /// Draw the figure on the images of this folder, frame k of the table on image k in natural
-    /// order, counted from 0. The pictures are written into `EST_overlay` beside the estimates.
-    /// Needs a table from keypoints.
-    #[arg(long, value_name = "FRAMES_DIR")]
-    pub overlay: Option<PathBuf>,
-    /// Write the stick figure alone as an animation, what was measured thin and grey behind the
-    /// estimate.
-    #[arg(long, value_name = "FILE.gif")]
-    pub animation: Option<PathBuf>,
-    /// Height of the person, metres: the scale of the report's joints.trc.
-    #[arg(long, value_name = "METRES", default_value_t = 1.75)]
-    pub height: f64,
-    /// Go on with the run to --out that did not reach its end; what decides the estimates has to be
-    /// the same.
-    #[arg(long)]
-    pub resume: bool,
-    /// When the state is saved.
-    #[command(flatten)]
-    pub checkpoint: CheckpointArgs,
-    /// The run for a viewer.
-    #[command(flatten)]
-    pub viewer: ViewerArgs,
-}
-
-/// The subcommand, in what it leaves.
-const COMMAND: &str = "track cyclic";
-
-/// Tracks the table, writes the estimates, prints cycles and cadence.
-///
-/// # Errors
-/// A table or model that cannot be used, an option out of range, an output that cannot be written,
-/// or [`Interrupted`].
-pub fn run(args: &TrackCyclicArgs, console: &Console) -> Result<()> {
-    console.resumable(run_until(args, console, stop_flag()?, &mut |_| ()))
-}
-
-/// As [`run`], ended by `stop` in the place of a signal; `notify` gets the number of finished rows.
-///
-/// # Errors
-/// As [`run`].
-pub fn run_until(
+/// Tracks the table, then writes all that is asked for.
+pub(super) fn track(
     args: &TrackCyclicArgs,
+    options: &TrackingOptions,
     console: &Console,
     stop: &AtomicBool,
     notify: &mut dyn FnMut(usize),
 ) -> Result<()> {
-    let options = options(args);
-    options.check()?;
-    check(args)?;
     let frames = args.overlay.as_deref().map(OverlayFrames::open).transpose()?;
-    let file = match Target::of(&args.out)? {
-        // What came on standard input does not come again.
-        _ if is_stream(args) => None,
-        Target::File(path) => Some((ResumeFile::beside(&path, COMMAND), OutputLock::of_table(&path, COMMAND)?)),
-        Target::Fifo(_) | Target::Standard => None,
-    };
-    let file = file.as_ref().map(|(file, _)| file);
-    let left: Option<Left<Option<String>>> = match (args.resume, file) {
-        (false, _) => None,
-        (true, Some(file)) => Some(file.read(&args.out)?),
-        (true, None) => bail!("--resume goes on with files; give a table and --out as files"),
-    };
+    let place = Place::of(args)?;
+    let left = place.left(args)?;
     let output = args.report.as_deref().map(OutputDir::create).transpose()?;
-    let models = args.model.iter().map(|name| CyclicModel::from_option(name)).collect::<crate::Result<Vec<_>>>()?;
+    let models = args.models()?;
     let angles = AngleTable::read(&args.table)?;
-    let begun = begun(args, &models)?;
-    let mut run = TableRun::begin(&angles, &models, &options)?;
+    let begun = args.begun(&models)?;
+    let mut run = TableRun::begin(&angles, &models, options)?;
     if let Some(left) = &left {
         left.begun.check_options(&begun, &args.out)?;
         left.begun.check_inputs(&begun)?;
-        run.restore(left.finished, left.state.as_deref())?;
+        // The state of a run that kept no rows does not hold its answers.
+        let state = left.state.as_deref().filter(|_| !left.has_tables());
+        run.restore(left.finished, state)?;
     }
     let overlay = frames.as_ref().map(|frames| with_output(frames, &angles, &args.out)).transpose()?;
     let start = Instant::now();
     let seconds_before = left.map_or(0.0, |left| left.seconds);
     let save = |run: &mut TableRun<'_>| -> crate::Result<()> {
-        let Some(file) = file else { return Ok(()) };
+        let Some(file) = place.resume_file() else { return Ok(()) };
         let seconds = seconds_before + start.elapsed().as_secs_f64();
         file.put(&Left::new(begun.clone(), run.finished(), seconds, None, run.saved()?))
     };
-    let shown = Shown { args, angles: &angles, options: &options, output, overlay };
+    let shown = Shown { args, angles: &angles, options, output, overlay };
     let ended = follow(&mut run, stop, notify, args, console, &save)
         .and_then(|is_complete| shown.write(&run, is_complete, stop, console));
-    match (&ended, file) {
-        (Ok(()), Some(file)) => file.remove()?,
+    match &ended {
+        Ok(()) => place.clear()?,
         // The error says more than one that comes of saving.
-        (Err(_), _) => drop(save(&mut run)),
-        (Ok(()), None) => (),
+        Err(_) => drop(save(&mut run)),
     }
     ended
-}
-
-/// Whether the table comes on standard input.
-fn is_stream(args: &TrackCyclicArgs) -> bool {
-    args.table.as_os_str() == STANDARD_INPUT
-}
-
-/// How the estimates come about; what is made of them may differ from run to run.
-fn begun(args: &TrackCyclicArgs, models: &[CyclicModel]) -> Result<Begun> {
-    let options = json!({
-        "model": args.model,
-        "filter": args.filter,
-        "sigma_deg": args.sigma_deg,
-        "particles": args.particles,
-        "init": args.init,
-        "initial_cycle_position": args.initial_cycle_position,
-        "initial_cycle_velocity": args.initial_cycle_velocity,
-        "update_every": args.update_every,
-        "update_at": args.update_at,
-        "smooth": args.smooth,
-        "rate": args.rate,
-        "seed": args.seed,
-    });
-    let mut begun = Begun::new(COMMAND, &options, &[])?;
-    if !is_stream(args) {
-        begun = begun.on(&args.table)?.reading(format!("`{}`", args.table.display()), file_crc32(&args.table)?);
-    }
-    let named = args.model.iter().zip(models);
-    Ok(named.fold(begun, |begun, (name, model)| {
-        begun.reading(format!("the model `{name}`"), text_crc32(&format!("{:?}", model.numbers())))
-    }))
 }
 
 /// Tracks with a progress bar on standard error, if that is a terminal, until the last row or a
@@ -336,23 +198,6 @@ impl Shown<'_> {
     }
 }
 
-/// What can be checked before anything is read.
-fn check(args: &TrackCyclicArgs) -> Result<()> {
-    ensure!((0.3..=3.0).contains(&args.height), "`height` has to lie from 0.3 to 3 metres, not {}", args.height);
-    ensure!(
-        !args.viewer.is_wanted() || args.report.is_some(),
-        "`--rerun` shows a run directory; give one with `--report DIR`"
-    );
-    args.viewer.check()?;
-    check_writable_file(&args.out)?;
-    if let Some(path) = &args.animation {
-        let is_gif = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gif"));
-        ensure!(is_gif, "`animation` has to end in .gif, not `{}`", path.display());
-        check_writable_file(path)?;
-    }
-    Ok(())
-}
-
 fn motion_cells(names: &[String], motions: &[NamedMotion]) -> MotionCells {
     let name = |motion: &NamedMotion| motion.motion.map_or_else(|| NO_MOTION.to_owned(), |index| names[index].clone());
     motions.iter().map(|motion| (name(motion), motion.probability)).collect()
@@ -391,11 +236,7 @@ const TOLD_REASONS: usize = 5;
 
 /// Cycles and cadence, and how alike the sides are, for a terminal.
 fn summary(report: &Report) -> String {
-    let summary = &report.summary;
-    let mut text = format!(
-        "{} frames, {:.2} s: {:.2} cycles, {:.2} a minute, {} outliers\n",
-        summary.frames, summary.duration_s, summary.cycles, summary.cadence_per_min, summary.outliers
-    );
+    let mut text = cycles_line(&report.summary);
     for joint in &report.symmetries {
         if let (Some(left), Some(right)) = (joint.left_range_deg, joint.right_range_deg) {
             let index = joint.symmetry_index_percent.map_or_else(String::new, |index| format!(", index {index:+.0} %"));
@@ -404,24 +245,4 @@ fn summary(report: &Report) -> String {
         }
     }
     text
-}
-
-fn options(args: &TrackCyclicArgs) -> TrackingOptions {
-    let updates = match (&args.update_every, &args.update_at) {
-        (Some(every), _) => Updates::Every(*every),
-        (None, Some(frames)) => Updates::At(frames.clone()),
-        (None, None) => Updates::All,
-    };
-    TrackingOptions {
-        filter: args.filter,
-        sigma_rad: args.sigma_deg.to_radians(),
-        start: args.init,
-        initial_cycle_position: args.initial_cycle_position,
-        initial_cycle_velocity: args.initial_cycle_velocity,
-        updates,
-        rate_hz: args.rate,
-        particles: args.particles,
-        seed: args.seed,
-        smooth: args.smooth,
-    }
 }

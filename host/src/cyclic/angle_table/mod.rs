@@ -1,0 +1,12 @@
+//! Angle tables: one row a frame, the 13 angles of the stick figure in radians, an empty cell where
+//! one is missing.
+
+mod columns;
+mod rows;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use columns::{ANGLES, COLUMNS, MAX_FRAME, SIDE_COLUMNS, SPACE_ANGLES, angle_columns};
+pub use rows::{AngleRow, AngleRows, ReadRow};
+pub use table::AngleTable;
