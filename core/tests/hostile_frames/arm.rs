@@ -17,8 +17,7 @@ const EDGES: [EdgePixel; 3] = [EdgePixel { u: 0, v: 0 }, EdgePixel { u: u16::MAX
 /// The hand of the twin, pixels: a hand's width.
 const MAX_APART_PX: f32 = 30.0;
 
-fn blob(corners: &mut Corners) -> HandCandidate {
-    let clean = hand_blob();
+fn blob(clean: &HandCandidate, corners: &mut Corners) -> HandCandidate {
     HandCandidate {
         centre: Pixel::new(corners.number(clean.centre.u_px), corners.number(clean.centre.v_px)),
         moments_px2: clean.moments_px2.map(|moment| corners.number(moment)),
@@ -63,7 +62,7 @@ impl OneArm {
 
 impl Subject for OneArm {
     fn hostile(&mut self, corners: &mut Corners) -> Result<(), String> {
-        let candidates: Vec<_> = (0..corners.below(4)).map(|_| blob(corners)).collect();
+        let candidates: Vec<_> = (0..corners.below(4)).map(|_| blob(&hand_blob(), corners)).collect();
         let image = ArmImage { candidates: &candidates, edges: &EDGES[..corners.below(4)] };
         let frame = ArmFrame {
             timestamp_us: corners.time_us(self.time_us),
@@ -111,7 +110,9 @@ fn two_hands() -> [HandCandidate; 2] {
 
 impl Subject for TwoArms {
     fn hostile(&mut self, corners: &mut Corners) -> Result<(), String> {
-        let candidates: Vec<_> = (0..corners.below(4)).map(|_| blob(corners)).collect();
+        // Hands elsewhere would draw both arms there, from where they may go on crossed.
+        let hands = two_hands();
+        let candidates: Vec<_> = hands[..corners.below(3)].iter().map(|hand| blob(hand, corners)).collect();
         let image = ArmImage { candidates: &candidates, edges: &EDGES[..corners.below(4)] };
         let shoulders_m: [Vec3; 2] = SHOULDERS_M.map(|shoulder_m| corners.place(shoulder_m));
         let image = (!corners.one_in(4)).then_some(image);

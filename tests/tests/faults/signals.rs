@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// How often each kind is killed by each signal, unless `SINEW_FAULTS` says otherwise.
-const FEW: usize = 2;
+const FEW: usize = 1;
 
 fn times() -> usize {
     std::env::var("SINEW_FAULTS").map_or(FEW, |count| count.parse().expect("SINEW_FAULTS is a number"))

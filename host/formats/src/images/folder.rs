@@ -5,7 +5,7 @@ use super::video::is_video;
 use crate::file::{FileError, read_bytes};
 use crate::limits::{MAX_DECODE_BYTES, MAX_FILE_BYTES, MAX_SIDE_PX};
 use crate::registry::{Kind, extensions, find};
-use image::{ImageFormat, ImageReader, Limits, RgbImage};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits, RgbImage};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{Cursor, ErrorKind};
@@ -31,6 +31,14 @@ pub enum InputError {
         folder: PathBuf,
         /// What was found instead, in words.
         found: String,
+    },
+    /// Two images of one name, of which each could be the frame.
+    #[error("`{}` holds `{}` and `{}`, which may be one frame twice; keep one of the kinds", .folder.display(), .names[0], .names[1])]
+    Twins {
+        /// The folder.
+        folder: PathBuf,
+        /// Their file names.
+        names: [String; 2],
     },
     /// A single file whose extension is not read.
     #[error("`{}` is not an image that can be read; give one ({}), a folder of them, or a video", .0.display(), extension_list())]
@@ -98,8 +106,8 @@ impl ImageInput {
 /// Hidden files, folders and files with other extensions are passed over.
 ///
 /// # Errors
-/// [`InputError`] if the folder is missing, not a folder, empty, cannot be listed, or holds no
-/// image.
+/// [`InputError`] if the folder is missing, not a folder, empty, cannot be listed, holds no image,
+/// or two of one name.
 pub fn list_images(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     if !folder.exists() {
         return Err(InputError::Missing(folder.to_path_buf()));
@@ -123,7 +131,10 @@ pub fn list_images(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     }
     if !images.is_empty() {
         images.sort_by(|a, b| natural_order(a, b));
-        return Ok(images);
+        return match twins(&images) {
+            Some(names) => Err(InputError::Twins { folder: folder.to_path_buf(), names }),
+            None => Ok(images),
+        };
     }
     if others.is_empty() {
         return Err(InputError::Empty(folder.to_path_buf()));
@@ -132,7 +143,8 @@ pub fn list_images(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     Err(InputError::NoImage { folder: folder.to_path_buf(), found })
 }
 
-/// Decodes one image to 8-bit RGB; 16-bit samples are scaled, grey is spread, alpha is dropped.
+/// Decodes one image to 8-bit RGB; 16-bit samples are scaled, grey is spread, alpha is dropped. A
+/// picture that a camera took sideways is turned upright by its EXIF orientation.
 ///
 /// The format is found from the file's content, so a JPEG named `.png` is read too.
 ///
@@ -155,10 +167,19 @@ pub fn load_rgb(path: &Path) -> Result<RgbImage, ImageFileError> {
     limits.max_image_height = Some(MAX_SIDE_PX);
     limits.max_alloc = Some(MAX_DECODE_BYTES);
     reader.limits(limits);
-    let image = reader.decode().map_err(|error| failed(error.to_string()))?.into_rgb8();
+    let image = upright(reader).map_err(|error| failed(error.to_string()))?.into_rgb8();
     if image.width() == 0 || image.height() == 0 {
         return Err(failed("it has no pixels".to_owned()));
     }
+    Ok(image)
+}
+
+/// Decodes a picture and turns it as its EXIF orientation says.
+fn upright(reader: ImageReader<Cursor<&Vec<u8>>>) -> image::ImageResult<DynamicImage> {
+    let mut decoder = reader.into_decoder()?;
+    let orientation = decoder.orientation()?;
+    let mut image = DynamicImage::from_decoder(decoder)?;
+    image.apply_orientation(orientation);
     Ok(image)
 }
 
@@ -166,6 +187,15 @@ pub fn load_rgb(path: &Path) -> Result<RgbImage, ImageFileError> {
 #[must_use]
 pub fn has_image_extension(path: &Path) -> bool {
     find(path, &[Kind::Image]).is_some()
+}
+
+/// The first two names that differ in nothing but their extensions.
+fn twins(images: &[PathBuf]) -> Option<[String; 2]> {
+    let mut by_stem: BTreeMap<_, &PathBuf> = BTreeMap::new();
+    images.iter().find_map(|image| {
+        let other = by_stem.insert(image.file_stem(), image)?;
+        Some([other, image].map(|path| path.file_name().unwrap_or_default().to_string_lossy().into_owned()))
+    })
 }
 
 fn natural_order(a: &Path, b: &Path) -> std::cmp::Ordering {
@@ -209,6 +239,37 @@ mod tests {
         fs::create_dir(folder.path().join("folder.png")).unwrap();
         let files = list_images(folder.path()).unwrap();
         assert_eq!(names(&files), ["a.PpM", "frame_1.jpeg", "frame_2.PNG", "frame_10.png"]);
+    }
+
+    #[test]
+    fn two_images_of_one_name_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["frame_0.png", "frame_1.png", "frame_1.jpg"] {
+            fs::write(folder.path().join(name), b"").unwrap();
+        }
+        let message = list_images(folder.path()).unwrap_err().to_string();
+        assert!(message.contains("`frame_1.jpg` and `frame_1.png`"), "{message}");
+    }
+
+    #[test]
+    fn a_picture_is_turned_as_its_orientation_says() {
+        // An application segment of EXIF with one entry: orientation (0x0112), a SHORT, 6: the
+        // picture has to be turned by 90 degrees clockwise.
+        let exif: [u8; 36] = [
+            0xff, 0xe1, 0, 34, b'E', b'x', b'i', b'f', 0, 0, b'M', b'M', 0, 42, 0, 0, 0, 8, 0, 1, 0x01, 0x12, 0, 3, 0,
+            0, 0, 1, 0, 6, 0, 0, 0, 0, 0, 0,
+        ];
+        let image = RgbImage::from_fn(64, 32, |x, _| image::Rgb([if x < 32 { 250 } else { 5 }; 3]));
+        let mut bytes = Cursor::new(Vec::new());
+        image.write_to(&mut bytes, ImageFormat::Jpeg).unwrap();
+        let mut bytes = bytes.into_inner();
+        bytes.splice(2..2, exif);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sideways.jpg");
+        fs::write(&path, bytes).unwrap();
+        let upright = load_rgb(&path).unwrap();
+        assert_eq!(upright.dimensions(), (32, 64));
+        assert!(upright.get_pixel(16, 4)[0] > 200 && upright.get_pixel(16, 60)[0] < 50, "left has become the top");
     }
 
     #[test]
