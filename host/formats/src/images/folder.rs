@@ -162,6 +162,12 @@ pub fn load_rgb(path: &Path) -> Result<RgbImage, ImageFileError> {
     Ok(image)
 }
 
+/// Width and height by the file's header, pixels; `None` where even that cannot be read.
+#[must_use]
+pub fn size_by_header(path: &Path) -> Option<(u32, u32)> {
+    ImageReader::open(path).ok()?.with_guessed_format().ok()?.into_dimensions().ok()
+}
+
 /// Whether the name ends as that of an image, in any case.
 #[must_use]
 pub fn has_image_extension(path: &Path) -> bool {

@@ -8,6 +8,7 @@ use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::tracking::BodyModelKind;
 use crate::cloud::{CloudFolder, MAX_DISTANCE_M};
 use crate::error::{Context, Result, ensure};
+use crate::json_file::read_json;
 use crate::stereo::{SeenStick, StereoCamera, TrueFrame, read_stick, read_truth};
 use serde::{Deserialize, Serialize};
 use sinew_core::math::unit;
@@ -147,7 +148,7 @@ pub fn check_part(part: BodyPart, model: BodyModelKind) -> Result<()> {
 
 fn read_scene(path: &Path) -> Result<SceneReport> {
     let inner = || -> Result<SceneReport> {
-        let scene: SceneReport = serde_json::from_slice(&std::fs::read(path)?)?;
+        let scene: SceneReport = read_json(path)?;
         scene.rate_hz.map_or(Ok(()), |rate_hz| check_rate("rate_hz", rate_hz))?;
         if let Some(camera) = &scene.camera {
             let focal_px = camera.focal_px;
