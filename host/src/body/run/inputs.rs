@@ -64,12 +64,15 @@ pub struct BodyInputs {
 }
 
 /// The part of a scene's `run.json` that tracking needs.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 struct SceneReport {
     rate_hz: Option<f32>,
     camera: Option<StereoCamera>,
     floor_y_m: Option<f32>,
     body: Option<BodyPart>,
+    /// Of what the scene was made.
+    #[serde(default)]
+    notes: Vec<String>,
 }
 
 impl BodyInputs {
@@ -85,6 +88,7 @@ impl BodyInputs {
         let mut notes = Vec::new();
         let scene_file = beside("run.json");
         let scene = scene_file.as_deref().map_or_else(|| Ok(SceneReport::default()), read_scene)?;
+        notes.extend(scene.notes);
         let rate_hz = options.rate_hz.or(scene.rate_hz).unwrap_or_else(|| {
             notes.push(format!("no run.json and no --rate say how fast the frames were taken; {DEFAULT_RATE_HZ} Hz"));
             DEFAULT_RATE_HZ
@@ -164,7 +168,7 @@ fn read_scene(path: &Path) -> Result<SceneReport> {
 
 fn measures(options: &BodyTrackOptions, file: Option<&Path>, notes: &mut Vec<String>) -> Result<BodyMeasures> {
     if let Some(path) = file {
-        return read_measures(path);
+        return read_measures(path, options.partial, notes);
     }
     if options.height_m.is_none() {
         notes.push(format!("nothing says who is tracked; a person {UNKNOWN_HEIGHT_M} m tall (--height, --skeleton)"));
