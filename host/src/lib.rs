@@ -12,6 +12,7 @@ pub mod doctor;
 pub mod draw;
 pub mod error;
 pub mod frames;
+mod json_file;
 pub mod keypoints;
 pub mod model_text;
 pub mod output;

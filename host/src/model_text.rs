@@ -1,7 +1,7 @@
 //! Model files as text, whatever the kind of model.
 
-use crate::error::{Context as _, Error, Result, bail, ensure};
-use crate::file::{FileError, read_text_within};
+use crate::error::{Context as _, Error, Result, ensure};
+use crate::file::read_text_within;
 use crate::quote::with_short_quotes;
 use std::fs;
 use std::path::Path;
@@ -32,12 +32,7 @@ pub fn read<T>(path: &Path, kind: &ModelFileKind, parse: impl FnOnce(&str) -> Re
     };
     let load = || -> Result<T> {
         ensure!(fs::metadata(path)?.is_file(), "it is not a file");
-        let text = match read_text_within(path, *max_file_bytes) {
-            Ok(text) => text,
-            Err(FileError::Io(reason)) => return Err(reason.into()),
-            Err(other) => bail!("{other}"),
-        };
-        parse(&text).map_err(|error| match error.chain() {
+        parse(&read_text_within(path, *max_file_bytes)?).map_err(|error| match error.chain() {
             // It quotes the file.
             long if long.len() > MAX_REASON_BYTES => Error::Invalid(with_short_quotes(&long)),
             _ => error,

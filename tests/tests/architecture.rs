@@ -4,6 +4,7 @@ use sinew_tests::imports::Imports;
 use sinew_tests::workspace_root;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Crates, and how many circles of files each may have.
 const MAX_CIRCLES: [(&str, usize); 8] = [
@@ -25,6 +26,48 @@ fn files_do_not_import_each_other_in_circles() {
             circles.iter().map(|circle| circle.iter().map(|module| module.join("::")).collect()).collect();
         assert!(circles.len() <= max_circles, "{folder}: at most {max_circles} circles, but these: {names:#?}");
     }
+}
+
+/// What opens files beside the loader: outputs, checksums of any file, the first bytes of one whose
+/// kind is unknown, what ffmpeg wrote, and tables that are read row by row.
+const OPENING_FILES: [&str; 6] = [
+    "host/formats/src/file.rs",
+    "host/src/output/",
+    "host/src/resume/begun.rs",
+    "host/formats/src/motion/reading.rs",
+    "host/formats/src/images/video.rs",
+    "host/src/cyclic/",
+];
+
+#[test]
+fn inputs_are_read_by_the_one_loader() {
+    let mut found = Vec::new();
+    for folder in ["host/src", "host/formats/src"] {
+        for path in sources(&workspace_root().join(folder)) {
+            let name = path.strip_prefix(workspace_root()).unwrap().to_string_lossy().into_owned();
+            let text = fs::read_to_string(&path).unwrap();
+            let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+            let opens = ["fs::read(", "read_to_string(", "File::open(", "from_path("];
+            if name.ends_with("/tests.rs") || OPENING_FILES.iter().any(|other| name.starts_with(other)) {
+                continue;
+            }
+            found.extend(opens.iter().filter(|call| code.contains(**call)).map(|call| format!("{name}: {call}")));
+        }
+    }
+    assert!(found.is_empty(), "these read files without the limits of `sinew_formats::file`: {found:#?}");
+}
+
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files.extend(sources(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+    files
 }
 
 #[test]

@@ -44,17 +44,17 @@ fn hands_are_scored_and_floors_are_required() {
         .stdout(contains("(Evaluation of both hands on real frames): 0 plots").and(contains("notice").not()));
     fs::write(&boxes, "frame,x,y,w,h\n5,0,0,1,1\n").unwrap();
     hands(&folder, &boxes).assert().success();
-    hands(&folder, &boxes).arg("--require").assert().code(64).stderr(contains("misses the floors"));
+    hands(&folder, &boxes).arg("--require").assert().code(65).stderr(contains("misses the floors"));
 }
 
 #[test]
 fn bad_boxes_and_windows_are_refused() {
     let root = tempfile::tempdir().unwrap();
     let (folder, boxes) = (frames(root.path()), root.path().join("boxes.csv"));
-    let refused = |part: &str| {
-        hands(&folder, &boxes).assert().code(sinew_tests::REFUSED).stderr(contains(part).and(contains("boxes.csv")));
+    let refused = |part: &str, status: i32| {
+        hands(&folder, &boxes).assert().code(status).stderr(contains(part).and(contains("boxes.csv")));
     };
-    refused("boxes");
+    refused("boxes", 66);
     for (table, part) in [
         ("frame,x,y,w,h\n", "has no row"),
         ("frame,x,y\n0,1,2\n", "frame,x,y,w,h"),
@@ -62,7 +62,7 @@ fn bad_boxes_and_windows_are_refused() {
         ("frame,x,y,w,h\n1,1,2,0,4\n", "above zero"),
     ] {
         fs::write(&boxes, table).unwrap();
-        refused(part);
+        refused(part, 65);
     }
     fs::write(&boxes, "frame,x,y,w,h\n0,1,2,3,4\n").unwrap();
     hands(&folder, &boxes).args(["--window", "900,10"]).assert().code(64).stderr(contains("larger than the frames"));

@@ -78,6 +78,7 @@ impl Scene {
             model,
             particles: 20,
             skeleton: None,
+            partial: false,
             height_m: None,
             init: None,
             stick: None,

@@ -65,7 +65,7 @@ fn unreadable_images_are_skipped_named_and_counted() {
     let run = |path: &Path, more: &[&str]| sinew().arg("segment").arg(path).arg("--out").arg(&out).args(more).assert();
     run(&input, &[]).success().stderr(contains("b.png").and(contains("1 of 2 images were skipped")));
     assert_eq!(skin_pixels(&out.join("a.png")), 400);
-    run(&input, &["--strict"]).code(64).stderr(contains("b.png"));
+    run(&input, &["--strict"]).code(65).stderr(contains("b.png"));
     run(&input.join("b.png"), &[]).code(65).stderr(contains("b.png"));
 }
 

@@ -261,7 +261,7 @@ fn a_damaged_cloud_is_skipped_or_ends_a_strict_run() {
     assert_eq!(scene.table("out").column("points")[4], 0.0);
     let output = scene.track("strict", &["--strict"]);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.status.code(), Some(65));
     assert!(message.contains("000004.ply") && message.contains("4 finished frames"), "{message}");
     assert_eq!((scene.table("strict").rows.len(), &scene.report("strict")["complete"]), (4, &false.into()));
 }
@@ -408,6 +408,7 @@ fn what_was_finished_before_ctrl_c_is_kept() {
         model: BodyModelKind::Guided,
         particles: 30,
         skeleton: None,
+        partial: false,
         height_m: None,
         init: None,
         stick: None,

@@ -112,7 +112,7 @@ fn images_without_mask_and_unreadable_ones_are_named() {
         command.args(["--out", "m.json"]).args(more).assert()
     };
     run(&[]).success().stdout(contains("10 images")).stderr(contains("7.png").and(contains("8.png")));
-    run(&["--strict"]).code(64).stderr(contains("2 images cannot be used"));
+    run(&["--strict"]).code(65).stderr(contains("2 images cannot be used"));
 }
 
 /// The shipped models are what the training commands make of the development data.

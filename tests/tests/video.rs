@@ -196,7 +196,7 @@ fn what_came_before_a_break_is_kept() {
     fs::write(root.join("cut.mkv"), &bytes[..bytes.len() / 2]).unwrap();
     let output = sinew(root, "track arm cut.mkv --out run");
     let message = stderr(&output);
-    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert_eq!(output.status.code(), Some(65), "{message}");
     assert!(
         message.contains("`cut.mkv` is broken after") && message.contains("finished frames are in `run`"),
         "{message}"
@@ -206,11 +206,55 @@ fn what_came_before_a_break_is_kept() {
     assert_eq!(report(&root.join("run"))["complete"], false);
     let output = sinew(root, "segment cut.mkv --out masks");
     assert!(
-        output.status.code() == Some(1) && stderr(&output).contains("what came before is written"),
+        output.status.code() == Some(65) && stderr(&output).contains("what came before is written"),
         "{}",
         stderr(&output)
     );
     assert_eq!(fs::read_dir(root.join("masks")).unwrap().count(), kept);
+}
+
+/// Puts a program `ffmpeg` into the folder `bin`, which gives five frames and half of a sixth, and
+/// then does `ending`.
+#[cfg(unix)]
+fn failing_ffmpeg(root: &Path, ending: &str) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let path = std::env::var("PATH").unwrap();
+    let bin = root.join("bin");
+    fs::create_dir_all(&bin).unwrap();
+    let program = bin.join("ffmpeg");
+    fs::write(&program, format!("#!/bin/sh\nPATH='{path}' ffmpeg \"$@\" | head -c 5068000\n{ending}\n")).unwrap();
+    fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+    format!("{}:{path}", bin.display())
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_whose_video_cannot_be_read_any_more_goes_on() {
+    let Some(root) = scene() else { return };
+    let root = root.path();
+    let video = lossless(root);
+    assert!(sinew(root, "track arm clip.mkv --out whole").status.success());
+    let endings = ["kill -9 $$", "kill -15 $$", "exit 255", "mv clip.mkv away.mkv; exit 1"];
+    for (run, ending) in endings.into_iter().enumerate() {
+        let path = failing_ffmpeg(root, ending);
+        let words = format!("track arm clip.mkv --out run{run}");
+        let output = sinew_command().current_dir(root).args(words.split(' ')).env("PATH", path).output().unwrap();
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(74), "{message}");
+        assert!(message.contains("`clip.mkv` cannot be read any more after 5 frames"), "{message}");
+        if !video.exists() {
+            fs::rename(root.join("away.mkv"), &video).unwrap();
+        }
+        let resumed = sinew(root, &format!("{words} --resume"));
+        assert!(resumed.status.success(), "{}", stderr(&resumed));
+        let tables = ["whole".to_owned(), format!("run{run}")].map(|run| fs::read(root.join(run).join("track.csv")));
+        assert_eq!(tables[0].as_ref().unwrap(), tables[1].as_ref().unwrap());
+    }
+    let path = failing_ffmpeg(root, "kill -9 $$");
+    let segment = ["segment", "clip.mkv", "--out", "masks"];
+    let output = sinew_command().current_dir(root).args(segment).env("PATH", path).output().unwrap();
+    assert_eq!(output.status.code(), Some(74), "{}", stderr(&output));
+    assert!(stderr(&output).contains("what came before is written"), "{}", stderr(&output));
 }
 
 #[test]
@@ -222,7 +266,7 @@ fn a_video_that_is_none_and_a_missing_ffmpeg_are_reported_with_the_remedy() {
         without.current_dir(root.path()).args(command.split_whitespace()).env("PATH", root.path());
         let output = without.output().unwrap();
         let message = stderr(&output);
-        assert_eq!(output.status.code(), Some(1), "{message}");
+        assert_eq!(output.status.code(), Some(66), "{message}");
         assert!(message.contains("apt install ffmpeg") && message.contains("give a folder of images"), "{message}");
         assert!(!root.path().join("run").exists());
     }

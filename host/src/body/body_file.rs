@@ -1,6 +1,7 @@
 //! `body.json`: who is tracked.
 
 use crate::error::{Context, Result};
+use crate::json_file::read_json;
 use serde::{Deserialize, Serialize};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::BodyMeasures;
@@ -84,7 +85,7 @@ impl BodyFile {
     /// # Errors
     /// Names the file and what is wrong in it.
     pub fn read(path: &Path) -> Result<BodyMeasures> {
-        let inner = || -> Result<BodyMeasures> { serde_json::from_slice::<Self>(&std::fs::read(path)?)?.measures() };
+        let inner = || -> Result<BodyMeasures> { read_json::<Self>(path)?.measures() };
         inner().with_context(|| format!("`{}` is no body.json", path.display()))
     }
 }

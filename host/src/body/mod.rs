@@ -19,4 +19,4 @@ pub use joints::{BodyJoints, BodySources};
 pub use measuring::measure;
 pub use part::BodyPart;
 pub use placing::Placement;
-pub use recording::{BodyRecording, BodyRecordingOptions};
+pub use recording::{BodyRecording, BodyRecordingOptions, RecordedBody};

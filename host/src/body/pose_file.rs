@@ -1,7 +1,9 @@
 //! A pose by the names of its coordinates, as `first_pose.json` holds it.
 
 use crate::error::{Context, Result, bail};
+use crate::json_file::read_json;
 use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -24,7 +26,7 @@ pub fn pose_json(angles: &[f32; BODY_ANGLES]) -> String {
 /// Names the file, and a coordinate that is not known or not a finite number.
 pub fn read_pose(path: &Path) -> Result<[f32; BODY_ANGLES]> {
     let inner = || -> Result<[f32; BODY_ANGLES]> {
-        let named: std::collections::BTreeMap<String, f32> = serde_json::from_slice(&std::fs::read(path)?)?;
+        let named: BTreeMap<String, f32> = read_json(path)?;
         let mut angles = [0.0; BODY_ANGLES];
         for (name, value) in named {
             let Some(index) = BODY_ANGLE_NAMES.iter().position(|other| *other == name) else {

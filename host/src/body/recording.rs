@@ -6,7 +6,7 @@ use crate::cyclic::projection::upwards;
 use crate::error::{Context, Result, ensure};
 use crate::motion::joint_names::JointSources;
 use crate::motion::markers::MarkerMotion;
-use crate::motion::{self, ReadOptions, has_skin_markers};
+use crate::motion::{self, ReadOptions, Shortfall, has_skin_markers};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::full_body::BODY_BONES;
 use std::ops::Range;
@@ -38,6 +38,20 @@ pub struct BodyRecordingOptions<'a> {
     pub between_s: Option<(f32, f32)>,
     /// Where the person is put.
     pub placement: Placement,
+    /// Take a motion with fewer frames than its header promises; an error if not.
+    pub partial: bool,
+}
+
+/// What a motion file gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordedBody {
+    /// The joints.
+    pub recording: BodyRecording,
+    /// The markers of each frame: those of a .c3d whose name does not begin with `*`, as an
+    /// unlabelled one's does. Other files have joints, not markers.
+    pub markers_m: MarkerFrames,
+    /// How many frames of the file are missing, if some are.
+    pub shortfall: Option<Shortfall>,
 }
 
 /// Frames in a second of a stereo camera by default.
@@ -55,6 +69,7 @@ impl Default for BodyRecordingOptions<'_> {
             rate_hz: DEFAULT_RATE_HZ,
             between_s: None,
             placement: Placement::default(),
+            partial: false,
         }
     }
 }
@@ -65,19 +80,19 @@ impl BodyRecording {
     /// # Errors
     /// Names the file and the line, joint or rate that cannot be used.
     pub fn read(path: &Path, options: &BodyRecordingOptions<'_>) -> Result<Self> {
-        Ok(Self::read_with_markers(path, options)?.0)
+        Ok(Self::read_with_markers(path, options)?.recording)
     }
 
-    /// As [`Self::read`], with the markers of each frame: those of a .c3d whose name does not begin
-    /// with `*`, as an unlabelled one's does. Other files have joints, not markers.
+    /// As [`Self::read`], with the markers of each frame.
     ///
     /// # Errors
     /// As [`Self::read`].
-    pub fn read_with_markers(path: &Path, options: &BodyRecordingOptions<'_>) -> Result<(Self, MarkerFrames)> {
+    pub fn read_with_markers(path: &Path, options: &BodyRecordingOptions<'_>) -> Result<RecordedBody> {
         let read = ReadOptions {
             skeleton: options.skeleton,
             frames_per_second: options.input_rate_hz,
-            ..ReadOptions::default()
+            metres_per_unit: None,
+            partial: options.partial,
         };
         let motion = motion::read_space(path, &read)?;
         let figure = JointSources::find(&motion.names, false, path)?.of_motion(&motion);
@@ -106,7 +121,7 @@ impl BodyRecording {
         for place in recording.joints_m.iter_mut().flatten().chain(markers_m.iter_mut().flatten()).flatten() {
             *place = placed.apply(place);
         }
-        Ok((recording, markers_m))
+        Ok(RecordedBody { recording, markers_m, shortfall: motion.shortfall })
     }
 
     /// The same motion at `rate_hz`: each joint on the line between the two frames nearest in time;

@@ -1,11 +1,12 @@
 //! `sinew cut`: the cycles of angle tables as a cut list.
 
 use super::console::Console;
+use super::data_error;
 use crate::cyclic::AngleTable;
 use crate::cyclic::cuts::{self, Cut};
 use crate::cyclic::cutting::{CuttingOptions, cycles};
 use crate::output::check_writable_file;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::json;
 use std::fmt::Write as _;
@@ -71,7 +72,7 @@ pub fn run(args: &CutArgs, console: &Console) -> Result<()> {
         }
     }
     if all.is_empty() {
-        bail!("no table has a cycle: {}", left_out.join("; "));
+        return Err(data_error(format!("no table has a cycle: {}", left_out.join("; "))));
     }
     cuts::write(&args.out, &all)?;
     writeln!(report, "wrote {}", args.out.display())?;

@@ -1,6 +1,7 @@
 //! `sinew demo`: a rendered scene with known truth, tracked, and compared with the truth.
 
 use super::console::Console;
+use super::data_error;
 use super::track_arm::run_with_progress;
 use crate::config::Config;
 use crate::motion::{ArmSide, reach};
@@ -9,7 +10,7 @@ use crate::scene::{Scene, SceneOptions, Sides};
 use crate::skin::confusion::median;
 use crate::skin::model::DEFAULT_SKIN;
 use crate::track::{RunOutcome, SideChoice, TrackOptions, TrackRun};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Result, bail};
 use clap::Args;
 use serde::Serialize;
 use serde_json::json;
@@ -112,13 +113,14 @@ fn track_options(out: &OutputDir, seed: u64) -> Result<TrackOptions> {
 /// Distances of the tracked hand from the true one. A hand that is projected nowhere is as wrong as
 /// the image is wide.
 fn compare(scene: &Scene, outcome: &RunOutcome) -> Result<DemoError> {
-    ensure!(
-        outcome.samples.len() == scene.len(),
-        "{} frames were tracked in place of {}; `{}` holds other images, too: take them out",
-        outcome.samples.len(),
-        scene.len(),
-        outcome.report.inputs.folder.display()
-    );
+    if outcome.samples.len() != scene.len() {
+        return Err(data_error(format!(
+            "{} frames were tracked in place of {}; `{}` holds other images, too: take them out",
+            outcome.samples.len(),
+            scene.len(),
+            outcome.report.inputs.folder.display()
+        )));
+    }
     let camera = scene.camera();
     let width_px = f64::from(scene.options().width_px);
     let scored = outcome.samples.iter().enumerate().skip(FIRST_SCORED_FRAME);
@@ -129,14 +131,14 @@ fn compare(scene: &Scene, outcome: &RunOutcome) -> Result<DemoError> {
         Some((error_m, sample.hand_px.map_or(width_px, |pixel| f64::from(pixel.distance_px(true_px)))))
     });
     let (errors_m, errors_px): (Vec<f64>, Vec<f64>) = errors.unzip();
-    let nothing = "no frame can be compared with the truth";
+    let nothing = || data_error("no frame can be compared with the truth");
     Ok(DemoError {
         first_frame: FIRST_SCORED_FRAME,
         last_frame: scene.len() - 1,
-        mean_error_m: mean(&errors_m).context(nothing)?,
-        median_error_m: median(errors_m).context(nothing)?,
-        mean_error_px: mean(&errors_px).context(nothing)?,
-        median_error_px: median(errors_px).context(nothing)?,
+        mean_error_m: mean(&errors_m).ok_or_else(nothing)?,
+        median_error_m: median(errors_m).ok_or_else(nothing)?,
+        mean_error_px: mean(&errors_px).ok_or_else(nothing)?,
+        median_error_px: median(errors_px).ok_or_else(nothing)?,
     })
 }
 

@@ -1,10 +1,11 @@
 //! `sinew export`: a motion model as firmware reads it.
 
 use super::console::Console;
+use super::data_error;
 use crate::cyclic::CyclicModel;
 use crate::cyclic::model_file::MODEL_VALUE;
 use crate::output::{check_writable_file, write_atomically};
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
@@ -44,14 +45,15 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<()> {
     check_writable_file(&args.out)?;
     let model = CyclicModel::from_option(&args.model)?;
     let angles = model.view().angle_count();
-    ensure!(
-        angles <= HUMAN_ANGLES,
-        "`{}` has {angles} angles, two a joint; firmware takes {HUMAN_ANGLES} at most: train it on tables of one angle a joint",
-        args.model
-    );
+    if angles > HUMAN_ANGLES {
+        return Err(data_error(format!(
+            "`{}` has {angles} angles, two a joint; firmware takes {HUMAN_ANGLES} at most: train it on tables of one angle a joint",
+            args.model
+        )));
+    }
     let bytes = model
         .to_bytes()
-        .with_context(|| format!("`{}` says nothing of how people differ; train it anew", args.model))?;
+        .ok_or_else(|| data_error(format!("`{}` says nothing of how people differ; train it anew", args.model)))?;
     let text = match args.form {
         ModelForm::Bytes => None,
         ModelForm::C => Some(c_source(&array_name(&args.out)?, &bytes)),

@@ -1,10 +1,13 @@
 //! Images one after the other, each taken alone: what `segment` and `blobs` share.
 
 use super::console::Console;
+use super::data_error;
 use super::skin_args::SkinArgs;
-use crate::images::{ImageInput, VideoError, VideoFacts, VideoFrames, load_rgb};
+use crate::error::Error;
+use crate::images::{ImageFileError, ImageInput, VideoError, VideoFacts, VideoFrames, load_rgb};
+use crate::reading_again::read_again;
 use crate::skin::SkinModel;
-use anyhow::{Result, bail};
+use anyhow::Result;
 use image::RgbImage;
 use std::path::{Path, PathBuf};
 
@@ -44,12 +47,13 @@ impl Skipped {
     /// # Errors
     /// It did.
     pub fn whole(self) -> Result<()> {
-        self.broken.map_or(Ok(()), |broken| bail!("{broken}; what came before is written"))
+        let kept = "what came before is written".to_owned();
+        self.broken.map_or(Ok(()), |broken| Err(Error::Unfinished { error: Box::new(broken.into()), kept }.into()))
     }
 
     fn add(&mut self, reason: String) -> Result<()> {
         if self.strict {
-            bail!("{reason}; --strict was given");
+            return Err(data_error(format!("{reason}; --strict was given")));
         }
         self.console.note(format!("skipped: {reason}"));
         self.reasons.push(reason);
@@ -63,8 +67,8 @@ impl Skipped {
 /// The model is calibrated on the first one, if that was asked for; it then has to be readable.
 ///
 /// # Errors
-/// Whatever `take` refuses; an unreadable image if strict or if no image can be read; a bad
-/// calibration; no ffmpeg for a video.
+/// Whatever `take` refuses; an image that is none if strict or if all are; a file that the operating
+/// system refuses; a bad calibration; no ffmpeg for a video.
 pub fn load_each(
     input: &ImageInput,
     skin: &SkinArgs,
@@ -119,10 +123,12 @@ fn load_files(
     let bar = skipped.console.bar(files.len() as u64, BAR)?;
     for (index, file) in files.iter().enumerate() {
         bar.set_position(index as u64);
-        let image = match load_rgb(file) {
+        let image = match read_again(|| load_rgb(file), ImageFileError::is_io)? {
             Ok(image) => image,
             Err(error) if files.len() == 1 => return Err(error.into()),
-            Err(error) if index == 0 && skin.calibrate.is_some() => bail!("{error}; --calibrate needs the first image"),
+            Err(error) if index == 0 && skin.calibrate.is_some() => {
+                return Err(data_error(format!("{error}; --calibrate needs the first image")));
+            }
             Err(error) => {
                 bar.suspend(|| skipped.add(error.to_string()))?;
                 continue;
@@ -135,7 +141,7 @@ fn load_files(
     }
     bar.finish_and_clear();
     if skipped.count() == files.len() {
-        bail!("none of the {} images can be read", files.len());
+        return Err(data_error(format!("none of the {} images can be read", files.len())));
     }
     if skipped.count() > 0 {
         skipped.console.note(format!("{} of {} images were skipped", skipped.count(), files.len()));

@@ -152,6 +152,11 @@ pub fn exit_code(ended: anyhow::Result<()>, console: &Console) -> ExitCode {
     ExitCode::from(status)
 }
 
+/// An error about an input: the texts of `anyhow` count as errors about an option.
+pub fn data_error(text: impl Into<String>) -> anyhow::Error {
+    LibraryError::Invalid(text.into()).into()
+}
+
 /// What went wrong. The command's own checks are of its options.
 fn kind_of(error: &anyhow::Error) -> ErrorKind {
     if interrupted(error).is_some() {

@@ -3,8 +3,8 @@
 use super::console::Console;
 use super::scene_args::{clear_frames, pair};
 use crate::body::recording::DEFAULT_RATE_HZ;
-use crate::body::{BodyPart, BodyRecording, BodyRecordingOptions, Placement};
-use crate::motion::{DEFAULT_FRAMES_PER_SECOND, endings_without_rate};
+use crate::body::{BodyPart, BodyRecording, BodyRecordingOptions, Placement, RecordedBody};
+use crate::motion::{DEFAULT_FRAMES_PER_SECOND, Shortfall, endings_without_rate};
 use crate::output::OutputDir;
 use crate::registry::{MOTION, choice};
 use crate::stereo::stick_wave::StickEnds;
@@ -42,6 +42,9 @@ pub struct SimulateStereoArgs {
     /// Part of the motion that is used, in seconds from its beginning.
     #[arg(long, value_name = "START,END", value_parser = pair::<f32>)]
     pub between: Option<(f32, f32)>,
+    /// Take a motion with fewer frames than its header promises.
+    #[arg(long)]
+    pub partial: bool,
     /// Mean distance of the pelvis from the camera, metres; larger if the person would come too
     /// near or leave the picture.
     #[arg(long, value_name = "METRES", default_value_t = Placement::default().mean_distance_m)]
@@ -99,7 +102,9 @@ pub fn run(args: &SimulateStereoArgs, console: &Console) -> Result<()> {
         ..Placement::default()
     };
     ensure!(placement.heading_rad.is_finite(), "--heading has to be finite");
-    let (recording, stick_m) = motion(args, placement)?;
+    let (recording, stick_m, shortfall) = motion(args, placement)?;
+    let notes: Vec<String> = shortfall.iter().map(ToString::to_string).collect();
+    notes.iter().for_each(|note| console.note(note));
     for hidden in &args.hide {
         let (last, frames) = (hidden.frames.end(), recording.joints_m.len());
         ensure!(*last < frames, "--hide names frame {last}; the last one is {}", frames.saturating_sub(1));
@@ -117,13 +122,15 @@ pub fn run(args: &SimulateStereoArgs, console: &Console) -> Result<()> {
     let output = OutputDir::create(&args.out)?;
     clear_frames(&output.join("points"), "", ".ply", args.force)?;
     let name = args.motion.display().to_string();
-    scene.write_folder(&name, placement.camera_height_m, stick_m.as_deref(), &output)?;
+    scene.write_folder(&name, placement.camera_height_m, stick_m.as_deref(), &notes, &output)?;
     let text = format!("{} frames of points with their truth in `{}`\n", scene.len(), args.out.display());
-    console.answer(&text, &json!({ "frames": scene.len(), "out": args.out }))
+    console.answer(&text, &json!({ "frames": scene.len(), "notes": notes, "out": args.out }))
 }
 
-/// The person's joints, and the ends of a stick in each frame.
-fn motion(args: &SimulateStereoArgs, placement: Placement) -> Result<(BodyRecording, Option<Vec<StickEnds>>)> {
+/// The person's joints, the ends of a stick in each frame, and whether the motion ends early.
+type StereoMotion = (BodyRecording, Option<Vec<StickEnds>>, Option<Shortfall>);
+
+fn motion(args: &SimulateStereoArgs, placement: Placement) -> Result<StereoMotion> {
     let built_in = args.motion.to_str().filter(|name| [STICK_WAVE, PELVIC_LIFT].contains(name));
     if built_in.is_none() {
         let options = BodyRecordingOptions {
@@ -132,8 +139,10 @@ fn motion(args: &SimulateStereoArgs, placement: Placement) -> Result<(BodyRecord
             rate_hz: args.rate,
             between_s: args.between,
             placement,
+            partial: args.partial,
         };
-        return Ok((BodyRecording::read(&args.motion, &options)?, None));
+        let RecordedBody { recording, shortfall, .. } = BodyRecording::read_with_markers(&args.motion, &options)?;
+        return Ok((recording, None, shortfall));
     }
     if args.skeleton.is_some() || args.motion_rate.is_some() || args.between.is_some() || args.heading != 0.0 {
         bail!("--skeleton, --motion-rate, --between and --heading are for motion files; leave them out");
@@ -141,7 +150,7 @@ fn motion(args: &SimulateStereoArgs, placement: Placement) -> Result<(BodyRecord
     let (height_m, distance_m) = (placement.camera_height_m, args.distance);
     if built_in == Some(STICK_WAVE) {
         let wave = stick_wave(args.seed, args.rate, height_m, distance_m)?;
-        return Ok((wave.recording, Some(wave.stick_m)));
+        return Ok((wave.recording, Some(wave.stick_m), None));
     }
-    Ok((pelvic_lift(args.rate, height_m, distance_m)?, None))
+    Ok((pelvic_lift(args.rate, height_m, distance_m)?, None, None))
 }

@@ -48,6 +48,9 @@ pub struct TrackBodyArgs {
         extensions(MEASURABLE)
     ))]
     pub skeleton: Option<PathBuf>,
+    /// Take a motion to measure that has fewer frames than its header promises.
+    #[arg(long)]
+    pub partial: bool,
     /// Height of a person who is not measured, metres.
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub height: Option<f32>,
@@ -111,6 +114,7 @@ pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
         model: args.model,
         particles: args.particles.unwrap_or(BodyTrackOptions::default_particles(args.model)),
         skeleton: args.skeleton.clone(),
+        partial: args.partial,
         height_m: args.height,
         init: args.init.clone(),
         stick: args.stick.clone(),

@@ -1,13 +1,14 @@
 //! `sinew train skin`: a skin model from labelled pixels or from images with masks.
 
 use super::console::Console;
+use super::data_error;
 use crate::output::{check_writable_file, write_atomically};
 use crate::skin::model::{ModelKind, SkinModel};
 use crate::skin::model_file;
 use crate::skin::pairs::{self, PairList};
 use crate::skin::training::{TrainingOptions, pairs_set, pixels_set, train};
 use crate::skin::training_set::TrainingSet;
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
@@ -76,7 +77,8 @@ fn read_pairs(args: &TrainSkinArgs, console: &Console) -> Result<TrainingSet> {
         console.note(format!("skipped `{}`: {reason}", path.display()));
     }
     if args.strict && !(skipped.is_empty() && list.without_mask.is_empty()) {
-        bail!("{} images cannot be used, and --strict was given", skipped.len() + list.without_mask.len());
+        let count = skipped.len() + list.without_mask.len();
+        return Err(data_error(format!("{count} images cannot be used, and --strict was given")));
     }
     if !skipped.is_empty() {
         console.note(format!("{} image-mask pairs were skipped", skipped.len()));

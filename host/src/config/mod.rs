@@ -12,6 +12,7 @@ pub use likelihood::{EdgeConfig, LikelihoodConfig};
 pub use tracker::{MAX_PARTICLES, options_for};
 
 use crate::error::{Context, Result, bail};
+use crate::file::read_text;
 use serde::{Deserialize, Serialize};
 use sinew_core::tracker::arm::ArmOptions;
 use std::path::Path;
@@ -42,7 +43,7 @@ impl Config {
     /// Names the file and what is wrong: not readable, not TOML, an unknown key (with the nearest
     /// right one), a value of the wrong type or out of range.
     pub fn load(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).with_context(|| {
+        let text = read_text(path).with_context(|| {
             format!("configuration `{}` cannot be read; `sinew track arm --print-config` writes one", path.display())
         })?;
         Self::parse(&text).with_context(|| format!("configuration `{}`", path.display()))

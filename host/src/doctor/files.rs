@@ -6,7 +6,9 @@ use crate::body::run::tuning_file;
 use crate::config::Config;
 use crate::cyclic::angle_table::{ANGLES, COLUMNS};
 use crate::cyclic::{AngleTable, CyclicModel};
+use crate::file::read_text;
 use crate::images::{VideoFacts, VideoFrames, is_video, load_rgb};
+use crate::json_file::read_json;
 use crate::registry::{Kind, find};
 use crate::skin::SkinModel;
 use image::RgbImage;
@@ -54,7 +56,7 @@ fn video(path: &Path) -> Diagnosis {
 fn configuration(path: &Path) -> Diagnosis {
     let mut diagnosis = Diagnosis::new(path, "configuration");
     let (arm, body) = (Config::load(path), tuning_file::load(path));
-    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let text = read_text(path).unwrap_or_default();
     let of_body = ["[root", "[end_effector", "[guided", "[angular", "[points", "stick_", "lift_"];
     let is_body = text.lines().any(|line| of_body.iter().any(|start| line.trim_start().starts_with(start)));
     match (arm, body) {
@@ -68,11 +70,10 @@ fn configuration(path: &Path) -> Diagnosis {
 
 fn json(path: &Path) -> Diagnosis {
     let mut diagnosis = Diagnosis::new(path, "JSON file");
-    let parsed = std::fs::read(path).map_err(|error| error.to_string());
-    let record: Value = match parsed.and_then(|bytes| serde_json::from_slice(&bytes).map_err(|error| error.to_string()))
-    {
+    let record: Value = match read_json(path) {
         Ok(record) => record,
-        Err(reason) => {
+        Err(error) => {
+            let reason = error.chain();
             diagnosis.add(
                 Severity::Problem,
                 format!("it is no JSON ({reason}); a file that was cut off has to be made anew"),

@@ -1,6 +1,7 @@
-//! Errors of writers that wrap one of the operating system.
+//! Errors of readers and writers that wrap one of the operating system.
 
 use super::Error;
+use crate::file::FileError;
 use std::io;
 
 #[cfg(feature = "plots")]
@@ -9,6 +10,15 @@ use plotters::{backend::DrawingBackend, drawing::DrawingAreaErrorKind, prelude::
 /// What the drawing of a plot refuses.
 #[cfg(feature = "plots")]
 pub type PlotError = DrawingAreaErrorKind<<BitMapBackend<'static> as DrawingBackend>::ErrorType>;
+
+impl From<FileError> for Error {
+    fn from(error: FileError) -> Self {
+        match error {
+            FileError::Io(reason) => Self::Io(reason),
+            beyond_limits => Self::invalid(beyond_limits),
+        }
+    }
+}
 
 impl From<tempfile::PersistError> for Error {
     fn from(error: tempfile::PersistError) -> Self {

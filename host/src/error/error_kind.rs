@@ -4,7 +4,7 @@ use super::Error;
 use crate::cyclic::CyclicError;
 use crate::keypoints::error::KeypointError;
 use sinew_formats::cloud::CloudError;
-use sinew_formats::images::{ImageFileError, InputError};
+use sinew_formats::images::{ImageFileError, InputError, VideoError};
 use sinew_formats::motion::MotionError;
 use std::error::Error as StdError;
 use std::io;
@@ -52,6 +52,12 @@ impl ErrorKind {
             return Some(Self::of_reading(io.kind()));
         }
         let by_reason = |reason: Option<io::ErrorKind>| Some(reason.map_or(Self::Data, Self::of_reading));
+        if let Some(error) = error.downcast_ref::<csv::Error>() {
+            return match error.kind() {
+                csv::ErrorKind::Io(reason) => by_reason(Some(reason.kind())),
+                _ => by_reason(None),
+            };
+        }
         if let Some(error) = error.downcast_ref::<CyclicError>() {
             return match error {
                 CyclicError::Unreadable { reason, .. } => by_reason(Some(reason.kind())),
@@ -73,6 +79,15 @@ impl ErrorKind {
         }
         if let Some(error) = error.downcast_ref::<ImageFileError>() {
             return by_reason(error.io);
+        }
+        if let Some(error) = error.downcast_ref::<VideoError>() {
+            return match error {
+                VideoError::Io { frames: 0, kind, .. } => by_reason(Some(*kind)),
+                // It was there.
+                VideoError::Io { .. } => Some(Self::Io),
+                VideoError::NoProgram { .. } => Some(Self::NoInput),
+                _ => by_reason(None),
+            };
         }
         match error.downcast_ref::<InputError>()? {
             InputError::Missing(_) => Some(Self::NoInput),
@@ -153,6 +168,7 @@ impl Error {
                 other => other.kind(),
             },
             Self::Output(_) => ErrorKind::CannotCreate,
+            Self::Video(error) => ErrorKind::of_reader(error).unwrap_or(ErrorKind::Data),
             Self::Motion(error) => ErrorKind::of_reader(error).unwrap_or(ErrorKind::Data),
             Self::Cloud(error) => ErrorKind::of_reader(error).unwrap_or(ErrorKind::Data),
             Self::Input(error) => ErrorKind::of_reader(error).unwrap_or(ErrorKind::Data),

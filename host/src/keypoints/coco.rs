@@ -6,6 +6,7 @@ use super::layout::{self, DetectedFrame};
 use super::openpose::{numbers, people};
 use super::point_lists;
 use serde_json::Value;
+use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -15,38 +16,77 @@ use std::path::Path;
 /// # Errors
 /// Names the file, the entry and the rule that it broke.
 pub fn read(path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
-    let value = json(&read_text(path)?, path)?;
-    if value.get("people").is_some() {
-        return Ok(vec![DetectedFrame { frame: 0, people: people(&value, path)? }]);
-    }
-    if let Some(frames) = value.get("instance_info").and_then(Value::as_array) {
-        return frames.iter().enumerate().map(|(index, frame)| mmpose_frame(frame, index, path)).collect();
-    }
-    if let Some(list) = value.as_array().filter(|list| list.iter().any(Value::is_array)) {
-        return point_lists::frames(list, path);
-    }
-    let names = image_names(&value);
-    let list = value.as_array().or_else(|| value.get("annotations").and_then(Value::as_array));
+    let text = read_text(path)?;
+    let whole: &RawValue = json(&text, path)?;
+    let mut names = BTreeMap::new();
+    let list = match items(whole) {
+        Some(list) if list.iter().any(|entry| entry.get().starts_with('[')) => {
+            return each(list, path, |value, index| point_lists::frame(&value, index, path));
+        }
+        Some(list) => Some(list),
+        None => {
+            // Of a name that comes twice, the last value counts.
+            let parts: BTreeMap<String, &RawValue> = serde_json::from_str(whole.get()).unwrap_or_default();
+            if parts.contains_key("people") {
+                return Ok(vec![DetectedFrame { frame: 0, people: people(&json(&text, path)?, path)? }]);
+            }
+            let part = |name: &str| parts.get(name).and_then(|part| items(part));
+            if let Some(frames) = part("instance_info") {
+                return each(frames, path, |value, index| mmpose_frame(&value, index, path));
+            }
+            names = image_names(part("images").unwrap_or_default());
+            part("annotations")
+        }
+    };
     let list = list.ok_or_else(|| {
         KeypointError::unusable(path, "is neither a list of COCO results, nor has it `annotations` or `people`")
     })?;
-    let mut entries: Vec<(String, Vec<layout::Keypoint>)> = Vec::with_capacity(list.len());
-    for (index, entry) in list.iter().enumerate() {
-        let broken = |rule: &str| KeypointError::broken(path, format!("entry {index}"), rule);
-        let image = match entry.get("image_id") {
-            Some(Value::String(name)) => name.clone(),
-            Some(id) if id.is_u64() => names.get(&id.to_string()).cloned().unwrap_or_else(|| id.to_string()),
-            _ => return Err(broken("`image_id` has to be a whole number or a name")),
-        };
-        let values = entry.get("keypoints").and_then(numbers);
-        let values = values.ok_or_else(|| broken("`keypoints` has to be a list of numbers x, y, confidence"))?;
-        let person = layout::person(&values).map_err(|rule| broken(&format!("image `{image}`: {rule}")))?;
-        entries.push((image, person));
-    }
+    let entries = each(list, path, |value, index| result(&value, index, &names, path))?;
+    drop(text);
     if entries.is_empty() {
         return Err(KeypointError::unusable(path, "has no entry"));
     }
-    Ok(by_frame(entries, names.values().cloned()))
+    Ok(by_frame(entries, names.into_values()))
+}
+
+/// The items of a list, each as its text: as values, all of them together take ten times the memory
+/// of the file.
+fn items(value: &RawValue) -> Option<Vec<&RawValue>> {
+    serde_json::from_str(value.get()).ok()
+}
+
+/// What `read` makes of each item, one after the other.
+fn each<T>(
+    items: Vec<&RawValue>,
+    path: &Path,
+    read: impl Fn(Value, usize) -> Result<T, KeypointError>,
+) -> Result<Vec<T>, KeypointError> {
+    let value = |(index, item): (usize, &RawValue)| {
+        let value = serde_json::from_str(item.get());
+        let broken =
+            |error| KeypointError::broken(path, format!("entry {index}"), format!("this is no JSON ({error})"));
+        read(value.map_err(broken)?, index)
+    };
+    items.into_iter().enumerate().map(value).collect()
+}
+
+/// Name of the image and the person of one COCO result or annotation.
+fn result(
+    entry: &Value,
+    index: usize,
+    names: &BTreeMap<String, String>,
+    path: &Path,
+) -> Result<(String, Vec<layout::Keypoint>), KeypointError> {
+    let broken = |rule: &str| KeypointError::broken(path, format!("entry {index}"), rule);
+    let image = match entry.get("image_id") {
+        Some(Value::String(name)) => name.clone(),
+        Some(id) if id.is_u64() => names.get(&id.to_string()).cloned().unwrap_or_else(|| id.to_string()),
+        _ => return Err(broken("`image_id` has to be a whole number or a name")),
+    };
+    let values = entry.get("keypoints").and_then(numbers);
+    let values = values.ok_or_else(|| broken("`keypoints` has to be a list of numbers x, y, confidence"))?;
+    let person = layout::person(&values).map_err(|rule| broken(&format!("image `{image}`: {rule}")))?;
+    Ok((image, person))
 }
 
 /// One frame of an MMPose prediction file: points and scores in separate lists.
@@ -72,10 +112,12 @@ fn mmpose_frame(frame: &Value, index: usize, path: &Path) -> Result<DetectedFram
 }
 
 /// File name of each image of an annotation file, by the text of its number.
-fn image_names(value: &Value) -> BTreeMap<String, String> {
-    let images = value.get("images").and_then(Value::as_array);
-    let name = |image: &Value| Some((image.get("id")?.to_string(), image.get("file_name")?.as_str()?.to_owned()));
-    images.into_iter().flatten().filter_map(name).collect()
+fn image_names(images: Vec<&RawValue>) -> BTreeMap<String, String> {
+    let name = |image: &RawValue| {
+        let image: Value = serde_json::from_str(image.get()).ok()?;
+        Some((image.get("id")?.to_string(), image.get("file_name")?.as_str()?.to_owned()))
+    };
+    images.into_iter().filter_map(name).collect()
 }
 
 /// Groups entries by image, images in natural order. The number at the end of each name is the

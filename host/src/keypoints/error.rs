@@ -2,6 +2,7 @@
 
 use crate::file::{self, FileError};
 use crate::quote::with_short_quotes;
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Keypoints that cannot be read or used.
@@ -70,7 +71,7 @@ pub(crate) fn read_lines(path: &Path) -> Result<String, KeypointError> {
 }
 
 /// Parses JSON.
-pub(crate) fn json(text: &str, path: &Path) -> Result<serde_json::Value, KeypointError> {
+pub(crate) fn json<'a, T: Deserialize<'a>>(text: &'a str, path: &Path) -> Result<T, KeypointError> {
     serde_json::from_str(text).map_err(|error| {
         KeypointError::broken(path, format!("line {}", error.line()), format!("this is no JSON ({error})"))
     })

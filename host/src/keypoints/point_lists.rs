@@ -7,19 +7,16 @@ use super::openpose::numbers;
 use serde_json::Value;
 use std::path::Path;
 
-/// Reads the frames of `list`, counted from 0. An empty list or null is a frame without a person.
+/// Reads the frame `index`, counted from 0. An empty list or null is a frame without a person.
 ///
 /// # Errors
 /// Names the frame and the rule that it broke.
-pub fn frames(list: &[Value], path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
-    let frame = |(index, value): (usize, &Value)| {
-        let broken = |rule: String| KeypointError::broken(path, format!("frame {index}"), rule);
-        let values = if value.is_null() { Some(Vec::new()) } else { numbers(value) };
-        let values = values.ok_or_else(|| broken("has to be a list of numbers x, y, confidence".into()))?;
-        let people = if values.is_empty() { Vec::new() } else { vec![layout::person(&values).map_err(broken)?] };
-        Ok(DetectedFrame { frame: index as u64, people })
-    };
-    list.iter().enumerate().map(frame).collect()
+pub fn frame(value: &Value, index: usize, path: &Path) -> Result<DetectedFrame, KeypointError> {
+    let broken = |rule: String| KeypointError::broken(path, format!("frame {index}"), rule);
+    let values = if value.is_null() { Some(Vec::new()) } else { numbers(value) };
+    let values = values.ok_or_else(|| broken("has to be a list of numbers x, y, confidence".into()))?;
+    let people = if values.is_empty() { Vec::new() } else { vec![layout::person(&values).map_err(broken)?] };
+    Ok(DetectedFrame { frame: index as u64, people })
 }
 
 #[cfg(test)]
@@ -29,7 +26,9 @@ mod tests {
     use serde_json::json;
 
     fn read(value: &Value) -> Result<Vec<DetectedFrame>, String> {
-        frames(value.as_array().unwrap(), Path::new("k.json")).map_err(|error| error.to_string())
+        let frames = value.as_array().unwrap().iter().enumerate();
+        let frames = frames.map(|(index, value)| frame(value, index, Path::new("k.json")));
+        frames.collect::<Result<_, _>>().map_err(|error| error.to_string())
     }
 
     #[test]

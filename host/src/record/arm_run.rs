@@ -2,6 +2,7 @@
 
 use crate::config::Config;
 use crate::error::{Context, Result, ensure};
+use crate::file::read_text;
 use crate::skin::{Rectangle, SkinModel};
 use crate::track::{ArmSet, FrameSource, SideChoice};
 use image::RgbImage;
@@ -10,7 +11,6 @@ use serde_json::Value;
 use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::options::LimbCombination;
 use sinew_record::ArmSetup;
-use std::fs;
 use std::path::Path;
 
 /// Frames that are read ahead.
@@ -53,7 +53,7 @@ pub(super) struct ArmRun {
 impl ArmRun {
     /// Reads `run.json` and opens the images that it names.
     pub fn open(report: &Path) -> Result<Self> {
-        let json: Value = serde_json::from_str(&fs::read_to_string(report)?).context("run.json is not JSON")?;
+        let json: Value = serde_json::from_str(&read_text(report)?).context("run.json is not JSON")?;
         let options = &json["options"];
         let text = |name: &str| options[name].as_str().with_context(|| format!("run.json has no option `{name}`"));
         let side = SideChoice::deserialize(Value::from(text("side")?)).unwrap_or_default();

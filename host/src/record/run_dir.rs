@@ -8,9 +8,9 @@ use crate::cyclic::report::document::FORMAT as CYCLIC_FORMAT;
 use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates};
 use crate::cyclic::{AngleTable, CyclicModel};
 use crate::error::{Context, Error, Result, bail, ensure};
+use crate::file::read_text;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What of a run is recorded.
@@ -62,7 +62,7 @@ fn arm_run(report: &Path, form: Form) -> Result<Recorded> {
 }
 
 fn cyclic_run(summary: &Path) -> Result<Recorded> {
-    let json: Value = serde_json::from_str(&fs::read_to_string(summary)?).context("summary.json is not JSON")?;
+    let json: Value = serde_json::from_str(&read_text(summary)?).context("summary.json is not JSON")?;
     let text = |name: &str| json[name].as_str().with_context(|| format!("summary.json has no `{name}`"));
     ensure!(text("format")? == CYCLIC_FORMAT, "summary.json is not that of a tracked motion");
     let table = AngleTable::read(&PathBuf::from(text("table")?))?;

@@ -2,6 +2,8 @@
 
 use super::document::{Level, Notice};
 use super::table::Table;
+use crate::file::read_bytes;
+use crate::limits::MAX_FILE_BYTES;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -163,7 +165,7 @@ pub(super) fn read_regular(path: &Path) -> Result<Vec<u8>, String> {
     if !facts.is_file() {
         return Err("it is a link, or no regular file".to_owned());
     }
-    fs::read(path).map_err(|error| error.to_string())
+    read_bytes(path, MAX_FILE_BYTES).map_err(|error| error.to_string())
 }
 
 /// Names of the entries of a folder, in natural order; none of a folder that cannot be read.

@@ -49,7 +49,8 @@ pub fn write_page(document: &Document, blocks: &[Block], writer: &mut dyn Write)
 }
 
 /// What a content security policy calls this text: nothing else runs, whatever a run is named.
-fn source_hash(text: &str) -> String {
+#[must_use]
+pub fn source_hash(text: &str) -> String {
     format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text)))
 }
 

@@ -3,6 +3,8 @@
 
 use super::{Begun, Interrupted, REMEDY};
 use crate::error::{Context, Error, Result, WriteContext};
+use crate::file::read_text;
+use crate::json_file::read_json;
 use crate::output::{OutputDir, OutputLock};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -80,7 +82,7 @@ impl<'a> Cells<'a> {
     }
 
     fn check(path: &Path, now: &Begun, out: &Path) -> Result<()> {
-        let text = fs::read_to_string(path).with_context(|| {
+        let text = read_text(path).with_context(|| {
             format!("`{}` holds no unfinished evaluation (no `{}`); {REMEDY}", out.display(), path.display())
         })?;
         let value: Value =
@@ -106,8 +108,7 @@ impl<'a> Cells<'a> {
         let name = format!("{:016x}.json", hash(key));
         let known = || -> Option<T> {
             // As values: numbers are parsed exactly.
-            let text = fs::read_to_string(kept.folder.join(&name)).ok()?;
-            let cell: Cell<Value, Value> = serde_json::from_str(&text).ok()?;
+            let cell: Cell<Value, Value> = read_json(&kept.folder.join(&name)).ok()?;
             (cell.key == *key).then(|| serde_json::from_value(cell.value).ok())?
         };
         let value = match known() {

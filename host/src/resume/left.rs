@@ -3,6 +3,9 @@
 
 use super::{Begun, REMEDY};
 use crate::error::{Context, Result, WriteContext, bail, ensure};
+use crate::file::read_text_within;
+use crate::json_file::read_json;
+use crate::limits::MAX_FILE_BYTES;
 use crate::output::{Mark, PendingFile, mark, write_atomically};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -147,14 +150,15 @@ impl ResumeFile {
     pub fn read<S: DeserializeOwned>(&self, out: &Path) -> Result<Left<S>> {
         let path = self.path.display();
         if !self.path.exists() {
-            let report: Option<Value> =
-                fs::read(out.join("run.json")).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
-            if report.is_some_and(|report| report["complete"] == true) {
+            let report = read_json::<Value>(&out.join("run.json"));
+            if report.is_ok_and(|report| report["complete"] == true) {
                 bail!("the run in `{}` is complete; {REMEDY}", out.display());
             }
             bail!("`{}` holds no unfinished run (no `{path}`); {REMEDY}", out.display());
         }
-        let text = fs::read_to_string(&self.path).with_context(|| format!("`{path}` cannot be read; {REMEDY}"))?;
+        // It grows with the number of frames, and is written in full whatever its size.
+        let text = read_text_within(&self.path, MAX_FILE_BYTES)
+            .with_context(|| format!("`{path}` cannot be read; {REMEDY}"))?;
         // As a value first: its numbers are parsed exactly.
         let value: Value = serde_json::from_str(&text).with_context(|| format!("`{path}` is not JSON; {REMEDY}"))?;
         Begun::check_kind(&value["begun"], self.command, &self.path)?;

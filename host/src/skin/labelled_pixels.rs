@@ -2,7 +2,7 @@
 //! where 1 is skin and 2 is not.
 
 use crate::error::{Context, Result, bail};
-use std::fs;
+use crate::file::read_lines;
 use std::path::Path;
 
 /// A colour and whether it is skin.
@@ -29,12 +29,9 @@ pub struct LabelledPixels {
 /// # Errors
 /// Names the file, the line and what is wrong there; or says which label is missing.
 pub fn read(path: &Path) -> Result<LabelledPixels> {
-    let bytes = fs::read(path).with_context(|| {
+    let text = read_lines(path).with_context(|| {
         format!("`{}` cannot be read; check the path, and give a file of rows `B G R label`", path.display())
     })?;
-    let Ok(text) = std::str::from_utf8(&bytes) else {
-        bail!("`{}` is not a text file; give rows `B G R label` (1 skin, 2 not)", path.display());
-    };
     let mut rows = Vec::new();
     for (index, line) in text.lines().enumerate() {
         if line.trim().is_empty() {
@@ -78,6 +75,7 @@ fn excerpt(line: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn read_text(text: &str) -> Result<LabelledPixels> {
         let folder = tempfile::tempdir().unwrap();

@@ -54,11 +54,14 @@ pub struct StereoReport<'a> {
     pub hidden: &'a [Hidden],
     /// Distance of the first pose's joints from the true ones, the mean, metres.
     pub first_pose_residual_m: f32,
+    /// What a user should know of the motion, one sentence each.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub notes: &'a [String],
 }
 
 impl StereoScene {
     /// Writes `points/000000.ply` and on, `truth.csv`, `body.json`, `first_pose.json`, with a stick
-    /// `stick.csv`, and at last `run.json`.
+    /// `stick.csv`, and at last `run.json` with the `notes`.
     ///
     /// # Errors
     /// A file that cannot be written, by name.
@@ -67,6 +70,7 @@ impl StereoScene {
         motion: &str,
         floor_y_m: f32,
         stick_m: Option<&[StickEnds]>,
+        notes: &[String],
         output: &OutputDir,
     ) -> Result<()> {
         let points = output.begin_series("points")?;
@@ -106,6 +110,7 @@ impl StereoScene {
             patches: options.patches,
             hidden: &options.hidden,
             first_pose_residual_m: first.mean_m(),
+            notes,
         };
         let report = serde_json::to_string_pretty(&report)?;
         output.write("run.json", |writer| Ok(writer.write_all(report.as_bytes())?))

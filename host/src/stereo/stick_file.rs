@@ -3,6 +3,7 @@
 use super::camera::StereoCamera;
 use super::stick_wave::StickEnds;
 use crate::error::{Context, Result, bail, ensure};
+use crate::file::read_lines;
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
 use std::fmt::Write;
@@ -49,7 +50,7 @@ pub fn stick_csv(camera: &StereoCamera, stick_m: &[StickEnds]) -> String {
 /// # Errors
 /// Names the file, the line, and the columns or number that are wrong.
 pub fn read_stick(path: &Path) -> Result<Vec<SeenStick>> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("stick `{}` cannot be read", path.display()))?;
+    let text = read_lines(path).with_context(|| format!("stick `{}` cannot be read", path.display()))?;
     parse_stick(&text).with_context(|| format!("stick `{}` cannot be used", path.display()))
 }
 

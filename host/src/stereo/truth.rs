@@ -4,6 +4,7 @@ use super::markers::MARKERS;
 use super::scene::StereoScene;
 use crate::body::BodyJoints;
 use crate::error::{Context, Result, bail, ensure};
+use crate::file::read_lines;
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::full_body::{BODY_BONES, BODY_JOINT_NAMES};
 use std::fmt::Write;
@@ -52,7 +53,7 @@ pub fn truth_csv(scene: &StereoScene) -> String {
 /// # Errors
 /// Names the file, the line, and the column or number that is wrong.
 pub fn read_truth(path: &Path) -> Result<Vec<TrueFrame>> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("truth `{}` cannot be read", path.display()))?;
+    let text = read_lines(path).with_context(|| format!("truth `{}` cannot be read", path.display()))?;
     parse_truth(&text).with_context(|| format!("truth `{}` cannot be used", path.display()))
 }
 

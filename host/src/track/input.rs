@@ -1,9 +1,9 @@
 //! The frames of a run: one folder of images of one size, checked before anything is tracked.
 
 use crate::error::{Result, bail};
-use crate::images::{ImageFileError, list_images, load_rgb};
+use crate::images::{ImageFileError, list_images, load_rgb, size_by_header};
 use crate::reading_again::read_again;
-use image::{ImageReader, RgbImage};
+use image::RgbImage;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ impl FrameFolder {
     /// first odd one is named). With `strict`, one cannot be read.
     pub fn open(folder: &Path, strict: bool) -> Result<Self> {
         let files = list_images(folder)?;
-        let sizes: Vec<Option<(u32, u32)>> = files.par_iter().map(|file| size_of(file)).collect();
+        let sizes: Vec<Option<(u32, u32)>> = files.par_iter().map(|file| size_by_header(file)).collect();
         check_sizes(&files, &sizes)?;
         if strict {
             let unreadable: Vec<ImageFileError> = files.par_iter().filter_map(|file| load_rgb(file).err()).collect();
@@ -103,11 +103,6 @@ impl FrameFolder {
         }
         Ok(Ok(image))
     }
-}
-
-/// Size by the file's header; `None` where even that cannot be read.
-fn size_of(file: &Path) -> Option<(u32, u32)> {
-    ImageReader::open(file).ok()?.with_guessed_format().ok()?.into_dimensions().ok()
 }
 
 fn check_sizes(files: &[PathBuf], sizes: &[Option<(u32, u32)>]) -> Result<()> {

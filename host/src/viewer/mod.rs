@@ -13,13 +13,15 @@ pub mod recording;
 pub use marks::Shown;
 
 use crate::error::{Context, Result, bail};
+use crate::file::read_bytes;
+use crate::json_file::read_json;
+use crate::limits::MAX_FILE_BYTES;
 use crate::output::write_atomically;
 use crate::report::folder::RunFolder;
 use crate::report::kind::Kind;
 use recording::Recording;
 use serde_json::Value;
 use sinew_core::checksum::crc32;
-use std::fs;
 use std::path::Path;
 
 /// Writes the run in the directory `run` as the Rerun recording `file`.
@@ -36,13 +38,12 @@ pub fn write(run: &Path, file: &Path) -> Result<Shown> {
         _ => bail!("`{}` holds no run of `sinew track` or `sinew demo`", run.display()),
     };
     let record = run.join(record);
-    let inner = || -> Result<Value> { Ok(serde_json::from_slice(&fs::read(&record)?)?) };
-    let report = inner().with_context(|| format!("`{}` cannot be read", record.display()))?;
+    let report: Value = read_json(&record).with_context(|| format!("`{}` cannot be read", record.display()))?;
     let mut shown = Shown::default();
     write_atomically(file, |writer| {
         // Two recordings of one name would be shown as one.
         let name = run.file_name().map_or_else(|| "run".to_owned(), |name| name.to_string_lossy().into_owned());
-        let content = fs::read(run.join(table)).map_or(0, |bytes| crc32(&bytes));
+        let content = read_bytes(&run.join(table), MAX_FILE_BYTES).map_or(0, |bytes| crc32(&bytes));
         let mut recording = Recording::begin(&format!("{name}-{content:08x}"), writer)?;
         shown = match kind {
             Some(Kind::Arm) => arm::write(run, &report, &mut recording)?,

@@ -1,6 +1,8 @@
 //! Columns of a run's tables as numbers, row by row of a file of any length.
 
 use crate::error::{Context, Result};
+use crate::file::read_text_within;
+use crate::limits::MAX_FILE_BYTES;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -20,7 +22,9 @@ impl Numbers {
     /// A file that cannot be read, or that is no table.
     pub fn read(path: &Path, wanted: impl Fn(&str) -> bool) -> Result<Self> {
         let inner = || -> Result<Self> {
-            let mut reader = csv::Reader::from_path(path)?;
+            // A table of particles grows with the run.
+            let text = read_text_within(path, MAX_FILE_BYTES)?;
+            let mut reader = csv::Reader::from_reader(text.as_bytes());
             let mut numbers = Self::default();
             let mut places = Vec::new();
             let mut side = None;

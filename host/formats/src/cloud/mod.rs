@@ -21,7 +21,7 @@ pub use error::CloudError;
 pub use folder::{CloudFolder, CloudFrame};
 pub use ply::write_ply;
 pub use point_cloud::{MAX_DISTANCE_M, MAX_POINTS, PointCloud};
-pub use reading::read;
+pub use reading::{read, read_noting};
 
 #[cfg(test)]
 mod tests;

@@ -14,10 +14,19 @@ use std::path::Path;
 /// # Errors
 /// Names the file, the rule that it broke, and the remedy.
 pub fn read(path: &Path) -> Result<PointCloud, CloudError> {
+    read_noting(path, |_| ())
+}
+
+/// As [`read`]; `note` is shown the bytes of the file first, such as for a checksum.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_noting(path: &Path, note: impl FnOnce(&[u8])) -> Result<PointCloud, CloudError> {
     let Some(Reader::Cloud(parser)) = find(path, &[Kind::Cloud]).map(|format| format.reader) else {
         return Err(CloudError::UnknownKind { path: path.to_path_buf() });
     };
     let bytes = read_bytes(path, MAX_FILE_BYTES).map_err(|error| CloudError::of_file(path, error))?;
+    note(&bytes);
     parse(parser, &bytes).map_err(|rule| {
         let rule = with_short_quotes(&rule);
         CloudError::Broken { path: path.to_path_buf(), rule }

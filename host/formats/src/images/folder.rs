@@ -5,6 +5,7 @@ use super::video::is_video;
 use crate::file::{FileError, read_bytes};
 use crate::limits::{MAX_DECODE_BYTES, MAX_FILE_BYTES, MAX_SIDE_PX};
 use crate::registry::{Kind, extensions, find};
+use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits, RgbImage};
 use std::collections::BTreeMap;
 use std::fs;
@@ -183,6 +184,18 @@ fn upright(reader: ImageReader<Cursor<&Vec<u8>>>) -> image::ImageResult<DynamicI
     Ok(image)
 }
 
+/// Width and height by the file's header, upright, pixels; `None` where even that cannot be read.
+#[must_use]
+pub fn size_by_header(path: &Path) -> Option<(u32, u32)> {
+    let mut decoder = ImageReader::open(path).ok()?.with_guessed_format().ok()?.into_decoder().ok()?;
+    let (width, height) = decoder.dimensions();
+    let is_turned = matches!(
+        decoder.orientation().ok()?,
+        Orientation::Rotate90 | Orientation::Rotate270 | Orientation::Rotate90FlipH | Orientation::Rotate270FlipH
+    );
+    Some(if is_turned { (height, width) } else { (width, height) })
+}
+
 /// Whether the name ends as that of an image, in any case.
 #[must_use]
 pub fn has_image_extension(path: &Path) -> bool {
@@ -267,6 +280,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("sideways.jpg");
         fs::write(&path, bytes).unwrap();
+        assert_eq!(size_by_header(&path), Some((32, 64)));
         let upright = load_rgb(&path).unwrap();
         assert_eq!(upright.dimensions(), (32, 64));
         assert!(upright.get_pixel(16, 4)[0] > 200 && upright.get_pixel(16, 60)[0] < 50, "left has become the top");

@@ -8,7 +8,7 @@ use std::ffi::OsString;
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
 use thiserror::Error;
 
 /// A video that cannot be read.
@@ -45,6 +45,40 @@ pub enum VideoError {
         /// What ffmpeg said.
         reason: String,
     },
+    /// The operating system refuses the file, or ended ffmpeg.
+    #[error("`{}` cannot be read{}: {reason}", .file.display(), after(*.frames))]
+    Io {
+        /// The video.
+        file: PathBuf,
+        /// Frames that were read.
+        frames: usize,
+        /// What the operating system said.
+        reason: String,
+        /// The same for programs.
+        kind: ErrorKind,
+    },
+}
+
+impl VideoError {
+    /// Whether the operating system refused the file or ended ffmpeg, whatever the content.
+    #[must_use]
+    pub fn is_io(&self) -> bool {
+        matches!(self, Self::Io { .. })
+    }
+
+    /// The video's content cannot be read for `reason`, unless the file itself cannot.
+    fn of_content(file: &Path, frames: usize, reason: String) -> Self {
+        let file = file.to_path_buf();
+        match (read_through(&file), frames) {
+            (Err(error), _) => Self::Io { file, frames, reason: error.to_string(), kind: error.kind() },
+            (Ok(_), 0) => Self::Unreadable { file, reason },
+            (Ok(_), _) => Self::Broken { file, frames, reason },
+        }
+    }
+}
+
+fn after(frames: usize) -> String {
+    if frames == 0 { String::new() } else { format!(" any more after {frames} frames") }
 }
 
 /// Whether `path` is a file that is named like a video.
@@ -81,7 +115,11 @@ impl VideoFacts {
             .arg(address(file))
             .stdin(Stdio::null());
         let output = probe.output().map_err(|error| no_program(file, "ffprobe", &error))?;
-        let unreadable = |reason: String| VideoError::Unreadable { file: file.to_path_buf(), reason };
+        if let Some(reason) = stopped_from_outside(output.status) {
+            let kind = ErrorKind::Interrupted;
+            return Err(VideoError::Io { file: file.to_path_buf(), frames: 0, reason, kind });
+        }
+        let unreadable = |reason: String| VideoError::of_content(file, 0, reason);
         if !output.status.success() {
             return Err(unreadable(last_line(&String::from_utf8_lossy(&output.stderr))));
         }
@@ -136,7 +174,7 @@ impl VideoFrames {
             command.process_group(0);
         }
         let mut child = command.spawn().map_err(|error| no_program(file, "ffmpeg", &error))?;
-        let unreadable = |reason: &str| VideoError::Unreadable { file: file.to_path_buf(), reason: reason.to_owned() };
+        let unreadable = |reason: &str| VideoError::of_content(file, 0, reason.to_owned());
         let pipe = child.stdout.take().ok_or_else(|| unreadable("ffmpeg has no output"))?;
         let expected = (facts.frames as f64 * rate_hz / facts.rate_hz).round() as usize;
         let mut frames = Self {
@@ -176,7 +214,7 @@ impl VideoFrames {
     /// The next frame; none where the video ends.
     ///
     /// # Errors
-    /// [`VideoError::Broken`] once all frames before the break were given.
+    /// [`VideoError::Broken`] or [`VideoError::Io`] once all frames before the break were given.
     pub fn next_frame(&mut self) -> Result<Option<RgbImage>, VideoError> {
         match self.first.take() {
             Some(first) => Ok(Some(first)),
@@ -191,27 +229,53 @@ impl VideoFrames {
                 Ok(Some(image))
             }
             Ok(None) => self.end(None),
-            Err(error) => self.end(Some(error.to_string())),
+            Err(error) => self.end(Some(error)),
         }
     }
 
     /// Handles the end of the pipe: the video's end, or an error.
-    fn end(&mut self, reason: Option<String>) -> Result<Option<RgbImage>, VideoError> {
-        let succeeded = reason.is_none() && self.child.wait().is_ok_and(|status| status.success());
+    fn end(&mut self, failure: Option<std::io::Error>) -> Result<Option<RgbImage>, VideoError> {
+        let (file, frames) = (self.file.clone(), self.read);
+        // After a frame that cannot be understood, ffmpeg may still be waiting with the next one.
+        let has_ended = failure.as_ref().is_none_or(|error| error.kind() == ErrorKind::UnexpectedEof);
+        let status = if has_ended { self.child.wait().ok() } else { None };
+        if let Some(reason) = status.and_then(stopped_from_outside) {
+            return Err(VideoError::Io { file, frames, reason, kind: ErrorKind::Interrupted });
+        }
         let mut text = String::new();
         let _ = self.complaints.seek(SeekFrom::Start(0)).and_then(|_| self.complaints.read_to_string(&mut text));
+        let succeeded = failure.is_none() && status.is_some_and(|status| status.success());
         // Messages about a video of full length are about minor defects.
         if succeeded && (text.trim().is_empty() || self.read >= self.expected) {
             return Ok(None);
         }
-        let reason = if text.trim().is_empty() { reason } else { Some(last_line(&text)) };
-        let reason = reason.unwrap_or_else(|| "ffmpeg failed and says nothing".to_owned());
-        let file = self.file.clone();
-        Err(match self.read {
-            0 => VideoError::Unreadable { file, reason },
-            frames => VideoError::Broken { file, frames, reason },
-        })
+        let reason = match failure {
+            _ if !text.trim().is_empty() => last_line(&text),
+            Some(failure) => failure.to_string(),
+            None => "ffmpeg failed and says nothing".to_owned(),
+        };
+        Err(VideoError::of_content(&file, frames, reason))
     }
+}
+
+/// Who ended ffmpeg, if it was neither ffmpeg nor the video.
+fn stopped_from_outside(status: ExitStatus) -> Option<String> {
+    /// What ffmpeg ends with after a signal that it handles.
+    const AFTER_SIGNAL: i32 = 255;
+    #[cfg(unix)]
+    {
+        use std::os::unix::process::ExitStatusExt;
+        // SIGHUP, SIGINT, SIGKILL as for lack of memory, SIGTERM.
+        if let Some(signal @ (1 | 2 | 9 | 15)) = status.signal() {
+            return Some(format!("its reader was ended by signal {signal}"));
+        }
+    }
+    (status.code() == Some(AFTER_SIGNAL)).then(|| "its reader was ended by a signal".to_owned())
+}
+
+/// Reads all of a file, as ffmpeg does without saying why it failed.
+fn read_through(file: &Path) -> std::io::Result<u64> {
+    std::io::copy(&mut File::open(file)?, &mut std::io::sink())
 }
 
 impl Drop for VideoFrames {

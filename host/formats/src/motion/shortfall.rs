@@ -16,7 +16,7 @@ pub struct Shortfall {
 }
 
 /// Which commands have the option.
-const WHERE: &str = " (sinew angles, sinew simulate arm)";
+const WHERE: &str = " (sinew angles, simulate, track body, evaluate body)";
 
 impl Shortfall {
     /// The shortfall of a recording with `frames` that may have been `promised`, if there is one.

@@ -4,7 +4,7 @@ use super::trial::SeenMotion;
 use anyhow::{Context, Result, bail, ensure};
 use sinew::body::recording::{DEFAULT_RATE_HZ, MarkerFrames};
 use sinew::body::{BodyPart, BodyRecording, BodyRecordingOptions, Placement};
-use sinew::motion::{asf, needs_skeleton};
+use sinew::motion::{Shortfall, asf, needs_skeleton};
 use sinew::stereo::{Hidden, StereoOptions, StereoScene, pelvic_lift, stick_wave};
 use sinew_core::pik::processes::stick::StickSight;
 use std::path::{Path, PathBuf};
@@ -67,36 +67,37 @@ impl MotionChoice {
     /// # Errors
     /// A file that cannot be read, by name.
     pub fn read(&self, skeleton: Option<&Path>) -> Result<ReadMotion> {
-        self.read_turned(skeleton, 0.0)
+        self.read_turned(skeleton, 0.0, false)
     }
 
-    /// As [`Self::read`], the person of a file turned to their left by `heading_rad`.
+    /// As [`Self::read`], the person of a file turned to their left by `heading_rad`. With `partial`
+    /// a file may have fewer frames than its header promises.
     ///
     /// # Errors
     /// As [`Self::read`]; a turn of a built-in motion.
-    pub fn read_turned(&self, skeleton: Option<&Path>, heading_rad: f32) -> Result<ReadMotion> {
+    pub fn read_turned(&self, skeleton: Option<&Path>, heading_rad: f32, partial: bool) -> Result<ReadMotion> {
         let placement = Placement { heading_rad, ..Placement::default() };
         let is_file = matches!(self, Self::File { .. });
         ensure!(is_file || heading_rad == 0.0, "--heading is for motion files; `{}` is built in", self.name());
-        let mut markers_m = Vec::new();
+        let (mut markers_m, mut shortfall) = (Vec::new(), None);
         let recording = match self {
-            Self::StickWave => return Ok(ReadMotion { name: self.name(), recording: None, markers_m }),
+            Self::StickWave => return Ok(ReadMotion { name: self.name(), recording: None, markers_m, shortfall }),
             Self::PelvicLift => pelvic_lift(DEFAULT_RATE_HZ, placement.camera_height_m, placement.mean_distance_m)?,
             Self::File { path, between_s } => {
                 let skeleton = skeleton.filter(|_| needs_skeleton(path) && asf::beside(path).is_err());
                 let between_s = *between_s;
                 let options =
-                    BodyRecordingOptions { skeleton, between_s, placement, ..BodyRecordingOptions::default() };
-                let (recording, recorded_m) = BodyRecording::read_with_markers(path, &options)?;
-                markers_m = recorded_m;
-                recording
+                    BodyRecordingOptions { skeleton, between_s, placement, partial, ..BodyRecordingOptions::default() };
+                let read = BodyRecording::read_with_markers(path, &options)?;
+                (markers_m, shortfall) = (read.markers_m, read.shortfall);
+                read.recording
             }
         };
         let frames = recording.joints_m.len();
         if frames < 2 {
             bail!("`{}` has {frames} frames; tracking needs two", self.name());
         }
-        Ok(ReadMotion { name: self.name(), recording: Some(recording), markers_m })
+        Ok(ReadMotion { name: self.name(), recording: Some(recording), markers_m, shortfall })
     }
 
     /// The motion as the simulated stereo camera sees all of it with `seed`.
@@ -116,9 +117,17 @@ pub struct ReadMotion {
     recording: Option<BodyRecording>,
     /// Of a .c3d; else empty.
     markers_m: MarkerFrames,
+    /// How many frames of the file are missing, if some are.
+    shortfall: Option<Shortfall>,
 }
 
 impl ReadMotion {
+    /// What a user should know of the file.
+    #[must_use]
+    pub fn note(&self) -> Option<String> {
+        self.shortfall.map(|shortfall| format!("`{}`: {shortfall}", self.name))
+    }
+
     /// The motion as the simulated stereo camera sees `part` of it with `seed`.
     ///
     /// # Errors

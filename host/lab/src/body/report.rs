@@ -75,6 +75,9 @@ pub struct BodyReport {
     pub sinew_version: &'static str,
     /// Trials of each cell; trial n has seed n.
     pub trials: u64,
+    /// What a user should know of the motions, one sentence each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// Threads that the steps ran on.
     pub threads: usize,
     /// Numbers of the models.
@@ -189,7 +192,11 @@ impl BodyReport {
         if let Some(count) = self.angular_equals_end_effector_250 {
             let _ = writeln!(text, "angular needs {count:.0} particles for the error of end-effector with 250");
         }
-        text + &hidden_arm::to_text(&self.hidden_arm_summaries)
+        text += &hidden_arm::to_text(&self.hidden_arm_summaries);
+        for note in &self.notes {
+            let _ = writeln!(text, "note: {note}");
+        }
+        text
     }
 }
 
@@ -225,6 +232,7 @@ mod tests {
             version: 1,
             sinew_version: "",
             trials: 1,
+            notes: vec!["it is cut".to_owned()],
             threads: 1,
             tuning: BodyTuning::default(),
             results: vec![cell(100, 0.08), cell(10_000, 0.04)],

@@ -36,6 +36,9 @@ pub struct EvaluateBodyArgs {
     /// Skeleton of the .amc files that have none in their folder.
     #[arg(long, value_name = "FILE.asf")]
     pub skeleton: Option<PathBuf>,
+    /// Take motions with fewer frames than their headers promise.
+    #[arg(long)]
+    pub partial: bool,
     /// How much of the body the camera sees and the models track.
     #[arg(long, value_enum, default_value_t = BodyPart::Whole)]
     pub body: BodyPart,
@@ -131,6 +134,7 @@ fn begun(args: &EvaluateBodyArgs, tuning: &BodyTuning) -> Result<Begun> {
         "particles": args.particles,
         "trials": args.trials,
         "heading": args.heading,
+        "partial": args.partial,
         "hide": args.hide,
         "hide_arms": args.hide_arms,
         "config": tuning,
@@ -148,9 +152,10 @@ fn evaluate(
     let rounds = 1 + usize::from(args.hide_arms.is_some());
     let count = args.motion.len() * args.models.len() * args.particles.len() * rounds;
     let progress = console.bar(count as u64 * args.trials, "{pos}/{len} trials {wide_bar} {eta}")?;
-    let (mut results, mut predicted, mut hidden_arms) = (Vec::new(), None, Vec::new());
+    let (mut results, mut predicted, mut hidden_arms, mut notes) = (Vec::new(), None, Vec::new(), Vec::new());
     for motion in &args.motion {
-        let read = motion.read_turned(args.skeleton.as_deref(), args.heading.to_radians())?;
+        let read = motion.read_turned(args.skeleton.as_deref(), args.heading.to_radians(), args.partial)?;
+        notes.extend(read.note().inspect(|note| progress.suspend(|| console.note(note))));
         let seeds = (1..=args.trials).into_par_iter();
         let seen: Vec<SeenMotion> = seeds
             .map(|seed| {
@@ -178,6 +183,7 @@ fn evaluate(
         version: 1,
         sinew_version: env!("CARGO_PKG_VERSION"),
         trials: args.trials,
+        notes,
         threads: rayon::current_num_threads(),
         tuning,
         results,

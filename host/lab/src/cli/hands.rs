@@ -2,10 +2,11 @@
 
 use crate::hands::{ReferenceBox, load_frames, read_boxes};
 use crate::hands_report::{HandsOptions, report};
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, ensure};
 use clap::Args;
 use image::RgbImage;
 use sinew::cli::console::Console;
+use sinew::cli::data_error;
 use sinew::config::Config;
 use sinew::output::OutputDir;
 use sinew::skin::SkinModel;
@@ -78,7 +79,7 @@ pub fn run(args: &EvaluateHandsArgs, console: &Console) -> Result<()> {
     console.answer(&report.table(), &report)?;
     let misses = report.misses();
     if args.require && !misses.is_empty() {
-        bail!("`{}` misses the floors: {}", args.folder.display(), misses.join("; "));
+        return Err(data_error(format!("`{}` misses the floors: {}", args.folder.display(), misses.join("; "))));
     }
     Ok(())
 }
@@ -92,20 +93,19 @@ fn check(args: &EvaluateHandsArgs, frames: &[RgbImage], boxes: &[ReferenceBox]) 
         "--window {window_width},{window_height} is larger than the frames, {width} x {height} pixels; give a smaller one"
     );
     for wanted in boxes {
-        ensure!(
-            wanted.frame < frames.len(),
-            "boxes `{}`: frame {} is not among the {} frames of `{}`; they count from 0",
-            args.boxes.display(),
-            wanted.frame,
-            frames.len(),
-            args.folder.display()
-        );
-        ensure!(
-            wanted.w > 0.0 && wanted.h > 0.0 && wanted.x.is_finite() && wanted.y.is_finite(),
-            "boxes `{}`: frame {} has a box without a size or place; w and h must be above zero",
-            args.boxes.display(),
-            wanted.frame
-        );
+        let (file, frame) = (args.boxes.display(), wanted.frame);
+        if frame >= frames.len() {
+            return Err(data_error(format!(
+                "boxes `{file}`: frame {frame} is not among the {} frames of `{}`; they count from 0",
+                frames.len(),
+                args.folder.display()
+            )));
+        }
+        if !(wanted.w > 0.0 && wanted.h > 0.0 && wanted.x.is_finite() && wanted.y.is_finite()) {
+            return Err(data_error(format!(
+                "boxes `{file}`: frame {frame} has a box without a size or place; w and h must be above zero"
+            )));
+        }
     }
     Ok(())
 }

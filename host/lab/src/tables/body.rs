@@ -120,7 +120,7 @@ pub fn hdm05(recordings: &Path) -> Result<Rows> {
     ])];
     rows.extend([EndEffector, Angular, Guided].map(|model| line([model.name()])));
     for (heading_deg, hidden) in views {
-        let read = motion.read_turned(None, heading_deg.to_radians())?;
+        let read = motion.read_turned(None, heading_deg.to_radians(), false)?;
         let seeds = (1..=5_u64).into_par_iter();
         let seen: Vec<SeenMotion> =
             seeds.map(|seed| read.seen_hiding(BodyPart::Whole, seed, hidden)).collect::<Result<_>>()?;

@@ -5,6 +5,7 @@ use anyhow::Result;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
+use sinew::report::page::source_hash;
 
 const HEAD: &str = include_str!("../assets/head.html");
 const BODY: &str = include_str!("../assets/body.html");
@@ -40,11 +41,12 @@ struct Data<'a> {
 /// None in practice: numbers that JSON cannot hold.
 pub fn page(module: &[u8], scene: &ScenePack) -> Result<String> {
     let data = serde_json::to_string(&Data { module: STANDARD.encode(module), scene })?.replace('<', "\\u003c");
+    let style = format!("\n{}", STYLES.concat());
+    let script = format!("\n'use strict';\n(() => {{\n{}}})();\n", SCRIPTS.concat());
+    let head = HEAD.replace("STYLE_HASH", &source_hash(&style)).replace("SCRIPT_HASH", &source_hash(&script));
     Ok(format!(
-        "{HEAD}<style>\n{}</style>\n</head>\n{BODY}<script type=\"application/json\" id=\"data\">{data}</script>\n\
-         <script>\n'use strict';\n(() => {{\n{}}})();\n</script>\n</body>\n</html>\n",
-        STYLES.concat(),
-        SCRIPTS.concat()
+        "{head}<style>{style}</style>\n</head>\n{BODY}<script type=\"application/json\" id=\"data\">{data}</script>\n\
+         <script>{script}</script>\n</body>\n</html>\n"
     ))
 }
 
@@ -59,5 +61,17 @@ mod tests {
             assert!(!["fetch(", "XMLHttpRequest", "WebSocket", "sendBeacon"].iter().any(|way| part.contains(way)));
         }
         assert!(HEAD.contains("default-src 'none'") && HEAD.contains("connect-src 'none'"));
+    }
+
+    #[test]
+    fn only_the_pages_own_script_and_styles_count() {
+        let scene = crate::builtin::BuiltinScene::new(0.0).unwrap();
+        let page = page(b"module", &crate::scene_pack::packed(&scene).unwrap()).unwrap();
+        assert!(!page.contains("unsafe-inline") && !page.contains("_HASH"));
+        for (begin, end, kind) in [("<style>", "</style>", "style-src"), ("<script>", "</script>", "script-src")] {
+            let (_, after) = page.split_once(begin).unwrap();
+            let (text, _) = after.split_once(end).unwrap();
+            assert!(page.contains(&format!("{kind} {}", source_hash(text))), "{kind}");
+        }
     }
 }

@@ -8,6 +8,7 @@ use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::tracking::BodyModelKind;
 use crate::cloud::{CloudFolder, MAX_DISTANCE_M};
 use crate::error::{Context, Result, ensure};
+use crate::json_file::read_json;
 use crate::stereo::{SeenStick, StereoCamera, TrueFrame, read_stick, read_truth};
 use serde::{Deserialize, Serialize};
 use sinew_core::math::unit;
@@ -63,12 +64,15 @@ pub struct BodyInputs {
 }
 
 /// The part of a scene's `run.json` that tracking needs.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 struct SceneReport {
     rate_hz: Option<f32>,
     camera: Option<StereoCamera>,
     floor_y_m: Option<f32>,
     body: Option<BodyPart>,
+    /// Of what the scene was made.
+    #[serde(default)]
+    notes: Vec<String>,
 }
 
 impl BodyInputs {
@@ -84,6 +88,7 @@ impl BodyInputs {
         let mut notes = Vec::new();
         let scene_file = beside("run.json");
         let scene = scene_file.as_deref().map_or_else(|| Ok(SceneReport::default()), read_scene)?;
+        notes.extend(scene.notes);
         let rate_hz = options.rate_hz.or(scene.rate_hz).unwrap_or_else(|| {
             notes.push(format!("no run.json and no --rate say how fast the frames were taken; {DEFAULT_RATE_HZ} Hz"));
             DEFAULT_RATE_HZ
@@ -147,7 +152,7 @@ pub fn check_part(part: BodyPart, model: BodyModelKind) -> Result<()> {
 
 fn read_scene(path: &Path) -> Result<SceneReport> {
     let inner = || -> Result<SceneReport> {
-        let scene: SceneReport = serde_json::from_slice(&std::fs::read(path)?)?;
+        let scene: SceneReport = read_json(path)?;
         scene.rate_hz.map_or(Ok(()), |rate_hz| check_rate("rate_hz", rate_hz))?;
         if let Some(camera) = &scene.camera {
             let focal_px = camera.focal_px;
@@ -163,7 +168,7 @@ fn read_scene(path: &Path) -> Result<SceneReport> {
 
 fn measures(options: &BodyTrackOptions, file: Option<&Path>, notes: &mut Vec<String>) -> Result<BodyMeasures> {
     if let Some(path) = file {
-        return read_measures(path);
+        return read_measures(path, options.partial, notes);
     }
     if options.height_m.is_none() {
         notes.push(format!("nothing says who is tracked; a person {UNKNOWN_HEIGHT_M} m tall (--height, --skeleton)"));

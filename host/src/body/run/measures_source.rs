@@ -15,17 +15,17 @@ use std::path::Path;
 const MAX_REACH_M: f32 = 2.0;
 
 /// Reads measures from a .json as `simulate stereo` writes it, or measures the person of a motion.
-/// Of a .asf without motion the rest pose is measured.
+/// Of a .asf without motion the rest pose is measured. With `partial` a motion may have fewer frames
+/// than its header promises, of which a note is made.
 ///
 /// # Errors
 /// Names the file, and what is missing in it or breaks a rule.
-pub fn read_measures(path: &Path) -> Result<BodyMeasures> {
+pub fn read_measures(path: &Path, partial: bool, notes: &mut Vec<String>) -> Result<BodyMeasures> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let measures = match extension.as_str() {
         "json" => BodyFile::read(path)?,
-        _ if find(path, MEASURABLE).is_some() => {
-            measured(path).with_context(|| format!("the person of `{}` cannot be measured", path.display()))?
-        }
+        _ if find(path, MEASURABLE).is_some() => measured(path, partial, notes)
+            .with_context(|| format!("the person of `{}` cannot be measured", path.display()))?,
         _ => bail!(
             "`{}` is no skeleton that can be read; give a body.json, or a motion to measure ({})",
             path.display(),
@@ -43,13 +43,14 @@ pub fn read_measures(path: &Path) -> Result<BodyMeasures> {
     Ok(measures)
 }
 
-fn measured(path: &Path) -> Result<BodyMeasures> {
+fn measured(path: &Path, partial: bool, notes: &mut Vec<String>) -> Result<BodyMeasures> {
     let motion = if find(path, &[Kind::Skeleton]).is_some() {
         let skeleton = asf::read(path)?;
         MarkerMotion::from(&amc::parse(&rest_pose(&skeleton), path, &skeleton, DEFAULT_FRAMES_PER_SECOND)?)
     } else {
-        motion::read_space(path, &ReadOptions::default())?
+        motion::read_space(path, &ReadOptions { partial, ..ReadOptions::default() })?
     };
+    notes.extend(motion.shortfall.map(|shortfall| format!("`{}`: {shortfall}", path.display())));
     let joints_m = BodySources::find(&motion.names, path)?.of_motion(&motion);
     measure(&BodyRecording { rate_hz: motion.frames_per_second, joints_m })
 }
@@ -80,7 +81,7 @@ mod tests {
             if name != "missing.json" {
                 std::fs::write(&path, text).unwrap();
             }
-            let message = format!("{:#}", read_measures(&path).unwrap_err());
+            let message = format!("{:#}", read_measures(&path, false, &mut Vec::new()).unwrap_err());
             assert!(message.contains(wanted) && message.contains(name), "{message}");
         }
     }
@@ -93,9 +94,9 @@ mod tests {
         let write = |file: &BodyFile| std::fs::write(&path, serde_json::to_string(file).unwrap()).unwrap();
         let file = BodyFile::from(&measures);
         write(&file);
-        assert_eq!(read_measures(&path).unwrap(), measures);
+        assert_eq!(read_measures(&path, false, &mut Vec::new()).unwrap(), measures);
         write(&BodyFile { shank_m: 40.0, ..file });
-        let message = format!("{:#}", read_measures(&path).unwrap_err());
+        let message = format!("{:#}", read_measures(&path, false, &mut Vec::new()).unwrap_err());
         assert!(message.contains("give lengths in metres"), "{message}");
     }
 }

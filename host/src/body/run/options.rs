@@ -26,6 +26,8 @@ pub struct BodyTrackOptions {
     /// File with the person's measures or with a motion to measure; `body.json` of the folder where
     /// there is none.
     pub skeleton: Option<PathBuf>,
+    /// Whether a motion to measure may have fewer frames than its header promises.
+    pub partial: bool,
     /// Height of the person instead of measures, metres.
     pub height_m: Option<f32>,
     /// The pose of the first frame; `first_pose.json` of the folder where there is none.

@@ -15,7 +15,7 @@ use crate::cloud::{self, CloudError, CloudFrame, MAX_POINTS, blocks_of};
 use crate::error::{Context, Result, WriteContext, bail};
 use crate::output::{OutputDir, OutputLock, PendingFile};
 use crate::reading_again::read_again;
-use crate::resume::{Begun, Checkpoints, PARTICLE_TABLE, TRACK_TABLE, file_crc32};
+use crate::resume::{Begun, Checkpoints, PARTICLE_TABLE, TRACK_TABLE};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sinew_core::math::Vec3;
@@ -59,7 +59,7 @@ pub(super) struct ReadCloud {
     skipped: usize,
     before_cap: usize,
     /// CRC-32 of its file.
-    crc32: Option<u32>,
+    crc32: u32,
 }
 
 /// A run whose inputs were all checked.
@@ -180,7 +180,7 @@ impl BodyTrackRun {
                     return Ok(false);
                 }
                 let cloud = cloud?;
-                self.last_cloud_crc32 = cloud.as_ref().map_or(None, |cloud| cloud.crc32);
+                self.last_cloud_crc32 = cloud.as_ref().ok().map(|cloud| cloud.crc32);
                 let cloud = self.counted(cloud, notify)?;
                 self.track_frame(frame.frame, cloud.as_ref())?;
                 notify(BodyEvent::Finished(self.report.frames_finished));
@@ -290,7 +290,9 @@ pub(super) fn read_cloud(
     seed: u64,
     smoothing: Option<&RangeSmoothing>,
 ) -> Result<Result<ReadCloud, SkippedCloud>> {
-    let mut read = match read_again(|| cloud::read(&frame.path), CloudError::is_io)? {
+    let mut crc32 = 0;
+    let read = || cloud::read_noting(&frame.path, |bytes| crc32 = crc32fast::hash(bytes));
+    let mut read = match read_again(read, CloudError::is_io)? {
         Ok(read) => read,
         Err(error) => {
             return Ok(Err(SkippedCloud {
@@ -300,7 +302,6 @@ pub(super) fn read_cloud(
             }));
         }
     };
-    let crc32 = file_crc32(&frame.path).ok();
     let before_cap = read.limit(MAX_POINTS, seed, frame.frame);
     let blocks = blocks_of(&mut read.points_m.clone(), smoothing);
     Ok(Ok(ReadCloud { points_m: read.points_m, blocks, skipped: read.skipped, before_cap, crc32 }))

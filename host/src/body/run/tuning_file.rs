@@ -3,6 +3,7 @@
 
 use crate::body::tracking::BodyTuning;
 use crate::error::{Context, Error, Result, bail, ensure};
+use crate::file::read_text;
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -35,7 +36,7 @@ const FORMER: [(&str, &str); 5] = [
 /// Names the file, and the key that is not known (with the nearest one that is) or whose value is
 /// out of range.
 pub fn load(path: &Path) -> Result<BodyTuning> {
-    let text = std::fs::read_to_string(path).with_context(|| {
+    let text = read_text(path).with_context(|| {
         format!("configuration `{}` cannot be read; `sinew track body --print-config` writes one", path.display())
     })?;
     parse(&text).with_context(|| format!("configuration `{}`", path.display()))

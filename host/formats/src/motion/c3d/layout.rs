@@ -7,17 +7,37 @@ use super::words::Words;
 pub const BLOCK_BYTES: usize = 512;
 /// More frames than this are no count of frames.
 const MAX_FRAMES: f64 = 4.0e9;
+/// The most that a count of 16 bits can say.
+const MAX_SHORT_FRAMES: usize = 65_535;
+/// First and last frame of a trial.
+const TRIAL_FIELDS: [&str; 2] = ["ACTUAL_START_FIELD", "ACTUAL_END_FIELD"];
 /// Where the header gives the first and the last frame.
 const FIRST_FRAME_AT: usize = 6;
 const LAST_FRAME_AT: usize = 8;
 
-/// Frames of a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Frames of a file, and how they lie in it.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
     /// Whole frames for which there are bytes.
     pub held: usize,
     /// Frames by header and parameters; `None` where they do not say.
     pub promised: Option<usize>,
+    /// Frames that are read, at most `held`.
+    pub frames: usize,
+    /// Points of a frame.
+    pub points: usize,
+    /// The byte at which frames begin.
+    pub data_at: usize,
+    /// Bytes of a frame.
+    pub frame_bytes: usize,
+    /// Bytes of a number.
+    pub number_bytes: usize,
+    /// The header's scale: greater than zero for numbers of 16 bits.
+    pub scale: f32,
+    /// Byte order.
+    pub words: Words,
+    /// Where the names of parameters begin that count the frames of a trial.
+    trial_names_at: Vec<usize>,
 }
 
 impl Layout {
@@ -37,20 +57,39 @@ impl Layout {
             return Err("the file has no frame with labelled points".to_owned());
         }
         check_analog(&parameters, samples, word(18))?;
-        // A scale greater than zero stands for numbers of 16 bits.
-        let number_bytes = if words.f32(bytes, 12).is_some_and(|scale| scale > 0.0) { 2 } else { 4 };
+        let scale = words.f32(bytes, 12).unwrap_or(0.0);
+        let number_bytes = if scale > 0.0 { 2 } else { 4 };
         let frame_bytes = number_bytes * (4 * points + samples);
+        let held = (bytes.len() - data_at) / frame_bytes;
         let of_header = (word(LAST_FRAME_AT) + 1).checked_sub(word(FIRST_FRAME_AT)).filter(|&frames| frames > 0);
-        Ok(Self { held: (bytes.len() - data_at) / frame_bytes, promised: promised(&parameters, of_header)? })
+        let counts = Counts::read(&parameters, of_header)?;
+        counts.check_saturated(held, BLOCK_BYTES / frame_bytes)?;
+        let trial_names_at = TRIAL_FIELDS.iter().flat_map(|name| parameters.places(name)).map(|at| BLOCK_BYTES + at);
+        Ok(Self {
+            held,
+            promised: counts.promised(),
+            frames: counts.to_read().min(held),
+            points,
+            data_at,
+            frame_bytes,
+            number_bytes,
+            scale,
+            words,
+            trial_names_at: trial_names_at.collect(),
+        })
     }
-}
 
-/// The same file with one frame in its header's range. Readers take memory for the whole range, and
-/// then go by the parameters.
-pub fn with_short_range(mut bytes: Vec<u8>) -> Vec<u8> {
-    let first = [bytes[FIRST_FRAME_AT], bytes[FIRST_FRAME_AT + 1]];
-    bytes[LAST_FRAME_AT..LAST_FRAME_AT + 2].copy_from_slice(&first);
-    bytes
+    /// The file's header and parameters, with a block of zeros for frames. `c3dio` takes memory for
+    /// the whole range of the header, and its numbers of a trial's frames wrap around.
+    pub fn without_frames(&self, bytes: &[u8]) -> Vec<u8> {
+        let mut bytes = bytes[..self.data_at].to_vec();
+        let first = [bytes[FIRST_FRAME_AT], bytes[FIRST_FRAME_AT + 1]];
+        bytes[LAST_FRAME_AT..LAST_FRAME_AT + 2].copy_from_slice(&first);
+        self.trial_names_at.iter().for_each(|&at| bytes[at] = b'_');
+        // It asks for a block of frames, whatever the counts are.
+        bytes.resize(self.data_at + BLOCK_BYTES, 0);
+        bytes
+    }
 }
 
 /// The first byte of a block, counted from 1, if it is in the file and not the header.
@@ -73,23 +112,54 @@ fn check_analog(parameters: &Parameters, samples: usize, per_channel: usize) -> 
     Ok(())
 }
 
-/// Frames by the parameter that can count farthest: those of the trial or `LONG_FRAMES`, then the
-/// fewer of `FRAMES` and the header.
-fn promised(parameters: &Parameters, of_header: Option<usize>) -> Result<Option<usize>, String> {
-    let count = |name: &str| match parameters.number("POINT", name) {
-        Some(frames) if !(frames <= MAX_FRAMES) => Err(format!("its POINT:{name} is {frames}, which is no count")),
-        frames => Ok(frames.map(|frames| frames as usize).filter(|&frames| frames > 0)),
-    };
-    let (frames, long_frames) = (count("FRAMES")?, count("LONG_FRAMES")?);
-    let field = |name: &str| match parameters.all("TRIAL", name).next()? {
-        [low, high] => Some((low + 65_536.0 * high) as usize),
-        _ => None,
-    };
-    let of_trial = match (field("ACTUAL_START_FIELD"), field("ACTUAL_END_FIELD")) {
-        (Some(first), Some(last)) if first > last => return Err(format!("its frames run from {first} to {last}")),
-        (Some(first), Some(last)) => Some(last - first + 1),
-        _ => None,
-    };
-    let short = [frames, of_header].into_iter().flatten().min();
-    Ok(of_trial.max(long_frames).or(short))
+/// How many frames there are by each place that says so; none of zero.
+struct Counts {
+    of_header: Option<usize>,
+    frames: Option<usize>,
+    long_frames: Option<usize>,
+    of_trial: Option<usize>,
+}
+
+impl Counts {
+    fn read(parameters: &Parameters, of_header: Option<usize>) -> Result<Self, String> {
+        let count = |name: &str| match parameters.number("POINT", name) {
+            Some(frames) if !(frames <= MAX_FRAMES) => Err(format!("its POINT:{name} is {frames}, which is no count")),
+            frames => Ok(frames.map(|frames| frames as usize).filter(|&frames| frames > 0)),
+        };
+        let field = |name: &str| match parameters.all("TRIAL", name).next()? {
+            [low, high] => Some((low + 65_536.0 * high) as usize),
+            _ => None,
+        };
+        let of_trial = match TRIAL_FIELDS.map(field) {
+            [Some(first), Some(last)] if first > last => {
+                return Err(format!("its frames run from {first} to {last}"));
+            }
+            [Some(first), Some(last)] => Some(last - first + 1),
+            _ => None,
+        };
+        Ok(Self { of_header, frames: count("FRAMES")?, long_frames: count("LONG_FRAMES")?, of_trial })
+    }
+
+    /// By the parameter that can count farthest: those of the trial or `LONG_FRAMES`, then the fewer
+    /// of `FRAMES` and the header.
+    fn promised(&self) -> Option<usize> {
+        self.of_trial.max(self.long_frames).or([self.frames, self.of_header].into_iter().flatten().min())
+    }
+
+    fn to_read(&self) -> usize {
+        self.of_trial.or(self.frames).or(self.of_header).max(self.long_frames).unwrap_or(0)
+    }
+
+    /// Refuses a file with more frames than its counts can say. Its last block may have room for
+    /// `padding` more.
+    fn check_saturated(&self, held: usize, padding: usize) -> Result<(), String> {
+        let (counted, is_long) = (self.to_read(), self.of_trial.or(self.long_frames).is_some());
+        if is_long || held <= counted.max(MAX_SHORT_FRAMES) + padding {
+            return Ok(());
+        }
+        Err(format!(
+            "it counts {counted} frames in 16 bits and has room for {held}; export it with TRIAL:ACTUAL_END_FIELD or \
+             POINT:LONG_FRAMES, or in parts"
+        ))
+    }
 }

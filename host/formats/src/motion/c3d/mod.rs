@@ -1,7 +1,9 @@
-//! C3D marker files, read with the crate `c3dio`.
+//! C3D marker files. The crate `c3dio` reads their names, unit and rate; their frames are read here,
+//! since it counts frames beyond 65,535 wrong.
 
 mod layout;
 mod parameters;
+mod points;
 #[cfg(test)]
 mod tests;
 mod words;
@@ -13,7 +15,7 @@ use super::shortfall::Shortfall;
 use crate::file::read_bytes;
 use crate::limits::{MAX_FILE_BYTES, MAX_NUMBER};
 use crate::quiet_panic::catch_quietly;
-use layout::{BLOCK_BYTES, Layout, with_short_range};
+use layout::{BLOCK_BYTES, Layout};
 use sinew_core::math::Vec3;
 use std::path::Path;
 
@@ -35,20 +37,20 @@ pub fn read(path: &Path) -> Result<MarkerMotion, MotionError> {
 /// The file cannot be read, is no C3D file, is damaged or cut, or names no unit that is known.
 pub fn read_with(path: &Path, options: &ReadOptions<'_>) -> Result<MarkerMotion, MotionError> {
     let bytes = read_bytes(path, MAX_FILE_BYTES).map_err(|error| MotionError::of_file(path, error))?;
-    parse(bytes, path, options)
+    parse(&bytes, path, options)
 }
 
 /// Parses the content of a C3D file; `path` is for messages only.
-fn parse(bytes: Vec<u8>, path: &Path, options: &ReadOptions<'_>) -> Result<MarkerMotion, MotionError> {
+fn parse(bytes: &[u8], path: &Path, options: &ReadOptions<'_>) -> Result<MarkerMotion, MotionError> {
     let broken = |rule: String| MotionError::broken(path, 0, rule);
     if bytes.len() < 2 * BLOCK_BYTES || bytes[1] != MAGIC {
         return Err(broken("this is no C3D file".into()));
     }
     let damaged = |rule: String| broken(format!("the C3D file is damaged ({rule})"));
-    let layout = Layout::check(&bytes).map_err(damaged)?;
+    let layout = Layout::check(bytes).map_err(damaged)?;
     let shortfall = Shortfall::check(layout.held, layout.promised, options, path, 0)?;
-    let bytes = with_short_range(bytes);
-    let parsed = catch_quietly(|| c3dio::C3d::from_bytes(&bytes).map_err(|error| error.to_string()));
+    let names = layout.without_frames(bytes);
+    let parsed = catch_quietly(|| c3dio::C3d::from_bytes(&names).map_err(|error| error.to_string()));
     let points = parsed.ok_or_else(|| broken("the C3D file is damaged".into()))?.map_err(damaged)?.points;
     let unit: String = points.units.iter().filter(|letter| letter.is_ascii_alphabetic()).collect();
     let scale =
@@ -56,16 +58,15 @@ fn parse(bytes: Vec<u8>, path: &Path, options: &ReadOptions<'_>) -> Result<Marke
     if !(points.frame_rate > 0.0 && points.frame_rate.is_finite()) {
         return Err(broken(format!("the frame rate is {}, but has to be greater than zero", points.frame_rate)));
     }
-    let count = points.labels.len().min(points.cols());
-    if points.rows() == 0 || count == 0 {
+    let count = points.labels.len().min(layout.points);
+    if layout.frames == 0 || count == 0 {
         return Err(broken("the file has no frame with labelled points".into()));
     }
     let position = |row: usize, column: usize| {
-        let marker = &points.points[row][column];
-        let position = Vec3::from(marker.point);
-        if marker.residual < 0.0 || position == Vec3::zeros() || position.iter().any(|x| x.is_nan()) {
+        let seen = layout.place(bytes, row, column);
+        let Some(position) = seen.filter(|place| *place != Vec3::zeros() && !place.iter().any(|x| x.is_nan())) else {
             return Ok(None);
-        }
+        };
         if let Some(beyond) = position.iter().find(|x| x.abs() > MAX_NUMBER) {
             let name = points.labels[column].trim();
             return Err(broken(format!("frame {row}, marker `{name}`: {beyond} is beyond {MAX_NUMBER:e}")));
@@ -76,7 +77,7 @@ fn parse(bytes: Vec<u8>, path: &Path, options: &ReadOptions<'_>) -> Result<Marke
     Ok(MarkerMotion {
         frames_per_second: points.frame_rate,
         names: points.labels.iter().take(count).map(|label| label.trim().to_owned()).collect(),
-        positions_m: (0..points.rows()).map(frame).collect::<Result<Vec<_>, _>>()?,
+        positions_m: (0..layout.frames).map(frame).collect::<Result<Vec<_>, _>>()?,
         shortfall,
     })
 }

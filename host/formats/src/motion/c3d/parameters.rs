@@ -19,6 +19,8 @@ const FREE_BYTES: usize = 1 << 16;
 #[derive(Debug)]
 pub struct Parameters {
     entries: Vec<(String, String, Vec<f64>)>,
+    /// Name of each parameter and the byte of the section at which it begins.
+    places: Vec<(String, usize)>,
 }
 
 impl Parameters {
@@ -29,6 +31,7 @@ impl Parameters {
     pub fn read(section: &[u8], words: Words) -> Result<Self, String> {
         let mut groups: BTreeMap<i8, String> = BTreeMap::new();
         let mut numbers: Vec<(i8, String, Vec<f64>)> = Vec::new();
+        let mut places = Vec::new();
         let mut taken = 0_usize;
         let mut at = 4;
         while let Some(entry) = Entry::at(section, at, words)? {
@@ -39,18 +42,25 @@ impl Parameters {
             if entry.group < 0 {
                 groups.insert(entry.group.wrapping_abs(), entry.name);
             } else {
-                numbers.push((entry.group, entry.name.to_ascii_uppercase(), entry.numbers));
+                let name = entry.name.to_ascii_uppercase();
+                places.push((name.clone(), at + 2));
+                numbers.push((entry.group, name, entry.numbers));
             }
             at = entry.next;
         }
         let named = |(group, name, numbers)| (groups.get(&group).cloned().unwrap_or_default(), name, numbers);
-        Ok(Self { entries: numbers.into_iter().map(named).collect() })
+        Ok(Self { entries: numbers.into_iter().map(named).collect(), places })
     }
 
     /// The first two numbers of each parameter of this name in `group`, the last one first.
     pub fn all<'a>(&'a self, group: &'a str, name: &'a str) -> impl Iterator<Item = &'a [f64]> {
         let wanted = move |entry: &&'a (String, String, Vec<f64>)| entry.0 == group && entry.1 == name;
         self.entries.iter().rev().filter(wanted).map(|entry| entry.2.as_slice())
+    }
+
+    /// The bytes of the section at which parameters of this name begin, in whatever group.
+    pub fn places<'a>(&'a self, name: &'a str) -> impl Iterator<Item = usize> + 'a {
+        self.places.iter().filter(move |(other, _)| other == name).map(|(_, at)| *at)
     }
 
     /// The number of a parameter that is there and not empty.

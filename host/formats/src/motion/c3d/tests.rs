@@ -51,9 +51,22 @@ fn file(frames: u16, promised: u16, more: &[Vec<u8>]) -> Vec<u8> {
     bytes
 }
 
+/// A file of `frames` frames, more than 16 bits can count, as [`file`] but for the counts.
+fn long_file(frames: usize, short: u16, more: &[Vec<u8>]) -> Vec<u8> {
+    let mut bytes = file(0, short, more);
+    for frame in 0..frames {
+        for point in 0..POINTS {
+            let x = frame as f32 + 0.25 * (point as f32 + 1.0);
+            bytes.extend([x, 2.0, 3.0, 0.0].iter().flat_map(|value| value.to_le_bytes()));
+        }
+    }
+    bytes.resize(bytes.len().next_multiple_of(BLOCK_BYTES), 0);
+    bytes
+}
+
 fn read_bytes_as(bytes: &[u8], partial: bool) -> Result<MarkerMotion, String> {
     let options = ReadOptions { partial, ..ReadOptions::default() };
-    parse(bytes.to_vec(), Path::new("m.c3d"), &options).map_err(|error| error.to_string())
+    parse(bytes, Path::new("m.c3d"), &options).map_err(|error| error.to_string())
 }
 
 fn refusal(bytes: &[u8]) -> String {
@@ -96,6 +109,52 @@ fn fewer_frames_than_promised_are_an_error_or_noted() {
     let first = parameter(2, "ACTUAL_START_FIELD", 2, &[2], &[1, 0, 0, 0]);
     let long = file(40, 40, &[group(2, "TRIAL"), first, end]);
     assert!(read_bytes_as(&long, false).unwrap_err().contains("of the 65536 frames"));
+}
+
+#[test]
+fn more_frames_than_16_bits_can_count_are_read_or_refused() {
+    const FRAMES: usize = 70_000;
+    let real = |frames: f32| parameter(1, "LONG_FRAMES", 4, &[], &frames.to_le_bytes());
+    let trial = |first: [u8; 4], last: [u8; 4]| {
+        let [first, last] = [("ACTUAL_START_FIELD", first), ("ACTUAL_END_FIELD", last)]
+            .map(|(name, field)| parameter(2, name, 2, &[2], &field));
+        vec![group(2, "TRIAL"), first, last]
+    };
+    // 70,000 = 65,536 + 4464; the second trial starts and ends after two and three times 65,536.
+    let by_trial = trial([1, 0, 0, 0], [0x70, 0x11, 1, 0]);
+    let late = trial([0, 0, 2, 0], [0x6f, 0x11, 3, 0]);
+    for more in [by_trial, late, vec![real(FRAMES as f32)]] {
+        for short in [u16::MAX, 4464] {
+            let motion = read_bytes_as(&long_file(FRAMES, short, &more), false).unwrap();
+            assert_eq!((motion.positions_m.len(), motion.shortfall), (FRAMES, None));
+            for frame in [0, 65_534, 65_535, 65_536, FRAMES - 1] {
+                let wanted = 0.001 * Vec3::new(frame as f32 + 0.75, 2.0, 3.0);
+                assert!((motion.positions_m[frame][2].unwrap() - wanted).norm() < 1.0e-5, "frame {frame}");
+            }
+        }
+    }
+    let cut = long_file(FRAMES - 1000, u16::MAX, &[real(FRAMES as f32)]);
+    assert!(read_bytes_as(&cut, false).unwrap_err().contains("69002 of the 70000 frames"));
+    for (short, counted) in [(u16::MAX, "65535"), (4464, "4464")] {
+        let message = refusal(&long_file(FRAMES, short, &[]));
+        assert!(message.contains(&format!("counts {counted} frames in 16 bits and has room for 70005")), "{message}");
+        assert!(message.contains("POINT:LONG_FRAMES"), "{message}");
+    }
+    assert_eq!(read_bytes_as(&long_file(65_535, u16::MAX, &[]), false).unwrap().positions_m.len(), 65_535);
+}
+
+#[test]
+fn whole_numbers_are_scaled_and_negative_residuals_are_missing() {
+    let mut bytes = file(0, 2, &[]);
+    bytes[12..16].copy_from_slice(&0.5_f32.to_le_bytes());
+    let rows: [[i16; 4]; 6] =
+        [[200, -2, 4, 0], [2, 2, 2, -1], [1, 2, 3, 0x0101], [0, 0, 0, 0], [2, 4, 6, -0x7f00], [9, 9, 9, -128]];
+    bytes.extend(rows.iter().flatten().flat_map(|word| word.to_le_bytes()));
+    bytes.resize(bytes.len().next_multiple_of(BLOCK_BYTES), 0);
+    let motion = read_bytes_as(&bytes, false).unwrap();
+    let place = |x: f32, y: f32, z: f32| Some(Vec3::new(x, y, z) * 0.001);
+    let wanted = [vec![place(100.0, -1.0, 2.0), None, place(0.5, 1.0, 1.5)], vec![None, place(1.0, 2.0, 3.0), None]];
+    assert_eq!(motion.positions_m, wanted);
 }
 
 #[test]
