@@ -1,6 +1,7 @@
 //! Videos in place of image folders. Needs `ffmpeg`; with `CI=true` a missing one is a failure.
 
 use sinew::config::Config;
+use sinew::images::{VideoFrames, load_rgb};
 use sinew::track::{Event, SideChoice, TrackOptions, TrackRun};
 use sinew_tests::sinew_command;
 use std::fs;
@@ -273,5 +274,23 @@ fn a_video_that_is_none_and_a_missing_ffmpeg_are_reported_with_the_remedy() {
     if scene().is_some() {
         let message = stderr(&sinew(root.path(), "track arm words.mp4 --out run"));
         assert!(message.contains("`words.mp4` cannot be read as a video") && message.contains("whole"), "{message}");
+    }
+}
+
+#[test]
+fn ten_bits_and_oblong_pixels_come_as_eight_bits_and_squares() {
+    let Some(root) = scene() else { return };
+    for (name, options) in [
+        ("ten.mkv", "-c:v ffv1 -pix_fmt yuv420p10le"),
+        ("oblong.mkv", "-c:v ffv1 -vf scale=320:480,setsar=2 -pix_fmt bgr0"),
+    ] {
+        let video = encode(root.path(), name, options);
+        let mut frames = VideoFrames::open(&video, 15.0).unwrap();
+        let first = frames.next_frame().unwrap().unwrap();
+        assert_eq!(first.dimensions(), (640, 480), "{name}");
+        let original = load_rgb(&root.path().join("scene/frames/frame_0000.png")).unwrap();
+        let sum: u64 = first.as_raw().iter().zip(original.as_raw()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+        let mean = sum as f64 / first.as_raw().len() as f64;
+        assert!(mean < 4.0, "{name}: {mean} levels off");
     }
 }

@@ -100,6 +100,8 @@ pub struct VideoFacts {
     pub rate_hz: f64,
     /// Number of frames by header and packets; fewer may be decodable.
     pub frames: usize,
+    /// Width of a pixel divided by its height; 1 where the header does not say.
+    pub pixel_aspect: f64,
 }
 
 impl VideoFacts {
@@ -111,7 +113,7 @@ impl VideoFacts {
         let mut probe = Command::new("ffprobe");
         probe.args(["-v", "error", "-select_streams", "v:0", "-count_packets", "-of", "json", "-show_entries"]);
         probe
-            .arg("stream=avg_frame_rate,r_frame_rate,nb_read_packets:format=duration")
+            .arg("stream=avg_frame_rate,r_frame_rate,nb_read_packets,sample_aspect_ratio:format=duration")
             .arg(address(file))
             .stdin(Stdio::null());
         let output = probe.output().map_err(|error| no_program(file, "ffprobe", &error))?;
@@ -132,7 +134,9 @@ impl VideoFacts {
             Some(rate_hz) if packets > 0.0 => {
                 // The header of a cut file still gives the full duration.
                 let stated = (number(&json["format"]["duration"]) * rate_hz).round();
-                Ok(Self { rate_hz, frames: packets.max(stated) as usize })
+                let aspect = stream["sample_aspect_ratio"].as_str().and_then(fraction);
+                let pixel_aspect = aspect.filter(|aspect| aspect.is_finite() && *aspect > 0.0).unwrap_or(1.0);
+                Ok(Self { rate_hz, frames: packets.max(stated) as usize, pixel_aspect })
             }
             _ => Err(unreadable("it holds no frames".to_owned())),
         }
@@ -165,7 +169,17 @@ impl VideoFrames {
         let stderr = complaints.try_clone().map_err(|error| no_program(file, "ffmpeg", &error))?;
         let mut command = Command::new("ffmpeg");
         command.args(["-nostdin", "-v", "error", "-i"]).arg(address(file)).args(["-map", "0:v:0", "-vf"]);
-        command.arg(format!("fps={rate_hz}")).args(["-f", "image2pipe", "-c:v", "ppm", "-"]);
+        // Square pixels, of 8 bits also where a phone writes 10.
+        let square = if facts.pixel_aspect == 1.0 { "" } else { ",scale=iw*sar:ih,setsar=1" };
+        command.arg(format!("fps={rate_hz}{square}")).args([
+            "-f",
+            "image2pipe",
+            "-c:v",
+            "ppm",
+            "-pix_fmt",
+            "rgb24",
+            "-",
+        ]);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::from(stderr));
         #[cfg(unix)]
         {
@@ -332,7 +346,7 @@ fn last_line(text: &str) -> String {
 
 /// `30000/1001`.
 fn fraction(text: &str) -> Option<f64> {
-    let (over, under) = text.split_once('/')?;
+    let (over, under) = text.split_once(['/', ':'])?;
     Some(over.parse::<f64>().ok()? / under.parse::<f64>().ok()?)
 }
 
