@@ -18,7 +18,7 @@ pub struct AngleRow {
     /// Angle of each joint about its parent in image axes (x right, y down), radians; `None` is a
     /// missing measurement.
     pub angles_rad: [Option<f64>; ANGLES],
-    /// Cells of [`AngleTable::extra_columns`], as they stand in the file.
+    /// Cells of [`super::AngleTable::extra_columns`], as they stand in the file.
     pub extra: Vec<String>,
 }
 
