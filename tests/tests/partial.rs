@@ -1,5 +1,5 @@
-//! `--partial`: a motion with fewer frames than its header promises is refused by every command that
-//! reads one, or taken with a note in what the command writes.
+//! `--partial`: a motion with fewer frames than its header promises is refused by every command
+//! that reads one, or taken with a note in what the command writes.
 
 use assert_cmd::Command;
 use predicates::prelude::PredicateBooleanExt;
@@ -19,8 +19,8 @@ fn json(path: &Path) -> Value {
     serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
 }
 
-/// A folder with a tracked scene, and `short.bvh`, the track with seven frames too few; what is said
-/// of it.
+/// A folder with a tracked scene, and `short.bvh`, the track with seven frames too few; what is
+/// said of it.
 fn short_motion() -> (tempfile::TempDir, String) {
     let root = tempfile::tempdir().unwrap();
     let path = root.path();

@@ -4,6 +4,7 @@
 use anyhow::{Context, Result, bail};
 use image::{RgbImage, imageops};
 use serde::{Deserialize, Serialize};
+use sinew::cli::data_error;
 use sinew::config::Config;
 use sinew::frames::FrameReader;
 use sinew::images::folder::{list_images, load_rgb};
@@ -73,7 +74,8 @@ pub fn read_boxes(path: &Path) -> Result<Vec<ReferenceBox>> {
         .collect::<Result<_, _>>()
         .with_context(|| format!("boxes `{}`: a row needs frame,x,y,w,h as numbers", path.display()))?;
     if boxes.is_empty() {
-        bail!("boxes `{}` has no row; give a table with the columns frame,x,y,w,h", path.display());
+        let rule = "has no row; give a table with the columns frame,x,y,w,h";
+        return Err(data_error(format!("boxes `{}` {rule}", path.display())));
     }
     Ok(boxes)
 }
@@ -88,11 +90,11 @@ pub fn load_frames(folder: &Path) -> Result<Vec<RgbImage>> {
         let frame = load_rgb(&path)?;
         if let Some(first) = frames.first().filter(|first| first.dimensions() != frame.dimensions()) {
             let ((width, height), (first_width, first_height)) = (frame.dimensions(), first.dimensions());
-            bail!(
+            return Err(data_error(format!(
                 "`{}` has {width} x {height} pixels, the frames before it {first_width} x {first_height}; \
                  give frames of one size",
                 path.display()
-            );
+            )));
         }
         frames.push(frame);
     }

@@ -67,8 +67,8 @@ impl Skipped {
 /// The model is calibrated on the first one, if that was asked for; it then has to be readable.
 ///
 /// # Errors
-/// Whatever `take` refuses; an image that is none if strict or if all are; a file that the operating
-/// system refuses; a bad calibration; no ffmpeg for a video.
+/// Whatever `take` refuses; an image that is none if strict or if all are; a file that the
+/// operating system refuses; a bad calibration; no ffmpeg for a video.
 pub fn load_each(
     input: &ImageInput,
     skin: &SkinArgs,

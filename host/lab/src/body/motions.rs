@@ -70,8 +70,8 @@ impl MotionChoice {
         self.read_turned(skeleton, 0.0, false)
     }
 
-    /// As [`Self::read`], the person of a file turned to their left by `heading_rad`. With `partial`
-    /// a file may have fewer frames than its header promises.
+    /// As [`Self::read`], the person of a file turned to their left by `heading_rad`. With
+    /// `partial` a file may have fewer frames than its header promises.
     ///
     /// # Errors
     /// As [`Self::read`]; a turn of a built-in motion.

@@ -15,8 +15,8 @@ use std::path::Path;
 const MAX_REACH_M: f32 = 2.0;
 
 /// Reads measures from a .json as `simulate stereo` writes it, or measures the person of a motion.
-/// Of a .asf without motion the rest pose is measured. With `partial` a motion may have fewer frames
-/// than its header promises, of which a note is made.
+/// Of a .asf without motion the rest pose is measured. With `partial` a motion may have fewer
+/// frames than its header promises, of which a note is made.
 ///
 /// # Errors
 /// Names the file, and what is missing in it or breaks a rule.

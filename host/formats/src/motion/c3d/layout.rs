@@ -140,8 +140,8 @@ impl Counts {
         Ok(Self { of_header, frames: count("FRAMES")?, long_frames: count("LONG_FRAMES")?, of_trial })
     }
 
-    /// By the parameter that can count farthest: those of the trial or `LONG_FRAMES`, then the fewer
-    /// of `FRAMES` and the header.
+    /// By the parameter that can count farthest: those of the trial or `LONG_FRAMES`, then the
+    /// fewer of `FRAMES` and the header.
     fn promised(&self) -> Option<usize> {
         self.of_trial.max(self.long_frames).or([self.frames, self.of_header].into_iter().flatten().min())
     }

@@ -1,5 +1,5 @@
-//! C3D marker files. The crate `c3dio` reads their names, unit and rate; their frames are read here,
-//! since it counts frames beyond 65,535 wrong.
+//! C3D marker files. The crate `c3dio` reads their names, unit and rate. Their frames are read
+//! here, since it counts frames beyond 65,535 wrong.
 
 mod layout;
 mod parameters;

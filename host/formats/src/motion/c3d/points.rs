@@ -4,8 +4,8 @@ use super::layout::Layout;
 use sinew_core::math::Vec3;
 
 impl Layout {
-    /// Where `point` is in `frame`, in the file's unit. `None` has a negative residual, which stands
-    /// for a marker that was not seen.
+    /// Where `point` is in `frame`, in the file's unit. `None` has a negative residual, which
+    /// stands for a marker that was not seen.
     pub fn place(&self, bytes: &[u8], frame: usize, point: usize) -> Option<Vec3> {
         let at = self.data_at + frame * self.frame_bytes + point * 4 * self.number_bytes;
         if self.number_bytes == 2 { self.scaled(bytes, at) } else { self.real(bytes, at) }
