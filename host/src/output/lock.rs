@@ -20,8 +20,8 @@ pub struct OutputLock {
 }
 
 impl OutputLock {
-    /// Takes `folder` for the run of the subcommand `command`, and removes what a killed one left of
-    /// its temporary files.
+    /// Takes `folder` for the run of the subcommand `command`, and removes what a killed one left
+    /// of its temporary files.
     ///
     /// # Errors
     /// [`Error::InUse`] if another process has it; a folder that refuses the file.
