@@ -51,11 +51,11 @@ impl<R: Read> RecordReader<R> {
         match self.reader.read_byte_record(&mut record) {
             Ok(true) => Ok(Some(csv::StringRecord::from_byte_record_lossy(record))),
             Ok(false) => Ok(None),
-            Err(error) => Err(self.told(error)),
+            Err(error) => Err(self.refusal(error)),
         }
     }
 
-    fn told(&self, error: csv::Error) -> RecordError {
+    fn refusal(&self, error: csv::Error) -> RecordError {
         let line = self.reader.position().line();
         let reason = error.to_string();
         match error.into_kind() {

@@ -3,7 +3,7 @@
 mod args;
 mod place;
 mod stream;
-mod told;
+mod summary_line;
 mod whole;
 
 pub use args::TrackCyclicArgs;

@@ -3,7 +3,7 @@
 
 use super::args::TrackCyclicArgs;
 use super::place::Place;
-use super::told::cycles_line;
+use super::summary_line::summary_line;
 use crate::cli::console::Console;
 use crate::cyclic::angle_table::AngleRows;
 use crate::cyclic::tracking::table::EstimateTable;
@@ -51,7 +51,7 @@ pub(super) fn track(
     });
     bar.finish_and_clear();
     let summary = streamed.end(tracked, count)?;
-    let text = format!("{}wrote {}\n", cycles_line(&summary), args.out.display());
+    let text = format!("{}wrote {}\n", summary_line(&summary), args.out.display());
     console.answer_beside(&args.out, &text, &json!({ "summary": summary, "out": args.out }))
 }
 

@@ -3,7 +3,7 @@
 
 use super::args::TrackCyclicArgs;
 use super::place::Place;
-use super::told::cycles_line;
+use super::summary_line::summary_line;
 use crate::cli::console::Console;
 use crate::cyclic::AngleTable;
 use crate::cyclic::pictures::{OverlayFrames, animation};
@@ -236,7 +236,7 @@ const TOLD_REASONS: usize = 5;
 
 /// Cycles and cadence, and how alike the sides are, for a terminal.
 fn summary(report: &Report) -> String {
-    let mut text = cycles_line(&report.summary);
+    let mut text = summary_line(&report.summary);
     for joint in &report.symmetries {
         if let (Some(left), Some(right)) = (joint.left_range_deg, joint.right_range_deg) {
             let index = joint.symmetry_index_percent.map_or_else(String::new, |index| format!(", index {index:+.0} %"));

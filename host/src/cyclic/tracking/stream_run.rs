@@ -174,16 +174,16 @@ impl<'a> AnyWalk<'a> {
 
     fn first_answer(&self, frame: u64) -> TrackedFrame {
         match self {
-            Self::Plane(walk) => told(frame, &walk.first_answer()),
-            Self::Space(walk) => told(frame, &walk.first_answer()),
+            Self::Plane(walk) => answered_frame(frame, &walk.first_answer()),
+            Self::Space(walk) => answered_frame(frame, &walk.first_answer()),
         }
     }
 
     fn step(&mut self, row: &ReadRow) -> Result<TrackedFrame> {
         let frame = row.row.frame;
         Ok(match self {
-            Self::Plane(walk) => told(frame, &walk.step(frame, &angles(row))?),
-            Self::Space(walk) => told(frame, &walk.step(frame, &angles(row))?),
+            Self::Plane(walk) => answered_frame(frame, &walk.step(frame, &angles(row))?),
+            Self::Space(walk) => answered_frame(frame, &walk.step(frame, &angles(row))?),
         })
     }
 
@@ -195,7 +195,7 @@ impl<'a> AnyWalk<'a> {
     }
 }
 
-fn told<const N: usize>(frame: u64, answer: &Answer<N>) -> TrackedFrame {
+fn answered_frame<const N: usize>(frame: u64, answer: &Answer<N>) -> TrackedFrame {
     tracked(frame, &answer.estimate, answer.cycles)
 }
 
