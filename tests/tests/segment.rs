@@ -45,14 +45,17 @@ fn masks_of_images_of_different_sizes_and_formats() {
 }
 
 #[test]
-fn equal_stems_do_not_overwrite_each_other() {
+fn stems_of_one_spelling_do_not_overwrite_each_other() {
     let root = tempfile::tempdir().unwrap();
     let (input, out) = (root.path().join("in"), root.path().join("out"));
     fs::create_dir(&input).unwrap();
     picture(50, 40).save(input.join("a.png")).unwrap();
+    RgbImage::new(50, 40).save(input.join("A.ppm")).unwrap();
+    let run = || sinew().arg("segment").arg(&input).arg("--out").arg(&out).assert();
+    run().success().stderr(contains("shares its stem"));
+    assert_eq!((skin_pixels(&out.join("a.png.png")), skin_pixels(&out.join("A.ppm.png"))), (400, 0));
     RgbImage::new(50, 40).save(input.join("a.ppm")).unwrap();
-    sinew().arg("segment").arg(&input).arg("--out").arg(&out).assert().success().stderr(contains("shares its stem"));
-    assert_eq!((skin_pixels(&out.join("a.png.png")), skin_pixels(&out.join("a.ppm.png"))), (400, 0));
+    run().code(65).stderr(contains("holds `a.png` and `a.ppm`"));
 }
 
 #[test]

@@ -112,6 +112,7 @@ fn views_that_cannot_be_made_are_refused_before_the_run() {
 #[test]
 fn two_angles_a_joint_need_a_motion_in_space() {
     let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("points.csv"), "neck_x,neck_y\n1,2\n").unwrap();
     let mut command = Command::from_std(sinew_command());
     command.current_dir(root.path()).args(["angles", "points.csv", "--view", "space", "--out", "t.csv"]);
     command.assert().code(64).stderr(contains("`--view space` needs a motion in space"));

@@ -5,7 +5,7 @@ use super::image_joints::{ExtraColumns, ImageJoints};
 use super::projection::{Forward, Plane, UpAxis, View};
 use super::resample::resample;
 use crate::cyclic::CyclicError;
-use crate::error::{Context, Result, bail, ensure};
+use crate::error::{Context, Result, bail, ensure, ensure_option};
 use crate::keypoints::{self, Facing};
 use crate::motion::joint_names::JointSources;
 use crate::motion::markers::MarkerMotion;
@@ -142,7 +142,7 @@ fn rounded_rate(rate_hz: f64) -> f64 {
 }
 
 fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
-    ensure!(
+    ensure_option!(
         options.view != View::Space,
         "`--view space` needs a motion in space ({}); keypoints of a picture have one angle a joint",
         described(MOTION)
