@@ -1,7 +1,8 @@
 //! Estimate of every cyclic filter after a frame.
 
 use crate::cyclic::phase::POSITIONS_IN_CYCLE;
-use crate::saved_state::{FINITE, NOT_NEGATIVE, SavedState, StateVisitor};
+use crate::cyclic::saved_ranges::{NUMBER, VARIANCE};
+use crate::saved_state::{FINITE, SavedState, StateVisitor};
 use core::f32::consts::PI;
 
 /// Pose and phase with their variances. `N` is a capacity; entries beyond the model's angles are
@@ -68,11 +69,11 @@ impl<const N: usize> SavedState for CyclicEstimate<N> {
         for turns in &mut self.turns {
             visitor.integer(turns);
         }
-        visitor.reals(&mut self.angle_variance_rad2, &NOT_NEGATIVE);
+        visitor.reals(&mut self.angle_variance_rad2, &VARIANCE);
         visitor.real(&mut self.cycle_position, &POSITIONS_IN_CYCLE);
-        visitor.real(&mut self.cycle_position_variance, &NOT_NEGATIVE);
-        visitor.real(&mut self.cycle_velocity_per_frame, &FINITE);
-        visitor.real(&mut self.cycle_velocity_variance, &NOT_NEGATIVE);
+        visitor.real(&mut self.cycle_position_variance, &VARIANCE);
+        visitor.real(&mut self.cycle_velocity_per_frame, &NUMBER);
+        visitor.real(&mut self.cycle_velocity_variance, &VARIANCE);
         visitor.real(&mut self.log_likelihood, &FINITE);
         visitor.flag(&mut self.outlier);
     }

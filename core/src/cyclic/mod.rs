@@ -66,6 +66,7 @@ pub mod model;
 pub mod particle;
 pub mod phase;
 pub mod recognition;
+mod saved_ranges;
 pub mod start;
 pub mod substeps;
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The logarithm of a product, taken once for many factors.
 
-use crate::math::ln;
+use crate::math::{clamp, ln};
 
 /// ln of a product of positive numbers between 1e-18 and 1e18.
 #[derive(Debug, Clone, Copy)]
@@ -30,7 +30,8 @@ impl LogProduct {
     #[cold]
     #[inline(never)]
     fn flush(&mut self) {
-        self.logarithm += ln(self.product);
+        // Not positive, or no number, where a restored covariance was indefinite.
+        self.logarithm += ln(clamp(self.product, f32::MIN_POSITIVE, f32::MAX));
         self.product = 1.0;
     }
 
@@ -55,5 +56,15 @@ mod tests {
             sum += factor.ln();
         }
         assert!((product.ln() - sum).abs() < 1.0e-3, "{} and {sum}", product.ln());
+    }
+
+    #[test]
+    fn it_is_finite_whatever_the_factors() {
+        for factor in [0.0, -1.0, f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
+            let mut product = LogProduct::one();
+            product.multiply(3.0);
+            product.multiply(factor);
+            assert!(product.ln().is_finite(), "{factor}");
+        }
     }
 }

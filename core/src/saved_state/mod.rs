@@ -120,6 +120,12 @@ pub trait StateVisitor {
     /// Says that a number cannot be: the state is refused.
     fn refuse(&mut self);
 
+    /// How many words can still be read. A list of any length compares its length with it before
+    /// it takes memory.
+    fn words_left(&self) -> usize {
+        usize::MAX
+    }
+
     /// A number within `range`.
     fn real(&mut self, value: &mut f32, range: &RangeInclusive<f32>) {
         let mut bits = value.to_bits();

@@ -85,4 +85,8 @@ impl StateVisitor for Reader<'_> {
     fn refuse(&mut self) {
         self.is_refused = true;
     }
+
+    fn words_left(&self) -> usize {
+        self.left.len()
+    }
 }

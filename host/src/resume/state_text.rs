@@ -46,6 +46,11 @@ impl<T: SavedState + Clone> SavedState for List<T> {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         let mut count = self.entries.len();
         visitor.index(&mut count, u32::MAX as usize);
+        // Each entry has at least one word.
+        if count > visitor.words_left() {
+            count = 0;
+            visitor.refuse();
+        }
         self.entries.resize(count, self.fill.clone());
         for entry in &mut self.entries {
             entry.visit(visitor);
@@ -123,5 +128,24 @@ mod tests {
             assert!(message.contains("leave --resume out"), "{message}");
         }
         assert!(from_text(StateKind::Cyclic, &text, &mut back).is_err());
+    }
+
+    /// A list that says it has so many entries.
+    struct Promised(usize);
+
+    impl SavedState for Promised {
+        fn visit(&mut self, visitor: &mut impl StateVisitor) {
+            visitor.index(&mut self.0, u32::MAX as usize);
+        }
+    }
+
+    #[test]
+    fn a_list_longer_than_its_state_is_refused_before_memory_is_taken() {
+        for count in [1, u32::MAX as usize] {
+            let text = to_text(StateKind::Arm, &mut Promised(count)).unwrap();
+            let mut list = List::new(Vec::new(), Entry { angle: None, sum: 0.0 });
+            assert!(from_text(StateKind::Arm, &text, &mut list).is_err());
+            assert!(list.entries.capacity() < 2, "{}", list.entries.capacity());
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Skin models as JSON files.
 
 use super::colour_cube::CELLS;
+use super::confusion::Scores;
 use super::gaussian::GaussianModel;
 use super::histogram::{EVIDENCE_LEVELS, HistogramModel};
 use super::model::{ModelKind, ModelNumbers, SkinModel, TrainedOn};
@@ -101,6 +102,10 @@ pub fn parse(text: &str) -> Result<SkinModel> {
         (ModelKind::Histogram, None, Some(text)) => ModelNumbers::Histogram(histogram_from_text(&text)?),
         (kind, _, _) => bail!("its kind is {kind:?}, so it needs the numbers of that kind and of no other"),
     };
+    let Scores { precision, recall, f1 } = file.trained_on.cross_validated;
+    for (name, score) in [("precision", precision), ("recall", recall), ("f1", f1)] {
+        ensure!((0.0..=1.0).contains(&score), "its score `{name}` is {score}, but has to lie from 0 to 1");
+    }
     SkinModel::new(numbers, file.trained_on)
 }
 
@@ -190,6 +195,7 @@ mod tests {
         let mut infinite: serde_json::Value = serde_json::from_str(&gaussian_json()).unwrap();
         infinite["gaussian"]["threshold"] = 1.0e39.into();
         assert!(refusal(&infinite.to_string()).contains("threshold"));
+        assert!(refusal(&gaussian_json().replace("\"f1\": 0.", "\"f1\": 1")).contains("score `f1`"));
         assert!(refusal(&gaussian_json().replace("\"threshold\": ", "\"treshold\": ")).contains("treshold"));
         assert!(
             refusal(&gaussian_json().replace("\"threshold\": ", "\"threshold\": NaN, \"x\": ")).contains("not JSON")

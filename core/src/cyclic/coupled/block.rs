@@ -6,9 +6,10 @@
 //! covariance `covariance`: angles are independent of each other given z, so no covariance between
 //! angles is stored.
 
-use crate::math::{exp, max, sin_cos};
+use crate::cyclic::saved_ranges::NUMBER;
+use crate::math::{abs, exp, max, sin_cos};
 use crate::numeric::semi_definite::{packed_index, packed_len};
-use crate::saved_state::{FINITE, SavedState, StateVisitor};
+use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::TAU;
 
 /// Numbers of a block.
@@ -134,16 +135,21 @@ pub struct AngleBlock {
 
 /// Numbers of a packed covariance.
 const PACKED: usize = packed_len(PARTS);
+/// Covariance that rounding may leave between parts without variance. Chosen: a hundred times the
+/// resolution of the greatest variances that steps give.
+const MAX_ROUNDING: f32 = 1.0e-4;
 
 impl SavedState for AngleBlock {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        visitor.reals(&mut self.mean, &FINITE);
-        visitor.reals(self.regression.as_flattened_mut(), &FINITE);
-        visitor.reals(&mut self.covariance, &FINITE);
-        for i in 0..PARTS {
-            if !(self.covariance(i, i) >= 0.0) {
-                visitor.refuse();
-            }
+        visitor.reals(&mut self.mean, &NUMBER);
+        visitor.reals(self.regression.as_flattened_mut(), &NUMBER);
+        visitor.reals(&mut self.covariance, &NUMBER);
+        // A covariance is at most the mean of its variances; twice that leaves room for rounding.
+        let most = |i: usize, j: usize| self.covariance(i, i) + self.covariance(j, j) + MAX_ROUNDING;
+        let is_plausible =
+            |i: usize| self.covariance(i, i) >= 0.0 && (0..i).all(|j| abs(self.covariance(i, j)) <= most(i, j));
+        if !(0..PARTS).all(is_plausible) {
+            visitor.refuse();
         }
     }
 }

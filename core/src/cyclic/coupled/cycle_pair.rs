@@ -1,7 +1,8 @@
 //! Covariance of cycle position and velocity (c, v) through prediction and correction.
 
+use crate::cyclic::saved_ranges::VARIANCE;
 use crate::math::{clamp, ln, max, min, sqrt};
-use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
+use crate::saved_state::{SavedState, StateVisitor};
 
 /// Standard deviation of the temporal acceleration, cyclic (10), cycles per frame^2.
 ///
@@ -22,8 +23,8 @@ pub(super) struct CyclePair {
 
 impl SavedState for CyclePair {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        visitor.real(&mut self.cc, &NOT_NEGATIVE);
-        visitor.real(&mut self.vv, &NOT_NEGATIVE);
+        visitor.real(&mut self.cc, &VARIANCE);
+        visitor.real(&mut self.vv, &VARIANCE);
         // |cov| <= std std, up to rounding.
         let most = 1.001 * sqrt(self.cc) * sqrt(self.vv);
         visitor.real(&mut self.cv, &(-most..=most));

@@ -5,6 +5,7 @@
 //! Estimation with Applications to Tracking and Navigation (2001), section 5.4.
 
 use crate::cyclic::coupled::evidence::FrameInnovation;
+use crate::cyclic::saved_ranges::VARIANCE;
 use crate::math::{clamp, min};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 
@@ -40,8 +41,8 @@ pub(super) struct NisMonitor {
 
 impl SavedState for NisMonitor {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        visitor.real(&mut self.recent, &NOT_NEGATIVE);
-        visitor.real(&mut self.floor, &NOT_NEGATIVE);
+        visitor.real(&mut self.recent, &VARIANCE);
+        visitor.real(&mut self.floor, &VARIANCE);
         visitor.real(&mut self.frames, &NOT_NEGATIVE);
     }
 }

@@ -17,11 +17,12 @@ impl SavedState for StoredGrid {
         let mut grid = self.load();
         visitor.reals(grid.weights.as_flattened_mut(), &(0.0..=1.001));
         visitor.reals(&mut grid.travelled, &POSITIONS_IN_CYCLE);
-        let sum: f32 = grid.weights.iter().flatten().sum();
+        self.store(&grid);
+        // As they are stored, which is rounded.
+        let sum: f32 = self.load().weights.iter().flatten().sum();
         if !(0.99..=1.01).contains(&sum) {
             visitor.refuse();
         }
-        self.store(&grid);
     }
 }
 

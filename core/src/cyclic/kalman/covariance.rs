@@ -10,7 +10,8 @@
 //! sinks below the resolution of `f32`. A test runs ten million frames with gaps and finds no
 //! eigenvalue below zero.
 
-use crate::math::sqrt;
+use crate::cyclic::saved_ranges::covariance_bound;
+use crate::math::{abs, sqrt};
 use crate::numeric::semi_definite::{DIAGONAL_EXCESS, packed_index};
 
 /// Bound on the rounding of an entry, relative to the variances, where numbers nearly cancel or
@@ -52,6 +53,14 @@ pub struct KinematicCovariance<const N: usize> {
 }
 
 impl<const N: usize> KinematicCovariance<N> {
+    /// Whether no variance is negative, and no covariance beyond what the variances allow.
+    pub(super) fn is_plausible(&self) -> bool {
+        let variance = |i: usize| self.entry(i, i);
+        (0..2 * N).all(|i| {
+            variance(i) >= 0.0 && (0..i).all(|j| abs(self.entry(i, j)) <= covariance_bound([variance(i), variance(j)]))
+        })
+    }
+
     /// Independent angles and velocities with the variances given.
     #[must_use]
     pub fn diagonal(angle_variance: &[f32; N], velocity_variance: &[f32; N]) -> Self {

@@ -2,7 +2,10 @@
 
 use crate::cyclic::kalman::filter::KalmanFilter;
 use crate::cyclic::phase::POSITIONS_IN_CYCLE;
-use crate::saved_state::{FINITE, NOT_NEGATIVE, SavedState, StateVisitor};
+use crate::cyclic::saved_ranges::{NUMBER, VARIANCE, covariance_bound};
+use crate::cyclic::start::MAX_CYCLE_VELOCITY;
+use crate::math::abs;
+use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::PI;
 
 impl<const N: usize> SavedState for KalmanFilter<N> {
@@ -11,17 +14,26 @@ impl<const N: usize> SavedState for KalmanFilter<N> {
         for turns in &mut self.turns {
             visitor.integer(turns);
         }
-        visitor.reals(&mut self.velocities, &FINITE);
-        let covariance = &mut self.covariance;
-        for block in [&mut covariance.angle, &mut covariance.cross, &mut covariance.velocity] {
-            visitor.reals(block.as_flattened_mut(), &FINITE);
+        visitor.reals(&mut self.velocities, &NUMBER);
+        let blocks = &mut self.covariance;
+        for block in [&mut blocks.angle, &mut blocks.cross, &mut blocks.velocity] {
+            visitor.reals(block.as_flattened_mut(), &NUMBER);
+        }
+        if !self.covariance.is_plausible() {
+            visitor.refuse();
         }
         let cycle = &mut self.cycle;
         visitor.real(&mut cycle.position, &POSITIONS_IN_CYCLE);
-        visitor.real(&mut cycle.velocity, &FINITE);
-        visitor.real(&mut cycle.position_variance, &NOT_NEGATIVE);
-        visitor.real(&mut cycle.covariance, &FINITE);
-        visitor.real(&mut cycle.velocity_variance, &NOT_NEGATIVE);
+        visitor.real(&mut cycle.velocity, &(-MAX_CYCLE_VELOCITY..=MAX_CYCLE_VELOCITY));
+        visitor.real(&mut cycle.position_variance, &VARIANCE);
+        let mut saved = cycle.covariance;
+        visitor.real(&mut saved, &NUMBER);
+        visitor.real(&mut cycle.velocity_variance, &VARIANCE);
+        let within = covariance_bound([cycle.position_variance, cycle.velocity_variance]);
+        if !(abs(saved) <= within) {
+            visitor.refuse();
+        }
+        cycle.covariance = saved;
     }
 }
 

@@ -9,11 +9,12 @@ use crate::cyclic::MotionModel;
 use crate::cyclic::particle::angle_blocks::{AngleBlocks, BLOCK, blocks_of, used_blocks, write_back};
 use crate::cyclic::particle::factors::ParticleTable;
 use crate::cyclic::phase::{POSITIONS_IN_CYCLE, wrap_position};
+use crate::cyclic::saved_ranges::NUMBER;
 use crate::cyclic::start::{CycleStart, MIN_SPREAD_RAD};
 use crate::math::{clamp, max, sqrt, wrap_angle, wrap_angle_small};
 use crate::random::lanes::LANES;
 use crate::random::{Stream, StreamLanes};
-use crate::saved_state::{FINITE, SavedState, StateVisitor};
+use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::PI;
 
 pub use crate::cyclic::particle::factors::{factors_len, fill_factors};
@@ -311,9 +312,9 @@ pub(super) fn advance<const N: usize>(
 impl<const N: usize> SavedState for CyclicParticle<N> {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         visitor.reals(&mut self.angles_rad, &(-PI..=PI));
-        visitor.reals(&mut self.velocities, &FINITE);
+        visitor.reals(&mut self.velocities, &NUMBER);
         visitor.real(&mut self.cycle_position, &POSITIONS_IN_CYCLE);
-        visitor.real(&mut self.cycle_velocity, &FINITE);
+        visitor.real(&mut self.cycle_velocity, &NUMBER);
     }
 }
 

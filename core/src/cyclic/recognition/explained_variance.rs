@@ -7,7 +7,7 @@
 
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::math::{clamp, exp, ln, max, min, sin_cos, sqrt};
-use crate::saved_state::{FINITE, NOT_NEGATIVE, SavedState, StateVisitor};
+use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::PI;
 
 /// Largest circular variance, rad^2: that of a uniform angle.
@@ -23,6 +23,8 @@ pub(super) const STANDARD_ERRORS: f32 = 0.5;
 const MIN_LENGTH2: f32 = 1.0e-6;
 /// Largest variance of a measurement, rad^2. Chosen: exp(-13) is near [`MIN_LENGTH2`].
 const MAX_NOISE_RAD2: f32 = 13.0;
+/// Greatest weight: adding 1 to it gives the same `f32`.
+const MAX_WEIGHT: f32 = 16_777_216.0;
 
 /// Exponentially weighted sums of one angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -131,9 +133,9 @@ pub(in crate::cyclic) struct ExplainedVariance<const N: usize> {
 impl<const N: usize> SavedState for ExplainedVariance<N> {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         for sums in &mut self.angles {
-            visitor.real(&mut sums.weight, &NOT_NEGATIVE);
+            visitor.real(&mut sums.weight, &(0.0..=MAX_WEIGHT));
             for sum in [&mut sums.seen, &mut sums.expected, &mut sums.residual] {
-                visitor.reals(sum, &FINITE);
+                visitor.reals(sum, &(-MAX_WEIGHT..=MAX_WEIGHT));
             }
         }
         visitor.real(&mut self.keep, &(0.0..=1.0));

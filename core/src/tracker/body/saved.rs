@@ -4,26 +4,31 @@ use super::state::BodyTracker;
 use super::velocity::Velocity;
 use crate::math::Vec3;
 use crate::pik::motion::BodyParticle;
-use crate::saved_state::{FINITE, SavedState, StateVisitor};
+use crate::saved_state::{SavedState, StateVisitor};
+use core::ops::RangeInclusive;
+
+/// Any number of a state. Chosen: refuses a corrupt state, never a tracked one, and squares of such
+/// numbers are far from the greatest `f32`.
+const NUMBER: RangeInclusive<f32> = -1.0e9..=1.0e9;
 
 fn places(values: &mut [Vec3], visitor: &mut impl StateVisitor) {
     for value in values {
-        visitor.reals(value.as_mut_slice(), &FINITE);
+        visitor.reals(value.as_mut_slice(), &NUMBER);
     }
 }
 
 impl<const BONES: usize, const ANGLES: usize> SavedState for BodyParticle<BONES, ANGLES> {
     /// The log-weights are left out: each step sets them anew before it reads them.
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        visitor.reals(&mut self.angles_rad, &FINITE);
+        visitor.reals(&mut self.angles_rad, &NUMBER);
         places(&mut self.ends_m, visitor);
-        visitor.reals(&mut self.memory, &FINITE);
+        visitor.reals(&mut self.memory, &NUMBER);
     }
 }
 
 impl<const BONES: usize, const ANGLES: usize> SavedState for Velocity<BONES, ANGLES> {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        visitor.reals(&mut self.angles_per_s, &FINITE);
+        visitor.reals(&mut self.angles_per_s, &NUMBER);
         places(&mut self.ends_m_per_s, visitor);
     }
 }
@@ -58,7 +63,7 @@ where
         self.velocity.last.visit(visitor);
         self.velocity.change.visit(visitor);
         visitor.flag(&mut self.velocity.is_known);
-        visitor.reals(&mut self.noise.shares, &FINITE);
+        visitor.reals(&mut self.noise.shares, &NUMBER);
         for is_unseen in &mut self.noise.is_unseen {
             visitor.flag(is_unseen);
         }

@@ -41,6 +41,11 @@ impl<'a, const N: usize> Kept<'a, N> {
         (self.walk.steps().rate_hz(), self.walk.steps().step_frames())
     }
 
+    /// Index of the first row with an angle.
+    pub const fn first(&self) -> usize {
+        self.first
+    }
+
     /// Rows that are answered.
     pub const fn finished(&self) -> usize {
         self.answers.len()

@@ -2,6 +2,7 @@
 
 use crate::cyclic::CyclicError;
 use serde::{Deserialize, Serialize};
+use sinew_core::ranges::ANGLE_STD_RAD;
 
 /// Which filter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -143,6 +144,13 @@ impl TrackingOptions {
                 format!("has to be greater than zero, not {} degrees", self.sigma_rad.to_degrees()),
             );
         }
+        if !ANGLE_STD_RAD.contains(&(self.sigma_rad as f32)) {
+            let [low, high] = [ANGLE_STD_RAD.start(), ANGLE_STD_RAD.end()].map(|std_rad| std_rad.to_degrees());
+            return refuse(
+                "sigma",
+                format!("has to lie from {low:.3} to {high:.0} degrees, not {}", self.sigma_rad.to_degrees()),
+            );
+        }
         if let Some(rate) = self.rate_hz.filter(|rate| !(*rate > 0.0 && rate.is_finite())) {
             return refuse("rate", format!("has to be greater than zero, not {rate}"));
         }
@@ -199,6 +207,7 @@ mod tests {
         good.check().unwrap();
         let bad = [
             (TrackingOptions { sigma_rad: 0.0, ..good.clone() }, "sigma"),
+            (TrackingOptions { sigma_rad: 1.0e4, filter: FilterName::Paper, ..good.clone() }, "sigma"),
             (TrackingOptions { rate_hz: Some(-1.0), ..good.clone() }, "rate"),
             (TrackingOptions { initial_cycle_position: Some(1.0), ..good.clone() }, "initial-cycle-position"),
             (TrackingOptions { initial_cycle_velocity: Some(f64::NAN), ..good.clone() }, "initial-cycle-velocity"),

@@ -163,8 +163,20 @@ impl<'a> TableRun<'a> {
                 }
             }
         }
-        ensure!(self.finished() == finished, "what the run left does not fit its number of rows; {REMEDY}");
+        ensure!(self.is_at(finished), "what the run left does not fit its number of rows; {REMEDY}");
         Ok(())
+    }
+
+    /// Whether each model has answered so many rows, the first one with an angle among them.
+    fn is_at(&self, finished: usize) -> bool {
+        fn all_at<const N: usize>(walks: &[Kept<'_, N>], finished: usize) -> bool {
+            walks.iter().all(|walk| walk.finished() == finished && walk.first() < finished)
+        }
+        finished <= self.rows()
+            && match &self.walks {
+                Walks::Plane(walks) => all_at(walks, finished),
+                Walks::Space(walks) => all_at(walks, finished),
+            }
     }
 }
 
@@ -192,4 +204,27 @@ fn walks<'a, const N: usize>(
     options: &'a TrackingOptions,
 ) -> Result<Vec<Kept<'a, N>>> {
     models.iter().map(|model| Kept::begin(table, model.view(), options)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cyclic::SyntheticPerson;
+
+    #[test]
+    fn a_state_whose_models_answered_unlike_rows_is_refused() {
+        let models = ["walking", "running"].map(|name| CyclicModel::from_option(name).unwrap());
+        let table = SyntheticPerson::draw(&models[0], 60.0, 1).unwrap().measured(1, 0.05, 0.0, 1).unwrap();
+        let options = TrackingOptions::default();
+        let begin = || TableRun::begin(&table, &models, &options).unwrap();
+        let mut run = begin();
+        run.step().unwrap();
+        let finished = run.finished();
+        begin().restore(finished, run.saved().unwrap().as_deref()).unwrap();
+        if let Walks::Plane(walks) = &mut run.walks {
+            walks[1].step().unwrap();
+        }
+        let message = begin().restore(finished, run.saved().unwrap().as_deref()).unwrap_err().to_string();
+        assert!(message.contains("does not fit its number of rows"), "{message}");
+    }
 }
