@@ -162,7 +162,15 @@ impl ResumeFile {
         // As a value first: its numbers are parsed exactly.
         let value: Value = serde_json::from_str(&text).with_context(|| format!("`{path}` is not JSON; {REMEDY}"))?;
         Begun::check_kind(&value["begun"], self.command, &self.path)?;
-        serde_json::from_value(value).with_context(|| format!("`{path}` is not whole; {REMEDY}"))
+        let left: Left<S> =
+            serde_json::from_value(value).with_context(|| format!("`{path}` is not whole; {REMEDY}"))?;
+        // A number such as 1e999 is legal JSON.
+        ensure!(
+            left.seconds >= 0.0 && left.seconds.is_finite(),
+            "`{path}`: `seconds` is {}, and has to be finite and at least 0; {REMEDY}",
+            left.seconds
+        );
+        Ok(left)
     }
 }
 
@@ -194,5 +202,19 @@ mod tests {
         file.remove().unwrap();
         file.remove().unwrap();
         assert!(file.read::<Vec<f64>>(folder.path()).unwrap_err().to_string().contains("holds no unfinished run"));
+    }
+
+    #[test]
+    fn a_time_beyond_all_numbers_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let begun = Begun::new("track arm", &json!({}), &[]).unwrap();
+        let file = ResumeFile::in_folder(folder.path(), "track arm");
+        file.put(&Left::new(begun, 3, 12.25, None, Value::Null)).unwrap();
+        let text = fs::read_to_string(&file.path).unwrap();
+        for wrong in ["1e999", "-1.0"] {
+            fs::write(&file.path, text.replace("12.25", wrong)).unwrap();
+            let message = file.read::<Value>(folder.path()).unwrap_err().to_string();
+            assert!(message.contains("`seconds` is"), "{message}");
+        }
     }
 }
