@@ -104,6 +104,6 @@ fn asf(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let Ok(skeleton) = motion::asf::parse(&text, Path::new("s.asf")) else { return };
     let _ = motion::amc::parse(AMC, Path::new("m.amc"), &skeleton, 60.0);
-    let _ =
-        sinew::body::run::measures_source::read_measures(&file("s.asf", bytes), bytes.len() % 2 == 0, &mut Vec::new());
+    let partial = bytes.len().is_multiple_of(2);
+    let _ = sinew::body::run::measures_source::read_measures(&file("s.asf", bytes), partial, &mut Vec::new());
 }
