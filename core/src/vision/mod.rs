@@ -66,6 +66,7 @@ pub mod hand_likelihood;
 pub mod line_morphology;
 pub mod mask;
 pub mod morphology;
+pub mod objects;
 pub mod runs;
 pub(crate) mod shape;
 pub mod skin;

@@ -1,0 +1,127 @@
+//! The colour of one person's skin, from the middle of the face.
+//!
+//! A normal distribution over luminance and chrominance (Y, Cr, Cb of Rec. 601). It is one-sided: a
+//! hand may be more colourful than the face, since the face is lit from more sides.
+
+use crate::vision::skin::{PIXELS_PER_WORD, SkinClassifier};
+use crate::math::{max, sqrt};
+
+/// Most pixels of a face that are looked at.
+pub const MAX_SAMPLES: usize = 1024;
+/// Fewest pixels that make a colour. Chosen.
+const MIN_SAMPLES: usize = 24;
+/// Pixels of a face whose chrominance is further from the median are hair, eyes or background.
+const MAX_FROM_MEDIAN: i32 = 15;
+/// Added to the variances of Y, Cr and Cb.
+const FLOOR_VARIANCES: [f32; 3] = [200.0, 4.0, 4.0];
+/// Squared distance within which a colour is skin: three standard deviations.
+const MAX_SQUARED_DISTANCE: f32 = 9.0;
+/// Share of what is more colourful than the mean that is forgiven.
+const FORGIVEN: f32 = 0.5;
+/// Weight of the old colour when a new face is seen.
+const KEPT: f32 = 0.7;
+
+/// A person's colour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PersonColour {
+    mean: [f32; 3],
+    /// Upper triangle of the covariance: YY, YCr, YCb, CrCr, CrCb, CbCb.
+    covariance: [f32; 6],
+    /// Of the inverse.
+    inverse: [f32; 6],
+    /// Direction of more colour in Cr, Cb; a unit vector.
+    colourful: [f32; 2],
+}
+
+/// Y, Cr and Cb of a colour (Rec. 601, full range).
+#[must_use]
+pub fn ycc(rgb: [u8; 3]) -> [f32; 3] {
+    let [r, g, b] = rgb.map(f32::from);
+    let y = 0.299 * r + 0.587 * g + 0.114 * b;
+    [y, 0.713 * (r - y) + 128.0, 0.564 * (b - y) + 128.0]
+}
+
+impl PersonColour {
+    /// The colour of pixels from a face's middle (rows 25 to 85 %, columns 20 to 80 % of its box),
+    /// R, G, B each; `None` where too few are alike. Over [`MAX_SAMPLES`] the first ones count.
+    #[must_use]
+    pub fn of_face(rgb: &[[u8; 3]]) -> Option<Self> {
+        let rgb = rgb.get(..MAX_SAMPLES).unwrap_or(rgb);
+        let chrominance = |axis: usize| median(rgb.iter().map(|pixel| ycc(*pixel)[axis]));
+        let (cr, cb) = (chrominance(1), chrominance(2));
+        let is_near = |value: f32, middle: i32| (value - middle as f32).abs() <= MAX_FROM_MEDIAN as f32;
+        let kept = || rgb.iter().map(|pixel| ycc(*pixel)).filter(move |[_, r, b]| is_near(*r, cr) && is_near(*b, cb));
+        let count = kept().count();
+        if count < MIN_SAMPLES {
+            return None;
+        }
+        let mean: [f32; 3] = core::array::from_fn(|axis| kept().map(|colour| colour[axis]).sum::<f32>() / count as f32);
+        let covariance = PAIRS.map(|(a, b)| {
+            let sum: f32 = kept().map(|colour| (colour[a] - mean[a]) * (colour[b] - mean[b])).sum();
+            sum / count as f32 + if a == b { FLOOR_VARIANCES[a] } else { 0.0 }
+        });
+        Self::new(mean, covariance)
+    }
+
+    /// Between this colour and a newer one.
+    #[must_use]
+    pub fn moved_to(&self, newer: &Self) -> Option<Self> {
+        let mix = |old: f32, new: f32| KEPT * old + (1.0 - KEPT) * new;
+        let mean = core::array::from_fn(|axis| mix(self.mean[axis], newer.mean[axis]));
+        let covariance = core::array::from_fn(|index| mix(self.covariance[index], newer.covariance[index]));
+        Self::new(mean, covariance)
+    }
+
+    fn new(mean: [f32; 3], covariance: [f32; 6]) -> Option<Self> {
+        let inverse = inverse(&covariance)?;
+        let (cr, cb) = (mean[1] - 128.0, mean[2] - 128.0);
+        let size = max(sqrt(cr * cr + cb * cb), 1.0e-6);
+        Some(Self { mean, covariance, inverse, colourful: [cr / size, cb / size] })
+    }
+
+    /// Whether a colour is this person's skin.
+    #[must_use]
+    pub fn is_skin(&self, rgb: [u8; 3]) -> bool {
+        let [y, cr, cb] = ycc(rgb);
+        let (y, mut cr, mut cb) = (y - self.mean[0], cr - self.mean[1], cb - self.mean[2]);
+        let [along_cr, along_cb] = self.colourful;
+        let excess = FORGIVEN * max(0.0, cr * along_cr + cb * along_cb);
+        cr -= excess * along_cr;
+        cb -= excess * along_cb;
+        let [yy, yr, yb, rr, rb, bb] = self.inverse;
+        let distance = y * (yy * y + 2.0 * (yr * cr + yb * cb)) + cr * (rr * cr + 2.0 * rb * cb) + bb * cb * cb;
+        distance < MAX_SQUARED_DISTANCE
+    }
+}
+
+/// Axes of the six covariances.
+const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+
+fn median(values: impl Iterator<Item = f32> + Clone) -> i32 {
+    let count = values.clone().count();
+    let mut histogram = [0_u16; 256];
+    values.for_each(|value| histogram[(value as i32).clamp(0, 255) as usize] += 1);
+    let mut below = 0;
+    for (value, many) in histogram.iter().enumerate() {
+        below += usize::from(*many);
+        if 2 * below >= count {
+            return value as i32;
+        }
+    }
+    0
+}
+
+/// Inverse of a symmetric matrix; `None` if it has none.
+fn inverse(&[a, b, c, d, e, f]: &[f32; 6]) -> Option<[f32; 6]> {
+    let minors = [d * f - e * e, c * e - b * f, b * e - c * d, a * f - c * c, b * c - a * e, a * d - b * b];
+    let determinant = a * minors[0] + b * minors[1] + c * minors[2];
+    (determinant > 0.0 && determinant.is_finite()).then(|| minors.map(|minor| minor / determinant))
+}
+
+impl SkinClassifier for PersonColour {
+    fn classify_line(&self, rgb: &[u8], bits: &mut [u32]) {
+        for (word, pixels) in bits.iter_mut().zip(rgb.as_chunks::<3>().0.chunks(PIXELS_PER_WORD)) {
+            *word = pixels.iter().enumerate().fold(0, |word, (place, pixel)| word | u32::from(self.is_skin(*pixel)) << place);
+        }
+    }
+}
