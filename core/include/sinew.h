@@ -69,9 +69,14 @@
 #define SINEW_ARM_PREDICTED 1
 
 /**
- * A blob of this frame carries the estimate.
+ * A blob of this frame that is likely a hand carries the estimate.
  */
 #define SINEW_ARM_TRACKING 2
+
+/**
+ * A blob of this frame carries the estimate that is less likely a hand.
+ */
+#define SINEW_ARM_UNCERTAIN 3
 
 /**
  * Bytes that always suffice for an arm tracker, on every target.
@@ -448,7 +453,7 @@ typedef struct SinewArmResult {
    */
   uint32_t side;
   /**
-   * `SINEW_ARM_TRACKING`, `SINEW_ARM_PREDICTED` or `SINEW_ARM_LOST`.
+   * `SINEW_ARM_TRACKING`, `SINEW_ARM_UNCERTAIN`, `SINEW_ARM_PREDICTED` or `SINEW_ARM_LOST`.
    */
   uint32_t state;
   /**

@@ -21,6 +21,7 @@ pub fn side_name(side: Side) -> &'static str {
 pub fn status_name(status: Status) -> &'static str {
     match status {
         Status::Tracking => "tracking",
+        Status::Uncertain => "uncertain",
         Status::Predicted => "predicted",
         Status::Lost => "lost",
     }

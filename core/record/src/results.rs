@@ -136,6 +136,7 @@ impl Payload for ArmResult {
         fields.u32(self.frame);
         fields.u8(u8::from(estimate.side == Side::Right));
         fields.u8(match estimate.status {
+            Status::Uncertain => 3,
             Status::Tracking => 2,
             Status::Predicted => 1,
             Status::Lost => 0,
@@ -163,6 +164,7 @@ impl Payload for ArmResult {
             0 => Status::Lost,
             1 => Status::Predicted,
             2 => Status::Tracking,
+            3 => Status::Uncertain,
             _ => return Err(RecordError::Value { field: "status" }),
         };
         let degenerate = fields.flag("degenerate")?;

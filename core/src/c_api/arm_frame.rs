@@ -27,8 +27,10 @@ pub const SINEW_SIDE_RIGHT: u32 = 1;
 pub const SINEW_ARM_LOST: u32 = 0;
 /// No blob of this frame carries the estimate; it is a prediction.
 pub const SINEW_ARM_PREDICTED: u32 = 1;
-/// A blob of this frame carries the estimate.
+/// A blob of this frame that is likely a hand carries the estimate.
 pub const SINEW_ARM_TRACKING: u32 = 2;
+/// A blob of this frame carries the estimate that is less likely a hand.
+pub const SINEW_ARM_UNCERTAIN: u32 = 3;
 
 /// Camera, body and seed of an arm tracker; see `sinew_arm_default_config`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,7 +85,7 @@ pub struct SinewArmResult {
     pub timestamp_us: u64,
     /// `SINEW_SIDE_LEFT` or `SINEW_SIDE_RIGHT`.
     pub side: u32,
-    /// `SINEW_ARM_TRACKING`, `SINEW_ARM_PREDICTED` or `SINEW_ARM_LOST`.
+    /// `SINEW_ARM_TRACKING`, `SINEW_ARM_UNCERTAIN`, `SINEW_ARM_PREDICTED` or `SINEW_ARM_LOST`.
     pub state: u32,
     /// Shoulder, metres in camera axes.
     pub shoulder_m: [f32; 3],
@@ -243,6 +245,7 @@ impl SinewArmResult {
             state: match estimate.status {
                 Status::Lost => SINEW_ARM_LOST,
                 Status::Predicted => SINEW_ARM_PREDICTED,
+                Status::Uncertain => SINEW_ARM_UNCERTAIN,
                 Status::Tracking => SINEW_ARM_TRACKING,
             },
             shoulder_m: estimate.joints.shoulder_m.into(),

@@ -53,6 +53,7 @@ fn arm_options(corners: &mut Corners) -> ArmOptions {
         &mut options.teleport_share,
         &mut options.clutter_share,
         &mut options.lost_after_s,
+        &mut options.sure_likelihood,
     ];
     for number in numbers {
         if corners.one_in(20) {

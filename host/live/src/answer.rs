@@ -8,7 +8,7 @@ pub const ANSWER_NUMBERS: usize = 16;
 /// Numbers of one particle, in the order of [`particle`].
 pub const PARTICLE_NUMBERS: usize = 5;
 
-/// Status: 0 tracking, 1 predicted, 2 lost. Images of shoulder, elbow and hand, pixels, NaN behind
+/// Status: 0 tracking, 1 predicted, 2 lost, 3 uncertain. Images of shoulder, elbow and hand, pixels, NaN behind
 /// the camera. The hand in camera axes and its standard deviation, metres. Effective sample size.
 /// Likelihood of the blob that carries the estimate and its number, -1 without one. Temporal edge
 /// pixels. Whether all weights were zero.
@@ -18,6 +18,7 @@ pub fn answer(estimate: &ArmEstimate, model: &ArmModel, edges: usize) -> [f32; A
         Status::Tracking => 0.0,
         Status::Predicted => 1.0,
         Status::Lost => 2.0,
+        Status::Uncertain => 3.0,
     };
     let joints = &estimate.joints;
     let [shoulder, elbow, hand] =

@@ -120,7 +120,7 @@ fn draw_particles(image: &mut RgbImage, arm: &OverlayArm, scale: Scale) {
 
 fn draw_arm(image: &mut RgbImage, arm: &OverlayArm, scale: Scale) {
     let Some(joints) = arm.joints_px.filter(|_| arm.status != Status::Lost) else { return };
-    let (colour, predicted) = (of_side(arm.side), arm.status == Status::Predicted);
+    let (colour, predicted) = (of_side(arm.side), arm.status != Status::Tracking);
     let width_px = if predicted { 1.8 } else { 3.2 } * scale.factor;
     outlined(image, &joints, Stroke::new(colour, width_px).with_dashes(predicted), width_px + 1.6 * scale.factor);
     for (joint, radius) in joints.iter().zip([1.0, 1.0, 1.5]) {

@@ -68,7 +68,7 @@ fn draw_panel(panel: &mut RgbImage, arms: &[&OverlayArm], scale: Scale) {
     for arm in arms {
         let Some(joints) = arm.joints_m else { continue };
         let joints = joints.map(|joint| map.place(&joint));
-        let predicted = arm.status == Status::Predicted;
+        let predicted = arm.status != Status::Tracking;
         let width_px = if predicted { 1.3 } else { 2.2 } * scale.factor;
         let stroke = Stroke::new(of_side(arm.side), width_px).with_dashes(predicted);
         outlined(panel, &joints, stroke, width_px + 1.5);

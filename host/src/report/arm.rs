@@ -60,7 +60,10 @@ fn tell_what_was_run(run: &mut Run, folder: &mut RunFolder, report: &Value) {
     let (finished, frames) = (text(&report["frames_finished"]), text(&report["frames"]));
     run.highlights.push(Fact::new("Frames", format!("{finished} of {frames}")));
     for (side, counts) in report["status_counts"].as_object().into_iter().flatten() {
-        let words = ["tracking", "predicted", "lost"].map(|status| format!("{} {status}", text(&counts[status])));
+        // Runs of older versions have no uncertain frames.
+        let all = ["tracking", "uncertain", "predicted", "lost"];
+        let known = all.into_iter().filter(|status| !counts[*status].is_null());
+        let words: Vec<String> = known.map(|status| format!("{} {status}", text(&counts[status]))).collect();
         run.highlights.push(Fact::new(format!("{} arm", capital(side)), words.join(", ")));
     }
     run.highlights.extend(number(&report["frames_per_second"], 0, "frames/s").map(|speed| Fact::new("Speed", speed)));

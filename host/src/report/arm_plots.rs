@@ -101,7 +101,7 @@ fn over_time(track: &Table, sides: &[String], group: &str, y_label: &str) -> Plo
         over_frames: true,
         shades: sides
             .iter()
-            .flat_map(|side| ["predicted", "lost"].map(|status| shade(side, status)))
+            .flat_map(|side| ["uncertain", "predicted", "lost"].map(|status| shade(side, status)))
             .filter(known)
             .collect(),
         ..Plot::default()

@@ -25,8 +25,10 @@ pub struct Inputs {
 /// How many frames of one side ended in each status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct StatusCounts {
-    /// A blob carried the estimate.
+    /// A blob that is likely a hand carried the estimate.
     pub tracking: usize,
+    /// A blob carried the estimate that is less likely a hand.
+    pub uncertain: usize,
     /// The estimate was a prediction.
     pub predicted: usize,
     /// There was no estimate.
@@ -87,6 +89,7 @@ impl RunReport {
         let counts = self.status_counts.entry(side_name(side)).or_default();
         match status {
             Status::Tracking => counts.tracking += 1,
+            Status::Uncertain => counts.uncertain += 1,
             Status::Predicted => counts.predicted += 1,
             Status::Lost => counts.lost += 1,
         }
@@ -103,6 +106,7 @@ impl RunReport {
         for (side, counts) in &self.status_counts {
             let numbers = [
                 (counts.tracking, Status::Tracking),
+                (counts.uncertain, Status::Uncertain),
                 (counts.predicted, Status::Predicted),
                 (counts.lost, Status::Lost),
             ];

@@ -131,12 +131,13 @@ const NO_SAMPLE: HandSample = HandSample {
 
 impl SavedState for HandSample {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        let (sides, statuses) = ([Side::Left, Side::Right], [Status::Tracking, Status::Predicted, Status::Lost]);
+        let sides = [Side::Left, Side::Right];
+        let statuses = [Status::Tracking, Status::Uncertain, Status::Predicted, Status::Lost];
         let mut side = usize::from(self.side == Side::Right);
         visitor.index(&mut side, 1);
         self.side = sides[side];
-        let mut status = statuses.iter().position(|status| *status == self.status).unwrap_or(2);
-        visitor.index(&mut status, 2);
+        let mut status = statuses.iter().position(|status| *status == self.status).unwrap_or(3);
+        visitor.index(&mut status, 3);
         self.status = statuses[status];
         optional(&mut self.hand_px, Pixel::new(0.0, 0.0), visitor, |pixel, visitor| {
             real(&mut pixel.u_px, visitor);

@@ -122,6 +122,7 @@ fn show_edges(camera: &Camera, arms: &Arms, stream: &mut Stream, edges: &mut [Ed
 
 fn take(bits: &mut Bits, estimate: &ArmEstimate) {
     bits.word(match estimate.status {
+        Status::Uncertain => 3,
         Status::Tracking => 2,
         Status::Predicted => 1,
         Status::Lost => 0,

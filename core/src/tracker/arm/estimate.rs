@@ -15,6 +15,7 @@ use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 /// ```
 /// use sinew_core::tracker::arm::example::{SHOULDERS_M, hand_blob, left_arm};
 /// use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmOptions, ArmTracker, Status};
+/// use sinew_core::vision::candidate::HandCandidate;
 ///
 /// let (model, hand, shoulder_m) = (left_arm()?, hand_blob(), SHOULDERS_M[0]);
 /// // A hand is seen once, then the camera is covered.
@@ -22,6 +23,9 @@ use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 /// let mut at = |timestamp_us, image| tracker.step(&model, &ArmFrame { timestamp_us, image, shoulder_m }).status;
 /// let image = ArmImage { candidates: &[hand], edges: &[] };
 /// assert_eq!(at(0, Some(image)), Status::Tracking);
+/// // A blob that may be something else.
+/// let other = ArmImage { candidates: &[HandCandidate { likelihood: 0.5, ..hand }], edges: &[] };
+/// assert_eq!(at(33_333, Some(other)), Status::Uncertain);
 /// assert_eq!(at(66_667, None), Status::Predicted);
 /// // Longer than `ArmOptions::lost_after_s` later the prediction means nothing.
 /// assert_eq!(at(1_000_000, None), Status::Predicted);
@@ -31,8 +35,11 @@ use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Status {
-    /// A blob of this frame carries the estimate.
+    /// A blob of this frame that is likely a hand carries the estimate; see
+    /// [`ArmOptions::sure_likelihood`](super::ArmOptions::sure_likelihood).
     Tracking,
+    /// A blob of this frame carries the estimate that is less likely a hand.
+    Uncertain,
     /// No blob does; the estimate is a prediction.
     Predicted,
     /// No blob did for so long (or ever) that the prediction means nothing.

@@ -275,6 +275,8 @@ pub struct ArmOptions {
     pub clutter_share: f32,
     /// Without a blob for longer than this the arm counts as lost, seconds.
     pub lost_after_s: f32,
+    /// Likelihood below which a blob leaves the estimate uncertain.
+    pub sure_likelihood: f32,
 }
 
 impl Default for ArmOptions {
@@ -308,6 +310,7 @@ impl Default for ArmOptions {
             teleport_share: 0.05,
             clutter_share: 0.1,
             lost_after_s: 1.0,
+            sure_likelihood: 0.7,
         }
     }
 }
@@ -378,6 +381,7 @@ impl ArmOptions {
         within("teleport_share", self.teleport_share, 1.0e-6, 1.0)?;
         within("clutter_share", self.clutter_share, 1.0e-6, 1.0)?;
         positive("lost_after_s", self.lost_after_s)?;
+        within("sure_likelihood", self.sure_likelihood, 0.0, 1.0)?;
         Ok(())
     }
 }

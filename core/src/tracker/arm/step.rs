@@ -193,8 +193,11 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             self.elbow_velocity_m_per_s *= keep;
         }
         self.estimate = cluster.joints;
-        if carried {
+        let carrier = cluster.candidate.and_then(|index| context.candidates.get(index));
+        if carrier.is_some_and(|candidate| candidate.likelihood >= options.sure_likelihood) {
             Status::Tracking
+        } else if carried {
+            Status::Uncertain
         } else if self.ever_seen && self.unseen_s <= options.lost_after_s {
             Status::Predicted
         } else {

@@ -62,15 +62,6 @@ impl CellBox {
         Self { columns: 0..size.columns, rows: 0..size.rows }
     }
 
-    /// Nothing yet; see [`Self::add`].
-    pub const EMPTY: Self = Self { columns: usize::MAX..0, rows: usize::MAX..0 };
-
-    /// Grows so that a cell lies within.
-    pub fn add(&mut self, column: usize, row: usize) {
-        self.columns = self.columns.start.min(column)..self.columns.end.max(column + 1);
-        self.rows = self.rows.start.min(row)..self.rows.end.max(row + 1);
-    }
-
     /// Its cells, row by row.
     pub fn cells(&self, size: GridSize) -> impl DoubleEndedIterator<Item = usize> + use<> {
         let columns = self.columns.clone();

@@ -75,9 +75,7 @@ mod tests {
         };
         let mut scratch = [0; 600];
         for start in [3, 16 * 30 + 10, 16 * 30 + 27] {
-            let mut within = CellBox::EMPTY;
-            within.add(2, 0);
-            within.add(27, 17);
+            let within = CellBox { columns: 2..28, rows: 0..18 };
             let found = ends(size, &within, inside, |cell| cell < 30, (start, 5.0), &mut scratch);
             assert!((35.0..45.0).contains(&found.length), "{found:?}");
             let upper = usize::from(found.places[0][1] > found.places[1][1]);

@@ -9,12 +9,13 @@ use super::labels::{MAX_LABELS, label};
 use super::place::{ArmEnd, HandPlace};
 use crate::math::{max, min};
 use crate::skeleton::Side;
+use core::ops::RangeInclusive;
 use heapless::Vec;
 
 /// Most places of a frame before the likeliest are chosen.
 pub const MAX_FOUND: usize = 32;
 /// Areas of objects that may hold a hand, squared widths of the face: from fingers to both arms.
-const AREAS: [f32; 2] = [0.06, 8.0];
+const AREAS: RangeInclusive<f32> = 0.06..=8.0;
 /// An object's nearest cell lies within this of a shoulder: an arm's length.
 const REACH: f32 = 4.8;
 /// Objects above this area are no single arm.
@@ -104,7 +105,7 @@ pub(super) fn places(grid: &CellGrid, head: HeadBox, maps: &mut Maps) -> Vec<Han
     let mut found = Vec::new();
     for (label, object) in objects.iter().enumerate().take(usize::from(count) + 1) {
         let area = f32::from(object.cells) / (view.width * view.width);
-        if area >= AREAS[0] && area <= AREAS[1] && object.to_shoulder <= REACH {
+        if AREAS.contains(&area) && object.to_shoulder <= REACH {
             view.places_of(object, label as u8, area, maps, &mut found);
         }
     }

@@ -65,7 +65,7 @@ class Tracker {
   #answer() {
     const n = this.#rows(this.module.answer(), 1, ANSWER_NUMBERS)[0];
     return {
-      status: ['tracking', 'predicted', 'lost'][n[0]],
+      status: ['tracking', 'predicted', 'lost', 'uncertain'][n[0]],
       shoulder: [n[1], n[2]], elbow: [n[3], n[4]], hand: [n[5], n[6]],
       handM: [n[7], n[8], n[9]], handStdM: n[10], sampleSize: n[11], likelihood: n[12], carrier: n[13], edges: n[14],
     };

@@ -85,7 +85,7 @@ fn draw_path<'b>(area: &Area<'b>, tracks: &[Track], image_size: (u32, u32)) -> R
     Ok(below)
 }
 
-/// Thick where tracking, thin where either end is a prediction, nothing where either is lost or has
+/// Thick where tracking, thin where either end is uncertain or a prediction, nothing where either is lost or has
 /// no `place`.
 fn draw_line(
     chart: &mut Chart,
@@ -97,10 +97,11 @@ fn draw_line(
     let at = |sample: &HandSample, status: Status| place(sample).filter(|_| sample.status == status);
     broken_line(chart, samples.iter().map(|sample| at(sample, Status::Tracking)), colour.stroke_width(2 * ZOOM))?;
     let thin = colour.mix(0.55).stroke_width(ZOOM);
-    let tracked_next = |index: usize| samples.get(index).is_some_and(|sample| sample.status == Status::Predicted);
+    let is_thin = |sample: &HandSample| matches!(sample.status, Status::Predicted | Status::Uncertain);
+    let thin_at = |index: usize| samples.get(index).is_some_and(is_thin);
     let bridges = samples.iter().enumerate().map(|(index, sample)| {
-        let beside = tracked_next(index + 1) || (index > 0 && tracked_next(index - 1));
-        at(sample, Status::Predicted).or_else(|| at(sample, Status::Tracking).filter(|_| beside))
+        let beside = thin_at(index + 1) || (index > 0 && thin_at(index - 1));
+        place(sample).filter(|_| is_thin(sample)).or_else(|| at(sample, Status::Tracking).filter(|_| beside))
     });
     broken_line(chart, bridges, thin)
 }
@@ -162,6 +163,7 @@ fn depth_band(sample: &HandSample) -> Option<(f64, f64, f64)> {
 fn shading(status: Status) -> f64 {
     match status {
         Status::Tracking => 0.0,
+        Status::Uncertain => 0.07,
         Status::Predicted => 0.14,
         Status::Lost => 0.38,
     }
@@ -208,12 +210,14 @@ fn entries(tracks: &[Track]) -> Vec<(Key, String)> {
     for (side, _) in tracks {
         entries.push((Key::Line(paint(of_side(*side)).stroke_width(3 * ZOOM)), format!("{} hand", side_name(*side))));
     }
-    entries.push((Key::Line(INK.mix(0.55).stroke_width(ZOOM)), "predicted".to_owned()));
+    entries.push((Key::Line(INK.mix(0.55).stroke_width(ZOOM)), "uncertain or predicted".to_owned()));
     entries.push((Key::Dot(INK.stroke_width(2 * ZOOM), 6), "first place".to_owned()));
     entries.push((Key::Dot(INK.filled(), 5), "last place".to_owned()));
     entries.push((Key::Patch(INK.mix(0.18).filled()), "depth: one standard deviation of the hand".to_owned()));
     let halves = if tracks.len() > 1 { " (left: upper half, right: lower half)" } else { "" };
-    for (status, name) in [(Status::Predicted, "predicted"), (Status::Lost, "lost")] {
+    for (status, name) in
+        [(Status::Uncertain, "uncertain"), (Status::Predicted, "predicted"), (Status::Lost, "lost")]
+    {
         entries.push((Key::Patch(INK.mix(shading(status)).filled()), format!("likelihood: {name}{halves}")));
     }
     entries

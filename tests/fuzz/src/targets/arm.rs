@@ -64,6 +64,7 @@ fn options(numbers: &mut Numbers<'_>) -> ArmOptions {
         &mut options.teleport_share,
         &mut options.clutter_share,
         &mut options.lost_after_s,
+        &mut options.sure_likelihood,
     ]);
     options.angle_std_rad_per_sqrt_s = options.angle_std_rad_per_sqrt_s.map(|std| numbers.number(std));
     options.depth_from_area = numbers.flag();
