@@ -144,14 +144,23 @@ impl SavedState for AngleBlock {
         visitor.reals(&mut self.mean, &NUMBER);
         visitor.reals(self.regression.as_flattened_mut(), &NUMBER);
         visitor.reals(&mut self.covariance, &NUMBER);
-        // A covariance is at most the mean of its variances; twice that leaves room for rounding.
-        let most = |i: usize, j: usize| self.covariance(i, i) + self.covariance(j, j) + MAX_ROUNDING;
-        let is_plausible =
-            |i: usize| self.covariance(i, i) >= 0.0 && (0..i).all(|j| abs(self.covariance(i, j)) <= most(i, j));
-        if !(0..PARTS).all(is_plausible) {
+        if !is_plausible(&self.covariance) {
             visitor.refuse();
         }
     }
+}
+
+/// Whether no variance is negative, and no covariance beyond what the variances allow: at most
+/// their mean, and twice that leaves room for rounding.
+fn is_plausible(packed: &[f32; PACKED]) -> bool {
+    // Row i has i + 1 entries, the last of which is its variance.
+    let mut entries = packed.iter();
+    let variances: [f32; PARTS] = core::array::from_fn(|i| entries.nth(i).copied().unwrap_or(0.0));
+    let mut entries = packed.iter();
+    variances.iter().enumerate().all(|(i, variance)| {
+        let row = variances.iter().take(i + 1).zip(entries.by_ref());
+        *variance >= 0.0 && row.fold(true, |all, (other, entry)| all && abs(*entry) <= variance + other + MAX_ROUNDING)
+    })
 }
 
 impl AngleBlock {

@@ -1,8 +1,8 @@
 //! Saved states of the core, restored and stepped on.
 //!
 //! The bytes are a state without its envelope, so that they are not refused for their checksum.
-//! They are also tried as they are. A forged covariance within its ranges may be indefinite, so that
-//! a step leads to a variance below zero. Numbers stay numbers.
+//! They are also tried as they are. A forged covariance within its ranges may be indefinite, so
+//! that a step leads to a variance below zero. Numbers stay numbers.
 
 use super::cyclic::{model_table, seen};
 use crate::Target;
@@ -93,8 +93,8 @@ impl StateVisitor for Finite {
     }
 }
 
-/// Panics where a state holds a number that is none. A state that is restored may lie at the edge of
-/// its ranges, so that a step leads beyond them.
+/// Panics where a state holds a number that is none. A state that is restored may lie at the edge
+/// of its ranges, so that a step leads beyond them.
 pub fn check_numbers(state: &mut impl SavedState) {
     let mut finite = Finite::default();
     state.visit(&mut finite);
