@@ -10,6 +10,7 @@ use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
 use sinew_core::vision::frame::{FrameAnalyser, FrameBuffers, last_mask, mask_words, runs_that_suffice};
 use sinew_core::vision::hand_likelihood::HandLikelihood;
 use sinew_core::vision::morphology::scratch_words;
+use sinew_core::vision::objects::grid::CellGrid;
 use sinew_core::vision::runs::Run;
 use sinew_core::vision::skin::SkinClassifier;
 
@@ -114,6 +115,19 @@ impl FrameReader {
             edges: self.edges.as_slice().to_vec(),
             dropped_blobs: self.blobs.dropped_blobs + self.blobs.dropped_components,
         })
+    }
+
+    /// Gives the last frame, its mask after morphology and its brightness, to a grid of cells.
+    pub fn fill(&mut self, grid: &mut CellGrid) {
+        let (width, height) = self.size;
+        let buffers = self.buffers.borrow();
+        let (Ok(mask), luminance) = (last_mask(&buffers, width, height), self.analyser.last_luminance(&buffers)) else {
+            return;
+        };
+        grid.begin();
+        for (bits, levels) in mask.rows().zip(luminance.chunks(width)) {
+            grid.add_line(bits, levels, 1);
+        }
     }
 
     /// The last frame's mask after morphology, 255 = skin.

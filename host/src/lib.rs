@@ -16,6 +16,7 @@ mod json_file;
 pub mod keypoints;
 pub mod model_text;
 pub mod output;
+pub mod person;
 mod reading_again;
 pub mod record;
 #[cfg(feature = "report")]

@@ -57,6 +57,7 @@ impl Scene {
             seed: 3,
             skin: "gaussian".to_owned(),
             calibrate: None,
+            face: true,
             overlay: self.everything,
             particles_csv: self.everything,
             strict: false,

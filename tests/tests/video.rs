@@ -166,6 +166,7 @@ fn a_broken_off_run_over_a_video_goes_on() {
         seed: 1,
         skin: "gaussian".to_owned(),
         calibrate: None,
+        face: true,
         overlay: true,
         particles_csv: false,
         strict: false,

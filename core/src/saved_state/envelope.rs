@@ -48,6 +48,8 @@ pub enum StateKind {
     Vision = 4,
     /// Of the tracker of a body.
     Body = 5,
+    /// Of both hands over time.
+    Hands = 6,
 }
 
 /// Why a state was not saved, or not restored.

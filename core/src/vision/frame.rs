@@ -146,6 +146,15 @@ impl<const RUNS: usize, const OPEN: usize> FrameAnalyser<RUNS, OPEN> {
         self.last_size = None;
     }
 
+    /// The luminance of the last frame in the buffers, row by row; empty before the first frame.
+    #[must_use]
+    pub fn last_luminance<'b>(&self, buffers: &'b FrameBuffers<'_>) -> &'b [u8] {
+        let pixels = self.last_size.map_or(0, |(width, height)| width * height);
+        let [even, odd] = &buffers.luminance;
+        let last = if self.odd { even } else { odd };
+        last.get(..pixels).unwrap_or(&[])
+    }
+
     /// Analyses one frame of `width` x `height` interleaved RGB pixels.
     ///
     /// Blobs and edges replace the contents of the lists. The first frame, and one of another size,

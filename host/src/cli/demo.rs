@@ -103,6 +103,7 @@ fn track_options(out: &OutputDir, seed: u64) -> Result<TrackOptions> {
         seed,
         skin: DEFAULT_SKIN.to_owned(),
         calibrate: None,
+        face: true,
         overlay: true,
         particles_csv: false,
         strict: true,

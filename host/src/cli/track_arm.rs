@@ -77,6 +77,10 @@ pub struct TrackArmArgs {
     /// same.
     #[arg(long)]
     pub resume: bool,
+    /// Look for no face: use the skin model as it is, and shoulders and distance of the
+    /// configuration; so, too, with --calibrate.
+    #[arg(long)]
+    pub no_face: bool,
     /// When the state is saved.
     #[command(flatten)]
     pub checkpoint: CheckpointArgs,
@@ -119,6 +123,7 @@ pub fn run(args: &TrackArmArgs, console: &Console) -> Result<()> {
         seed: args.seed,
         skin: args.skin.skin.clone(),
         calibrate: args.skin.calibrate,
+        face: !args.no_face && args.skin.calibrate.is_none(),
         overlay: args.overlay,
         // The viewer shows them.
         particles_csv: args.particles_csv || args.viewer.is_wanted(),

@@ -3,13 +3,16 @@
 use crate::config::{BodyConfig, Config, options_for};
 use crate::error::Result;
 use crate::frames::FrameView;
+use crate::person::PersonView;
 use crate::resume::{from_text, to_text};
 use serde::{Deserialize, Serialize};
-use sinew_core::camera::{Camera, Pixel};
+use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
 use sinew_core::saved_state::StateKind;
 use sinew_core::skeleton::Side;
-use sinew_core::tracker::arm::{ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmPair, ArmTracker, PairFrame, Particle};
+use sinew_core::tracker::arm::{
+    ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmOptions, ArmPair, ArmTracker, PairFrame, Particle,
+};
 
 /// Which arms are tracked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -44,6 +47,8 @@ enum Sized {
 #[derive(Debug)]
 pub struct ArmSet {
     models: Vec<ArmModel>,
+    /// For candidates of a person.
+    person_models: Vec<ArmModel>,
     shoulders_m: Vec<Vec3>,
     trackers: Sized,
 }
@@ -53,6 +58,8 @@ pub struct ArmSet {
 pub struct ArmView {
     /// The estimate.
     pub estimate: ArmEstimate,
+    /// Where the candidate is that carries the estimate.
+    pub carrier: Option<Pixel>,
     /// Particles with their weights.
     pub particles: Vec<(Particle, f32)>,
 }
@@ -69,15 +76,18 @@ impl ArmSet {
             SideChoice::Right => &[Side::Right],
             SideChoice::Both => &[Side::Left, Side::Right],
         };
-        let models: Vec<ArmModel> =
-            sides.iter().map(|&side| model(config, camera, size_px, side)).collect::<Result<_>>()?;
+        let options = options_for(&config.tracker, &config.body);
+        let models_with = |options: ArmOptions| -> Result<Vec<ArmModel>> {
+            sides.iter().map(|&side| Ok(ArmModel::new(camera, size_px, config.body.arm(side)?, options)?)).collect()
+        };
+        let (models, person_models) = (models_with(options)?, models_with(options.for_hands_over_time())?);
         let shoulders_m: Vec<Vec3> = sides.iter().map(|&side| shoulder_m(&config.body, side)).collect();
         let trackers = match config.tracker.particles {
             0..=64 => Sized::Small(Trackers::new(&models, &shoulders_m, seed)?),
             65..=1024 => Sized::Middle(Trackers::new(&models, &shoulders_m, seed)?),
             _ => Sized::Large(Trackers::new(&models, &shoulders_m, seed)?),
         };
-        Ok(Self { models, shoulders_m, trackers })
+        Ok(Self { models, person_models, shoulders_m, trackers })
     }
 
     /// The models, in the order of the views.
@@ -93,6 +103,30 @@ impl ArmSet {
             Sized::Small(trackers) => trackers.step(&self.models, &self.shoulders_m, timestamp_us, image),
             Sized::Middle(trackers) => trackers.step(&self.models, &self.shoulders_m, timestamp_us, image),
             Sized::Large(trackers) => trackers.step(&self.models, &self.shoulders_m, timestamp_us, image),
+        }
+    }
+
+    /// Answers one frame of a person whose face is known: each arm has its own candidates and its
+    /// shoulder. The shoulders stay there in frames after it that are missing.
+    pub fn step_person(&mut self, timestamp_us: u64, view: &FrameView, person: &PersonView) -> Vec<ArmView> {
+        self.place_shoulders(&person.shoulders_m);
+        let frames: Vec<ArmFrame<'_>> = (self.models.iter().zip(&self.shoulders_m))
+            .map(|(model, &shoulder_m)| {
+                let candidates = &person.hands[side_index(model.side())];
+                ArmFrame { timestamp_us, image: Some(ArmImage { candidates, edges: &view.edges }), shoulder_m }
+            })
+            .collect();
+        match &mut self.trackers {
+            Sized::Small(trackers) => trackers.step_each(&self.person_models, &frames),
+            Sized::Middle(trackers) => trackers.step_each(&self.person_models, &frames),
+            Sized::Large(trackers) => trackers.step_each(&self.person_models, &frames),
+        }
+    }
+
+    /// Moves the shoulders, left and right, metres in camera axes.
+    pub fn place_shoulders(&mut self, shoulders_m: &[Vec3; 2]) {
+        for (model, shoulder_m) in self.models.iter().zip(&mut self.shoulders_m) {
+            *shoulder_m = shoulders_m[side_index(model.side())];
         }
     }
 
@@ -129,14 +163,14 @@ impl ArmSet {
     }
 }
 
+/// Left, then right.
+fn side_index(side: Side) -> usize {
+    usize::from(side == Side::Right)
+}
+
 fn shoulder_m(body: &BodyConfig, side: Side) -> Vec3 {
     let [left, right] = body.shoulders_m();
     if side == Side::Left { left } else { right }
-}
-
-fn model(config: &Config, camera: Camera, size_px: (u32, u32), side: Side) -> Result<ArmModel> {
-    let options = options_for(&config.tracker, &config.body);
-    Ok(ArmModel::new(camera, size_px, config.body.arm(side)?, options)?)
 }
 
 impl<const CAPACITY: usize> Trackers<CAPACITY> {
@@ -164,6 +198,23 @@ impl<const CAPACITY: usize> Trackers<CAPACITY> {
     }
 
     #[inline(never)]
+    fn step_each(&mut self, models: &[ArmModel], frames: &[ArmFrame<'_>]) -> Vec<ArmView> {
+        match (self, models, frames) {
+            (Self::One(tracker), [model, ..], [frame, ..]) => {
+                let estimate = tracker.step(model, frame);
+                vec![view(estimate, tracker, frame.image)]
+            }
+            (Self::Two(pair), [left, right], [of_left, of_right]) => {
+                let estimates = pair.step_each([left, right], [of_left, of_right]);
+                let images = [of_left.image, of_right.image];
+                let arms = estimates.into_iter().zip(pair.trackers()).zip(images);
+                arms.map(|((estimate, tracker), image)| view(estimate, tracker, image)).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    #[inline(never)]
     fn step(
         &mut self,
         models: &[ArmModel],
@@ -175,18 +226,24 @@ impl<const CAPACITY: usize> Trackers<CAPACITY> {
             Self::One(tracker) => {
                 let frame = ArmFrame { timestamp_us, image, shoulder_m: shoulders_m[0] };
                 let estimate = tracker.step(&models[0], &frame);
-                vec![view(estimate, tracker)]
+                vec![view(estimate, tracker, image)]
             }
             Self::Two(pair) => {
                 let frame = PairFrame { timestamp_us, image, shoulders_m: [shoulders_m[0], shoulders_m[1]] };
                 let estimates = pair.step([&models[0], &models[1]], &frame);
-                estimates.into_iter().zip(pair.trackers()).map(|(estimate, tracker)| view(estimate, tracker)).collect()
+                let arms = estimates.into_iter().zip(pair.trackers());
+                arms.map(|(estimate, tracker)| view(estimate, tracker, image)).collect()
             }
         }
     }
 }
 
-fn view<const CAPACITY: usize>(estimate: ArmEstimate, tracker: &ArmTracker<CAPACITY>) -> ArmView {
+fn view<const CAPACITY: usize>(
+    estimate: ArmEstimate,
+    tracker: &ArmTracker<CAPACITY>,
+    image: Option<ArmImage<'_>>,
+) -> ArmView {
+    let carrier = estimate.candidate.and_then(|index| image?.candidates.get(index)).map(|candidate| candidate.centre);
     let particles = tracker.particles().iter().copied().zip(tracker.weights().iter().copied()).collect();
-    ArmView { estimate, particles }
+    ArmView { estimate, carrier, particles }
 }

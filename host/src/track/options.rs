@@ -24,6 +24,9 @@ pub struct TrackOptions {
     pub skin: String,
     /// Rectangle of skin in the first frame.
     pub calibrate: Option<Rectangle>,
+    /// Whether a face is looked for, which gives skin, shoulders and hands over time; never with
+    /// `calibrate`.
+    pub face: bool,
     /// Whether overlays and a contact sheet are drawn.
     pub overlay: bool,
     /// Whether every particle is written.

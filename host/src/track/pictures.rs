@@ -143,7 +143,7 @@ pub(crate) fn overlay_names(files: &[PathBuf]) -> Vec<(String, String)> {
 }
 
 fn draw_shot(shot: &Shot, file: &str, arms: &ArmSet) -> RgbImage {
-    let drawn: Vec<OverlayArm> = shot.arms.iter().map(|arm| overlay_arm(arm, &shot.view, arms)).collect();
+    let drawn: Vec<OverlayArm> = shot.arms.iter().map(|arm| overlay_arm(arm, arms)).collect();
     let states: Vec<String> = shot
         .arms
         .iter()
@@ -169,7 +169,7 @@ fn draw_shot(shot: &Shot, file: &str, arms: &ArmSet) -> RgbImage {
     draw(&shot.image, &Overlay { arms: &drawn, blobs: &blobs, edges: &edges, mask_outline: None, caption: &caption })
 }
 
-fn overlay_arm(arm: &ArmView, view: &FrameView, arms: &ArmSet) -> OverlayArm {
+fn overlay_arm(arm: &ArmView, arms: &ArmSet) -> OverlayArm {
     let estimate = &arm.estimate;
     let joints_m = [estimate.joints.shoulder_m, estimate.joints.elbow_m, estimate.joints.hand_m];
     let camera = arms.models().first().map(|model| *model.camera());
@@ -178,7 +178,6 @@ fn overlay_arm(arm: &ArmView, view: &FrameView, arms: &ArmSet) -> OverlayArm {
     // Stable, so that the first of equals stays first.
     heaviest.sort_by(|a, b| b.1.total_cmp(&a.1));
     let best = heaviest.iter().take(BEST_ARMS);
-    let carrier = estimate.candidate.and_then(|index| view.candidates.get(index)).map(|candidate| candidate.centre);
     OverlayArm {
         side: estimate.side,
         status: estimate.status,
@@ -192,7 +191,7 @@ fn overlay_arm(arm: &ArmView, view: &FrameView, arms: &ArmSet) -> OverlayArm {
         best_arms: best
             .filter_map(|(particle, _)| arms.joints_px([joints_m[0], particle.elbow_m, particle.hand_m]))
             .collect(),
-        ray: camera.zip(carrier).and_then(|(camera, centre)| ray(&camera, centre, joints_m[2].z)),
+        ray: camera.zip(arm.carrier).and_then(|(camera, centre)| ray(&camera, centre, joints_m[2].z)),
     }
 }
 

@@ -5,6 +5,7 @@ use super::options::TrackOptions;
 use super::run::TrackRun;
 use super::sample::HandSample;
 use crate::error::Result;
+use crate::person::PersonFinder;
 use crate::resume::{Begun, Left, List, ResumeFile, from_text, optional, real, reals, text_crc32, to_text};
 use crate::skin::model_file;
 use serde::{Deserialize, Serialize};
@@ -23,6 +24,8 @@ pub(super) struct ArmState {
     skipped: Vec<SkippedImage>,
     /// The trackers.
     trackers: String,
+    /// The person, of a run that looks for a face.
+    person: Option<String>,
     /// What the plots show.
     samples: String,
 }
@@ -33,6 +36,7 @@ pub(super) fn left(run: &mut TrackRun) -> Result<Left<ArmState>> {
     let state = ArmState {
         skipped: run.report.skipped.clone(),
         trackers: run.arms.saved()?,
+        person: run.person.as_mut().map(PersonFinder::saved).transpose()?,
         samples: to_text(StateKind::Arm, &mut samples)?,
     };
     run.samples = samples.entries;
@@ -85,6 +89,10 @@ impl TrackRun {
         left.begun.check_inputs(&read_by(now, &run)?)?;
         run.begun = Some(left.begun.clone());
         run.arms.restore(&left.state.trackers)?;
+        if let (Some(person), Some(saved)) = (&mut run.person, &left.state.person) {
+            person.restore(saved)?;
+            person.shoulders_m().into_iter().for_each(|shoulders_m| run.arms.place_shoulders(&shoulders_m));
+        }
         let mut samples = List::new(Vec::new(), NO_SAMPLE);
         from_text(StateKind::Arm, &left.state.samples, &mut samples)?;
         run.samples = samples.entries;

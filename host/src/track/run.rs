@@ -13,6 +13,7 @@ use super::table::{HEADER, TrackRow};
 use crate::error::{Context, Result, WriteContext, bail};
 use crate::frames::{FrameReader, FrameView};
 use crate::output::{OutputDir, OutputLock, PendingFile};
+use crate::person::PersonFinder;
 use crate::resume::{Begun, Checkpoints, PARTICLE_TABLE, TRACK_TABLE};
 use crate::skin::SkinModel;
 use image::RgbImage;
@@ -45,6 +46,8 @@ pub struct TrackRun {
     pub(super) skin: SkinModel,
     pub(super) reader: FrameReader,
     pub(super) arms: ArmSet,
+    /// Of a run that looks for a face.
+    pub(super) person: Option<PersonFinder>,
     camera: Camera,
     pub(super) out: OutputDir,
     _lock: OutputLock,
@@ -89,6 +92,10 @@ impl TrackRun {
         };
         let arms = ArmSet::new(&options.config, frames.size_px(), options.side, options.seed)?;
         let camera = *arms.models().first().context("no arm is tracked")?.camera();
+        let person = match options.face {
+            true => Some(PersonFinder::new(frames.size_px(), options.rate_hz, camera)?),
+            false => None,
+        };
         let reader = FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
@@ -110,6 +117,7 @@ impl TrackRun {
             skin,
             reader,
             arms,
+            person,
             camera,
             out,
             _lock: lock,
@@ -199,8 +207,13 @@ impl TrackRun {
     ) -> Result<Option<Shot>> {
         let image = image.map_err(|skipped| self.skip(skipped, notify)).ok();
         self.last_image_crc32 = image.as_ref().map(|image| crc32fast::hash(image.as_raw()));
-        let view = image.as_ref().map(|image| self.reader.read(image, &self.skin)).transpose()?;
-        let arms = self.arms.step(self.timestamp_us(frame), view.as_ref());
+        let view = image.as_ref().map(|image| self.read(frame, image)).transpose()?;
+        let person = view.as_ref().and_then(|_| self.person.as_mut()?.see(&mut self.reader));
+        let timestamp_us = self.timestamp_us(frame);
+        let arms = match (&view, &person) {
+            (Some(view), Some(person)) => self.arms.step_person(timestamp_us, view, person),
+            _ => self.arms.step(timestamp_us, view.as_ref()),
+        };
         for arm in &arms {
             let row = TrackRow {
                 frame,
@@ -216,6 +229,17 @@ impl TrackRun {
         let name = self.frames.name(frame);
         let shot = |(image, view): (RgbImage, FrameView)| Shot { frame, name, image, view, arms };
         Ok(image.zip(view).filter(|_| self.pictures.is_some()).map(shot))
+    }
+
+    /// What an image shows, by the person's own skin once a face is known.
+    pub(super) fn read(&mut self, frame: usize, image: &RgbImage) -> Result<FrameView> {
+        if let Some(person) = &mut self.person {
+            person.look(frame, image);
+        }
+        match self.person.as_ref().and_then(PersonFinder::skin) {
+            Some(skin) => self.reader.read(image, skin),
+            None => self.reader.read(image, &self.skin),
+        }
     }
 
     /// Notes a missing image; the next one has no frame before it.

@@ -100,6 +100,7 @@ pub fn tracked_scene(folder: &Path) -> Result<RunOutcome> {
         seed: 1,
         skin: DEFAULT_SKIN.to_owned(),
         calibrate: None,
+        face: false,
         overlay: false,
         particles_csv: false,
         strict: false,

@@ -329,6 +329,22 @@ impl ArmOptions {
         self
     }
 
+    /// The same for candidates whose likelihoods are a posterior over time and whose areas are not
+    /// measured, as those of
+    /// [`HandFinder`](crate::vision::objects::hands::HandFinder): no gate and no memory, which would
+    /// count the past twice, and no depth from the area.
+    ///
+    /// ```
+    /// use sinew_core::tracker::arm::ArmOptions;
+    ///
+    /// let options = ArmOptions::default().for_hands_over_time();
+    /// assert!(options.blob_memory.is_none() && options.gate.is_none() && options.area_cue.is_none());
+    /// ```
+    #[must_use]
+    pub fn for_hands_over_time(self) -> Self {
+        Self { gate: None, blob_memory: None, area_cue: None, depth_from_area: false, ..self }
+    }
+
     /// Checks every value.
     ///
     /// # Errors

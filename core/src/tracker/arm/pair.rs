@@ -195,6 +195,15 @@ impl<const CAPACITY: usize> ArmPair<CAPACITY> {
     }
 }
 
+impl<const CAPACITY: usize> ArmPair<CAPACITY> {
+    /// Answers one frame for both arms of which each has candidates of its own, as
+    /// [`HandFinder`](crate::vision::objects::hands::HandFinder) finds them: left and right.
+    pub fn step_each(&mut self, models: [&ArmModel; 2], frames: [&ArmFrame<'_>; 2]) -> [ArmEstimate; 2] {
+        let ([left, right], [left_model, right_model], [of_left, of_right]) = (&mut self.trackers, models, frames);
+        [left.step(left_model, of_left), right.step(right_model, of_right)]
+    }
+}
+
 /// Where a side expects its hand.
 fn expected<const CAPACITY: usize>(
     tracker: &ArmTracker<CAPACITY>,

@@ -6,7 +6,8 @@
 
 use super::evidence::Evidence;
 use super::place::HandPlace;
-use crate::math::exp;
+use crate::math::{exp, min};
+use heapless::Vec;
 
 /// Most places of a frame that are compared.
 pub const MAX_PLACES: usize = 12;
@@ -30,21 +31,16 @@ pub const ONE_HAND: f32 = 0.35;
 /// The posterior of both hands.
 #[derive(Debug, Clone)]
 pub struct HandsBelief {
-    positions: [[f32; 2]; MAX_PLACES],
-    count: usize,
+    pub(super) positions: [[f32; 2]; MAX_PLACES],
+    pub(super) count: usize,
     /// Probability of each pair: the left hand's state, then the right hand's.
-    pairs: [[f32; STATES]; STATES],
-    has_begun: bool,
+    pub(super) pairs: [[f32; STATES]; STATES],
+    pub(super) has_begun: bool,
 }
 
 impl Default for HandsBelief {
     fn default() -> Self {
-        Self {
-            positions: [[0.0; 2]; MAX_PLACES],
-            count: 0,
-            pairs: [[0.0; STATES]; STATES],
-            has_begun: false,
-        }
+        Self { positions: [[0.0; 2]; MAX_PLACES], count: 0, pairs: [[0.0; STATES]; STATES], has_begun: false }
     }
 }
 
@@ -72,7 +68,8 @@ impl HandsBelief {
         for (left, row) in next.iter_mut().enumerate() {
             for (right, pair) in row.iter_mut().enumerate() {
                 let is_there = |state: usize| state < count || state == HIDDEN;
-                let weight = if is_there(left) && is_there(right) { pair_weight(places, evidence, left, right) } else { 0.0 };
+                let weight =
+                    if is_there(left) && is_there(right) { pair_weight(places, evidence, left, right) } else { 0.0 };
                 *pair *= weight;
                 sum += *pair;
             }
@@ -116,29 +113,33 @@ impl HandsBelief {
         pairs
     }
 
-    /// What is known of the left and the right hand; `None` where no place is left.
+    /// What is known of the left and of the right hand: the likeliest places, none within
+    /// [`ONE_HAND`] of a likelier one.
     #[must_use]
-    pub fn hands(&self) -> [Option<HandBelief>; 2] {
+    pub fn hands(&self) -> [Vec<HandBelief, MAX_PLACES>; 2] {
         let left: [f32; STATES] = core::array::from_fn(|state| self.pairs[state].iter().sum());
         let right: [f32; STATES] = core::array::from_fn(|state| self.pairs.iter().map(|row| row[state]).sum());
         [left, right].map(|marginal| self.hand(&marginal))
     }
 
-    fn hand(&self, marginal: &[f32; STATES]) -> Option<HandBelief> {
-        let near = |place: usize| {
-            (0..self.count).filter(move |&other| distance2(self.positions[place], self.positions[other]) < ONE_HAND * ONE_HAND)
-        };
+    fn hand(&self, marginal: &[f32; STATES]) -> Vec<HandBelief, MAX_PLACES> {
+        let is_near = |a: usize, b: usize| distance2(self.positions[a], self.positions[b]) < ONE_HAND * ONE_HAND;
+        let near = |place: usize| (0..self.count).filter(move |other| is_near(place, *other));
         let mass = |place: usize| near(place).map(|other| marginal[other]).sum::<f32>();
-        let better = |best: Option<(usize, f32)>, place: usize| {
-            let mass = mass(place);
-            let is_better = best.is_none_or(|(old, of_old)| {
-                mass > of_old || (mass == of_old && marginal[place] > marginal[old])
-            });
-            if is_better { Some((place, mass)) } else { best }
-        };
-        let (best, probability) = (0..self.count).fold(None, better)?;
-        let likeliest = near(best).fold(best, |old, other| if marginal[other] > marginal[old] { other } else { old });
-        Some(HandBelief { place: likeliest, probability })
+        let mut taken = [false; MAX_PLACES];
+        let mut hands = Vec::new();
+        while let Some(best) = (0..self.count).filter(|place| !taken[*place]).reduce(|best, place| {
+            let (here, there) = (mass(place), mass(best));
+            let is_better = here > there || (here == there && marginal[place] > marginal[best]);
+            if is_better { place } else { best }
+        }) {
+            let likeliest =
+                near(best).fold(best, |old, other| if marginal[other] > marginal[old] { other } else { old });
+            near(best).for_each(|place| taken[place] = true);
+            // One for each place at most.
+            let _ = hands.push(HandBelief { place: likeliest, probability: min(mass(best), 1.0) });
+        }
+        hands
     }
 }
 
@@ -165,6 +166,86 @@ fn pair_weight(places: &[HandPlace], evidence: &[[Evidence; 2]], left: usize, ri
             // Two hands are not in one place.
             let closeness = exp(-distance2(a.position, b.position) / (ONE_HAND * ONE_HAND));
             exp(log_weight - 4.0 * closeness)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn place(position: [f32; 2], object: u8) -> HandPlace {
+        HandPlace { position, object, thickness: 0.3, fill: 0.9, moving: 0.5, new: 0.5, end: None }
+    }
+
+    fn step(belief: &mut HandsBelief, places: &[([f32; 2], f32, f32)]) {
+        let there: std::vec::Vec<_> = places.iter().enumerate().map(|(i, of)| place(of.0, i as u8)).collect();
+        let evidence = |alone: f32| Evidence { alone, shared: alone };
+        let all: std::vec::Vec<_> = places.iter().map(|of| [evidence(of.1), evidence(of.2)]).collect();
+        belief.step(&there, &all);
+    }
+
+    #[test]
+    fn hands_that_cross_keep_their_sides() {
+        let mut belief = HandsBelief::default();
+        for frame in 0..60 {
+            // The left hand goes from right to left, the right one the other way, below it.
+            let x = 1.5 - 0.05 * frame as f32;
+            // Evidence knows the sides at the start only.
+            let sides = if frame < 10 { 2.0 } else { 0.0 };
+            step(&mut belief, &[([x, 2.0], 2.0 + sides, 2.0 - sides), ([-x, 2.5], 2.0 - sides, 2.0 + sides)]);
+        }
+        let [left, right] = belief.hands();
+        assert_eq!((left[0].place, right[0].place), (0, 1));
+        assert!(left[0].probability > 0.7 && right[0].probability > 0.7, "{left:?} {right:?}");
+    }
+
+    #[test]
+    fn a_place_that_vanishes_for_some_frames_is_found_again() {
+        let mut belief = HandsBelief::default();
+        let (hand, other, clutter) = (([1.5, 2.0], 3.0, -1.0), ([-1.5, 2.0], -1.0, 3.0), ([2.2, 0.5], 0.5, -2.0));
+        (0..20).for_each(|_| step(&mut belief, &[hand, other, clutter]));
+        (0..6).for_each(|_| step(&mut belief, &[other, clutter]));
+        (0..6).for_each(|_| step(&mut belief, &[clutter, hand, other]));
+        let [left, right] = belief.hands();
+        assert_eq!((left[0].place, right[0].place), (1, 2));
+        assert!(left[0].probability > 0.8);
+    }
+
+    #[test]
+    fn one_place_holds_one_hand() {
+        let mut belief = HandsBelief::default();
+        (0..20).for_each(|_| step(&mut belief, &[([0.2, 2.0], 3.0, 2.0)]));
+        let [left, right] = belief.hands();
+        assert!(left[0].probability > 0.7 && right[0].probability < 0.3, "{left:?} {right:?}");
+    }
+
+    #[test]
+    fn without_any_place_nothing_is_known() {
+        let mut belief = HandsBelief::default();
+        step(&mut belief, &[]);
+        assert!(belief.hands().iter().all(|hand| hand.is_empty()));
+    }
+
+    proptest! {
+        #[test]
+        fn pairs_stay_a_distribution(
+            frames in proptest::collection::vec(
+                proptest::collection::vec((any::<[i8; 2]>(), -200.0_f32..200.0, -200.0_f32..200.0), 0..20), 1..10,
+            ),
+        ) {
+            let mut belief = HandsBelief::default();
+            for frame in frames {
+                let places: std::vec::Vec<_> =
+                    frame.iter().map(|of| (of.0.map(|at| f32::from(at) / 8.0), of.1, of.2)).collect();
+                step(&mut belief, &places);
+                let sum: f32 = belief.pairs.iter().flatten().sum();
+                prop_assert!(!belief.has_begun || (sum - 1.0).abs() < 1.0e-3, "{sum}");
+                for hand in belief.hands().iter().flatten() {
+                    prop_assert!((0.0..=1.0).contains(&hand.probability) && hand.place < belief.count);
+                }
+            }
         }
     }
 }

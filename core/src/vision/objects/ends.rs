@@ -8,20 +8,20 @@ const END: f32 = 0.8;
 
 /// Both ends of an object.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ends {
+pub(super) struct Ends {
     /// Middles of the cells at each end, cells.
-    pub places: [[f32; 2]; 2],
+    pub(super) places: [[f32; 2]; 2],
     /// Whether a cell of each end is beside the head.
-    pub touch_head: [bool; 2],
+    pub(super) touch_head: [bool; 2],
     /// Length of the object along its inside, cells.
-    pub length: f32,
+    pub(super) length: f32,
 }
 
 /// Finds the ends of the object of which `start` is a cell. A face is `width` cells wide; `scratch`
 /// has a number for each cell of the grid.
 ///
 /// The cell that is farthest from any cell is one end, the cell that is farthest from it the other.
-pub fn ends(
+pub(super) fn ends(
     size: GridSize,
     within: &CellBox,
     inside: impl Fn(usize) -> bool,

@@ -9,7 +9,7 @@ use crate::math::{clamp, exp, max, min};
 use crate::skeleton::Side;
 
 /// Share of motion below which nothing is lively.
-const MIN_LIVELINESS: f32 = 0.12;
+pub(super) const MIN_LIVELINESS: f32 = 0.12;
 /// What is left of the liveliest after a frame.
 const FADING: f32 = 0.95;
 /// Longest upper arm.

@@ -13,7 +13,7 @@ use core::ops::RangeInclusive;
 use heapless::Vec;
 
 /// Most places of a frame before the likeliest are chosen.
-pub const MAX_FOUND: usize = 32;
+pub(super) const MAX_FOUND: usize = 32;
 /// Areas of objects that may hold a hand, squared widths of the face: from fingers to both arms.
 const AREAS: RangeInclusive<f32> = 0.06..=8.0;
 /// An object's nearest cell lies within this of a shoulder: an arm's length.
@@ -39,7 +39,7 @@ const ONE_PLACE: f32 = 0.2;
 /// Half thickness of a hand in the face, which cannot be measured.
 const THICKNESS_IN_FACE: f32 = 0.25;
 /// Radius of a hand.
-const NEAR: f32 = 0.4;
+pub(super) const HAND_RADIUS: f32 = 0.4;
 /// Radius of a hand and of what its motion covers and uncovers.
 const AROUND: f32 = 0.6;
 
@@ -53,8 +53,7 @@ pub(super) struct Maps {
 }
 
 impl Maps {
-    pub(super) const EMPTY: Self =
-        Self { labels: [0; MAX_CELLS], depths: [0; MAX_CELLS], scratch: [0; MAX_CELLS] };
+    pub(super) const EMPTY: Self = Self { labels: [0; MAX_CELLS], depths: [0; MAX_CELLS], scratch: [0; MAX_CELLS] };
 }
 
 /// What is known of an object.
@@ -149,14 +148,7 @@ impl View<'_> {
         [[-step, 0.0], [step, 0.0], [0.0, -step], [0.0, step]].iter().any(|[dx, dy]| is_head([x + dx, y + dy]))
     }
 
-    fn places_of(
-        &self,
-        object: &Object,
-        label: u8,
-        area: f32,
-        maps: &mut Maps,
-        found: &mut Vec<HandPlace, MAX_FOUND>,
-    ) {
+    fn places_of(&self, object: &Object, label: u8, area: f32, maps: &mut Maps, found: &mut Vec<HandPlace, MAX_FOUND>) {
         let (size, within, first) = (self.grid.size(), object.within(), found.len());
         let Maps { labels, depths, scratch } = maps;
         let inside = |cell: usize| labels[cell] == label;
@@ -219,7 +211,7 @@ impl View<'_> {
     fn around(&self, position: [f32; 2], labels: &[u8], depths: &[u16]) -> Around {
         let size = self.grid.size();
         let centre = self.head.place_px(position).map(|at| at / self.grid.cell_px() as f32 - 0.5);
-        let [reach, near] = [AROUND, NEAR].map(|radius| radius * self.width);
+        let [reach, near] = [AROUND, HAND_RADIUS].map(|radius| radius * self.width);
         let range = |middle: f32, end: usize| {
             (max(middle - reach, 0.0) as usize).min(end)..(max(middle + reach + 1.0, 0.0) as usize).min(end)
         };

@@ -7,11 +7,11 @@
 use super::cells::{CellBox, GridSize};
 
 /// Cost of a step to one of the four neighbours.
-pub const STRAIGHT: u16 = 5;
+pub(super) const STRAIGHT: u16 = 5;
 /// Cost of a diagonal step.
-pub const DIAGONAL: u16 = 7;
+pub(super) const DIAGONAL: u16 = 7;
 /// Distance of cells that are not reached.
-pub const UNREACHED: u16 = u16::MAX;
+pub(super) const UNREACHED: u16 = u16::MAX;
 /// Most pairs of sweeps. Chosen: a bent arm takes three; of a spiral the inner part stays unreached.
 const MAX_SWEEPS: usize = 8;
 
@@ -19,18 +19,7 @@ const MAX_SWEEPS: usize = 8;
 /// with it; cells outside of `within` keep what they have.
 ///
 /// `distances` has a number for each cell of the grid.
-///
-/// ```
-/// use sinew_core::vision::objects::cells::{CellBox, GridSize};
-/// use sinew_core::vision::objects::geodesic::{STRAIGHT, UNREACHED, distances};
-///
-/// // A row of four cells, the third of which is outside.
-/// let size = GridSize { columns: 4, rows: 1 };
-/// let mut found = [0; 4];
-/// distances(size, &CellBox::whole(size), |cell| cell != 2, 0, &mut found);
-/// assert_eq!(found, [0, STRAIGHT, UNREACHED, UNREACHED]);
-/// ```
-pub fn distances(
+pub(super) fn distances(
     size: GridSize,
     within: &CellBox,
     inside: impl Fn(usize) -> bool,
@@ -44,18 +33,7 @@ pub fn distances(
 }
 
 /// Lowers the distances of the cells for which `inside` holds by what their neighbours allow.
-///
-/// ```
-/// use sinew_core::vision::objects::cells::{CellBox, GridSize};
-/// use sinew_core::vision::objects::geodesic::{UNREACHED, spread};
-///
-/// // How far the cells of an object are from what is outside of it.
-/// let size = GridSize { columns: 5, rows: 1 };
-/// let mut distances = [0, UNREACHED, UNREACHED, UNREACHED, 0];
-/// spread(size, &CellBox::whole(size), |cell| (1..4).contains(&cell), &mut distances);
-/// assert_eq!(distances, [0, 5, 10, 5, 0]);
-/// ```
-pub fn spread(size: GridSize, within: &CellBox, inside: impl Fn(usize) -> bool, distances: &mut [u16]) {
+pub(super) fn spread(size: GridSize, within: &CellBox, inside: impl Fn(usize) -> bool, distances: &mut [u16]) {
     for _ in 0..MAX_SWEEPS {
         let mut has_changed = false;
         for cell in within.cells(size).filter(|cell| inside(*cell)) {

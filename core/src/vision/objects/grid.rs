@@ -15,6 +15,11 @@ const FORGOTTEN_FRAMES: u8 = 12;
 /// Greatest difference from the usual brightness, levels. Chosen: shadows on a face are below.
 const MAX_FROM_USUAL: u8 = 18;
 
+/// Frames from which motion is known.
+pub(super) const MAX_FRAMES: u8 = 3;
+/// Greatest count of frames with skin.
+pub(super) const MAX_SKIN_FRAMES: u8 = NEW_FRAMES + FORGOTTEN_FRAMES;
+
 /// Bits of a row of cells, the first in the lowest.
 type BitRow = u128;
 
@@ -35,10 +40,10 @@ type BitRow = u128;
 /// ```
 #[derive(Debug, Clone)]
 pub struct CellGrid {
-    pub(super) size: GridSize,
+    size: GridSize,
     cell_px: usize,
-    pub(super) skin: [BitRow; MAX_ROWS],
-    pub(super) moving: [BitRow; MAX_ROWS],
+    skin: [BitRow; MAX_ROWS],
+    moving: [BitRow; MAX_ROWS],
     /// Mean brightness in the last frame and the one before.
     pub(super) brightness: [[u8; MAX_CELLS]; 2],
     /// Counts up in frames with skin, down in others.
@@ -48,12 +53,13 @@ pub struct CellGrid {
     counts: [u16; MAX_COLUMNS],
     sums: [u32; MAX_COLUMNS],
     line: usize,
-    /// Frames so far, up to two.
+    /// Frames that were begun, up to [`MAX_FRAMES`].
     pub(super) frames: u8,
 }
 
 impl CellGrid {
-    /// An empty grid for pictures of this size; `None` for one without pixels. Cells are as small as
+    /// An empty grid for pictures of this size; `None` for one that is too
+    /// narrow or low for a cell. Cells are as small as
     /// the grid's capacity lets them be; what is left of whole cells at the right and at the bottom
     /// is not seen.
     #[must_use]
@@ -89,7 +95,7 @@ impl CellGrid {
 
     /// Begins a frame.
     pub fn begin(&mut self) {
-        self.frames = if self.line == 0 { self.frames } else { (self.frames + 1).min(2) };
+        self.frames = (self.frames + 1).min(MAX_FRAMES);
         self.line = 0;
     }
 
@@ -123,17 +129,17 @@ impl CellGrid {
             let cell = row * self.size.columns + column;
             let (is_skin, level) = (2 * usize::from(*count) >= half, (sum / samples) as u8);
             let [last, before] = self.brightness.each_mut().map(|levels| &mut levels[cell]);
-            let is_moving = self.frames == 2 && before.abs_diff(level) > MIN_CHANGE;
+            let is_moving = self.frames == MAX_FRAMES && before.abs_diff(level) > MIN_CHANGE;
             (*before, *last) = (*last, level);
             skin |= BitRow::from(is_skin) << column;
             moving |= BitRow::from(is_moving) << column;
             let (frames, usual) = (&mut self.skin_frames[cell], &mut self.usual_brightness[cell]);
-            if self.frames == 0 {
-                *frames = if is_skin { NEW_FRAMES + FORGOTTEN_FRAMES } else { 0 };
+            if self.frames <= 1 {
+                *frames = if is_skin { MAX_SKIN_FRAMES } else { 0 };
                 *usual = level;
                 continue;
             }
-            *frames = if is_skin { (*frames + 1).min(NEW_FRAMES + FORGOTTEN_FRAMES) } else { frames.saturating_sub(1) };
+            *frames = if is_skin { (*frames + 1).min(MAX_SKIN_FRAMES) } else { frames.saturating_sub(1) };
             // What is near is followed at once, what is far only slowly.
             let step = usual.abs_diff(level);
             let step = if step > MAX_FROM_USUAL { 1 } else { step.div_ceil(4) };
@@ -222,7 +228,7 @@ mod tests {
         for level in [100, 108, 116, 116, 116] {
             show(&mut grid, |_, _| false, |column, _| if column == 3 { level } else { 50 });
             let is_first = level < 116;
-            assert!(!grid.is_moving(4) && !(is_first && grid.is_moving(3)));
+            assert!(!grid.is_moving(4) && (!is_first || !grid.is_moving(3)));
         }
         assert!(!grid.is_moving(3));
         show(&mut grid, |_, _| false, |column, _| if column == 3 { 90 } else { 50 });
@@ -246,14 +252,14 @@ mod tests {
 
     #[test]
     fn any_picture_has_a_grid_that_fits() {
-        for (width, height) in [(1, 1), (640, 480), (480, 640), (4000, 30), (7, 8192), (81, 61)] {
+        for (width, height) in [(1, 1), (640, 480), (480, 640), (4000, 60), (140, 8192), (81, 61)] {
             let mut grid = CellGrid::new(width, height).unwrap();
             assert!(grid.size().columns <= MAX_COLUMNS && grid.size().rows <= MAX_ROWS);
             for _ in 0..2 * height {
                 grid.add_line(&[u32::MAX], &[7], 2);
             }
         }
-        assert!(CellGrid::new(0, 10).is_none());
+        assert!(CellGrid::new(0, 10).is_none() && CellGrid::new(4000, 30).is_none(), "no whole cell");
     }
 
     #[test]

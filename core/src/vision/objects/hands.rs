@@ -1,29 +1,26 @@
 //! Both hands of a person whose face was found, frame by frame.
 
-use super::belief::{HandsBelief, MAX_PLACES};
+use super::belief::{HandBelief, HandsBelief, MAX_PLACES};
 use super::evidence::{Evidence, Liveliness, evidence};
-use super::find::{Maps, places};
+use super::find::{HAND_RADIUS, Maps, places};
 use super::grid::CellGrid;
 use super::head::HeadBox;
 use super::place::HandPlace;
-use crate::math::max;
+use crate::camera::Pixel;
+use crate::math::{max, min};
+use crate::ranges::{MAX_PX, is_pixel};
 use crate::skeleton::Side;
+use crate::vision::candidate::HandCandidate;
+use core::f32::consts::PI;
 use heapless::Vec;
 
-/// A hand with less probability is not sure.
-pub const SURE: f32 = 0.7;
+/// Greatest likelihood of a hand that is not seen, only an arm that reaches into the face.
+const MAX_INFERRED: f32 = 0.5;
+/// Least part of a hand's disc that counts as filled, so that an area is never zero.
+const MIN_FILL: f32 = 0.1;
 
-/// Where a hand is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct FoundHand {
-    /// Its middle, pixels.
-    pub centre_px: [f32; 2],
-    /// Probability that it is there, 0 to 1.
-    pub probability: f32,
-    /// Whether it is seen there: probable, and not inferred from an arm that reaches into the face.
-    pub is_sure: bool,
-}
+/// Candidates of one hand, the likeliest first.
+pub type Candidates = Vec<HandCandidate, MAX_PLACES>;
 
 /// Finds both hands of one person.
 #[derive(Debug, Clone)]
@@ -50,8 +47,13 @@ impl HandFinder {
         }
     }
 
-    /// Takes a face that was found: the head is the mean of the old and the new box.
+    /// Takes a face that was found: the head is the mean of the old and the new box. A box that is
+    /// out of range ([`crate::ranges`]) is left out.
     pub fn add_face(&mut self, face: HeadBox) {
+        let is_width = face.width_px >= 1.0 && face.width_px <= MAX_PX;
+        if !is_width || !face.centre_px.iter().all(|coordinate| is_pixel(*coordinate)) {
+            return;
+        }
         self.head = Some(self.head.map_or(face, |old| HeadBox {
             centre_px: core::array::from_fn(|axis| 0.5 * (old.centre_px[axis] + face.centre_px[axis])),
             width_px: 0.5 * (old.width_px + face.width_px),
@@ -75,24 +77,34 @@ impl HandFinder {
         &self.places
     }
 
-    /// Answers the frame that the grid holds: left and right hand.
-    pub fn step(&mut self) -> [Option<FoundHand>; 2] {
-        let Some(head) = self.head else { return [None; 2] };
+    /// Answers the frame that the grid holds: candidates for the left and for the right hand, whose
+    /// likelihood is the probability that the hand is there, by all frames so far.
+    pub fn step(&mut self) -> [Candidates; 2] {
+        let Some(head) = self.head else { return [Vec::new(), Vec::new()] };
         let found = places(&self.grid, head, &mut self.maps);
         self.liveliness.add(&found);
         let (places, evidence) = likeliest(&found, &self.liveliness);
         self.belief.step(&places, &evidence);
         self.places = places;
         self.belief.hands().map(|hand| {
-            let hand = hand?;
-            let place = self.places.get(hand.place)?;
-            let is_inferred = place.end.is_some_and(|end| end.is_in_face);
-            Some(FoundHand {
-                centre_px: head.place_px(place.position),
-                probability: hand.probability,
-                is_sure: hand.probability > SURE && !is_inferred,
-            })
+            let candidate = |hand: &HandBelief| Some(candidate(self.places.get(hand.place)?, &head, hand.probability));
+            hand.iter().filter_map(candidate).collect()
         })
+    }
+}
+
+/// A place as the trackers see it: a disc of the area that skin fills within a hand's radius.
+fn candidate(place: &HandPlace, head: &HeadBox, probability: f32) -> HandCandidate {
+    let [u_px, v_px] = head.place_px(place.position);
+    let radius_px = HAND_RADIUS * head.width_px;
+    let area_px = max(place.fill, MIN_FILL) * PI * radius_px * radius_px;
+    let variance_px2 = area_px / (4.0 * PI);
+    let is_inferred = place.end.is_some_and(|end| end.is_in_face);
+    HandCandidate {
+        centre: Pixel::new(u_px, v_px),
+        moments_px2: [variance_px2, 0.0, variance_px2],
+        area_px,
+        likelihood: if is_inferred { min(probability, MAX_INFERRED) } else { probability },
     }
 }
 
@@ -101,8 +113,7 @@ type Chosen = (Vec<HandPlace, MAX_PLACES>, Vec<[Evidence; 2], MAX_PLACES>);
 /// The places for which most speaks, with their evidence for left and right.
 fn likeliest(found: &[HandPlace], liveliness: &Liveliness) -> Chosen {
     let of = |place: &HandPlace| [Side::Left, Side::Right].map(|side| evidence(place, side, liveliness.of(place)));
-    let score =
-        |[left, right]: &[Evidence; 2]| max(max(left.alone, right.alone), max(left.shared, right.shared) - 1.0);
+    let score = |[left, right]: &[Evidence; 2]| max(max(left.alone, right.alone), max(left.shared, right.shared) - 1.0);
     let (mut places, mut all): Chosen = (Vec::new(), Vec::new());
     for place in found {
         let evidence = of(place);

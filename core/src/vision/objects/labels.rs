@@ -6,22 +6,11 @@
 use super::cells::GridSize;
 
 /// Labels run from 1 to this; what needs more is noise and gets none.
-pub const MAX_LABELS: usize = 255;
+pub(super) const MAX_LABELS: usize = 255;
 
 /// Labels the cells for which `inside` holds; all others get 0. Returns the greatest label that was
 /// given; some labels below it may have no cell.
-///
-/// ```
-/// use sinew_core::vision::objects::cells::GridSize;
-/// use sinew_core::vision::objects::labels::label;
-///
-/// // Two objects; the cells of the first meet at a corner.
-/// let picture = b"#..#.#..#";
-/// let mut labels = [9; 9];
-/// label(GridSize { columns: 3, rows: 3 }, |cell| picture[cell] == b'#', &mut labels);
-/// assert_eq!(labels, [1, 0, 0, 1, 0, 2, 0, 0, 2]);
-/// ```
-pub fn label(size: GridSize, inside: impl Fn(usize) -> bool, labels: &mut [u8]) -> u8 {
+pub(super) fn label(size: GridSize, inside: impl Fn(usize) -> bool, labels: &mut [u8]) -> u8 {
     let mut parents: [u8; MAX_LABELS + 1] = core::array::from_fn(|label| label as u8);
     let mut used = 0_u8;
     for cell in 0..size.cells().min(labels.len()) {
@@ -83,7 +72,7 @@ mod tests {
             let mut labels = [0; 60];
             label(size, |cell| cells[cell], &mut labels);
             for start in (0..size.cells()).filter(|cell| cells[*cell]) {
-                let mut reached = vec![false; 60];
+                let mut reached = [false; 60];
                 let mut open = vec![start];
                 while let Some(cell) = open.pop() {
                     if core::mem::replace(&mut reached[cell], true) {

@@ -3,8 +3,8 @@
 //! A normal distribution over luminance and chrominance (Y, Cr, Cb of Rec. 601). It is one-sided: a
 //! hand may be more colourful than the face, since the face is lit from more sides.
 
-use crate::vision::skin::{PIXELS_PER_WORD, SkinClassifier};
 use crate::math::{max, sqrt};
+use crate::vision::skin::{PIXELS_PER_WORD, SkinClassifier};
 
 /// Most pixels of a face that are looked at.
 pub const MAX_SAMPLES: usize = 1024;
@@ -24,9 +24,9 @@ const KEPT: f32 = 0.7;
 /// A person's colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PersonColour {
-    mean: [f32; 3],
+    pub(super) mean: [f32; 3],
     /// Upper triangle of the covariance: YY, YCr, YCb, CrCr, CrCb, CbCb.
-    covariance: [f32; 6],
+    pub(super) covariance: [f32; 6],
     /// Of the inverse.
     inverse: [f32; 6],
     /// Direction of more colour in Cr, Cb; a unit vector.
@@ -39,6 +39,15 @@ pub fn ycc(rgb: [u8; 3]) -> [f32; 3] {
     let [r, g, b] = rgb.map(f32::from);
     let y = 0.299 * r + 0.587 * g + 0.114 * b;
     [y, 0.713 * (r - y) + 128.0, 0.564 * (b - y) + 128.0]
+}
+
+impl Default for PersonColour {
+    /// Grey.
+    fn default() -> Self {
+        let [y, cr, cb] = FLOOR_VARIANCES;
+        let inverse = [1.0 / y, 0.0, 0.0, 1.0 / cr, 0.0, 1.0 / cb];
+        Self { mean: [128.0; 3], covariance: [y, 0.0, 0.0, cr, 0.0, cb], inverse, colourful: [0.0; 2] }
+    }
 }
 
 impl PersonColour {
@@ -72,7 +81,7 @@ impl PersonColour {
         Self::new(mean, covariance)
     }
 
-    fn new(mean: [f32; 3], covariance: [f32; 6]) -> Option<Self> {
+    pub(super) fn new(mean: [f32; 3], covariance: [f32; 6]) -> Option<Self> {
         let inverse = inverse(&covariance)?;
         let (cr, cb) = (mean[1] - 128.0, mean[2] - 128.0);
         let size = max(sqrt(cr * cr + cb * cb), 1.0e-6);
@@ -121,7 +130,10 @@ fn inverse(&[a, b, c, d, e, f]: &[f32; 6]) -> Option<[f32; 6]> {
 impl SkinClassifier for PersonColour {
     fn classify_line(&self, rgb: &[u8], bits: &mut [u32]) {
         for (word, pixels) in bits.iter_mut().zip(rgb.as_chunks::<3>().0.chunks(PIXELS_PER_WORD)) {
-            *word = pixels.iter().enumerate().fold(0, |word, (place, pixel)| word | u32::from(self.is_skin(*pixel)) << place);
+            *word = pixels
+                .iter()
+                .enumerate()
+                .fold(0, |word, (place, pixel)| word | u32::from(self.is_skin(*pixel)) << place);
         }
     }
 }

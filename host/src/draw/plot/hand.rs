@@ -215,9 +215,7 @@ fn entries(tracks: &[Track]) -> Vec<(Key, String)> {
     entries.push((Key::Dot(INK.filled(), 5), "last place".to_owned()));
     entries.push((Key::Patch(INK.mix(0.18).filled()), "depth: one standard deviation of the hand".to_owned()));
     let halves = if tracks.len() > 1 { " (left: upper half, right: lower half)" } else { "" };
-    for (status, name) in
-        [(Status::Uncertain, "uncertain"), (Status::Predicted, "predicted"), (Status::Lost, "lost")]
-    {
+    for (status, name) in [(Status::Uncertain, "uncertain"), (Status::Predicted, "predicted"), (Status::Lost, "lost")] {
         entries.push((Key::Patch(INK.mix(shading(status)).filled()), format!("likelihood: {name}{halves}")));
     }
     entries

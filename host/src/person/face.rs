@@ -1,0 +1,142 @@
+//! Where a face is, by the crate `rustface`, and the colour of its skin.
+//!
+//! The detector is SeetaFace's funnel of boosted cascades: Wu, Kan, He, Shan, Chen, "Funnel-structured
+//! cascade for multi-view face detection with alignment-awareness", Neurocomputing 221, 2017.
+
+use crate::error::Result;
+use image::RgbImage;
+use rustface::{ImageData, Model};
+use sinew_core::vision::objects::head::HeadBox;
+use sinew_core::vision::objects::person_colour::PersonColour;
+
+/// The model's numbers, see `THIRD_PARTY_NOTICES.md`.
+const MODEL: &[u8] = include_bytes!("../../models/seeta_fd_frontal_v1.0.bin");
+/// Longer side of the picture that is searched, pixels. A face of 48 pixels in 640 is found.
+const SEARCHED_PX: u32 = 320;
+/// Least side of a face there, pixels.
+const MIN_FACE_PX: u32 = 24;
+/// Least score of a face: the library's example, which finds all faces of the clips in `video/asl`.
+const MIN_SCORE: f64 = 2.0;
+/// Rows and columns of the face's middle whose pixels are looked at.
+const SAMPLES: u32 = 32;
+/// Parts of the box that are skin, columns and rows: below the hair, above the chin.
+const SKIN: [[f32; 2]; 2] = [[0.2, 0.8], [0.25, 0.85]];
+
+/// A face that was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoundFace {
+    /// Its box.
+    pub head: HeadBox,
+    /// The colour of its skin, if enough of it is alike.
+    pub colour: Option<PersonColour>,
+}
+
+/// Finds faces.
+#[derive(Clone)]
+pub struct FaceDetector {
+    model: Model,
+}
+
+impl std::fmt::Debug for FaceDetector {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.debug_struct("FaceDetector").finish_non_exhaustive()
+    }
+}
+
+impl FaceDetector {
+    /// A detector with the shipped model.
+    ///
+    /// # Errors
+    /// None with that model.
+    pub fn new() -> Result<Self> {
+        Ok(Self { model: rustface::read_model(MODEL)? })
+    }
+
+    /// The likeliest face of a picture.
+    #[must_use]
+    pub fn find(&self, image: &RgbImage) -> Option<FoundFace> {
+        let (width, height) = image.dimensions();
+        let step = width.max(height).div_ceil(SEARCHED_PX).max(1);
+        let (columns, rows) = (width / step, height / step);
+        if columns.min(rows) < MIN_FACE_PX {
+            return None;
+        }
+        let grey = shrunk(image, step);
+        let mut detector = rustface::create_detector_with_model(self.model.clone());
+        detector.set_min_face_size(MIN_FACE_PX);
+        detector.set_score_thresh(MIN_SCORE);
+        detector.set_pyramid_scale_factor(0.8);
+        detector.set_slide_window_step(4, 4);
+        let faces = detector.detect(&ImageData::new(&grey, columns, rows));
+        let best = faces.iter().reduce(|best, face| if face.score() > best.score() { face } else { best })?;
+        let place = |at: i32, length: u32| (at as f32 + 0.5 * length as f32) * step as f32;
+        let found = best.bbox();
+        let head = HeadBox {
+            centre_px: [place(found.x(), found.width()), place(found.y(), found.height())],
+            width_px: (found.width() * step) as f32,
+        };
+        Some(FoundFace { head, colour: PersonColour::of_face(&skin_pixels(image, &head)) })
+    }
+}
+
+/// Means of `step` x `step` pixels, grey.
+fn shrunk(image: &RgbImage, step: u32) -> Vec<u8> {
+    let (width, height) = image.dimensions();
+    let mut grey = Vec::with_capacity((width / step * (height / step)) as usize);
+    for row in 0..height / step {
+        for column in 0..width / step {
+            let mut sum = 0;
+            for v in row * step..(row + 1) * step {
+                for u in column * step..(column + 1) * step {
+                    let [r, g, b] = image.get_pixel(u, v).0.map(u32::from);
+                    sum += 77 * r + 150 * g + 29 * b;
+                }
+            }
+            grey.push((sum / (256 * step * step)) as u8);
+        }
+    }
+    grey
+}
+
+/// Pixels of the face's middle, in a grid.
+fn skin_pixels(image: &RgbImage, head: &HeadBox) -> Vec<[u8; 3]> {
+    let at = |[low, high]: [f32; 2], index: u32, centre_px: f32, end: u32| {
+        let share = low + (high - low) * (index as f32 + 0.5) / SAMPLES as f32;
+        ((centre_px + (share - 0.5) * head.width_px).max(0.0) as u32).min(end - 1)
+    };
+    let places = (0..SAMPLES).flat_map(|row| (0..SAMPLES).map(move |column| (column, row)));
+    let pixel = |(column, row)| {
+        let u = at(SKIN[0], column, head.centre_px[0], image.width());
+        let v = at(SKIN[1], row, head.centre_px[1], image.height());
+        image.get_pixel(u, v).0
+    };
+    places.map(pixel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::Rgb;
+
+    #[test]
+    fn a_picture_without_a_face_has_none() {
+        let detector = FaceDetector::new().unwrap();
+        for size in [(1, 1), (640, 480), (30, 400), (33, 33)] {
+            let stripes = RgbImage::from_fn(size.0, size.1, |u, v| Rgb([(u * 7) as u8, (v * 5) as u8, 90]));
+            assert_eq!(detector.find(&stripes), None, "{size:?}");
+        }
+    }
+
+    #[test]
+    fn a_shrunk_picture_has_the_mean_grey_of_its_pixels() {
+        let image = RgbImage::from_fn(5, 4, |u, v| Rgb([if (u + v) % 2 == 0 { 200 } else { 100 }; 3]));
+        assert_eq!(shrunk(&image, 2), [150; 4]);
+    }
+
+    #[test]
+    fn pixels_of_a_face_at_the_border_are_within_the_picture() {
+        let image = RgbImage::from_pixel(20, 20, Rgb([1, 2, 3]));
+        let head = HeadBox { centre_px: [19.0, -5.0], width_px: 30.0 };
+        assert_eq!(skin_pixels(&image, &head), vec![[1, 2, 3]; 1024]);
+    }
+}

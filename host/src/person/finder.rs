@@ -1,0 +1,203 @@
+//! Both hands of the person before the camera, frame by frame.
+//!
+//! A face is looked for in the first frame and once a second, beside the tracker; what is found
+//! counts a fixed number of frames later, so that no result depends on threads.
+
+use super::face::{FaceDetector, FoundFace};
+use super::skin::PersonSkin;
+use crate::error::Result;
+use crate::frames::FrameReader;
+use crate::resume::{from_text, optional, to_text};
+use image::RgbImage;
+use sinew_core::camera::{Camera, Pixel};
+use sinew_core::math::Vec3;
+use sinew_core::saved_state::{SavedState, StateKind, StateVisitor};
+use sinew_core::skeleton::Side;
+use sinew_core::vision::candidate::HandCandidate;
+use sinew_core::vision::objects::grid::CellGrid;
+use sinew_core::vision::objects::hands::HandFinder;
+use sinew_core::vision::objects::head::{HeadBox, shoulder};
+use sinew_core::vision::objects::person_colour::PersonColour;
+use std::thread::JoinHandle;
+
+/// Frames after which an answer counts. Chosen: a third of a second, in which any computer finds a
+/// face.
+const LATENCY: usize = 10;
+/// Width of a face's box, metres. Chosen: a box is a little wider than the mean breadth between the
+/// cheekbones, 0.14 m; arms that hang are then 0.65 m long.
+const FACE_WIDTH_M: f32 = 0.15;
+/// Most frames between two looks.
+const MAX_INTERVAL: f64 = 600.0;
+
+/// What one frame shows of the person.
+#[derive(Debug, Clone)]
+pub struct PersonView {
+    /// Candidates for the left and the right hand, the likeliest first.
+    pub hands: [Vec<HandCandidate>; 2],
+    /// Left and right shoulder, by the face, metres in camera axes.
+    pub shoulders_m: [Vec3; 2],
+}
+
+/// A look for a face.
+#[derive(Debug)]
+struct Look {
+    /// Frame from which its answer counts.
+    due: usize,
+    answer: Answer,
+}
+
+#[derive(Debug)]
+enum Answer {
+    Awaited(JoinHandle<Option<FoundFace>>),
+    Known(Option<FoundFace>),
+}
+
+/// Finds the hands of one person.
+#[derive(Debug)]
+pub struct PersonFinder {
+    detector: FaceDetector,
+    /// None for pictures that are too small.
+    hands: Option<Box<HandFinder>>,
+    skin: Option<PersonSkin>,
+    interval: usize,
+    look: Option<Look>,
+    camera: Camera,
+}
+
+impl PersonFinder {
+    /// A finder for pictures of a size, so many a second.
+    ///
+    /// # Errors
+    /// None with the shipped model.
+    pub fn new(size_px: (u32, u32), rate_hz: f64, camera: Camera) -> Result<Self> {
+        let grid = CellGrid::new(size_px.0 as usize, size_px.1 as usize);
+        Ok(Self {
+            detector: FaceDetector::new()?,
+            hands: grid.map(|grid| Box::new(HandFinder::new(grid))),
+            skin: None,
+            interval: rate_hz.round().clamp(1.0, MAX_INTERVAL) as usize,
+            look: None,
+            camera,
+        })
+    }
+
+    /// The person's skin, once a face was found.
+    #[must_use]
+    pub fn skin(&self) -> Option<&PersonSkin> {
+        self.skin.as_ref()
+    }
+
+    /// Takes what was found of a face, and begins the next look; to be called before a frame is
+    /// read.
+    pub fn look(&mut self, frame: usize, image: &RgbImage) {
+        if self.look.as_ref().is_some_and(|look| look.due <= frame) {
+            let face = self.look.take().and_then(|look| look.answer.wait());
+            self.take(face);
+        }
+        if self.hands.is_none() || self.look.is_some() || !frame.is_multiple_of(self.interval) {
+            return;
+        }
+        if frame == 0 {
+            let face = self.detector.find(image);
+            self.take(face);
+        } else {
+            let (detector, image) = (self.detector.clone(), image.clone());
+            let answer = Answer::Awaited(std::thread::spawn(move || detector.find(&image)));
+            self.look = Some(Look { due: frame + LATENCY, answer });
+        }
+    }
+
+    fn take(&mut self, face: Option<FoundFace>) {
+        let (Some(face), Some(hands)) = (face, &mut self.hands) else { return };
+        let colour = match (&self.skin, face.colour) {
+            (Some(skin), Some(colour)) => skin.colour().moved_to(&colour),
+            (None, colour) => colour,
+            (Some(_), None) => None,
+        };
+        if let Some(colour) = colour {
+            self.skin = Some(PersonSkin::new(colour));
+        }
+        if self.skin.is_some() {
+            hands.add_face(face.head);
+        }
+    }
+
+    /// Answers the frame that `reader` has read with this person's [skin](Self::skin); `None` while
+    /// no face is known.
+    pub fn see(&mut self, reader: &mut FrameReader) -> Option<PersonView> {
+        let hands = self.hands.as_mut()?;
+        hands.head()?;
+        reader.fill(hands.grid_mut());
+        let [left, right] = hands.step();
+        let shoulders_m = self.shoulders_m()?;
+        Some(PersonView { hands: [left.to_vec(), right.to_vec()], shoulders_m })
+    }
+
+    /// Left and right shoulder, by the face, metres in camera axes; none while no face is known.
+    #[must_use]
+    pub fn shoulders_m(&self) -> Option<[Vec3; 2]> {
+        let head = self.hands.as_ref()?.head()?;
+        Some([Side::Left, Side::Right].map(|side| {
+            let [u_px, v_px] = head.place_px(shoulder(side));
+            self.place_m(Pixel::new(u_px, v_px), &head)
+        }))
+    }
+
+    /// The place in the head's distance that is seen at a pixel.
+    fn place_m(&self, pixel: Pixel, head: &HeadBox) -> Vec3 {
+        let direction = self.camera.back_project(pixel).direction;
+        direction * (self.camera.focal_px() * FACE_WIDTH_M / head.width_px / direction.z)
+    }
+
+    /// The state after the last frame as text, which [`PersonFinder::restore`] takes. Waits for a
+    /// look.
+    ///
+    /// # Errors
+    /// None that a user can bring about.
+    pub fn saved(&mut self) -> Result<String> {
+        to_text(StateKind::Hands, self)
+    }
+
+    /// Goes on from a state that was saved with the same size and rate.
+    ///
+    /// # Errors
+    /// The state is not whole, or of another run.
+    pub fn restore(&mut self, saved: &str) -> Result<()> {
+        from_text(StateKind::Hands, saved, self)
+    }
+}
+
+impl SavedState for PersonFinder {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        if let Some(hands) = &mut self.hands {
+            hands.visit(visitor);
+        }
+        let mut colour = self.skin.as_ref().map(|skin| *skin.colour());
+        optional(&mut colour, PersonColour::default(), visitor, PersonColour::visit);
+        if colour.as_ref() != self.skin.as_ref().map(PersonSkin::colour) {
+            self.skin = colour.map(PersonSkin::new);
+        }
+        let mut look = self.look.take().map(|look| (look.due as u64, look.answer.wait()));
+        optional(&mut look, (0, None), visitor, |(due, face), visitor| {
+            visitor.long(due);
+            optional(face, NO_FACE, visitor, |face, visitor| {
+                face.head.visit(visitor);
+                optional(&mut face.colour, PersonColour::default(), visitor, PersonColour::visit);
+            });
+        });
+        self.look = look.map(|(due, face)| Look { due: due as usize, answer: Answer::Known(face) });
+    }
+}
+
+/// What a face is before it is read.
+const NO_FACE: FoundFace = FoundFace { head: HeadBox { centre_px: [0.0; 2], width_px: 1.0 }, colour: None };
+
+impl Answer {
+    /// The answer; none of a look that failed.
+    fn wait(self) -> Option<FoundFace> {
+        match self {
+            Self::Awaited(thread) => thread.join().ok().flatten(),
+            Self::Known(face) => face,
+        }
+    }
+}
