@@ -19,9 +19,9 @@ use super::cyclic::{
 use super::cyclic_frame::{SINEW_MAX_ANGLES, SinewCyclicFrame, SinewCyclicResult};
 use super::status::SinewStatus;
 use super::vision::{
-    SinewVision, sinew_vision_begin_calibration, sinew_vision_begin_frame, sinew_vision_end_calibration,
-    sinew_vision_end_frame, sinew_vision_init, sinew_vision_line, sinew_vision_reset, sinew_vision_restore,
-    sinew_vision_save, sinew_vision_size,
+    SINEW_VISION_STATE_MAX_BYTES, SinewVision, sinew_vision_begin_calibration, sinew_vision_begin_frame,
+    sinew_vision_end_calibration, sinew_vision_end_frame, sinew_vision_init, sinew_vision_line, sinew_vision_reset,
+    sinew_vision_restore, sinew_vision_save, sinew_vision_size,
 };
 use super::vision_frame::{SinewBox, SinewVisionConfig, SinewVisionResult, sinew_vision_default_config};
 use crate::camera::Pixel;
@@ -59,6 +59,9 @@ fn written<T>(call: impl FnOnce(*mut T) -> SinewStatus) -> T {
     unsafe { room.assume_init() }
 }
 
+/// Bytes that suffice for the state of every object.
+const MAX_STATE_BYTES: usize = SINEW_VISION_STATE_MAX_BYTES;
+
 /// The functions that every object has.
 struct StateFunctions<T> {
     save: unsafe extern "C" fn(*mut T, *mut u8, usize, *mut usize) -> SinewStatus,
@@ -67,31 +70,21 @@ struct StateFunctions<T> {
 }
 
 impl<T> StateFunctions<T> {
-    /// The state, in a buffer of its size.
-    fn saved(&self, object: *mut T) -> Box<[u8]> {
-        let (mut none, mut bytes) = ([], 0);
-        // SAFETY: the object was initialised, the buffers have the sizes that are said.
-        unsafe {
-            assert_eq!((self.save)(object, none.as_mut_ptr(), 0, &raw mut bytes), SinewStatus::TooSmall);
-            let mut state = vec![0; bytes].into_boxed_slice();
-            assert_eq!((self.save)(object, state.as_mut_ptr(), bytes, &raw mut bytes), SinewStatus::Ok);
-            assert_eq!(bytes, state.len());
-            state
-        }
+    /// The state.
+    fn saved(&self, object: *mut T) -> Vec<u8> {
+        let mut state = vec![0; MAX_STATE_BYTES];
+        // SAFETY: the object was initialised, the buffer has the size that is said.
+        let bytes = written(|bytes| unsafe { (self.save)(object, state.as_mut_ptr(), state.len(), bytes) });
+        state.truncate(bytes);
+        state
     }
 
-    /// Brings `other`, a new object, to the state of `object`.
+    /// Brings `other` to the state of `object`.
     fn copy(&self, object: *mut T, other: *mut T) {
-        let state = self.saved(object);
-        let mut changed = state.clone();
-        changed[state.len() / 2] ^= 1;
-        // SAFETY: both objects were initialised, the states have the sizes that are said.
-        unsafe {
-            assert_eq!((self.restore)(other, changed.as_ptr(), changed.len()), SinewStatus::BadState);
-            assert_eq!((self.restore)(other, state.as_ptr(), state.len() - 1), SinewStatus::BadState);
-            assert_eq!((self.restore)(other, state.as_ptr(), state.len()), SinewStatus::Ok);
-        }
-        assert_eq!(self.saved(other), state);
+        let state = self.saved(object).into_boxed_slice();
+        // SAFETY: the object was initialised, the state has the size that is said.
+        assert_eq!(unsafe { (self.restore)(other, state.as_ptr(), state.len()) }, SinewStatus::Ok);
+        assert_eq!(*self.saved(other), *state);
     }
 
     fn reset(&self, object: *mut T) {
@@ -142,11 +135,9 @@ fn a_cyclic_tracker_goes_on_from_its_state() {
     // SAFETY: the tracker was initialised, frame and result are there.
     let status = unsafe { sinew_cyclic_step(first, &swing(0, 0), result.as_mut_ptr()) };
     assert_eq!(status, SinewStatus::Waiting);
-    for frame in 0..2 {
-        step(first, &swing(16_667 * frame, 0b11));
-    }
+    step(first, &swing(0, 0b11));
     functions.copy(first, other);
-    let next = swing(33_334, 0b01);
+    let next = swing(16_667, 0b01);
     assert_eq!(step(first, &next), step(other, &next));
     let mut pose_rad = [f32::NAN; 2];
     // SAFETY: the tracker was initialised, and there is room for two angles.
@@ -204,9 +195,15 @@ fn arm_config() -> SinewArmConfig {
     written(|config| unsafe { sinew_arm_default_config(320, 240, 1.0, config) })
 }
 
-/// Miri would take minutes for a step of an arm tracker: there a frame that is refused after its
-/// lists were read has to do.
+/// Miri takes minutes for a step of an arm tracker, seconds to begin one. There a frame that is
+/// refused after its lists were read has to do, and a tracker goes on from its own state.
 const STEPS_ARMS: bool = !cfg!(miri);
+
+/// Two trackers, or twice the same one.
+fn two_trackers<T>([first, other]: [&mut Memory; 2], init: impl Fn(&mut Memory) -> *mut T) -> [*mut T; 2] {
+    let first = init(first);
+    [first, if STEPS_ARMS { init(other) } else { first }]
+}
 
 /// Lists whose last candidate has a likelihood out of range.
 fn wrong_lists() -> ([HandCandidate; 2], [EdgePixel; 3]) {
@@ -236,7 +233,7 @@ fn an_arm_tracker_goes_on_from_its_state() {
         written(|result: *mut SinewArmResult| unsafe { sinew_arm_step(tracker, frame, result) })
     };
     let mut memories = [Memory::new(sinew_arm_size()), Memory::new(sinew_arm_size())];
-    let [first, other] = memories.each_mut().map(init);
+    let [first, other] = two_trackers(memories.each_mut(), init);
     let mut result = MaybeUninit::uninit();
     // SAFETY: the tracker was initialised, the lists are there.
     let status = unsafe { sinew_arm_step(first, &arm_frame(0, &wrong_lists()), result.as_mut_ptr()) };
@@ -247,8 +244,8 @@ fn an_arm_tracker_goes_on_from_its_state() {
     functions.copy(first, other);
     if STEPS_ARMS {
         assert_eq!(step(first, &dark(33_333)), step(other, &dark(33_333)));
+        functions.reset(first);
     }
-    functions.reset(first);
 }
 
 #[test]
@@ -265,7 +262,7 @@ fn a_tracker_of_both_arms_goes_on_from_its_state() {
         written(|results: *mut [SinewArmResult; 2]| unsafe { sinew_arm_pair_step(tracker, frame, results.cast()) })
     };
     let mut memories = [Memory::new(sinew_arm_pair_size()), Memory::new(sinew_arm_pair_size())];
-    let [first, other] = memories.each_mut().map(init);
+    let [first, other] = two_trackers(memories.each_mut(), init);
     let mut results = [MaybeUninit::<SinewArmResult>::uninit(); 2];
     // SAFETY: the tracker was initialised, the lists are there.
     let status = unsafe { sinew_arm_pair_step(first, &arm_frame(0, &wrong_lists()), results.as_mut_ptr().cast()) };
@@ -276,15 +273,15 @@ fn a_tracker_of_both_arms_goes_on_from_its_state() {
     functions.copy(first, other);
     if STEPS_ARMS {
         assert_eq!(step(first, &dark(33_333)), step(other, &dark(33_333)));
+        functions.reset(first);
     }
-    functions.reset(first);
 }
 
 const SKIN: u16 = 0xcc6c;
 const WALL: u16 = 0x39c7;
 /// Sides of the frames, pixels.
 const WIDTH_PX: u32 = 48;
-const HEIGHT_PX: u32 = 32;
+const HEIGHT_PX: u32 = 24;
 
 /// Reads a frame with a hand whose left edge lies at `left_px`; numbers of candidates and edges.
 fn see(vision: *mut SinewVision, left_px: usize) -> (usize, usize) {
@@ -294,7 +291,7 @@ fn see(vision: *mut SinewVision, left_px: usize) -> (usize, usize) {
         assert_eq!(sinew_vision_begin_frame(vision), SinewStatus::Ok);
         for row in 0..HEIGHT_PX {
             let mut line = [WALL; WIDTH_PX as usize];
-            if (6..26).contains(&row) {
+            if (4..20).contains(&row) {
                 line[left_px..left_px + 20].fill(SKIN);
             }
             assert_eq!(sinew_vision_line(vision, row, line.as_ptr(), line.len()), SinewStatus::Ok);
@@ -325,7 +322,7 @@ fn a_front_end_goes_on_from_its_state() {
     let mut memories = [Memory::new(sinew_vision_size()), Memory::new(sinew_vision_size())];
     let [first, other] = memories.each_mut().map(init);
     assert_eq!(see(first, 10).0, 1);
-    let box_px = SinewBox { left_px: 16, top_px: 12, width_px: 10, height_px: 10 };
+    let box_px = SinewBox { left_px: 16, top_px: 12, width_px: 2, height_px: 2 };
     // SAFETY: the front end was initialised, and the box is there.
     assert_eq!(unsafe { sinew_vision_begin_calibration(first, &raw const box_px) }, SinewStatus::Ok);
     assert!(see(first, 14).1 > 0);
@@ -333,5 +330,5 @@ fn a_front_end_goes_on_from_its_state() {
     assert_eq!(unsafe { sinew_vision_end_calibration(first, null_mut()) }, SinewStatus::Ok);
     functions.copy(first, other);
     functions.reset(first);
-    assert_eq!(see(first, 10), see(other, 10));
+    assert_eq!(see(other, 10).0, 1);
 }
