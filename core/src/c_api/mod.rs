@@ -28,5 +28,7 @@ mod panic;
 pub mod rust_entry_points;
 mod stateful;
 pub mod status;
+#[cfg(test)]
+mod tests;
 pub mod vision;
 pub mod vision_frame;

@@ -1,0 +1,334 @@
+//! Each object from its memory to its saved state.
+//!
+//! The memory has exactly the object's size, and nothing was written into it: under Miri a read of
+//! what was not written, and an access beyond the memory, fail the test.
+
+use super::arm::sinew_arm_step;
+use super::arm::{SinewArm, sinew_arm_init, sinew_arm_reset, sinew_arm_restore, sinew_arm_save, sinew_arm_size};
+use super::arm_frame::{
+    SINEW_ARM_TRACKING, SINEW_SIDE_LEFT, SinewArmConfig, SinewArmFrame, SinewArmResult, sinew_arm_default_config,
+};
+use super::arm_pair::{
+    SinewArmPair, sinew_arm_pair_init, sinew_arm_pair_reset, sinew_arm_pair_restore, sinew_arm_pair_save,
+    sinew_arm_pair_size, sinew_arm_pair_step,
+};
+use super::cyclic::{
+    SinewCyclic, sinew_cyclic_init, sinew_cyclic_mean_pose, sinew_cyclic_reset, sinew_cyclic_restore,
+    sinew_cyclic_save, sinew_cyclic_size, sinew_cyclic_step,
+};
+use super::cyclic_frame::{SINEW_MAX_ANGLES, SinewCyclicFrame, SinewCyclicResult};
+use super::status::SinewStatus;
+use super::vision::{
+    SINEW_VISION_STATE_MAX_BYTES, SinewVision, sinew_vision_begin_calibration, sinew_vision_begin_frame,
+    sinew_vision_end_calibration, sinew_vision_end_frame, sinew_vision_init, sinew_vision_line, sinew_vision_reset,
+    sinew_vision_restore, sinew_vision_save, sinew_vision_size,
+};
+use super::vision_frame::{SinewBox, SinewVisionConfig, SinewVisionResult, sinew_vision_default_config};
+use crate::camera::Pixel;
+use crate::cyclic::example::{swing_pose_rad, swing_table};
+use crate::cyclic::model::bytes::write;
+use crate::vision::candidate::HandCandidate;
+use crate::vision::edges::EdgePixel;
+use core::ffi::c_void;
+use core::mem::MaybeUninit;
+use core::ptr::{null, null_mut};
+
+/// Memory of one object.
+struct Memory(Box<[MaybeUninit<u64>]>);
+
+impl Memory {
+    fn new(bytes: usize) -> Self {
+        assert_eq!(bytes % 8, 0);
+        Self(Box::new_uninit_slice(bytes / 8))
+    }
+
+    fn start(&mut self) -> *mut c_void {
+        self.0.as_mut_ptr().cast()
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(&*self.0)
+    }
+}
+
+/// What a function that was answered with OK wrote.
+fn written<T>(call: impl FnOnce(*mut T) -> SinewStatus) -> T {
+    let mut room = MaybeUninit::uninit();
+    assert_eq!(call(room.as_mut_ptr()), SinewStatus::Ok);
+    // SAFETY: the status says that it was written.
+    unsafe { room.assume_init() }
+}
+
+/// Bytes that suffice for the state of every object.
+const MAX_STATE_BYTES: usize = SINEW_VISION_STATE_MAX_BYTES;
+
+/// The functions that every object has.
+struct StateFunctions<T> {
+    save: unsafe extern "C" fn(*mut T, *mut u8, usize, *mut usize) -> SinewStatus,
+    restore: unsafe extern "C" fn(*mut T, *const u8, usize) -> SinewStatus,
+    reset: unsafe extern "C" fn(*mut T) -> SinewStatus,
+}
+
+impl<T> StateFunctions<T> {
+    /// The state.
+    fn saved(&self, object: *mut T) -> Vec<u8> {
+        let mut state = vec![0; MAX_STATE_BYTES];
+        // SAFETY: the object was initialised, the buffer has the size that is said.
+        let bytes = written(|bytes| unsafe { (self.save)(object, state.as_mut_ptr(), state.len(), bytes) });
+        state.truncate(bytes);
+        state
+    }
+
+    /// Brings `other` to the state of `object`.
+    fn copy(&self, object: *mut T, other: *mut T) {
+        let state = self.saved(object).into_boxed_slice();
+        // SAFETY: the object was initialised, the state has the size that is said.
+        assert_eq!(unsafe { (self.restore)(other, state.as_ptr(), state.len()) }, SinewStatus::Ok);
+        assert_eq!(*self.saved(other), *state);
+    }
+
+    fn reset(&self, object: *mut T) {
+        // SAFETY: the object was initialised.
+        assert_eq!(unsafe { (self.reset)(object) }, SinewStatus::Ok);
+    }
+}
+
+/// Memory of zeros is no object.
+#[test]
+fn memory_that_was_not_initialised_is_no_object() {
+    let mut zeros = vec![0_u64; sinew_cyclic_size() / 8];
+    // SAFETY: the memory has the object's size.
+    assert_eq!(unsafe { sinew_cyclic_reset(zeros.as_mut_ptr().cast()) }, SinewStatus::NotInitialised);
+}
+
+/// The model of `swing_table` in words, which are aligned to four bytes, and its length in bytes.
+fn model() -> (Vec<u32>, usize) {
+    let mut bytes = vec![0; 8192];
+    let count = write(&swing_table().model().unwrap(), &mut bytes).unwrap();
+    (bytes[..count].as_chunks::<4>().0.iter().map(|word| u32::from_ne_bytes(*word)).collect(), count)
+}
+
+fn swing(timestamp_us: u64, seen: u32) -> SinewCyclicFrame {
+    let mut angles_rad = [0.0; SINEW_MAX_ANGLES];
+    angles_rad[..2].copy_from_slice(&swing_pose_rad(timestamp_us as f32 * 1.0e-6));
+    SinewCyclicFrame { timestamp_us, seen, angle_count: 2, angles_rad, std_rad: [0.05; SINEW_MAX_ANGLES] }
+}
+
+#[test]
+fn a_cyclic_tracker_goes_on_from_its_state() {
+    let functions =
+        StateFunctions { save: sinew_cyclic_save, restore: sinew_cyclic_restore, reset: sinew_cyclic_reset };
+    let (model, bytes) = model();
+    let init = |memory: &mut Memory| {
+        // SAFETY: memory and model have the sizes that are said.
+        written(|handle| unsafe {
+            sinew_cyclic_init(memory.start(), memory.bytes(), model.as_ptr().cast(), bytes, handle)
+        })
+    };
+    let step = |tracker: *mut SinewCyclic, frame: &SinewCyclicFrame| {
+        // SAFETY: the tracker was initialised, frame and result are there.
+        written(|result: *mut SinewCyclicResult| unsafe { sinew_cyclic_step(tracker, frame, result) })
+    };
+    let mut memories = [Memory::new(sinew_cyclic_size()), Memory::new(sinew_cyclic_size())];
+    let [first, other] = memories.each_mut().map(init);
+    let mut result = MaybeUninit::uninit();
+    // SAFETY: the tracker was initialised, frame and result are there.
+    let status = unsafe { sinew_cyclic_step(first, &swing(0, 0), result.as_mut_ptr()) };
+    assert_eq!(status, SinewStatus::Waiting);
+    step(first, &swing(0, 0b11));
+    functions.copy(first, other);
+    let next = swing(16_667, 0b01);
+    assert_eq!(step(first, &next), step(other, &next));
+    let mut pose_rad = [f32::NAN; 2];
+    // SAFETY: the tracker was initialised, and there is room for two angles.
+    let status = unsafe { sinew_cyclic_mean_pose(other, 0.0, pose_rad.as_mut_ptr(), 2) };
+    assert_eq!((status, pose_rad), (SinewStatus::Ok, swing_pose_rad(0.0)));
+    functions.reset(first);
+}
+
+#[test]
+fn models_for_c_are_checked() {
+    let (model, bytes) = model();
+    let mut memory = Memory::new(sinew_cyclic_size());
+    let start: *const c_void = model.as_ptr().cast();
+    let mut init = |model: *const c_void, bytes: usize| {
+        let mut handle: *mut SinewCyclic = null_mut();
+        // SAFETY: memory and model have the sizes that are said, or are null or misaligned.
+        let status = unsafe { sinew_cyclic_init(memory.start(), memory.bytes(), model, bytes, &raw mut handle) };
+        assert!(handle.is_null());
+        status
+    };
+    assert_eq!(init(start.wrapping_byte_add(1), bytes - 1), SinewStatus::Misaligned);
+    assert_eq!(init(start, bytes - 4), SinewStatus::BadModel);
+    assert_eq!(init(start, 3), SinewStatus::BadModel);
+    assert_eq!(init(null(), bytes), SinewStatus::NullPointer);
+}
+
+/// A hand below the left shoulder and some edges.
+fn arm_lists() -> ([HandCandidate; 2], [EdgePixel; 3]) {
+    let hand = |u_px: f32| HandCandidate {
+        centre: Pixel::new(u_px, 190.0),
+        moments_px2: [100.0, 0.0, 100.0],
+        area_px: 1200.0,
+        likelihood: 0.8,
+    };
+    (
+        [hand(210.0), hand(110.0)],
+        [EdgePixel { u: 200, v: 150 }, EdgePixel { u: 205, v: 160 }, EdgePixel { u: 319, v: 239 }],
+    )
+}
+
+fn arm_frame(timestamp_us: u64, (candidates, edges): &([HandCandidate; 2], [EdgePixel; 3])) -> SinewArmFrame {
+    SinewArmFrame {
+        timestamp_us,
+        candidates: candidates.as_ptr(),
+        edges: edges.as_ptr(),
+        candidate_count: candidates.len() as u32,
+        edge_count: edges.len() as u32,
+        has_image: 1,
+        shoulders_m: [[0.19, -0.05, 1.25], [-0.19, -0.05, 1.25]],
+    }
+}
+
+fn arm_config() -> SinewArmConfig {
+    // SAFETY: there is room for one.
+    written(|config| unsafe { sinew_arm_default_config(320, 240, 1.0, config) })
+}
+
+/// Miri takes minutes for a step of an arm tracker, seconds to begin one. There a frame that is
+/// refused after its lists were read has to do, and a tracker goes on from its own state.
+const STEPS_ARMS: bool = !cfg!(miri);
+
+/// Two trackers, or twice the same one.
+fn two_trackers<T>([first, other]: [&mut Memory; 2], init: impl Fn(&mut Memory) -> *mut T) -> [*mut T; 2] {
+    let first = init(first);
+    [first, if STEPS_ARMS { init(other) } else { first }]
+}
+
+/// Lists whose last candidate has a likelihood out of range.
+fn wrong_lists() -> ([HandCandidate; 2], [EdgePixel; 3]) {
+    let (mut candidates, edges) = arm_lists();
+    candidates[1].likelihood = 2.0;
+    (candidates, edges)
+}
+
+/// A frame without an image, whose lists are not looked at.
+fn dark(timestamp_us: u64) -> SinewArmFrame {
+    let absent = SinewArmFrame { candidates: null(), edges: null(), ..arm_frame(timestamp_us, &arm_lists()) };
+    SinewArmFrame { has_image: 0, ..absent }
+}
+
+#[test]
+fn an_arm_tracker_goes_on_from_its_state() {
+    let functions = StateFunctions { save: sinew_arm_save, restore: sinew_arm_restore, reset: sinew_arm_reset };
+    let config = arm_config();
+    let init = |memory: &mut Memory| {
+        // SAFETY: the memory has the size that is said.
+        written(|handle| unsafe {
+            sinew_arm_init(memory.start(), memory.bytes(), &raw const config, SINEW_SIDE_LEFT, handle)
+        })
+    };
+    let step = |tracker: *mut SinewArm, frame: &SinewArmFrame| {
+        // SAFETY: the tracker was initialised, the lists are there or not looked at.
+        written(|result: *mut SinewArmResult| unsafe { sinew_arm_step(tracker, frame, result) })
+    };
+    let mut memories = [Memory::new(sinew_arm_size()), Memory::new(sinew_arm_size())];
+    let [first, other] = two_trackers(memories.each_mut(), init);
+    let mut result = MaybeUninit::uninit();
+    // SAFETY: the tracker was initialised, the lists are there.
+    let status = unsafe { sinew_arm_step(first, &arm_frame(0, &wrong_lists()), result.as_mut_ptr()) };
+    assert_eq!(status, SinewStatus::OutOfRange);
+    if STEPS_ARMS {
+        assert_eq!(step(first, &arm_frame(0, &arm_lists())).state, SINEW_ARM_TRACKING);
+    }
+    functions.copy(first, other);
+    if STEPS_ARMS {
+        assert_eq!(step(first, &dark(33_333)), step(other, &dark(33_333)));
+        functions.reset(first);
+    }
+}
+
+#[test]
+fn a_tracker_of_both_arms_goes_on_from_its_state() {
+    let functions =
+        StateFunctions { save: sinew_arm_pair_save, restore: sinew_arm_pair_restore, reset: sinew_arm_pair_reset };
+    let config = arm_config();
+    let init = |memory: &mut Memory| {
+        // SAFETY: the memory has the size that is said.
+        written(|handle| unsafe { sinew_arm_pair_init(memory.start(), memory.bytes(), &raw const config, handle) })
+    };
+    let step = |tracker: *mut SinewArmPair, frame: &SinewArmFrame| {
+        // SAFETY: the tracker was initialised, the lists are there or not looked at.
+        written(|results: *mut [SinewArmResult; 2]| unsafe { sinew_arm_pair_step(tracker, frame, results.cast()) })
+    };
+    let mut memories = [Memory::new(sinew_arm_pair_size()), Memory::new(sinew_arm_pair_size())];
+    let [first, other] = two_trackers(memories.each_mut(), init);
+    let mut results = [MaybeUninit::<SinewArmResult>::uninit(); 2];
+    // SAFETY: the tracker was initialised, the lists are there.
+    let status = unsafe { sinew_arm_pair_step(first, &arm_frame(0, &wrong_lists()), results.as_mut_ptr().cast()) };
+    assert_eq!(status, SinewStatus::OutOfRange);
+    if STEPS_ARMS {
+        assert_eq!(step(first, &arm_frame(0, &arm_lists())).map(|result| result.candidate), [0, 1]);
+    }
+    functions.copy(first, other);
+    if STEPS_ARMS {
+        assert_eq!(step(first, &dark(33_333)), step(other, &dark(33_333)));
+        functions.reset(first);
+    }
+}
+
+const SKIN: u16 = 0xcc6c;
+const WALL: u16 = 0x39c7;
+/// Sides of the frames, pixels.
+const WIDTH_PX: u32 = 48;
+const HEIGHT_PX: u32 = 24;
+
+/// Reads a frame with a hand whose left edge lies at `left_px`; numbers of candidates and edges.
+fn see(vision: *mut SinewVision, left_px: usize) -> (usize, usize) {
+    // SAFETY: the front end was initialised, and the lists of its result are there until the next
+    // frame.
+    unsafe {
+        assert_eq!(sinew_vision_begin_frame(vision), SinewStatus::Ok);
+        for row in 0..HEIGHT_PX {
+            let mut line = [WALL; WIDTH_PX as usize];
+            if (4..20).contains(&row) {
+                line[left_px..left_px + 20].fill(SKIN);
+            }
+            assert_eq!(sinew_vision_line(vision, row, line.as_ptr(), line.len()), SinewStatus::Ok);
+        }
+        let result = written(|result: *mut SinewVisionResult| sinew_vision_end_frame(vision, result));
+        let (candidates, edges) = (result.candidate_count as usize, result.edge_count as usize);
+        for index in 0..candidates {
+            assert!((*result.candidates.add(index)).area_px > 0.0);
+        }
+        for index in 0..edges {
+            assert!(u32::from((*result.edges.add(index)).u) < WIDTH_PX);
+        }
+        (candidates, edges)
+    }
+}
+
+#[test]
+fn a_front_end_goes_on_from_its_state() {
+    let functions =
+        StateFunctions { save: sinew_vision_save, restore: sinew_vision_restore, reset: sinew_vision_reset };
+    // SAFETY: there is room for one.
+    let config = written(|config| unsafe { sinew_vision_default_config(config) });
+    let config = SinewVisionConfig { width_px: WIDTH_PX, height_px: HEIGHT_PX, ..config };
+    let init = |memory: &mut Memory| {
+        // SAFETY: the memory has the size that is said.
+        written(|handle| unsafe { sinew_vision_init(memory.start(), memory.bytes(), &raw const config, handle) })
+    };
+    let mut memories = [Memory::new(sinew_vision_size()), Memory::new(sinew_vision_size())];
+    let [first, other] = memories.each_mut().map(init);
+    assert_eq!(see(first, 10).0, 1);
+    let box_px = SinewBox { left_px: 16, top_px: 12, width_px: 2, height_px: 2 };
+    // SAFETY: the front end was initialised, and the box is there.
+    assert_eq!(unsafe { sinew_vision_begin_calibration(first, &raw const box_px) }, SinewStatus::Ok);
+    assert!(see(first, 14).1 > 0);
+    // SAFETY: the front end was initialised; the skin may be null.
+    assert_eq!(unsafe { sinew_vision_end_calibration(first, null_mut()) }, SinewStatus::Ok);
+    functions.copy(first, other);
+    functions.reset(first);
+    assert_eq!(see(other, 10).0, 1);
+}
