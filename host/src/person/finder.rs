@@ -201,3 +201,82 @@ impl Answer {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::resume::to_text;
+    use image::Rgb;
+    use sinew_core::vision::edges::EdgeDetector;
+    use sinew_core::vision::hand_likelihood::HandLikelihood;
+
+    const SKIN: [u8; 3] = [200, 150, 125];
+
+    fn finder() -> PersonFinder {
+        let camera = Camera::from_field_of_view(320, 240, 1.05).unwrap();
+        PersonFinder::new((320, 240), 15.0, camera).unwrap()
+    }
+
+    fn face() -> FoundFace {
+        let head = HeadBox { centre_px: [160.0, 50.0], width_px: 36.0 };
+        FoundFace { head, colour: PersonColour::of_face(&[SKIN; 100]) }
+    }
+
+    /// A picture with a hand that goes up on the person's left.
+    fn picture(frame: usize) -> RgbImage {
+        let top = 200 - 3 * frame as u32;
+        let is_hand = |u, v| (210..234).contains(&u) && (top..top + 26).contains(&v);
+        RgbImage::from_fn(320, 240, |u, v| Rgb(if is_hand(u, v) { SKIN } else { [70, 90, 110] }))
+    }
+
+    fn shown(finder: &mut PersonFinder, reader: &mut FrameReader, frame: usize) -> Option<PersonView> {
+        let image = picture(frame);
+        finder.look(frame, &image);
+        let skin = finder.skin().cloned().unwrap();
+        reader.read(&image, &skin).unwrap();
+        finder.see(reader)
+    }
+
+    fn reader() -> FrameReader {
+        FrameReader::new(HandLikelihood::default(), EdgeDetector::default()).unwrap()
+    }
+
+    #[test]
+    fn a_hand_is_found_and_a_finder_that_was_saved_goes_on_alike() {
+        let (mut finder, mut reader) = (finder(), reader());
+        finder.take(Some(face()));
+        (0..20).for_each(|frame| drop(shown(&mut finder, &mut reader, frame)));
+        let saved = finder.saved().unwrap();
+        let mut again = self::finder();
+        again.restore(&saved).unwrap();
+        assert_eq!(to_text(StateKind::Hands, &mut again).unwrap(), saved);
+        let mut last = None;
+        for frame in 20..40 {
+            let views = [&mut finder, &mut again].map(|finder| shown(finder, &mut reader, frame).unwrap());
+            assert_eq!(views[0].hands, views[1].hands);
+            assert_eq!(views[0].shoulders_m, views[1].shoulders_m);
+            last = views[0].hands[0].first().copied();
+        }
+        let left = last.unwrap();
+        let hand = Pixel::new(222.0, 200.0 - 3.0 * 39.0 + 13.0);
+        assert!(left.likelihood > 0.7 && left.centre.distance_px(hand) < 8.0, "{left:?} not at {hand:?}");
+    }
+
+    #[test]
+    fn a_face_counts_from_its_frame_on() {
+        let mut finder = finder();
+        finder.look = Some(Look { due: 10, answer: Answer::Known(Some(face())) });
+        finder.look(9, &picture(0));
+        assert!(finder.skin().is_none() && finder.shoulders_m().is_none());
+        finder.look(10, &picture(0));
+        let [left, right] = finder.shoulders_m().unwrap();
+        assert!((left.x + right.x).abs() < 0.01 && (left - right).norm() > 0.25, "{left:?} {right:?}");
+    }
+
+    #[test]
+    fn a_state_that_was_cut_is_refused() {
+        let mut finder = finder();
+        let saved = finder.saved().unwrap();
+        assert!(finder.restore(&saved[..saved.len() / 2]).is_err());
+    }
+}

@@ -10,7 +10,7 @@ use crate::math::{exp, min};
 use heapless::Vec;
 
 /// Most places of a frame that are compared.
-pub const MAX_PLACES: usize = 12;
+pub(super) const MAX_PLACES: usize = 12;
 /// The places and `hidden`, which is last.
 const STATES: usize = MAX_PLACES + 1;
 /// Index of `hidden`.
@@ -26,11 +26,11 @@ const HIDING: f32 = 0.03;
 /// Chance to appear at one place after having been hidden.
 const APPEARING: f32 = 0.06;
 /// Distance within which two places are one hand.
-pub const ONE_HAND: f32 = 0.35;
+pub(super) const ONE_HAND: f32 = 0.35;
 
 /// The posterior of both hands.
 #[derive(Debug, Clone)]
-pub struct HandsBelief {
+pub(super) struct HandsBelief {
     pub(super) positions: [[f32; 2]; MAX_PLACES],
     pub(super) count: usize,
     /// Probability of each pair: the left hand's state, then the right hand's.
@@ -47,7 +47,7 @@ impl Default for HandsBelief {
 /// What is known of one hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct HandBelief {
+pub(super) struct HandBelief {
     /// Index of the likeliest place.
     pub place: usize,
     /// Probability that the hand is at this place or another one within [`ONE_HAND`], 0 to 1.

@@ -3,21 +3,15 @@
 use core::ops::Range;
 
 /// Most columns of a grid.
-pub const MAX_COLUMNS: usize = 80;
+pub(super) const MAX_COLUMNS: usize = 80;
 /// Most rows of a grid.
-pub const MAX_ROWS: usize = 60;
+pub(super) const MAX_ROWS: usize = 60;
 /// Most cells of a grid.
-pub const MAX_CELLS: usize = MAX_COLUMNS * MAX_ROWS;
+pub(super) const MAX_CELLS: usize = MAX_COLUMNS * MAX_ROWS;
 
 /// Size of a grid, cells.
-///
-/// ```
-/// use sinew_core::vision::objects::cells::GridSize;
-///
-/// assert_eq!(GridSize { columns: 80, rows: 60 }.place(161), (1, 2));
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct GridSize {
+pub(super) struct GridSize {
     /// Columns.
     pub columns: usize,
     /// Rows.
@@ -39,16 +33,8 @@ impl GridSize {
 }
 
 /// A part of a grid.
-///
-/// ```
-/// use sinew_core::vision::objects::cells::{CellBox, GridSize};
-///
-/// let size = GridSize { columns: 8, rows: 5 };
-/// let cells: Vec<usize> = CellBox { columns: 6..8, rows: 1..3 }.cells(size).collect();
-/// assert_eq!(cells, [14, 15, 22, 23]);
-/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct CellBox {
+pub(super) struct CellBox {
     /// Columns.
     pub columns: Range<usize>,
     /// Rows.

@@ -20,7 +20,7 @@ const ARM: f32 = 4.7;
 /// Log-evidence of a place for one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Evidence {
+pub(super) struct Evidence {
     /// If no other hand lies in the same object.
     pub alone: f32,
     /// If both hands lie in the object.
@@ -30,7 +30,7 @@ pub struct Evidence {
 /// How lively the liveliest places of the last frames were, to which all others are compared: a
 /// person at rest moves little, and noise moves everything a little.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Liveliness {
+pub(super) struct Liveliness {
     pub(super) most: f32,
 }
 
@@ -56,7 +56,7 @@ impl Liveliness {
 
 /// The evidence for `place` to be the hand of `side`; `liveliness` is that of the place.
 #[must_use]
-pub fn evidence(place: &HandPlace, side: Side, liveliness: f32) -> Evidence {
+pub(super) fn evidence(place: &HandPlace, side: Side, liveliness: f32) -> Evidence {
     let common = shape(place) + where_it_is(place, side) + 2.5 * liveliness + 1.2 * place.new;
     // From one and a half widths on an object is longer than a hand.
     let (alone, shared) = place.end.map_or((0.0, 0.0), |end| {

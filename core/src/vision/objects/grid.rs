@@ -30,7 +30,7 @@ type BitRow = u128;
 ///
 /// // A picture of 160 x 120 pixels has cells of 2 x 2.
 /// let mut grid = CellGrid::new(160, 120).expect("it has a size");
-/// assert_eq!((grid.size().columns, grid.size().rows, grid.cell_px()), (80, 60, 2));
+/// assert_eq!(grid.cell_px(), 2);
 /// // The first eight pixels of each line are skin.
 /// grid.begin();
 /// for _ in 0..120 {
@@ -83,7 +83,7 @@ impl CellGrid {
 
     /// Columns and rows.
     #[must_use]
-    pub const fn size(&self) -> GridSize {
+    pub(super) const fn size(&self) -> GridSize {
         self.size
     }
 

@@ -19,10 +19,24 @@ const MAX_INFERRED: f32 = 0.5;
 /// Least part of a hand's disc that counts as filled, so that an area is never zero.
 const MIN_FILL: f32 = 0.1;
 
-/// Candidates of one hand, the likeliest first.
+/// Candidates of one hand, the likeliest first; for an example see [`HandFinder`].
 pub type Candidates = Vec<HandCandidate, MAX_PLACES>;
 
 /// Finds both hands of one person.
+///
+/// ```
+/// use sinew_core::vision::objects::grid::CellGrid;
+/// use sinew_core::vision::objects::hands::{Candidates, HandFinder};
+/// use sinew_core::vision::objects::head::HeadBox;
+///
+/// let mut finder = HandFinder::new(CellGrid::new(320, 240).expect("it has a size"));
+/// // Without a face nothing is said; the page of `objects` shows it with one.
+/// let nothing: [Candidates; 2] = finder.step();
+/// assert!(finder.head().is_none() && nothing.iter().all(|hand| hand.is_empty()));
+/// finder.add_face(HeadBox { centre_px: [160.0, 60.0], width_px: 40.0 });
+/// finder.add_face(HeadBox { centre_px: [164.0, 60.0], width_px: 44.0 });
+/// assert_eq!(finder.head(), Some(HeadBox { centre_px: [162.0, 60.0], width_px: 42.0 }));
+/// ```
 #[derive(Debug, Clone)]
 pub struct HandFinder {
     pub(super) grid: CellGrid,
@@ -69,12 +83,6 @@ impl HandFinder {
     #[must_use]
     pub fn head(&self) -> Option<HeadBox> {
         self.head
-    }
-
-    /// The places of the last frame.
-    #[must_use]
-    pub fn places(&self) -> &[HandPlace] {
-        &self.places
     }
 
     /// Answers the frame that the grid holds: candidates for the left and for the right hand, whose

@@ -4,6 +4,16 @@ use crate::math::sqrt;
 use crate::skeleton::Side;
 
 /// A face's box, pixels of the picture.
+///
+/// ```
+/// use sinew_core::skeleton::Side;
+/// use sinew_core::vision::objects::head::{HeadBox, shoulder};
+///
+/// let head = HeadBox { centre_px: [320.0, 100.0], width_px: 60.0 };
+/// // The person's left is on the right of the picture.
+/// assert_eq!(head.place_px(shoulder(Side::Left)), [380.0, 160.0]);
+/// assert_eq!(head.relative([380.0, 160.0]), shoulder(Side::Left));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
@@ -30,6 +40,13 @@ impl HeadBox {
 
 /// A shoulder of a person who faces the camera, widths from the face's centre: one to the side, one
 /// down.
+///
+/// ```
+/// use sinew_core::skeleton::Side;
+/// use sinew_core::vision::objects::head::shoulder;
+///
+/// assert_eq!(shoulder(Side::Right), [-1.0, 1.0]);
+/// ```
 #[must_use]
 pub fn shoulder(side: Side) -> [f32; 2] {
     [sign(side), 1.0]
@@ -37,7 +54,7 @@ pub fn shoulder(side: Side) -> [f32; 2] {
 
 /// Direction of a side along x: the person's left is on the picture's right.
 #[must_use]
-pub const fn sign(side: Side) -> f32 {
+pub(super) const fn sign(side: Side) -> f32 {
     match side {
         Side::Left => 1.0,
         Side::Right => -1.0,
@@ -46,7 +63,7 @@ pub const fn sign(side: Side) -> f32 {
 
 /// Whether a place, relative to the face's centre in widths, belongs to head or neck.
 #[must_use]
-pub fn is_head([x, y]: [f32; 2]) -> bool {
+pub(super) fn is_head([x, y]: [f32; 2]) -> bool {
     let (across, down) = (x / 0.58, (y - 0.05) / 0.80);
     let is_in_neck = x < 0.45 && x > -0.45 && y > 0.0 && y < 1.0;
     across * across + down * down <= 1.0 || is_in_neck
@@ -54,6 +71,6 @@ pub fn is_head([x, y]: [f32; 2]) -> bool {
 
 /// Distance of two places.
 #[must_use]
-pub fn distance([ax, ay]: [f32; 2], [bx, by]: [f32; 2]) -> f32 {
+pub(super) fn distance([ax, ay]: [f32; 2], [bx, by]: [f32; 2]) -> f32 {
     sqrt((ax - bx) * (ax - bx) + (ay - by) * (ay - by))
 }

@@ -2,9 +2,9 @@
 //! Beyond the arm paper, which takes each picture's blobs alone.
 //!
 //! The face gives the scale, the shoulders and the [colour](person_colour) of the skin. Lines of
-//! pixels fill a [grid](grid) of cells. [Places](place) that may be hands are the ends of elongated
-//! objects and their thickest parts; each frame's [evidence](evidence) for each side goes into a
-//! [belief](belief) about the pair of hands, whose marginals are the likelihoods of the candidates
+//! pixels fill a [grid](grid) of cells. Places that may be hands are the ends of elongated
+//! objects and their thickest parts; each frame's evidence for each side goes into a
+//! belief about the pair of hands, whose marginals are the likelihoods of the candidates
 //! that an arm tracker takes. No picture is kept, and no work grows with the picture.
 //!
 //! ```
@@ -33,10 +33,10 @@
 //! assert!(left.centre.distance_px(sinew_core::camera::Pixel::new(102.0, 38.0)) < 4.0, "{left:?}");
 //! ```
 
-pub mod belief;
-pub mod cells;
+mod belief;
+mod cells;
 mod ends;
-pub mod evidence;
+mod evidence;
 mod find;
 mod geodesic;
 pub mod grid;
@@ -44,5 +44,5 @@ pub mod hands;
 pub mod head;
 mod labels;
 pub mod person_colour;
-pub mod place;
+mod place;
 mod saved;

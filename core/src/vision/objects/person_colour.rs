@@ -3,11 +3,11 @@
 //! A normal distribution over luminance and chrominance (Y, Cr, Cb of Rec. 601). It is one-sided: a
 //! hand may be more colourful than the face, since the face is lit from more sides.
 
-use crate::math::{max, sqrt};
+use crate::math::{abs, max, sqrt};
 use crate::vision::skin::{PIXELS_PER_WORD, SkinClassifier};
 
 /// Most pixels of a face that are looked at.
-pub const MAX_SAMPLES: usize = 1024;
+const MAX_SAMPLES: usize = 1024;
 /// Fewest pixels that make a colour. Chosen.
 const MIN_SAMPLES: usize = 24;
 /// Pixels of a face whose chrominance is further from the median are hair, eyes or background.
@@ -22,6 +22,18 @@ const FORGIVEN: f32 = 0.5;
 const KEPT: f32 = 0.7;
 
 /// A person's colour.
+///
+/// ```
+/// use sinew_core::vision::objects::person_colour::PersonColour;
+///
+/// // Pixels of a face's middle, some of which are lips.
+/// let mut face = [[200, 150, 125]; 60];
+/// face[50..].fill([170, 60, 70]);
+/// let colour = PersonColour::of_face(&face).expect("most are alike");
+/// assert!(colour.is_skin([185, 138, 115]), "in the shadow");
+/// assert!(!colour.is_skin([90, 120, 180]) && !colour.is_skin([170, 60, 70]));
+/// assert_eq!(PersonColour::of_face(&face[..5]), None, "too few");
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PersonColour {
     pub(super) mean: [f32; 3],
@@ -34,8 +46,7 @@ pub struct PersonColour {
 }
 
 /// Y, Cr and Cb of a colour (Rec. 601, full range).
-#[must_use]
-pub fn ycc(rgb: [u8; 3]) -> [f32; 3] {
+fn ycc(rgb: [u8; 3]) -> [f32; 3] {
     let [r, g, b] = rgb.map(f32::from);
     let y = 0.299 * r + 0.587 * g + 0.114 * b;
     [y, 0.713 * (r - y) + 128.0, 0.564 * (b - y) + 128.0]
@@ -52,13 +63,13 @@ impl Default for PersonColour {
 
 impl PersonColour {
     /// The colour of pixels from a face's middle (rows 25 to 85 %, columns 20 to 80 % of its box),
-    /// R, G, B each; `None` where too few are alike. Over [`MAX_SAMPLES`] the first ones count.
+    /// R, G, B each; `None` where too few are alike. Of more than 1024 the first ones count.
     #[must_use]
     pub fn of_face(rgb: &[[u8; 3]]) -> Option<Self> {
         let rgb = rgb.get(..MAX_SAMPLES).unwrap_or(rgb);
         let chrominance = |axis: usize| median(rgb.iter().map(|pixel| ycc(*pixel)[axis]));
         let (cr, cb) = (chrominance(1), chrominance(2));
-        let is_near = |value: f32, middle: i32| (value - middle as f32).abs() <= MAX_FROM_MEDIAN as f32;
+        let is_near = |value: f32, middle: i32| abs(value - middle as f32) <= MAX_FROM_MEDIAN as f32;
         let kept = || rgb.iter().map(|pixel| ycc(*pixel)).filter(move |[_, r, b]| is_near(*r, cr) && is_near(*b, cb));
         let count = kept().count();
         if count < MIN_SAMPLES {
@@ -135,5 +146,37 @@ impl SkinClassifier for PersonColour {
                 .enumerate()
                 .fold(0, |word, (place, pixel)| word | u32::from(self.is_skin(*pixel)) << place);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn face(rgb: [u8; 3]) -> PersonColour {
+        let pixels: Vec<_> = (0..100_u8).map(|i| rgb.map(|channel| channel.saturating_add(i % 7))).collect();
+        PersonColour::of_face(&pixels).unwrap()
+    }
+
+    proptest! {
+        #[test]
+        fn a_face_has_its_own_colour(rgb in any::<[u8; 3]>()) {
+            prop_assert!(face(rgb).is_skin(rgb.map(|channel| channel.saturating_add(3))));
+        }
+
+        #[test]
+        fn a_colour_comes_back_from_its_moments(rgb in any::<[u8; 3]>(), other in any::<[u8; 3]>()) {
+            let colour = face(rgb);
+            prop_assert_eq!(PersonColour::new(colour.mean, colour.covariance), Some(colour));
+            let moved = colour.moved_to(&face(other)).unwrap();
+            prop_assert!((moved.mean[0] - (0.7 * colour.mean[0] + 0.3 * face(other).mean[0])).abs() < 1.0e-3);
+        }
+    }
+
+    #[test]
+    fn what_is_more_colourful_than_the_face_is_forgiven_in_part() {
+        let colour = face([190, 150, 130]);
+        assert!(colour.is_skin([202, 147, 121]) && !colour.is_skin([182, 153, 139]));
     }
 }

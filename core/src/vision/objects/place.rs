@@ -4,7 +4,7 @@
 /// centre, x to the right and y down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct HandPlace {
+pub(super) struct HandPlace {
     /// Where it is.
     pub position: [f32; 2],
     /// Number of the connected object that it lies in.
@@ -24,7 +24,7 @@ pub struct HandPlace {
 /// An end of an elongated object.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ArmEnd {
+pub(super) struct ArmEnd {
     /// Length of the object along its inside.
     pub length: f32,
     /// Where its other end is.

@@ -1,0 +1,102 @@
+//! `sinew track arm` on a person before a webcam whose face is in view.
+
+use sinew::config::Config;
+use sinew::track::{Event, SideChoice, TrackOptions, TrackRun};
+use sinew_tests::shared_data;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Distance of the tracked hand from the palm that counts, in sizes of the palm.
+const NEAR: f64 = 0.35;
+
+fn options(video: &Path) -> TrackOptions {
+    TrackOptions {
+        folder: video.to_owned(),
+        side: SideChoice::Both,
+        rate_hz: 30.0,
+        seed: 1,
+        skin: "gaussian".to_owned(),
+        calibrate: None,
+        face: true,
+        overlay: false,
+        particles_csv: false,
+        strict: false,
+        config: Config::default(),
+    }
+}
+
+fn run(options: TrackOptions, out: &Path) {
+    TrackRun::prepare(options, out).unwrap().run(&AtomicBool::new(false), &mut |_| ()).unwrap();
+}
+
+fn rows(table: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(table).unwrap();
+    reader.deserialize().map(Result::unwrap).collect()
+}
+
+fn numbers<const N: usize>(row: &BTreeMap<String, String>, columns: [&str; N]) -> Option<[f64; N]> {
+    let numbers = columns.map(|column| row[column].parse().ok());
+    numbers.iter().all(Option::is_some).then(|| numbers.map(Option::unwrap_or_default))
+}
+
+/// Of the rows that say `tracking` where a palm is known: how many lie on one, and all.
+fn on_palms(track: &Path, points: &Path) -> [usize; 2] {
+    let points: BTreeMap<String, _> = rows(points).into_iter().map(|row| (row["frame"].clone(), row)).collect();
+    let mut counts = [0; 2];
+    for row in rows(track).iter().filter(|row| row["status"] == "tracking") {
+        let of = |palm: u8| ["u_px", "v_px"].map(|axis| format!("palm{palm}_{axis}"));
+        let palms: Vec<[f64; 3]> = [1, 2]
+            .iter()
+            .filter_map(|palm| {
+                let ([u, v], size) = (of(*palm), format!("size{palm}_px"));
+                numbers(&points[&row["frame"]], [&u, &v, &size])
+            })
+            .collect();
+        let Some(hand) = numbers(row, ["hand_u_px", "hand_v_px"]) else { continue };
+        if palms.len() == 2 {
+            counts[0] +=
+                usize::from(palms.iter().any(|palm| (hand[0] - palm[0]).hypot(hand[1] - palm[1]) <= NEAR * palm[2]));
+            counts[1] += 1;
+        }
+    }
+    counts
+}
+
+#[test]
+fn a_person_with_bare_arms_is_tracked_by_default() {
+    let Some(clips) = shared_data("video/asl") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    run(options(&clips.join("milk.mkv")), folder.path());
+    let [on, all] = on_palms(&folder.path().join("track.csv"), &clips.join("milk_points.csv"));
+    assert!(all > 60 && on * 100 > 90 * all, "{on} of {all} rows lie on a palm");
+    let without = tempfile::tempdir().unwrap();
+    run(TrackOptions { face: false, ..options(&clips.join("milk.mkv")) }, without.path());
+    let [on, all] = on_palms(&without.path().join("track.csv"), &clips.join("milk_points.csv"));
+    assert!(on * 2 < all, "without the face {on} of {all} rows lie on a palm");
+}
+
+#[test]
+fn a_run_that_was_broken_off_goes_on_to_the_same_bytes() {
+    let Some(clips) = shared_data("video/asl") else { return };
+    let (whole, broken) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let options = options(&clips.join("eat.mkv"));
+    run(options.clone(), whole.path());
+    // In the first part, and while the answer about a second face is awaited.
+    for last in [7, 34] {
+        let stop = AtomicBool::new(false);
+        let run = TrackRun::prepare(options.clone(), broken.path()).unwrap();
+        let ended = run.run(&stop, &mut |event| {
+            if matches!(event, Event::Finished(count) if count == last) {
+                stop.store(true, Ordering::Relaxed);
+            }
+        });
+        assert!(ended.is_err());
+        let resumed = TrackRun::resume(options.clone(), broken.path()).unwrap();
+        assert_eq!(resumed.frames_finished(), last);
+        resumed.run(&AtomicBool::new(false), &mut |_| ()).unwrap();
+        let [a, b] = [&whole, &broken].map(|folder| fs::read(folder.path().join("track.csv")).unwrap());
+        assert!(a == b, "broken off after {last} frames");
+    }
+}
