@@ -48,6 +48,8 @@ impl Default for HandsBelief {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct HandBelief {
+    /// Where it is: between the likeliest place and the mean of all within [`ONE_HAND`].
+    pub position: [f32; 2],
     /// Index of the likeliest place.
     pub place: usize,
     /// Probability that the hand is at this place or another one within [`ONE_HAND`], 0 to 1.
@@ -136,8 +138,14 @@ impl HandsBelief {
             let likeliest =
                 near(best).fold(best, |old, other| if marginal[other] > marginal[old] { other } else { old });
             near(best).for_each(|place| taken[place] = true);
+            let probability = mass(best);
+            let position = core::array::from_fn(|axis| {
+                let there = self.positions[likeliest][axis];
+                let sum: f32 = near(best).map(|place| marginal[place] * self.positions[place][axis]).sum();
+                if probability > 0.0 { 0.5 * (there + sum / probability) } else { there }
+            });
             // One for each place at most.
-            let _ = hands.push(HandBelief { place: likeliest, probability: min(mass(best), 1.0) });
+            let _ = hands.push(HandBelief { position, place: likeliest, probability: min(probability, 1.0) });
         }
         hands
     }

@@ -2,6 +2,7 @@
 
 use super::cells::{CellBox, GridSize};
 use super::geodesic::{STRAIGHT, UNREACHED, distances};
+use crate::math::max;
 
 /// Cells within this of an end belong to it, widths of the face: the length of a hand.
 const END: f32 = 0.8;
@@ -11,8 +12,6 @@ const END: f32 = 0.8;
 pub(super) struct Ends {
     /// Middles of the cells at each end, cells.
     pub(super) places: [[f32; 2]; 2],
-    /// Whether a cell of each end is beside the head.
-    pub(super) touch_head: [bool; 2],
     /// Length of the object along its inside, cells.
     pub(super) length: f32,
 }
@@ -25,30 +24,28 @@ pub(super) fn ends(
     size: GridSize,
     within: &CellBox,
     inside: impl Fn(usize) -> bool,
-    is_beside_head: impl Fn(usize) -> bool,
     (start, width): (usize, f32),
     scratch: &mut [u16],
 ) -> Ends {
     let near = (END * width * f32::from(STRAIGHT)) as u16;
     let middle = |distances: &[u16]| {
-        let (mut count, mut sum, mut touches) = (0.0_f32, [0.0; 2], false);
+        let (mut count, mut sum) = (0.0_f32, [0.0; 2]);
         for cell in within.cells(size).filter(|cell| inside(*cell) && distances[*cell] <= near) {
             let (column, row) = size.place(cell);
             count += 1.0;
             sum = [sum[0] + column as f32 + 0.5, sum[1] + row as f32 + 0.5];
-            touches |= is_beside_head(cell);
         }
-        (sum.map(|sum| sum / count.max(1.0)), touches)
+        sum.map(|sum| sum / max(count, 1.0))
     };
     distances(size, within, &inside, start, scratch);
     let first = farthest(size, within, &inside, scratch);
     distances(size, within, &inside, first, scratch);
     let second = farthest(size, within, &inside, scratch);
     let length = f32::from(scratch[second]) / f32::from(STRAIGHT);
-    let (at_first, first_touches) = middle(scratch);
+    let at_first = middle(scratch);
     distances(size, within, &inside, second, scratch);
-    let (at_second, second_touches) = middle(scratch);
-    Ends { places: [at_first, at_second], touch_head: [first_touches, second_touches], length }
+    let at_second = middle(scratch);
+    Ends { places: [at_first, at_second], length }
 }
 
 fn farthest(size: GridSize, within: &CellBox, inside: impl Fn(usize) -> bool, distances: &[u16]) -> usize {
@@ -76,13 +73,12 @@ mod tests {
         let mut scratch = [0; 600];
         for start in [3, 16 * 30 + 10, 16 * 30 + 27] {
             let within = CellBox { columns: 2..28, rows: 0..18 };
-            let found = ends(size, &within, inside, |cell| cell < 30, (start, 5.0), &mut scratch);
+            let found = ends(size, &within, inside, (start, 5.0), &mut scratch);
             assert!((35.0..45.0).contains(&found.length), "{found:?}");
             let upper = usize::from(found.places[0][1] > found.places[1][1]);
             let (a, b) = (found.places[upper], found.places[1 - upper]);
             assert!((a[0] - 3.5).abs() < 0.6 && a[1] < 3.0, "{a:?}");
             assert!((b[1] - 16.5).abs() < 0.6 && b[0] > 25.0, "{b:?}");
-            assert!(found.touch_head[upper] && !found.touch_head[1 - upper]);
         }
     }
 }

@@ -1,11 +1,11 @@
 //! How much speaks for a place to be a hand, in one frame alone.
 //!
-//! The numbers were chosen on fourteen clips of three people before one camera (`video/asl`);
+//! The numbers were chosen on fourteen clips of three people before one camera (`video/asl`), the parts
 //! lengths are in widths of the face's box.
 
 use super::head::{distance, shoulder, sign};
 use super::place::{ArmEnd, HandPlace};
-use crate::math::{clamp, exp, max, min};
+use crate::math::{abs, clamp, exp, max, min};
 use crate::skeleton::Side;
 
 /// Share of motion below which nothing is lively.
@@ -14,6 +14,8 @@ pub(super) const MIN_LIVELINESS: f32 = 0.12;
 const FADING: f32 = 0.95;
 /// Longest upper arm.
 const UPPER_ARM: f32 = 2.3;
+/// Furthest to the side of the face that a resting hand is.
+const ASIDE: f32 = 2.3;
 /// Longest arm to the middle of its hand.
 const ARM: f32 = 4.7;
 
@@ -57,7 +59,8 @@ impl Liveliness {
 /// The evidence for `place` to be the hand of `side`; `liveliness` is that of the place.
 #[must_use]
 pub(super) fn evidence(place: &HandPlace, side: Side, liveliness: f32) -> Evidence {
-    let common = shape(place) + where_it_is(place, side) + 2.5 * liveliness + 1.2 * place.new;
+    let fresh = max(place.new, liveliness);
+    let common = shape(place) + where_it_is(place, side, fresh) + 2.5 * liveliness + 1.2 * place.new;
     // From one and a half widths on an object is longer than a hand.
     let (alone, shared) = place.end.map_or((0.0, 0.0), |end| {
         let length = clamp((end.length - 1.8) / 0.8, 0.0, 1.0);
@@ -71,13 +74,17 @@ fn shape(place: &HandPlace) -> f32 {
     2.0 * (min(place.fill, 0.9) - 0.6) / 0.3 + 0.7 * (clamp(place.thickness, 0.1, 0.35) - 0.25) / 0.1
 }
 
-/// Hands hang beside the hips at rest, are on their own side, and within reach.
-fn where_it_is(place: &HandPlace, side: Side) -> f32 {
+/// Hands hang beside the hips at rest, are on their own side, and within reach; what stays elsewhere
+/// is less likely a hand, far to the side of the person least.
+fn where_it_is(place: &HandPlace, side: Side, fresh: f32) -> f32 {
     let reached = from(shoulder(side), place.position);
     let distance = length(reached);
     let (beside, below) = ((sign(side) * reached[0] - 0.35) / 0.5, (distance - 4.0) / 0.7);
     let across = max(0.0, -sign(side) * place.position[0]);
-    1.5 * exp(-(beside * beside) - below * below) - 2.0 * across - 4.0 * max(0.0, distance - ARM)
+    let rest = exp(-(beside * beside) - below * below);
+    let stale = if fresh < 0.3 && rest < 0.2 { 1.0 } else { 0.0 };
+    let aside = if abs(place.position[0]) > ASIDE { 2.5 * (1.0 - fresh) } else { 0.0 };
+    1.5 * rest - 2.0 * across - 4.0 * max(0.0, distance - ARM) - stale - aside
 }
 
 /// Whether an end is the hand's (1) or the elbow's (-1): the elbow is within an upper arm of the
@@ -126,9 +133,16 @@ mod tests {
     }
 
     #[test]
+    fn what_rests_far_to_the_side_is_no_hand() {
+        let still = |x: f32| HandPlace { moving: 0.0, new: 0.0, ..place([x, 2.0]) };
+        let at = |x: f32| evidence(&still(x), Side::Left, 0.0).alone;
+        assert!(at(2.4) < at(2.2) - 1.0);
+    }
+
+    #[test]
     fn the_hand_is_the_end_away_from_the_shoulder() {
         let end = |position: [f32; 2], other: [f32; 2]| {
-            let end = ArmEnd { length: 3.0, other, is_in_face: false };
+            let end = ArmEnd { length: 3.0, other };
             evidence(&HandPlace { end: Some(end), ..place(position) }, Side::Left, 1.0).alone
         };
         // A forearm that points to the side, and one that is raised.

@@ -22,22 +22,16 @@ const REACH: f32 = 4.8;
 const MAX_AREA_OF_ARM: f32 = 5.0;
 /// Longer objects are more than a hand.
 const MIN_LENGTH: f32 = 1.2;
-/// Longer objects of which one end is beside the head reach into the face.
-const MIN_LENGTH_INTO_FACE: f32 = 1.5;
-/// How far a hand in the face lies beyond the end that is seen.
-const INTO_FACE: f32 = 1.0;
-/// How much longer an object that reaches into the face is than what is seen of it.
-const HIDDEN_LENGTH: f32 = 0.9;
 /// Thickest parts of an object that are looked at.
 const MAX_PEAKS: usize = 5;
 /// Least half thickness of a hand.
 const MIN_THICKNESS: f32 = 0.1;
 /// Two thickest parts are at least so far apart: half a hand.
 const BETWEEN_PEAKS: f32 = 0.45;
+/// Objects of less area have their middle as a place, too.
+const MAX_AREA_OF_HAND: f32 = 1.2;
 /// Places nearer than this are one.
 const ONE_PLACE: f32 = 0.2;
-/// Half thickness of a hand in the face, which cannot be measured.
-const THICKNESS_IN_FACE: f32 = 0.25;
 /// Radius of a hand.
 pub(super) const HAND_RADIUS: f32 = 0.4;
 /// Radius of a hand and of what its motion covers and uncovers.
@@ -62,20 +56,25 @@ struct Object {
     cells: u16,
     first: u16,
     within: [u8; 4],
+    /// Of the places of its cells.
+    sum: [f32; 2],
     to_shoulder: f32,
 }
 
 impl Object {
-    const NONE: Self = Self { cells: 0, first: 0, within: [u8::MAX, u8::MAX, 0, 0], to_shoulder: f32::INFINITY };
+    const NONE: Self =
+        Self { cells: 0, first: 0, within: [u8::MAX, u8::MAX, 0, 0], sum: [0.0; 2], to_shoulder: f32::INFINITY };
 
-    fn add(&mut self, cell: usize, size: GridSize, to_shoulder: f32) {
+    fn add(&mut self, cell: usize, size: GridSize, at: [f32; 2]) {
         let (column, row) = size.place(cell);
         let [min_u, min_v, max_u, max_v] = &mut self.within;
         (*min_u, *max_u) = ((*min_u).min(column as u8), (*max_u).max(column as u8));
         (*min_v, *max_v) = ((*min_v).min(row as u8), (*max_v).max(row as u8));
         self.first = if self.cells == 0 { cell as u16 } else { self.first };
         self.cells += 1;
-        self.to_shoulder = min(self.to_shoulder, to_shoulder);
+        self.sum = [self.sum[0] + at[0], self.sum[1] + at[1]];
+        let to = |side| distance(at, shoulder(side));
+        self.to_shoulder = min(self.to_shoulder, min(to(Side::Left), to(Side::Right)));
     }
 
     fn within(&self) -> CellBox {
@@ -95,9 +94,7 @@ pub(super) fn places(grid: &CellGrid, head: HeadBox, maps: &mut Maps) -> Vec<Han
         let label = maps.labels[cell];
         maps.depths[cell] = if label == 0 { 0 } else { UNREACHED };
         if label != 0 {
-            let at = view.of_cell(cell);
-            let to = |side| distance(at, shoulder(side));
-            objects[usize::from(label)].add(cell, size, min(to(Side::Left), to(Side::Right)));
+            objects[usize::from(label)].add(cell, size, view.of_cell(cell));
         }
     }
     spread(size, &CellBox::whole(size), |cell| maps.labels[cell] != 0, &mut maps.depths);
@@ -142,12 +139,6 @@ impl View<'_> {
         self.relative([column as f32 + 0.5, row as f32 + 0.5])
     }
 
-    /// Whether one of a cell's neighbours belongs to the head.
-    fn is_beside_head(&self, cell: usize) -> bool {
-        let ([x, y], step) = (self.of_cell(cell), 1.0 / self.width);
-        [[-step, 0.0], [step, 0.0], [0.0, -step], [0.0, step]].iter().any(|[dx, dy]| is_head([x + dx, y + dy]))
-    }
-
     fn places_of(&self, object: &Object, label: u8, area: f32, maps: &mut Maps, found: &mut Vec<HandPlace, MAX_FOUND>) {
         let (size, within, first) = (self.grid.size(), object.within(), found.len());
         let Maps { labels, depths, scratch } = maps;
@@ -160,7 +151,7 @@ impl View<'_> {
         };
         if area < MAX_AREA_OF_ARM {
             let start = (usize::from(object.first), self.width);
-            let found = ends(size, &within, inside, |cell| self.is_beside_head(cell), start, scratch);
+            let found = ends(size, &within, inside, start, scratch);
             self.places_at(&found).into_iter().flatten().for_each(|(position, end)| add(position, Some(end)));
         }
         let mut peaks: Vec<[f32; 2], MAX_PEAKS> = Vec::new();
@@ -176,32 +167,26 @@ impl View<'_> {
             let _ = peaks.push(self.of_cell(cell));
             add(self.of_cell(cell), None);
         }
+        if area < MAX_AREA_OF_HAND {
+            add(object.sum.map(|sum| sum / f32::from(object.cells)), None);
+        }
     }
 
-    /// Where the hand is at each end of an arm, if the object is as long as one.
-    fn places_at(&self, found: &Ends) -> [Option<([f32; 2], ArmEnd)>; 2] {
+    /// Both ends, if the object is longer than a hand.
+    fn places_at(&self, found: &Ends) -> Option<[([f32; 2], ArmEnd); 2]> {
         let length = found.length / self.width;
         let [a, b] = found.places.map(|place| self.relative(place));
-        let reaches = found.touch_head[0] != found.touch_head[1] && length > MIN_LENGTH_INTO_FACE;
-        let length = if reaches { length + HIDDEN_LENGTH } else { length };
-        [(a, b, found.touch_head[0]), (b, a, found.touch_head[1])].map(|(here, other, touches)| {
-            let is_in_face = reaches && touches;
-            let beyond = if is_in_face { INTO_FACE / max(distance(here, other), 1.0e-3) } else { 0.0 };
-            let position = core::array::from_fn(|axis| here[axis] + beyond * (here[axis] - other[axis]));
-            (length > MIN_LENGTH).then_some((position, ArmEnd { length, other, is_in_face }))
-        })
+        (length > MIN_LENGTH).then_some([(a, ArmEnd { length, other: b }), (b, ArmEnd { length, other: a })])
     }
 
     fn place(&self, position: [f32; 2], object: u8, end: Option<ArmEnd>, labels: &[u8], depths: &[u16]) -> HandPlace {
         let around = self.around(position, labels, depths);
         let share = |part: f32, of: f32| if of > 0.0 { part / of } else { 0.0 };
-        let is_in_face = end.is_some_and(|end| end.is_in_face);
-        let thickness = f32::from(around.depth) / f32::from(STRAIGHT) / self.width;
         HandPlace {
             position,
             object,
-            thickness: if is_in_face { THICKNESS_IN_FACE } else { thickness },
-            fill: share(if is_in_face { around.skin } else { around.objects }, around.near),
+            thickness: f32::from(around.depth) / f32::from(STRAIGHT) / self.width,
+            fill: share(around.objects, around.near),
             moving: share(around.moving, around.cells),
             new: share(around.new, around.skin),
             end,

@@ -7,15 +7,13 @@ use super::grid::CellGrid;
 use super::head::HeadBox;
 use super::place::HandPlace;
 use crate::camera::Pixel;
-use crate::math::{max, min};
+use crate::math::max;
 use crate::ranges::{MAX_PX, is_pixel};
 use crate::skeleton::Side;
 use crate::vision::candidate::HandCandidate;
 use core::f32::consts::PI;
 use heapless::Vec;
 
-/// Greatest likelihood of a hand that is not seen, only an arm that reaches into the face.
-const MAX_INFERRED: f32 = 0.5;
 /// Least part of a hand's disc that counts as filled, so that an area is never zero.
 const MIN_FILL: f32 = 0.1;
 
@@ -95,24 +93,23 @@ impl HandFinder {
         self.belief.step(&places, &evidence);
         self.places = places;
         self.belief.hands().map(|hand| {
-            let candidate = |hand: &HandBelief| Some(candidate(self.places.get(hand.place)?, &head, hand.probability));
+            let candidate = |hand: &HandBelief| Some(candidate(hand, self.places.get(hand.place)?.fill, &head));
             hand.iter().filter_map(candidate).collect()
         })
     }
 }
 
-/// A place as the trackers see it: a disc of the area that skin fills within a hand's radius.
-fn candidate(place: &HandPlace, head: &HeadBox, probability: f32) -> HandCandidate {
-    let [u_px, v_px] = head.place_px(place.position);
+/// A hand as the trackers see it: a disc of the area that skin fills within a hand's radius.
+fn candidate(hand: &HandBelief, fill: f32, head: &HeadBox) -> HandCandidate {
+    let [u_px, v_px] = head.place_px(hand.position);
     let radius_px = HAND_RADIUS * head.width_px;
-    let area_px = max(place.fill, MIN_FILL) * PI * radius_px * radius_px;
+    let area_px = max(fill, MIN_FILL) * PI * radius_px * radius_px;
     let variance_px2 = area_px / (4.0 * PI);
-    let is_inferred = place.end.is_some_and(|end| end.is_in_face);
     HandCandidate {
         centre: Pixel::new(u_px, v_px),
         moments_px2: [variance_px2, 0.0, variance_px2],
         area_px,
-        likelihood: if is_inferred { min(probability, MAX_INFERRED) } else { probability },
+        likelihood: hand.probability,
     }
 }
 

@@ -29,6 +29,4 @@ pub(super) struct ArmEnd {
     pub length: f32,
     /// Where its other end is.
     pub other: [f32; 2],
-    /// Whether it reaches into the face, so that its place is a guess.
-    pub is_in_face: bool,
 }
