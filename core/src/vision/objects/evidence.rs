@@ -1,7 +1,8 @@
 //! How much speaks for a place to be a hand, in one frame alone.
 //!
-//! The numbers were chosen on fourteen clips of three people before one camera (`video/asl`), the parts
-//! lengths are in widths of the face's box.
+//! The numbers were chosen on fourteen clips of three people before one camera (`video/asl`), the
+//! parts by six clips of two others (`docs/hands_over_time.md`). Lengths are in widths of the
+//! face's box.
 
 use super::head::{distance, shoulder, sign};
 use super::place::{ArmEnd, HandPlace};
