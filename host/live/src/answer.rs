@@ -8,10 +8,10 @@ pub const ANSWER_NUMBERS: usize = 16;
 /// Numbers of one particle, in the order of [`particle`].
 pub const PARTICLE_NUMBERS: usize = 5;
 
-/// Status: 0 tracking, 1 predicted, 2 lost, 3 uncertain. Images of shoulder, elbow and hand, pixels, NaN behind
-/// the camera. The hand in camera axes and its standard deviation, metres. Effective sample size.
-/// Likelihood of the blob that carries the estimate and its number, -1 without one. Temporal edge
-/// pixels. Whether all weights were zero.
+/// Status: 0 tracking, 1 predicted, 2 lost, 3 uncertain. Images of shoulder, elbow and hand,
+/// pixels, NaN behind the camera. The hand in camera axes and its standard deviation, metres.
+/// Effective sample size. Likelihood of the blob that carries the estimate and its number, -1
+/// without one. Temporal edge pixels. Whether all weights were zero.
 #[must_use]
 pub fn answer(estimate: &ArmEstimate, model: &ArmModel, edges: usize) -> [f32; ANSWER_NUMBERS] {
     let status = match estimate.status {

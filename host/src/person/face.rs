@@ -1,7 +1,8 @@
 //! Where a face is, by the crate `rustface`, and the colour of its skin.
 //!
-//! The detector is SeetaFace's funnel of boosted cascades: Wu, Kan, He, Shan, Chen, "Funnel-structured
-//! cascade for multi-view face detection with alignment-awareness", Neurocomputing 221, 2017.
+//! The detector is SeetaFace's funnel of boosted cascades: Wu, Kan, He, Shan, Chen,
+//! "Funnel-structured cascade for multi-view face detection with alignment-awareness",
+//! Neurocomputing 221, 2017.
 
 use crate::error::Result;
 use image::RgbImage;

@@ -72,6 +72,7 @@ impl<'a> Cells<'a> {
             Self::check(&path.join(BEGUN), begun, out.path())?;
         }
         let lock = OutputLock::of_folder(out.path(), begun.command())?;
+        lock.sweep(&path);
         if !resume {
             remove(&path)?;
         }
@@ -184,6 +185,7 @@ pub fn crc32_of(data: &impl Debug) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::TEMPORARY_PREFIX;
     use std::sync::atomic::AtomicBool;
 
     #[test]
@@ -206,7 +208,11 @@ mod tests {
         ended.store(false, Ordering::Relaxed);
         drop(cells);
 
+        // As a process leaves it that is killed while it writes.
+        let left = out.join(CELLS_FOLDER).join(format!("{TEMPORARY_PREFIX}cell.json-abc"));
+        fs::write(&left, "{").unwrap();
         let again = Cells::keep(&out, &begun(1), true, &stop).unwrap();
+        assert!(!left.exists());
         assert_eq!(again.cell(&json!(["a", 1]), never).unwrap().to_bits(), third.to_bits());
         assert_eq!(
             again.cell(&json!(["b", 1]), || -> Result<f64> { Ok(2.0) }).unwrap(),

@@ -16,8 +16,8 @@ const STATES: usize = MAX_PLACES + 1;
 /// Index of `hidden`.
 const HIDDEN: usize = MAX_PLACES;
 
-/// Standard deviation of a hand's way between frames, widths of the face. Chosen: a hand that hurries
-/// passes half a face in a thirtieth of a second.
+/// Standard deviation of a hand's way between frames, widths of the face. Chosen: a hand that
+/// hurries passes half a face in a thirtieth of a second.
 const STEP_STD: f32 = 0.25;
 /// Weight of ways of any length: an arm that drops, a place that was missed.
 const JUMP: f32 = 0.02;

@@ -75,8 +75,8 @@ fn shape(place: &HandPlace) -> f32 {
     2.0 * (min(place.fill, 0.9) - 0.6) / 0.3 + 0.7 * (clamp(place.thickness, 0.1, 0.35) - 0.25) / 0.1
 }
 
-/// Hands hang beside the hips at rest, are on their own side, and within reach; what stays elsewhere
-/// is less likely a hand, far to the side of the person least.
+/// Hands hang beside the hips at rest, are on their own side, and within reach; what stays
+/// elsewhere is less likely a hand, far to the side of the person least.
 fn where_it_is(place: &HandPlace, side: Side, fresh: f32) -> f32 {
     let reached = from(shoulder(side), place.position);
     let distance = length(reached);

@@ -12,7 +12,8 @@ pub(super) const STRAIGHT: u16 = 5;
 pub(super) const DIAGONAL: u16 = 7;
 /// Distance of cells that are not reached.
 pub(super) const UNREACHED: u16 = u16::MAX;
-/// Most pairs of sweeps. Chosen: a bent arm takes three; of a spiral the inner part stays unreached.
+/// Most pairs of sweeps. Chosen: a bent arm takes three; of a spiral the inner part stays
+/// unreached.
 const MAX_SWEEPS: usize = 8;
 
 /// Distances from `start` to all cells of `within` for which `inside` holds and that hang together

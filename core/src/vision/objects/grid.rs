@@ -5,8 +5,8 @@
 
 use super::cells::{GridSize, MAX_CELLS, MAX_COLUMNS, MAX_ROWS};
 
-/// Least change of a cell's mean brightness in two frames that is motion, levels. Chosen: a webcam's
-/// noise is a tenth of it.
+/// Least change of a cell's mean brightness in two frames that is motion, levels. Chosen: a
+/// webcam's noise is a tenth of it.
 const MIN_CHANGE: u8 = 10;
 /// A cell's skin is new for so many frames. Chosen: two thirds of a second.
 const NEW_FRAMES: u8 = 18;

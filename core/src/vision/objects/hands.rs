@@ -17,7 +17,16 @@ use heapless::Vec;
 /// Least part of a hand's disc that counts as filled, so that an area is never zero.
 const MIN_FILL: f32 = 0.1;
 
-/// Candidates of one hand, the likeliest first; for an example see [`HandFinder`].
+/// Candidates of one hand, the likeliest first.
+///
+/// ```
+/// use sinew_core::vision::candidate::HandCandidate;
+/// use sinew_core::vision::objects::hands::Candidates;
+///
+/// let mut hand = Candidates::new();
+/// hand.push(HandCandidate { likelihood: 0.9, ..HandCandidate::default() }).expect("there is room for twelve");
+/// assert_eq!(hand.first().map(|candidate| candidate.likelihood), Some(0.9));
+/// ```
 pub type Candidates = Vec<HandCandidate, MAX_PLACES>;
 
 /// Finds both hands of one person.

@@ -85,8 +85,8 @@ fn draw_path<'b>(area: &Area<'b>, tracks: &[Track], image_size: (u32, u32)) -> R
     Ok(below)
 }
 
-/// Thick where tracking, thin where either end is uncertain or a prediction, nothing where either is lost or has
-/// no `place`.
+/// Thick where tracking, thin where either end is uncertain or a prediction, nothing where either
+/// is lost or has no `place`.
 fn draw_line(
     chart: &mut Chart,
     samples: &[HandSample],
