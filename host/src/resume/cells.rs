@@ -185,7 +185,6 @@ pub fn crc32_of(data: &impl Debug) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::TEMPORARY_PREFIX;
     use std::sync::atomic::AtomicBool;
 
     #[test]
@@ -209,7 +208,7 @@ mod tests {
         drop(cells);
 
         // As a process leaves it that is killed while it writes.
-        let left = out.join(CELLS_FOLDER).join(format!("{TEMPORARY_PREFIX}cell.json-abc"));
+        let left = out.join(CELLS_FOLDER).join(".sinew-cell.json-abc");
         fs::write(&left, "{").unwrap();
         let again = Cells::keep(&out, &begun(1), true, &stop).unwrap();
         assert!(!left.exists());
