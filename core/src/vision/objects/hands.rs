@@ -8,7 +8,7 @@ use super::head::HeadBox;
 use super::place::HandPlace;
 use crate::camera::Pixel;
 use crate::math::max;
-use crate::ranges::{MAX_PX, is_pixel};
+use crate::saved_state::SavedState;
 use crate::skeleton::Side;
 use crate::vision::candidate::HandCandidate;
 use core::f32::consts::PI;
@@ -69,10 +69,9 @@ impl HandFinder {
     }
 
     /// Takes a face that was found: the head is the mean of the old and the new box. A box that is
-    /// out of range ([`crate::ranges`]) is left out.
-    pub fn add_face(&mut self, face: HeadBox) {
-        let is_width = face.width_px >= 1.0 && face.width_px <= MAX_PX;
-        if !is_width || !face.centre_px.iter().all(|coordinate| is_pixel(*coordinate)) {
+    /// out of range is left out.
+    pub fn add_face(&mut self, mut face: HeadBox) {
+        if !face.is_finite() {
             return;
         }
         self.head = Some(self.head.map_or(face, |old| HeadBox {
