@@ -240,8 +240,11 @@ async function calibration(page) {
   await forget(page);
   await waitForFrames(page, 60);
   const list = (await frames(page)).slice(10);
-  tellErrors('camera, after a click on the hand', list.map(({ answer: { hand }, code }) => distance(hand, truth.hands[code])));
-  check(list.filter(({ answer: { status } }) => status === 'tracking').length >= 0.9 * list.length, 'the hand is found with the learnt skin');
+  const errors = list.map(({ answer: { hand }, code }) => distance(hand, truth.hands[code]));
+  tellErrors('camera, after a click on the hand', errors);
+  // A blob carries the estimate; how likely it is a hand depends on the pixel that was clicked on.
+  const found = list.filter(({ answer: { status } }, at) => ['tracking', 'uncertain'].includes(status) && errors[at] <= MAX_ERROR);
+  check(found.length >= 0.9 * list.length, `the hand is found with the learnt skin in ${found.length} of ${list.length} frames`);
   await page.locator('#reset').click();
   check((await page.locator('#how').textContent()).includes('Click on the hand'), 'reset forgets');
 }

@@ -4,7 +4,7 @@
 use clap::Parser;
 use serde_json::Value;
 use sinew::resume::{CELLS_FOLDER, Stop};
-use sinew_lab::cli::{Cli, Command, Evaluate, arm, body, cyclic};
+use sinew_lab::cli::{Cli, Command, Evaluate, arm, body, cyclic, hands, skin};
 use sinew_tests::{files_below, sinew_command};
 use std::collections::BTreeMap;
 use std::fs;
@@ -51,7 +51,8 @@ impl Folder {
             Evaluate::Arm(args) => arm::run_until(args, &cli.console, stop),
             Evaluate::Body(args) => body::run_until(args, &cli.console, stop),
             Evaluate::Cyclic(args) => cyclic::run_until(args, &cli.console, stop),
-            other => panic!("{other:?}"),
+            Evaluate::Hands(args) => hands::run_until(args, &cli.console, stop),
+            Evaluate::Skin(args) => skin::run_until(args, &cli.console, stop),
         };
         assert_eq!(sinew::cli::interrupted(&ended.unwrap_err()).unwrap().unit, "cells");
         fs::read_dir(self.path(out).join(CELLS_FOLDER)).unwrap().count() - 1
@@ -116,6 +117,25 @@ fn an_evaluation_of_bodies_goes_on() {
 #[test]
 fn an_evaluation_of_cycles_goes_on() {
     Folder::new().resumes(CYCLIC, [20, 60]);
+}
+
+#[test]
+fn evaluations_of_pictures_go_on() {
+    let folder = Folder::new();
+    let [scene, boxes, masks] = ["scene", "boxes.csv", "masks"].map(|name| folder.path(name).display().to_string());
+    let (good, message) = folder.command("simulate arm --motion builtin --frames 40 --side both", "scene");
+    assert!(good, "{message}");
+    let (good, message) = folder.command(&format!("segment {scene}/frames"), "masks");
+    assert!(good, "{message}");
+    fs::write(&boxes, "frame,x,y,w,h\n9,280,300,90,90\n").unwrap();
+    folder.resumes(&format!("evaluate hands {scene}/frames --boxes {boxes} --seeds 3"), [1, 2]);
+    let skin = format!("evaluate skin --images {scene}/frames --masks {masks}");
+    for more in ["", " --cross-validate 4"] {
+        for out in ["whole", "broken"] {
+            fs::remove_dir_all(folder.path(out)).unwrap();
+        }
+        folder.resumes(&format!("{skin}{more}"), [1, 1]);
+    }
 }
 
 #[test]

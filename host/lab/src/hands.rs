@@ -128,7 +128,7 @@ struct Answered {
 }
 
 /// Scores of one run; shares from 0 to 1.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct HandScores {
     /// Boxes with the nearer side's hand inside.
     pub inside: f64,

@@ -6,7 +6,9 @@ use anyhow::Result;
 use image::RgbImage;
 use rayon::prelude::*;
 use serde::Serialize;
+use serde_json::json;
 use sinew::config::Config;
+use sinew::resume::Cells;
 use sinew::skin::SkinModel;
 use statrs::statistics::{Data, OrderStatistics};
 use std::fmt::Write;
@@ -110,19 +112,24 @@ pub struct HandsReport {
     pub ranking: HandRanking,
 }
 
-/// Tracks both hands with every seed, whole and through the window, and ranks the blobs.
+/// Tracks both hands with every seed, whole and through the window, and ranks the blobs. A cell is
+/// one seed on the whole frames or through the window.
 ///
 /// # Errors
-/// As [`score`]; zero seeds.
+/// As [`score`] and [`Cells::cell`]; zero seeds.
 pub fn report(
     frames: &[RgbImage],
     boxes: &[ReferenceBox],
     options: HandsOptions,
     config: &Config,
     skin: &SkinModel,
+    cells: &Cells<'_>,
 ) -> Result<HandsReport> {
     let view = |window: Option<MovingWindow>| -> Result<ViewScores> {
-        let one = |seed| score(frames, boxes, window, config, skin, (options.rate_hz, seed));
+        let one = |seed| {
+            let key = json!([if window.is_some() { "window" } else { "whole" }, seed]);
+            cells.cell(&key, || score(frames, boxes, window, config, skin, (options.rate_hz, seed)))
+        };
         let runs: Vec<HandScores> = (1..=options.seeds).into_par_iter().map(one).collect::<Result<_>>()?;
         ViewScores::of(&runs).ok_or_else(|| anyhow::anyhow!("zero seeds were asked for; give at least one"))
     };

@@ -3,6 +3,8 @@
 use anyhow::{Result, bail, ensure};
 use rayon::prelude::*;
 use serde::Serialize;
+use serde_json::json;
+use sinew::resume::Cells;
 use sinew::skin::SkinModel;
 use sinew::skin::confusion::{Confusion, median};
 use sinew::skin::folds;
@@ -29,62 +31,67 @@ pub struct FolderScores {
 /// Decisions on each image, or why it could not be read.
 pub type Judged = Vec<Result<Confusion, String>>;
 
-/// Judges each pair by the model that `model_of` has for its number, after the tracker's opening
-/// and closing where `morphology` is set.
+/// Images of one cell.
+const IMAGES_OF_CELL: usize = 10;
+
+/// Judges each pair by `model`, after the tracker's opening and closing where `morphology` is set.
 ///
 /// # Errors
-/// An image without pixels, a mask of another size.
-pub fn judge<'m>(pairs: &[Pair], model_of: impl Fn(usize) -> &'m SkinModel + Sync, morphology: bool) -> Result<Judged> {
-    let one = |(index, pair): (usize, &Pair)| -> Result<Result<Confusion, String>> {
-        let (image, truth) = match pair.load()? {
-            Ok(loaded) => loaded,
-            Err(unreadable) => return Ok(Err(unreadable.to_string())),
-        };
-        let mut found = model_of(index).classify(&image)?;
-        if morphology {
-            found.clean()?;
-        }
-        Ok(Ok(Confusion::of(&found, &truth)))
+/// An image without pixels, a mask of another size; as [`Cells::cell`].
+pub fn judge(pairs: &[Pair], model: &SkinModel, morphology: bool, cells: &Cells<'_>) -> Result<Judged> {
+    let of_cell = |(index, pairs): (usize, &[Pair])| {
+        cells.cell(&json!(["images", index]), || pairs.par_iter().map(|pair| one(pair, model, morphology)).collect())
     };
-    pairs.par_iter().enumerate().map(one).collect()
+    let judged: Vec<Judged> = pairs.par_chunks(IMAGES_OF_CELL).enumerate().map(of_cell).collect::<Result<_>>()?;
+    Ok(judged.into_iter().flatten().collect())
 }
 
-/// The folds of a cross-validation with their models.
-#[derive(Debug)]
-pub struct Folds {
-    fold_of: Vec<usize>,
-    models: Vec<SkinModel>,
+fn one(pair: &Pair, model: &SkinModel, morphology: bool) -> Result<Result<Confusion, String>> {
+    let (image, truth) = match pair.load()? {
+        Ok(loaded) => loaded,
+        Err(unreadable) => return Ok(Err(unreadable.to_string())),
+    };
+    let mut found = model.classify(&image)?;
+    if morphology {
+        found.clean()?;
+    }
+    Ok(Ok(Confusion::of(&found, &truth)))
 }
 
-impl Folds {
-    /// Trains a model for each of `count` folds on the images of the others.
-    ///
-    /// # Errors
-    /// An image that cannot be read, fewer images than folds, images without skin.
-    pub fn train(list: &PairList, count: usize, options: TrainingOptions) -> Result<Self> {
-        let seed = options.seed;
-        let (set, skipped) = pairs_set(list, seed)?;
-        if let Some((path, reason)) = skipped.first() {
-            bail!("`{}`: {reason}; remove the pair before a cross-validation", path.display());
-        }
-        let images = set.units.len();
-        ensure!(count <= images, "--cross-validate {count} needs as many images; there are {images}");
-        let fold_of = folds::assign(images, count, seed);
-        let train_fold = |fold: usize| {
-            let rest = set.subset(|index| fold_of[index] != fold);
-            Ok(train(&rest, options)?.0)
-        };
-        let models: Vec<SkinModel> = (0..count).into_par_iter().map(train_fold).collect::<Result<_>>()?;
-        Ok(Self { fold_of, models })
+/// Judges each pair by a model that was trained on the images of the `count` - 1 folds in which it
+/// is not, once for each of `morphologies`. A cell is a fold.
+///
+/// # Errors
+/// An image that cannot be read, fewer images than folds, images without skin; as [`judge`].
+pub fn cross_validate<const N: usize>(
+    list: &PairList,
+    count: usize,
+    options: TrainingOptions,
+    morphologies: [bool; N],
+    cells: &Cells<'_>,
+) -> Result<[Judged; N]> {
+    let (set, skipped) = pairs_set(list, options.seed)?;
+    if let Some((path, reason)) = skipped.first() {
+        bail!("`{}`: {reason}; remove the pair before a cross-validation", path.display());
     }
-
-    /// Judges each pair by the model that was not trained on it.
-    ///
-    /// # Errors
-    /// As [`judge`].
-    pub fn judge(&self, list: &PairList, morphology: bool) -> Result<Judged> {
-        judge(&list.pairs, |index| &self.models[self.fold_of[index]], morphology)
-    }
+    let images = set.units.len();
+    ensure!(count <= images, "--cross-validate {count} needs as many images; there are {images}");
+    let fold_of = folds::assign(images, count, options.seed);
+    let of_fold = |fold: usize| -> Result<Vec<Judged>> {
+        let model = train(&set.subset(|index| fold_of[index] != fold), options)?.0;
+        let own: Vec<&Pair> =
+            (0..images).filter(|index| fold_of[*index] == fold).map(|index| &list.pairs[index]).collect();
+        let judged = |morphology| own.par_iter().map(|pair| one(pair, &model, morphology)).collect();
+        morphologies.iter().map(|morphology| judged(*morphology)).collect()
+    };
+    let kept = |fold: usize| cells.cell(&json!(["fold", fold]), || of_fold(fold));
+    let of_folds: Vec<Vec<Judged>> = (0..count).into_par_iter().map(kept).collect::<Result<_>>()?;
+    let mut rest: Vec<Vec<_>> =
+        of_folds.into_iter().map(|of_fold| of_fold.into_iter().map(Judged::into_iter).collect()).collect();
+    Ok(std::array::from_fn(|of| {
+        // In the order of the list: each fold's are in that order.
+        fold_of.iter().filter_map(|fold| rest[*fold][of].next()).collect()
+    }))
 }
 
 /// The scores of each folder pair.

@@ -4,7 +4,7 @@ use super::bit_image::BitImage;
 use serde::{Deserialize, Serialize};
 
 /// Decisions compared with the truth; the counts may be pixels or any other unit.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Confusion {
     /// Skin that was found.
     pub true_positive: f64,

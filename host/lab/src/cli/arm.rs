@@ -1,5 +1,6 @@
 //! `sinew evaluate arm`
 
+use super::until_signal;
 use crate::clips::{builtin, recorded};
 use crate::experiments::{self, Recovery, Row, STACK_BYTES};
 use crate::observed::{ObservedScene, observe_all};
@@ -8,7 +9,6 @@ use clap::Args;
 use serde::Serialize;
 use serde_json::json;
 use sinew::cli::console::Console;
-use sinew::cli::signals::stop_flag;
 use sinew::cli::skin_args::SkinArgs;
 use sinew::cli::variant_arg::variant_parser;
 use sinew::config::Config;
@@ -20,7 +20,6 @@ use sinew::skin::{SkinModel, model_file};
 use sinew_core::tracker::arm::Variant;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 
 /// Options of `sinew evaluate arm`.
 #[derive(Debug, Args)]
@@ -77,8 +76,7 @@ struct Report {
 /// A clip that is missing, an option out of range, an output that cannot be written, or
 /// [`sinew::resume::Interrupted`].
 pub fn run(args: &EvaluateArmArgs, console: &Console) -> Result<()> {
-    let flag = stop_flag()?;
-    console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))
+    until_signal(console, |stop| run_until(args, console, stop))
 }
 
 /// As [`run`], ended by `stop` in the place of a signal.

@@ -1,5 +1,6 @@
 //! `sinew evaluate body`
 
+use super::until_signal;
 use crate::body::hidden_arm::{self, HiddenArm};
 use crate::body::trial::{SeenMotion, TrialResult, trial};
 use crate::body::{BodyReport, BodyResult, Measured, MotionChoice, figures::figures, motions::ReadMotion, prediction};
@@ -13,13 +14,11 @@ use sinew::body::BodyPart;
 use sinew::body::run::{inputs::check_part, tuning_file};
 use sinew::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
 use sinew::cli::console::Console;
-use sinew::cli::signals::stop_flag;
 use sinew::output::OutputDir;
 use sinew::registry::{MOTION, choice};
 use sinew::resume::{Begun, Cells, Stop};
 use sinew::stereo::Hidden;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 
 /// Options of `sinew evaluate body`.
 #[derive(Debug, Args)]
@@ -82,8 +81,7 @@ pub struct EvaluateBodyArgs {
 /// A motion or configuration that cannot be read, an output that cannot be written, or
 /// [`sinew::resume::Interrupted`].
 pub fn run(args: &EvaluateBodyArgs, console: &Console) -> Result<()> {
-    let flag = stop_flag()?;
-    console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))
+    until_signal(console, |stop| run_until(args, console, stop))
 }
 
 /// As [`run`], ended by `stop` in the place of a signal.

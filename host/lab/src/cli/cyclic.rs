@@ -1,19 +1,18 @@
 //! `sinew evaluate cyclic`
 
+use super::until_signal;
 use crate::cyclic::experiments::FILTERS;
 use crate::cyclic::{CyclicReport, LONG_RUN_SIGMA_DEG, Setting, figures::figures, long_runs, synthetic, test_cycles};
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde_json::json;
 use sinew::cli::console::Console;
-use sinew::cli::signals::stop_flag;
 use sinew::cyclic::model_file::MODEL_VALUE;
 use sinew::cyclic::training::{TrainingOptions, train};
 use sinew::cyclic::{CutList, CyclicModel};
 use sinew::output::OutputDir;
 use sinew::resume::{Begun, Cells, Stop, text_crc32};
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 
 /// Options of `sinew evaluate cyclic`.
 #[derive(Debug, Args)]
@@ -60,8 +59,7 @@ const SPARSE_PARTICLES: [usize; 2] = [10_000, 50_000];
 /// A list, table or model that cannot be read, an output that cannot be written, or
 /// [`sinew::resume::Interrupted`].
 pub fn run(args: &EvaluateCyclicArgs, console: &Console) -> Result<()> {
-    let flag = stop_flag()?;
-    console.resumable(run_until(args, console, &|| flag.load(Ordering::Relaxed)))
+    until_signal(console, |stop| run_until(args, console, stop))
 }
 
 /// As [`run`], ended by `stop` in the place of a signal.

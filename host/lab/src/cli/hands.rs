@@ -1,16 +1,20 @@
 //! `sinew evaluate hands`: both hands on real frames with reference boxes.
 
+use super::{cells_in, until_signal};
 use crate::hands::{ReferenceBox, load_frames, read_boxes};
 use crate::hands_report::{HandsOptions, report};
 use anyhow::{Result, ensure};
 use clap::Args;
 use image::RgbImage;
+use serde_json::json;
 use sinew::cli::console::Console;
 use sinew::cli::data_error;
 use sinew::config::Config;
+use sinew::images::list_images;
 use sinew::output::OutputDir;
-use sinew::skin::SkinModel;
+use sinew::resume::{Begun, Stop, file_crc32, identity, text_crc32};
 use sinew::skin::model::DEFAULT_SKIN;
+use sinew::skin::{SkinModel, model_file};
 use sinew::track::RATES_HZ;
 use std::path::PathBuf;
 
@@ -42,6 +46,10 @@ pub struct EvaluateHandsArgs {
     /// Folder for the scores as hands.csv and hands.json.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Go on with the evaluation in --out that a signal ended; the other options have to be the
+    /// same.
+    #[arg(long, requires = "out")]
+    pub resume: bool,
     /// Fail if a median misses the project's floors.
     #[arg(long)]
     pub require: bool,
@@ -62,26 +70,48 @@ fn window_px(text: &str) -> Result<(u32, u32), String> {
 /// Measures and prints; with `--require` compares with the floors.
 ///
 /// # Errors
-/// Bad input, or medians below the floors.
+/// Bad input, medians below the floors, or [`sinew::resume::Interrupted`].
 pub fn run(args: &EvaluateHandsArgs, console: &Console) -> Result<()> {
+    match args.out {
+        Some(_) => until_signal(console, |stop| run_until(args, console, stop)),
+        None => run_until(args, console, &|| false),
+    }
+}
+
+/// As [`run`], ended by `stop` in the place of a signal.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_until(args: &EvaluateHandsArgs, console: &Console, stop: Stop<'_>) -> Result<()> {
     let skin = SkinModel::from_option(&args.skin)?;
     let boxes = read_boxes(&args.boxes)?;
     let frames = load_frames(&args.folder)?;
     check(args, &frames, &boxes)?;
     let output = args.out.as_deref().map(OutputDir::create).transpose()?;
     let options = HandsOptions { rate_hz: args.rate, seeds: args.seeds, window_px: args.window };
-    let track = || report(&frames, &boxes, options, &Config::default(), &skin);
+    let cells = cells_in(output.as_ref(), &begun(args, &skin)?, args.resume, stop)?;
+    let track = || report(&frames, &boxes, options, &Config::default(), &skin, &cells);
     let report = console.busy("tracking", track)?;
     if let Some(output) = output {
         output.write("hands.json", |writer| Ok(serde_json::to_writer_pretty(writer, &report)?))?;
         output.write("hands.csv", |writer| Ok(writer.write_all(report.to_csv().as_bytes())?))?;
     }
+    cells.end()?;
     console.answer(&report.table(), &report)?;
     let misses = report.misses();
     if args.require && !misses.is_empty() {
         return Err(data_error(format!("`{}` misses the floors: {}", args.folder.display(), misses.join("; "))));
     }
     Ok(())
+}
+
+/// What the cells depend on.
+fn begun(args: &EvaluateHandsArgs, skin: &SkinModel) -> Result<Begun> {
+    let options = json!({ "rate": args.rate, "seeds": args.seeds, "window": args.window, "skin": args.skin });
+    let begun = Begun::new("evaluate hands", &options, &[])?.on(&args.folder)?;
+    let files = list_images(&args.folder)?.iter().map(|file| identity(file)).collect();
+    let skin = text_crc32(&model_file::to_json(skin)?);
+    Ok(begun.with_frames(files).reading("the skin model", skin).reading("the boxes", file_crc32(&args.boxes)?))
 }
 
 /// Do window and boxes fit the frames?

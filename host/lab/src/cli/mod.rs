@@ -13,7 +13,11 @@ use clap::{Parser, Subcommand};
 use cyclic::EvaluateCyclicArgs;
 use hands::EvaluateHandsArgs;
 use sinew::cli::console::Console;
+use sinew::cli::signals::stop_flag;
+use sinew::output::OutputDir;
+use sinew::resume::{Begun, Cells, Stop};
 use skin::EvaluateSkinArgs;
+use std::sync::atomic::Ordering;
 use tables::TablesArgs;
 
 /// What `sinew evaluate ARGS...` starts, as `sinew-lab evaluate ARGS...`: its help names the
@@ -74,6 +78,20 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
         Command::Evaluate(Evaluate::Skin(args)) => skin::run(args, console),
         Command::Tables(args) => tables::run(args, console),
     }
+}
+
+/// Does `work`, which a signal ends between two cells; the console then says that it can be resumed.
+fn until_signal(console: &Console, work: impl FnOnce(Stop<'_>) -> anyhow::Result<()>) -> anyhow::Result<()> {
+    let flag = stop_flag()?;
+    console.resumable(work(&|| flag.load(Ordering::Relaxed)))
+}
+
+/// The cells of an evaluation whose `--out` may be left out; without it none is kept.
+fn cells_in<'a>(output: Option<&OutputDir>, begun: &Begun, resume: bool, stop: Stop<'a>) -> anyhow::Result<Cells<'a>> {
+    Ok(match output {
+        Some(output) => Cells::keep(output, begun, resume, stop)?,
+        None => Cells::not_kept(),
+    })
 }
 
 #[cfg(test)]

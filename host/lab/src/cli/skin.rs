@@ -1,16 +1,19 @@
 //! `sinew evaluate skin`: pixel scores of a skin model on images with masks.
 
-use crate::skin_scores::{FolderScores, Folds, by_folder, judge};
+use super::{cells_in, until_signal};
+use crate::skin_scores::{FolderScores, by_folder, cross_validate, judge};
 use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
+use serde_json::json;
 use sinew::cli::console::Console;
 use sinew::cli::train_skin::report_unmasked;
 use sinew::output::OutputDir;
-use sinew::skin::SkinModel;
+use sinew::resume::{Begun, Stop, identity, text_crc32};
 use sinew::skin::model::{DEFAULT_SKIN, ModelKind};
 use sinew::skin::pairs::{self, PairList};
 use sinew::skin::training::TrainingOptions;
+use sinew::skin::{SkinModel, model_file};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -47,6 +50,10 @@ pub struct EvaluateSkinArgs {
     /// Folder for the scores as skin.csv and skin.json.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Go on with the evaluation in --out that a signal ended; the other options have to be the
+    /// same.
+    #[arg(long, requires = "out")]
+    pub resume: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -64,21 +71,33 @@ struct Report<'a> {
 /// Scores the model and prints a table.
 ///
 /// # Errors
-/// Bad input, or no image that can be read.
+/// Bad input, no image that can be read, or [`sinew::resume::Interrupted`].
 pub fn run(args: &EvaluateSkinArgs, console: &Console) -> Result<()> {
+    match args.out {
+        Some(_) => until_signal(console, |stop| run_until(args, console, stop)),
+        None => run_until(args, console, &|| false),
+    }
+}
+
+/// As [`run`], ended by `stop` in the place of a signal.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_until(args: &EvaluateSkinArgs, console: &Console, stop: Stop<'_>) -> Result<()> {
     let list = pairs::find(&args.images, &args.masks)?;
     let output = args.out.as_deref().map(OutputDir::create).transpose()?;
     report_unmasked(&list, console);
+    let shipped = SkinModel::from_option(&args.skin)?;
+    let cells = cells_in(output.as_ref(), &begun(args, &list, &shipped)?, args.resume, stop)?;
     let (judged, model) = match args.cross_validate {
         Some(count) => {
             let options = TrainingOptions { kind: args.kind, folds: 10, seed: args.seed };
-            let folds = Folds::train(&list, count as usize, options)?;
-            (folds.judge(&list, args.morphology)?, format!("{:?}, cross-validated", args.kind).to_lowercase())
+            let [judged] = cross_validate(&list, count as usize, options, [args.morphology], &cells)?;
+            (judged, format!("{:?}, cross-validated", args.kind).to_lowercase())
         }
         None => {
-            let model = SkinModel::from_option(&args.skin)?;
-            warn_if_trained_on(&model, &list, console);
-            (judge(&list.pairs, |_| &model, args.morphology)?, args.skin.clone())
+            warn_if_trained_on(&shipped, &list, console);
+            (judge(&list.pairs, &shipped, args.morphology, &cells)?, args.skin.clone())
         }
     };
     let skipped: Vec<String> = judged.iter().filter_map(|image| image.as_ref().err().cloned()).collect();
@@ -103,7 +122,24 @@ pub fn run(args: &EvaluateSkinArgs, console: &Console) -> Result<()> {
             Ok(table.flush()?)
         })?;
     }
+    cells.end()?;
     console.answer(&summary(&report), &report)
+}
+
+/// What the cells depend on.
+fn begun(args: &EvaluateSkinArgs, list: &PairList, model: &SkinModel) -> Result<Begun> {
+    let options = json!({
+        "images": args.images,
+        "masks": args.masks,
+        "skin": args.skin,
+        "cross_validate": args.cross_validate,
+        "kind": args.kind,
+        "seed": args.seed,
+        "morphology": args.morphology,
+    });
+    let files = list.pairs.iter().flat_map(|pair| [&pair.image, &pair.mask]).map(|file| identity(file)).collect();
+    let begun = Begun::new("evaluate skin", &options, &[])?.with_frames(files);
+    Ok(begun.reading("the skin model", text_crc32(&model_file::to_json(model)?)))
 }
 
 /// A training image's score says nothing about other images.

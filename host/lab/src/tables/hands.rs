@@ -7,6 +7,7 @@ use crate::hands_report::{DEFAULT_OPTIONS, report};
 use anyhow::Result;
 use image::RgbImage;
 use sinew::config::Config;
+use sinew::resume::Cells;
 use sinew::skin::SkinModel;
 use sinew::skin::model::DEFAULT_SKIN;
 use std::path::Path;
@@ -25,7 +26,7 @@ pub fn in_boxes(recordings: &Path) -> Result<Rows> {
     let mut rows = vec![line(["sequence", "view", "inside the box", "near its centre", "confused frames", constant])];
     for name in SEQUENCES {
         let (frames, boxes) = sequence(recordings, name)?;
-        let report = report(&frames, &boxes, DEFAULT_OPTIONS, &Config::default(), &skin)?;
+        let report = report(&frames, &boxes, DEFAULT_OPTIONS, &Config::default(), &skin, &Cells::not_kept())?;
         for (view, scores) in [("whole", report.whole), ("window", report.window)] {
             let medians = [scores.inside, scores.centred, scores.confused].map(|share| format!("{:.3}", share.median));
             let mut row = line([format!("{name}, {} boxes", scores.boxes), view.to_owned()]);

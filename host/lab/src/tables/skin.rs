@@ -1,8 +1,9 @@
 //! Scores of the two skin models on the labelled images.
 
 use super::markdown::{Rows, line};
-use crate::skin_scores::{Folds, Judged, by_folder, judge};
+use crate::skin_scores::{Judged, by_folder, cross_validate, judge};
 use anyhow::Result;
+use sinew::resume::Cells;
 use sinew::skin::SkinModel;
 use sinew::skin::model::ModelKind;
 use sinew::skin::pairs::{PairList, find};
@@ -19,11 +20,10 @@ pub fn scores(recordings: &Path) -> Result<Rows> {
     let list = find(&folder("images"), &folder("masks"))?;
     let mut rows = vec![line(["model", "set", "precision", "recall", "F1", "median F1 of an image"])];
     let gaussian = SkinModel::from_option("gaussian")?;
-    let judged = |morphology| judge(&list.pairs, |_| &gaussian, morphology);
+    let judged = |morphology| judge(&list.pairs, &gaussian, morphology, &Cells::not_kept());
     rows.extend(of_model("`gaussian`, shipped (saw neither set)", &list, [judged(false)?, judged(true)?])?);
     let options = TrainingOptions { kind: ModelKind::Histogram, folds: FOLDS, seed: 1 };
-    let folds = Folds::train(&list, FOLDS, options)?;
-    let judged = [folds.judge(&list, false)?, folds.judge(&list, true)?];
+    let judged = cross_validate(&list, FOLDS, options, [false, true], &Cells::not_kept())?;
     rows.extend(of_model("`histogram`, 10-fold cross-validated by image", &list, judged)?);
     Ok(rows)
 }
