@@ -11,6 +11,11 @@ pub(crate) fn csv_reader(text: &str) -> csv::Reader<&[u8]> {
     reader(text.as_bytes())
 }
 
+/// A reader of `text` whose first row has the columns' names.
+pub(crate) fn headed_reader(text: &str) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes())
+}
+
 fn reader<R: Read>(input: R) -> csv::Reader<R> {
     csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(input)
 }

@@ -152,3 +152,10 @@ pub fn set_modified(file: &Path, at: SystemTime) {
     let file = fs::File::options().write(true).open(file).unwrap();
     file.set_times(fs::FileTimes::new().set_modified(at)).unwrap();
 }
+
+/// Rows of a table, by the names of its columns.
+#[must_use]
+pub fn table_rows(table: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(table).unwrap();
+    reader.deserialize().map(Result::unwrap).collect()
+}

@@ -29,6 +29,9 @@ fn the_demo_renders_tracks_and_prints_the_error() {
     assert!((0.001..0.4).contains(&value("median_error_m")), "{error}");
     assert!((0.5..100.0).contains(&value("median_error_px")), "{error}");
 
+    let frames = |name: &str| error[name].as_u64().unwrap();
+    assert!(frames("wrong_frames") <= frames("tracking_frames") && frames("tracking_frames") <= 120, "{error}");
+
     let track = fs::read(out.join("track.csv")).unwrap();
     demo().assert().success();
     assert!(fs::read(out.join("track.csv")).unwrap() == track, "the same seed gives the same track");

@@ -2,7 +2,7 @@
 
 use sinew::config::Config;
 use sinew::track::{Event, SideChoice, TrackOptions, TrackRun};
-use sinew_tests::shared_data;
+use sinew_tests::{shared_data, table_rows};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -19,6 +19,8 @@ fn options(video: &Path) -> TrackOptions {
         seed: 1,
         skin: "gaussian".to_owned(),
         calibrate: None,
+        hands: None,
+        head: None,
         face: true,
         overlay: false,
         particles_csv: false,
@@ -31,11 +33,6 @@ fn run(options: TrackOptions, out: &Path) {
     TrackRun::prepare(options, out).unwrap().run(&AtomicBool::new(false), &mut |_| ()).unwrap();
 }
 
-fn rows(table: &Path) -> Vec<BTreeMap<String, String>> {
-    let mut reader = csv::Reader::from_path(table).unwrap();
-    reader.deserialize().map(Result::unwrap).collect()
-}
-
 fn numbers<const N: usize>(row: &BTreeMap<String, String>, columns: [&str; N]) -> Option<[f64; N]> {
     let numbers = columns.map(|column| row[column].parse().ok());
     numbers.iter().all(Option::is_some).then(|| numbers.map(Option::unwrap_or_default))
@@ -43,9 +40,9 @@ fn numbers<const N: usize>(row: &BTreeMap<String, String>, columns: [&str; N]) -
 
 /// Of the rows that say `tracking` where a palm is known: how many lie on one, and all.
 fn on_palms(track: &Path, points: &Path) -> [usize; 2] {
-    let points: BTreeMap<String, _> = rows(points).into_iter().map(|row| (row["frame"].clone(), row)).collect();
+    let points: BTreeMap<String, _> = table_rows(points).into_iter().map(|row| (row["frame"].clone(), row)).collect();
     let mut counts = [0; 2];
-    for row in rows(track).iter().filter(|row| row["status"] == "tracking") {
+    for row in table_rows(track).iter().filter(|row| row["status"] == "tracking") {
         let of = |palm: u8| ["u_px", "v_px"].map(|axis| format!("palm{palm}_{axis}"));
         let palms: Vec<[f64; 3]> = [1, 2]
             .iter()

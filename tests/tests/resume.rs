@@ -57,6 +57,8 @@ impl Scene {
             seed: 3,
             skin: "gaussian".to_owned(),
             calibrate: None,
+            hands: None,
+            head: None,
             face: true,
             overlay: self.everything,
             particles_csv: self.everything,

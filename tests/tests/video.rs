@@ -166,6 +166,8 @@ fn a_broken_off_run_over_a_video_goes_on() {
         seed: 1,
         skin: "gaussian".to_owned(),
         calibrate: None,
+        hands: None,
+        head: None,
         face: true,
         overlay: true,
         particles_csv: false,

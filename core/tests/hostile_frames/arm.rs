@@ -70,6 +70,13 @@ impl Subject for OneArm {
             shoulder_m: corners.place(SHOULDERS_M[0]),
         };
         let estimate = self.trackers[0].step(&self.model, &frame);
+        if corners.only_refused() {
+            // The twin sees the frame without what is refused: this tracker may lose a hand that is
+            // missing for some frames, whatever it was given instead.
+            let kept: Vec<_> = candidates.iter().filter(|candidate| **candidate == hand_blob()).copied().collect();
+            let image = frame.image.map(|image| ArmImage { candidates: &kept, ..image });
+            self.trackers[1].step(&self.model, &ArmFrame { image, shoulder_m: SHOULDERS_M[0], ..frame });
+        }
         sound(&estimate).map_err(|message| format!("{message} by {frame:?}"))?;
         holds(self.trackers[0].is_finite(), || format!("the state by {frame:?}"))
     }

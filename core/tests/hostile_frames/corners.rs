@@ -24,6 +24,11 @@ impl Corners {
         Self { stream: Stream::new(seed, 0, 0), only_refused }
     }
 
+    /// Whether every hostile number is one that is refused.
+    pub fn only_refused(&self) -> bool {
+        self.only_refused
+    }
+
     /// A whole number below `count`.
     pub fn below(&mut self, count: usize) -> usize {
         ((self.stream.uniform() * count as f32) as usize).min(count - 1)

@@ -13,8 +13,8 @@ const SHOWN: usize = 5;
 
 /// A tracker and its twin.
 pub trait Subject {
-    /// Gives the tracker a hostile frame, and the twin nothing or a missing measurement. Says what
-    /// is wrong with state and estimate.
+    /// Gives the tracker a hostile frame, and the twin nothing, or the frame without what is refused.
+    /// Says what is wrong with state and estimate.
     fn hostile(&mut self, corners: &mut Corners) -> Result<(), String>;
 
     /// Gives both the same clean frame.

@@ -54,6 +54,7 @@ fn arm_options(corners: &mut Corners) -> ArmOptions {
         &mut options.clutter_share,
         &mut options.lost_after_s,
         &mut options.sure_likelihood,
+        &mut options.sure_share,
     ];
     for number in numbers {
         if corners.one_in(20) {

@@ -14,6 +14,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use serde::Serialize;
 use serde_json::json;
+use sinew_core::tracker::arm::Status;
 use std::path::{Path, PathBuf};
 
 /// Frames of the scene: eight seconds.
@@ -22,6 +23,8 @@ const FRAMES: usize = 120;
 const RATE_HZ: f32 = 15.0;
 /// First frame whose error counts: the tracker needs a second to find the arm.
 const FIRST_SCORED_FRAME: usize = 16;
+/// Further than this from the true hand a place is wrong, pixels of a picture 640 wide: two palms.
+const WRONG_PX: f64 = 60.0;
 /// Marks a scene that the demo made and may replace.
 const MARK: &str = "demo.json";
 
@@ -53,6 +56,10 @@ pub struct DemoError {
     pub mean_error_px: f64,
     /// Median 2D error, pixels.
     pub median_error_px: f64,
+    /// Frames of the whole run that say `tracking` while the hand is in view.
+    pub tracking_frames: usize,
+    /// Of these, those whose hand is more than 60 pixels off.
+    pub wrong_frames: usize,
 }
 
 /// Renders, tracks, compares, and says where to look.
@@ -103,6 +110,8 @@ fn track_options(out: &OutputDir, seed: u64) -> Result<TrackOptions> {
         seed,
         skin: DEFAULT_SKIN.to_owned(),
         calibrate: None,
+        hands: None,
+        head: None,
         face: true,
         overlay: true,
         particles_csv: false,
@@ -132,6 +141,12 @@ fn compare(scene: &Scene, outcome: &RunOutcome) -> Result<DemoError> {
         Some((error_m, sample.hand_px.map_or(width_px, |pixel| f64::from(pixel.distance_px(true_px)))))
     });
     let (errors_m, errors_px): (Vec<f64>, Vec<f64>) = errors.unzip();
+    let sure = outcome.samples.iter().enumerate().filter_map(|(frame, sample)| {
+        let truth = scene.truth(frame).sides.into_iter().next()?;
+        let true_px = truth.hand_px(&camera).filter(|_| truth.hand_visible && sample.status == Status::Tracking)?;
+        Some(sample.hand_px.map_or(width_px, |pixel| f64::from(pixel.distance_px(true_px))))
+    });
+    let sure_px: Vec<f64> = sure.collect();
     let nothing = || data_error("no frame can be compared with the truth");
     Ok(DemoError {
         first_frame: FIRST_SCORED_FRAME,
@@ -140,6 +155,8 @@ fn compare(scene: &Scene, outcome: &RunOutcome) -> Result<DemoError> {
         median_error_m: median(errors_m).ok_or_else(nothing)?,
         mean_error_px: mean(&errors_px).ok_or_else(nothing)?,
         median_error_px: median(errors_px).ok_or_else(nothing)?,
+        tracking_frames: sure_px.len(),
+        wrong_frames: sure_px.iter().filter(|error_px| **error_px > WRONG_PX).count(),
     })
 }
 
@@ -160,6 +177,7 @@ A person was rendered whose arm and camera are known, and the right arm was trac
 Distance of the tracked hand from the true one, frames {} to {}:
   in space:     mean {:.3} m,  median {:.3} m
   in the image: mean {:.1} px, median {:.1} px  (images are {} px wide)
+Of {} frames that say `tracking` while the hand is in view, {} are more than 60 px off.
 
 Look at
   {folder}/contact_sheet.png   the run at a glance
@@ -179,5 +197,7 @@ Try next, with a folder of your own webcam frames (PNG or JPEG):
         error.mean_error_px,
         error.median_error_px,
         outcome.report.image_size_px.0,
+        error.tracking_frames,
+        error.wrong_frames,
     )
 }

@@ -77,6 +77,14 @@ pub struct TrackArmArgs {
     /// same.
     #[arg(long)]
     pub resume: bool,
+    /// Table of hands that any detector found, in place of skin: frame (from 0), u_px, v_px, size_px
+    /// (diameter), probability, and side (left or right) where it is known.
+    #[arg(long, value_name = "FILE.csv")]
+    pub hands: Option<PathBuf>,
+    /// Table of faces that any detector found, in place of those that are looked for: frame (from
+    /// 0), u_px, v_px, size_px (width of the box).
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["no_face", "calibrate"])]
+    pub head: Option<PathBuf>,
     /// Look for no face: use the skin model as it is, and shoulders and distance of the
     /// configuration; so, too, with --calibrate.
     #[arg(long)]
@@ -123,6 +131,8 @@ pub fn run(args: &TrackArmArgs, console: &Console) -> Result<()> {
         seed: args.seed,
         skin: args.skin.skin.clone(),
         calibrate: args.skin.calibrate,
+        hands: args.hands.clone(),
+        head: args.head.clone(),
         face: !args.no_face && args.skin.calibrate.is_none(),
         overlay: args.overlay,
         // The viewer shows them.

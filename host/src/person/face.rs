@@ -32,6 +32,14 @@ pub struct FoundFace {
     pub colour: Option<PersonColour>,
 }
 
+impl FoundFace {
+    /// A face in a box of a picture.
+    #[must_use]
+    pub fn at(image: &RgbImage, head: HeadBox) -> Self {
+        Self { head, colour: PersonColour::of_face(&skin_pixels(image, &head)) }
+    }
+}
+
 /// Finds faces.
 #[derive(Clone)]
 pub struct FaceDetector {
@@ -76,7 +84,7 @@ impl FaceDetector {
             centre_px: [place(found.x(), found.width()), place(found.y(), found.height())],
             width_px: (found.width() * step) as f32,
         };
-        Some(FoundFace { head, colour: PersonColour::of_face(&skin_pixels(image, &head)) })
+        Some(FoundFace::at(image, head))
     }
 }
 

@@ -4,6 +4,7 @@
 //! counts a fixed number of frames later, so that no result depends on threads.
 
 use super::face::{FaceDetector, FoundFace};
+use super::given::FaceTable;
 use super::skin::PersonSkin;
 use crate::error::Result;
 use crate::frames::FrameReader;
@@ -52,10 +53,17 @@ enum Answer {
     Known(Option<FoundFace>),
 }
 
+/// Where faces come from.
+#[derive(Debug)]
+enum Faces {
+    Detector(FaceDetector),
+    Given(FaceTable),
+}
+
 /// Finds the hands of one person.
 #[derive(Debug)]
 pub struct PersonFinder {
-    detector: FaceDetector,
+    faces: Faces,
     /// None for pictures that are too small.
     hands: Option<Box<HandFinder>>,
     skin: Option<PersonSkin>,
@@ -65,14 +73,18 @@ pub struct PersonFinder {
 }
 
 impl PersonFinder {
-    /// A finder for pictures of a size, so many a second.
+    /// A finder for pictures of a size, so many a second, that looks for faces, or takes those that
+    /// are `given`.
     ///
     /// # Errors
     /// None with the shipped model.
-    pub fn new(size_px: (u32, u32), rate_hz: f64, camera: Camera) -> Result<Self> {
+    pub fn new(size_px: (u32, u32), rate_hz: f64, camera: Camera, given: Option<FaceTable>) -> Result<Self> {
         let grid = CellGrid::new(size_px.0 as usize, size_px.1 as usize);
         Ok(Self {
-            detector: FaceDetector::new()?,
+            faces: match given {
+                Some(faces) => Faces::Given(faces),
+                None => Faces::Detector(FaceDetector::new()?),
+            },
             hands: grid.map(|grid| Box::new(HandFinder::new(grid))),
             skin: None,
             interval: rate_hz.round().clamp(1.0, MAX_INTERVAL) as usize,
@@ -94,16 +106,22 @@ impl PersonFinder {
             let face = self.look.take().and_then(|look| look.answer.wait());
             self.take(face);
         }
-        if self.hands.is_none() || self.look.is_some() || !frame.is_multiple_of(self.interval) {
-            return;
-        }
-        if frame == 0 {
-            let face = self.detector.find(image);
-            self.take(face);
-        } else {
-            let (detector, image) = (self.detector.clone(), image.clone());
-            let answer = Answer::Awaited(std::thread::spawn(move || detector.find(&image)));
-            self.look = Some(Look { due: frame + LATENCY, answer });
+        let is_time = self.hands.is_some() && self.look.is_none() && frame.is_multiple_of(self.interval);
+        match &self.faces {
+            Faces::Given(faces) => {
+                let face = faces.at(frame).map(|head| FoundFace::at(image, head));
+                self.take(face);
+            }
+            Faces::Detector(detector) if is_time && frame == 0 => {
+                let face = detector.find(image);
+                self.take(face);
+            }
+            Faces::Detector(detector) if is_time => {
+                let (detector, image) = (detector.clone(), image.clone());
+                let answer = Answer::Awaited(std::thread::spawn(move || detector.find(&image)));
+                self.look = Some(Look { due: frame + LATENCY, answer });
+            }
+            Faces::Detector(_) => {}
         }
     }
 
@@ -214,7 +232,7 @@ mod tests {
 
     fn finder() -> PersonFinder {
         let camera = Camera::from_field_of_view(320, 240, 1.05).unwrap();
-        PersonFinder::new((320, 240), 15.0, camera).unwrap()
+        PersonFinder::new((320, 240), 15.0, camera, None).unwrap()
     }
 
     fn face() -> FoundFace {
@@ -271,6 +289,19 @@ mod tests {
         finder.look(10, &picture(0));
         let [left, right] = finder.shoulders_m().unwrap();
         assert!((left.x + right.x).abs() < 0.01 && (left - right).norm() > 0.25, "{left:?} {right:?}");
+    }
+
+    #[test]
+    fn a_given_face_counts_from_its_frame_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("head.csv");
+        std::fs::write(&path, "frame,u_px,v_px,size_px\n2,222,213,26\n").unwrap();
+        let mut finder = PersonFinder { faces: Faces::Given(FaceTable::read(&path).unwrap()), ..finder() };
+        finder.look(1, &picture(0));
+        assert!(finder.shoulders_m().is_none());
+        // The place of the hand has the colour of a face, too.
+        finder.look(2, &picture(0));
+        assert!(finder.shoulders_m().is_some() && finder.skin().is_some_and(|skin| skin.colour().is_skin(SKIN)));
     }
 
     #[test]

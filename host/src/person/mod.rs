@@ -2,8 +2,10 @@
 
 mod face;
 mod finder;
+mod given;
 mod skin;
 
 pub use face::{FaceDetector, FoundFace};
 pub use finder::{PersonFinder, PersonView};
+pub use given::{FaceTable, GivenHands, HandTable};
 pub use skin::PersonSkin;

@@ -61,6 +61,11 @@ impl ArmRun {
             side != SideChoice::Both,
             "both arms were tracked; firmware plays one: `--side left` or `--side right`"
         );
+        ensure!(
+            json["seen"]["with_face"] == 0 && options["hands"].is_null(),
+            "its hands came from a face or from --hands, and firmware's stream holds blobs; run `sinew track arm` with \
+             --no-face and without --hands"
+        );
         let seed = options["seed"].as_u64().context("run.json has no option `seed`")?;
         let rate_hz = options["rate_hz"].as_f64().context("run.json has no option `rate_hz`")?;
         let SeenFrames { frames, skin, config } = SeenFrames::open(options)?;

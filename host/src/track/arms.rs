@@ -3,7 +3,6 @@
 use crate::config::{BodyConfig, Config, options_for};
 use crate::error::Result;
 use crate::frames::FrameView;
-use crate::person::PersonView;
 use crate::resume::{from_text, to_text};
 use serde::{Deserialize, Serialize};
 use sinew_core::camera::Pixel;
@@ -13,6 +12,8 @@ use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::{
     ArmEstimate, ArmFrame, ArmImage, ArmModel, ArmOptions, ArmPair, ArmTracker, PairFrame, Particle,
 };
+use sinew_core::vision::candidate::HandCandidate;
+use sinew_core::vision::edges::EdgePixel;
 
 /// Which arms are tracked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -99,21 +100,26 @@ impl ArmSet {
     /// Answers one frame; `view` is `None` where the image is missing. One view an arm, left first.
     pub fn step(&mut self, timestamp_us: u64, view: Option<&FrameView>) -> Vec<ArmView> {
         let image = view.map(|view| ArmImage { candidates: &view.candidates, edges: &view.edges });
-        match &mut self.trackers {
-            Sized::Small(trackers) => trackers.step(&self.models, &self.shoulders_m, timestamp_us, image),
-            Sized::Middle(trackers) => trackers.step(&self.models, &self.shoulders_m, timestamp_us, image),
-            Sized::Large(trackers) => trackers.step(&self.models, &self.shoulders_m, timestamp_us, image),
-        }
+        self.trackers.step(&self.models, &self.shoulders_m, timestamp_us, image)
     }
 
-    /// Answers one frame of a person whose face is known: each arm has its own candidates and its
-    /// shoulder. The shoulders stay there in frames after it that are missing.
-    pub fn step_person(&mut self, timestamp_us: u64, view: &FrameView, person: &PersonView) -> Vec<ArmView> {
-        self.place_shoulders(&person.shoulders_m);
+    /// Answers one frame whose `hands` a detector found, for all arms together.
+    pub fn step_hands(&mut self, timestamp_us: u64, edges: &[EdgePixel], hands: &[HandCandidate]) -> Vec<ArmView> {
+        let image = Some(ArmImage { candidates: hands, edges });
+        self.trackers.step(&self.person_models, &self.shoulders_m, timestamp_us, image)
+    }
+
+    /// Answers one frame in which the left and the right hand have candidates of their own.
+    pub fn step_each(
+        &mut self,
+        timestamp_us: u64,
+        edges: &[EdgePixel],
+        hands: &[Vec<HandCandidate>; 2],
+    ) -> Vec<ArmView> {
         let frames: Vec<ArmFrame<'_>> = (self.models.iter().zip(&self.shoulders_m))
             .map(|(model, &shoulder_m)| {
-                let candidates = &person.hands[side_index(model.side())];
-                ArmFrame { timestamp_us, image: Some(ArmImage { candidates, edges: &view.edges }), shoulder_m }
+                let candidates = &hands[side_index(model.side())];
+                ArmFrame { timestamp_us, image: Some(ArmImage { candidates, edges }), shoulder_m }
             })
             .collect();
         match &mut self.trackers {
@@ -123,7 +129,17 @@ impl ArmSet {
         }
     }
 
-    /// Moves the shoulders, left and right, metres in camera axes.
+    /// Whether a hand may be at `pixel`: its line of sight passes a shoulder within an arm's
+    /// length.
+    #[must_use]
+    pub fn reach(&self, pixel: Pixel) -> bool {
+        self.models.iter().zip(&self.shoulders_m).any(|(model, shoulder_m)| {
+            let (ray, geometry) = (model.camera().back_project(pixel), model.geometry());
+            (ray.project(shoulder_m) - shoulder_m).norm() <= geometry.upper_arm_m + geometry.forearm_m
+        })
+    }
+
+    /// Moves the shoulders, left and right, metres in camera axes; they stay there.
     pub fn place_shoulders(&mut self, shoulders_m: &[Vec3; 2]) {
         for (model, shoulder_m) in self.models.iter().zip(&mut self.shoulders_m) {
             *shoulder_m = shoulders_m[side_index(model.side())];
@@ -160,6 +176,22 @@ impl ArmSet {
         let camera = self.models.first()?.camera();
         let [shoulder, elbow, hand] = joints_m.map(|joint| camera.project(&joint));
         Some([shoulder?, elbow?, hand?])
+    }
+}
+
+impl Sized {
+    fn step(
+        &mut self,
+        models: &[ArmModel],
+        shoulders_m: &[Vec3],
+        timestamp_us: u64,
+        image: Option<ArmImage<'_>>,
+    ) -> Vec<ArmView> {
+        match self {
+            Self::Small(trackers) => trackers.step(models, shoulders_m, timestamp_us, image),
+            Self::Middle(trackers) => trackers.step(models, shoulders_m, timestamp_us, image),
+            Self::Large(trackers) => trackers.step(models, shoulders_m, timestamp_us, image),
+        }
     }
 }
 

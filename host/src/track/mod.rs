@@ -14,6 +14,7 @@ mod report;
 mod resume;
 mod run;
 mod sample;
+mod seen;
 mod source;
 mod table;
 
@@ -24,5 +25,6 @@ pub use options::{RATES_HZ, TrackOptions};
 pub use report::{Inputs, REPORT_VERSION, RunReport, StatusCounts};
 pub use run::{Event, TrackRun};
 pub use sample::HandSample;
+pub use seen::SeenCounts;
 pub use source::{FrameSource, VideoSource};
 pub use table::{HEADER, TrackRow};

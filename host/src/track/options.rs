@@ -24,6 +24,10 @@ pub struct TrackOptions {
     pub skin: String,
     /// Rectangle of skin in the first frame.
     pub calibrate: Option<Rectangle>,
+    /// Table of hands that are taken in place of blobs.
+    pub hands: Option<PathBuf>,
+    /// Table of faces that are taken in place of those that are found; with `face` only.
+    pub head: Option<PathBuf>,
     /// Whether a face is looked for, which gives skin, shoulders and hands over time; never with
     /// `calibrate`.
     pub face: bool,

@@ -2,6 +2,7 @@
 
 use super::input::SkippedImage;
 use super::options::TrackOptions;
+use super::seen::SeenCounts;
 use crate::wording::{side_name, status_name};
 use serde::Serialize;
 use sinew_core::skeleton::Side;
@@ -56,6 +57,11 @@ pub struct RunReport {
     pub frames_per_second: f64,
     /// Counts of each tracked side.
     pub status_counts: BTreeMap<&'static str, StatusCounts>,
+    /// What the frames showed.
+    pub seen: SeenCounts,
+    /// What a user should know of how far the results go: a side that was not surely seen in most
+    /// frames, and the likeliest cause.
+    pub warnings: Vec<String>,
     /// Images that could not be read.
     pub skipped: Vec<SkippedImage>,
     /// All options, with the configuration that they led to.
@@ -78,6 +84,8 @@ impl RunReport {
             image_size_px,
             frames_per_second: 0.0,
             status_counts: BTreeMap::new(),
+            seen: SeenCounts::default(),
+            warnings: Vec::new(),
             skipped: Vec::new(),
             inputs: Inputs { folder: options.folder.clone(), files },
             options,
@@ -93,6 +101,15 @@ impl RunReport {
             Status::Predicted => counts.predicted += 1,
             Status::Lost => counts.lost += 1,
         }
+    }
+
+    /// Says of each side that was not surely seen in most frames why that may be.
+    pub(super) fn warn(&mut self) {
+        let (face, has_table) = (self.options.face, self.options.hands.is_some());
+        let cause = |(side, counts): (&&str, &StatusCounts)| {
+            Some(format!("the {side} hand was {}", self.seen.cause(counts, face, has_table)?))
+        };
+        self.warnings = self.status_counts.iter().filter_map(cause).collect();
     }
 
     /// A few lines for a person: frames, speed, and each side's counts.
@@ -116,6 +133,9 @@ impl RunReport {
         }
         if !self.skipped.is_empty() {
             let _ = writeln!(text, "  {} images could not be read and were skipped", self.skipped.len());
+        }
+        for warning in &self.warnings {
+            let _ = writeln!(text, "  warning: {warning}");
         }
         text
     }

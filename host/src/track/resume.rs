@@ -4,9 +4,10 @@ use super::input::SkippedImage;
 use super::options::TrackOptions;
 use super::run::TrackRun;
 use super::sample::HandSample;
+use super::seen::SeenCounts;
 use crate::error::Result;
 use crate::person::PersonFinder;
-use crate::resume::{Begun, Left, List, ResumeFile, from_text, optional, real, reals, text_crc32, to_text};
+use crate::resume::{Begun, Left, List, ResumeFile, file_crc32, from_text, optional, real, reals, text_crc32, to_text};
 use crate::skin::model_file;
 use serde::{Deserialize, Serialize};
 use sinew_core::camera::Pixel;
@@ -28,6 +29,7 @@ pub(super) struct ArmState {
     person: Option<String>,
     /// What the plots show.
     samples: String,
+    seen: SeenCounts,
 }
 
 /// What `run` leaves if it ends now.
@@ -38,6 +40,7 @@ pub(super) fn left(run: &mut TrackRun) -> Result<Left<ArmState>> {
         trackers: run.arms.saved()?,
         person: run.person.as_mut().map(PersonFinder::saved).transpose()?,
         samples: to_text(StateKind::Arm, &mut samples)?,
+        seen: run.report.seen,
     };
     run.samples = samples.entries;
     let begun = run.begun()?;
@@ -59,7 +62,12 @@ fn begun(options: &TrackOptions) -> Result<Begun> {
 /// The same with what `run` reads.
 fn read_by(begun: Begun, run: &TrackRun) -> Result<Begun> {
     let skin = text_crc32(&model_file::to_json(&run.skin)?);
-    Ok(begun.with_frames(run.frames.identity()).reading("the skin model", skin))
+    let mut begun = begun.with_frames(run.frames.identity()).reading("the skin model", skin);
+    let options = &run.report.options;
+    for table in [&options.hands, &options.head].into_iter().flatten() {
+        begun = begun.reading(format!("`{}`", table.display()), file_crc32(table)?);
+    }
+    Ok(begun)
 }
 
 impl TrackRun {
@@ -100,6 +108,7 @@ impl TrackRun {
             run.report.count(sample.side, sample.status);
         }
         run.report.frames_finished = left.finished;
+        run.report.seen = left.state.seen;
         run.seconds = left.seconds;
         if let Some(pictures) = &mut run.pictures {
             let is_drawn = |frame: &usize| !left.state.skipped.iter().any(|skipped| skipped.frame == *frame);

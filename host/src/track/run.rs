@@ -1,6 +1,6 @@
 //! One run over an image folder or a video: load, read, step, record, frame by frame.
 
-use super::arms::ArmSet;
+use super::arms::{ArmSet, ArmView};
 use super::input::SkippedImage;
 use super::options::{RATES_HZ, TrackOptions};
 use super::particles::{PARTICLE_HEADER, particle_rows};
@@ -13,7 +13,7 @@ use super::table::{HEADER, TrackRow};
 use crate::error::{Context, Result, WriteContext, bail};
 use crate::frames::{FrameReader, FrameView};
 use crate::output::{OutputDir, OutputLock, PendingFile};
-use crate::person::PersonFinder;
+use crate::person::{FaceTable, GivenHands, HandTable, PersonFinder};
 use crate::resume::{Begun, Checkpoints, PARTICLE_TABLE, TRACK_TABLE};
 use crate::skin::SkinModel;
 use image::RgbImage;
@@ -48,6 +48,7 @@ pub struct TrackRun {
     pub(super) arms: ArmSet,
     /// Of a run that looks for a face.
     pub(super) person: Option<PersonFinder>,
+    hands: Option<HandTable>,
     camera: Camera,
     pub(super) out: OutputDir,
     _lock: OutputLock,
@@ -93,9 +94,13 @@ impl TrackRun {
         let arms = ArmSet::new(&options.config, frames.size_px(), options.side, options.seed)?;
         let camera = *arms.models().first().context("no arm is tracked")?.camera();
         let person = match options.face {
-            true => Some(PersonFinder::new(frames.size_px(), options.rate_hz, camera)?),
+            true => {
+                let given = options.head.as_deref().map(FaceTable::read).transpose()?;
+                Some(PersonFinder::new(frames.size_px(), options.rate_hz, camera, given)?)
+            }
             false => None,
         };
+        let hands = options.hands.as_deref().map(HandTable::read).transpose()?;
         let reader = FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
@@ -118,6 +123,7 @@ impl TrackRun {
             reader,
             arms,
             person,
+            hands,
             camera,
             out,
             _lock: lock,
@@ -208,19 +214,14 @@ impl TrackRun {
         let image = image.map_err(|skipped| self.skip(skipped, notify)).ok();
         self.last_image_crc32 = image.as_ref().map(|image| crc32fast::hash(image.as_raw()));
         let view = image.as_ref().map(|image| self.read(frame, image)).transpose()?;
-        let person = view.as_ref().and_then(|_| self.person.as_mut()?.see(&mut self.reader));
-        let timestamp_us = self.timestamp_us(frame);
-        let arms = match (&view, &person) {
-            (Some(view), Some(person)) => self.arms.step_person(timestamp_us, view, person),
-            _ => self.arms.step(timestamp_us, view.as_ref()),
-        };
+        let arms = self.step(frame, view.as_ref());
         for arm in &arms {
             let row = TrackRow {
                 frame,
                 image: self.frames.name(frame),
                 time_s: frame as f64 / self.report.options.rate_hz,
                 view: arm.clone(),
-                blob_count: view.as_ref().map(|view| view.blobs.len()),
+                blob_count: view.as_ref().map(|view| view.candidates.len()),
                 dropped_blobs: view.as_ref().map_or(0, |view| view.dropped_blobs),
             };
             self.record(&row)?;
@@ -231,8 +232,38 @@ impl TrackRun {
         Ok(image.zip(view).filter(|_| self.pictures.is_some()).map(shot))
     }
 
-    /// What an image shows, by the person's own skin once a face is known.
+    /// Moves the trackers on to a frame.
+    fn step(&mut self, frame: usize, view: Option<&FrameView>) -> Vec<ArmView> {
+        let timestamp_us = self.timestamp_us(frame);
+        let Some(view) = view else { return self.arms.step(timestamp_us, None) };
+        let person = self.person.as_mut().and_then(|person| person.see(&mut self.reader));
+        if let Some(person) = &person {
+            self.arms.place_shoulders(&person.shoulders_m);
+        }
+        self.report.seen.count(view, person.is_some(), &self.arms);
+        match (self.hands.as_ref().map(|hands| hands.at(frame)), person) {
+            (Some(GivenHands::OfPerson(hands)), _) => self.arms.step_hands(timestamp_us, &view.edges, &hands),
+            (Some(GivenHands::OfSides(hands)), _) => self.arms.step_each(timestamp_us, &view.edges, &hands),
+            (None, Some(person)) => self.arms.step_each(timestamp_us, &view.edges, &person.hands),
+            (None, None) => self.arms.step(timestamp_us, Some(view)),
+        }
+    }
+
+    /// What an image shows, by the person's own skin once a face is known. Hands that are given
+    /// take the place of blobs.
     pub(super) fn read(&mut self, frame: usize, image: &RgbImage) -> Result<FrameView> {
+        let mut view = self.read_image(frame, image)?;
+        if let Some(hands) = &self.hands {
+            view.blobs.clear();
+            view.candidates = match hands.at(frame) {
+                GivenHands::OfPerson(hands) => hands,
+                GivenHands::OfSides(hands) => hands.concat(),
+            };
+        }
+        Ok(view)
+    }
+
+    fn read_image(&mut self, frame: usize, image: &RgbImage) -> Result<FrameView> {
         if let Some(person) = &mut self.person {
             person.look(frame, image);
         }

@@ -100,6 +100,8 @@ pub fn tracked_scene(folder: &Path) -> Result<RunOutcome> {
         seed: 1,
         skin: DEFAULT_SKIN.to_owned(),
         calibrate: None,
+        hands: None,
+        head: None,
         face: false,
         overlay: false,
         particles_csv: false,

@@ -35,10 +35,11 @@ use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Status {
-    /// A blob of this frame that is likely a hand carries the estimate; see
-    /// [`ArmOptions::sure_likelihood`](super::ArmOptions::sure_likelihood).
+    /// A blob of this frame carries the estimate that is likely a hand, and at which nearly all
+    /// particles are that are at any blob; see [`ArmOptions::sure_likelihood`](super::ArmOptions::sure_likelihood) and
+    /// [`ArmOptions::sure_share`](super::ArmOptions::sure_share).
     Tracking,
-    /// A blob of this frame carries the estimate that is less likely a hand.
+    /// Another blob of this frame carries the estimate.
     Uncertain,
     /// No blob does; the estimate is a prediction.
     Predicted,
@@ -133,6 +134,15 @@ pub(super) struct Cluster {
     pub hand_std_m: f32,
     /// Share of the weights at each candidate.
     pub masses: [f32; MAX_CANDIDATES],
+}
+
+impl Cluster {
+    /// Share of the candidate in the weights at all candidates; zero at none.
+    pub fn share(&self) -> f32 {
+        let all: f32 = self.masses.iter().sum();
+        let own = self.candidate.and_then(|index| self.masses.get(index)).copied().unwrap_or(0.0);
+        if all > 0.0 { own / all } else { 0.0 }
+    }
 }
 
 impl FrameContext<'_> {

@@ -194,7 +194,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         }
         self.estimate = cluster.joints;
         let carrier = cluster.candidate.and_then(|index| context.candidates.get(index));
-        if carrier.is_some_and(|candidate| candidate.likelihood >= options.sure_likelihood) {
+        let is_likely = carrier.is_some_and(|candidate| candidate.likelihood >= options.sure_likelihood);
+        if is_likely && cluster.share() >= options.sure_share {
             Status::Tracking
         } else if carried {
             Status::Uncertain

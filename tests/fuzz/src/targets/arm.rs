@@ -65,6 +65,7 @@ fn options(numbers: &mut Numbers<'_>) -> ArmOptions {
         &mut options.clutter_share,
         &mut options.lost_after_s,
         &mut options.sure_likelihood,
+        &mut options.sure_share,
     ]);
     options.angle_std_rad_per_sqrt_s = options.angle_std_rad_per_sqrt_s.map(|std| numbers.number(std));
     options.depth_from_area = numbers.flag();

@@ -1,0 +1,190 @@
+//! Hands and faces that another program found, as tables.
+
+use crate::csv_text::headed_reader;
+use crate::error::{Context, Result, ensure};
+use crate::file::read_lines;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use sinew_core::camera::Pixel;
+use sinew_core::ranges::is_pixel;
+use sinew_core::vision::candidate::HandCandidate;
+use sinew_core::vision::objects::head::HeadBox;
+use std::collections::BTreeMap;
+use std::f32::consts::PI;
+use std::path::Path;
+
+/// Columns of a table of hands.
+const HAND_COLUMNS: &str = "frame,u_px,v_px,size_px,probability and, if it is known, side (left or right)";
+/// Columns of a table of faces.
+const FACE_COLUMNS: &str = "frame,u_px,v_px,size_px";
+
+#[derive(Debug, Deserialize)]
+struct HandRow {
+    frame: usize,
+    u_px: f32,
+    v_px: f32,
+    size_px: f32,
+    probability: f32,
+    #[serde(default)]
+    side: Option<GivenSide>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum GivenSide {
+    Left,
+    Right,
+}
+
+#[derive(Debug, Deserialize)]
+struct FaceRow {
+    frame: usize,
+    u_px: f32,
+    v_px: f32,
+    size_px: f32,
+}
+
+/// Hands of one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub enum GivenHands {
+    /// The table has sides: candidates of the left and of the right hand. A hand without a side is
+    /// a candidate of both.
+    OfSides([Vec<HandCandidate>; 2]),
+    /// The table has none.
+    OfPerson(Vec<HandCandidate>),
+}
+
+/// A table of hands, the candidates of a tracker in place of blobs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HandTable {
+    has_sides: bool,
+    frames: BTreeMap<usize, Vec<(Option<usize>, HandCandidate)>>,
+}
+
+impl HandTable {
+    /// Reads a table with the columns frame (from 0), u_px, v_px (the middle of the hand), size_px
+    /// (its diameter), probability (that it is a hand, 0 to 1) and side (left, right or empty).
+    ///
+    /// # Errors
+    /// Names the file, the row and the rule that it broke.
+    pub fn read(path: &Path) -> Result<Self> {
+        let mut table = Self { has_sides: false, frames: BTreeMap::new() };
+        for row in rows::<HandRow>(path, "hands", HAND_COLUMNS)? {
+            let name = || format!("hands `{}`, frame {}", path.display(), row.frame);
+            check(row.u_px, row.v_px, row.size_px, &name)?;
+            ensure!(
+                (0.0..=1.0).contains(&row.probability),
+                "{}: `probability` has to lie from 0 to 1, not {}",
+                name(),
+                row.probability
+            );
+            let variance_px2 = row.size_px * row.size_px / 16.0;
+            let candidate = HandCandidate {
+                centre: Pixel::new(row.u_px, row.v_px),
+                moments_px2: [variance_px2, 0.0, variance_px2],
+                area_px: 0.25 * PI * row.size_px * row.size_px,
+                likelihood: row.probability,
+            };
+            table.has_sides |= row.side.is_some();
+            let side = row.side.map(|side| usize::from(side == GivenSide::Right));
+            table.frames.entry(row.frame).or_default().push((side, candidate));
+        }
+        Ok(table)
+    }
+
+    /// The hands of a frame.
+    #[must_use]
+    pub fn at(&self, frame: usize) -> GivenHands {
+        let hands = self.frames.get(&frame).map_or(&[][..], Vec::as_slice);
+        let of = |wanted: usize| {
+            let own = hands.iter().filter(|(side, _)| side.is_none_or(|side| side == wanted));
+            own.map(|(_, candidate)| *candidate).collect()
+        };
+        match self.has_sides {
+            true => GivenHands::OfSides([of(0), of(1)]),
+            false => GivenHands::OfPerson(hands.iter().map(|(_, candidate)| *candidate).collect()),
+        }
+    }
+}
+
+/// A table of faces.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaceTable(BTreeMap<usize, HeadBox>);
+
+impl FaceTable {
+    /// Reads a table with the columns frame (from 0), u_px, v_px (the middle of the face), size_px
+    /// (the width of its box). Of two rows of a frame the last one counts.
+    ///
+    /// # Errors
+    /// Names the file, the row and the rule that it broke.
+    pub fn read(path: &Path) -> Result<Self> {
+        let faces = rows::<FaceRow>(path, "head", FACE_COLUMNS)?.into_iter().map(|row| {
+            check(row.u_px, row.v_px, row.size_px, &|| format!("head `{}`, frame {}", path.display(), row.frame))?;
+            Ok((row.frame, HeadBox { centre_px: [row.u_px, row.v_px], width_px: row.size_px }))
+        });
+        Ok(Self(faces.collect::<Result<_>>()?))
+    }
+
+    /// The face of a frame.
+    #[must_use]
+    pub fn at(&self, frame: usize) -> Option<HeadBox> {
+        self.0.get(&frame).copied()
+    }
+}
+
+/// All rows, at least one.
+fn rows<R: DeserializeOwned>(path: &Path, what: &str, columns: &str) -> Result<Vec<R>> {
+    let text =
+        read_lines(path).with_context(|| format!("{what} `{}` cannot be read; check the path", path.display()))?;
+    let rows: Vec<R> = headed_reader(&text).deserialize().collect::<Result<_, _>>().with_context(|| {
+        format!("{what} `{}` cannot be read; give a table with the columns {columns}", path.display())
+    })?;
+    ensure!(!rows.is_empty(), "{what} `{}` has no row; give the columns {columns}", path.display());
+    Ok(rows)
+}
+
+fn check(u_px: f32, v_px: f32, size_px: f32, name: &dyn Fn() -> String) -> Result<()> {
+    ensure!(is_pixel(u_px) && is_pixel(v_px), "{}: ({u_px}, {v_px}) is no place near a picture", name());
+    ensure!(is_pixel(size_px) && size_px > 0.0, "{}: `size_px` has to be above zero, not {size_px}", name());
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hands(text: &str) -> Result<HandTable> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("hands.csv");
+        std::fs::write(&path, text).unwrap();
+        HandTable::read(&path)
+    }
+
+    #[test]
+    fn hands_come_by_frame_and_by_side() {
+        let table = hands("frame,u_px,v_px,size_px,probability\n3,10,20,8,0.9\n3,50,20,8,0.4\n").unwrap();
+        let GivenHands::OfPerson(of_3) = table.at(3) else { panic!("it has no sides") };
+        assert_eq!((of_3[0].centre, of_3[1].likelihood), (Pixel::new(10.0, 20.0), 0.4));
+        assert!((of_3[0].area_px - 16.0 * PI).abs() < 1e-3);
+        assert_eq!(table.at(2), GivenHands::OfPerson(Vec::new()));
+        let rows = "side,probability,frame,u_px,v_px,size_px\nleft,1,0,1,2,3\n,1,0,4,5,6\nright,1,0,7,8,9\n";
+        let GivenHands::OfSides(of_0) = hands(rows).unwrap().at(0) else { panic!("it has sides") };
+        let u_px = of_0.map(|hand| hand.iter().map(|candidate| candidate.centre.u_px).collect::<Vec<_>>());
+        assert_eq!(u_px, [vec![1.0, 4.0], vec![4.0, 7.0]]);
+    }
+
+    #[test]
+    fn a_table_that_breaks_a_rule_is_refused_by_it() {
+        let refused = |row: &str, part: &str| {
+            let text = format!("frame,u_px,v_px,size_px,probability\n{row}\n");
+            let message = hands(&text).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
+        };
+        refused("0,1,2,0,1", "`size_px` has to be above zero, not 0");
+        refused("4,1,2,3,1.5", "frame 4: `probability` has to lie from 0 to 1, not 1.5");
+        refused("0,inf,2,3,1", "(inf, 2) is no place near a picture");
+        refused("-1,1,2,3,1", "frame,u_px,v_px,size_px,probability");
+        refused("", "has no row");
+        assert!(hands("frame,u_px\n0,1\n").unwrap_err().to_string().contains("size_px"));
+    }
+}
