@@ -146,6 +146,11 @@ fn every_container_and_any_rate_is_read() {
         assert!(output.status.success(), "{name}: {}", stderr(&output));
         assert_eq!(rows(&root.join("run")).len(), FRAMES, "{name}");
     }
+    // An animation: its colours are few, its frames all there.
+    encode(root, "clip.gif", "");
+    let output = sinew(root, "track arm clip.gif --out run");
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert_eq!(rows(&root.join("run")).len(), FRAMES);
     // Half the rate is every second frame, twice the rate each frame twice.
     for (rate, count) in [("7.5", 15), ("30", 60)] {
         let output = sinew(root, &format!("track arm clip.mp4 --rate {rate} --out run"));

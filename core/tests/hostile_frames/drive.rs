@@ -2,10 +2,12 @@
 
 use crate::corners::Corners;
 
-/// Hostile frames of all trackers in the short form: ten seconds on two busy cores.
-const SHORT_FRAMES: usize = 2_000;
-/// Trackers that share them.
-const TRACKERS: usize = 13;
+/// Hostile frames of a tracker in the short form: ten seconds of all trackers on two busy cores.
+const SHORT_FRAMES: usize = 150;
+/// So many hostile frames have clean ones after each burst.
+const OFTEN_FRAMES: usize = 20_000;
+/// Then one clean frame ends a burst, and only one burst in so many has them all.
+const SELDOM: usize = 16;
 /// Most hostile frames in a row.
 const MAX_BURST: usize = 4;
 /// Failures that a message shows.
@@ -13,8 +15,8 @@ const SHOWN: usize = 5;
 
 /// A tracker and its twin.
 pub trait Subject {
-    /// Gives the tracker a hostile frame, and the twin nothing, or the frame without what is refused.
-    /// Says what is wrong with state and estimate.
+    /// Gives the tracker a hostile frame, and the twin nothing, or the frame without what is
+    /// refused. Says what is wrong with state and estimate.
     fn hostile(&mut self, corners: &mut Corners) -> Result<(), String>;
 
     /// Gives both the same clean frame.
@@ -26,8 +28,8 @@ pub trait Subject {
 
 /// Hostile frames of one tracker.
 fn frames() -> usize {
-    let all = std::env::var("SINEW_HOSTILE_FRAMES").ok().and_then(|frames| frames.parse().ok());
-    all.unwrap_or(SHORT_FRAMES) / TRACKERS
+    let wanted = std::env::var("SINEW_HOSTILE_FRAMES").ok().and_then(|frames| frames.parse().ok());
+    wanted.unwrap_or(SHORT_FRAMES)
 }
 
 /// After which hostile frames a tracker is that of its twin again.
@@ -68,15 +70,17 @@ fn bursts<S: Subject>(
         (0..clean_frames).for_each(|_| subject.clean());
         subject
     };
-    let (mut subject, mut driven, mut failures) = (begin(), 0, Vec::new());
+    let (mut subject, mut driven, mut bursts, mut failures) = (begin(), 0, 0, Vec::new());
     while driven < frames {
         let mut outcome = Ok(());
         for _ in 0..=corners.below(MAX_BURST) {
             driven += 1;
             outcome = outcome.and(subject.hostile(corners));
         }
-        (0..clean_frames).for_each(|_| subject.clean());
-        let apart = if is_compared { subject.apart() } else { 0.0 };
+        bursts += 1;
+        let has_all = driven < OFTEN_FRAMES || bursts % SELDOM == 0;
+        (0..if has_all { clean_frames } else { 1 }).for_each(|_| subject.clean());
+        let apart = if is_compared && has_all { subject.apart() } else { 0.0 };
         if outcome.is_ok() && !(apart <= 1.0) {
             outcome = Err(format!("{apart} times as far apart as allowed"));
         }

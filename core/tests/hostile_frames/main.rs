@@ -5,7 +5,7 @@
 //! After each hostile frame the state is within its ranges and no variance is negative. After the
 //! clean frames of a burst the estimate is that of a twin that was given no hostile frame.
 //!
-//! The long form has a million hostile frames in all and takes minutes:
+//! The long form gives each tracker a million hostile frames and takes an hour of one core:
 //!
 //! ```sh
 //! SINEW_HOSTILE_FRAMES=1000000 cargo test --release -p sinew-core --test hostile_frames
@@ -17,4 +17,5 @@ mod corners;
 mod cyclic;
 mod cyclic_trackers;
 mod drive;
+mod hands;
 mod options;

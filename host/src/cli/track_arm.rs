@@ -77,8 +77,8 @@ pub struct TrackArmArgs {
     /// same.
     #[arg(long)]
     pub resume: bool,
-    /// Table of hands that any detector found, in place of skin: frame (from 0), u_px, v_px, size_px
-    /// (diameter), probability, and side (left or right) where it is known.
+    /// Table of hands that any detector found, in place of skin: frame (from 0), u_px, v_px,
+    /// size_px (diameter), probability, and side (left or right) where it is known.
     #[arg(long, value_name = "FILE.csv")]
     pub hands: Option<PathBuf>,
     /// Table of faces that any detector found, in place of those that are looked for: frame (from

@@ -107,7 +107,8 @@ impl RunReport {
     pub(super) fn warn(&mut self) {
         let (face, has_table) = (self.options.face, self.options.hands.is_some());
         let cause = |(side, counts): (&&str, &StatusCounts)| {
-            Some(format!("the {side} hand was {}", self.seen.cause(counts, face, has_table)?))
+            let all = counts.tracking + counts.uncertain + counts.predicted + counts.lost;
+            Some(format!("the {side} hand was {}", self.seen.cause([counts.tracking, all], face, has_table)?))
         };
         self.warnings = self.status_counts.iter().filter_map(cause).collect();
     }

@@ -1,7 +1,6 @@
 //! What the frames of a run showed, and why no hand was surely seen in most of them.
 
 use super::arms::ArmSet;
-use super::report::StatusCounts;
 use crate::frames::FrameView;
 use serde::{Deserialize, Serialize};
 
@@ -31,12 +30,12 @@ impl SeenCounts {
         self.with_motion += usize::from(!view.edges.is_empty());
     }
 
-    /// The likeliest cause why a side was not surely seen in most of its frames, and what helps;
-    /// none if it was. `looks_for_face` and `has_table` say what the run was given.
+    /// The likeliest cause why a side was surely seen in `sure` of `all` frames only, and what
+    /// helps; none if these are half of them. `looks_for_face` and `has_table` say what the run was
+    /// given.
     #[must_use]
-    pub(super) fn cause(&self, of: &StatusCounts, looks_for_face: bool, has_table: bool) -> Option<String> {
-        let all = of.tracking + of.uncertain + of.predicted + of.lost;
-        if 2 * of.tracking >= all {
+    pub(super) fn cause(&self, [sure, all]: [usize; 2], looks_for_face: bool, has_table: bool) -> Option<String> {
+        if 2 * sure >= all {
             return None;
         }
         let Self { frames, with_face, with_candidates, within_reach, with_motion } = *self;
@@ -58,7 +57,7 @@ impl SeenCounts {
         } else {
             "several places look like a hand; --overlay draws them".to_owned()
         };
-        Some(format!("surely seen in {} of {all} frames; the likeliest cause: {cause}", of.tracking))
+        Some(format!("surely seen in {sure} of {all} frames; the likeliest cause: {cause}"))
     }
 }
 
@@ -68,20 +67,19 @@ mod tests {
 
     const ALL: SeenCounts =
         SeenCounts { frames: 100, with_face: 100, with_candidates: 100, within_reach: 100, with_motion: 100 };
-    const UNSURE: StatusCounts = StatusCounts { tracking: 10, uncertain: 80, predicted: 6, lost: 4 };
+    const UNSURE: [usize; 2] = [10, 100];
 
     #[test]
     fn most_frames_have_to_be_unsure() {
-        let sure = StatusCounts { tracking: 50, uncertain: 50, predicted: 0, lost: 0 };
-        assert_eq!(ALL.cause(&sure, true, false), None);
-        assert_eq!(ALL.cause(&StatusCounts::default(), true, false), None, "of no frame nothing is said");
-        assert!(ALL.cause(&UNSURE, true, false).unwrap().contains("surely seen in 10 of 100 frames"));
+        assert_eq!(ALL.cause([50, 100], true, false), None);
+        assert_eq!(ALL.cause([0, 0], true, false), None, "of no frame nothing is said");
+        assert!(ALL.cause(UNSURE, true, false).unwrap().contains("surely seen in 10 of 100 frames"));
     }
 
     #[test]
     fn the_first_thing_that_is_missing_is_named() {
         let named = |seen: SeenCounts, part: &str| {
-            let cause = seen.cause(&UNSURE, true, false).unwrap();
+            let cause = seen.cause(UNSURE, true, false).unwrap();
             assert!(cause.contains(part), "{cause}");
         };
         named(SeenCounts { with_candidates: 20, ..ALL }, "skin was found in 20 of 100 frames");
@@ -89,8 +87,8 @@ mod tests {
         named(SeenCounts { with_motion: 3, ..ALL }, "something moved in 3 of 100 frames only");
         named(SeenCounts { with_face: 0, ..ALL }, "no face was found");
         named(ALL, "several places look like a hand");
-        let table = SeenCounts { with_candidates: 20, ..ALL }.cause(&UNSURE, true, true).unwrap();
+        let table = SeenCounts { with_candidates: 20, ..ALL }.cause(UNSURE, true, true).unwrap();
         assert!(table.contains("--hands has a row for 20 of 100 frames"), "{table}");
-        assert!(!SeenCounts { with_face: 0, ..ALL }.cause(&UNSURE, false, false).unwrap().contains("no face"));
+        assert!(!SeenCounts { with_face: 0, ..ALL }.cause(UNSURE, false, false).unwrap().contains("no face"));
     }
 }

@@ -36,7 +36,8 @@ use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Status {
     /// A blob of this frame carries the estimate that is likely a hand, and at which nearly all
-    /// particles are that are at any blob; see [`ArmOptions::sure_likelihood`](super::ArmOptions::sure_likelihood) and
+    /// particles are that are at any blob; see
+    /// [`ArmOptions::sure_likelihood`](super::ArmOptions::sure_likelihood) and
     /// [`ArmOptions::sure_share`](super::ArmOptions::sure_share).
     Tracking,
     /// Another blob of this frame carries the estimate.

@@ -342,8 +342,8 @@ impl ArmOptions {
     /// The same for candidates whose likelihoods are a posterior over time and whose areas are not
     /// measured, as those of
     /// [`HandFinder`](crate::vision::objects::hands::HandFinder): no gate and no memory, which
-    /// would count the past twice, and no depth from the area. The estimate is sure with half of the
-    /// weights, since the likelihood says the rest.
+    /// would count the past twice, and no depth from the area. The estimate is sure with half of
+    /// the weights, since the likelihood says the rest.
     ///
     /// ```
     /// use sinew_core::tracker::arm::ArmOptions;

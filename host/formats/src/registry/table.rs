@@ -6,7 +6,7 @@ use crate::cloud::{csv, pcd, ply};
 use crate::motion::{amc, bvh, c3d, exponential_map, trc};
 
 /// All formats, in the order in which texts list them.
-pub static FORMATS: [Format; 24] = [
+pub static FORMATS: [Format; 25] = [
     Format {
         name: "BVH",
         extensions: &["bvh"],
@@ -76,6 +76,7 @@ pub static FORMATS: [Format; 24] = [
     video("WMV", &["wmv"], &[at(0, b"\x30\x26\xb2\x75")]),
     video("AVCHD", &["mts"], &[at(4, b"\x47")]),
     video("Ogg", &["ogv"], &[at(0, b"OggS")]),
+    video("GIF", &["gif"], &[at(0, b"GIF8")]),
 ];
 
 const fn at(offset: usize, bytes: &'static [u8]) -> Signature {

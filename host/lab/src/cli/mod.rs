@@ -80,7 +80,8 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
     }
 }
 
-/// Does `work`, which a signal ends between two cells; the console then says that it can be resumed.
+/// Does `work`, which a signal ends between two cells; the console then says that it can be
+/// resumed.
 fn until_signal(console: &Console, work: impl FnOnce(Stop<'_>) -> anyhow::Result<()>) -> anyhow::Result<()> {
     let flag = stop_flag()?;
     console.resumable(work(&|| flag.load(Ordering::Relaxed)))
