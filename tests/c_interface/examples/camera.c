@@ -64,7 +64,7 @@ static SinewStatus see(SinewVision *vision, int frame, SinewVisionResult *seen) 
 }
 
 int main(void) {
-    static const char *const STATES[] = {"lost", "predicted", "tracking"};
+    static const char *const STATES[] = {"lost", "predicted", "tracking", "uncertain"};
     SinewVision *vision = NULL;
     SinewVisionConfig vision_config;
     SinewStatus status = sinew_vision_default_config(&vision_config);
