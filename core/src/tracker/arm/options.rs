@@ -283,8 +283,8 @@ pub struct ArmOptions {
     /// Likelihood below which a blob leaves the estimate uncertain.
     pub sure_likelihood: f32,
     /// A blob leaves the estimate uncertain below this share of the particles' weights that are at
-    /// any blob. The share is the blob's posterior probability against all others, which tells a
-    /// hand from a face where the likelihood does not.
+    /// any blob. The share is the blob's posterior probability against all others. It keeps a hand
+    /// and a face apart where the likelihood does not.
     pub sure_share: f32,
 }
 

@@ -24,7 +24,8 @@ const MIN_FILL: f32 = 0.1;
 /// use sinew_core::vision::objects::hands::Candidates;
 ///
 /// let mut hand = Candidates::new();
-/// hand.push(HandCandidate { likelihood: 0.9, ..HandCandidate::default() }).expect("there is room for twelve");
+/// let likely = HandCandidate { likelihood: 0.9, ..HandCandidate::default() };
+/// hand.push(likely).expect("there is room for twelve");
 /// assert_eq!(hand.first().map(|candidate| candidate.likelihood), Some(0.9));
 /// ```
 pub type Candidates = Vec<HandCandidate, MAX_PLACES>;
