@@ -199,6 +199,22 @@ impl Camera {
         Ok(Self { distortion: Some(distortion), ..self })
     }
 
+    /// The camera of a picture whose pixels are the means of blocks of `block` x `block` pixels.
+    #[must_use]
+    pub fn of_blocks(self, block: u32) -> Self {
+        if block <= 1 {
+            return self;
+        }
+        let scale = 1.0 / block as f32;
+        let middle = |at: f32| (at + 0.5) * scale - 0.5;
+        Self {
+            focal_u_px: self.focal_u_px * scale,
+            focal_v_px: self.focal_v_px * scale,
+            centre: Pixel::new(middle(self.centre.u_px), middle(self.centre.v_px)),
+            ..self
+        }
+    }
+
     /// Mean of both focal lengths, pixels.
     #[must_use]
     pub fn focal_px(&self) -> f32 {
@@ -273,6 +289,16 @@ mod tests {
         Camera::from_field_of_view(640, 480, 1.05)
             .and_then(|c| c.with_distortion(Distortion { k1: -0.12, k2: 0.03, k3: 0.0, p1: 0.001, p2: -0.0005 }))
             .unwrap()
+    }
+
+    #[test]
+    fn a_picture_of_blocks_shows_the_same_directions() {
+        let camera = Camera::from_field_of_view(640, 480, 1.0).unwrap();
+        assert_eq!(camera.of_blocks(2), Camera::from_field_of_view(320, 240, 1.0).unwrap());
+        let point = Vec3::new(0.3, -0.2, 1.0);
+        let [whole, blocks] = [camera, camera.of_blocks(2)].map(|camera| camera.project(&point).unwrap());
+        // Pixel u of the blocks has the pixels 2 u and 2 u + 1.
+        assert!((whole.u_px - (2.0 * blocks.u_px + 0.5)).abs() < 1.0e-3);
     }
 
     proptest! {

@@ -4,10 +4,13 @@ use crate::log::debug;
 use crate::player::{Answers, Application, Refusal, play};
 use crate::port::{Part, Port, counted};
 use heapless::Vec;
+use sinew_core::skeleton::Side;
 use sinew_core::slot::Slot;
 use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmTracker};
 use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::edges::EdgePixel;
+use sinew_core::vision::front_end::PersonHands;
+use sinew_core::vision::objects::head::HeadBox;
 use sinew_record::{ArmInput, ArmResult, ArmSetup, CandidateChunk, Cost, EdgeChunk, Kind, Record, RecordError};
 use static_cell::ConstStaticCell;
 
@@ -22,6 +25,8 @@ pub const EDGES: usize = 1024;
 #[derive(Debug)]
 pub struct Arm {
     model: Slot<ArmModel>,
+    /// For candidates of a person's hands.
+    person_model: Slot<ArmModel>,
     tracker: Slot<ArmTracker<PARTICLES>>,
     last_frame: Option<u32>,
     step: Cost,
@@ -31,7 +36,13 @@ impl Arm {
     /// Before the first record.
     #[must_use]
     pub const fn new() -> Self {
-        Self { model: Slot::Empty, tracker: Slot::Empty, last_frame: None, step: Cost::zero() }
+        Self {
+            model: Slot::Empty,
+            person_model: Slot::Empty,
+            tracker: Slot::Empty,
+            last_frame: None,
+            step: Cost::zero(),
+        }
     }
 
     /// Begins a recording.
@@ -48,19 +59,61 @@ impl Arm {
         Ok(())
     }
 
+    /// Gets ready for the candidates of a person's hands, after [`Arm::begin`].
+    ///
+    /// # Errors
+    /// None after the other.
+    #[inline(never)]
+    pub fn begin_person(&mut self, setup: &ArmSetup) -> Result<(), Refusal> {
+        let Some(model) = self.model.get() else { return Ok(()) };
+        let [width, height] = setup.image_size_px;
+        let options = model.options().for_hands_over_time();
+        self.person_model = Slot::Full(ArmModel::new(*model.camera(), (width, height), *model.geometry(), options)?);
+        Ok(())
+    }
+
     /// Answers one frame.
     ///
     /// # Errors
     /// A frame before the setup or not after the last one.
-    #[inline(never)]
     pub fn frame<P: Port>(&mut self, input: &ArmInput, image: Option<ArmImage<'_>>) -> Result<ArmResult, Refusal> {
-        let (Slot::Full(model), Slot::Full(tracker)) = (&self.model, &mut self.tracker) else {
+        self.step::<P>(input, image, None)
+    }
+
+    /// Answers one frame with the candidates of both hands of a person whose head is there.
+    ///
+    /// # Errors
+    /// As [`Arm::frame`].
+    pub fn frame_of_person<P: Port>(
+        &mut self,
+        input: &ArmInput,
+        PersonHands { head, hands }: &PersonHands<'_>,
+        edges: &[EdgePixel],
+    ) -> Result<ArmResult, Refusal> {
+        let model = self.person_model.get().ok_or(RecordError::OutOfOrder)?;
+        let [left, right] = hands;
+        let candidates = if model.side() == Side::Left { left } else { right };
+        let image = ArmImage { candidates, edges };
+        self.step::<P>(input, Some(image), Some(*head))
+    }
+
+    #[inline(never)]
+    fn step<P: Port>(
+        &mut self,
+        input: &ArmInput,
+        image: Option<ArmImage<'_>>,
+        head: Option<HeadBox>,
+    ) -> Result<ArmResult, Refusal> {
+        let model = if head.is_some() { &self.person_model } else { &self.model };
+        let (Slot::Full(model), Slot::Full(tracker)) = (model, &mut self.tracker) else {
             return Err(RecordError::OutOfOrder.into());
         };
         if self.last_frame.is_some_and(|last| last >= input.frame) {
             return Err(RecordError::OutOfOrder.into());
         }
-        let frame = ArmFrame { timestamp_us: input.timestamp_us, image, shoulder_m: input.shoulder_m };
+        let [left_m, right_m] = head.map_or([input.shoulder_m; 2], |head| head.shoulders_m(model.camera()));
+        let shoulder_m = if model.side() == Side::Left { left_m } else { right_m };
+        let frame = ArmFrame { timestamp_us: input.timestamp_us, image, shoulder_m };
         let estimate = counted::<P, _>(&mut self.step, || tracker.step(model, &frame));
         self.last_frame = Some(input.frame);
         debug!("frame {}: hand at {} m", input.frame, estimate.joints.hand_m.z);

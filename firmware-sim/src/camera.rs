@@ -1,4 +1,4 @@
-//! The image `camera`: a frame's lines arrive, blobs and edge pixels come out, the arm and the
+//! The image `camera`: a frame's lines arrive, hands and edge pixels come out, the arm and the
 //! cyclic tracker step.
 
 use crate::arm::Arm;
@@ -6,21 +6,17 @@ use crate::cyclic::CyclicApp;
 use crate::player::{Answers, Application, Refusal, play};
 use crate::port::{Part, Port, counted};
 use sinew_core::checksum::Crc32;
-use sinew_core::slot::Slot;
 use sinew_core::tracker::arm::ArmImage;
-use sinew_core::vision::front_end::edge_lines::EdgeSteps;
+use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::front_end::pixel_format::Rgb565;
-use sinew_core::vision::front_end::skin_table::SkinTable;
-use sinew_core::vision::front_end::{FrameLines, LineFrontEnd, QvgaFrontEnd};
-use sinew_core::vision::hand_likelihood::HandLikelihood;
-use sinew_record::{ArmInput, CameraLine, CameraSetup, Cost, Kind, Record, RecordError, VisionResult};
+use sinew_core::vision::front_end::{PersonFrame, PersonLines};
+use sinew_record::{ArmInput, CameraFace, CameraLine, CameraSetup, Cost, Kind, Record, RecordError, VisionResult};
 use static_cell::ConstStaticCell;
 
 /// Everything that a camera's firmware keeps.
 #[derive(Debug)]
 pub struct CameraApp {
-    skin: SkinTable<Rgb565>,
-    front_end: Slot<QvgaFrontEnd>,
+    eye: PersonLines<Rgb565>,
     /// Whether a line of the coming frame was read.
     begun: bool,
     arm: Arm,
@@ -36,8 +32,7 @@ impl CameraApp {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            skin: SkinTable::new(),
-            front_end: Slot::Empty,
+            eye: PersonLines::empty(),
             begun: false,
             arm: Arm::new(),
             cyclic: CyclicApp::new(),
@@ -53,22 +48,20 @@ impl CameraApp {
     fn begin(&mut self, setup: &CameraSetup) -> Result<(), Refusal> {
         let [width, height] = setup.size_px.map(usize::from);
         let skin = setup.skin()?;
-        let front_end = LineFrontEnd::new((width, height), HandLikelihood::default(), EdgeSteps::default())?;
-        self.skin.learn(&skin);
-        (self.front_end, self.begun) = (Slot::Full(front_end), false);
+        self.eye.begin((width, height), &skin)?;
+        self.begun = false;
         Ok(())
     }
 
     #[inline(never)]
     fn line<P: Port>(&mut self, record: &Record<'_>) -> Result<(), Refusal> {
         let line: CameraLine = record.read()?;
-        let front_end = self.front_end.get_mut().ok_or(RecordError::OutOfOrder)?;
-        let (skin, begun) = (&self.skin, self.begun);
+        let (eye, begun) = (&mut self.eye, self.begun);
         counted::<P, _>(&mut self.lines, || {
             if !begun {
-                front_end.begin_frame();
+                eye.begin_frame();
             }
-            front_end.line(usize::from(line.row), &line.pixels, skin);
+            eye.line(usize::from(line.row), &line.pixels);
         });
         self.begun = true;
         Ok(())
@@ -77,18 +70,25 @@ impl CameraApp {
     /// Ends the frame and steps the arm; a frame without any line is one without an image.
     #[inline(never)]
     fn end<P: Port>(&mut self, input: &ArmInput, answers: &mut Answers<'_, P::Output>) -> Result<(), Refusal> {
-        let front_end = self.front_end.get_mut().ok_or(RecordError::OutOfOrder)?;
         let seen = if self.begun {
-            Some(counted::<P, _>(&mut self.lines, || front_end.end_frame()))
+            counted::<P, _>(&mut self.lines, || self.eye.end_frame())
         } else {
-            front_end.forget_last_frame();
+            self.eye.forget_last_frame();
             None
         };
         let spent = u32::try_from(self.lines.total).unwrap_or(u32::MAX);
         (self.begun, self.lines) = (false, Cost::zero());
-        let image = seen.as_ref().map(|seen| ArmImage { candidates: seen.candidates, edges: seen.edges });
         let before = self.arm.step_cost().total;
-        let result = self.arm.frame::<P>(input, image)?;
+        let result = match &seen {
+            None => self.arm.frame::<P>(input, None)?,
+            Some(PersonFrame { lines, person: Some(person) }) => {
+                self.arm.frame_of_person::<P>(input, person, lines.edges)?
+            }
+            Some(PersonFrame { lines, person: None }) => {
+                let image = ArmImage { candidates: lines.candidates, edges: lines.edges };
+                self.arm.frame::<P>(input, Some(image))?
+            }
+        };
         let step = u32::try_from(self.arm.step_cost().total - before).unwrap_or(u32::MAX);
         if let Some(seen) = &seen {
             self.vision.add(spent);
@@ -100,25 +100,24 @@ impl CameraApp {
     }
 }
 
-/// What is reported of the blobs and edges themselves.
-fn vision_result(frame: u32, seen: &FrameLines<'_>) -> VisionResult {
-    let mut sum = Crc32::new();
-    for candidate in seen.candidates {
+/// What is reported of blobs, edges and hands themselves.
+fn vision_result(frame: u32, PersonFrame { lines, person }: &PersonFrame<'_>) -> VisionResult {
+    let add = |sum: Crc32, candidate: &HandCandidate| {
         let [uu, uv, vv] = candidate.moments_px2;
         let (u, v) = (candidate.centre.u_px, candidate.centre.v_px);
-        for value in [u, v, uu, uv, vv, candidate.area_px, candidate.likelihood] {
-            sum = sum.and_word(value.to_bits());
-        }
-    }
-    for edge in seen.edges {
-        sum = sum.and_word(u32::from(edge.u) | u32::from(edge.v) << 16);
-    }
-    let losses = seen.losses;
+        let numbers = [u, v, uu, uv, vv, candidate.area_px, candidate.likelihood];
+        numbers.into_iter().fold(sum, |sum, value| sum.and_word(value.to_bits()))
+    };
+    let blobs = lines.candidates.iter().fold(Crc32::new(), add);
+    let edges = lines.edges.iter().fold(blobs, |sum, edge| sum.and_word(u32::from(edge.u) | u32::from(edge.v) << 16));
+    let hands = person.iter().flat_map(|person| person.hands.iter().flatten());
+    let all = hands.fold(edges, add);
+    let losses = lines.losses;
     VisionResult {
         frame,
-        blobs: seen.blobs.len() as u16,
-        edges: seen.edges.len() as u16,
-        checksum: sum.value(),
+        blobs: lines.blobs.len() as u16,
+        edges: lines.edges.len() as u16,
+        checksum: all.value(),
         losses: [
             losses.dropped_components,
             losses.dropped_px,
@@ -140,8 +139,16 @@ impl Application for CameraApp {
     fn take<P: Port>(&mut self, record: &Record<'_>, answers: &mut Answers<'_, P::Output>) -> Result<(), Refusal> {
         match record.kind {
             Kind::CameraSetup => self.begin(&record.read()?),
-            Kind::ArmSetup => self.arm.begin(&record.read()?),
+            Kind::ArmSetup => {
+                let setup = record.read()?;
+                self.arm.begin(&setup)?;
+                self.arm.begin_person(&setup)
+            }
             Kind::CameraLine => self.line::<P>(record),
+            Kind::CameraFace => {
+                self.eye.add_face(record.read::<CameraFace>()?.head);
+                Ok(())
+            }
             Kind::ArmInput => self.end::<P>(&record.read()?, answers),
             _ => self.cyclic.take::<P>(record, answers),
         }

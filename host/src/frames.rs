@@ -8,6 +8,7 @@ use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::edges::{EdgeDetector, EdgeList, EdgePixel};
 use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
 use sinew_core::vision::frame::{FrameAnalyser, FrameBuffers, last_mask, mask_words, runs_that_suffice};
+use sinew_core::vision::front_end::moment_blob::MomentBlob;
 use sinew_core::vision::hand_likelihood::HandLikelihood;
 use sinew_core::vision::morphology::scratch_words;
 use sinew_core::vision::objects::grid::CellGrid;
@@ -26,6 +27,8 @@ pub const MAX_EDGES: usize = 4096;
 pub struct FrameView {
     /// Blobs, the most likely first.
     pub blobs: Vec<LikelyBlob>,
+    /// Those of a front end that reads lines, in place of these.
+    pub line_blobs: Vec<MomentBlob>,
     /// The same as the trackers see them.
     pub candidates: Vec<HandCandidate>,
     /// Temporal edge pixels.
@@ -114,19 +117,20 @@ impl FrameReader {
             candidates: self.blobs.candidates().collect(),
             edges: self.edges.as_slice().to_vec(),
             dropped_blobs: self.blobs.dropped_blobs + self.blobs.dropped_components,
+            line_blobs: Vec::new(),
         })
     }
 
     /// Gives the last frame, its mask after morphology and its brightness, to a grid of cells.
-    pub fn fill(&mut self, grid: &mut CellGrid) {
+    pub fn fill<const COLUMNS: usize, const ROWS: usize>(&mut self, grid: &mut CellGrid<COLUMNS, ROWS>) {
         let (width, height) = self.size;
         let buffers = self.buffers.borrow();
         let (Ok(mask), luminance) = (last_mask(&buffers, width, height), self.analyser.last_luminance(&buffers)) else {
             return;
         };
         grid.begin();
-        for (bits, levels) in mask.rows().zip(luminance.chunks(width)) {
-            grid.add_line(bits, levels, 1);
+        for (v, (bits, levels)) in mask.rows().zip(luminance.chunks(width)).enumerate() {
+            grid.line(v, bits, levels, 1);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Host side of Sinew: image folders, skin models, scenes, plots and reports around [`sinew_core`].
 
 pub mod body;
+pub mod camera_lines;
 #[cfg(feature = "command")]
 pub mod cli;
 pub mod config;

@@ -1,5 +1,7 @@
 //! `sinew track arm` with hands and faces that another detector found.
 
+use sinew_core::vision::objects::head::HeadBox;
+use sinew_record::{CameraFace, Kind, RecordStream};
 use sinew_tests::{sinew_command, table_rows};
 use std::fs;
 use std::path::Path;
@@ -64,7 +66,7 @@ fn hands_of_a_table_are_followed_with_and_without_sides() {
 }
 
 #[test]
-fn a_face_of_a_table_gives_the_shoulders_and_cannot_be_recorded() {
+fn a_face_of_a_table_gives_the_shoulders_and_is_recorded_by_lines_alone() {
     let root = scene(false);
     fs::write(root.path().join("head.csv"), "frame,u_px,v_px,size_px\n2,300,100,50\n").unwrap();
     let track = "track arm scene/frames --out run --head head.csv";
@@ -76,6 +78,24 @@ fn a_face_of_a_table_gives_the_shoulders_and_cannot_be_recorded() {
     assert_ne!(rows[1]["shoulder_u_px"], rows[5]["shoulder_u_px"], "the face counts from its frame on");
     let (code, _, message) = ends(root.path(), "record run --out run.stream");
     assert!(code == Some(65) && message.contains("--no-face"), "{message}");
+    // By lines the face goes into the stream, its box in the pixels that the camera sees.
+    succeeds(root.path(), &format!("{track} --front-end lines"));
+    let rows = table_rows(&root.path().join("run/track.csv"));
+    let shoulder = ["shoulder_u_px", "shoulder_v_px"].map(|axis| rows[39][axis].parse::<f32>().unwrap());
+    assert!((shoulder[0] - 250.0).hypot(shoulder[1] - 150.0) < 1.5, "{shoulder:?}");
+    let (code, _, message) = ends(root.path(), "record run --out run.stream");
+    assert!(code == Some(65) && message.contains("--form camera"), "{message}");
+    succeeds(root.path(), "record run --form camera --out run.stream");
+    let bytes = fs::read(root.path().join("run.stream")).unwrap();
+    let mut stream = RecordStream::<_, 1024>::new(bytes.as_slice());
+    let mut faces = Vec::new();
+    while let Some(record) = stream.next_record() {
+        let record = record.unwrap();
+        if record.kind == Kind::CameraFace {
+            faces.push(record.read::<CameraFace>().unwrap().head);
+        }
+    }
+    assert_eq!(faces, [HeadBox { centre_px: [149.75, 49.75], width_px: 25.0 }]);
 }
 
 #[test]
@@ -88,6 +108,9 @@ fn a_table_that_cannot_be_used_is_refused_and_one_that_misses_frames_is_noticed(
     };
     hands("frame,u_px,v_px\n0,1,2\n");
     refused(65, "frame,u_px,v_px,size_px,probability");
+    hands("frame,u_px,v_px,size_px,probability\n0,1,2,0.5,1\n");
+    let (code, _, message) = ends(root.path(), &format!("{TRACK} --out run --front-end lines"));
+    assert!(code == Some(65) && message.contains("leave one out"), "{message}");
     hands("frame,u_px,v_px,size_px,probability\n0,1,2,-3,1\n");
     refused(65, "`size_px` has to be above zero, not -3");
     fs::remove_file(root.path().join("hands.csv")).unwrap();

@@ -1,7 +1,7 @@
 //! `sinew track arm` on a person before a webcam whose face is in view.
 
 use sinew::config::Config;
-use sinew::track::{Event, SideChoice, TrackOptions, TrackRun};
+use sinew::track::{Event, FrontEnd, SideChoice, TrackOptions, TrackRun};
 use sinew_tests::{shared_data, table_rows};
 use std::collections::BTreeMap;
 use std::fs;
@@ -19,6 +19,7 @@ fn options(video: &Path) -> TrackOptions {
         seed: 1,
         skin: "gaussian".to_owned(),
         calibrate: None,
+        front_end: FrontEnd::Pictures,
         hands: None,
         head: None,
         face: true,
@@ -75,10 +76,28 @@ fn a_person_with_bare_arms_is_tracked_by_default() {
 }
 
 #[test]
+fn lines_of_a_camera_show_the_same_person() {
+    let Some(clips) = shared_data("video/asl") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    run(TrackOptions { front_end: FrontEnd::Lines, ..options(&clips.join("milk.mkv")) }, folder.path());
+    let [on, all] = on_palms(&folder.path().join("track.csv"), &clips.join("milk_points.csv"));
+    assert!(all > 45 && on * 100 > 80 * all, "{on} of {all} rows lie on a palm");
+}
+
+#[test]
 fn a_run_that_was_broken_off_goes_on_to_the_same_bytes() {
+    goes_on(FrontEnd::Pictures);
+}
+
+#[test]
+fn a_run_by_lines_that_was_broken_off_goes_on_to_the_same_bytes() {
+    goes_on(FrontEnd::Lines);
+}
+
+fn goes_on(front_end: FrontEnd) {
     let Some(clips) = shared_data("video/asl") else { return };
     let (whole, broken) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    let options = options(&clips.join("eat.mkv"));
+    let options = TrackOptions { front_end, ..options(&clips.join("eat.mkv")) };
     run(options.clone(), whole.path());
     // In the first part, and while the answer about a second face is awaited.
     for last in [7, 34] {

@@ -3,7 +3,7 @@
 
 use image::{Rgb, RgbImage};
 use sinew::config::Config;
-use sinew::track::{Event, SideChoice, TrackOptions, TrackRun};
+use sinew::track::{Event, FrontEnd, SideChoice, TrackOptions, TrackRun};
 use sinew_tests::{files_below, modified, set_modified, sinew_command};
 use std::collections::BTreeMap;
 use std::fs;
@@ -57,6 +57,7 @@ impl Scene {
             seed: 3,
             skin: "gaussian".to_owned(),
             calibrate: None,
+            front_end: FrontEnd::Pictures,
             hands: None,
             head: None,
             face: true,

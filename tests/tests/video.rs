@@ -2,7 +2,7 @@
 
 use sinew::config::Config;
 use sinew::images::{VideoFrames, load_rgb};
-use sinew::track::{Event, SideChoice, TrackOptions, TrackRun};
+use sinew::track::{Event, FrontEnd, SideChoice, TrackOptions, TrackRun};
 use sinew_tests::sinew_command;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -171,6 +171,7 @@ fn a_broken_off_run_over_a_video_goes_on() {
         seed: 1,
         skin: "gaussian".to_owned(),
         calibrate: None,
+        front_end: FrontEnd::Pictures,
         hands: None,
         head: None,
         face: true,

@@ -6,6 +6,7 @@ use crate::kind::Kind;
 use crate::payload::Payload;
 use heapless::Vec;
 use sinew_core::error::ParameterError;
+use sinew_core::vision::objects::head::HeadBox;
 use sinew_core::vision::skin::GaussianSkin;
 
 /// Most pixels of a line.
@@ -118,6 +119,38 @@ impl Payload for CameraLine {
     }
 }
 
+/// A face that a detector found; it counts from the next frame on.
+///
+/// ```
+/// use sinew_core::vision::objects::head::HeadBox;
+/// use sinew_record::{CameraFace, decode, encode};
+///
+/// let face = CameraFace { head: HeadBox { centre_px: [160.0, 52.0], width_px: 36.0 } };
+/// let mut bytes = [0; 64];
+/// encode(&face, &mut bytes)?;
+/// assert_eq!(decode(&bytes)?.0.read::<CameraFace>()?, face);
+/// # Ok::<(), sinew_record::RecordError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CameraFace {
+    /// Its box.
+    pub head: HeadBox,
+}
+
+impl Payload for CameraFace {
+    const KIND: Kind = Kind::CameraFace;
+    const MAX_BYTES: usize = 3 * 4;
+
+    fn write(&self, fields: &mut FieldWriter<'_>) {
+        fields.f32s(&self.head.centre_px);
+        fields.f32(self.head.width_px);
+    }
+
+    fn read(fields: &mut FieldReader<'_>) -> Result<Self, RecordError> {
+        Ok(Self { head: HeadBox { centre_px: fields.f32s()?, width_px: fields.f32()? } })
+    }
+}
+
 /// What the front end answers to a frame.
 ///
 /// ```
@@ -136,7 +169,8 @@ pub struct VisionResult {
     pub blobs: u16,
     /// Number of temporal edge pixels.
     pub edges: u16,
-    /// CRC-32 of the candidates' bits and the edge pixels.
+    /// CRC-32 of the bits of the blobs as candidates, the edge pixels, and the candidates of both
+    /// hands.
     pub checksum: u32,
     /// Components, blobs, edges and lines that were lost, as in
     /// [`sinew_core::vision::front_end::FrameLosses`].

@@ -36,6 +36,8 @@ pub enum Kind {
     CameraSetup = 48,
     /// [`crate::CameraLine`].
     CameraLine = 49,
+    /// [`crate::CameraFace`].
+    CameraFace = 50,
     /// [`crate::CyclicResult`].
     CyclicResult = 128,
     /// [`crate::ArmResult`].
@@ -50,7 +52,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::End,
         Self::CyclicSetup,
         Self::CyclicInput,
@@ -60,6 +62,7 @@ impl Kind {
         Self::ArmInput,
         Self::CameraSetup,
         Self::CameraLine,
+        Self::CameraFace,
         Self::CyclicResult,
         Self::ArmResult,
         Self::VisionResult,

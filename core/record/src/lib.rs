@@ -51,7 +51,7 @@ mod stream;
 mod tests;
 
 pub use arm::{ArmInput, ArmSetup, CANDIDATES_A_RECORD, CandidateChunk, EDGES_A_RECORD, EdgeChunk};
-pub use camera::{CameraLine, CameraSetup, LINE_PIXELS, VisionResult};
+pub use camera::{CameraFace, CameraLine, CameraSetup, LINE_PIXELS, VisionResult};
 pub use cyclic::{CyclicInput, CyclicSetup, model_checksum};
 pub use end::End;
 pub use error::RecordError;

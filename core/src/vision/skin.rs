@@ -60,6 +60,11 @@ pub trait SkinClassifier {
     /// Judges as many whole pixels as `rgb` holds and `bits` has room for; all other bits of `bits`
     /// become zero.
     fn classify_line(&self, rgb: &[u8], bits: &mut [u32]);
+
+    /// Whether it is known at once that no colour from `low` to `high`, R, G and B each, is skin.
+    fn is_none_skin(&self, _low: [u8; 3], _high: [u8; 3]) -> bool {
+        false
+    }
 }
 
 /// Skin as a normal distribution of chromaticity r = R/(R+G+B), g = G/(R+G+B), arm paper, section

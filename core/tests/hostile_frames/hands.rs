@@ -16,7 +16,7 @@ const FACE: HeadBox = HeadBox { centre_px: [80.0, 30.0], width_px: 16.0 };
 const MAX_APART_PX: f32 = 4.0;
 
 struct Hands {
-    finders: [HandFinder; 2],
+    finders: [HandFinder<80, 60>; 2],
     last: [Option<(Pixel, f32)>; 2],
     frame: usize,
 }
@@ -48,9 +48,9 @@ impl Subject for Hands {
             let (skin, levels) = line(corners.below(100), row);
             let skin = skin.map(|word| if corners.one_in(3) { !word } else { word });
             let [words, pixels] = [WORDS, SIZE.0].map(|length| corners.below(length + 1));
-            finder.grid_mut().add_line(&skin[..words], &levels[..pixels], corners.below(4));
+            finder.grid_mut().line(row + corners.below(3), &skin[..words], &levels[..pixels], corners.below(4));
         }
-        let hands = finder.step();
+        let hands = finder.step().clone();
         let is_sound = hands.iter().flatten().all(|candidate| {
             let numbers = candidate.moments_px2.iter().chain([&candidate.area_px]);
             let place = [candidate.centre.u_px, candidate.centre.v_px];
@@ -62,13 +62,13 @@ impl Subject for Hands {
 
     fn clean(&mut self) {
         self.frame += 1;
-        let left = |[left, _]: [Candidates; 2]| left.first().map(|hand| (hand.centre, hand.likelihood));
+        let left = |[left, _]: &[Candidates; 2]| left.first().map(|hand| (hand.centre, hand.likelihood));
         self.last = self.finders.each_mut().map(|finder| {
             finder.add_face(FACE);
             finder.grid_mut().begin();
             for row in 0..SIZE.1 {
                 let (skin, levels) = line(self.frame, row);
-                finder.grid_mut().add_line(&skin, &levels, 1);
+                finder.grid_mut().line(row, &skin, &levels, 1);
             }
             left(finder.step())
         });

@@ -9,7 +9,7 @@ use crate::output::OutputDir;
 use crate::scene::{Scene, SceneOptions, Sides};
 use crate::skin::confusion::median;
 use crate::skin::model::DEFAULT_SKIN;
-use crate::track::{RunOutcome, SideChoice, TrackOptions, TrackRun};
+use crate::track::{FrontEnd, RunOutcome, SideChoice, TrackOptions, TrackRun};
 use anyhow::{Result, bail};
 use clap::Args;
 use serde::Serialize;
@@ -110,6 +110,7 @@ fn track_options(out: &OutputDir, seed: u64) -> Result<TrackOptions> {
         seed,
         skin: DEFAULT_SKIN.to_owned(),
         calibrate: None,
+        front_end: FrontEnd::Pictures,
         hands: None,
         head: None,
         face: true,

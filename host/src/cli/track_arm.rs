@@ -9,7 +9,7 @@ use super::viewer_args::ViewerArgs;
 use crate::config::{Config, DEFAULT_FILE, MAX_PARTICLES};
 use crate::images::{VideoFacts, is_video};
 use crate::registry::{Kind, extensions};
-use crate::track::{Event, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
+use crate::track::{Event, FrontEnd, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
 use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::json;
@@ -77,6 +77,10 @@ pub struct TrackArmArgs {
     /// same.
     #[arg(long)]
     pub resume: bool,
+    /// What reads the pictures: `pictures` as they are, or `lines` of at most 320 x 240 pixels,
+    /// exactly as firmware reads those of its camera.
+    #[arg(long, value_enum, default_value_t = FrontEnd::Pictures)]
+    pub front_end: FrontEnd,
     /// Table of hands that any detector found, in place of skin: frame (from 0), u_px, v_px,
     /// size_px (diameter), probability, and side (left or right) where it is known.
     #[arg(long, value_name = "FILE.csv")]
@@ -131,6 +135,7 @@ pub fn run(args: &TrackArmArgs, console: &Console) -> Result<()> {
         seed: args.seed,
         skin: args.skin.skin.clone(),
         calibrate: args.skin.calibrate,
+        front_end: args.front_end,
         hands: args.hands.clone(),
         head: args.head.clone(),
         face: !args.no_face && args.skin.calibrate.is_none(),

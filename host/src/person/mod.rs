@@ -1,11 +1,15 @@
 //! The person before the camera: the face, the skin's own colour, and both hands over time.
 
 mod face;
+mod faces;
 mod finder;
 mod given;
+mod lines_finder;
 mod skin;
 
 pub use face::{FaceDetector, FoundFace};
+pub use faces::FaceLooks;
 pub use finder::{PersonFinder, PersonView};
 pub use given::{FaceTable, GivenHands, HandTable};
+pub use lines_finder::LinesFinder;
 pub use skin::PersonSkin;

@@ -1,8 +1,10 @@
 //! The run of one arm, as its `run.json` describes it.
 
+use super::form::Form;
 use crate::config::Config;
 use crate::error::{Context, Result, ensure};
 use crate::file::read_text;
+use crate::person::{FaceLooks, FaceTable};
 use crate::skin::{Rectangle, SkinModel};
 use crate::track::{ArmSet, FrameSource, SideChoice};
 use image::RgbImage;
@@ -11,7 +13,7 @@ use serde_json::Value;
 use sinew_core::skeleton::Side;
 use sinew_core::tracker::arm::options::LimbCombination;
 use sinew_record::ArmSetup;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Frames that are read ahead.
 const CHUNK: usize = 8;
@@ -48,11 +50,15 @@ pub(super) struct ArmRun {
     pub config: Config,
     pub setup: ArmSetup,
     rate_hz: f64,
+    /// Whether it looked for a face in lines.
+    looks: bool,
+    /// Table of faces.
+    head: Option<PathBuf>,
 }
 
 impl ArmRun {
     /// Reads `run.json` and opens the images that it names.
-    pub fn open(report: &Path) -> Result<Self> {
+    pub fn open(report: &Path, form: Form) -> Result<Self> {
         let json: Value = serde_json::from_str(&read_text(report)?).context("run.json is not JSON")?;
         let options = &json["options"];
         let text = |name: &str| options[name].as_str().with_context(|| format!("run.json has no option `{name}`"));
@@ -61,16 +67,29 @@ impl ArmRun {
             side != SideChoice::Both,
             "both arms were tracked; firmware plays one: `--side left` or `--side right`"
         );
+        let reads_lines = options["front_end"] == "lines";
         ensure!(
-            json["seen"]["with_face"] == 0 && options["hands"].is_null(),
-            "its hands came from a face or from --hands, and firmware's stream holds blobs; run `sinew track arm` with \
-             --no-face and without --hands"
+            options["hands"].is_null(),
+            "its hands came from --hands, and firmware's stream holds blobs; run `sinew track arm` without"
+        );
+        ensure!(
+            reads_lines && form == Form::Camera || json["seen"]["with_face"].as_u64().is_none_or(|frames| frames == 0),
+            "its hands came from a face, and this stream holds blobs; run `sinew track arm` with --no-face, or with \
+             --front-end lines and `sinew record` with --form camera"
         );
         let seed = options["seed"].as_u64().context("run.json has no option `seed`")?;
         let rate_hz = options["rate_hz"].as_f64().context("run.json has no option `rate_hz`")?;
         let SeenFrames { frames, skin, config } = SeenFrames::open(options)?;
         let setup = setup(&config, frames.size_px(), side, seed)?;
-        Ok(Self { frames, skin, config, setup, rate_hz })
+        let looks = reads_lines && options["face"] == true;
+        let head = options["head"].as_str().map(PathBuf::from);
+        Ok(Self { frames, skin, config, setup, rate_hz, looks, head })
+    }
+
+    /// Where its faces came from, in pictures whose pixels are blocks; none of a run without.
+    pub fn faces(&self, block: u32) -> Result<Option<FaceLooks>> {
+        let given = self.head.as_deref().map(FaceTable::read).transpose()?;
+        self.looks.then(|| FaceLooks::new(self.rate_hz, block, given)).transpose()
     }
 
     /// Shows every frame with its time in microseconds, once and in order; `None` is an image that

@@ -2,28 +2,29 @@
 
 use super::StreamWriter;
 use super::arm_run::ArmRun;
+use crate::camera_lines::{block_of, lines, of_blocks};
 use crate::error::{Context, Result, bail};
 use crate::skin::model::ModelNumbers;
-use image::RgbImage;
-use sinew_core::camera::Pixel;
-use sinew_record::{ArmInput, ArmSetup, CameraLine, CameraSetup, LINE_PIXELS};
+use sinew_core::camera::Camera;
+use sinew_record::{ArmInput, ArmSetup, CameraFace, CameraLine, CameraSetup};
 
-/// The stream of a run's images and their number. Wider ones than firmware's lines are made smaller
-/// by the mean of square blocks. Skin is what the run's Gaussian says in the light of the first
-/// image.
+/// The stream of a run's images and their number. Larger ones than firmware's frames are made
+/// smaller by the mean of square blocks. Skin is what the run's Gaussian says in the light of the
+/// first image; the faces are those that counted in the run.
 pub(super) fn camera_stream(run: &mut ArmRun) -> Result<(Vec<u8>, usize)> {
-    let (width, _) = run.frames.size_px();
-    let block = width.div_ceil(LINE_PIXELS as u32);
-    let first = run.frames.first().1;
+    let block = block_of(run.frames.size_px());
     let mut stream = StreamWriter::default();
-    stream.push(&camera_setup(run, &smaller(first, block))?)?;
-    stream.push(&arm_setup(&run.setup, block))?;
-    let shoulder_m = run.setup.shoulder_m;
+    stream.push(&camera_setup(run, block)?)?;
+    stream.push(&arm_setup(&run.setup, block)?)?;
+    let (shoulder_m, mut faces) = (run.setup.shoulder_m, run.faces(block)?);
     let frames = run.each_frame(|frame, timestamp_us, image| {
         if let Some(image) = &image {
-            for (row, pixels) in smaller(image, block).rows().enumerate() {
-                let pixels = pixels.map(|pixel| rgb565(pixel.0)).collect();
-                stream.push(&CameraLine { row: u16::try_from(row)?, pixels })?;
+            let seen = of_blocks(image, block);
+            if let Some(face) = faces.as_mut().and_then(|faces| faces.look(frame, &seen)) {
+                stream.push(&CameraFace { head: face.head })?;
+            }
+            for (row, pixels) in lines(&seen).enumerate() {
+                stream.push(&CameraLine { row: u16::try_from(row)?, pixels: pixels.collect() })?;
             }
         }
         stream.push(&ArmInput {
@@ -38,14 +39,15 @@ pub(super) fn camera_stream(run: &mut ArmRun) -> Result<(Vec<u8>, usize)> {
     Ok((stream.finish()?, frames))
 }
 
-fn camera_setup(run: &ArmRun, first: &RgbImage) -> Result<CameraSetup> {
-    let model = run.skin.for_image(first)?;
+fn camera_setup(run: &ArmRun, block: u32) -> Result<CameraSetup> {
+    let (width, height) = run.frames.size_px();
+    let model = run.skin.for_image(run.frames.first().1)?;
     let ModelNumbers::Gaussian(gaussian) = model.numbers() else {
         bail!("its skin model is a table; a camera's records hold a Gaussian: track with `--skin gaussian`")
     };
     let skin = gaussian.classifier()?;
     Ok(CameraSetup {
-        size_px: [u16::try_from(first.width())?, u16::try_from(first.height())?],
+        size_px: [u16::try_from(width / block)?, u16::try_from(height / block)?],
         skin_mean: [skin.mean_r(), skin.mean_g()],
         skin_covariance: skin.covariance(),
         skin_threshold: skin.threshold(),
@@ -54,34 +56,15 @@ fn camera_setup(run: &ArmRun, first: &RgbImage) -> Result<CameraSetup> {
 }
 
 /// The same arm before a camera whose pixels are `block` times as wide.
-fn arm_setup(setup: &ArmSetup, block: u32) -> ArmSetup {
-    let scale = 1.0 / block as f32;
-    let centre = |at: f32| (at + 0.5) * scale - 0.5;
-    ArmSetup {
-        focal_px: setup.focal_px.map(|focal| focal * scale),
-        centre: Pixel::new(centre(setup.centre.u_px), centre(setup.centre.v_px)),
+fn arm_setup(setup: &ArmSetup, block: u32) -> Result<ArmSetup> {
+    let [focal_u_px, focal_v_px] = setup.focal_px;
+    let camera = Camera::new(focal_u_px, focal_v_px, setup.centre)?.of_blocks(block);
+    Ok(ArmSetup {
+        focal_px: [camera.focal_px(); 2],
+        centre: camera.centre(),
         image_size_px: setup.image_size_px.map(|side| side / block),
         ..*setup
-    }
-}
-
-/// Means of blocks of `block` x `block` pixels; what is left at the right and at the bottom is cut
-/// off.
-fn smaller(image: &RgbImage, block: u32) -> RgbImage {
-    RgbImage::from_fn(image.width() / block, image.height() / block, |u, v| {
-        let mut sum = [0_u32; 3];
-        for dv in 0..block {
-            for du in 0..block {
-                let pixel = image.get_pixel(block * u + du, block * v + dv);
-                sum.iter_mut().zip(pixel.0).for_each(|(sum, channel)| *sum += u32::from(channel));
-            }
-        }
-        image::Rgb(sum.map(|sum| ((sum + block * block / 2) / (block * block)) as u8))
     })
-}
-
-fn rgb565([red, green, blue]: [u8; 3]) -> u16 {
-    u16::from(red >> 3) << 11 | u16::from(green >> 2) << 5 | u16::from(blue >> 3)
 }
 
 /// Puts the angles of a cyclic recording into a camera's: before each frame of the arm, one of the
@@ -101,13 +84,14 @@ pub fn interleaved(camera: &[u8], cyclic: &[u8]) -> Result<Vec<u8>> {
     if let Some(Ok(setup)) = next()? {
         stream.push(&setup)?;
     }
-    let mut lines = RecordStream::<_, 1024>::new(camera);
-    while let Some(record) = lines.next_record() {
+    let mut delivered = RecordStream::<_, 1024>::new(camera);
+    while let Some(record) = delivered.next_record() {
         let record: Record<'_> = record?;
         match record.kind {
             Kind::CameraSetup => stream.push(&record.read::<CameraSetup>()?)?,
             Kind::ArmSetup => stream.push(&record.read::<ArmSetup>()?)?,
             Kind::CameraLine => stream.push(&record.read::<CameraLine>()?)?,
+            Kind::CameraFace => stream.push(&record.read::<CameraFace>()?)?,
             _ => {
                 if let Some(Err(input)) = next()? {
                     stream.push(&input)?;

@@ -5,6 +5,7 @@ mod arm;
 mod arm_run;
 mod camera;
 mod cyclic;
+mod form;
 mod run_dir;
 mod stream_writer;
 
@@ -12,5 +13,6 @@ mod stream_writer;
 pub(crate) use arm_run::SeenFrames;
 pub use camera::interleaved;
 pub use cyclic::cyclic_stream;
-pub use run_dir::{Form, Recorded, record};
+pub use form::Form;
+pub use run_dir::{Recorded, record};
 pub use stream_writer::StreamWriter;

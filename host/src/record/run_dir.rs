@@ -4,6 +4,7 @@ use super::arm::tracker_stream;
 use super::arm_run::ArmRun;
 use super::camera::camera_stream;
 use super::cyclic_stream;
+use super::form::Form;
 use crate::cyclic::report::document::FORMAT as CYCLIC_FORMAT;
 use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates};
 use crate::cyclic::{AngleTable, CyclicModel};
@@ -12,17 +13,6 @@ use crate::file::read_text;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-
-/// What of a run is recorded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
-pub enum Form {
-    /// What the tracker was given: blobs and edges, or angles.
-    #[default]
-    Tracker,
-    /// The lines of its images, for firmware that does the vision as well.
-    Camera,
-}
 
 /// The input of a run.
 #[derive(Debug, Clone)]
@@ -53,7 +43,7 @@ pub fn record(folder: &Path, form: Form) -> Result<Recorded> {
 }
 
 fn arm_run(report: &Path, form: Form) -> Result<Recorded> {
-    let mut run = ArmRun::open(report)?;
+    let mut run = ArmRun::open(report, form)?;
     let ((bytes, frames), what) = match form {
         Form::Tracker => (tracker_stream(&mut run)?, "blobs and edges"),
         Form::Camera => (camera_stream(&mut run)?, "lines"),

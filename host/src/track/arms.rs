@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::frames::FrameView;
 use crate::resume::{from_text, to_text};
 use serde::{Deserialize, Serialize};
-use sinew_core::camera::Pixel;
+use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::Vec3;
 use sinew_core::saved_state::StateKind;
 use sinew_core::skeleton::Side;
@@ -72,6 +72,16 @@ impl ArmSet {
     /// Names the parameter of the configuration that cannot be used.
     pub fn new(config: &Config, size_px: (u32, u32), side: SideChoice, seed: u64) -> Result<Self> {
         let camera = config.camera.build(size_px.0, size_px.1)?;
+        Self::of_camera(config, (camera, size_px), side, seed)
+    }
+
+    /// The same for a camera that is not the configuration's, with the size of its images.
+    pub(super) fn of_camera(
+        config: &Config,
+        (camera, size_px): (Camera, (u32, u32)),
+        side: SideChoice,
+        seed: u64,
+    ) -> Result<Self> {
         let sides: &[Side] = match side {
             SideChoice::Left => &[Side::Left],
             SideChoice::Right => &[Side::Right],

@@ -1,6 +1,7 @@
 //! Tracking the arms of one image folder or video.
 
 mod arms;
+mod eye;
 mod finish;
 mod input;
 mod options;
@@ -21,7 +22,7 @@ mod table;
 pub use arms::{ArmSet, ArmView, SideChoice};
 pub use finish::RunOutcome;
 pub use input::{FrameFolder, SkippedImage};
-pub use options::{RATES_HZ, TrackOptions};
+pub use options::{FrontEnd, RATES_HZ, TrackOptions};
 pub use report::{Inputs, REPORT_VERSION, RunReport, StatusCounts};
 pub use run::{Event, TrackRun};
 pub use sample::HandSample;

@@ -3,11 +3,23 @@
 use super::arms::SideChoice;
 use crate::config::Config;
 use crate::skin::Rectangle;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// Slowest and fastest rate of frames, Hz.
 pub const RATES_HZ: [f64; 2] = [0.001, 10_000.0];
+
+/// What reads the pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum FrontEnd {
+    /// Whole pictures.
+    #[default]
+    Pictures,
+    /// Lines of at most 320 x 240 pixels, as firmware reads them: its colours, its capacities.
+    Lines,
+}
 
 /// Everything that decides the result of a run.
 #[derive(Debug, Clone, Serialize)]
@@ -24,6 +36,8 @@ pub struct TrackOptions {
     pub skin: String,
     /// Rectangle of skin in the first frame.
     pub calibrate: Option<Rectangle>,
+    /// What reads the pictures; lines never with `hands`.
+    pub front_end: FrontEnd,
     /// Table of hands that are taken in place of blobs.
     pub hands: Option<PathBuf>,
     /// Table of faces that are taken in place of those that are found; with `face` only.

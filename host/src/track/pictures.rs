@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use sinew_core::camera::{Camera, Pixel};
 use sinew_core::math::Vec3;
 use sinew_core::tracker::arm::{MAX_CANDIDATES, Particle};
+use sinew_core::vision::components::BoundingBox;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -150,23 +151,19 @@ fn draw_shot(shot: &Shot, file: &str, arms: &ArmSet) -> RgbImage {
         .map(|arm| format!("{} {}", side_name(arm.estimate.side), status_name(arm.estimate.status)))
         .collect();
     let edges: Vec<(u16, u16)> = shot.view.edges.iter().map(|edge| (edge.u, edge.v)).collect();
-    let blobs: Vec<OverlayBlob> = shot
-        .view
-        .blobs
-        .iter()
-        .take(MAX_CANDIDATES)
-        .map(|entry| {
-            let bounds = entry.blob.bounding_box;
-            let corner = [u32::from(bounds.min_u), u32::from(bounds.min_v)];
-            OverlayBlob {
-                centre: entry.blob.centroid,
-                bounding_box: [corner[0], corner[1], bounds.width_px(), bounds.height_px()],
-                likelihood: entry.likelihood,
-            }
-        })
-        .collect();
+    let blobs = shot.view.blobs.iter();
+    let blobs = blobs.map(|entry| overlay_blob(entry.blob.centroid, entry.blob.bounding_box, entry.likelihood));
+    let of_lines =
+        shot.view.line_blobs.iter().map(|blob| overlay_blob(blob.centroid, blob.bounding_box, blob.moment_likelihood));
+    let blobs: Vec<OverlayBlob> = blobs.chain(of_lines).take(MAX_CANDIDATES).collect();
     let caption = format!("frame {}  {file}  {}", shot.frame, states.join(", "));
     draw(&shot.image, &Overlay { arms: &drawn, blobs: &blobs, edges: &edges, mask_outline: None, caption: &caption })
+}
+
+fn overlay_blob(centre: Pixel, bounds: BoundingBox, likelihood: f32) -> OverlayBlob {
+    let corner = [u32::from(bounds.min_u), u32::from(bounds.min_v)];
+    let bounding_box = [corner[0], corner[1], bounds.width_px(), bounds.height_px()];
+    OverlayBlob { centre, bounding_box, likelihood }
 }
 
 fn overlay_arm(arm: &ArmView, arms: &ArmSet) -> OverlayArm {

@@ -6,7 +6,6 @@ use super::run::TrackRun;
 use super::sample::HandSample;
 use super::seen::SeenCounts;
 use crate::error::Result;
-use crate::person::PersonFinder;
 use crate::resume::{Begun, Left, List, ResumeFile, file_crc32, from_text, optional, real, reals, text_crc32, to_text};
 use crate::skin::model_file;
 use serde::{Deserialize, Serialize};
@@ -25,8 +24,8 @@ pub(super) struct ArmState {
     skipped: Vec<SkippedImage>,
     /// The trackers.
     trackers: String,
-    /// The person, of a run that looks for a face.
-    person: Option<String>,
+    /// What reads the pictures, if it remembers anything.
+    eye: Option<String>,
     /// What the plots show.
     samples: String,
     seen: SeenCounts,
@@ -38,7 +37,7 @@ pub(super) fn left(run: &mut TrackRun) -> Result<Left<ArmState>> {
     let state = ArmState {
         skipped: run.report.skipped.clone(),
         trackers: run.arms.saved()?,
-        person: run.person.as_mut().map(PersonFinder::saved).transpose()?,
+        eye: run.eye.saved()?,
         samples: to_text(StateKind::Arm, &mut samples)?,
         seen: run.report.seen,
     };
@@ -96,18 +95,15 @@ impl TrackRun {
         })?;
         left.begun.check_inputs(&read_by(now, &run)?)?;
         run.begun = Some(left.begun.clone());
+        run.report.frames_finished = left.finished;
         run.arms.restore(&left.state.trackers)?;
-        if let (Some(person), Some(saved)) = (&mut run.person, &left.state.person) {
-            person.restore(saved)?;
-            person.shoulders_m().into_iter().for_each(|shoulders_m| run.arms.place_shoulders(&shoulders_m));
-        }
+        run.look_again(&left)?;
         let mut samples = List::new(Vec::new(), NO_SAMPLE);
         from_text(StateKind::Arm, &left.state.samples, &mut samples)?;
         run.samples = samples.entries;
         for sample in &run.samples {
             run.report.count(sample.side, sample.status);
         }
-        run.report.frames_finished = left.finished;
         run.report.seen = left.state.seen;
         run.seconds = left.seconds;
         if let Some(pictures) = &mut run.pictures {
@@ -115,21 +111,21 @@ impl TrackRun {
             let drawn = (0..left.finished).filter(is_drawn);
             pictures.take_up(drawn.map(|frame| (frame, run.frames.name(frame))))?;
         }
-        run.look_again(&left)?;
         run.report.skipped = left.state.skipped;
         Ok(run)
     }
 
     /// Shows the front end the last finished frame, so that the next one has the edges that it
-    /// would have had.
+    /// would have had, and puts it into its state.
     fn look_again(&mut self, left: &Left<ArmState>) -> Result<()> {
-        let Some(last) = self.report.frames_finished.checked_sub(1) else { return Ok(()) };
-        let image = self.frames.load(last, 1)?.pop().and_then(Result::ok);
-        self.last_image_crc32 = image.as_ref().map(|image| crc32fast::hash(image.as_raw()));
-        left.check_last(&self.frames.name(last), self.last_image_crc32)?;
-        if let Some(image) = image {
-            self.reader.read(&image, &self.skin)?;
+        let mut image = None;
+        if let Some(last) = left.finished.checked_sub(1) {
+            image = self.frames.load(last, 1)?.pop().and_then(Result::ok);
+            self.last_image_crc32 = image.as_ref().map(|image| crc32fast::hash(image.as_raw()));
+            left.check_last(&self.frames.name(last), self.last_image_crc32)?;
         }
+        self.eye.restore(image.as_ref(), left.state.eye.as_deref())?;
+        self.eye.shoulders_m().into_iter().for_each(|shoulders_m| self.arms.place_shoulders(&shoulders_m));
         Ok(())
     }
 }

@@ -1,8 +1,9 @@
 //! One run over an image folder or a video: load, read, step, record, frame by frame.
 
 use super::arms::{ArmSet, ArmView};
+use super::eye::Eye;
 use super::input::SkippedImage;
-use super::options::{RATES_HZ, TrackOptions};
+use super::options::{FrontEnd, RATES_HZ, TrackOptions};
 use super::particles::{PARTICLE_HEADER, particle_rows};
 use super::pictures::{Pictures, Shot};
 use super::report::RunReport;
@@ -10,14 +11,15 @@ use super::resume;
 use super::sample::HandSample;
 use super::source::FrameSource;
 use super::table::{HEADER, TrackRow};
-use crate::error::{Context, Result, WriteContext, bail};
-use crate::frames::{FrameReader, FrameView};
+use crate::error::{Result, WriteContext, bail};
+use crate::frames::FrameView;
 use crate::output::{OutputDir, OutputLock, PendingFile};
-use crate::person::{FaceTable, GivenHands, HandTable, PersonFinder};
+use crate::person::{GivenHands, HandTable};
 use crate::resume::{Begun, Checkpoints, PARTICLE_TABLE, TRACK_TABLE};
 use crate::skin::SkinModel;
 use image::RgbImage;
 use sinew_core::camera::Camera;
+use sinew_core::math::Vec3;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -26,6 +28,16 @@ use std::time::{Duration, Instant};
 const MAX_CHUNK: usize = 32;
 /// Memory that frames which are read ahead may take, bytes.
 const CHUNK_BYTES: usize = 64 << 20;
+
+/// What a frame showed.
+#[derive(Debug)]
+struct Seen {
+    view: FrameView,
+    /// Hands that take the place of the view's candidates.
+    hands: Option<GivenHands>,
+    /// By the face.
+    shoulders_m: Option<[Vec3; 2]>,
+}
 
 /// What a run reports while it goes on.
 #[derive(Debug, Clone, Copy)]
@@ -44,10 +56,8 @@ pub(super) type TableOpener<'a> = &'a dyn Fn(&str, &OutputDir, &[&str]) -> Resul
 pub struct TrackRun {
     pub(super) frames: FrameSource,
     pub(super) skin: SkinModel,
-    pub(super) reader: FrameReader,
+    pub(super) eye: Eye,
     pub(super) arms: ArmSet,
-    /// Of a run that looks for a face.
-    pub(super) person: Option<PersonFinder>,
     hands: Option<HandTable>,
     camera: Camera,
     pub(super) out: OutputDir,
@@ -81,6 +91,9 @@ impl TrackRun {
         if !(RATES_HZ[0]..=RATES_HZ[1]).contains(&options.rate_hz) {
             bail!("`rate` must lie from {} to {} Hz, not {}", RATES_HZ[0], RATES_HZ[1], options.rate_hz);
         }
+        if options.front_end == FrontEnd::Lines && options.hands.is_some() {
+            bail!("--hands takes the place of what is seen, and --front-end lines is a way to see: leave one out");
+        }
         let trained = SkinModel::from_option(&options.skin)?;
         let frames = FrameSource::open(&options.folder, options.strict, options.rate_hz)?;
         let skin = match (options.calibrate, frames.first()) {
@@ -91,17 +104,13 @@ impl TrackRun {
                 frames.files()[0].display()
             ),
         };
-        let arms = ArmSet::new(&options.config, frames.size_px(), options.side, options.seed)?;
-        let camera = *arms.models().first().context("no arm is tracked")?.camera();
-        let person = match options.face {
-            true => {
-                let given = options.head.as_deref().map(FaceTable::read).transpose()?;
-                Some(PersonFinder::new(frames.size_px(), options.rate_hz, camera, given)?)
-            }
-            false => None,
-        };
+        let (width, height) = frames.size_px();
+        let camera = options.config.camera.build(width, height)?;
+        let block = Eye::block(&options, frames.size_px());
+        let (seen_by, seen_px) = (camera.of_blocks(block), (width / block, height / block));
+        let arms = ArmSet::of_camera(&options.config, (seen_by, seen_px), options.side, options.seed)?;
+        let eye = Eye::new(&options, (frames.size_px(), frames.first().1), camera, &skin)?;
         let hands = options.hands.as_deref().map(HandTable::read).transpose()?;
-        let reader = FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
         let lock = OutputLock::of_folder(out.path(), resume::COMMAND)?;
@@ -120,9 +129,8 @@ impl TrackRun {
         Ok(Self {
             frames,
             skin,
-            reader,
+            eye,
             arms,
-            person,
             hands,
             camera,
             out,
@@ -213,8 +221,9 @@ impl TrackRun {
     ) -> Result<Option<Shot>> {
         let image = image.map_err(|skipped| self.skip(skipped, notify)).ok();
         self.last_image_crc32 = image.as_ref().map(|image| crc32fast::hash(image.as_raw()));
-        let view = image.as_ref().map(|image| self.read(frame, image)).transpose()?;
-        let arms = self.step(frame, view.as_ref());
+        let seen = image.as_ref().map(|image| self.see(frame, image)).transpose()?;
+        let arms = self.step(frame, seen.as_ref());
+        let view = seen.map(|seen| seen.view);
         for arm in &arms {
             let row = TrackRow {
                 frame,
@@ -229,55 +238,46 @@ impl TrackRun {
         self.report.frames_finished += 1;
         let name = self.frames.name(frame);
         let shot = |(image, view): (RgbImage, FrameView)| Shot { frame, name, image, view, arms };
-        Ok(image.zip(view).filter(|_| self.pictures.is_some()).map(shot))
+        let drawn = image.zip(view).filter(|_| self.pictures.is_some());
+        Ok(drawn.map(|(image, view)| shot((self.eye.seen(image), view))))
     }
 
     /// Moves the trackers on to a frame.
-    fn step(&mut self, frame: usize, view: Option<&FrameView>) -> Vec<ArmView> {
+    fn step(&mut self, frame: usize, seen: Option<&Seen>) -> Vec<ArmView> {
         let timestamp_us = self.timestamp_us(frame);
-        let Some(view) = view else { return self.arms.step(timestamp_us, None) };
-        let person = self.person.as_mut().and_then(|person| person.see(&mut self.reader));
-        if let Some(person) = &person {
-            self.arms.place_shoulders(&person.shoulders_m);
+        let Some(Seen { view, hands, shoulders_m }) = seen else { return self.arms.step(timestamp_us, None) };
+        if let Some(shoulders_m) = shoulders_m {
+            self.arms.place_shoulders(shoulders_m);
         }
-        self.report.seen.count(view, person.is_some(), &self.arms);
-        match (self.hands.as_ref().map(|hands| hands.at(frame)), person) {
-            (Some(GivenHands::OfPerson(hands)), _) => self.arms.step_hands(timestamp_us, &view.edges, &hands),
-            (Some(GivenHands::OfSides(hands)), _) => self.arms.step_each(timestamp_us, &view.edges, &hands),
-            (None, Some(person)) => self.arms.step_each(timestamp_us, &view.edges, &person.hands),
-            (None, None) => self.arms.step(timestamp_us, Some(view)),
+        self.report.seen.count(view, shoulders_m.is_some(), &self.arms);
+        match hands {
+            Some(GivenHands::OfPerson(hands)) => self.arms.step_hands(timestamp_us, &view.edges, hands),
+            Some(GivenHands::OfSides(hands)) => self.arms.step_each(timestamp_us, &view.edges, hands),
+            None => self.arms.step(timestamp_us, Some(view)),
         }
     }
 
-    /// What an image shows, by the person's own skin once a face is known. Hands that are given
-    /// take the place of blobs.
-    pub(super) fn read(&mut self, frame: usize, image: &RgbImage) -> Result<FrameView> {
-        let mut view = self.read_image(frame, image)?;
-        if let Some(hands) = &self.hands {
+    /// What an image shows. Hands that are given take the place of blobs, and of the person's.
+    fn see(&mut self, frame: usize, image: &RgbImage) -> Result<Seen> {
+        let (mut view, person) = self.eye.see(frame, image)?;
+        let shoulders_m = person.as_ref().map(|person| person.shoulders_m);
+        let given = self.hands.as_ref().map(|hands| hands.at(frame));
+        if let Some(hands) = &given {
             view.blobs.clear();
-            view.candidates = match hands.at(frame) {
-                GivenHands::OfPerson(hands) => hands,
+            view.candidates = match hands {
+                GivenHands::OfPerson(hands) => hands.clone(),
                 GivenHands::OfSides(hands) => hands.concat(),
             };
         }
-        Ok(view)
-    }
-
-    fn read_image(&mut self, frame: usize, image: &RgbImage) -> Result<FrameView> {
-        if let Some(person) = &mut self.person {
-            person.look(frame, image);
-        }
-        match self.person.as_ref().and_then(PersonFinder::skin) {
-            Some(skin) => self.reader.read(image, skin),
-            None => self.reader.read(image, &self.skin),
-        }
+        let hands = given.or_else(|| Some(GivenHands::OfSides(person?.hands)));
+        Ok(Seen { view, hands, shoulders_m })
     }
 
     /// Notes a missing image; the next one has no frame before it.
     fn skip(&mut self, skipped: SkippedImage, notify: &mut dyn FnMut(Event<'_>)) {
         notify(Event::Skipped(&skipped));
         self.report.skipped.push(skipped);
-        self.reader.forget_last_frame();
+        self.eye.forget_last_frame();
     }
 
     fn record(&mut self, row: &TrackRow) -> Result<()> {

@@ -9,7 +9,7 @@ use sinew::output::OutputDir;
 use sinew::record::{Form, cyclic_stream, interleaved, record};
 use sinew::scene::{Scene, SceneOptions, Sides};
 use sinew::skin::model::DEFAULT_SKIN;
-use sinew::track::{RunOutcome, SideChoice, TrackOptions, TrackRun};
+use sinew::track::{FrontEnd, RunOutcome, SideChoice, TrackOptions, TrackRun};
 use sinew_core::random::Stream;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -21,8 +21,8 @@ use std::sync::atomic::AtomicBool;
 pub fn of_image(name: &str) -> Result<Option<Vec<u8>>> {
     match name {
         "cyclic" => cyclic().map(Some),
-        "arm" => arm_run(Form::Tracker).map(Some),
-        "camera" => Ok(Some(interleaved(&arm_run(Form::Camera)?, &cyclic()?)?)),
+        "arm" => arm().map(Some),
+        "camera" => Ok(Some(interleaved(&camera()?, &cyclic()?)?)),
         _ => Ok(None),
     }
 }
@@ -76,11 +76,30 @@ const SCENE_FRAMES: usize = 60;
 const SCENE_HZ: f32 = 15.0;
 
 /// Renders a person who reaches about into `folder`, one of the images broken, and tracks the arm
-/// as `sinew track arm` does.
+/// as `sinew track arm --no-face` does.
 ///
 /// # Errors
 /// A folder that cannot be written.
 pub fn tracked_scene(folder: &Path) -> Result<RunOutcome> {
+    track(folder, SceneOptions::default(), |options| options)
+}
+
+/// The same of a person whose face shows in all images and is given three times, as `sinew track
+/// arm --front-end lines --head` does.
+///
+/// # Errors
+/// A folder that cannot be written.
+pub fn person_by_lines(folder: &Path) -> Result<RunOutcome> {
+    let head = folder.join("head.csv");
+    std::fs::write(&head, FACES)?;
+    let scene = SceneOptions { false_blob_fraction: 1.0, hidden_fraction: 0.0, ..SceneOptions::default() };
+    track(folder, scene, |options| TrackOptions { front_end: FrontEnd::Lines, head: Some(head), face: true, ..options })
+}
+
+/// Where the scene's face is.
+const FACES: &str = "frame,u_px,v_px,size_px\n0,172,53,34\n20,172.5,52,35\n40,172,53,33\n";
+
+fn track(folder: &Path, scene: SceneOptions, change: impl FnOnce(TrackOptions) -> TrackOptions) -> Result<RunOutcome> {
     let motion = reach::random_reaches(1, SCENE_HZ, SCENE_FRAMES)?;
     let options = SceneOptions {
         width_px: 320,
@@ -88,7 +107,7 @@ pub fn tracked_scene(folder: &Path) -> Result<RunOutcome> {
         frames: SCENE_FRAMES,
         frames_per_second: SCENE_HZ,
         sides: Sides::One(ArmSide::Right),
-        ..SceneOptions::default()
+        ..scene
     };
     let scene = OutputDir::create(&folder.join("scene"))?;
     Scene::new(&motion, &options)?.write_folder(&scene)?;
@@ -100,6 +119,7 @@ pub fn tracked_scene(folder: &Path) -> Result<RunOutcome> {
         seed: 1,
         skin: DEFAULT_SKIN.to_owned(),
         calibrate: None,
+        front_end: FrontEnd::Pictures,
         hands: None,
         head: None,
         face: false,
@@ -108,11 +128,17 @@ pub fn tracked_scene(folder: &Path) -> Result<RunOutcome> {
         strict: false,
         config: Config::load(&scene.join("camera.toml"))?,
     };
-    Ok(TrackRun::prepare(options, folder)?.run(&AtomicBool::new(false), &mut |_| ())?)
+    Ok(TrackRun::prepare(change(options), folder)?.run(&AtomicBool::new(false), &mut |_| ())?)
 }
 
-fn arm_run(form: Form) -> Result<Vec<u8>> {
+fn arm() -> Result<Vec<u8>> {
     let folder = tempfile::tempdir()?;
     tracked_scene(folder.path())?;
-    Ok(record(folder.path(), form)?.bytes)
+    Ok(record(folder.path(), Form::Tracker)?.bytes)
+}
+
+fn camera() -> Result<Vec<u8>> {
+    let folder = tempfile::tempdir()?;
+    person_by_lines(folder.path())?;
+    Ok(record(folder.path(), Form::Camera)?.bytes)
 }

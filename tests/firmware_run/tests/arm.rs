@@ -2,6 +2,7 @@
 //! without losing their state.
 
 use sinew::record::StreamWriter;
+use sinew::track::RunOutcome;
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::Side;
@@ -47,14 +48,18 @@ fn answers_are_those_of_the_command() {
     expected::compare_records(&bytes, &expected::folder().join("arm.rec")).unwrap();
     let (results, _, failures) = results_and_failures(&bytes);
     assert!(failures.is_empty(), "{failures:?}");
+    same(&results, &outcome);
+    let tracking = results.iter().filter(|result| result.estimate.status == Status::Tracking).count();
+    assert!(tracking > 30, "{tracking} of {} frames", results.len());
+}
+
+fn same(results: &[ArmResult], outcome: &RunOutcome) {
     assert_eq!(results.len(), outcome.samples.len());
     for (result, sample) in results.iter().zip(&outcome.samples) {
         let estimate = &result.estimate;
         assert_eq!((Some(estimate.joints.hand_m), estimate.status), (sample.hand_m, sample.status));
         assert_eq!(estimate.effective_sample_size.to_bits(), sample.effective_sample_size.to_bits());
     }
-    let tracking = results.iter().filter(|result| result.estimate.status == Status::Tracking).count();
-    assert!(tracking > 30, "{tracking} of {} frames", results.len());
 }
 
 #[test]
@@ -64,6 +69,8 @@ fn from_lines_this_machine_answers_what_is_expected_of_the_board() {
     let (arms, vision, failures) = results_and_failures(&bytes);
     assert_eq!((arms.len(), vision.len(), failures.as_slice()), (60, 59, &[][..]), "one image is broken");
     assert!(vision.iter().all(|seen| seen.losses[4..] == [0, 0]), "no line was lost");
+    let folder = tempfile::tempdir().unwrap();
+    same(&arms, &inputs::person_by_lines(folder.path()).unwrap());
     let tracking = arms.iter().filter(|result| result.estimate.status == Status::Tracking).count();
     assert!(tracking > 30, "{tracking} of {} frames", arms.len());
 }

@@ -29,6 +29,7 @@ use super::pixel_format::{PixelFormat, odd_pair};
 use crate::error::{ParameterError, Rule};
 use crate::math::min;
 use crate::vision::components::BoundingBox;
+use crate::vision::objects::person_colour::PersonColour;
 use crate::vision::skin::GaussianSkin;
 use core::marker::PhantomData;
 
@@ -123,6 +124,13 @@ impl<F: PixelFormat, const N: usize> SkinSample<F, N> {
                 let _ = self.keys.push(key);
             }
         }
+    }
+
+    /// The colour of a person whose face's middle was sampled; `None` where too few pixels are
+    /// alike.
+    #[must_use]
+    pub fn person_colour(&self) -> Option<PersonColour> {
+        PersonColour::of_pixels(self.keys.iter().map(|key| F::rgb(*key)))
     }
 
     /// `trained` adapted to the sample. Its part is n / (n + 30) for n pixels, at most 0.8; the

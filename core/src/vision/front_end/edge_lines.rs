@@ -191,6 +191,12 @@ impl<const WORDS: usize, const ROWS: usize> EdgeLines<WORDS, ROWS> {
         }
     }
 
+    /// Luminances of every second pixel of line `v`, 0 to 127, four a word; those of the last line
+    /// that was read of its kind.
+    pub(super) fn luminances(&self, v: usize) -> impl Iterator<Item = u32> {
+        self.cells[v / EDGE_CELL_PX % 3].as_flattened().iter().copied()
+    }
+
     /// Finds the edges of a row of cells from its luminances and those of the rows above and below
     /// it.
     fn judge<const EDGES: usize>(&mut self, row: usize, columns: usize, edges: &mut EdgeList<EDGES>) {

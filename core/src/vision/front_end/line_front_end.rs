@@ -189,6 +189,21 @@ impl<
         self.next_line = v + 1;
     }
 
+    /// The line that has to come next.
+    pub(super) fn next_line(&self) -> usize {
+        self.next_line
+    }
+
+    /// Skin of the last line, a bit a pixel, as its colours say.
+    pub(super) fn last_skin(&self) -> &[u32; WORDS] {
+        &self.skin_bits
+    }
+
+    /// Luminances of every second pixel of the even line that was read last, 0 to 127, four a word.
+    pub(super) fn last_luminances(&self) -> impl Iterator<Item = u32> {
+        self.edge_lines.luminances(self.next_line.saturating_sub(1))
+    }
+
     /// Ends the frame and returns its blobs, edges and losses.
     pub fn end_frame(&mut self) -> FrameLines<'_> {
         let missing = self.height.saturating_sub(self.next_line);

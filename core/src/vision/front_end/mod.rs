@@ -39,6 +39,7 @@ pub mod edge_lines;
 mod frame_lines;
 mod line_front_end;
 pub mod moment_blob;
+mod person_lines;
 pub mod pixel_format;
 pub mod skin_table;
 #[cfg(test)]
@@ -46,3 +47,4 @@ mod tests;
 
 pub use frame_lines::{FrameLines, FrameLosses};
 pub use line_front_end::{LineFrontEnd, QvgaFrontEnd};
+pub use person_lines::{PersonFrame, PersonHands, PersonLines};

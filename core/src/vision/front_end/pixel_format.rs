@@ -1,5 +1,7 @@
 //! Pixel formats of 16 bits: RGB565, or luminance and alternating chrominance (YUYV).
 
+use core::ops::RangeInclusive;
+
 /// A coding of pixels in 16 bits, read in pairs of neighbours.
 ///
 /// A colour's *key* is its place among the 65536 bits of a [`super::skin_table::SkinTable`].
@@ -41,6 +43,12 @@ pub trait PixelFormat {
 
     /// The colour in the middle of a key's cell, R, G, B.
     fn rgb(key: u16) -> [u8; 3];
+
+    /// The least and the greatest R, G and B of some keys; all colours where that takes long to
+    /// say.
+    fn range(_keys: RangeInclusive<u16>) -> ([u8; 3], [u8; 3]) {
+        ([0; 3], [255; 3])
+    }
 }
 
 /// Mask of the bits that remain when four bytes are halved at once.
@@ -117,6 +125,12 @@ impl PixelFormat for Rgb565 {
         let (red, green, blue) = (key >> 11, key >> 5 & 0x3f, key & 0x1f);
         [red << 3 | red >> 2, green << 2 | green >> 4, blue << 3 | blue >> 2].map(|c| c as u8)
     }
+
+    /// Exact where only blue differs.
+    fn range(keys: RangeInclusive<u16>) -> ([u8; 3], [u8; 3]) {
+        let (first, last) = (*keys.start(), *keys.end());
+        if first >> 5 == last >> 5 { (Self::rgb(first), Self::rgb(last)) } else { ([0; 3], [255; 3]) }
+    }
 }
 
 impl PixelFormat for SwappedRgb565 {
@@ -132,6 +146,10 @@ impl PixelFormat for SwappedRgb565 {
 
     fn rgb(key: u16) -> [u8; 3] {
         Rgb565::rgb(key)
+    }
+
+    fn range(keys: RangeInclusive<u16>) -> ([u8; 3], [u8; 3]) {
+        Rgb565::range(keys)
     }
 }
 

@@ -8,6 +8,9 @@ use core::ops::Range;
 /// Words of a table: one bit a key, 8 KiB.
 pub const TABLE_WORDS: usize = 1 << 11;
 
+/// Colours that are judged together.
+const GROUP: usize = 8;
+
 /// One decision bit for each of the 65536 keys of a [`PixelFormat`]: bit `key % 32` of word `key /
 /// 32`.
 ///
@@ -76,16 +79,35 @@ impl<F: PixelFormat> SkinTable<F> {
     ///
     /// A new model can thus be learned in the pauses of several frames.
     pub fn learn_words(&mut self, skin: &impl SkinClassifier, words: Range<usize>) {
+        self.learn_some(skin, words, usize::MAX);
+    }
+
+    /// The same until so many colours had to be judged one by one. Returns the word to go on with.
+    pub fn learn_some(&mut self, skin: &impl SkinClassifier, words: Range<usize>, max_judged: usize) -> usize {
         let from = words.start.min(TABLE_WORDS);
         let to = words.end.clamp(from, TABLE_WORDS);
+        let mut judged = 0;
         for (index, word) in self.words.iter_mut().enumerate().take(to).skip(from) {
-            let mut rgb = [0; 3 * PIXELS_PER_WORD];
-            let first = (index * PIXELS_PER_WORD) as u16;
-            for (key, pixel) in (first..=first | 31).zip(rgb.as_chunks_mut::<3>().0) {
-                *pixel = F::rgb(key);
+            if judged >= max_judged {
+                return index;
             }
-            skin.classify_line(&rgb, core::slice::from_mut(word));
+            *word = 0;
+            for place in (0..PIXELS_PER_WORD).step_by(GROUP) {
+                let first = (index * PIXELS_PER_WORD + place) as u16;
+                let (low, high) = F::range(first..=first | (GROUP - 1) as u16);
+                if skin.is_none_skin(low, high) {
+                    continue;
+                }
+                let (mut rgb, mut bits) = ([0; 3 * GROUP], [0]);
+                for (key, pixel) in (first..).zip(rgb.as_chunks_mut::<3>().0) {
+                    *pixel = F::rgb(key);
+                }
+                skin.classify_line(&rgb, &mut bits);
+                *word |= bits[0] << place;
+                judged += GROUP;
+            }
         }
+        to
     }
 
     /// Whether a key's colour counts as skin.

@@ -7,6 +7,7 @@
 use super::evidence::Evidence;
 use super::place::HandPlace;
 use crate::math::{exp, min};
+use crate::skeleton::Side;
 use heapless::Vec;
 
 /// Most places of a frame that are compared.
@@ -38,10 +39,9 @@ pub(super) struct HandsBelief {
     pub(super) has_begun: bool,
 }
 
-impl Default for HandsBelief {
-    fn default() -> Self {
-        Self { positions: [[0.0; 2]; MAX_PLACES], count: 0, pairs: [[0.0; STATES]; STATES], has_begun: false }
-    }
+/// The places of a frame that has so many, and `hidden`.
+fn states(count: usize) -> impl Iterator<Item = usize> {
+    (0..count.min(HIDDEN)).chain([HIDDEN])
 }
 
 /// What is known of one hand.
@@ -57,74 +57,67 @@ pub(super) struct HandBelief {
 }
 
 impl HandsBelief {
+    /// Before the first frame.
+    pub const EMPTY: Self =
+        Self { positions: [[0.0; 2]; MAX_PLACES], count: 0, pairs: [[0.0; STATES]; STATES], has_begun: false };
+
     /// Takes the places of a frame with their evidence for the left and the right hand. Of more
     /// than [`MAX_PLACES`] the first ones count.
+    #[inline(never)]
     pub fn step(&mut self, places: &[HandPlace], evidence: &[[Evidence; 2]]) {
         let count = places.len().min(evidence.len()).min(MAX_PLACES);
         let mut positions = [[0.0; 2]; MAX_PLACES];
         for (position, place) in positions.iter_mut().zip(&places[..count]) {
             *position = place.position;
         }
-        let mut next = if self.has_begun { self.predicted(&positions, count) } else { [[1.0; STATES]; STATES] };
+        let next = if self.has_begun { self.predicted(&positions, count) } else { [[1.0; STATES]; STATES] };
         let mut sum = 0.0;
-        for (left, row) in next.iter_mut().enumerate() {
-            for (right, pair) in row.iter_mut().enumerate() {
-                let is_there = |state: usize| state < count || state == HIDDEN;
-                let weight =
-                    if is_there(left) && is_there(right) { pair_weight(places, evidence, left, right) } else { 0.0 };
-                *pair *= weight;
-                sum += *pair;
-            }
+        let mut pairs = [[0.0; STATES]; STATES];
+        for (left, right) in states(count).flat_map(|left| states(count).map(move |right| (left, right))) {
+            pairs[left][right] = next[left][right] * pair_weight(places, evidence, left, right);
+            sum += pairs[left][right];
         }
         if !(sum > 0.0 && sum.is_finite()) {
-            *self = Self::default();
+            *self = Self::EMPTY;
             return;
         }
-        next.iter_mut().flatten().for_each(|pair| *pair /= sum);
-        *self = Self { positions, count, pairs: next, has_begun: true };
+        pairs.iter_mut().flatten().for_each(|pair| *pair /= sum);
+        *self = Self { positions, count, pairs, has_begun: true };
     }
 
     /// The pairs before the new frame's evidence: T' A T with the transition T of one hand.
+    #[inline(never)]
     fn predicted(&self, positions: &[[f32; 2]; MAX_PLACES], count: usize) -> [[f32; STATES]; STATES] {
+        let (old_states, new_states) = (|| states(self.count), || states(count));
         let mut transition = [[0.0; STATES]; STATES];
-        for (old, row) in transition.iter_mut().enumerate() {
-            for (new, chance) in row.iter_mut().enumerate() {
-                let is_new = new < count || new == HIDDEN;
-                let is_old = old < self.count || old == HIDDEN;
-                *chance = match (old == HIDDEN, new == HIDDEN) {
-                    _ if !is_new || !is_old => 0.0,
-                    (true, true) => 1.0,
-                    (true, false) => APPEARING,
-                    (false, true) => HIDING,
-                    (false, false) => (1.0 - HIDING) * moved(self.positions[old], positions[new]),
-                };
-            }
+        for (old, new) in old_states().flat_map(|old| new_states().map(move |new| (old, new))) {
+            transition[old][new] = match (old == HIDDEN, new == HIDDEN) {
+                (true, true) => 1.0,
+                (true, false) => APPEARING,
+                (false, true) => HIDING,
+                (false, false) => (1.0 - HIDING) * moved(self.positions[old], positions[new]),
+            };
         }
         let mut half = [[0.0; STATES]; STATES];
-        for (left, row) in half.iter_mut().enumerate() {
-            for (right, value) in row.iter_mut().enumerate() {
-                *value = (0..STATES).map(|old| self.pairs[left][old] * transition[old][right]).sum();
-            }
+        for (left, right) in old_states().flat_map(|left| new_states().map(move |right| (left, right))) {
+            half[left][right] = old_states().map(|old| self.pairs[left][old] * transition[old][right]).sum();
         }
         let mut pairs = [[0.0; STATES]; STATES];
-        for (left, row) in pairs.iter_mut().enumerate() {
-            for (right, value) in row.iter_mut().enumerate() {
-                *value = (0..STATES).map(|old| transition[old][left] * half[old][right]).sum();
-            }
+        for (left, right) in new_states().flat_map(|left| new_states().map(move |right| (left, right))) {
+            pairs[left][right] = old_states().map(|old| transition[old][left] * half[old][right]).sum();
         }
         pairs
     }
 
-    /// What is known of the left and of the right hand: the likeliest places, none within
-    /// [`ONE_HAND`] of a likelier one.
+    /// What is known of the hand of a side: the likeliest places, none within [`ONE_HAND`] of a
+    /// likelier one.
     #[must_use]
-    pub fn hands(&self) -> [Vec<HandBelief, MAX_PLACES>; 2] {
-        let left: [f32; STATES] = core::array::from_fn(|state| self.pairs[state].iter().sum());
-        let right: [f32; STATES] = core::array::from_fn(|state| self.pairs.iter().map(|row| row[state]).sum());
-        [left, right].map(|marginal| self.hand(&marginal))
-    }
-
-    fn hand(&self, marginal: &[f32; STATES]) -> Vec<HandBelief, MAX_PLACES> {
+    #[inline(never)]
+    pub fn hand(&self, side: Side) -> Vec<HandBelief, MAX_PLACES> {
+        let marginal: [f32; STATES] = match side {
+            Side::Left => core::array::from_fn(|state| self.pairs[state].iter().sum()),
+            Side::Right => core::array::from_fn(|state| self.pairs.iter().map(|row| row[state]).sum()),
+        };
         let is_near = |a: usize, b: usize| distance2(self.positions[a], self.positions[b]) < ONE_HAND * ONE_HAND;
         let near = |place: usize| (0..self.count).filter(move |other| is_near(place, *other));
         let mass = |place: usize| near(place).map(|other| marginal[other]).sum::<f32>();
@@ -187,6 +180,10 @@ mod tests {
         HandPlace { position, object, thickness: 0.3, fill: 0.9, moving: 0.5, new: 0.5, end: None }
     }
 
+    fn hands(belief: &HandsBelief) -> [Vec<HandBelief, MAX_PLACES>; 2] {
+        [Side::Left, Side::Right].map(|side| belief.hand(side))
+    }
+
     fn step(belief: &mut HandsBelief, places: &[([f32; 2], f32, f32)]) {
         let there: std::vec::Vec<_> = places.iter().enumerate().map(|(i, of)| place(of.0, i as u8)).collect();
         let evidence = |alone: f32| Evidence { alone, shared: alone };
@@ -196,7 +193,7 @@ mod tests {
 
     #[test]
     fn hands_that_cross_keep_their_sides() {
-        let mut belief = HandsBelief::default();
+        let mut belief = HandsBelief::EMPTY;
         for frame in 0..60 {
             // The left hand goes from right to left, the right one the other way, below it.
             let x = 1.5 - 0.05 * frame as f32;
@@ -204,36 +201,36 @@ mod tests {
             let sides = if frame < 10 { 2.0 } else { 0.0 };
             step(&mut belief, &[([x, 2.0], 2.0 + sides, 2.0 - sides), ([-x, 2.5], 2.0 - sides, 2.0 + sides)]);
         }
-        let [left, right] = belief.hands();
+        let [left, right] = hands(&belief);
         assert_eq!((left[0].place, right[0].place), (0, 1));
         assert!(left[0].probability > 0.7 && right[0].probability > 0.7, "{left:?} {right:?}");
     }
 
     #[test]
     fn a_place_that_vanishes_for_some_frames_is_found_again() {
-        let mut belief = HandsBelief::default();
+        let mut belief = HandsBelief::EMPTY;
         let (hand, other, clutter) = (([1.5, 2.0], 3.0, -1.0), ([-1.5, 2.0], -1.0, 3.0), ([2.2, 0.5], 0.5, -2.0));
         (0..20).for_each(|_| step(&mut belief, &[hand, other, clutter]));
         (0..6).for_each(|_| step(&mut belief, &[other, clutter]));
         (0..6).for_each(|_| step(&mut belief, &[clutter, hand, other]));
-        let [left, right] = belief.hands();
+        let [left, right] = hands(&belief);
         assert_eq!((left[0].place, right[0].place), (1, 2));
         assert!(left[0].probability > 0.8);
     }
 
     #[test]
     fn one_place_holds_one_hand() {
-        let mut belief = HandsBelief::default();
+        let mut belief = HandsBelief::EMPTY;
         (0..20).for_each(|_| step(&mut belief, &[([0.2, 2.0], 3.0, 2.0)]));
-        let [left, right] = belief.hands();
+        let [left, right] = hands(&belief);
         assert!(left[0].probability > 0.7 && right[0].probability < 0.3, "{left:?} {right:?}");
     }
 
     #[test]
     fn without_any_place_nothing_is_known() {
-        let mut belief = HandsBelief::default();
+        let mut belief = HandsBelief::EMPTY;
         step(&mut belief, &[]);
-        assert!(belief.hands().iter().all(|hand| hand.is_empty()));
+        assert!(hands(&belief).iter().all(|hand| hand.is_empty()));
     }
 
     proptest! {
@@ -243,14 +240,14 @@ mod tests {
                 proptest::collection::vec((any::<[i8; 2]>(), -200.0_f32..200.0, -200.0_f32..200.0), 0..20), 1..10,
             ),
         ) {
-            let mut belief = HandsBelief::default();
+            let mut belief = HandsBelief::EMPTY;
             for frame in frames {
                 let places: std::vec::Vec<_> =
                     frame.iter().map(|of| (of.0.map(|at| f32::from(at) / 8.0), of.1, of.2)).collect();
                 step(&mut belief, &places);
                 let sum: f32 = belief.pairs.iter().flatten().sum();
                 prop_assert!(!belief.has_begun || (sum - 1.0).abs() < 1.0e-3, "{sum}");
-                for hand in belief.hands().iter().flatten() {
+                for hand in hands(&belief).iter().flatten() {
                     prop_assert!((0.0..=1.0).contains(&hand.probability) && hand.place < belief.count);
                 }
             }

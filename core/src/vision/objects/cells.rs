@@ -1,13 +1,6 @@
-//! Cells of a picture: a grid that is small enough for any device, and boxes of it.
+//! Places in a grid of cells, and boxes of it.
 
 use core::ops::Range;
-
-/// Most columns of a grid.
-pub(super) const MAX_COLUMNS: usize = 80;
-/// Most rows of a grid.
-pub(super) const MAX_ROWS: usize = 60;
-/// Most cells of a grid.
-pub(super) const MAX_CELLS: usize = MAX_COLUMNS * MAX_ROWS;
 
 /// Size of a grid, cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

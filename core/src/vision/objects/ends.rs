@@ -1,7 +1,7 @@
 //! Both ends of an elongated object, along its inside: an arm has its hand at one of them.
 
 use super::cells::{CellBox, GridSize};
-use super::geodesic::{STRAIGHT, UNREACHED, distances};
+use super::geodesic::{Length, STRAIGHT, distances};
 use crate::math::max;
 
 /// Cells within this of an end belong to it, widths of the face: the length of a hand.
@@ -50,7 +50,7 @@ pub(super) fn ends(
 
 fn farthest(size: GridSize, within: &CellBox, inside: impl Fn(usize) -> bool, distances: &[u16]) -> usize {
     let mut best = (0, None);
-    for cell in within.cells(size).filter(|cell| inside(*cell) && distances[*cell] != UNREACHED) {
+    for cell in within.cells(size).filter(|cell| inside(*cell) && distances[*cell] != u16::UNREACHED) {
         if best.1.is_none_or(|most| distances[cell] > most) {
             best = (cell, Some(distances[cell]));
         }

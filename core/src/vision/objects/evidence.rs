@@ -37,13 +37,10 @@ pub(super) struct Liveliness {
     pub(super) most: f32,
 }
 
-impl Default for Liveliness {
-    fn default() -> Self {
-        Self { most: MIN_LIVELINESS }
-    }
-}
-
 impl Liveliness {
+    /// Before the first frame.
+    pub const EMPTY: Self = Self { most: 0.0 };
+
     /// Takes the places of a frame.
     pub fn add(&mut self, places: &[HandPlace]) {
         let now = places.iter().fold(0.0, |most, place| max(most, place.moving));
@@ -53,12 +50,13 @@ impl Liveliness {
     /// Motion of a place relative to the liveliest, 0 to 1.
     #[must_use]
     pub fn of(&self, place: &HandPlace) -> f32 {
-        min(1.0, place.moving / self.most)
+        min(1.0, place.moving / max(self.most, MIN_LIVELINESS))
     }
 }
 
 /// The evidence for `place` to be the hand of `side`; `liveliness` is that of the place.
 #[must_use]
+#[inline(never)]
 pub(super) fn evidence(place: &HandPlace, side: Side, liveliness: f32) -> Evidence {
     let fresh = max(place.new, liveliness);
     let common = shape(place) + where_it_is(place, side, fresh) + 2.5 * liveliness + 1.2 * place.new;
@@ -153,7 +151,7 @@ mod tests {
 
     #[test]
     fn motion_counts_relative_to_the_liveliest_and_fades() {
-        let mut liveliness = Liveliness::default();
+        let mut liveliness = Liveliness::EMPTY;
         let moving = |moving| HandPlace { moving, ..place([1.0, 1.0]) };
         liveliness.add(&[moving(0.8), moving(0.2)]);
         assert_eq!((liveliness.of(&moving(0.8)), liveliness.of(&moving(0.2))), (1.0, 0.25));

@@ -1,13 +1,14 @@
 //! Places that may be hands: ends of arms, and the thickest parts of objects.
 
-use super::cells::{CellBox, GridSize, MAX_CELLS};
+use super::cells::CellBox;
 use super::ends::{Ends, ends};
-use super::geodesic::{STRAIGHT, UNREACHED, spread};
+use super::geodesic::{Length, STRAIGHT, spread};
 use super::grid::CellGrid;
 use super::head::{HeadBox, distance, is_head, shoulder};
-use super::labels::{MAX_LABELS, label};
+use super::labels::label;
+use super::object_table::{Object, measure, measured};
 use super::place::{ArmEnd, HandPlace};
-use crate::math::{max, min};
+use crate::math::max;
 use crate::skeleton::Side;
 use core::ops::RangeInclusive;
 use heapless::Vec;
@@ -39,78 +40,61 @@ const AROUND: f32 = 0.6;
 
 /// Working memory of a frame.
 #[derive(Debug, Clone)]
-pub(super) struct Maps {
-    labels: [u8; MAX_CELLS],
+pub(super) struct Maps<const COLUMNS: usize, const ROWS: usize> {
+    labels: [[u8; COLUMNS]; ROWS],
     /// Chamfer distance to what is no skin; beyond the border the picture goes on.
-    depths: [u16; MAX_CELLS],
-    scratch: [u16; MAX_CELLS],
+    depths: [[u8; COLUMNS]; ROWS],
+    scratch: [[u16; COLUMNS]; ROWS],
 }
 
-impl Maps {
-    pub(super) const EMPTY: Self = Self { labels: [0; MAX_CELLS], depths: [0; MAX_CELLS], scratch: [0; MAX_CELLS] };
+impl<const COLUMNS: usize, const ROWS: usize> Maps<COLUMNS, ROWS> {
+    pub(super) const EMPTY: Self =
+        Self { labels: [[0; COLUMNS]; ROWS], depths: [[0; COLUMNS]; ROWS], scratch: [[0; COLUMNS]; ROWS] };
 }
 
-/// What is known of an object.
-#[derive(Debug, Clone)]
-struct Object {
-    cells: u16,
-    first: u16,
-    within: [u8; 4],
-    /// Of the places of its cells.
-    sum: [f32; 2],
-    to_shoulder: f32,
+/// Those of a grid of any capacity.
+struct Layers<'a> {
+    labels: &'a mut [u8],
+    depths: &'a mut [u8],
+    /// The objects first, and then distances along each.
+    scratch: &'a mut [u16],
 }
 
-impl Object {
-    const NONE: Self =
-        Self { cells: 0, first: 0, within: [u8::MAX, u8::MAX, 0, 0], sum: [0.0; 2], to_shoulder: f32::INFINITY };
-
-    fn add(&mut self, cell: usize, size: GridSize, at: [f32; 2]) {
-        let (column, row) = size.place(cell);
-        let [min_u, min_v, max_u, max_v] = &mut self.within;
-        (*min_u, *max_u) = ((*min_u).min(column as u8), (*max_u).max(column as u8));
-        (*min_v, *max_v) = ((*min_v).min(row as u8), (*max_v).max(row as u8));
-        self.first = if self.cells == 0 { cell as u16 } else { self.first };
-        self.cells += 1;
-        self.sum = [self.sum[0] + at[0], self.sum[1] + at[1]];
-        let to = |side| distance(at, shoulder(side));
-        self.to_shoulder = min(self.to_shoulder, min(to(Side::Left), to(Side::Right)));
-    }
-
-    fn within(&self) -> CellBox {
-        let [min_u, min_v, max_u, max_v] = self.within.map(usize::from);
-        CellBox { columns: min_u..max_u + 1, rows: min_v..max_v + 1 }
-    }
-}
-
-/// Finds the places of the frame that `grid` holds.
-pub(super) fn places(grid: &CellGrid, head: HeadBox, maps: &mut Maps) -> Vec<HandPlace, MAX_FOUND> {
+/// Adds the places of the frame that `grid` holds to `found`.
+#[inline(never)]
+pub(super) fn places<const COLUMNS: usize, const ROWS: usize>(
+    grid: &CellGrid<COLUMNS, ROWS>,
+    head: HeadBox,
+    maps: &mut Maps<COLUMNS, ROWS>,
+    found: &mut Vec<HandPlace, MAX_FOUND>,
+) {
+    let mut maps = Layers {
+        labels: maps.labels.as_flattened_mut(),
+        depths: maps.depths.as_flattened_mut(),
+        scratch: maps.scratch.as_flattened_mut(),
+    };
     let view = View { grid, head, width: head.width_px / grid.cell_px() as f32 };
     let size = grid.size();
     let is_work = |cell: usize| grid.is_skin(cell) && (!is_head(view.of_cell(cell)) || grid.is_unusual(cell));
-    let count = label(size, is_work, &mut maps.labels);
-    let mut objects = [const { Object::NONE }; MAX_LABELS + 1];
-    for cell in 0..size.cells() {
-        let label = maps.labels[cell];
-        maps.depths[cell] = if label == 0 { 0 } else { UNREACHED };
-        if label != 0 {
-            objects[usize::from(label)].add(cell, size, view.of_cell(cell));
+    let count = label(size, is_work, maps.labels);
+    for (depth, label) in maps.depths.iter_mut().zip(maps.labels.iter()) {
+        *depth = if *label == 0 { 0 } else { u8::UNREACHED };
+    }
+    spread(size, &CellBox::whole(size), |cell| maps.labels[cell] != 0, maps.depths);
+    let mut objects: Vec<Object, MAX_FOUND> = Vec::new();
+    measure(size, maps.labels, maps.scratch);
+    for object in measured(count, maps.scratch) {
+        // Each has a place, and more than have room are not looked for.
+        if view.may_have_hand(&object, maps.labels) && objects.push(object).is_err() {
+            break;
         }
     }
-    spread(size, &CellBox::whole(size), |cell| maps.labels[cell] != 0, &mut maps.depths);
-    let mut found = Vec::new();
-    for (label, object) in objects.iter().enumerate().take(usize::from(count) + 1) {
-        let area = f32::from(object.cells) / (view.width * view.width);
-        if AREAS.contains(&area) && object.to_shoulder <= REACH {
-            view.places_of(object, label as u8, area, maps, &mut found);
-        }
-    }
-    found
+    objects.iter().for_each(|object| view.places_of(object, &mut maps, found));
 }
 
 /// One frame seen from the head.
-struct View<'a> {
-    grid: &'a CellGrid,
+struct View<'a, const COLUMNS: usize, const ROWS: usize> {
+    grid: &'a CellGrid<COLUMNS, ROWS>,
     head: HeadBox,
     /// Of the head, cells.
     width: f32,
@@ -125,10 +109,10 @@ struct Around {
     objects: f32,
     skin: f32,
     new: f32,
-    depth: u16,
+    depth: u8,
 }
 
-impl View<'_> {
+impl<const COLUMNS: usize, const ROWS: usize> View<'_, COLUMNS, ROWS> {
     /// A place in cells, relative to the head.
     fn relative(&self, place: [f32; 2]) -> [f32; 2] {
         self.head.relative(place.map(|at| at * self.grid.cell_px() as f32))
@@ -139,9 +123,28 @@ impl View<'_> {
         self.relative([column as f32 + 0.5, row as f32 + 0.5])
     }
 
-    fn places_of(&self, object: &Object, label: u8, area: f32, maps: &mut Maps, found: &mut Vec<HandPlace, MAX_FOUND>) {
+    /// Area of an object, squared widths of the face.
+    fn area(&self, object: &Object) -> f32 {
+        f32::from(object.cells) / (self.width * self.width)
+    }
+
+    /// Where the cells of an object are.
+    fn positions(&self, object: &Object, labels: &[u8]) -> impl Iterator<Item = [f32; 2]> {
+        let (size, label) = (self.grid.size(), object.label);
+        object.within().cells(size).filter(move |cell| labels[*cell] == label).map(|cell| self.of_cell(cell))
+    }
+
+    /// Whether an object has the size of hands and arms, and is within reach.
+    fn may_have_hand(&self, object: &Object, labels: &[u8]) -> bool {
+        let is_near = |at| [Side::Left, Side::Right].iter().any(|side| distance(at, shoulder(*side)) <= REACH);
+        AREAS.contains(&self.area(object)) && self.positions(object, labels).any(is_near)
+    }
+
+    #[inline(never)]
+    fn places_of(&self, object: &Object, maps: &mut Layers<'_>, found: &mut Vec<HandPlace, MAX_FOUND>) {
         let (size, within, first) = (self.grid.size(), object.within(), found.len());
-        let Maps { labels, depths, scratch } = maps;
+        let (area, label) = (self.area(object), object.label);
+        let Layers { labels, depths, scratch } = maps;
         let inside = |cell: usize| labels[cell] == label;
         let mut add = |position: [f32; 2], end: Option<ArmEnd>| {
             if found.iter().skip(first).all(|other| distance(other.position, position) >= ONE_PLACE) {
@@ -156,7 +159,7 @@ impl View<'_> {
         }
         let mut peaks: Vec<[f32; 2], MAX_PEAKS> = Vec::new();
         while !peaks.is_full() {
-            let mut best = (None, (MIN_THICKNESS * self.width * f32::from(STRAIGHT)) as u16);
+            let mut best = (None, (MIN_THICKNESS * self.width * f32::from(STRAIGHT)) as u8);
             for cell in within.cells(size).filter(|cell| inside(*cell)) {
                 let is_free = |at| peaks.iter().all(|peak| distance(*peak, at) > BETWEEN_PEAKS);
                 if depths[cell] > best.1 && is_free(self.of_cell(cell)) {
@@ -168,7 +171,8 @@ impl View<'_> {
             add(self.of_cell(cell), None);
         }
         if area < MAX_AREA_OF_HAND {
-            add(object.sum.map(|sum| sum / f32::from(object.cells)), None);
+            let sum = self.positions(object, labels).fold([0.0; 2], |[u, v], at| [u + at[0], v + at[1]]);
+            add(sum.map(|sum| sum / f32::from(object.cells)), None);
         }
     }
 
@@ -179,7 +183,8 @@ impl View<'_> {
         (length > MIN_LENGTH).then_some([(a, ArmEnd { length, other: b }), (b, ArmEnd { length, other: a })])
     }
 
-    fn place(&self, position: [f32; 2], object: u8, end: Option<ArmEnd>, labels: &[u8], depths: &[u16]) -> HandPlace {
+    #[inline(never)]
+    fn place(&self, position: [f32; 2], object: u8, end: Option<ArmEnd>, labels: &[u8], depths: &[u8]) -> HandPlace {
         let around = self.around(position, labels, depths);
         let share = |part: f32, of: f32| if of > 0.0 { part / of } else { 0.0 };
         HandPlace {
@@ -193,7 +198,8 @@ impl View<'_> {
         }
     }
 
-    fn around(&self, position: [f32; 2], labels: &[u8], depths: &[u16]) -> Around {
+    #[inline(never)]
+    fn around(&self, position: [f32; 2], labels: &[u8], depths: &[u8]) -> Around {
         let size = self.grid.size();
         let centre = self.head.place_px(position).map(|at| at / self.grid.cell_px() as f32 - 0.5);
         let [reach, near] = [AROUND, HAND_RADIUS].map(|radius| radius * self.width);

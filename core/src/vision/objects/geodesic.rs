@@ -7,11 +7,39 @@
 use super::cells::{CellBox, GridSize};
 
 /// Cost of a step to one of the four neighbours.
-pub(super) const STRAIGHT: u16 = 5;
+pub(super) const STRAIGHT: u8 = 5;
 /// Cost of a diagonal step.
-pub(super) const DIAGONAL: u16 = 7;
-/// Distance of cells that are not reached.
-pub(super) const UNREACHED: u16 = u16::MAX;
+pub(super) const DIAGONAL: u8 = 7;
+
+/// A distance that is kept for each cell: of 16 bits along an object, of 8 across it.
+pub(super) trait Length: Copy + Ord {
+    /// No distance.
+    const ZERO: Self;
+    /// Distance of cells that are not reached, the greatest.
+    const UNREACHED: Self;
+
+    /// A step further, at most as far as what is not reached.
+    fn after(self, step: u8) -> Self;
+}
+
+impl Length for u16 {
+    const ZERO: Self = 0;
+    const UNREACHED: Self = Self::MAX;
+
+    fn after(self, step: u8) -> Self {
+        self.saturating_add(Self::from(step))
+    }
+}
+
+impl Length for u8 {
+    const ZERO: Self = 0;
+    const UNREACHED: Self = Self::MAX;
+
+    fn after(self, step: u8) -> Self {
+        self.saturating_add(step)
+    }
+}
+
 /// Most pairs of sweeps. Chosen: a bent arm takes three; of a spiral the inner part stays
 /// unreached.
 const MAX_SWEEPS: usize = 8;
@@ -20,21 +48,22 @@ const MAX_SWEEPS: usize = 8;
 /// with it; cells outside of `within` keep what they have.
 ///
 /// `distances` has a number for each cell of the grid.
-pub(super) fn distances(
+pub(super) fn distances<L: Length>(
     size: GridSize,
     within: &CellBox,
     inside: impl Fn(usize) -> bool,
     start: usize,
-    distances: &mut [u16],
+    distances: &mut [L],
 ) {
     for cell in within.cells(size) {
-        distances[cell] = if cell == start { 0 } else { UNREACHED };
+        distances[cell] = if cell == start { L::ZERO } else { L::UNREACHED };
     }
     spread(size, within, inside, distances);
 }
 
 /// Lowers the distances of the cells for which `inside` holds by what their neighbours allow.
-pub(super) fn spread(size: GridSize, within: &CellBox, inside: impl Fn(usize) -> bool, distances: &mut [u16]) {
+#[inline(never)]
+pub(super) fn spread<L: Length>(size: GridSize, within: &CellBox, inside: impl Fn(usize) -> bool, distances: &mut [L]) {
     for _ in 0..MAX_SWEEPS {
         let mut has_changed = false;
         for cell in within.cells(size).filter(|cell| inside(*cell)) {
@@ -50,13 +79,13 @@ pub(super) fn spread(size: GridSize, within: &CellBox, inside: impl Fn(usize) ->
 }
 
 /// Lowers one distance by the four neighbours that a sweep has passed; whether it became shorter.
-fn lower(size: GridSize, within: &CellBox, cell: usize, is_backward: bool, distances: &mut [u16]) -> bool {
+fn lower<L: Length>(size: GridSize, within: &CellBox, cell: usize, is_backward: bool, distances: &mut [L]) -> bool {
     let (column, row) = size.place(cell);
     let old = distances[cell];
     let mut best = old;
-    let mut pass = |is_there: bool, neighbour: usize, cost: u16| {
+    let mut pass = |is_there: bool, neighbour: usize, cost: u8| {
         if is_there {
-            best = best.min(distances[neighbour].saturating_add(cost));
+            best = best.min(distances[neighbour].after(cost));
         }
     };
     let (left, right) = (column > within.columns.start, column + 1 < within.columns.end);
@@ -83,6 +112,7 @@ fn lower(size: GridSize, within: &CellBox, cell: usize, is_backward: bool, dista
 mod tests {
     use super::*;
 
+    const UNREACHED: u16 = <u16 as Length>::UNREACHED;
     const SIZE: GridSize = GridSize { columns: 8, rows: 5 };
 
     fn of(picture: &str, start: usize) -> [u16; 40] {
@@ -95,19 +125,19 @@ mod tests {
     #[test]
     fn the_way_goes_round_what_is_outside() {
         let found = of("######## ........ ######## #....... ########", 0);
-        assert_eq!(found[7], 7 * STRAIGHT);
+        assert_eq!(found[7], u16::from(7 * STRAIGHT));
         assert_eq!(found[16], UNREACHED, "a row apart");
         let found = of("######## .......# ######## #....... ########", 0);
-        assert_eq!(found[15], 6 * STRAIGHT + DIAGONAL);
+        assert_eq!(found[15], u16::from(6 * STRAIGHT + DIAGONAL));
         // Two turns of two diagonals each, and what is straight between.
-        assert_eq!(found[39], 6 * STRAIGHT + 2 * DIAGONAL + 5 * STRAIGHT + 2 * DIAGONAL + 6 * STRAIGHT);
+        assert_eq!(found[39], u16::from(6 * STRAIGHT + 2 * DIAGONAL + 5 * STRAIGHT + 2 * DIAGONAL + 6 * STRAIGHT));
     }
 
     #[test]
     fn a_diagonal_is_as_long_as_it_is() {
         let found = of("######## ######## ######## ######## ########", 0);
-        assert_eq!(found[4 * 8 + 4], 4 * DIAGONAL);
-        assert_eq!(found[8 + 7], DIAGONAL + 6 * STRAIGHT);
+        assert_eq!(found[4 * 8 + 4], u16::from(4 * DIAGONAL));
+        assert_eq!(found[8 + 7], u16::from(DIAGONAL + 6 * STRAIGHT));
     }
 
     #[test]

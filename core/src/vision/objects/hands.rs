@@ -30,43 +30,54 @@ const MIN_FILL: f32 = 0.1;
 /// ```
 pub type Candidates = Vec<HandCandidate, MAX_PLACES>;
 
-/// Finds both hands of one person.
+/// Finds both hands of one person, in a grid of at most `COLUMNS` x `ROWS` cells.
 ///
 /// ```
 /// use sinew_core::vision::objects::grid::CellGrid;
 /// use sinew_core::vision::objects::hands::{Candidates, HandFinder};
 /// use sinew_core::vision::objects::head::HeadBox;
 ///
-/// let mut finder = HandFinder::new(CellGrid::new(320, 240).expect("it has a size"));
+/// let mut finder = HandFinder::<80, 60>::new(CellGrid::new(320, 240).expect("it has a size"));
 /// // Without a face nothing is said; the page of `objects` shows it with one.
-/// let nothing: [Candidates; 2] = finder.step();
+/// let nothing: &[Candidates; 2] = finder.step();
 /// assert!(finder.head().is_none() && nothing.iter().all(|hand| hand.is_empty()));
 /// finder.add_face(HeadBox { centre_px: [160.0, 60.0], width_px: 40.0 });
 /// finder.add_face(HeadBox { centre_px: [164.0, 60.0], width_px: 44.0 });
 /// assert_eq!(finder.head(), Some(HeadBox { centre_px: [162.0, 60.0], width_px: 42.0 }));
 /// ```
 #[derive(Debug, Clone)]
-pub struct HandFinder {
-    pub(super) grid: CellGrid,
-    maps: Maps,
+pub struct HandFinder<const COLUMNS: usize, const ROWS: usize> {
+    pub(super) grid: CellGrid<COLUMNS, ROWS>,
+    maps: Maps<COLUMNS, ROWS>,
     pub(super) head: Option<HeadBox>,
     pub(super) liveliness: Liveliness,
     pub(super) belief: HandsBelief,
-    places: Vec<HandPlace, MAX_PLACES>,
+    /// Those of the last frame, left and right.
+    candidates: [Candidates; 2],
 }
 
-impl HandFinder {
+/// Places of a frame.
+type Places = Vec<HandPlace, MAX_PLACES>;
+
+impl<const COLUMNS: usize, const ROWS: usize> HandFinder<COLUMNS, ROWS> {
     /// A finder for the pictures of `grid` that knows no head yet.
     #[must_use]
-    pub fn new(grid: CellGrid) -> Self {
+    pub const fn new(grid: CellGrid<COLUMNS, ROWS>) -> Self {
         Self {
             grid,
             maps: Maps::EMPTY,
             head: None,
-            liveliness: Liveliness::default(),
-            belief: HandsBelief::default(),
-            places: Vec::new(),
+            liveliness: Liveliness::EMPTY,
+            belief: HandsBelief::EMPTY,
+            candidates: [Vec::new(), Vec::new()],
         }
+    }
+
+    /// Forgets all, and takes pictures of another size from now on; whether the grid has a cell.
+    pub fn resize(&mut self, width_px: usize, height_px: usize) -> bool {
+        self.head = None;
+        (self.liveliness, self.belief) = (Liveliness::EMPTY, HandsBelief::EMPTY);
+        self.grid.resize(width_px, height_px)
     }
 
     /// Takes a face that was found: the head is the mean of the old and the new box. A box that is
@@ -82,7 +93,7 @@ impl HandFinder {
     }
 
     /// The grid, for the lines of a frame.
-    pub fn grid_mut(&mut self) -> &mut CellGrid {
+    pub fn grid_mut(&mut self) -> &mut CellGrid<COLUMNS, ROWS> {
         &mut self.grid
     }
 
@@ -94,17 +105,30 @@ impl HandFinder {
 
     /// Answers the frame that the grid holds: candidates for the left and for the right hand, whose
     /// likelihood is the probability that the hand is there, by all frames so far.
-    pub fn step(&mut self) -> [Candidates; 2] {
-        let Some(head) = self.head else { return [Vec::new(), Vec::new()] };
-        let found = places(&self.grid, head, &mut self.maps);
-        self.liveliness.add(&found);
-        let (places, evidence) = likeliest(&found, &self.liveliness);
+    #[inline(never)]
+    pub fn step(&mut self) -> &[Candidates; 2] {
+        self.grid.end();
+        self.candidates.iter_mut().for_each(Vec::clear);
+        let Some(head) = self.head else { return &self.candidates };
+        let mut places = Vec::new();
+        let evidence = self.find(head, &mut places);
         self.belief.step(&places, &evidence);
-        self.places = places;
-        self.belief.hands().map(|hand| {
-            let candidate = |hand: &HandBelief| Some(candidate(hand, self.places.get(hand.place)?.fill, &head));
-            hand.iter().filter_map(candidate).collect()
-        })
+        for (side, candidates) in [Side::Left, Side::Right].into_iter().zip(&mut self.candidates) {
+            let candidate = |hand: &HandBelief| Some(candidate(hand, places.get(hand.place)?.fill, &head));
+            candidates.extend(self.belief.hand(side).iter().filter_map(candidate));
+        }
+        &self.candidates
+    }
+
+    /// Finds the frame's places, and gives their evidence.
+    // Not inlined, as all that works here for a while: each needs its stack after the other, not
+    // at once.
+    #[inline(never)]
+    fn find(&mut self, head: HeadBox, chosen: &mut Places) -> Vec<[Evidence; 2], MAX_PLACES> {
+        let mut found = Vec::new();
+        places(&self.grid, head, &mut self.maps, &mut found);
+        self.liveliness.add(&found);
+        likeliest(&found, &self.liveliness, chosen)
     }
 }
 
@@ -122,13 +146,13 @@ fn candidate(hand: &HandBelief, fill: f32, head: &HeadBox) -> HandCandidate {
     }
 }
 
-type Chosen = (Vec<HandPlace, MAX_PLACES>, Vec<[Evidence; 2], MAX_PLACES>);
-
-/// The places for which most speaks, with their evidence for left and right.
-fn likeliest(found: &[HandPlace], liveliness: &Liveliness) -> Chosen {
+/// Chooses the places for which most speaks, and gives their evidence for left and right.
+#[inline(never)]
+fn likeliest(found: &[HandPlace], liveliness: &Liveliness, places: &mut Places) -> Vec<[Evidence; 2], MAX_PLACES> {
     let of = |place: &HandPlace| [Side::Left, Side::Right].map(|side| evidence(place, side, liveliness.of(place)));
     let score = |[left, right]: &[Evidence; 2]| max(max(left.alone, right.alone), max(left.shared, right.shared) - 1.0);
-    let (mut places, mut all): Chosen = (Vec::new(), Vec::new());
+    let mut all: Vec<[Evidence; 2], MAX_PLACES> = Vec::new();
+    places.clear();
     for place in found {
         let evidence = of(place);
         if places.is_full() {
@@ -148,5 +172,5 @@ fn likeliest(found: &[HandPlace], liveliness: &Liveliness) -> Chosen {
         let _ = places.push(*place);
         let _ = all.push(evidence);
     }
-    (places, all)
+    all
 }

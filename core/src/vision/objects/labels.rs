@@ -10,6 +10,7 @@ pub(super) const MAX_LABELS: usize = 255;
 
 /// Labels the cells for which `inside` holds; all others get 0. Returns the greatest label that was
 /// given; some labels below it may have no cell.
+#[inline(never)]
 pub(super) fn label(size: GridSize, inside: impl Fn(usize) -> bool, labels: &mut [u8]) -> u8 {
     let mut parents: [u8; MAX_LABELS + 1] = core::array::from_fn(|label| label as u8);
     let mut used = 0_u8;

@@ -12,7 +12,7 @@
 //! use sinew_core::vision::objects::hands::HandFinder;
 //! use sinew_core::vision::objects::head::HeadBox;
 //!
-//! let mut finder = HandFinder::new(CellGrid::new(160, 120).expect("it has a size"));
+//! let mut finder = HandFinder::<80, 60>::new(CellGrid::new(160, 120).expect("it has a size"));
 //! finder.add_face(HeadBox { centre_px: [80.0, 30.0], width_px: 16.0 });
 //! // The left hand, a square of skin, goes up beside the person.
 //! let mut hands = Default::default();
@@ -24,9 +24,9 @@
 //!         let skin = if is_hand { [0, 0, 0, 0x0fff, 0] } else { [0; 5] };
 //!         let brightness: [u8; 160] =
 //!             core::array::from_fn(|column| if is_hand && (96..108).contains(&column) { 160 } else { 80 });
-//!         finder.grid_mut().add_line(&skin, &brightness, 1);
+//!         finder.grid_mut().line(line, &skin, &brightness, 1);
 //!     }
-//!     hands = finder.step();
+//!     hands = finder.step().clone();
 //! }
 //! let left = &hands[0][0];
 //! assert!(left.likelihood > 0.7);
@@ -43,6 +43,7 @@ pub mod grid;
 pub mod hands;
 pub mod head;
 mod labels;
+mod object_table;
 pub mod person_colour;
 mod place;
 mod saved;

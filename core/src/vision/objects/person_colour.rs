@@ -3,7 +3,7 @@
 //! A normal distribution over luminance and chrominance (Y, Cr, Cb of Rec. 601). It is one-sided: a
 //! hand may be more colourful than the face, since the face is lit from more sides.
 
-use crate::math::{abs, max, sqrt};
+use crate::math::{abs, max, min, sqrt};
 use crate::vision::skin::{PIXELS_PER_WORD, SkinClassifier};
 
 /// Most pixels of a face that are looked at.
@@ -16,6 +16,8 @@ const MAX_FROM_MEDIAN: i32 = 15;
 const FLOOR_VARIANCES: [f32; 3] = [200.0, 4.0, 4.0];
 /// Squared distance within which a colour is skin: three standard deviations.
 const MAX_SQUARED_DISTANCE: f32 = 9.0;
+/// A little more than its root: a single direction that is so far away decides alone.
+const MAX_DEVIATIONS: f32 = 3.01;
 /// Share of what is more colourful than the mean that is forgiven.
 const FORGIVEN: f32 = 0.5;
 /// Weight of the old colour when a new face is seen.
@@ -43,7 +45,13 @@ pub struct PersonColour {
     inverse: [f32; 6],
     /// Direction of more colour in Cr, Cb; a unit vector.
     colourful: [f32; 2],
+    /// Beyond these no colour is skin, whatever else it is: along that direction, and across it.
+    limits: [f32; 2],
 }
+
+/// Parts of R, G and B in Cr and in Cb, see [`ycc`].
+const CR_OF_RGB: [f32; 3] = [0.713 * 0.701, -0.713 * 0.587, -0.713 * 0.114];
+const CB_OF_RGB: [f32; 3] = [-0.564 * 0.299, -0.564 * 0.587, 0.564 * 0.886];
 
 /// Y, Cr and Cb of a colour (Rec. 601, full range).
 fn ycc(rgb: [u8; 3]) -> [f32; 3] {
@@ -57,7 +65,13 @@ impl Default for PersonColour {
     fn default() -> Self {
         let [y, cr, cb] = FLOOR_VARIANCES;
         let inverse = [1.0 / y, 0.0, 0.0, 1.0 / cr, 0.0, 1.0 / cb];
-        Self { mean: [128.0; 3], covariance: [y, 0.0, 0.0, cr, 0.0, cb], inverse, colourful: [0.0; 2] }
+        Self {
+            mean: [128.0; 3],
+            covariance: [y, 0.0, 0.0, cr, 0.0, cb],
+            inverse,
+            colourful: [0.0; 2],
+            limits: [0.0; 2],
+        }
     }
 }
 
@@ -66,25 +80,39 @@ impl PersonColour {
     /// R, G, B each; `None` where too few are alike. Of more than 1024 the first ones count.
     #[must_use]
     pub fn of_face(rgb: &[[u8; 3]]) -> Option<Self> {
-        let rgb = rgb.get(..MAX_SAMPLES).unwrap_or(rgb);
-        let chrominance = |axis: usize| median(rgb.iter().map(|pixel| ycc(*pixel)[axis]));
-        let (cr, cb) = (chrominance(1), chrominance(2));
+        Self::of_pixels(rgb.iter().take(MAX_SAMPLES).copied())
+    }
+
+    /// The same of any pixels.
+    pub(crate) fn of_pixels(rgb: impl Iterator<Item = [u8; 3]> + Clone) -> Option<Self> {
+        let colours = rgb.map(ycc);
+        let [_, cr, cb] = medians(colours.clone());
         let is_near = |value: f32, middle: i32| abs(value - middle as f32) <= MAX_FROM_MEDIAN as f32;
-        let kept = || rgb.iter().map(|pixel| ycc(*pixel)).filter(move |[_, r, b]| is_near(*r, cr) && is_near(*b, cb));
-        let count = kept().count();
+        let kept = colours.filter(move |[_, r, b]| is_near(*r, cr) && is_near(*b, cb));
+        let mut count = 0;
+        let mut mean = [0.0_f32; 3];
+        for colour in kept.clone() {
+            count += 1;
+            mean.iter_mut().zip(colour).for_each(|(sum, value)| *sum += value);
+        }
         if count < MIN_SAMPLES {
             return None;
         }
-        let mean: [f32; 3] = core::array::from_fn(|axis| kept().map(|colour| colour[axis]).sum::<f32>() / count as f32);
-        let covariance = PAIRS.map(|(a, b)| {
-            let sum: f32 = kept().map(|colour| (colour[a] - mean[a]) * (colour[b] - mean[b])).sum();
-            sum / count as f32 + if a == b { FLOOR_VARIANCES[a] } else { 0.0 }
-        });
+        mean = mean.map(|sum| sum / count as f32);
+        let mut covariance = [0.0_f32; 6];
+        for colour in kept {
+            let from_mean: [f32; 3] = core::array::from_fn(|axis| colour[axis] - mean[axis]);
+            covariance.iter_mut().zip(PAIRS).for_each(|(sum, (a, b))| *sum += from_mean[a] * from_mean[b]);
+        }
+        for (sum, (a, b)) in covariance.iter_mut().zip(PAIRS) {
+            *sum = *sum / count as f32 + if a == b { FLOOR_VARIANCES[a] } else { 0.0 };
+        }
         Self::new(mean, covariance)
     }
 
     /// Between this colour and a newer one.
     #[must_use]
+    #[inline(never)]
     pub fn moved_to(&self, newer: &Self) -> Option<Self> {
         let mix = |old: f32, new: f32| KEPT * old + (1.0 - KEPT) * new;
         let mean = core::array::from_fn(|axis| mix(self.mean[axis], newer.mean[axis]));
@@ -96,15 +124,23 @@ impl PersonColour {
         let inverse = inverse(&covariance)?;
         let (cr, cb) = (mean[1] - 128.0, mean[2] - 128.0);
         let size = max(sqrt(cr * cr + cb * cb), 1.0e-6);
-        Some(Self { mean, covariance, inverse, colourful: [cr / size, cb / size] })
+        let [along_cr, along_cb] = [cr / size, cb / size];
+        let [.., rr, rb, bb] = covariance;
+        let std = |r: f32, b: f32| sqrt(max(r * r * rr + 2.0 * r * b * rb + b * b * bb, 0.0));
+        let limits = [std(along_cr, along_cb), std(-along_cb, along_cr)].map(|std| MAX_DEVIATIONS * std);
+        Some(Self { mean, covariance, inverse, colourful: [along_cr, along_cb], limits })
     }
 
     /// Whether a colour is this person's skin.
     #[must_use]
+    #[inline(never)]
     pub fn is_skin(&self, rgb: [u8; 3]) -> bool {
         let [y, cr, cb] = ycc(rgb);
         let (y, mut cr, mut cb) = (y - self.mean[0], cr - self.mean[1], cb - self.mean[2]);
         let [along_cr, along_cb] = self.colourful;
+        if abs(along_cr * cb - along_cb * cr) > self.limits[1] {
+            return false;
+        }
         let excess = FORGIVEN * max(0.0, cr * along_cr + cb * along_cb);
         cr -= excess * along_cr;
         cb -= excess * along_cb;
@@ -117,18 +153,19 @@ impl PersonColour {
 /// Axes of the six covariances.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
-fn median(values: impl Iterator<Item = f32> + Clone) -> i32 {
-    let count = values.clone().count();
-    let mut histogram = [0_u16; 256];
-    values.for_each(|value| histogram[(value as i32).clamp(0, 255) as usize] += 1);
-    let mut below = 0;
-    for (value, many) in histogram.iter().enumerate() {
-        below += usize::from(*many);
-        if 2 * below >= count {
-            return value as i32;
-        }
-    }
-    0
+/// Medians of each channel, whole numbers.
+fn medians(colours: impl Iterator<Item = [f32; 3]> + Clone) -> [i32; 3] {
+    let count = colours.clone().count();
+    core::array::from_fn(|axis| {
+        let mut histogram = [0_u16; 256];
+        colours.clone().for_each(|colour| histogram[(colour[axis] as i32).clamp(0, 255) as usize] += 1);
+        let mut below = 0;
+        let is_middle = |many: &u16| {
+            below += usize::from(*many);
+            2 * below >= count
+        };
+        histogram.iter().position(is_middle).unwrap_or(0) as i32
+    })
 }
 
 /// Inverse of a symmetric matrix; `None` if it has none.
@@ -138,7 +175,31 @@ fn inverse(&[a, b, c, d, e, f]: &[f32; 6]) -> Option<[f32; 6]> {
     (determinant > 0.0 && determinant.is_finite()).then(|| minors.map(|minor| minor / determinant))
 }
 
+impl PersonColour {
+    /// Least and greatest projection of the chrominance of colours from `low` to `high` on a
+    /// direction of Cr, Cb, relative to the mean.
+    fn projections(&self, [along_cr, along_cb]: [f32; 2], low: [u8; 3], high: [u8; 3]) -> [f32; 2] {
+        let (cr, cb) = (CR_OF_RGB.map(|part| along_cr * part), CB_OF_RGB.map(|part| along_cb * part));
+        let middle = along_cr * (128.0 - self.mean[1]) + along_cb * (128.0 - self.mean[2]);
+        let mut range = [middle; 2];
+        for (channel, (cr, cb)) in cr.into_iter().zip(cb).enumerate() {
+            let ends = [low, high].map(|rgb| (cr + cb) * f32::from(rgb[channel]));
+            range = [range[0] + min(ends[0], ends[1]), range[1] + max(ends[0], ends[1])];
+        }
+        range
+    }
+}
+
 impl SkinClassifier for PersonColour {
+    /// By the directions of colour and of hue alone.
+    fn is_none_skin(&self, low: [u8; 3], high: [u8; 3]) -> bool {
+        let ([along_cr, along_cb], [colour, hue]) = (self.colourful, self.limits);
+        let [least, most] = self.projections([along_cr, along_cb], low, high);
+        let [left, right] = self.projections([-along_cb, along_cr], low, high);
+        // Half of the excess of colour is forgiven.
+        most < -colour || least > colour / (1.0 - FORGIVEN) || right < -hue || left > hue
+    }
+
     fn classify_line(&self, rgb: &[u8], bits: &mut [u32]) {
         for (word, pixels) in bits.iter_mut().zip(rgb.as_chunks::<3>().0.chunks(PIXELS_PER_WORD)) {
             *word = pixels
@@ -163,6 +224,16 @@ mod tests {
         #[test]
         fn a_face_has_its_own_colour(rgb in any::<[u8; 3]>()) {
             prop_assert!(face(rgb).is_skin(rgb.map(|channel| channel.saturating_add(3))));
+        }
+
+        #[test]
+        fn what_is_said_at_once_is_true(rgb in any::<[u8; 3]>(), pixel in any::<[u8; 3]>(), size in 0_u8..40) {
+            let high = pixel.map(|channel| channel.saturating_add(size));
+            let colour = face(rgb);
+            if colour.is_none_skin(pixel, high) {
+                let between = core::array::from_fn(|axis| (pixel[axis] / 2 + high[axis] / 2).max(pixel[axis]));
+                prop_assert!(![pixel, between, high].into_iter().any(|rgb| colour.is_skin(rgb)));
+            }
         }
 
         #[test]

@@ -1,8 +1,8 @@
 //! What the next frame needs of the last ones.
 
 use super::belief::HandsBelief;
-use super::evidence::{Liveliness, MIN_LIVELINESS};
-use super::grid::{CellGrid, MAX_FRAMES, MAX_SKIN_FRAMES};
+use super::evidence::Liveliness;
+use super::grid::{CellGrid, MAX_FRAMES};
 use super::hands::HandFinder;
 use super::head::HeadBox;
 use super::person_colour::PersonColour;
@@ -14,7 +14,7 @@ const MAX_CHROMINANCE: f32 = 512.0;
 /// Its square.
 const MAX_COVARIANCE: f32 = MAX_CHROMINANCE * MAX_CHROMINANCE;
 
-impl SavedState for HandFinder {
+impl<const COLUMNS: usize, const ROWS: usize> SavedState for HandFinder<COLUMNS, ROWS> {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         let mut has_head = self.head.is_some();
         visitor.flag(&mut has_head);
@@ -34,28 +34,24 @@ impl SavedState for HeadBox {
     }
 }
 
-impl SavedState for CellGrid {
+impl<const COLUMNS: usize, const ROWS: usize> SavedState for CellGrid<COLUMNS, ROWS> {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         let mut frames = usize::from(self.frames);
         visitor.index(&mut frames, usize::from(MAX_FRAMES));
         self.frames = frames as u8;
-        let [last, before] = &mut self.brightness;
-        for cells in [last, before, &mut self.skin_frames, &mut self.usual_brightness] {
-            for four in cells.as_chunks_mut::<4>().0 {
-                let mut word = u32::from_le_bytes(*four);
-                visitor.word(&mut word);
-                *four = word.to_le_bytes();
+        for cell in self.cells.as_flattened_mut() {
+            let mut word = cell.to_word();
+            visitor.word(&mut word);
+            if !cell.set_word(word) {
+                visitor.refuse();
             }
-        }
-        if self.skin_frames.iter().any(|frames| *frames > MAX_SKIN_FRAMES) {
-            visitor.refuse();
         }
     }
 }
 
 impl SavedState for Liveliness {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        visitor.real(&mut self.most, &(MIN_LIVELINESS..=1.0));
+        visitor.real(&mut self.most, &(0.0..=1.0));
     }
 }
 

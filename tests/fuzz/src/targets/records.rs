@@ -6,9 +6,9 @@ use sinew_core::cyclic::AngleMeasurement;
 use sinew_core::tracker::arm::example::hand_blob;
 use sinew_core::tracker::cyclic::FirstPhase;
 use sinew_record::{
-    ArmInput, ArmResult, ArmSetup, CameraLine, CameraSetup, CandidateChunk, Cost, CyclicInput, CyclicResult,
-    CyclicSetup, EdgeChunk, End, Failure, HEADER_BYTES, Kind, Payload, Record, RecordStream, VisionResult, decode,
-    encode,
+    ArmInput, ArmResult, ArmSetup, CameraFace, CameraLine, CameraSetup, CandidateChunk, Cost, CyclicInput,
+    CyclicResult, CyclicSetup, EdgeChunk, End, Failure, HEADER_BYTES, Kind, Payload, Record, RecordStream,
+    VisionResult, decode, encode,
 };
 
 /// A stream, and the content of one record.
@@ -83,6 +83,7 @@ fn read(record: &Record<'_>) {
             let _ = record.read::<CameraSetup>().map(|setup| setup.skin());
         }
         Kind::CameraLine => again::<CameraLine>(record),
+        Kind::CameraFace => again::<CameraFace>(record),
         Kind::CyclicResult => again::<CyclicResult>(record),
         Kind::ArmResult => again::<ArmResult>(record),
         Kind::VisionResult => again::<VisionResult>(record),

@@ -51,18 +51,23 @@ fn front_end(bytes: &[u8]) {
 fn hands_over_time(bytes: &[u8]) {
     let mut numbers = Numbers::new(bytes);
     let (width, height) = (4 * numbers.below(200), numbers.below(200));
-    let Some(grid) = CellGrid::new(width, height) else { return };
+    let Some(grid) = CellGrid::<80, 60>::new(width, height) else { return };
     let mut finder = HandFinder::new(grid);
     for _ in 0..FRAMES {
         let centre_px = [numbers.number(80.0), numbers.number(30.0)];
         finder.add_face(HeadBox { centre_px, width_px: numbers.number(16.0) });
         finder.grid_mut().begin();
-        for _ in 0..numbers.below(MAX_LINES) {
+        for line in 0..numbers.below(MAX_LINES) {
             let skin: Vec<u32> = (0..numbers.below(30)).map(|_| u32::from(numbers.byte()) * 0x0101_0101).collect();
             let level = numbers.byte();
-            finder.grid_mut().add_line(&skin, &vec![level; 4 * numbers.below(256)], numbers.below(5));
+            finder.grid_mut().line(
+                line + numbers.below(3),
+                &skin,
+                &vec![level; 4 * numbers.below(256)],
+                numbers.below(5),
+            );
         }
-        let hands = finder.step();
+        let hands = finder.step().clone();
         for hand in hands.iter().flatten() {
             assert!((0.0..=1.0).contains(&hand.likelihood), "{hand:?}");
             let place = [hand.centre.u_px, hand.centre.v_px, hand.area_px];

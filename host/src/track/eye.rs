@@ -1,0 +1,127 @@
+//! What reads the pictures of a run: whole pictures on a computer, or lines as firmware does.
+
+use super::options::{FrontEnd, TrackOptions};
+use crate::camera_lines::block_of;
+use crate::error::{Error, Result};
+use crate::frames::{FrameReader, FrameView};
+use crate::person::{FaceLooks, FaceTable, LinesFinder, PersonFinder, PersonView};
+use crate::skin::SkinModel;
+use image::RgbImage;
+use sinew_core::camera::Camera;
+use sinew_core::math::Vec3;
+
+/// Reads pictures, and finds the person in them.
+#[derive(Debug)]
+pub(super) enum Eye {
+    Pictures(Box<PictureEye>),
+    Lines(LinesFinder),
+}
+
+#[derive(Debug)]
+pub(super) struct PictureEye {
+    reader: FrameReader,
+    skin: SkinModel,
+    /// Of a run that looks for a face.
+    person: Option<PersonFinder>,
+}
+
+impl Eye {
+    /// For pictures of a size that `camera` took, the `first` of them readable or not.
+    pub fn new(
+        options: &TrackOptions,
+        (size_px, first): ((u32, u32), &RgbImage),
+        camera: Camera,
+        skin: &SkinModel,
+    ) -> Result<Self> {
+        let block = Self::block(options, size_px);
+        let given = options.head.as_deref().map(FaceTable::read).transpose()?;
+        let faces = options.face.then(|| FaceLooks::new(options.rate_hz, block, given)).transpose()?;
+        Ok(match options.front_end {
+            FrontEnd::Lines => Self::Lines(LinesFinder::new(size_px, camera, &*skin.for_image(first)?, faces)?),
+            FrontEnd::Pictures => Self::Pictures(Box::new(PictureEye {
+                reader: FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?,
+                skin: skin.clone(),
+                person: faces.map(|faces| PersonFinder::new(size_px, camera, faces)),
+            })),
+        })
+    }
+
+    /// Side of the blocks that are its pixels.
+    pub fn block(options: &TrackOptions, size_px: (u32, u32)) -> u32 {
+        if options.front_end == FrontEnd::Lines { block_of(size_px) } else { 1 }
+    }
+
+    /// What an image shows, by the person's own skin once a face is known, and the person.
+    pub fn see(&mut self, frame: usize, image: &RgbImage) -> Result<(FrameView, Option<PersonView>)> {
+        match self {
+            Self::Pictures(eye) => eye.see(frame, image),
+            Self::Lines(finder) => Ok(finder.see(frame, image)),
+        }
+    }
+
+    /// The picture that it sees.
+    pub fn seen(&self, image: RgbImage) -> RgbImage {
+        match self {
+            Self::Pictures(_) => image,
+            Self::Lines(finder) => finder.seen(&image),
+        }
+    }
+
+    /// Forgets the last frame: the next one has no temporal edges, as after a missing image.
+    pub fn forget_last_frame(&mut self) {
+        match self {
+            Self::Pictures(eye) => eye.reader.forget_last_frame(),
+            Self::Lines(finder) => finder.forget_last_frame(),
+        }
+    }
+
+    /// The state after the last frame as text, which [`Eye::restore`] takes.
+    pub fn saved(&mut self) -> Result<Option<String>> {
+        match self {
+            Self::Pictures(eye) => eye.person.as_mut().map(PersonFinder::saved).transpose(),
+            Self::Lines(finder) => finder.saved().map(Some),
+        }
+    }
+
+    /// Goes on after the frame that shows `last`, from what was saved then.
+    pub fn restore(&mut self, last: Option<&RgbImage>, saved: Option<&str>) -> Result<()> {
+        match (self, saved) {
+            (Self::Pictures(eye), saved) => eye.restore(last, saved),
+            (Self::Lines(finder), Some(saved)) => finder.restore(last, saved),
+            (Self::Lines(_), None) => Err(Error::Invalid("the state of the front end is missing".to_owned())),
+        }
+    }
+
+    /// Left and right shoulder, by the face, metres in camera axes; none while no person is known.
+    pub fn shoulders_m(&self) -> Option<[Vec3; 2]> {
+        match self {
+            Self::Pictures(eye) => eye.person.as_ref()?.shoulders_m(),
+            Self::Lines(finder) => finder.shoulders_m(),
+        }
+    }
+}
+
+impl PictureEye {
+    fn see(&mut self, frame: usize, image: &RgbImage) -> Result<(FrameView, Option<PersonView>)> {
+        if let Some(person) = &mut self.person {
+            person.look(frame, image);
+        }
+        let view = match self.person.as_ref().and_then(PersonFinder::skin) {
+            Some(skin) => self.reader.read(image, skin)?,
+            None => self.reader.read(image, &self.skin)?,
+        };
+        let person = self.person.as_mut().and_then(|person| person.see(&mut self.reader));
+        Ok((view, person))
+    }
+
+    fn restore(&mut self, last: Option<&RgbImage>, saved: Option<&str>) -> Result<()> {
+        if let Some(last) = last {
+            // The next frame has the edges that it would have had.
+            self.reader.read(last, &self.skin)?;
+        }
+        match (&mut self.person, saved) {
+            (Some(person), Some(saved)) => person.restore(saved),
+            _ => Ok(()),
+        }
+    }
+}
