@@ -14,7 +14,7 @@ use sinew_core::math::Vec3;
 #[derive(Debug)]
 pub(super) enum Eye {
     Pictures(Box<PictureEye>),
-    Lines(LinesFinder),
+    Lines(Box<LinesFinder>),
 }
 
 #[derive(Debug)]
@@ -37,7 +37,10 @@ impl Eye {
         let given = options.head.as_deref().map(FaceTable::read).transpose()?;
         let faces = options.face.then(|| FaceLooks::new(options.rate_hz, block, given)).transpose()?;
         Ok(match options.front_end {
-            FrontEnd::Lines => Self::Lines(LinesFinder::new(size_px, camera, &*skin.for_image(first)?, faces)?),
+            FrontEnd::Lines => {
+                let finder = LinesFinder::new(size_px, camera, &*skin.for_image(first)?, faces)?;
+                Self::Lines(Box::new(finder))
+            }
             FrontEnd::Pictures => Self::Pictures(Box::new(PictureEye {
                 reader: FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?,
                 skin: skin.clone(),

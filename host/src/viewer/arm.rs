@@ -79,7 +79,7 @@ fn pictures(
 
     let entity = format!("{CAMERA}/frame");
     let in_folder = |frame: i64| usize::try_from(frame).ok().filter(|&frame| frame < images.files().len());
-    let loaded = |frame: i64| in_folder(frame).and_then(|frame| images.load(frame).ok());
+    let loaded = |frame: i64| in_folder(frame).and_then(|frame| images.load(frame).ok()?.ok());
     let mut missing = Vec::new();
     let pictures = frames.values().filter_map(|&moment| {
         let Some(image) = loaded(moment.frame) else {

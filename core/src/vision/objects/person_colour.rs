@@ -86,7 +86,7 @@ impl PersonColour {
     /// The same of any pixels.
     pub(crate) fn of_pixels(rgb: impl Iterator<Item = [u8; 3]> + Clone) -> Option<Self> {
         let colours = rgb.map(ycc);
-        let [_, cr, cb] = medians(colours.clone());
+        let [_, cr, cb] = medians(&colours);
         let is_near = |value: f32, middle: i32| abs(value - middle as f32) <= MAX_FROM_MEDIAN as f32;
         let kept = colours.filter(move |[_, r, b]| is_near(*r, cr) && is_near(*b, cb));
         let mut count = 0;
@@ -154,7 +154,7 @@ impl PersonColour {
 const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 /// Medians of each channel, whole numbers.
-fn medians(colours: impl Iterator<Item = [f32; 3]> + Clone) -> [i32; 3] {
+fn medians(colours: &(impl Iterator<Item = [f32; 3]> + Clone)) -> [i32; 3] {
     let count = colours.clone().count();
     core::array::from_fn(|axis| {
         let mut histogram = [0_u16; 256];
