@@ -99,7 +99,7 @@ impl<F: PixelFormat> SkinTable<F> {
                     continue;
                 }
                 let (mut rgb, mut bits) = ([0; 3 * GROUP], [0]);
-                for (key, pixel) in (first..).zip(rgb.as_chunks_mut::<3>().0) {
+                for (key, pixel) in (first..=first | (GROUP - 1) as u16).zip(rgb.as_chunks_mut::<3>().0) {
                     *pixel = F::rgb(key);
                 }
                 skin.classify_line(&rgb, &mut bits);

@@ -385,7 +385,8 @@ mod tests {
         for frame in 0..4_usize {
             grids.iter_mut().for_each(CellGrid::begin);
             for v in (0..240).step_by(2) {
-                let skin: [u32; 10] = core::array::from_fn(|i| (v * 0x9e37 + i * frame) as u32 * 0x0101_4103);
+                let skin: [u32; 10] =
+                    core::array::from_fn(|i| ((v * 0x9e37 + i * frame) as u32).wrapping_mul(0x0101_4103));
                 let levels: [u8; 160] = core::array::from_fn(|u| ((u * 37 + v * 11 + frame * 29) % 255) as u8);
                 grids[0].line(v, &skin, &levels, 2);
                 assert!(grids[1].line_of_words(
