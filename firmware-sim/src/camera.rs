@@ -16,7 +16,7 @@ use static_cell::ConstStaticCell;
 /// Everything that a camera's firmware keeps.
 #[derive(Debug)]
 pub struct CameraApp {
-    eye: PersonLines<Rgb565>,
+    person_lines: PersonLines<Rgb565>,
     /// Whether a line of the coming frame was read.
     begun: bool,
     arm: Arm,
@@ -32,7 +32,7 @@ impl CameraApp {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            eye: PersonLines::empty(),
+            person_lines: PersonLines::empty(),
             begun: false,
             arm: Arm::new(),
             cyclic: CyclicApp::new(),
@@ -48,7 +48,7 @@ impl CameraApp {
     fn begin(&mut self, setup: &CameraSetup) -> Result<(), Refusal> {
         let [width, height] = setup.size_px.map(usize::from);
         let skin = setup.skin()?;
-        self.eye.begin((width, height), &skin)?;
+        self.person_lines.begin((width, height), &skin)?;
         self.begun = false;
         Ok(())
     }
@@ -56,12 +56,12 @@ impl CameraApp {
     #[inline(never)]
     fn line<P: Port>(&mut self, record: &Record<'_>) -> Result<(), Refusal> {
         let line: CameraLine = record.read()?;
-        let (eye, begun) = (&mut self.eye, self.begun);
+        let (person_lines, begun) = (&mut self.person_lines, self.begun);
         counted::<P, _>(&mut self.lines, || {
             if !begun {
-                eye.begin_frame();
+                person_lines.begin_frame();
             }
-            eye.line(usize::from(line.row), &line.pixels);
+            person_lines.line(usize::from(line.row), &line.pixels);
         });
         self.begun = true;
         Ok(())
@@ -71,9 +71,9 @@ impl CameraApp {
     #[inline(never)]
     fn end<P: Port>(&mut self, input: &ArmInput, answers: &mut Answers<'_, P::Output>) -> Result<(), Refusal> {
         let seen = if self.begun {
-            counted::<P, _>(&mut self.lines, || self.eye.end_frame())
+            counted::<P, _>(&mut self.lines, || self.person_lines.end_frame())
         } else {
-            self.eye.forget_last_frame();
+            self.person_lines.forget_last_frame();
             None
         };
         let spent = u32::try_from(self.lines.total).unwrap_or(u32::MAX);
@@ -146,7 +146,7 @@ impl Application for CameraApp {
             }
             Kind::CameraLine => self.line::<P>(record),
             Kind::CameraFace => {
-                self.eye.add_face(record.read::<CameraFace>()?.head);
+                self.person_lines.add_face(record.read::<CameraFace>()?.head);
                 Ok(())
             }
             Kind::ArmInput => self.end::<P>(&record.read()?, answers),

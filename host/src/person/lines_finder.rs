@@ -17,7 +17,7 @@ use sinew_core::vision::skin::SkinClassifier;
 /// Firmware's chain for pictures of any size.
 #[derive(Debug)]
 pub struct LinesFinder {
-    eye: Box<PersonLines<Rgb565>>,
+    lines: Box<PersonLines<Rgb565>>,
     /// None of a run that looks for no face.
     faces: Option<FaceLooks>,
     block: u32,
@@ -38,9 +38,9 @@ impl LinesFinder {
         faces: Option<FaceLooks>,
     ) -> Result<Self> {
         let block = block_of(size_px);
-        let mut eye = Box::new(PersonLines::empty());
-        eye.begin(((size_px.0 / block) as usize, (size_px.1 / block) as usize), skin)?;
-        Ok(Self { eye, faces, block, camera: camera.of_blocks(block) })
+        let mut lines = Box::new(PersonLines::empty());
+        lines.begin(((size_px.0 / block) as usize, (size_px.1 / block) as usize), skin)?;
+        Ok(Self { lines, faces, block, camera: camera.of_blocks(block) })
     }
 
     /// The picture that the camera sees.
@@ -53,16 +53,16 @@ impl LinesFinder {
     pub fn see(&mut self, frame: usize, image: &RgbImage) -> (FrameView, Option<PersonView>) {
         let image = self.seen(image);
         let face = self.faces.as_mut().and_then(|faces| faces.look(frame, &image));
-        face.into_iter().for_each(|face| self.eye.add_face(face.head));
+        face.into_iter().for_each(|face| self.lines.add_face(face.head));
         self.read(&image)
     }
 
     fn read(&mut self, image: &RgbImage) -> (FrameView, Option<PersonView>) {
-        self.eye.begin_frame();
+        self.lines.begin_frame();
         for (v, line) in lines(image).enumerate() {
-            self.eye.line(v, &line.collect::<Vec<u16>>());
+            self.lines.line(v, &line.collect::<Vec<u16>>());
         }
-        let Some(frame) = self.eye.end_frame() else { return (FrameView::default(), None) };
+        let Some(frame) = self.lines.end_frame() else { return (FrameView::default(), None) };
         let losses = frame.lines.losses;
         let view = FrameView {
             line_blobs: frame.lines.blobs.to_vec(),
@@ -80,7 +80,7 @@ impl LinesFinder {
 
     /// Forgets the last frame: the next one has no temporal edges, as after a missing image.
     pub fn forget_last_frame(&mut self) {
-        self.eye.forget_last_frame();
+        self.lines.forget_last_frame();
     }
 
     /// The state after the last frame as text, which [`LinesFinder::restore`] takes. Waits for a
@@ -105,13 +105,13 @@ impl LinesFinder {
     /// Left and right shoulder, by the face, metres in camera axes; none while no person is known.
     #[must_use]
     pub fn shoulders_m(&self) -> Option<[Vec3; 2]> {
-        Some(self.eye.head().filter(|_| self.eye.knows_person())?.shoulders_m(&self.camera))
+        Some(self.lines.head().filter(|_| self.lines.knows_person())?.shoulders_m(&self.camera))
     }
 }
 
 impl SavedState for LinesFinder {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        self.eye.visit(visitor);
+        self.lines.visit(visitor);
         if let Some(faces) = &mut self.faces {
             faces.visit(visitor);
         }

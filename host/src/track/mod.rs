@@ -1,7 +1,6 @@
 //! Tracking the arms of one image folder or video.
 
 mod arms;
-mod eye;
 mod finish;
 mod input;
 mod options;
@@ -18,6 +17,7 @@ mod sample;
 mod seen;
 mod source;
 mod table;
+mod vision;
 
 pub use arms::{ArmSet, ArmView, SideChoice};
 pub use finish::RunOutcome;

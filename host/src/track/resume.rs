@@ -25,7 +25,7 @@ pub(super) struct ArmState {
     /// The trackers.
     trackers: String,
     /// What reads the pictures, if it remembers anything.
-    eye: Option<String>,
+    vision: Option<String>,
     /// What the plots show.
     samples: String,
     seen: SeenCounts,
@@ -37,7 +37,7 @@ pub(super) fn left(run: &mut TrackRun) -> Result<Left<ArmState>> {
     let state = ArmState {
         skipped: run.report.skipped.clone(),
         trackers: run.arms.saved()?,
-        eye: run.eye.saved()?,
+        vision: run.vision.saved()?,
         samples: to_text(StateKind::Arm, &mut samples)?,
         seen: run.report.seen,
     };
@@ -124,8 +124,8 @@ impl TrackRun {
             self.last_image_crc32 = image.as_ref().map(|image| crc32fast::hash(image.as_raw()));
             left.check_last(&self.frames.name(last), self.last_image_crc32)?;
         }
-        self.eye.restore(image.as_ref(), left.state.eye.as_deref())?;
-        self.eye.shoulders_m().into_iter().for_each(|shoulders_m| self.arms.place_shoulders(&shoulders_m));
+        self.vision.restore(image.as_ref(), left.state.vision.as_deref())?;
+        self.vision.shoulders_m().into_iter().for_each(|shoulders_m| self.arms.place_shoulders(&shoulders_m));
         Ok(())
     }
 }

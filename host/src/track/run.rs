@@ -1,7 +1,6 @@
 //! One run over an image folder or a video: load, read, step, record, frame by frame.
 
 use super::arms::{ArmSet, ArmView};
-use super::eye::Eye;
 use super::input::SkippedImage;
 use super::options::{FrontEnd, RATES_HZ, TrackOptions};
 use super::particles::{PARTICLE_HEADER, particle_rows};
@@ -11,6 +10,7 @@ use super::resume;
 use super::sample::HandSample;
 use super::source::FrameSource;
 use super::table::{HEADER, TrackRow};
+use super::vision::RunVision;
 use crate::error::{Result, WriteContext, bail};
 use crate::frames::FrameView;
 use crate::output::{OutputDir, OutputLock, PendingFile};
@@ -56,7 +56,7 @@ pub(super) type TableOpener<'a> = &'a dyn Fn(&str, &OutputDir, &[&str]) -> Resul
 pub struct TrackRun {
     pub(super) frames: FrameSource,
     pub(super) skin: SkinModel,
-    pub(super) eye: Eye,
+    pub(super) vision: RunVision,
     pub(super) arms: ArmSet,
     hands: Option<HandTable>,
     camera: Camera,
@@ -106,10 +106,10 @@ impl TrackRun {
         };
         let (width, height) = frames.size_px();
         let camera = options.config.camera.build(width, height)?;
-        let block = Eye::block(&options, frames.size_px());
+        let block = RunVision::block(&options, frames.size_px());
         let (seen_by, seen_px) = (camera.of_blocks(block), (width / block, height / block));
         let arms = ArmSet::of_camera(&options.config, (seen_by, seen_px), options.side, options.seed)?;
-        let eye = Eye::new(&options, (frames.size_px(), frames.first().1), camera, &skin)?;
+        let vision = RunVision::new(&options, (frames.size_px(), frames.first().1), camera, &skin)?;
         let hands = options.hands.as_deref().map(HandTable::read).transpose()?;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
@@ -129,7 +129,7 @@ impl TrackRun {
         Ok(Self {
             frames,
             skin,
-            eye,
+            vision,
             arms,
             hands,
             camera,
@@ -239,7 +239,7 @@ impl TrackRun {
         let name = self.frames.name(frame);
         let shot = |(image, view): (RgbImage, FrameView)| Shot { frame, name, image, view, arms };
         let drawn = image.zip(view).filter(|_| self.pictures.is_some());
-        Ok(drawn.map(|(image, view)| shot((self.eye.seen(image), view))))
+        Ok(drawn.map(|(image, view)| shot((self.vision.seen(image), view))))
     }
 
     /// Moves the trackers on to a frame.
@@ -259,7 +259,7 @@ impl TrackRun {
 
     /// What an image shows. Hands that are given take the place of blobs, and of the person's.
     fn see(&mut self, frame: usize, image: &RgbImage) -> Result<Seen> {
-        let (mut view, person) = self.eye.see(frame, image)?;
+        let (mut view, person) = self.vision.see(frame, image)?;
         let shoulders_m = person.as_ref().map(|person| person.shoulders_m);
         let given = self.hands.as_ref().map(|hands| hands.at(frame));
         if let Some(hands) = &given {
@@ -277,7 +277,7 @@ impl TrackRun {
     fn skip(&mut self, skipped: SkippedImage, notify: &mut dyn FnMut(Event<'_>)) {
         notify(Event::Skipped(&skipped));
         self.report.skipped.push(skipped);
-        self.eye.forget_last_frame();
+        self.vision.forget_last_frame();
     }
 
     fn record(&mut self, row: &TrackRow) -> Result<()> {

@@ -54,16 +54,16 @@ const _: () = assert!(size_of::<PersonLines<super::pixel_format::Rgb565>>() <= P
 ///     let is_hand = (210..234).contains(&u) && (top..top + 26).contains(&v);
 ///     if is_face || is_hand { SKIN } else { 0x5aeb }
 /// };
-/// let mut eye = PersonLines::<Rgb565>::empty();
-/// eye.begin((320, 240), &GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?)?;
-/// eye.add_face(HeadBox { centre_px: [160.0, 52.0], width_px: 36.0 });
+/// let mut vision = PersonLines::<Rgb565>::empty();
+/// vision.begin((320, 240), &GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?)?;
+/// vision.add_face(HeadBox { centre_px: [160.0, 52.0], width_px: 36.0 });
 /// for frame in 0..45 {
-///     eye.begin_frame();
+///     vision.begin_frame();
 ///     for v in 0..240 {
 ///         let line: [u16; 320] = core::array::from_fn(|u| pixel(frame, u, v));
-///         eye.line(v, &line);
+///         vision.line(v, &line);
 ///     }
-///     let seen = eye.end_frame().expect("it was begun");
+///     let seen = vision.end_frame().expect("it was begun");
 ///     assert!(seen.person.is_some() || frame < 15, "frame {frame}");
 ///     if frame == 44 {
 ///         let left = &seen.person.expect("the face is known").hands[0][0];
@@ -268,10 +268,10 @@ mod tests {
     const FACE: HeadBox = HeadBox { centre_px: [160.0, 52.0], width_px: 36.0 };
 
     fn begun(size: (usize, usize)) -> Box<PersonLines<Rgb565>> {
-        let mut eye = Box::new(PersonLines::empty());
+        let mut vision = Box::new(PersonLines::empty());
         let anyone = GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60).unwrap();
-        eye.begin(size, &anyone).unwrap();
-        eye
+        vision.begin(size, &anyone).unwrap();
+        vision
     }
 
     /// A face, and a left hand that goes up beside it.
@@ -282,25 +282,29 @@ mod tests {
         if is_face || is_hand { SKIN } else { WALL }
     }
 
-    fn show(eye: &mut PersonLines<Rgb565>, frame: usize, lines: impl Iterator<Item = usize>) -> Option<(Pixel, f32)> {
-        eye.begin_frame();
+    fn show(
+        vision: &mut PersonLines<Rgb565>,
+        frame: usize,
+        lines: impl Iterator<Item = usize>,
+    ) -> Option<(Pixel, f32)> {
+        vision.begin_frame();
         for v in lines {
             let line: [u16; 320] = core::array::from_fn(|u| pixel(frame, u, v));
-            eye.line(v, &line);
+            vision.line(v, &line);
         }
-        let person = eye.end_frame().unwrap().person?;
+        let person = vision.end_frame().unwrap().person?;
         person.hands[0].first().map(|hand| (hand.centre, hand.likelihood))
     }
 
     #[test]
     fn lines_that_come_twice_or_not_at_all_do_no_harm() {
-        let mut eye = begun((320, 240));
-        eye.add_face(FACE);
+        let mut vision = begun((320, 240));
+        vision.add_face(FACE);
         for frame in 0..40 {
             // Of three frames one has each line twice, one every fifth not.
             let lines = (0..480).map(|line| line / 2).filter(|v| frame % 3 != 1 || v % 5 != 0);
-            let hand = show(&mut eye, frame, lines);
-            assert!(frame < 20 || eye.knows_person(), "frame {frame} {}", eye.learned);
+            let hand = show(&mut vision, frame, lines);
+            assert!(frame < 20 || vision.knows_person(), "frame {frame} {}", vision.learned);
             if frame >= 30 {
                 let (centre, likelihood) = hand.unwrap();
                 let distance = centre.distance_px(Pixel::new(221.5, 202.5 - 3.0 * frame as f32));
@@ -311,54 +315,54 @@ mod tests {
 
     #[test]
     fn a_face_of_another_colour_is_learned_part_by_part() {
-        let mut eye = begun((320, 240));
-        assert!(eye.skin.is_skin(SKIN) && !eye.skin.is_skin(0x07e0));
-        eye.add_face(HeadBox { centre_px: [20.0, 20.0], width_px: 30.0 });
+        let mut vision = begun((320, 240));
+        assert!(vision.skin.is_skin(SKIN) && !vision.skin.is_skin(0x07e0));
+        vision.add_face(HeadBox { centre_px: [20.0, 20.0], width_px: 30.0 });
         // If every word is judged.
         let most = TABLE_WORDS.div_ceil(JUDGED_COLOURS / 32) + 1;
         for frame in 0..most {
-            assert!(frame > 4 || !eye.knows_person(), "frame {frame}");
-            show(&mut eye, frame, 0..240);
+            assert!(frame > 4 || !vision.knows_person(), "frame {frame}");
+            show(&mut vision, frame, 0..240);
         }
         // The box showed the wall.
-        assert!(eye.knows_person() && eye.skin.is_skin(WALL) && !eye.skin.is_skin(SKIN));
-        assert_eq!(eye.head().map(|head| head.width_px), Some(30.0));
+        assert!(vision.knows_person() && vision.skin.is_skin(WALL) && !vision.skin.is_skin(SKIN));
+        assert_eq!(vision.head().map(|head| head.width_px), Some(30.0));
     }
 
     #[test]
     fn a_face_that_shows_nothing_or_is_out_of_range_changes_nothing() {
-        let mut eye = begun((320, 240));
-        eye.add_face(HeadBox { centre_px: [f32::NAN, 20.0], width_px: 30.0 });
-        assert!(eye.face.is_none());
-        eye.add_face(FACE);
-        eye.begin_frame();
-        assert!(eye.end_frame().unwrap().person.is_none() && eye.head().is_none(), "no line came");
+        let mut vision = begun((320, 240));
+        vision.add_face(HeadBox { centre_px: [f32::NAN, 20.0], width_px: 30.0 });
+        assert!(vision.face.is_none());
+        vision.add_face(FACE);
+        vision.begin_frame();
+        assert!(vision.end_frame().unwrap().person.is_none() && vision.head().is_none(), "no line came");
     }
 
     #[test]
     fn a_state_goes_on_alike() {
         use crate::saved_state::{StateKind, restore, save};
-        let mut eye = begun((320, 240));
-        eye.add_face(FACE);
-        (0..4).for_each(|frame| assert!(show(&mut eye, frame, 0..240).is_none()));
+        let mut vision = begun((320, 240));
+        vision.add_face(FACE);
+        (0..4).for_each(|frame| assert!(show(&mut vision, frame, 0..240).is_none()));
         let mut bytes = std::vec![0; 40_000];
-        let length = save(StateKind::Hands, 1, eye.as_mut(), &mut bytes).unwrap();
+        let length = save(StateKind::Hands, 1, vision.as_mut(), &mut bytes).unwrap();
         let mut again = begun((320, 240));
         restore(StateKind::Hands, 1, again.as_mut(), &bytes[..length]).unwrap();
         for frame in 4..40 {
-            assert_eq!(show(&mut eye, frame, 0..240), show(&mut again, frame, 0..240), "frame {frame}");
+            assert_eq!(show(&mut vision, frame, 0..240), show(&mut again, frame, 0..240), "frame {frame}");
         }
     }
 
     #[test]
     fn pictures_without_a_cell_have_no_hands() {
         assert!(PersonLines::<Rgb565>::empty().end_frame().is_none());
-        let mut eye = begun((3, 1));
-        eye.add_face(HeadBox { centre_px: [1.0, 0.0], width_px: 2.0 });
+        let mut vision = begun((3, 1));
+        vision.add_face(HeadBox { centre_px: [1.0, 0.0], width_px: 2.0 });
         for _ in 0..30 {
-            eye.begin_frame();
-            eye.line(0, &[SKIN; 3]);
-            assert!(eye.end_frame().is_some_and(|seen| seen.person.is_none_or(|person| person.hands[0].is_empty())));
+            vision.begin_frame();
+            vision.line(0, &[SKIN; 3]);
+            assert!(vision.end_frame().is_some_and(|seen| seen.person.is_none_or(|person| person.hands[0].is_empty())));
         }
     }
 }

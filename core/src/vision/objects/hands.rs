@@ -40,7 +40,7 @@ pub type Candidates = Vec<HandCandidate, MAX_PLACES>;
 /// let mut finder = HandFinder::<80, 60>::new(CellGrid::new(320, 240).expect("it has a size"));
 /// // Without a face nothing is said; the page of `objects` shows it with one.
 /// let nothing: &[Candidates; 2] = finder.step();
-/// assert!(finder.head().is_none() && nothing.iter().all(|hand| hand.is_empty()));
+/// assert!(nothing.iter().all(|hand| hand.is_empty()) && finder.head().is_none());
 /// finder.add_face(HeadBox { centre_px: [160.0, 60.0], width_px: 40.0 });
 /// finder.add_face(HeadBox { centre_px: [164.0, 60.0], width_px: 44.0 });
 /// assert_eq!(finder.head(), Some(HeadBox { centre_px: [162.0, 60.0], width_px: 42.0 }));

@@ -12,20 +12,20 @@ use sinew_core::math::Vec3;
 
 /// Reads pictures, and finds the person in them.
 #[derive(Debug)]
-pub(super) enum Eye {
-    Pictures(Box<PictureEye>),
+pub(super) enum RunVision {
+    Pictures(Box<PictureVision>),
     Lines(Box<LinesFinder>),
 }
 
 #[derive(Debug)]
-pub(super) struct PictureEye {
+pub(super) struct PictureVision {
     reader: FrameReader,
     skin: SkinModel,
     /// Of a run that looks for a face.
     person: Option<PersonFinder>,
 }
 
-impl Eye {
+impl RunVision {
     /// For pictures of a size that `camera` took, the `first` of them readable or not.
     pub fn new(
         options: &TrackOptions,
@@ -41,7 +41,7 @@ impl Eye {
                 let finder = LinesFinder::new(size_px, camera, &*skin.for_image(first)?, faces)?;
                 Self::Lines(Box::new(finder))
             }
-            FrontEnd::Pictures => Self::Pictures(Box::new(PictureEye {
+            FrontEnd::Pictures => Self::Pictures(Box::new(PictureVision {
                 reader: FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?,
                 skin: skin.clone(),
                 person: faces.map(|faces| PersonFinder::new(size_px, camera, faces)),
@@ -57,7 +57,7 @@ impl Eye {
     /// What an image shows, by the person's own skin once a face is known, and the person.
     pub fn see(&mut self, frame: usize, image: &RgbImage) -> Result<(FrameView, Option<PersonView>)> {
         match self {
-            Self::Pictures(eye) => eye.see(frame, image),
+            Self::Pictures(vision) => vision.see(frame, image),
             Self::Lines(finder) => Ok(finder.see(frame, image)),
         }
     }
@@ -73,15 +73,15 @@ impl Eye {
     /// Forgets the last frame: the next one has no temporal edges, as after a missing image.
     pub fn forget_last_frame(&mut self) {
         match self {
-            Self::Pictures(eye) => eye.reader.forget_last_frame(),
+            Self::Pictures(vision) => vision.reader.forget_last_frame(),
             Self::Lines(finder) => finder.forget_last_frame(),
         }
     }
 
-    /// The state after the last frame as text, which [`Eye::restore`] takes.
+    /// The state after the last frame as text, which [`RunVision::restore`] takes.
     pub fn saved(&mut self) -> Result<Option<String>> {
         match self {
-            Self::Pictures(eye) => eye.person.as_mut().map(PersonFinder::saved).transpose(),
+            Self::Pictures(vision) => vision.person.as_mut().map(PersonFinder::saved).transpose(),
             Self::Lines(finder) => finder.saved().map(Some),
         }
     }
@@ -89,7 +89,7 @@ impl Eye {
     /// Goes on after the frame that shows `last`, from what was saved then.
     pub fn restore(&mut self, last: Option<&RgbImage>, saved: Option<&str>) -> Result<()> {
         match (self, saved) {
-            (Self::Pictures(eye), saved) => eye.restore(last, saved),
+            (Self::Pictures(vision), saved) => vision.restore(last, saved),
             (Self::Lines(finder), Some(saved)) => finder.restore(last, saved),
             (Self::Lines(_), None) => Err(Error::Invalid("the state of the front end is missing".to_owned())),
         }
@@ -98,13 +98,13 @@ impl Eye {
     /// Left and right shoulder, by the face, metres in camera axes; none while no person is known.
     pub fn shoulders_m(&self) -> Option<[Vec3; 2]> {
         match self {
-            Self::Pictures(eye) => eye.person.as_ref()?.shoulders_m(),
+            Self::Pictures(vision) => vision.person.as_ref()?.shoulders_m(),
             Self::Lines(finder) => finder.shoulders_m(),
         }
     }
 }
 
-impl PictureEye {
+impl PictureVision {
     fn see(&mut self, frame: usize, image: &RgbImage) -> Result<(FrameView, Option<PersonView>)> {
         if let Some(person) = &mut self.person {
             person.look(frame, image);
