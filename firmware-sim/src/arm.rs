@@ -4,6 +4,7 @@ use crate::log::debug;
 use crate::player::{Answers, Application, Refusal, play};
 use crate::port::{Part, Port, counted};
 use heapless::Vec;
+use sinew_core::math::Vec3;
 use sinew_core::skeleton::Side;
 use sinew_core::slot::Slot;
 use sinew_core::tracker::arm::{ArmFrame, ArmImage, ArmModel, ArmTracker};
@@ -28,6 +29,8 @@ pub struct Arm {
     /// For candidates of a person's hands.
     person_model: Slot<ArmModel>,
     tracker: Slot<ArmTracker<PARTICLES>>,
+    /// The shoulder by the head, where it was last seen.
+    shoulder_m: Option<Vec3>,
     last_frame: Option<u32>,
     step: Cost,
 }
@@ -40,6 +43,7 @@ impl Arm {
             model: Slot::Empty,
             person_model: Slot::Empty,
             tracker: Slot::Empty,
+            shoulder_m: None,
             last_frame: None,
             step: Cost::zero(),
         }
@@ -55,7 +59,7 @@ impl Arm {
     pub fn begin(&mut self, setup: &ArmSetup) -> Result<(), Refusal> {
         let model = setup.model()?;
         self.tracker.get_or_insert(ArmTracker::empty).begin(&model, setup.shoulder_m, setup.seed)?;
-        (self.model, self.last_frame) = (Slot::Full(model), None);
+        (self.model, self.shoulder_m, self.last_frame) = (Slot::Full(model), None, None);
         Ok(())
     }
 
@@ -111,8 +115,11 @@ impl Arm {
         if self.last_frame.is_some_and(|last| last >= input.frame) {
             return Err(RecordError::OutOfOrder.into());
         }
-        let [left_m, right_m] = head.map_or([input.shoulder_m; 2], |head| head.shoulders_m(model.camera()));
-        let shoulder_m = if model.side() == Side::Left { left_m } else { right_m };
+        if let Some(head) = head {
+            let [left_m, right_m] = head.shoulders_m(model.camera());
+            self.shoulder_m = Some(if model.side() == Side::Left { left_m } else { right_m });
+        }
+        let shoulder_m = self.shoulder_m.unwrap_or(input.shoulder_m);
         let frame = ArmFrame { timestamp_us: input.timestamp_us, image, shoulder_m };
         let estimate = counted::<P, _>(&mut self.step, || tracker.step(model, &frame));
         self.last_frame = Some(input.frame);
