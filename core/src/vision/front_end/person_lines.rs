@@ -38,8 +38,8 @@ const _: () = assert!(size_of::<PersonLines<super::pixel_format::Rgb565>>() <= P
 ///
 /// The middle of the face is looked at in the frame after, and a part of the skin table is learned
 /// of it at the end of each frame after that, so that no frame costs much more than another. Hands
-/// are found from the frame on in which all was learned, about ten after the first face, and none in
-/// between.
+/// are found from the frame on in which all was learned, about ten after the first face, and none
+/// in between.
 ///
 /// ```
 /// use sinew_core::vision::front_end::{PersonLines, pixel_format::Rgb565};
@@ -88,6 +88,19 @@ pub struct PersonLines<F> {
 }
 
 /// What a frame showed.
+///
+/// ```
+/// use sinew_core::vision::front_end::{PersonLines, pixel_format::Rgb565};
+/// use sinew_core::vision::skin::GaussianSkin;
+///
+/// let mut vision = PersonLines::<Rgb565>::empty();
+/// vision.begin((64, 48), &GaussianSkin::new(0.44, 0.31, [0.0030, -0.0008, 0.0010], 2.0, 60)?)?;
+/// // No line came, and no face was given.
+/// vision.begin_frame();
+/// let seen = vision.end_frame().expect("it was begun");
+/// assert_eq!((seen.lines.losses.missing_lines, seen.person.is_none()), (48, true));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug)]
 pub struct PersonFrame<'a> {
     /// Blobs, edges and losses.
@@ -97,6 +110,16 @@ pub struct PersonFrame<'a> {
 }
 
 /// The person before a camera.
+///
+/// ```
+/// use sinew_core::vision::front_end::PersonHands;
+/// use sinew_core::vision::objects::{hands::Candidates, head::HeadBox};
+///
+/// let hands = [Candidates::new(), Candidates::new()];
+/// let head = HeadBox { centre_px: [160.0, 52.0], width_px: 36.0 };
+/// let person = PersonHands { head, hands: &hands };
+/// assert!(person.hands.iter().all(|hand| hand.is_empty()), "both hands are hidden");
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct PersonHands<'a> {
     /// The head, by the faces that were given.
