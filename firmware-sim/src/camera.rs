@@ -53,9 +53,14 @@ impl CameraApp {
         Ok(())
     }
 
+    fn check_begun(&self) -> Result<(), Refusal> {
+        if self.person_lines.has_begun() { Ok(()) } else { Err(RecordError::OutOfOrder.into()) }
+    }
+
     #[inline(never)]
     fn line<P: Port>(&mut self, record: &Record<'_>) -> Result<(), Refusal> {
         let line: CameraLine = record.read()?;
+        self.check_begun()?;
         let (person_lines, begun) = (&mut self.person_lines, self.begun);
         counted::<P, _>(&mut self.lines, || {
             if !begun {
@@ -70,6 +75,7 @@ impl CameraApp {
     /// Ends the frame and steps the arm; a frame without any line is one without an image.
     #[inline(never)]
     fn end<P: Port>(&mut self, input: &ArmInput, answers: &mut Answers<'_, P::Output>) -> Result<(), Refusal> {
+        self.check_begun()?;
         let seen = if self.begun {
             counted::<P, _>(&mut self.lines, || self.person_lines.end_frame())
         } else {

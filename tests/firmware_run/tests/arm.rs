@@ -14,7 +14,7 @@ use sinew_firmware_sim::arm::{ArmApp, CANDIDATES};
 use sinew_firmware_sim::camera::CameraApp;
 use sinew_firmware_sim::player::{Application, play};
 use sinew_record::{
-    ArmInput, ArmResult, ArmSetup, CandidateChunk, Failure, Kind, RecordError, RecordStream, VisionResult,
+    ArmInput, ArmResult, ArmSetup, CameraLine, CandidateChunk, Failure, Kind, RecordError, RecordStream, VisionResult,
 };
 
 /// What an image's code answers on this machine.
@@ -73,6 +73,16 @@ fn from_lines_this_machine_answers_what_is_expected_of_the_board() {
     same(&arms, &inputs::person_by_lines(folder.path()).unwrap());
     let tracking = arms.iter().filter(|result| result.estimate.status == Status::Tracking).count();
     assert!(tracking > 30, "{tracking} of {} frames", arms.len());
+}
+
+#[test]
+fn a_frame_before_the_cameras_setup_is_out_of_order() {
+    let mut stream = StreamWriter::default();
+    stream.push(&setup()).unwrap();
+    stream.push(&CameraLine { row: 0, pixels: [0; 320].into_iter().collect() }).unwrap();
+    stream.push(&frame(0, 0)).unwrap();
+    let (arms, vision, failures) = results_and_failures(&answers(&stream.finish().unwrap(), CameraApp::new()));
+    assert_eq!((arms.len(), vision.len(), failures), (0, 0, vec![RecordError::OutOfOrder.code(); 2]));
 }
 
 fn setup() -> ArmSetup {

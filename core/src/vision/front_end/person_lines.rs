@@ -163,6 +163,12 @@ impl<F: PixelFormat> PersonLines<F> {
         Ok(())
     }
 
+    /// Whether it was begun, so that it sees.
+    #[must_use]
+    pub const fn has_begun(&self) -> bool {
+        self.front_end.get().is_some()
+    }
+
     /// Gives a face, found in any of the last frames; it is looked at in the next one.
     pub fn add_face(&mut self, mut face: HeadBox) {
         if face.is_finite() {
