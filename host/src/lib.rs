@@ -24,6 +24,7 @@ pub mod record;
 pub mod report;
 pub mod resume;
 pub mod scene;
+pub mod signal;
 pub mod skin;
 pub mod stereo;
 pub mod track;

@@ -62,10 +62,10 @@ fn a_cloud_of_particles_is_not_looked_back_over() {
 
 /// The walk as a table of keypoints: hips at (100 + f, 90) pixels, trunk 60.
 fn keypoints(frames: u64) -> AngleTable {
-    let columns = ["hip_center_u_px", "hip_center_v_px", "neck_length_px", "mirrored"].map(str::to_owned);
+    let columns = ["hip_center_u_px", "hip_center_v_px", "neck_length_px", "facing"].map(str::to_owned);
     let whole = walk(frames, 1.0 / 63.0);
     let rows = whole.rows().iter().map(|row| AngleRow {
-        extra: vec![(100 + row.frame).to_string(), "90".into(), "60".into(), "0".into()],
+        extra: vec![(100 + row.frame).to_string(), "90".into(), "60".into(), "right".into()],
         ..row.clone()
     });
     AngleTable::new(rows.collect(), columns.to_vec()).unwrap()

@@ -1,8 +1,10 @@
 //! `sinew angles`: a motion in space or 2D keypoints as an angle table.
 
 use super::console::Console;
+use crate::cyclic::about::About;
 use crate::cyclic::projection::{UpAxis, View};
-use crate::cyclic::recording::{RecordingOptions, angles};
+use crate::cyclic::recording::{RecordedAngles, RecordingOptions, angles};
+use crate::error::Error;
 use crate::keypoints::{DEFAULT_MIN_CONFIDENCE, Facing};
 use crate::output::check_writable_file;
 use crate::registry::{MOTION, described};
@@ -57,6 +59,9 @@ pub struct AnglesArgs {
     /// train on.
     #[arg(long)]
     pub swap_sides: bool,
+    /// End with an error where something speaks against the table; it is written all the same.
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// Reads, projects or follows, and writes the table.
@@ -80,8 +85,12 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
     };
     let found = angles(&args.motion, &options)?;
     found.table.write(&args.out)?;
+    about(args, &found).write_beside(&args.out)?;
     for note in &found.notes {
         console.note(note);
+    }
+    for doubt in &found.doubts {
+        console.note(format!("doubt: {doubt}"));
     }
     let rows = found.table.rows();
     let count = found.table.angle_count();
@@ -100,7 +109,21 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         "rate_hz": found.rate_hz,
         "missing_share": missing_share,
         "notes": found.notes,
+        "doubts": found.doubts,
         "out": args.out,
     });
-    console.answer_beside(&args.out, &report, &json)
+    console.answer_beside(&args.out, &report, &json)?;
+    let doubts = found.doubts.join("; ");
+    ensure!(!args.strict || doubts.is_empty(), Error::Invalid(format!("--strict: {doubts}")));
+    Ok(())
+}
+
+/// What later commands read beside the table.
+fn about(args: &AnglesArgs, found: &RecordedAngles) -> About {
+    let mut about = About::of_source(&args.motion);
+    about.rate_hz = found.rate_hz;
+    about.facing = found.facing;
+    about.notes.clone_from(&found.notes);
+    about.doubts.clone_from(&found.doubts);
+    about
 }

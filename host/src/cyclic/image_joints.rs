@@ -2,6 +2,7 @@
 
 use super::angle_table::{ANGLES, AngleRow, AngleTable};
 use super::error::CyclicError;
+use super::facing::Facing;
 use super::turns::unwrap_along_time;
 use crate::motion::joint_names::JOINTS;
 use sinew_core::skeleton::stick_figure::HUMAN;
@@ -32,11 +33,11 @@ pub struct ImageJoints {
 pub enum ExtraColumns {
     /// Nothing.
     None,
-    /// Where the root is, how long each segment is, and whether the person was mirrored: what an
-    /// overlay needs.
+    /// Where the root is, how long each segment is, and which way the person faces: what an
+    /// overlay needs. The root is where it was in the image.
     RootAndLengths {
-        /// The person faced left and was mirrored; the root is still where it was in the image.
-        mirrored: bool,
+        /// Which way the person faces in the image.
+        facing: Facing,
     },
 }
 
@@ -45,24 +46,9 @@ fn parent(joint: usize) -> usize {
     HUMAN.joints()[joint].parent.map_or(0, usize::from)
 }
 
-/// The mirror image: x changes its sign, the sides change places.
-#[must_use]
-pub fn mirrored(joints: &[Option<Point>; JOINTS]) -> [Option<Point>; JOINTS] {
-    std::array::from_fn(|joint| {
-        let other = usize::from(HUMAN.joints()[joint].mirror);
-        joints[other].map(|[x, y]| [-x, y])
-    })
-}
-
 impl ImageJoints {
-    /// The mirror image of each frame.
-    #[must_use]
-    pub fn mirrored(&self) -> Self {
-        let frame = |frame: &JointFrame| JointFrame { frame: frame.frame, joints: mirrored(&frame.joints) };
-        Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
-    }
-
-    /// The same with the sign of x changed.
+    /// The same with the sign of x changed: who faced left faces right, and left and right are
+    /// still the person's own.
     #[must_use]
     pub fn x_negated(&self) -> Self {
         let frame = |frame: &JointFrame| JointFrame {
@@ -114,6 +100,9 @@ impl ImageJoints {
     }
 }
 
+/// Column of which way the person faces in the image: `left` or `right`.
+pub const FACING: &str = "facing";
+
 /// Names of the extra columns.
 fn extra_columns(extra: ExtraColumns, unit: &str) -> Vec<String> {
     if extra == ExtraColumns::None {
@@ -121,7 +110,7 @@ fn extra_columns(extra: ExtraColumns, unit: &str) -> Vec<String> {
     }
     let root = ["u", "v"].map(|axis| format!("hip_center_{axis}_{unit}"));
     let lengths = HUMAN.angle_names().map(|name| format!("{name}_length_{unit}"));
-    root.into_iter().chain(lengths).chain(["mirrored".to_owned()]).collect()
+    root.into_iter().chain(lengths).chain([FACING.to_owned()]).collect()
 }
 
 fn row(frame: &JointFrame, extra: ExtraColumns) -> AngleRow {
@@ -134,13 +123,13 @@ fn row(frame: &JointFrame, extra: ExtraColumns) -> AngleRow {
         (dx != 0.0 || dy != 0.0).then(|| dy.atan2(dx))
     });
     let mut cells = Vec::new();
-    if let ExtraColumns::RootAndLengths { mirrored } = extra {
+    if let ExtraColumns::RootAndLengths { facing } = extra {
         let cell = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.3}"));
-        let side = if mirrored { -1.0 } else { 1.0 };
+        let side = facing.side();
         cells.push(cell(frame.joints[0].map(|root| side * root[0])));
         cells.push(cell(frame.joints[0].map(|root| root[1])));
         cells.extend((0..ANGLES).map(|angle| cell(segment(angle).map(|[dx, dy]| dx.hypot(dy)))));
-        cells.push(u8::from(mirrored).to_string());
+        cells.push(facing.name().to_owned());
     }
     AngleRow { frame: frame.frame, angles_rad, extra: cells }
 }
@@ -163,25 +152,26 @@ mod tests {
     fn angles_lengths_and_root_are_those_of_the_points() {
         let frames = vec![JointFrame { frame: 4, joints: standing() }];
         let points = ImageJoints { frames, unit: "px" };
-        let table = points.angle_table(ExtraColumns::RootAndLengths { mirrored: false }).unwrap();
+        let table = points.angle_table(ExtraColumns::RootAndLengths { facing: Facing::Right }).unwrap();
         let row = table.row(4).unwrap();
         assert!((row.angles_rad[0].unwrap() + FRAC_PI_2).abs() < 1.0e-12, "the neck is above");
         assert!((row.angles_rad[7].unwrap() - 4.0_f64.atan2(-3.0)).abs() < 1.0e-12);
         assert_eq!(row.angles_rad[8], None, "a segment without length has no angle");
         assert_eq!(table.extra_columns()[..3], ["hip_center_u_px", "hip_center_v_px", "neck_length_px"]);
         assert_eq!(row.extra[..4], ["100.000", "200.000", "50.000", ""]);
-        assert_eq!((row.extra[9].as_str(), row.extra[15].as_str()), ("5.000", "0"));
+        assert_eq!((row.extra[9].as_str(), row.extra[15].as_str()), ("5.000", "right"));
     }
 
     #[test]
-    fn a_mirrored_person_has_swapped_sides_and_angles_of_pi_minus_theta() {
+    fn who_faces_left_has_angles_of_pi_minus_theta_and_the_own_sides() {
         let points = ImageJoints { frames: vec![JointFrame { frame: 0, joints: standing() }], unit: "px" };
-        let table = points.mirrored().angle_table(ExtraColumns::RootAndLengths { mirrored: true }).unwrap();
+        let extra = ExtraColumns::RootAndLengths { facing: Facing::Left };
+        let table = points.x_negated().angle_table(extra).unwrap();
         let row = &table.rows()[0];
-        assert!((row.angles_rad[10].unwrap() - (PI - 4.0_f64.atan2(-3.0))).abs() < 1.0e-12);
-        assert_eq!(row.angles_rad[7], None);
-        assert_eq!((row.extra[0].as_str(), row.extra[15].as_str()), ("100.000", "1"));
-        assert_eq!(points.mirrored().mirrored(), points);
+        assert!((row.angles_rad[7].unwrap() - (PI - 4.0_f64.atan2(-3.0))).abs() < 1.0e-12);
+        assert_eq!(row.angles_rad[8], None);
+        assert_eq!((row.extra[0].as_str(), row.extra[15].as_str()), ("100.000", "left"));
+        assert_eq!(points.x_negated().x_negated(), points);
         assert_eq!(points.sides_swapped().frames[0].joints[11], Some([97.0, 204.0]));
         assert_eq!(points.sides_swapped().frames[0].joints[8], None);
     }

@@ -1,19 +1,23 @@
 //! Cyclic motion on the host: angle tables, training, cutting of cycles, and what people read off
 //! them.
 
+pub mod about;
 pub mod anatomy;
 pub mod angle_table;
 pub mod cuts;
 pub mod cutting;
 pub mod error;
 pub mod export;
+pub mod facing;
 pub mod heading;
 pub mod image_joints;
 pub mod model;
 pub mod model_file;
 pub mod noise;
+pub mod own_cycle;
 #[cfg(feature = "plots")]
 pub mod pictures;
+pub mod plausibility;
 pub mod projection;
 pub mod recording;
 pub mod report;

@@ -45,6 +45,10 @@ pub struct RecordedAngles {
     pub rate_hz: Option<f64>,
     /// What a user should know, one sentence a line.
     pub notes: Vec<String>,
+    /// What speaks against the result, one sentence a line.
+    pub doubts: Vec<String>,
+    /// Which way the person faces in the image; `None` for a motion in space.
+    pub facing: Option<Facing>,
 }
 
 /// Reads a motion in space or keypoints, and gives its angles.
@@ -107,13 +111,14 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
         }
     }
     let seen = plane.project(covered);
-    let mirrored = options.facing == Some(Facing::Left);
+    let facing = options.facing.unwrap_or(Facing::Right);
     let table = if options.view == View::Space {
         in_space(&seen, &plane.from_before().project(covered), recorded_hz, options)?
     } else {
-        finished(&seen, Some(recorded_hz), options, mirrored, ExtraColumns::None)?
+        finished(&seen, Some(recorded_hz), options, facing, ExtraColumns::None)?
     };
-    Ok(RecordedAngles { table, rate_hz: Some(options.rate_hz.unwrap_or(recorded_hz)), notes })
+    let rate_hz = Some(options.rate_hz.unwrap_or(recorded_hz));
+    Ok(RecordedAngles { table: table.at_rate(rate_hz), rate_hz, notes, doubts: Vec::new(), facing: None })
 }
 
 /// Two angles a joint: those of `side`, and how far each segment points out of its plane.
@@ -168,7 +173,7 @@ fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAng
         (Some(facing), _) => facing,
         (None, Some(Facing::Left)) => {
             notes.push(
-                "the person faces left: angles are those of the mirror image, with left and right swapped".to_owned(),
+                "the person faces left: angles are those of the mirror image; left and right are their own".to_owned(),
             );
             Facing::Left
         }
@@ -181,10 +186,10 @@ fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAng
     if options.rate_hz.is_some() && options.input_rate_hz.is_none() {
         bail!("`--rate` needs `--input-rate HZ` for keypoints, which do not say how many frames a second they have");
     }
-    let mirrored = facing == Facing::Left;
-    let extra = ExtraColumns::RootAndLengths { mirrored };
-    let table = finished(&track.joints, options.input_rate_hz, options, mirrored, extra)?;
-    Ok(RecordedAngles { table, rate_hz: options.rate_hz.or(options.input_rate_hz), notes })
+    let extra = ExtraColumns::RootAndLengths { facing };
+    let table = finished(&track.joints, options.input_rate_hz, options, facing, extra)?;
+    let rate_hz = options.rate_hz.or(options.input_rate_hz);
+    Ok(RecordedAngles { table: table.at_rate(rate_hz), rate_hz, notes, doubts: Vec::new(), facing: Some(facing) })
 }
 
 /// Resamples, mirrors, and takes the angles.
@@ -192,14 +197,14 @@ fn finished(
     joints: &ImageJoints,
     recorded_hz: Option<f64>,
     options: &RecordingOptions,
-    mirror: bool,
+    facing: Facing,
     extra: ExtraColumns,
 ) -> Result<AngleTable> {
     let joints = match (recorded_hz, options.rate_hz) {
         (Some(from), Some(to)) => resample(joints, from, to)?,
         _ => joints.clone(),
     };
-    let joints = if mirror { joints.mirrored() } else { joints };
+    let joints = if facing == Facing::Left { joints.x_negated() } else { joints };
     let joints = if options.swap_sides { joints.sides_swapped() } else { joints };
     Ok(joints.angle_table(extra)?)
 }

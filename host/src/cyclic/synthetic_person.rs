@@ -17,6 +17,7 @@ const DURATION_SPREAD: f64 = 0.1;
 pub struct SyntheticPerson<'m> {
     model: MotionModel<'m>,
     cycle_frames: f64,
+    rate_hz: f64,
     /// Constant, cosine and sine part of each angle's own deviation, radians.
     parts_rad: [[f64; 3]; ANGLES],
 }
@@ -41,7 +42,7 @@ impl<'m> SyntheticPerson<'m> {
             let mut draw = |std: f32| f64::from(std) / narrow * f64::from(stream.normal());
             [draw(spread.offset_std_rad[i]), draw(spread.swing_std_rad[i]), draw(spread.swing_std_rad[i])]
         });
-        Ok(Self { model: view, cycle_frames: (mean_frames * pace).round().max(2.0), parts_rad })
+        Ok(Self { model: view, cycle_frames: (mean_frames * pace).round().max(2.0), rate_hz, parts_rad })
     }
 
     /// Duration of a cycle, whole frames.
@@ -79,7 +80,7 @@ impl<'m> SyntheticPerson<'m> {
                 })
             })
             .collect();
-        Ok(AngleTable::from_angles(0, &angles)?)
+        Ok(AngleTable::from_angles(0, &angles)?.at_rate(Some(self.rate_hz)))
     }
 }
 

@@ -1,18 +1,9 @@
 //! Which way a person in a side view faces.
 
 use super::layout::{Keypoint, Part, Side};
+use crate::cyclic::facing::Facing;
 use crate::cyclic::image_joints::{ImageJoints, Point};
 use crate::motion::joint_names::{HIP_CENTER, JOINTS, NECK};
-
-/// Direction in the image.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
-pub enum Facing {
-    /// Towards smaller u.
-    Left,
-    /// Towards larger u.
-    Right,
-}
 
 /// Way across the image, in lengths of the trunk, beyond which travel decides.
 const TRAVEL_TRUNKS: f64 = 1.5;
@@ -81,6 +72,7 @@ fn knees(joints: &ImageJoints) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cyclic::facing::Facing;
     use crate::cyclic::image_joints::JointFrame;
 
     fn joints(speed: f64, knee: f64) -> ImageJoints {

@@ -11,8 +11,8 @@ pub mod person;
 pub mod point_lists;
 pub mod table;
 
+pub use crate::cyclic::facing::Facing;
 pub use error::KeypointError;
-pub use facing::Facing;
 pub use layout::{DetectedFrame, Keypoint};
 
 use crate::cyclic::image_joints::{ImageJoints, JointFrame};

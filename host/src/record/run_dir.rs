@@ -74,6 +74,10 @@ fn tracking_options(json: &Value) -> Result<TrackingOptions> {
         (None, Some(frames)) => Updates::At(frames.iter().filter_map(Value::as_u64).collect()),
         (None, None) => Updates::All,
     };
+    ensure!(
+        json["finished"].as_bool() != Some(true),
+        "firmware knows no later frames, and this run is of a finished recording: track it with `--online`"
+    );
     Ok(TrackingOptions {
         filter: named::<FilterName>(json, "filter")?,
         sigma_rad: json["sigma_deg"].as_f64().context("summary.json has no option `sigma_deg`")?.to_radians(),

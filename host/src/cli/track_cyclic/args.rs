@@ -3,12 +3,13 @@
 use crate::cli::checkpoint_args::CheckpointArgs;
 use crate::cli::viewer_args::ViewerArgs;
 use crate::cyclic::CyclicModel;
+use crate::cyclic::angle_table::AngleRows;
 use crate::cyclic::model_file::MODEL_VALUE;
 use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates};
 use crate::file::STANDARD_INPUT;
 use crate::output::check_writable_file;
 use crate::resume::{Begun, file_crc32, text_crc32};
-use anyhow::{Result, ensure};
+use anyhow::{Result, bail, ensure};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
@@ -29,9 +30,10 @@ pub struct TrackCyclicArgs {
     /// Filter.
     #[arg(long, value_enum, default_value_t = FilterName::Coupled)]
     pub filter: FilterName,
-    /// Standard deviation of a measured angle, degrees.
-    #[arg(long, value_name = "DEGREES", default_value_t = 6.0)]
-    pub sigma_deg: f64,
+    /// Standard deviation of a measured angle, degrees [default: found in the recording; 6 with
+    /// --online].
+    #[arg(long, value_name = "DEGREES")]
+    pub sigma_deg: Option<f64>,
     /// Number of particles.
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     pub particles: usize,
@@ -51,11 +53,16 @@ pub struct TrackCyclicArgs {
     /// Use only the measurements of these frames.
     #[arg(long, value_name = "F1,F2,...", value_delimiter = ',')]
     pub update_at: Option<Vec<u64>>,
-    /// Give each frame the estimate that the whole recording speaks for, later frames included (not
-    /// with `particle`).
+    /// Estimate each frame from those before it alone, as firmware does, and keep none of them. Else
+    /// a table is taken as a finished recording: what was measured, filtered, and in gaps the
+    /// person's own cycle. So are tables of more than 100,000 rows, and what comes on standard input.
+    #[arg(long, conflicts_with = "smooth")]
+    pub online: bool,
+    /// Give each frame what the filter says given the whole recording, later frames included (not
+    /// with `particle`), in place of a finished recording's estimate.
     #[arg(long)]
     pub smooth: bool,
-    /// Frames per second of the recording [default: those of the model].
+    /// Frames per second of the recording [default: those of the table].
     #[arg(long, value_name = "HZ")]
     pub rate: Option<f64>,
     /// Seed of everything that is drawn.
@@ -80,6 +87,9 @@ pub struct TrackCyclicArgs {
     /// Height of the person, metres: the scale of the report's joints.trc.
     #[arg(long, value_name = "METRES", default_value_t = 1.75)]
     pub height: f64,
+    /// End with an error where something speaks against the result; it is written all the same.
+    #[arg(long)]
+    pub strict: bool,
     /// Go on with the run to --out that did not reach its end; what decides the estimates has to be
     /// the same.
     #[arg(long)]
@@ -92,6 +102,12 @@ pub struct TrackCyclicArgs {
     pub viewer: ViewerArgs,
 }
 
+/// Rows beyond which a table is not kept whole: an hour at 25 frames a second takes 60 MB.
+const MAX_WHOLE_ROWS: usize = 100_000;
+
+/// How far a rate may lie from that of the table: 30 for 29.97 is the same camera.
+const MAX_RATE_ERROR: f64 = 0.002;
+
 /// The subcommand, in what it leaves.
 pub(super) const COMMAND: &str = "track cyclic";
 
@@ -102,9 +118,43 @@ impl TrackCyclicArgs {
     }
 
     /// Whether something is asked for that needs all rows at once.
-    pub(super) fn needs_all_rows(&self) -> bool {
+    fn needs_all_rows(&self) -> bool {
         let Self { model, smooth, report, overlay, animation, .. } = self;
         *smooth || model.len() > 1 || report.is_some() || overlay.is_some() || animation.is_some()
+    }
+
+    /// Whether each row is answered from those before it.
+    ///
+    /// # Errors
+    /// The table cannot be read.
+    pub(super) fn is_online(&self) -> crate::Result<bool> {
+        if self.needs_all_rows() {
+            return Ok(false);
+        }
+        Ok(self.online || self.is_read_once() || AngleRows::open(&self.table)?.has_more_than(MAX_WHOLE_ROWS)?)
+    }
+
+    /// Whether the estimates are those of a finished recording.
+    pub(super) fn is_finished(&self) -> bool {
+        !self.smooth && !self.online && self.model.len() == 1
+    }
+
+    /// Frames per second of a recording whose table says `of_table`.
+    ///
+    /// # Errors
+    /// Both are unknown, or they contradict each other.
+    pub(super) fn rate_hz(&self, of_table: Option<f64>) -> Result<f64> {
+        let table = self.table.display();
+        match (self.rate, of_table) {
+            (Some(rate), Some(of_table)) if (rate / of_table - 1.0).abs() > MAX_RATE_ERROR => bail!(
+                "`--rate {rate}`: the times in `{table}` say {of_table} frames a second; leave --rate out, or make the table anew by `sinew angles --input-rate {rate}`"
+            ),
+            (Some(rate), _) => Ok(rate),
+            (None, Some(of_table)) => Ok(of_table),
+            (None, None) => bail!(
+                "`{table}` does not say how many frames a second it has: give --rate HZ, or make it by `sinew angles` with --input-rate HZ"
+            ),
+        }
     }
 
     /// What can be checked before anything is read.
@@ -142,6 +192,7 @@ impl TrackCyclicArgs {
             "update_every": self.update_every,
             "update_at": self.update_at,
             "smooth": self.smooth,
+            "online": self.online,
             "rate": self.rate,
             "seed": self.seed,
         });
@@ -155,7 +206,7 @@ impl TrackCyclicArgs {
         }))
     }
 
-    /// The tracker's options.
+    /// The tracker's options, as far as they do not hang on the table.
     pub(super) fn options(&self) -> TrackingOptions {
         let updates = match (&self.update_every, &self.update_at) {
             (Some(every), _) => Updates::Every(*every),
@@ -164,7 +215,7 @@ impl TrackCyclicArgs {
         };
         TrackingOptions {
             filter: self.filter,
-            sigma_rad: self.sigma_deg.to_radians(),
+            sigma_rad: self.sigma_deg.map_or(TrackingOptions::default().sigma_rad, f64::to_radians),
             start: self.init,
             initial_cycle_position: self.initial_cycle_position,
             initial_cycle_velocity: self.initial_cycle_velocity,

@@ -36,9 +36,9 @@ pub fn run_until(
     let options = args.options();
     options.check()?;
     args.check()?;
-    if args.needs_all_rows() {
-        whole::track(args, &options, console, stop, notify)
+    if args.is_online()? {
+        stream::track(args, options, console, stop, notify)
     } else {
-        stream::track(args, &options, console, stop, notify)
+        whole::track(args, options, console, stop, notify)
     }
 }

@@ -24,7 +24,7 @@ const ESTIMATES: &str = "estimates";
 /// Tracks the rows of a table and writes each estimate at once.
 pub(super) fn track(
     args: &TrackCyclicArgs,
-    options: &TrackingOptions,
+    options: TrackingOptions,
     console: &Console,
     stop: &AtomicBool,
     notify: &mut dyn FnMut(usize),
@@ -35,8 +35,9 @@ pub(super) fn track(
     let models = args.models()?;
     let count = if args.is_read_once() { None } else { Some(StreamRun::look_over(AngleRows::open(&args.table)?)?) };
     let begun = args.begun(&models)?;
-    let rows = AngleRows::open(&args.table)?;
-    let run = StreamRun::new(&models[0], options, rows.is_spatial())?;
+    let mut rows = AngleRows::open(&args.table)?;
+    let options = TrackingOptions { rate_hz: Some(args.rate_hz(rows.rate_hz()?)?), ..options };
+    let run = StreamRun::new(&models[0], &options, rows.is_spatial())?;
     let mut streamed = Streamed::begin(args, &place, begun, left.as_ref(), rows, run)?;
     let bar = match count {
         Some(count) => console.bar(count as u64, "{wide_bar} row {pos} of {len}, {per_sec}")?,

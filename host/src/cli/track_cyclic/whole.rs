@@ -5,13 +5,17 @@ use super::args::TrackCyclicArgs;
 use super::place::Place;
 use super::summary_line::summary_line;
 use crate::cli::console::Console;
-use crate::cyclic::AngleTable;
+use crate::cyclic::about::About;
+use crate::cyclic::own_cycle::{Finished, finish, noise};
 use crate::cyclic::pictures::{OverlayFrames, animation};
+use crate::cyclic::plausibility;
 use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::figures;
 use crate::cyclic::report::{Origin, OverlayOrigin, Report};
 use crate::cyclic::tracking::table::{self, MotionCells, NO_MOTION};
 use crate::cyclic::tracking::{NamedMotion, TableRun, Tracked, TrackingOptions};
+use crate::cyclic::{AngleTable, CyclicModel};
+use crate::error::Error;
 use crate::output::OutputDir;
 use crate::resume::{Checkpoints, Interrupted, Left};
 use anyhow::{Result, ensure};
@@ -24,7 +28,7 @@ use std::time::Instant;
 /// Tracks the table, then writes all that is asked for.
 pub(super) fn track(
     args: &TrackCyclicArgs,
-    options: &TrackingOptions,
+    options: TrackingOptions,
     console: &Console,
     stop: &AtomicBool,
     notify: &mut dyn FnMut(usize),
@@ -35,6 +39,7 @@ pub(super) fn track(
     let output = args.report.as_deref().map(OutputDir::create).transpose()?;
     let models = args.models()?;
     let angles = AngleTable::read(&args.table)?;
+    let options = &of_recording(args, &angles, options)?;
     let begun = args.begun(&models)?;
     let mut run = TableRun::begin(&angles, &models, options)?;
     if let Some(left) = &left {
@@ -52,7 +57,8 @@ pub(super) fn track(
         let seconds = seconds_before + start.elapsed().as_secs_f64();
         file.put(&Left::new(begun.clone(), run.finished(), seconds, None, run.saved()?))
     };
-    let shown = Shown { args, angles: &angles, options, output, overlay };
+    let about = About::read_beside(&args.table)?;
+    let shown = Shown { args, angles: &angles, about, models: &models, options, output, overlay };
     let ended = follow(&mut run, stop, notify, args, console, &save)
         .and_then(|is_complete| shown.write(&run, is_complete, stop, console));
     match &ended {
@@ -96,10 +102,23 @@ fn follow(
     Ok(ended?)
 }
 
+/// The options with what the recording says: its rate, and its noise unless that is given.
+fn of_recording(args: &TrackCyclicArgs, angles: &AngleTable, options: TrackingOptions) -> Result<TrackingOptions> {
+    let rate_hz = Some(args.rate_hz(angles.rate_hz())?);
+    let sigma_rad = match args.sigma_deg {
+        Some(_) => options.sigma_rad,
+        None if args.online => options.sigma_rad,
+        None => noise::of_table(angles, &options.updates).unwrap_or(options.sigma_rad),
+    };
+    Ok(TrackingOptions { rate_hz, sigma_rad, ..options })
+}
+
 /// What is made of a run.
 struct Shown<'a> {
     args: &'a TrackCyclicArgs,
     angles: &'a AngleTable,
+    about: Option<About>,
+    models: &'a [CyclicModel],
     options: &'a TrackingOptions,
     output: Option<OutputDir>,
     overlay: Option<(&'a OverlayFrames, OutputDir)>,
@@ -110,6 +129,11 @@ impl Shown<'_> {
     fn write(&self, run: &TableRun<'_>, is_complete: bool, stop: &AtomicBool, console: &Console) -> Result<()> {
         let Self { args, angles, options, .. } = self;
         let (tracked, motions) = run.answered()?;
+        let is_finished = is_complete && args.is_finished();
+        let Finished { tracked, misfit } = match is_finished {
+            true => finish(angles, &self.models[0], &tracked, options)?,
+            false => Finished { tracked, misfit: None },
+        };
         let motions = motions.map(|motions| motion_cells(&args.model, &motions));
         table::write(&tracked, motions.as_ref(), &args.out)?;
         let interrupted =
@@ -120,9 +144,11 @@ impl Shown<'_> {
         if let Some(motions) = &motions {
             text.push_str(&told_motions(&args.model, motions));
         }
+        let doubts = self.doubts(&report, misfit);
+        text.extend(doubts.iter().map(|doubt| format!("doubt: {doubt}\n")));
         text.push_str(&format!("wrote {}\n", args.out.display()));
         if let Some(output) = &self.output {
-            self.write_report(&report, &tracked, motions.as_ref(), output)?;
+            self.write_report(&report, &tracked, motions.as_ref(), &doubts, output)?;
             text.push_str(&format!("report: {}\n", output.path().display()));
         }
         if self.overlay.is_some() || args.animation.is_some() {
@@ -137,13 +163,27 @@ impl Shown<'_> {
             "summary": report.summary,
             "symmetries": report.symmetries,
             "motion_frames": motions.as_ref().map(|motions| motion_counts(&args.model, motions)),
+            "doubts": doubts,
             "out": args.out,
             "report": args.report,
             "overlay": self.overlay.as_ref().map(|(_, folder)| folder.path()),
             "animation": args.animation,
             "viewer": args.viewer.rerun,
         });
-        console.answer_beside(&args.out, &text, &json)
+        console.answer_beside(&args.out, &text, &json)?;
+        ensure!(!args.strict || doubts.is_empty(), Error::Invalid(format!("--strict: {}", doubts.join("; "))));
+        Ok(())
+    }
+
+    /// What speaks against the recording or the result.
+    fn doubts(&self, report: &Report, misfit: Option<f64>) -> Vec<String> {
+        let of_recording = self.about.iter().flat_map(|about| about.doubts.clone());
+        let model = &self.models[0];
+        let of_run = match self.models.len() {
+            1 => plausibility::doubts(&report.summary, &report.series, model, misfit),
+            _ => Vec::new(),
+        };
+        of_recording.chain(of_run).collect()
     }
 
     fn write_report(
@@ -151,6 +191,7 @@ impl Shown<'_> {
         report: &Report,
         tracked: &Tracked,
         motions: Option<&MotionCells>,
+        doubts: &[String],
         output: &OutputDir,
     ) -> Result<()> {
         let args = self.args;
@@ -165,6 +206,9 @@ impl Shown<'_> {
             height_m: args.height,
             motions,
             overlay: drawn.as_ref(),
+            is_finished: args.is_finished(),
+            about: self.about.as_ref(),
+            doubts,
         };
         Ok(report.write(&origin, self.angles, tracked, output)?)
     }
@@ -174,7 +218,7 @@ impl Shown<'_> {
     fn draw(&self, tracked: &Tracked, report: &Report, stop: &AtomicBool, console: &Console) -> Result<String> {
         let (args, angles) = (self.args, self.angles);
         let body = Body::of_table(angles, args.height);
-        let figures = figures(angles, tracked, &report.measured_shares, &body, args.sigma_deg.to_radians())?;
+        let figures = figures(angles, tracked, &report.measured_shares, &body, self.options.sigma_rad)?;
         let mut text = String::new();
         if let Some((frames, folder)) = &self.overlay {
             let overlaid = frames.draw((angles, tracked), &figures, &body, folder, stop)?;

@@ -39,6 +39,17 @@ pub const SIDE_COLUMNS: [&str; ANGLES] = [
     "r_ankle_side_rad",
 ];
 
+/// Column of when a frame was seen, seconds; the first one after the angles.
+pub const TIME_COLUMN: &str = "time_s";
+
+/// A time, seconds: as many of nine decimals as it needs, so that two rows of a fast camera give
+/// their rate.
+#[must_use]
+pub fn time_cell(time_s: f64) -> String {
+    let text = format!("{time_s:.9}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
 /// Two angles a joint.
 pub const SPACE_ANGLES: usize = 2 * ANGLES;
 

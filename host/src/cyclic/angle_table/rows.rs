@@ -1,9 +1,12 @@
 //! The rows of an angle table, read one after another.
 
-use super::columns::{ANGLES, COLUMNS, MAX_FRAME, SIDE_COLUMNS};
+use super::clock::Clock;
+use super::columns::{ANGLES, COLUMNS, MAX_FRAME, SIDE_COLUMNS, TIME_COLUMN};
+use super::own_sides::OwnSides;
 use crate::csv_text::{RecordError, RecordReader};
 use crate::cyclic::error::CyclicError;
 use crate::file::open;
+use std::collections::VecDeque;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +32,8 @@ pub struct ReadRow {
     pub row: AngleRow,
     /// The angles out of the plane.
     pub side_rad: Option<[Option<f64>; ANGLES]>,
+    /// When it was seen, seconds, if the table says.
+    pub time_s: Option<f64>,
 }
 
 impl ReadRow {
@@ -50,7 +55,13 @@ pub struct AngleRows<R> {
     width: usize,
     extra_columns: Vec<String>,
     is_spatial: bool,
+    /// Where the time stands among the extra columns.
+    time: Option<usize>,
+    own_sides: Option<OwnSides>,
+    clock: Clock,
     last_frame: Option<u64>,
+    /// Rows that were read ahead.
+    ahead: VecDeque<ReadRow>,
 }
 
 impl AngleRows<Box<dyn Read>> {
@@ -78,7 +89,25 @@ impl<R: Read> AngleRows<R> {
         let mut extra_columns = extra_columns(&header, path)?;
         let is_spatial = is_spatial(&extra_columns, path)?;
         extra_columns.drain(..if is_spatial { ANGLES } else { 0 });
-        Ok(Self { path: path.to_path_buf(), records, width: header.len(), extra_columns, is_spatial, last_frame: None })
+        let time = extra_columns.iter().position(|name| name == TIME_COLUMN);
+        time.map(|index| extra_columns.remove(index));
+        let own_sides = OwnSides::of_old_table(&mut extra_columns);
+        let (path, width) = (path.to_path_buf(), header.len());
+        let (clock, ahead) = (Clock::default(), VecDeque::new());
+        Ok(Self { path, records, width, extra_columns, is_spatial, time, own_sides, clock, last_frame: None, ahead })
+    }
+
+    /// Whether there are more rows than `count`, of which so many are read.
+    ///
+    /// # Errors
+    /// As [`AngleRows::next_row`].
+    pub fn has_more_than(mut self, count: usize) -> Result<bool, CyclicError> {
+        for _ in 0..=count {
+            if self.next_row()?.is_none() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Whether there are two angles a joint.
@@ -87,7 +116,20 @@ impl<R: Read> AngleRows<R> {
         self.is_spatial
     }
 
-    /// Names of the columns after the angles.
+    /// Frames per second, of the times of the rows so far, or of the first two where less were
+    /// read; `None` where the table has no times.
+    ///
+    /// # Errors
+    /// As [`AngleRows::next_row`].
+    pub fn rate_hz(&mut self) -> Result<Option<f64>, CyclicError> {
+        while self.time.is_some() && self.clock.rate_hz().is_none() {
+            let Some(row) = self.read_row()? else { break };
+            self.ahead.push_back(row);
+        }
+        Ok(self.clock.rate_hz())
+    }
+
+    /// Names of the columns after the angles, without the time.
     #[must_use]
     pub fn into_extra_columns(self) -> Vec<String> {
         self.extra_columns
@@ -98,6 +140,13 @@ impl<R: Read> AngleRows<R> {
     /// # Errors
     /// The row breaks a rule, which is named with file and line, or cannot be read.
     pub fn next_row(&mut self) -> Result<Option<ReadRow>, CyclicError> {
+        match self.ahead.pop_front() {
+            Some(row) => Ok(Some(row)),
+            None => self.read_row(),
+        }
+    }
+
+    fn read_row(&mut self) -> Result<Option<ReadRow>, CyclicError> {
         let path = &self.path;
         let Some(record) = self.records.next().map_err(|error| unread(path, error))? else {
             let is_empty = self.last_frame.is_none();
@@ -114,7 +163,19 @@ impl<R: Read> AngleRows<R> {
             return Err(CyclicError::broken(path, line_of(&record), rule));
         }
         self.last_frame = Some(row.frame);
-        Ok(Some(ReadRow { row, side_rad }))
+        let time_s = match self.time {
+            Some(index) => finite_cell(&row.extra.remove(index))
+                .map_err(|rule| CyclicError::broken(path, line_of(&record), format!("`{TIME_COLUMN}` {rule}")))?,
+            None => None,
+        };
+        if let Some(time_s) = time_s {
+            let checked = self.clock.add(row.frame, time_s);
+            checked.map_err(|rule| CyclicError::broken(path, line_of(&record), rule))?;
+        }
+        if let Some(own_sides) = &self.own_sides {
+            own_sides.restore(&mut row);
+        }
+        Ok(Some(ReadRow { row, side_rad, time_s }))
     }
 }
 

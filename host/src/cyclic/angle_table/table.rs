@@ -1,6 +1,6 @@
 //! Angles over time.
 
-use super::columns::{ANGLES, COLUMNS, MAX_FRAME, SPACE_ANGLES, angle_columns};
+use super::columns::{ANGLES, COLUMNS, MAX_FRAME, SPACE_ANGLES, TIME_COLUMN, angle_columns, time_cell};
 use super::rows::{AngleRow, AngleRows};
 use crate::cyclic::error::{CyclicError, read_text};
 use crate::error::{Error, Result};
@@ -18,6 +18,8 @@ pub struct AngleTable {
     extra_columns: Vec<String>,
     /// Angles of [`SIDE_COLUMNS`], one entry a row.
     side_rad: Option<Vec<[Option<f64>; ANGLES]>>,
+    /// Frames per second, if they are known.
+    rate_hz: Option<f64>,
 }
 
 impl AngleTable {
@@ -43,7 +45,7 @@ impl AngleTable {
             let (found, wanted) = (row.extra.len(), extra_columns.len());
             return refuse(format!("need {wanted} extra cells; frame {} has {found}", row.frame));
         }
-        Ok(Self { rows, extra_columns, side_rad: None })
+        Ok(Self { rows, extra_columns, side_rad: None, rate_hz: None })
     }
 
     /// The same with the angles out of the plane, one entry a row.
@@ -57,6 +59,20 @@ impl AngleTable {
         }
         self.side_rad = Some(side_rad);
         Ok(self)
+    }
+
+    /// The same with its frames per second, which have to be greater than zero; they give each row
+    /// its time.
+    #[must_use]
+    pub fn at_rate(mut self, rate_hz: Option<f64>) -> Self {
+        self.rate_hz = rate_hz.filter(|rate| *rate > 0.0 && rate.is_finite());
+        self
+    }
+
+    /// Frames per second; `None` where the table does not say.
+    #[must_use]
+    pub const fn rate_hz(&self) -> Option<f64> {
+        self.rate_hz
     }
 
     /// The angles out of the plane, one entry a row; `None` for a motion in the plane.
@@ -153,7 +169,8 @@ impl AngleTable {
                 all.push(angles_rad);
             }
         }
-        Ok(Self { rows, extra_columns: reader.into_extra_columns(), side_rad })
+        let rate_hz = reader.rate_hz()?;
+        Ok(Self { rows, extra_columns: reader.into_extra_columns(), side_rad, rate_hz })
     }
 
     /// The text of the CSV file, angles with six decimals.
@@ -163,12 +180,14 @@ impl AngleTable {
     pub fn to_csv(&self) -> Result<String> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let columns = std::iter::once(COLUMNS[0]).chain(angle_columns().take(self.angle_count())).map(str::to_owned);
-        writer.write_record(columns.chain(self.extra_columns.iter().cloned()))?;
+        let time = self.rate_hz.map(|_| TIME_COLUMN.to_owned());
+        writer.write_record(columns.chain(time).chain(self.extra_columns.iter().cloned()))?;
         for (index, row) in self.rows.iter().enumerate() {
             let angle = |angle: Option<f64>| angle.map_or_else(String::new, |angle| format!("{angle:.6}"));
             let angles = (0..self.angle_count()).map(|column| angle(self.row_angle_rad(index, column)));
-            writer
-                .write_record(std::iter::once(row.frame.to_string()).chain(angles).chain(row.extra.iter().cloned()))?;
+            let time = self.rate_hz.map(|rate_hz| time_cell(row.frame as f64 / rate_hz));
+            let cells = std::iter::once(row.frame.to_string()).chain(angles).chain(time);
+            writer.write_record(cells.chain(row.extra.iter().cloned()))?;
         }
         String::from_utf8(writer.into_inner()?).map_err(Error::invalid)
     }

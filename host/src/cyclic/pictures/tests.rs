@@ -15,12 +15,12 @@ use std::sync::atomic::AtomicBool;
 
 /// The shipped walk; hips at (100 + f, 90), trunk 60 px, the other lengths those of a person of
 /// that size; frames from `first` on.
-fn keypoints(first: u64, frames: u64, mirrored: bool) -> AngleTable {
+fn keypoints(first: u64, frames: u64, facing: &str) -> AngleTable {
     let model = CyclicModel::from_option("walking").unwrap();
-    let columns = ["hip_center_u_px", "hip_center_v_px", "neck_length_px", "mirrored"].map(str::to_owned);
+    let columns = ["hip_center_u_px", "hip_center_v_px", "neck_length_px", "facing"].map(str::to_owned);
     let rows = (first..first + frames).map(|frame| {
         let pose = model.view().mean_pose_rad::<ANGLES>(model.view().point(frame as f32 / 60.0));
-        let extra = [(100 + frame).to_string(), "90".into(), "60".into(), u8::from(mirrored).to_string()];
+        let extra = [(100 + frame).to_string(), "90".into(), "60".into(), facing.to_owned()];
         AngleRow { frame, angles_rad: pose.map(|angle| Some(f64::from(angle))), extra: extra.to_vec() }
     });
     AngleTable::new(rows.collect(), columns.to_vec()).unwrap()
@@ -54,14 +54,14 @@ fn the_figure_stands_where_the_person_is_on_the_image_of_its_number() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("in")).unwrap();
     images(&folder.path().join("in"), 12);
-    for mirrored in [false, true] {
-        let (result, out) = overlaid(folder.path(), &keypoints(4, 8, mirrored));
+    for facing in ["right", "left"] {
+        let (result, out) = overlaid(folder.path(), &keypoints(4, 8, facing));
         assert_eq!(result, Overlaid { written: 8, skipped: Vec::new() });
         assert!(!out.join("f3.png").exists(), "frame 4 is the first");
         let picture = image::open(out.join("f11.png")).unwrap().into_rgb8();
         // The trunk goes up from the hips, which are at 100 + frame in both directions.
         let light = |u: u32, v: u32| picture.get_pixel(u, v).0.iter().all(|channel| *channel > 200);
-        assert!((105..117).any(|u| light(u, 60)), "mirrored {mirrored}");
+        assert!((105..117).any(|u| light(u, 60)), "{facing}");
         let far = picture
             .enumerate_pixels()
             .filter(|(u, v, pixel)| *v > 40 && pixel.0 != [90, 110, 90] && u.abs_diff(111) > 90);
@@ -79,7 +79,7 @@ fn what_cannot_be_drawn_is_skipped_and_reported() {
     images(&input, 6);
     fs::write(input.join("f2.png"), b"no picture").unwrap();
     image::RgbImage::new(100, 220).save(input.join("f4.png")).unwrap();
-    let (result, out) = overlaid(folder.path(), &keypoints(0, 9, false));
+    let (result, out) = overlaid(folder.path(), &keypoints(0, 9, "right"));
     assert_eq!(result.written, 4);
     assert_eq!(result.skipped.len(), 3, "{result:?}");
     assert!(result.skipped[0].contains("f2.png") && result.skipped[1].contains("100 x 220"), "{result:?}");
@@ -93,14 +93,14 @@ fn a_table_of_angles_alone_has_no_place_in_a_picture() {
     let angles = AngleTable::from_angles(0, &[[Some(0.5); ANGLES]; 3]).unwrap();
     let message = OverlayFrames::check(&angles).unwrap_err().to_string();
     assert!(message.contains("`overlay` needs a table") && message.contains("--animation"), "{message}");
-    assert!(OverlayFrames::check(&keypoints(0, 3, false)).is_ok());
+    assert!(OverlayFrames::check(&keypoints(0, 3, "right")).is_ok());
 }
 
 /// With places or without: the figure fills the canvas and moves, the measured one shows behind it.
 #[test]
 fn the_animation_moves_and_shows_what_was_measured() {
     let folder = tempfile::tempdir().unwrap();
-    let whole = keypoints(0, 61, false);
+    let whole = keypoints(0, 61, "right");
     let bare = AngleTable::new(
         whole.rows().iter().map(|row| AngleRow { extra: Vec::new(), ..row.clone() }).collect(),
         Vec::new(),

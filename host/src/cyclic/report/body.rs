@@ -3,7 +3,8 @@
 use crate::cyclic::AngleTable;
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::export::trc::standard_lengths_m;
-use crate::cyclic::image_joints::Point;
+use crate::cyclic::facing::Facing;
+use crate::cyclic::image_joints::{FACING, Point};
 use crate::motion::anthropometry::{SHANK, THIGH, TRUNK};
 use sinew_core::skeleton::stick_figure::HUMAN;
 
@@ -21,7 +22,7 @@ pub struct Body {
 struct Columns {
     unit: &'static str,
     root: [usize; 2],
-    mirrored: usize,
+    facing: usize,
     lengths: [Option<usize>; ANGLES],
 }
 
@@ -58,12 +59,22 @@ impl Body {
         self.columns.as_ref().is_some_and(|columns| columns.unit == "px")
     }
 
+    /// Which way the person faces in the image, from the cells of a row; `None` where the table
+    /// does not say.
+    #[must_use]
+    pub fn facing(&self, extra: &[String]) -> Option<Facing> {
+        match extra[self.columns.as_ref()?.facing].as_str() {
+            "left" => Some(Facing::Left),
+            "right" => Some(Facing::Right),
+            _ => None,
+        }
+    }
+
     /// 1 where the image's x points forward, -1 where the person faces left, from the extra cells
     /// of a row.
     #[must_use]
     pub fn side(&self, extra: &[String]) -> f64 {
-        let mirrored = self.columns.as_ref().is_some_and(|columns| extra[columns.mirrored] == "1");
-        if mirrored { -1.0 } else { 1.0 }
+        self.facing(extra).map_or(1.0, Facing::side)
     }
 
     /// The measured root of a row: x forward, y down.
@@ -87,7 +98,7 @@ impl Columns {
             let [u, v] = ["u", "v"].map(|axis| column(&format!("hip_center_{axis}_{unit}")));
             let mut names = HUMAN.angle_names();
             let lengths = std::array::from_fn(|_| column(&format!("{}_length_{unit}", names.next()?)));
-            Some(Self { unit, root: [u?, v?], mirrored: column("mirrored")?, lengths })
+            Some(Self { unit, root: [u?, v?], facing: column(FACING)?, lengths })
         })
     }
 }

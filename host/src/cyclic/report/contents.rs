@@ -2,6 +2,7 @@
 
 use super::series;
 use crate::cyclic::AngleTable;
+use crate::cyclic::about::About;
 use crate::cyclic::anatomy::repetition::{Repetition, repetitions};
 use crate::cyclic::anatomy::symmetry::{Symmetry, symmetries};
 use crate::cyclic::anatomy::{AnatomicalSeries, CycleCurves};
@@ -34,6 +35,12 @@ pub struct Origin<'a> {
     pub motions: Option<&'a MotionCells>,
     /// The overlays, where some are drawn.
     pub overlay: Option<&'a OverlayOrigin>,
+    /// Whether the estimates are those of a finished recording, and not the filter's.
+    pub is_finished: bool,
+    /// What is known of the recording.
+    pub about: Option<&'a About>,
+    /// What speaks against the result, one sentence each.
+    pub doubts: &'a [String],
 }
 
 /// Everything that the folder holds, before it is written.
@@ -64,8 +71,8 @@ impl Report {
         let measured_shares = series::measured_shares(table, &options.updates);
         let series = series::estimated(tracked, &summary, &measured_shares);
         let first = tracked.frames[0].frame as f64;
-        let starts: Vec<f64> = summary.cycle_starts_s.iter().map(|start| first + start * tracked.rate_hz).collect();
-        let cycles: Vec<[f64; 2]> = starts.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+        let in_frames = |cycle_s: &[f64; 2]| cycle_s.map(|time_s| first + time_s * tracked.rate_hz);
+        let cycles: Vec<[f64; 2]> = summary.whole_cycles_s.iter().map(in_frames).collect();
         let repetitions = repetitions(&series, &cycles);
         let curves = CycleCurves::new(&series, &cycles);
         let symmetries = symmetries(&repetitions, &curves);

@@ -1,9 +1,10 @@
 //! `summary.json`: what was run, and what it came to.
 
 use super::contents::{Origin, OverlayOrigin, Report};
+use crate::cyclic::about::About;
 use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, Range, Repetition, Symmetry};
 use crate::cyclic::angle_table::COLUMNS;
-use crate::cyclic::tracking::{FilterName, StartName, Summary, Tracked, TrackingOptions, Updates};
+use crate::cyclic::tracking::{FilterName, StartName, Summary, Tracked, Updates};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -25,11 +26,13 @@ pub struct OptionsRecord {
     rate_hz: f64,
     particles: Option<usize>,
     smooth: bool,
+    finished: bool,
     height_m: f64,
 }
 
 impl OptionsRecord {
-    fn new(options: &TrackingOptions, rate_hz: f64, height_m: f64) -> Self {
+    fn new(origin: &Origin<'_>, rate_hz: f64) -> Self {
+        let (options, height_m) = (origin.options, origin.height_m);
         let (update_every, update_at) = match &options.updates {
             Updates::All => (None, None),
             Updates::Every(every) => (Some(*every), None),
@@ -47,6 +50,7 @@ impl OptionsRecord {
             rate_hz,
             particles: (options.filter == FilterName::Particle).then_some(options.particles),
             smooth: options.smooth,
+            finished: origin.is_finished,
             height_m,
         }
     }
@@ -100,6 +104,8 @@ pub struct Document<'a> {
     seed: u64,
     overlay: Option<&'a OverlayOrigin>,
     options: OptionsRecord,
+    recording: Option<&'a About>,
+    doubts: &'a [String],
     #[serde(flatten)]
     summary: &'a Summary,
     /// Share of the rows in which each angle was measured and used.
@@ -120,7 +126,9 @@ impl<'a> Document<'a> {
             model: origin.model,
             seed: origin.options.seed,
             overlay: origin.overlay,
-            options: OptionsRecord::new(origin.options, tracked.rate_hz, origin.height_m),
+            options: OptionsRecord::new(origin, tracked.rate_hz),
+            recording: origin.about,
+            doubts: origin.doubts,
             summary: &report.summary,
             measured_shares: COLUMNS[1..].iter().copied().zip(report.measured_shares).collect(),
             repetitions: report.repetitions.iter().map(Into::into).collect(),

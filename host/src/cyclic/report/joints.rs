@@ -88,18 +88,14 @@ pub fn figures(
     Ok(all)
 }
 
-/// Joints as they lie in the image of a person whose `side` is -1 where they face left. Then x is
-/// turned back, and left is the person's own left again.
+/// Joints as they lie in the image of a person whose `side` is -1 where they face left: then x is
+/// turned back.
 #[must_use]
 pub fn in_image(joints: &JointPositions, side: f64) -> JointPositions {
-    std::array::from_fn(|index| {
-        let place = if side < 0.0 { joints[usize::from(HUMAN.joints()[index].mirror)] } else { joints[index] };
-        place.map(|[x, y]| [side * x, y])
-    })
+    joints.map(|joint| joint.map(|[x, y]| [side * x, y]))
 }
 
-/// `frame`, then x and y of each joint in the pixels of the image. Of a person who faces left, too,
-/// left is their own left here: the mirroring of the table is undone.
+/// `frame`, then x and y of each joint in the pixels of the image.
 #[must_use]
 pub fn to_csv_px(positions: &[(u64, JointPositions)], table: &AngleTable, body: &Body) -> String {
     let names: Vec<&str> = std::iter::once("hip_center").chain(HUMAN.angle_names()).collect();

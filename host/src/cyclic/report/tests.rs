@@ -59,8 +59,17 @@ fn the_folder_holds_every_file() {
     let (report, tracked, options) = report(&table);
     let folder = tempfile::tempdir().unwrap();
     let output = OutputDir::create(folder.path()).unwrap();
-    let origin =
-        Origin { table: "walk.csv", model: "walking", options: &options, height_m: 1.8, motions: None, overlay: None };
+    let origin = Origin {
+        table: "walk.csv",
+        model: "walking",
+        options: &options,
+        height_m: 1.8,
+        motions: None,
+        overlay: None,
+        is_finished: false,
+        about: None,
+        doubts: &[],
+    };
     report.write(&origin, &table, &tracked, &output).unwrap();
     let mut names: Vec<String> =
         std::fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
@@ -84,14 +93,14 @@ fn the_folder_holds_every_file() {
 fn keypoints(frames: u64, hidden: std::ops::Range<u64>) -> AngleTable {
     let mut columns = vec!["hip_center_u_px".to_owned(), "hip_center_v_px".to_owned()];
     columns.extend(["neck", "l_knee", "l_ankle"].map(|name| format!("{name}_length_px")));
-    columns.push("mirrored".to_owned());
+    columns.push("facing".to_owned());
     let walk = walk(0..frames, &[]);
     let rows = walk.rows().iter().map(|row| {
         let mut extra = [(100 - row.frame as i64).to_string(), "50".into(), "60".into(), "49".into(), "49.2".into()];
         if hidden.contains(&row.frame) {
             extra.fill(String::new());
         }
-        AngleRow { extra: extra.into_iter().chain(["1".to_owned()]).collect(), ..row.clone() }
+        AngleRow { extra: extra.into_iter().chain(["left".to_owned()]).collect(), ..row.clone() }
     });
     AngleTable::new(rows.collect(), columns).unwrap()
 }

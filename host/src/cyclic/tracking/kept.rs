@@ -74,11 +74,13 @@ impl<'a, const N: usize> Kept<'a, N> {
         let rows = self.table.rows().iter().zip(&self.answers);
         let mut frames: Vec<TrackedFrame> =
             rows.map(|(row, answer)| tracked(row.frame, &answer.estimate, answer.cycles)).collect();
+        // Before its first measurement a filter knows nothing.
+        frames[..self.first].iter_mut().for_each(|frame| frame.is_known = false);
         if let Some(smoothed) = self.walk.smoothed() {
             replace_estimates(&mut frames[self.first..], &smoothed);
             let start = frames[self.first].clone();
             for frame in &mut frames[..self.first] {
-                *frame = TrackedFrame { frame: frame.frame, ..start.clone() };
+                *frame = TrackedFrame { frame: frame.frame, is_known: false, ..start.clone() };
             }
         }
         frames

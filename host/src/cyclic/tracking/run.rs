@@ -20,6 +20,8 @@ pub struct TrackedFrame {
     pub side: Option<SideEstimate>,
     /// Cycles since the first row, with their fraction.
     pub cycles: f64,
+    /// Whether the person was seen about this frame; if not, nothing else here means anything.
+    pub is_known: bool,
 }
 
 /// Angles out of the plane of the side view.
@@ -91,7 +93,14 @@ pub(super) fn tracked<const N: usize>(frame: u64, estimate: &CyclicEstimate<N>, 
         angles_rad: std::array::from_fn(|i| unwrapped(ANGLES + i)),
         angle_variance_rad2: std::array::from_fn(|i| estimate.angle_variance_rad2[ANGLES + i]),
     });
-    TrackedFrame { frame, estimate: in_plane(estimate), angles_rad: std::array::from_fn(unwrapped), side, cycles }
+    TrackedFrame {
+        frame,
+        estimate: in_plane(estimate),
+        angles_rad: std::array::from_fn(unwrapped),
+        side,
+        cycles,
+        is_known: true,
+    }
 }
 
 /// The estimate with the angles in the plane only.

@@ -91,7 +91,10 @@ impl<'a> StreamRun<'a> {
         }
         let waiting = std::mem::take(&mut self.waiting);
         let walk = AnyWalk::begin(self.model, self.options, waiting[0], row)?;
-        let answers: Vec<TrackedFrame> = waiting.into_iter().map(|frame| walk.first_answer(frame)).collect();
+        let seen = row.row.frame;
+        // Before its first measurement a filter knows nothing.
+        let answer = |frame| TrackedFrame { is_known: frame == seen, ..walk.first_answer(frame) };
+        let answers: Vec<TrackedFrame> = waiting.into_iter().map(answer).collect();
         let mut summary = RunningSummary::new(&answers[0], self.rates.0, self.rates.1);
         answers[1..].iter().for_each(|answer| summary.add(answer));
         self.begun = Some(Begun { walk, summary });

@@ -5,6 +5,10 @@ use crate::resume::{List, long_real, real};
 use serde::Serialize;
 use sinew_core::saved_state::{SavedState, StateVisitor};
 
+/// Cycles without which there is no cadence: with less, what one cycle differs from the next
+/// cannot be seen.
+pub const MIN_CYCLES: f64 = 2.0;
+
 /// Summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
@@ -14,10 +18,16 @@ pub struct Summary {
     pub skipped_frames: u64,
     /// Seconds from the first to the last row.
     pub duration_s: f64,
-    /// Cycles passed, with their fraction.
+    /// Seconds of these in which the person was seen.
+    pub seen_s: f64,
+    /// Cycles passed while the person was seen, with their fraction.
     pub cycles: f64,
-    /// Cycles per minute over the whole run: cycles passed over the time that they took.
-    pub cadence_per_min: f64,
+    /// Cycles per minute: cycles passed over the time that they took; `None` for less than
+    /// [`MIN_CYCLES`].
+    pub cadence_per_min: Option<f64>,
+    /// Standard deviation of the cadence from cycle to cycle; `None` for less than three whole
+    /// cycles.
+    pub cadence_std_per_min: Option<f64>,
     /// Cycles per minute in the last row.
     pub last_cadence_per_min: f64,
     /// Standard deviation of [`Summary::last_cadence_per_min`].
@@ -29,6 +39,8 @@ pub struct Summary {
     /// When the cycle began anew, seconds from the first row, between frames by the velocity. A
     /// cycle that is taken back and begun again counts once.
     pub cycle_starts_s: Vec<f64>,
+    /// Start and end of each whole cycle in which the person was seen, seconds from the first row.
+    pub whole_cycles_s: Vec<[f64; 2]>,
 }
 
 impl Summary {
@@ -72,18 +84,30 @@ pub struct RunningSummary {
     origin: f64,
     /// Cycles at the last row.
     cycles: f64,
+    /// Whether the last row is known.
+    is_known: bool,
+    /// Whether a cycle began since the person was last lost.
+    has_start: bool,
+    /// Cycles and frames between successive rows that are known.
+    seen_cycles: f64,
+    seen_frames: u64,
     /// Velocity at the last row and its variance.
     velocity: [f32; 2],
     /// Where the next cycle begins, in cycles from position 0 before the first row.
     next_start: f64,
     outliers: u64,
     log_likelihood: f64,
-    starts_s: Vec<Seconds>,
+    starts_s: Vec<Start>,
 }
 
-/// A time, seconds.
+/// The start of a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Seconds(f64);
+struct Start {
+    /// Seconds from the first row.
+    at_s: f64,
+    /// Whether the person was seen from the start before on.
+    follows: bool,
+}
 
 impl RunningSummary {
     /// Begins with the first row; rates as in [`Tracked`].
@@ -98,6 +122,10 @@ impl RunningSummary {
             last_frame: first.frame,
             origin,
             cycles: first.cycles,
+            is_known: first.is_known,
+            has_start: false,
+            seen_cycles: 0.0,
+            seen_frames: 0,
             velocity: [0.0; 2],
             next_start: origin.floor() + 1.0,
             outliers: 0,
@@ -110,17 +138,32 @@ impl RunningSummary {
 
     /// Adds the row after the last one.
     pub fn add(&mut self, row: &TrackedFrame) {
+        if self.is_known && row.is_known {
+            self.pass(row);
+        } else {
+            // What was passed meanwhile is not known: the next start is the first of a new stretch.
+            self.next_start = (self.origin + row.cycles).floor() + 1.0;
+            self.has_start = false;
+        }
+        self.is_known = row.is_known;
+        self.count(row);
+    }
+
+    /// Cycles from the last row to `row`.
+    fn pass(&mut self, row: &TrackedFrame) {
         let [before, after] = [self.cycles, row.cycles].map(|cycles| cycles + self.origin);
+        let step = row.frame - self.last_frame;
+        self.seen_cycles += after - before;
+        self.seen_frames += step;
         // A step holds more than one start only where many frames were skipped; then the first one
         // is reported.
         if after >= self.next_start && after > before {
             let share = ((self.next_start - before) / (after - before)).clamp(0.0, 1.0);
-            let step = (row.frame - self.last_frame) as f64;
-            let frame = (self.last_frame - self.first_frame) as f64 + share * step;
-            self.starts_s.push(Seconds(frame / self.rate_hz));
+            let frame = (self.last_frame - self.first_frame) as f64 + share * step as f64;
+            self.starts_s.push(Start { at_s: frame / self.rate_hz, follows: self.has_start });
+            self.has_start = true;
             self.next_start = after.floor() + 1.0;
         }
-        self.count(row);
     }
 
     fn count(&mut self, row: &TrackedFrame) {
@@ -143,41 +186,62 @@ impl RunningSummary {
     #[must_use]
     pub fn summary(&self) -> Summary {
         let frame_numbers = self.last_frame - self.first_frame + 1;
-        let duration_s = (frame_numbers - 1) as f64 / self.rate_hz;
         let last_cadence = cadence(self.velocity, 60.0 * self.rate_hz * self.step_frames);
+        let seen_s = self.seen_frames as f64 / self.rate_hz;
+        let whole_cycles_s: Vec<[f64; 2]> =
+            self.starts_s.windows(2).filter(|pair| pair[1].follows).map(|pair| [pair[0].at_s, pair[1].at_s]).collect();
         Summary {
             frames: self.rows as usize,
             skipped_frames: frame_numbers - self.rows,
-            duration_s,
-            cycles: self.cycles,
-            cadence_per_min: if duration_s > 0.0 { 60.0 * self.cycles / duration_s } else { 0.0 },
+            duration_s: (frame_numbers - 1) as f64 / self.rate_hz,
+            seen_s,
+            cycles: self.seen_cycles,
+            cadence_per_min: (self.seen_cycles.abs() >= MIN_CYCLES).then(|| 60.0 * self.seen_cycles / seen_s),
+            cadence_std_per_min: spread_per_min(&whole_cycles_s),
             last_cadence_per_min: last_cadence.0,
             last_cadence_std_per_min: last_cadence.1,
             outliers: self.outliers as usize,
             log_likelihood: self.log_likelihood,
-            cycle_starts_s: self.starts_s.iter().map(|start| start.0).collect(),
+            cycle_starts_s: self.starts_s.iter().map(|start| start.at_s).collect(),
+            whole_cycles_s,
         }
     }
 }
 
+/// Standard deviation of the cadence of cycles, divided by their number less one.
+fn spread_per_min(cycles_s: &[[f64; 2]]) -> Option<f64> {
+    let cadences: Vec<f64> = cycles_s.iter().map(|[start, end]| 60.0 / (end - start)).collect();
+    let count = cadences.len() as f64;
+    let mean = cadences.iter().sum::<f64>() / count;
+    let squares: f64 = cadences.iter().map(|cadence| (cadence - mean).powi(2)).sum();
+    (cadences.len() >= 3).then(|| (squares / (count - 1.0)).sqrt())
+}
+
 impl SavedState for RunningSummary {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        for count in [&mut self.rows, &mut self.first_frame, &mut self.last_frame, &mut self.outliers] {
+        for count in
+            [&mut self.rows, &mut self.first_frame, &mut self.last_frame, &mut self.outliers, &mut self.seen_frames]
+        {
             visitor.long(count);
         }
-        for value in [&mut self.origin, &mut self.cycles, &mut self.next_start, &mut self.log_likelihood] {
+        for value in
+            [&mut self.origin, &mut self.cycles, &mut self.next_start, &mut self.log_likelihood, &mut self.seen_cycles]
+        {
             long_real(value, visitor);
         }
         self.velocity.iter_mut().for_each(|value| real(value, visitor));
-        let mut starts_s = List::new(std::mem::take(&mut self.starts_s), Seconds(0.0));
+        visitor.flag(&mut self.is_known);
+        visitor.flag(&mut self.has_start);
+        let mut starts_s = List::new(std::mem::take(&mut self.starts_s), Start { at_s: 0.0, follows: false });
         starts_s.visit(visitor);
         self.starts_s = starts_s.entries;
     }
 }
 
-impl SavedState for Seconds {
+impl SavedState for Start {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        long_real(&mut self.0, visitor);
+        long_real(&mut self.at_s, visitor);
+        visitor.flag(&mut self.follows);
     }
 }
 
@@ -206,6 +270,7 @@ mod tests {
             angles_rad: [0.0; ANGLES],
             side: None,
             cycles: *cycles,
+            is_known: true,
         };
         Tracked { frames: (0..).zip(cycles).map(frame).collect(), rate_hz: 2.0, step_frames: 0.5 }
     }
@@ -215,7 +280,7 @@ mod tests {
         let summary = Summary::of(&run(&[0.0, 0.75, 1.25, 0.75, 1.25, 2.0, 2.5]));
         assert_eq!(summary.cycle_starts_s, [0.75, 2.5]);
         assert_eq!((summary.frames, summary.skipped_frames, summary.outliers), (7, 0, 1));
-        assert!((summary.cadence_per_min - 60.0 * 2.5 / 3.0).abs() < 1.0e-12);
+        assert!((summary.cadence_per_min.unwrap() - 60.0 * 2.5 / 3.0).abs() < 1.0e-12);
         assert!((summary.last_cadence_per_min - 15.0).abs() < 1.0e-5, "{summary:?}");
         assert!((summary.last_cadence_std_per_min - 6.0).abs() < 1.0e-5, "{summary:?}");
     }
@@ -223,7 +288,7 @@ mod tests {
     #[test]
     fn a_single_row_has_no_cadence_of_its_own() {
         let summary = Summary::of(&run(&[0.0]));
-        assert_eq!((summary.duration_s, summary.cadence_per_min), (0.0, 0.0));
+        assert_eq!((summary.duration_s, summary.cadence_per_min), (0.0, None));
         assert!(summary.cycle_starts_s.is_empty());
     }
 }

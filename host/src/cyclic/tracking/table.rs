@@ -2,14 +2,14 @@
 //! reads it.
 
 use super::run::{Tracked, TrackedFrame};
-use crate::cyclic::angle_table::{ANGLES, COLUMNS, SPACE_ANGLES, angle_columns};
+use crate::cyclic::angle_table::{ANGLES, COLUMNS, SPACE_ANGLES, TIME_COLUMN, angle_columns, time_cell};
 use crate::error::{Error, Result};
 use crate::output::write_atomically;
 use std::io::Write;
 use std::path::Path;
 
 /// Columns after the angles.
-pub const ESTIMATE_COLUMNS: [&str; 7] = [
+pub const ESTIMATE_COLUMNS: [&str; 8] = [
     "cycle_position",
     "cycle_velocity_per_frame",
     "cadence_per_min",
@@ -17,6 +17,7 @@ pub const ESTIMATE_COLUMNS: [&str; 7] = [
     "outlier",
     "cadence_std_per_min",
     "cycles",
+    TIME_COLUMN,
 ];
 
 /// Columns at the end where several motions were tracked.
@@ -31,7 +32,8 @@ pub type MotionCells = Vec<(String, f64)>;
 ///
 /// After [`ESTIMATE_COLUMNS`] come the angles' standard deviations. A model with two angles a joint
 /// gives the angles out of the plane after those in it. Motions, if there are any, come last.
-/// `cycle_velocity_per_frame` is per frame of the recording; `outlier` is 0 or 1.
+/// `cycle_velocity_per_frame` is per frame of the recording; `outlier` is 0 or 1. A row about which
+/// nothing is known has its frame and time, and motions, alone.
 #[derive(Debug)]
 pub struct EstimateTable<W: Write> {
     writer: csv::Writer<W>,
@@ -92,8 +94,11 @@ impl<W: Write> EstimateTable<W> {
             .chain(side_variances)
             .map(|variance| format!("{:.6}", variance.max(0.0).sqrt()));
         let motion = motion.into_iter().flat_map(|(name, probability)| [name.clone(), format!("{probability:.6}")]);
-        let cells = std::iter::once(frame.frame.to_string()).chain(angles).chain(derived).chain(stds).chain(motion);
-        Ok(self.writer.write_record(cells)?)
+        let known = |cell: String| if frame.is_known { cell } else { String::new() };
+        let estimate = angles.chain(derived).map(known);
+        let time = time_cell(frame.frame as f64 / self.rate_hz);
+        let first = std::iter::once(frame.frame.to_string());
+        Ok(self.writer.write_record(first.chain(estimate).chain([time]).chain(stds.map(known)).chain(motion))?)
     }
 
     /// The writer beneath.

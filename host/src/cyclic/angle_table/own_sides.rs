@@ -1,0 +1,49 @@
+//! Tables of earlier versions, in which left and right of a person who faces left were exchanged.
+
+use super::columns::{ANGLES, COLUMNS};
+use super::rows::AngleRow;
+use crate::cyclic::facing::Facing;
+use crate::cyclic::image_joints::FACING;
+
+/// Column that said `1` where left and right were exchanged.
+const EXCHANGED: &str = "mirrored";
+
+/// How the rows of such a table get their own sides back.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OwnSides {
+    column: usize,
+    /// Pairs of extra columns, left and right.
+    pairs: Vec<[usize; 2]>,
+}
+
+impl OwnSides {
+    /// Of a table with the column `mirrored`, which is then named as in new ones.
+    #[must_use]
+    pub fn of_old_table(extra_columns: &mut [String]) -> Option<Self> {
+        let column = extra_columns.iter().position(|name| name == EXCHANGED)?;
+        FACING.clone_into(&mut extra_columns[column]);
+        let right = |left: &str| Some(format!("r_{}", left.strip_prefix("l_")?));
+        let pair = |(index, name): (usize, &String)| {
+            let other = right(name)?;
+            Some([index, extra_columns.iter().position(|name| *name == other)?])
+        };
+        let pairs = extra_columns.iter().enumerate().filter_map(pair).collect();
+        Some(Self { column, pairs })
+    }
+
+    /// Gives a row its own sides back.
+    pub fn restore(&self, row: &mut AngleRow) {
+        let facing = if row.extra[self.column] == "1" { Facing::Left } else { Facing::Right };
+        facing.name().clone_into(&mut row.extra[self.column]);
+        if facing == Facing::Right {
+            return;
+        }
+        self.pairs.iter().for_each(|[left, right]| row.extra.swap(*left, *right));
+        for left in 0..ANGLES {
+            let other = COLUMNS[left + 1].strip_prefix("l_").map(|name| format!("r_{name}"));
+            if let Some(right) = other.and_then(|name| COLUMNS[1..].iter().position(|column| *column == name)) {
+                row.angles_rad.swap(left, right);
+            }
+        }
+    }
+}

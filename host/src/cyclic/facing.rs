@@ -1,0 +1,34 @@
+//! Which way a person in a side view faces.
+
+use serde::{Deserialize, Serialize};
+
+/// Direction in the image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+pub enum Facing {
+    /// Towards smaller u.
+    Left,
+    /// Towards larger u.
+    Right,
+}
+
+impl Facing {
+    /// The name on the command line and in tables.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+
+    /// Sign of u in the picture of a person who walks towards larger u.
+    #[must_use]
+    pub const fn side(self) -> f64 {
+        match self {
+            Self::Left => -1.0,
+            Self::Right => 1.0,
+        }
+    }
+}

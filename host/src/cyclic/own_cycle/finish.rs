@@ -1,0 +1,116 @@
+//! A recording that has been tracked, as an estimate that has seen all of it.
+
+use super::course::Course;
+use super::phase::{self, Phased};
+use super::seen::Seen;
+use super::shape::Shape;
+use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
+use crate::cyclic::tracking::{Tracked, TrackedFrame, TrackingOptions};
+use crate::cyclic::turns::least_angle;
+use crate::cyclic::{AngleTable, CyclicModel};
+use crate::error::Result;
+use std::f64::consts::TAU;
+
+/// Longest time without any measurement that is bridged, cycles. Beyond it the person may have
+/// stopped: nothing is said, and the cycles on both sides are counted apart.
+const LONGEST_BRIDGE_CYCLES: f64 = 1.0;
+
+/// A finished recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finished {
+    /// The filter's run with angles and phases of the whole recording.
+    pub tracked: Tracked,
+    /// How far the person's own cycle lies from the model's, in the standard deviations between
+    /// people; `None` where the model has none.
+    pub misfit: Option<f64>,
+}
+
+/// The run of a filter over a table with angles and phases of the whole recording: what was
+/// measured, filtered, and in gaps the person's own cycle. Rows in which nothing is known say so.
+///
+/// # Errors
+/// A filter of the measured angles that does not fit the rate.
+pub fn finish(
+    table: &AngleTable,
+    model: &CyclicModel,
+    tracked: &Tracked,
+    options: &TrackingOptions,
+) -> Result<Finished> {
+    let finish =
+        if model.numbers().angle_count > ANGLES { finish_angles::<SPACE_ANGLES> } else { finish_angles::<ANGLES> };
+    finish(table, model, tracked, options)
+}
+
+fn finish_angles<const N: usize>(
+    table: &AngleTable,
+    model: &CyclicModel,
+    tracked: &Tracked,
+    options: &TrackingOptions,
+) -> Result<Finished> {
+    let seen = Seen::<N>::of_table(table, &options.updates);
+    let first = phases_of(tracked, seen.first_frame);
+    let prior = Shape::of_model(model);
+    let phased = phase::fitted(&seen, first, &prior);
+    let cycle_frames = seen.angles_rad.len() as f64 / (phased.phases[phased.phases.len() - 1] - phased.phases[0]).abs();
+    let stretches = seen.stretches(LONGEST_BRIDGE_CYCLES * cycle_frames);
+    let is_known: Vec<bool> = (0..seen.angles_rad.len())
+        .map(|frame| stretches.iter().any(|[first, last]| (*first..=*last).contains(&frame)))
+        .collect();
+    let course = |angle| Course::new(&seen, angle, &phased, &is_known, tracked.rate_hz);
+    let courses: Vec<Course> = (0..N).map(course).collect::<Result<_>>()?;
+    let mut tracked = tracked.clone();
+    let origin = phased.phases[0];
+    for row in &mut tracked.frames {
+        let frame = (row.frame - seen.first_frame) as usize;
+        row.is_known = is_known[frame];
+        row.estimate.outlier = courses.iter().any(|course| course.is_outlier[frame]);
+        set_angles(row, &courses, frame);
+        set_phase(row, &phased, frame, tracked.step_frames);
+        row.cycles = phased.phases[frame] - origin;
+    }
+    let misfit = phased.shape.distance(&prior, &model.view().deviation_std_rad::<N>());
+    Ok(Finished { tracked, misfit })
+}
+
+/// The phase of every frame, those between rows on the straight line.
+fn phases_of(tracked: &Tracked, first_frame: u64) -> Vec<f64> {
+    let origin = f64::from(tracked.frames[0].estimate.cycle_position);
+    let mut phases = vec![origin + tracked.frames[0].cycles];
+    for pair in tracked.frames.windows(2) {
+        let step = pair[1].frame - pair[0].frame;
+        let way = pair[1].cycles - pair[0].cycles;
+        phases.extend((1..=step).map(|k| origin + pair[0].cycles + way * k as f64 / step as f64));
+    }
+    debug_assert_eq!(first_frame, tracked.frames[0].frame);
+    phases
+}
+
+fn set_angles(row: &mut TrackedFrame, courses: &[Course], frame: usize) {
+    let estimate = &mut row.estimate;
+    for (angle, course) in courses.iter().enumerate() {
+        let (angle_rad, std_rad) = (course.angles_rad[frame], course.std_rad[frame]);
+        let turns = ((angle_rad - least_angle(angle_rad)) / TAU).round();
+        match angle.checked_sub(ANGLES) {
+            None => {
+                row.angles_rad[angle] = angle_rad;
+                estimate.angles_rad[angle] = least_angle(angle_rad) as f32;
+                estimate.turns[angle] = turns as i32;
+                estimate.angle_variance_rad2[angle] = (std_rad * std_rad) as f32;
+            }
+            Some(index) => {
+                if let Some(side) = &mut row.side {
+                    side.angles_rad[index] = angle_rad;
+                    side.angle_variance_rad2[index] = (std_rad * std_rad) as f32;
+                }
+            }
+        }
+    }
+}
+
+fn set_phase<const N: usize>(row: &mut TrackedFrame, phased: &Phased<N>, frame: usize, step_frames: f64) {
+    let phases = &phased.phases;
+    let (before, after) = (frame.saturating_sub(1), (frame + 1).min(phases.len() - 1));
+    let velocity = (phases[after] - phases[before]) / (after - before).max(1) as f64;
+    row.estimate.cycle_position = phases[frame].rem_euclid(1.0) as f32;
+    row.estimate.cycle_velocity_per_frame = (velocity / step_frames) as f32;
+}

@@ -1,0 +1,114 @@
+//! The phase of each frame: where the shape fits the frames around it best.
+
+use super::path;
+use super::seen::Seen;
+use super::shape::Shape;
+use crate::cyclic::turns::least_angle;
+
+/// Rounds of shape and phase. Chosen: the cadence of three seconds changes by less than 0.1 % after
+/// six.
+const ROUNDS: usize = 8;
+/// How far the frames reach that a phase is fitted to, cycles: their weight falls by e in it.
+/// Chosen: with one cycle, slow changes of the tempo are lost; with a tenth, noise comes through.
+const REACH_CYCLES: f64 = 0.3;
+/// Largest step of a phase in a round, cycles: what is linear about a walker's knee.
+const MAX_STEP_CYCLES: f64 = 0.05;
+/// Standard deviation of an angle that fits as well as can be, radians: half a degree, what
+/// annotators of keypoints differ by at a limb of 100 pixels.
+const MIN_STD_RAD: f64 = 0.0087;
+
+/// Phases, in cycles, and the shape that they were fitted to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phased<const N: usize> {
+    /// Phase of each frame; its whole part counts cycles.
+    pub phases: Vec<f64>,
+    /// The person's own cycle.
+    pub shape: Shape<N>,
+    /// Standard deviation of what was seen from the shape, radians.
+    pub std_rad: [f64; N],
+}
+
+/// Fits the person's cycle and the phases to each other, from the phases of a filter on.
+#[must_use]
+pub fn fitted<const N: usize>(seen: &Seen<N>, mut phases: Vec<f64>, prior: &Shape<N>) -> Phased<N> {
+    let mut shape = prior.fitted(seen, &phases);
+    let mut std_rad = spread(seen, &phases, &shape);
+    phases = path::likeliest(seen, &shape, &std_rad, median_step(&phases));
+    for _ in 0..ROUNDS {
+        let steps = steps(seen, &phases, &shape, &std_rad);
+        // The shape moves with the phases: their mean stays that of the filter.
+        let mean = steps.iter().sum::<f64>() / steps.len() as f64;
+        for (phase, step) in phases.iter_mut().zip(&steps) {
+            *phase += step - mean;
+        }
+        shape = prior.fitted(seen, &phases);
+        std_rad = spread(seen, &phases, &shape);
+    }
+    Phased { phases, shape, std_rad }
+}
+
+/// Median of the cycles passed from frame to frame.
+fn median_step(phases: &[f64]) -> f64 {
+    /// Least velocity, cycles per frame: an hour a cycle.
+    const MIN_VELOCITY: f64 = 1.0e-5;
+    let mut steps: Vec<f64> = phases.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).map_or(MIN_VELOCITY, |step| step.max(MIN_VELOCITY))
+}
+
+/// Standard deviation of each angle from the shape, by the median of its size, which a few wrong
+/// measurements do not move.
+fn spread<const N: usize>(seen: &Seen<N>, phases: &[f64], shape: &Shape<N>) -> [f64; N] {
+    /// Standard deviation of a normal number over the median of its size.
+    const STD_PER_MEDIAN: f64 = 1.4826;
+    let poses: Vec<[f64; N]> = phases.iter().map(|phase| shape.at(*phase).0).collect();
+    std::array::from_fn(|angle| {
+        let frames = seen.angles_rad.iter().zip(&poses);
+        let mut sizes: Vec<f64> =
+            frames.filter_map(|(frame, pose)| Some(least_angle(frame[angle]? - pose[angle]).abs())).collect();
+        sizes.sort_by(f64::total_cmp);
+        sizes.get(sizes.len() / 2).map_or(f64::INFINITY, |median| (STD_PER_MEDIAN * median).max(MIN_STD_RAD))
+    })
+}
+
+/// One Gauss-Newton step of each phase, over the frames around it.
+fn steps<const N: usize>(seen: &Seen<N>, phases: &[f64], shape: &Shape<N>, std_rad: &[f64; N]) -> Vec<f64> {
+    let normal = |frame: &[Option<f64>; N], phase: f64| {
+        let (pose, slope) = shape.at(phase);
+        let mut sums = [0.0; 2];
+        for angle in 0..N {
+            let Some(angle_rad) = frame[angle] else { continue };
+            let (off, weight) = (least_angle(angle_rad - pose[angle]), std_rad[angle].powi(-2));
+            // What is far off says no more than what is three deviations off (Huber's weight).
+            let trust = (3.0 * std_rad[angle] / off.abs().max(1.0e-9)).min(1.0);
+            sums[0] += trust * weight * slope[angle] * off;
+            sums[1] += trust * weight * slope[angle] * slope[angle];
+        }
+        sums
+    };
+    let mut sums: Vec<[f64; 2]> =
+        seen.angles_rad.iter().zip(phases).map(|(frame, phase)| normal(frame, *phase)).collect();
+    spread_over(&mut sums, phases);
+    let step = |[right, gram]: [f64; 2]| if gram > 0.0 { right / gram } else { 0.0 };
+    sums.into_iter().map(|sums| step(sums).clamp(-MAX_STEP_CYCLES, MAX_STEP_CYCLES)).collect()
+}
+
+/// Sums over all frames, with weights that fall by e in [`REACH_CYCLES`]: once forwards, once
+/// backwards.
+fn spread_over(sums: &mut [[f64; 2]], phases: &[f64]) {
+    let alone = sums.to_vec();
+    let fade = |from: usize, to: usize| (-(phases[to] - phases[from]).abs() / REACH_CYCLES).exp();
+    let mut before = [0.0; 2];
+    let mut forwards = vec![[0.0; 2]; sums.len()];
+    for frame in 0..sums.len() {
+        let keep = if frame > 0 { fade(frame - 1, frame) } else { 0.0 };
+        before = std::array::from_fn(|i| keep * before[i] + alone[frame][i]);
+        forwards[frame] = before;
+    }
+    let mut after = [0.0; 2];
+    for frame in (0..sums.len()).rev() {
+        let keep = if frame + 1 < sums.len() { fade(frame, frame + 1) } else { 0.0 };
+        after = std::array::from_fn(|i| keep * after[i] + alone[frame][i]);
+        sums[frame] = std::array::from_fn(|i| forwards[frame][i] + after[i] - alone[frame][i]);
+    }
+}
