@@ -14,6 +14,7 @@ pub mod model_file;
 pub mod noise;
 #[cfg(feature = "plots")]
 pub mod pictures;
+pub mod planar;
 pub mod projection;
 pub mod recording;
 pub mod report;

@@ -103,6 +103,7 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
         Forward::Hips => {
             notes.push("the person stays about where they are: forward was taken square to the hips".to_owned());
         }
+        Forward::Knees => notes.push("all points lie in a plane: the person faces where the knees point".to_owned()),
         Forward::Turning => {
             notes.push(
                 "the person turns: each frame was seen from where the hips face (--view side changes it)".to_owned(),
