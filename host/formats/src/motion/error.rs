@@ -54,7 +54,7 @@ pub enum MotionError {
         joints: Vec<String>,
     },
     /// Limb joints go by no name that is known.
-    #[error("motion `{}` lacks {} limb joints:{}", path.display(), missing.len(), lines(missing, *partial, names))]
+    #[error("motion `{}` lacks {} of 12 limb joints:{}", path.display(), missing.len(), lines(missing, *partial, names))]
     NoLimbJoints {
         /// The file.
         path: PathBuf,

@@ -50,7 +50,7 @@ fn unquoted(word: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::super::joint_names::{HIPS, JointSources};
+    use super::super::joint_names::{HIPS, JointSources, NECK, SHOULDERS};
     use super::*;
     use sinew_core::math::Vec3;
 
@@ -84,6 +84,19 @@ mod tests {
             let [[heel, toe], right] = sources.feet_of_motion(&motion)[0];
             assert_eq!((heel, toe.unwrap().x, right), (None, 2.0, [None, None]));
         }
+    }
+
+    #[test]
+    fn a_named_shoulder_leaves_the_collar_to_the_neck() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("names.csv");
+        std::fs::write(&path, "left_shoulder,a\nright_shoulder,b").unwrap();
+        let mut motion = motion();
+        motion.names[2] = "LHip".to_owned();
+        add_named_points(&mut motion, &path).unwrap();
+        let sources = JointSources::find(&motion.names, false, Path::new("m.trc")).unwrap();
+        let joints = sources.of_motion(&motion)[0].map(|joint| joint.unwrap().x);
+        assert_eq!((joints[NECK], joints[SHOULDERS[0]], joints[SHOULDERS[1]]), (3.5, 0.0, 1.0));
     }
 
     #[test]

@@ -36,6 +36,12 @@ impl<'a> GivenNames<'a> {
         Self { names }
     }
 
+    /// The names that are the file's own; empty in place of the others.
+    pub fn own(&self) -> Vec<String> {
+        let own = |name: &String| if name.starts_with(PREFIX) { String::new() } else { name.clone() };
+        self.names.iter().map(own).collect()
+    }
+
     fn point(&self, joint: &str) -> Option<usize> {
         self.names.iter().position(|name| name.strip_prefix(PREFIX) == Some(joint))
     }

@@ -90,7 +90,9 @@ impl JointSources {
     /// # Errors
     /// Lists the joints that go by no name that is known, and the names that are there.
     pub fn find(names: &[String], partial: bool, path: &Path) -> Result<Self, MotionError> {
-        let known = NameForms::new(names);
+        let given = GivenNames::in_motion(names);
+        let own = given.own();
+        let known = NameForms::new(&own);
         let pelvis = pelvis(&known);
         let mut sources: [Option<Source>; JOINTS] = std::array::from_fn(|_| None);
         for (side, left) in [(0, true), (1, false)] {
@@ -104,29 +106,36 @@ impl JointSources {
                 sources[limb_joint(limb, side)] = source;
             }
         }
+        let of_given = |sources: &mut [Option<Source>; JOINTS]| {
+            given.joints().for_each(|(joint, point)| sources[joint] = Some(Source::Points(vec![point])));
+        };
+        // Which points are shoulders says which are collars.
+        of_given(&mut sources);
         sources[HIP_CENTER] = known.points(ROOT, true).map(Source::Points).or(Some(Source::Joints(HIPS)));
         let collars = collars(&known, &sources).filter(|_| pelvis.is_none());
         let neck = known.points(NECKS, true).or(collars).or_else(|| known.points(NECK_MARKERS, true));
         sources[NECK] = neck.map(Source::Points).or(Some(Source::Joints(SHOULDERS)));
-        let given = GivenNames::in_motion(names);
-        for (joint, point) in given.joints() {
-            sources[joint] = Some(Source::Points(vec![point]));
-        }
+        of_given(&mut sources);
         let feet = [true, false].map(|left| FootSources::find(&known, &given, left));
         let found = Self { sources, feet };
-        let missing = found.missing(names);
+        let missing = found.missing(&own);
         if missing.is_empty() || (partial && missing.len() < 2 * LIMBS.len()) {
             return Ok(found);
         }
-        Err(MotionError::NoLimbJoints { path: path.to_path_buf(), missing, partial, names: names.to_vec() })
+        Err(MotionError::NoLimbJoints { path: path.to_path_buf(), missing, partial, names: own })
     }
 
     /// Limb joints that were not found.
     fn missing(&self, names: &[String]) -> Vec<MissingJoint> {
-        let is_missing = |limb: usize, side: usize| self.sources[limb_joint(limb, side)].is_none();
+        let is_free = |point: usize| {
+            let of_joint = |source: &Option<Source>| matches!(source, Some(Source::Points(of)) if of.contains(&point));
+            !self.sources.iter().any(of_joint)
+        };
+        let free = names.iter().enumerate().filter(|(point, _)| is_free(*point)).map(|(_, name)| name.as_str());
+        let free: Vec<&str> = free.collect();
         let all = [0, 1].into_iter().flat_map(|side| (0..LIMBS.len()).map(move |limb| (limb, side)));
-        let missing = all.filter(|&(limb, side)| is_missing(limb, side));
-        missing.map(|(limb, side)| MissingJoint::new(&LIMBS[limb], side == 0, names)).collect()
+        let missing = all.filter(|&(limb, side)| self.sources[limb_joint(limb, side)].is_none());
+        missing.map(|(limb, side)| MissingJoint::new(&LIMBS[limb], side == 0, &free)).collect()
     }
 
     /// The point of the file that is `joint`; `None` where it is made of several, or not found.

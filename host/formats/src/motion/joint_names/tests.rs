@@ -185,7 +185,7 @@ fn a_missing_joint_has_a_line_with_the_nearest_name() {
     let list = "LHip RHip LKnie RKnee LAnkle RAnkle LShoulder RShoulder LElbow RElbow LWrist Qq";
     let message = JointSources::find(&names(list), false, Path::new("m.trc")).unwrap_err().to_string();
     let lines: Vec<&str> = message.lines().collect();
-    assert_eq!(lines[0], "motion `m.trc` lacks 2 limb joints:");
+    assert_eq!(lines[0], "motion `m.trc` lacks 2 of 12 limb joints:");
     assert!(lines[1].starts_with("  left knee (left_knee, ") && lines[1].ends_with("the nearest name is `LKnie`"));
     assert!(lines[2].starts_with("  right wrist (") && lines[3].contains("--names FILE"), "{message}");
     assert!(lines.iter().all(|line| line.len() < 200), "{message}");
