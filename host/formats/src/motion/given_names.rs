@@ -15,7 +15,7 @@ pub(super) fn add_named_points(motion: &mut MarkerMotion, path: &Path) -> Result
     let text = read_text(path)?;
     for (index, line) in text.lines().enumerate() {
         let line = line.split_once('#').map_or(line, |(before, _)| before).trim();
-        let words: Vec<&str> = line.split([',', ';', '\t', '=']).map(|word| unquoted(word)).collect();
+        let words: Vec<&str> = line.split([',', ';', '\t', '=']).map(unquoted).collect();
         let is_heading = index == 0 && words[0].eq_ignore_ascii_case("joint");
         if line.is_empty() || is_heading {
             continue;
