@@ -181,7 +181,7 @@ fn bad_motions_are_refused_with_file_line_and_rule() {
     refused("m.csv", "neck_x,neck_y\n", "line 2: the table is empty");
     refused("m.csv", "neck_x,neck_y\nNaN,2\n", "has no person with a keypoint");
     let trc = "PathFileType\t4\t(X/Y/Z)\tm.trc\nDataRate\tUnits\n60\tmm\nFrame#\tTime\tLHip\t\t\tRHip\t\t\n\tX1\n\n1\t0\t1\t2\t3\t4\t5\t6\n";
-    refused("m.trc", trc, "left knee (leftleg");
+    refused("m.trc", trc, "left knee (left_knee, leftleg");
     refused("m.trc", &trc.replace("\t6\n", "\n"), "m.trc:7: a frame needs 8 columns, found 7");
     fs::create_dir(root.path().join("empty")).unwrap();
     let mut command = sinew(root.path());

@@ -170,7 +170,7 @@ mod tests {
             frames_per_second: 30.0,
             names: points.iter().map(|(name, _)| (*name).to_owned()).collect(),
             positions_m: vec![points.iter().map(|(_, at)| Some(Vec3::from(*at))).collect()],
-            shortfall: None,
+            ..MarkerMotion::default()
         }
     }
 

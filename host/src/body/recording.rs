@@ -91,8 +91,8 @@ impl BodyRecording {
         let read = ReadOptions {
             skeleton: options.skeleton,
             frames_per_second: options.input_rate_hz,
-            metres_per_unit: None,
             partial: options.partial,
+            ..ReadOptions::default()
         };
         let motion = motion::read_space(path, &read)?;
         let figure = JointSources::find(&motion.names, false, path)?.of_motion(&motion);
@@ -215,7 +215,7 @@ mod tests {
         let positions_m =
             vec![vec![None, Some(Vec3::x()), Some(Vec3::y())], vec![Some(Vec3::z()), None, Some(Vec3::y())]];
         let names = ["*0", "Someone:LFHD", "LSHO"].map(str::to_owned).to_vec();
-        let motion = MarkerMotion { frames_per_second: 120.0, names, positions_m, shortfall: None };
+        let motion = MarkerMotion { frames_per_second: 120.0, names, positions_m, ..MarkerMotion::default() };
         let markers_m = labelled(Path::new("a/take.C3D"), &motion);
         assert_eq!(markers_m, [vec![Some(Vec3::x()), Some(Vec3::y())], vec![None, Some(Vec3::y())]]);
         assert!(labelled(Path::new("take.trc"), &motion).is_empty());

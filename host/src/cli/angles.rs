@@ -62,6 +62,11 @@ pub struct AnglesArgs {
     /// End with an error where something speaks against the table; it is written all the same.
     #[arg(long)]
     pub strict: bool,
+    /// Names of a motion in space that are not known: lines as `left_hip,NAME`, or
+    /// `left_knee,NAME,NAME` for the middle of two. Joints: hips, neck, and left_ and right_
+    /// shoulder, elbow, wrist, hip, knee, ankle, heel, toe. `#` begins a comment.
+    #[arg(long, value_name = "FILE")]
+    pub names: Option<PathBuf>,
 }
 
 /// Reads, projects or follows, and writes the table.
@@ -82,6 +87,7 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         min_confidence: confidence,
         partial: args.partial,
         swap_sides: args.swap_sides,
+        names: args.names.clone(),
     };
     let found = angles(&args.motion, &options)?;
     found.table.write(&args.out)?;

@@ -156,8 +156,8 @@ fn arm_motion(args: &SimulateArmArgs) -> Result<(ArmMotion, Option<Shortfall>)> 
     let options = ReadOptions {
         skeleton: args.skeleton.as_deref(),
         frames_per_second: Some(args.motion_rate),
-        metres_per_unit: None,
         partial: args.partial,
+        ..ReadOptions::default()
     };
     let recorded = motion::read(&args.motion, &options)?;
     let motion = ArmMotion::from_motion(&recorded, &args.motion)?;

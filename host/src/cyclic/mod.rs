@@ -17,6 +17,7 @@ pub mod noise;
 pub mod own_cycle;
 #[cfg(feature = "plots")]
 pub mod pictures;
+pub mod planar;
 pub mod plausibility;
 pub mod projection;
 pub mod recording;

@@ -2,6 +2,7 @@
 
 use super::heading::{headings, straightness};
 use super::image_joints::{ImageJoints, JointFrame};
+use super::planar::{knee_direction, level_axis};
 use crate::error::{Context, Result, bail};
 use crate::motion::joint_names::{HIP_CENTER, HIPS, JOINTS, NECK, SpatialJoints};
 use sinew_core::math::Vec3;
@@ -45,6 +46,8 @@ pub enum Forward {
     Hips,
     /// The hips of each moment: the person turns.
     Turning,
+    /// The knees of a planar recording: the person stays about where they are.
+    Knees,
 }
 
 /// The plane of a view.
@@ -69,12 +72,17 @@ const ANKLES: [usize; 2] = [10, 13];
 impl Plane {
     /// Chooses the plane of `view`. Up is the axis that the necks lie along from the ankles (or
     /// hips), unless `up` says it. Forward is the mean direction of travel; of a person who
-    /// gets less far than the trunk is long, it is square to the line through the hips.
+    /// gets less far than the trunk is long, it is square to the line through the hips. A recording
+    /// in one plane is seen along the plane's normal: forward is the way, or where the knees point.
     ///
     /// # Errors
     /// Neck and hips are in no frame together, or neither travel nor hips give a direction.
     pub fn choose(frames: &[SpatialJoints], view: View, up: Option<UpAxis>, rate_hz: f64) -> Result<Self> {
         let up = upwards(frames, up)?;
+        if let Some(axis) = level_axis(frames, up) {
+            let (right, forward) = ahead_in_plane(frames, axis, view)?;
+            return Ok(Self { right: vec![Some(right)], up, forward });
+        }
         let headings = headings(frames, up, rate_hz);
         if view == View::Path || (matches!(view, View::Auto | View::Space) && straightness(&headings) < TURNING_BELOW) {
             return Ok(Self { right: headings, up, forward: Forward::Turning });
@@ -136,23 +144,51 @@ pub fn upwards(frames: &[SpatialJoints], said: Option<UpAxis>) -> Result<Vec3> {
 /// The one direction that is forward in all frames.
 fn ahead(frames: &[SpatialJoints], up: Vec3) -> Result<(Vec3, Forward)> {
     let level = |vector: Vec3| vector - up * vector.dot(&up);
-    let mut roots = frames.iter().filter_map(|joints| joints[HIP_CENTER]);
-    let travel = match (roots.next(), roots.next_back()) {
-        (Some(first), Some(last)) => level(last - first),
-        _ => Vec3::zeros(),
-    };
     let trunk_m = mean_trunk_m(frames).context("neck and hips are in no frame together")?;
+    let travel = level(travel(frames));
     let (direction, forward) = if travel.norm() > TRAVEL_TRUNKS * trunk_m {
         (travel, Forward::Travel)
     } else {
-        let left = mean(frames, |joints| Some(joints[HIPS[0]]? - joints[HIPS[1]]?)).map_or_else(Vec3::zeros, level);
-        (left.cross(&up), Forward::Hips)
+        (level(mean_left(frames)).cross(&up), Forward::Hips)
     };
-    let length = direction.norm();
-    if !(length > 1.0e-3 * trunk_m) {
-        bail!("neither the way that the person takes nor the hips tell which way is forward");
+    direction_of(direction, trunk_m).map(|direction| (direction, forward))
+}
+
+/// The direction along the level `axis` of a planar recording that is on the right of a `view`.
+fn ahead_in_plane(frames: &[SpatialJoints], axis: Vec3, view: View) -> Result<(Vec3, Forward)> {
+    let along = |vector: Vec3| axis * vector.dot(&axis);
+    let trunk_m = mean_trunk_m(frames).context("neck and hips are in no frame together")?;
+    let travel = along(travel(frames));
+    let (direction, forward) = if view == View::Front {
+        (along(mean_left(frames)), Forward::Hips)
+    } else if travel.norm() > TRAVEL_TRUNKS * trunk_m {
+        (travel, Forward::Travel)
+    } else {
+        (knee_direction(frames, axis), Forward::Knees)
+    };
+    direction_of(direction, trunk_m).map(|direction| (direction, forward))
+}
+
+/// The way of the root from the first to the last frame that shows it.
+fn travel(frames: &[SpatialJoints]) -> Vec3 {
+    let mut roots = frames.iter().filter_map(|joints| joints[HIP_CENTER]);
+    match (roots.next(), roots.next_back()) {
+        (Some(first), Some(last)) => last - first,
+        _ => Vec3::zeros(),
     }
-    Ok((direction / length, forward))
+}
+
+/// From the right to the left hip, in the mean.
+fn mean_left(frames: &[SpatialJoints]) -> Vec3 {
+    mean(frames, |joints| Some(joints[HIPS[0]]? - joints[HIPS[1]]?)).unwrap_or_else(Vec3::zeros)
+}
+
+fn direction_of(vector: Vec3, trunk_m: f32) -> Result<Vec3> {
+    let length = vector.norm();
+    if !(length > 1.0e-3 * trunk_m) {
+        bail!("neither the way that the person takes nor hips or knees show which way is forward");
+    }
+    Ok(vector / length)
 }
 
 fn mean(frames: &[SpatialJoints], vector: impl Fn(&SpatialJoints) -> Option<Vec3>) -> Option<Vec3> {
@@ -224,6 +260,46 @@ mod tests {
         let front = plane.from_before().project(&frames);
         let [left, right] = HIPS.map(|joint| front.frames[7].joints[joint].unwrap());
         assert!((left[0] - right[0] - 0.2).abs() < 1.0e-6, "{left:?} {right:?}");
+    }
+
+    /// A person in a plane whose `level` coordinate is forward by `sense`; `upright` is up.
+    fn planar(level: usize, upright: usize, sense: f32, speed: f32) -> Vec<SpatialJoints> {
+        let joint = |ahead: f32, height: f32, frame: usize| {
+            let mut place = Vec3::repeat(0.25);
+            (place[level], place[upright]) = (sense * (ahead + speed * frame as f32), height);
+            Some(place)
+        };
+        let joints = |frame: usize| {
+            let mut joints = [None; JOINTS];
+            joints[HIP_CENTER] = joint(0.0, 1.0, frame);
+            joints[NECK] = joint(0.05, 1.5, frame);
+            for hip in HIPS {
+                joints[hip] = joint(0.0, 1.0, frame);
+                joints[hip + 1] = joint(0.1, 0.5, frame);
+                joints[hip + 2] = joint(-0.1, 0.1, frame);
+            }
+            joints
+        };
+        (0..50).map(joints).collect()
+    }
+
+    #[test]
+    fn a_planar_recording_is_seen_along_its_normal() {
+        for (level, upright) in [(0, 1), (0, 2), (1, 2), (2, 1), (1, 0), (2, 0)] {
+            for (sense, speed) in [(1.0, 0.02), (-1.0, 0.02), (1.0, 0.0), (-1.0, 0.0)] {
+                let frames = planar(level, upright, sense, speed);
+                let plane = Plane::choose(&frames, View::Auto, None, 60.0).unwrap();
+                let wanted = if speed > 0.0 { Forward::Travel } else { Forward::Knees };
+                assert_eq!(plane.forward, wanted, "{level} {upright} {sense}");
+                let seen = plane.project(&frames);
+                let [root, neck] = [HIP_CENTER, NECK].map(|joint| seen.frames[7].joints[joint].unwrap());
+                assert!((neck[0] - root[0] - 0.05).abs() < 1.0e-6 && (neck[1] - root[1] + 0.5).abs() < 1.0e-6);
+            }
+        }
+        // Pictures have y down.
+        let mut frames = planar(0, 1, 1.0, 0.02);
+        frames.iter_mut().flatten().flatten().for_each(|place| place.y = -place.y);
+        assert_eq!(Plane::choose(&frames, View::Auto, None, 60.0).unwrap().up, -Vec3::y());
     }
 
     #[test]

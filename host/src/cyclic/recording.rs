@@ -34,6 +34,8 @@ pub struct RecordingOptions {
     pub partial: bool,
     /// Exchange the names of left and right.
     pub swap_sides: bool,
+    /// File of names for points of a motion in space; see [`ReadOptions::names`].
+    pub names: Option<PathBuf>,
 }
 
 /// An angle table and what was found on the way to it.
@@ -84,13 +86,14 @@ pub fn read_space(path: &Path, options: &RecordingOptions) -> Result<MarkerMotio
         frames_per_second: options.input_rate_hz.map(|rate| rate as f32),
         metres_per_unit: None,
         partial: options.partial,
+        names: options.names.as_deref(),
     };
     Ok(motion::read_space(path, &read)?)
 }
 
 fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
     let motion = read_space(path, options)?;
-    let frames = JointSources::find(&motion.names, options.partial, path)?.of_motion(&motion);
+    let frames = JointSources::of_seen(&motion, options.partial, path)?.of_motion(&motion);
     let recorded_hz = rounded_rate(f64::from(motion.frames_per_second));
     // The way from the table's first to its last frame, whatever the recording has after that.
     let step = recorded_hz / options.rate_hz.unwrap_or(recorded_hz);
@@ -98,12 +101,13 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
     let covered = &frames[..(last.floor() as usize + 1).clamp(1, frames.len())];
     let plane = Plane::choose(covered, options.view, options.up, recorded_hz)
         .with_context(|| format!("`{}` cannot be seen from the side", path.display()))?;
-    let mut notes: Vec<String> = motion.shortfall.iter().map(ToString::to_string).collect();
+    let mut notes: Vec<String> = motion.shortfall.iter().map(ToString::to_string).chain(motion.notes.clone()).collect();
     match plane.forward {
         Forward::Travel => {}
         Forward::Hips => {
             notes.push("the person stays about where they are: forward was taken square to the hips".to_owned());
         }
+        Forward::Knees => notes.push("all points lie in a plane: the person faces where the knees point".to_owned()),
         Forward::Turning => {
             notes.push(
                 "the person turns: each frame was seen from where the hips face (--view side changes it)".to_owned(),

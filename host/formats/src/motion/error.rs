@@ -1,5 +1,6 @@
 //! What is wrong with a motion file, and where.
 
+use super::missing_joint::{MissingJoint, lines};
 use crate::file::{FileError, read_lines};
 use crate::limits::MAX_NUMBER;
 use crate::quote::{listed, with_short_quotes};
@@ -51,6 +52,18 @@ pub enum MotionError {
         wanted: String,
         /// What is there.
         joints: Vec<String>,
+    },
+    /// Limb joints go by no name that is known.
+    #[error("motion `{}` lacks {} of 12 limb joints:{}", path.display(), missing.len(), lines(missing, *partial, names))]
+    NoLimbJoints {
+        /// The file.
+        path: PathBuf,
+        /// The joints.
+        missing: Vec<MissingJoint>,
+        /// Whether some may be missing.
+        partial: bool,
+        /// The names of the file.
+        names: Vec<String>,
     },
     /// A value that was handed in cannot be used.
     #[error("`{parameter}` {rule}")]

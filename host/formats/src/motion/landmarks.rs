@@ -2,6 +2,8 @@
 //! give them, and the torso's frame.
 
 use super::error::MotionError;
+use super::figure::{HIPS, SHOULDERS};
+use super::joint_names::JointSources;
 use super::recording::Motion;
 use sinew_core::math::{Mat3, Vec3, unit};
 use sinew_core::skeleton::Side as ArmSide;
@@ -57,12 +59,18 @@ impl Arm {
     /// The arm of one `side`, or `None` if its three joints go by no name that is known.
     #[must_use]
     pub fn find(motion: &Motion, side: ArmSide) -> Option<Self> {
-        CONVENTIONS.iter().find_map(|names| {
+        let of_convention = CONVENTIONS.iter().find_map(|names| {
             Some(Self {
                 shoulder: names.joint(motion, names.shoulder, side)?,
                 elbow: names.joint(motion, names.elbow, side)?,
                 wrist: names.joint(motion, names.wrist, side)?,
             })
+        });
+        of_convention.or_else(|| {
+            let sources = JointSources::find(&motion.joints, true, Path::new("")).ok()?;
+            let first = SHOULDERS[usize::from(side == ArmSide::Right)];
+            let [shoulder, elbow, wrist] = [first, first + 1, first + 2].map(|joint| sources.point(joint));
+            Some(Self { shoulder: shoulder?, elbow: elbow?, wrist: wrist? })
         })
     }
 }
@@ -89,6 +97,14 @@ impl Torso {
                 Some([left?, right?])
             };
             Some(Self { shoulders: pair(names.shoulder)?, hips: pair(names.hip)? })
+        });
+        let found = found.or_else(|| {
+            let sources = JointSources::find(&motion.joints, true, Path::new("")).ok()?;
+            let pair = |joints: [usize; 2]| {
+                let [left, right] = joints.map(|joint| sources.point(joint));
+                Some([left?, right?])
+            };
+            Some(Self { shoulders: pair(SHOULDERS)?, hips: pair(HIPS)? })
         });
         found.ok_or_else(|| MotionError::NoJoint {
             path: path.to_path_buf(),

@@ -14,6 +14,10 @@ pub struct ReadOptions<'a> {
     /// Take a recording with fewer frames than its header promises, such as a file that was cut
     /// off; an error if not.
     pub partial: bool,
+    /// File of names for points of the motion: lines as `left_hip,NAME`, or `left_hip,NAME,NAME`
+    /// for the middle of two. Joints: hips, neck, and left and right shoulder, elbow, wrist, hip,
+    /// knee, ankle, heel, toe.
+    pub names: Option<&'a Path>,
 }
 
 impl ReadOptions<'_> {

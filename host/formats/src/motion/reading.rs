@@ -1,6 +1,7 @@
 //! Reads any motion, by the ending of its file's name.
 
 use super::error::MotionError;
+use super::given_names::add_named_points;
 use super::markers::MarkerMotion;
 use super::read_options::ReadOptions;
 use super::recording::Motion;
@@ -46,6 +47,9 @@ pub fn read_space(path: &Path, options: &ReadOptions<'_>) -> Result<MarkerMotion
     };
     if let Some(rate) = options.frames_per_second {
         motion.frames_per_second = rate;
+    }
+    if let Some(names) = options.names {
+        add_named_points(&mut motion, names)?;
     }
     Ok(motion)
 }

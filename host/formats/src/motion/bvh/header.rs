@@ -70,8 +70,11 @@ pub fn hierarchy(lines: &mut LineReader<'_>) -> Result<Vec<Joint>, MotionError> 
             ["MOTION"] if open.is_empty() && !joints.is_empty() => return Ok(joints),
             ["MOTION"] => return Err(lines.broken("`MOTION` before the hierarchy is closed by `}`")),
             ["ROOT", ..] if !joints.is_empty() => return Err(lines.broken("a second `ROOT`; one body is read")),
-            ["ROOT", name] => push(lines, &mut joints, &mut open, name)?,
-            ["JOINT", name] if !open.is_empty() => push(lines, &mut joints, &mut open, name)?,
+            // Names may have spaces: `Bip01 L Thigh`.
+            ["ROOT", name @ ..] if !name.is_empty() => push(lines, &mut joints, &mut open, &name.join(" "))?,
+            ["JOINT", name @ ..] if !open.is_empty() && !name.is_empty() => {
+                push(lines, &mut joints, &mut open, &name.join(" "))?;
+            }
             ["End", "Site"] if !open.is_empty() => {
                 let name = format!("{}_end", joints[*open.last().unwrap_or(&0)].name);
                 push(lines, &mut joints, &mut open, &name)?;

@@ -1,4 +1,4 @@
-//! How much a C3D file promises and how much it holds, checked before a reader takes memory for it.
+//! How much a C3D file promises and how much it holds, checked before memory is taken for it.
 
 use super::parameters::Parameters;
 use super::words::Words;
@@ -36,8 +36,8 @@ pub struct Layout {
     pub scale: f32,
     /// Byte order.
     pub words: Words,
-    /// Where the names of parameters begin that count the frames of a trial.
-    trial_names_at: Vec<usize>,
+    /// The header's frames per second.
+    pub rate_hz: f32,
 }
 
 impl Layout {
@@ -45,13 +45,13 @@ impl Layout {
     ///
     /// # Errors
     /// A section lies outside of the file, a frame has no points, or counts contradict each other.
-    pub fn check(bytes: &[u8]) -> Result<Self, String> {
+    pub fn check(bytes: &[u8]) -> Result<(Self, Parameters), String> {
         let parameters_at = start(usize::from(bytes[0]), bytes).ok_or("its parameters lie outside of the file")?;
         let words = Words::of(bytes[parameters_at + 3]).ok_or("its parameters name no known processor")?;
         let word = |at: usize| words.u16(bytes, at).map_or(0, usize::from);
         let data_at = start(word(16), bytes).filter(|&at| at > parameters_at);
         let data_at = data_at.ok_or("its frames lie outside of the file")?;
-        let parameters = Parameters::read(&bytes[BLOCK_BYTES..data_at], words)?;
+        let parameters = Parameters::read(&bytes[parameters_at..data_at], words)?;
         let (points, samples) = (word(2), word(4));
         if points == 0 {
             return Err("the file has no frame with labelled points".to_owned());
@@ -64,8 +64,7 @@ impl Layout {
         let of_header = (word(LAST_FRAME_AT) + 1).checked_sub(word(FIRST_FRAME_AT)).filter(|&frames| frames > 0);
         let counts = Counts::read(&parameters, of_header)?;
         counts.check_saturated(held, BLOCK_BYTES / frame_bytes)?;
-        let trial_names_at = TRIAL_FIELDS.iter().flat_map(|name| parameters.places(name)).map(|at| BLOCK_BYTES + at);
-        Ok(Self {
+        let layout = Self {
             held,
             promised: counts.promised(),
             frames: counts.to_read().min(held),
@@ -75,20 +74,9 @@ impl Layout {
             number_bytes,
             scale,
             words,
-            trial_names_at: trial_names_at.collect(),
-        })
-    }
-
-    /// The file's header and parameters, with a block of zeros for frames. `c3dio` takes memory for
-    /// the whole range of the header, and its numbers of a trial's frames wrap around.
-    pub fn without_frames(&self, bytes: &[u8]) -> Vec<u8> {
-        let mut bytes = bytes[..self.data_at].to_vec();
-        let first = [bytes[FIRST_FRAME_AT], bytes[FIRST_FRAME_AT + 1]];
-        bytes[LAST_FRAME_AT..LAST_FRAME_AT + 2].copy_from_slice(&first);
-        self.trial_names_at.iter().for_each(|&at| bytes[at] = b'_');
-        // It asks for a block of frames, whatever the counts are.
-        bytes.resize(self.data_at + BLOCK_BYTES, 0);
-        bytes
+            rate_hz: words.f32(bytes, 20).unwrap_or(0.0),
+        };
+        Ok((layout, parameters))
     }
 }
 

@@ -1,6 +1,6 @@
-//! C3D marker files. The crate `c3dio` reads their names, unit and rate. Their frames are read
-//! here, since it counts frames beyond 65,535 wrong.
+//! C3D marker files: names, unit, rate and places of markers. Analog channels are not read.
 
+mod labels;
 mod layout;
 mod parameters;
 mod points;
@@ -14,7 +14,6 @@ use super::read_options::ReadOptions;
 use super::shortfall::Shortfall;
 use crate::file::read_bytes;
 use crate::limits::{MAX_FILE_BYTES, MAX_NUMBER};
-use crate::quiet_panic::catch_quietly;
 use layout::{BLOCK_BYTES, Layout};
 use sinew_core::math::Vec3;
 use std::path::Path;
@@ -47,18 +46,20 @@ fn parse(bytes: &[u8], path: &Path, options: &ReadOptions<'_>) -> Result<MarkerM
         return Err(broken("this is no C3D file".into()));
     }
     let damaged = |rule: String| broken(format!("the C3D file is damaged ({rule})"));
-    let layout = Layout::check(bytes).map_err(damaged)?;
+    let (layout, parameters) = Layout::check(bytes).map_err(damaged)?;
     let shortfall = Shortfall::check(layout.held, layout.promised, options, path, 0)?;
-    let names = layout.without_frames(bytes);
-    let parsed = catch_quietly(|| c3dio::C3d::from_bytes(&names).map_err(|error| error.to_string()));
-    let points = parsed.ok_or_else(|| broken("the C3D file is damaged".into()))?.map_err(damaged)?.points;
-    let unit: String = points.units.iter().filter(|letter| letter.is_ascii_alphabetic()).collect();
-    let scale =
-        metres_per_unit(&unit).ok_or_else(|| broken(format!("POINT:UNITS is `{unit}`; m, cm, mm and in are read")))?;
-    if !(points.frame_rate > 0.0 && points.frame_rate.is_finite()) {
-        return Err(broken(format!("the frame rate is {}, but has to be greater than zero", points.frame_rate)));
+    let names = labels::read(&parameters, layout.points);
+    let units = parameters.texts("POINT", "UNITS");
+    let unit: String = units.iter().take(1).flat_map(|unit| unit.chars()).filter(char::is_ascii_alphabetic).collect();
+    let known_scale = metres_per_unit(&unit);
+    if known_scale.is_none() && !unit.is_empty() {
+        return Err(broken(format!("POINT:UNITS is `{unit}`; m, cm, mm and in are read")));
     }
-    let count = points.labels.len().min(layout.points);
+    let rate_hz = labels::rate_hz(&parameters, layout.rate_hz);
+    if !(rate_hz > 0.0 && rate_hz.is_finite()) {
+        return Err(broken(format!("the frame rate is {rate_hz}, but has to be greater than zero")));
+    }
+    let count = names.len();
     if layout.frames == 0 || count == 0 {
         return Err(broken("the file has no frame with labelled points".into()));
     }
@@ -68,16 +69,18 @@ fn parse(bytes: &[u8], path: &Path, options: &ReadOptions<'_>) -> Result<MarkerM
             return Ok(None);
         };
         if let Some(beyond) = position.iter().find(|x| x.abs() > MAX_NUMBER) {
-            let name = points.labels[column].trim();
+            let name = &names[column];
             return Err(broken(format!("frame {row}, marker `{name}`: {beyond} is beyond {MAX_NUMBER:e}")));
         }
-        Ok(Some(position * scale))
+        Ok(Some(position))
     };
     let frame = |row: usize| (0..count).map(|column| position(row, column)).collect::<Result<Vec<_>, _>>();
-    Ok(MarkerMotion {
-        frames_per_second: points.frame_rate,
-        names: points.labels.iter().take(count).map(|label| label.trim().to_owned()).collect(),
-        positions_m: (0..layout.frames).map(frame).collect::<Result<Vec<_>, _>>()?,
-        shortfall,
-    })
+    let positions_m = (0..layout.frames).map(frame).collect::<Result<Vec<_>, _>>()?;
+    let mut motion =
+        MarkerMotion { frames_per_second: rate_hz, positions_m, shortfall, names, ..MarkerMotion::default() };
+    match known_scale {
+        Some(metres_per_unit) => motion.scale(metres_per_unit),
+        None => motion.scale_to_a_person("POINT:UNITS is missing").map_err(broken)?,
+    }
+    Ok(motion)
 }

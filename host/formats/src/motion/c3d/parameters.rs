@@ -1,37 +1,54 @@
-//! The parameter section of a C3D file, as far as it says how much data follows.
+//! The parameter section of a C3D file: its numbers, as far as they say how much data follows, and
+//! its texts.
 
 use super::words::Words;
 use std::collections::BTreeMap;
 
 /// Kinds of parameters.
+const TEXT: i8 = -1;
 const INTEGER: i8 = 2;
 const REAL: i8 = 4;
 /// Bytes that a reader keeps of each parameter beside its content, about.
 const KEPT_BYTES: usize = 64;
 /// How many times the section's own size its parameters may take together, and how much more. They
-/// exceed it where they overlap. Chosen: readers take dimensions of 0 for 1, which exceeds the
-/// section up to four times.
-const MAX_OVERLAP: usize = 16;
+/// exceed it where they overlap. Chosen: parameters that do not overlap take the section once, and
+/// the bytes that are kept of each.
+const MAX_OVERLAP: usize = 4;
 const FREE_BYTES: usize = 1 << 16;
 
-/// Numbers of a parameter, by the name of its group (empty for a group that is not there) and its
-/// own.
+/// Parameters, in the file's order.
 #[derive(Debug)]
 pub struct Parameters {
-    entries: Vec<(String, String, Vec<f64>)>,
-    /// Name of each parameter and the byte of the section at which it begins.
-    places: Vec<(String, usize)>,
+    entries: Vec<Parameter>,
+}
+
+/// One parameter.
+#[derive(Debug)]
+struct Parameter {
+    /// Name of its group; empty for a group that is not there.
+    group: String,
+    name: String,
+    content: Content,
+}
+
+/// What a parameter holds.
+#[derive(Debug, Default)]
+struct Content {
+    /// The first two numbers.
+    numbers: Vec<f64>,
+    /// Texts of `text_bytes` each.
+    text: Vec<u8>,
+    text_bytes: usize,
 }
 
 impl Parameters {
-    /// Reads the numbers of `section`, whose first four bytes are its header.
+    /// Reads a `section`, whose first four bytes are its header.
     ///
     /// # Errors
     /// The section ends within a group or parameter, or its parameters overlap.
     pub fn read(section: &[u8], words: Words) -> Result<Self, String> {
         let mut groups: BTreeMap<i8, String> = BTreeMap::new();
-        let mut numbers: Vec<(i8, String, Vec<f64>)> = Vec::new();
-        let mut places = Vec::new();
+        let mut entries = Vec::new();
         let mut taken = 0_usize;
         let mut at = 4;
         while let Some(entry) = Entry::at(section, at, words)? {
@@ -42,25 +59,35 @@ impl Parameters {
             if entry.group < 0 {
                 groups.insert(entry.group.wrapping_abs(), entry.name);
             } else {
-                let name = entry.name.to_ascii_uppercase();
-                places.push((name.clone(), at + 2));
-                numbers.push((entry.group, name, entry.numbers));
+                entries.push((entry.group, entry.name.to_ascii_uppercase(), entry.content));
             }
             at = entry.next;
         }
-        let named = |(group, name, numbers)| (groups.get(&group).cloned().unwrap_or_default(), name, numbers);
-        Ok(Self { entries: numbers.into_iter().map(named).collect(), places })
+        let named = |(group, name, content)| {
+            let group = groups.get(&group).cloned().unwrap_or_default();
+            Parameter { group, name, content }
+        };
+        Ok(Self { entries: entries.into_iter().map(named).collect() })
     }
 
     /// The first two numbers of each parameter of this name in `group`, the last one first.
     pub fn all<'a>(&'a self, group: &'a str, name: &'a str) -> impl Iterator<Item = &'a [f64]> {
-        let wanted = move |entry: &&'a (String, String, Vec<f64>)| entry.0 == group && entry.1 == name;
-        self.entries.iter().rev().filter(wanted).map(|entry| entry.2.as_slice())
+        self.contents(group, name).map(|content| content.numbers.as_slice())
     }
 
-    /// The bytes of the section at which parameters of this name begin, in whatever group.
-    pub fn places<'a>(&'a self, name: &'a str) -> impl Iterator<Item = usize> + 'a {
-        self.places.iter().filter(move |(other, _)| other == name).map(|(_, at)| *at)
+    /// The texts of a parameter, without zeros and spaces at their ends; none where it is not there.
+    pub fn texts(&self, group: &str, name: &str) -> Vec<String> {
+        let text = |bytes: &[u8]| {
+            let text: String = bytes.iter().copied().map(char::from).collect();
+            text.trim_matches(|letter: char| letter.is_whitespace() || letter == '\0').to_owned()
+        };
+        let texts = |content: &Content| content.text.chunks(content.text_bytes.max(1)).map(text).collect();
+        self.contents(group, name).next().map_or_else(Vec::new, texts)
+    }
+
+    fn contents<'a>(&'a self, group: &'a str, name: &'a str) -> impl Iterator<Item = &'a Content> {
+        let wanted = move |entry: &&'a Parameter| entry.group == group && entry.name == name;
+        self.entries.iter().rev().filter(wanted).map(|entry| &entry.content)
     }
 
     /// The number of a parameter that is there and not empty.
@@ -73,7 +100,7 @@ impl Parameters {
 struct Entry {
     group: i8,
     name: String,
-    numbers: Vec<f64>,
+    content: Content,
     next: usize,
     kept_bytes: usize,
 }
@@ -93,7 +120,7 @@ impl Entry {
         let mut entry = Self {
             group,
             name: name.iter().copied().map(char::from).collect(),
-            numbers: Vec::new(),
+            content: Content::default(),
             next: offset_at + usize::from(offset),
             kept_bytes: name.len() + usize::from(u8::MAX),
         };
@@ -102,12 +129,16 @@ impl Entry {
             let count = usize::from(*section.get(offset_at + 3).ok_or_else(ends)?);
             let start = offset_at + 4 + count;
             let dimensions = section.get(offset_at + 4..start).ok_or_else(ends)?;
-            let values = dimensions.iter().filter(|&&size| size > 0).try_fold(1_usize, |product, &size| {
+            let values = dimensions.iter().try_fold(1_usize, |product, &size| {
                 product.checked_mul(usize::from(size)).filter(|&values| values <= section.len())
             });
             let values = values.ok_or_else(ends)?;
             entry.kept_bytes += count + values * usize::from(kind.unsigned_abs());
-            entry.numbers = first_numbers(section, start, kind, values, words);
+            entry.content.numbers = first_numbers(section, start, kind, values, words);
+            if kind == TEXT {
+                entry.content.text = section.get(start..start + values).ok_or_else(ends)?.to_vec();
+                entry.content.text_bytes = dimensions.first().map_or(1, |&length| usize::from(length));
+            }
         }
         Ok(Some(entry))
     }

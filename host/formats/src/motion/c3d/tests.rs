@@ -217,6 +217,67 @@ fn numbers_that_are_none_are_named_or_missing() {
     assert!(read_bytes_as(&with(f32::NAN, 0.0), false).unwrap().positions_m[1][1].is_none());
 }
 
+/// A file as [`file`], whose parameters are those of `section`.
+fn file_with(section: &[Vec<u8>], frames: u16) -> Vec<u8> {
+    let mut bytes = file(frames, frames, &[]);
+    bytes[BLOCK_BYTES + 4..2 * BLOCK_BYTES].fill(0);
+    let section = section.concat();
+    bytes[BLOCK_BYTES + 4..BLOCK_BYTES + 4 + section.len()].copy_from_slice(&section);
+    bytes
+}
+
+fn labels() -> Vec<u8> {
+    parameter(1, "LABELS", -1, &[4, 3], b"LANKRANKLHIP")
+}
+
+#[test]
+fn a_list_without_items_may_end_the_section() {
+    let units = parameter(1, "UNITS", -1, &[2], b"mm");
+    let head = [group(1, "POINT"), labels(), units, group(2, "PAD")];
+    let mut tail = [group(3, "ANALYSIS"), parameter(3, "NAMES", -1, &[80, 0], &[])].concat();
+    // Without the comment's length the section ends with the dimensions, at the end of its block.
+    tail.pop();
+    let used = head.concat().len() + tail.len() + 4;
+    let pad = vec![0; BLOCK_BYTES - used - parameter(2, "X", 1, &[1], &[]).len()];
+    let pad = parameter(2, "X", 1, &[pad.len() as u8], &pad);
+    let bytes = file_with(&[head.concat(), pad, tail], 3);
+    assert_eq!(read_bytes_as(&bytes, false).unwrap().names, ["LANK", "RANK", "LHIP"]);
+}
+
+#[test]
+fn parameters_that_are_not_needed_may_be_missing_or_of_any_kind() {
+    let float = parameter(2, "USED", 4, &[], &2.0_f32.to_le_bytes());
+    let events = [group(2, "EVENT"), float].concat();
+    let bytes = file_with(&[group(1, "POINT"), labels(), parameter(1, "UNITS", -1, &[4], b"cm  "), events], 3);
+    let motion = read_bytes_as(&bytes, false).unwrap();
+    assert!((motion.positions_m[2][0].unwrap() - 0.01 * Vec3::new(201.0, 2.0, 3.0)).norm() < 1.0e-5);
+}
+
+#[test]
+fn without_units_the_points_have_the_size_of_a_person() {
+    let of_height = |height: f32| {
+        let mut bytes = file_with(&[group(1, "POINT"), labels()], 2);
+        let numbers = [1.0, 2.0, 0.1 * height, 0.0, 1.0, 0.1 * height, 3.0, 0.0, 1.0, 2.0, 1.1 * height, 0.0];
+        let frame: Vec<u8> = numbers.into_iter().flat_map(f32::to_le_bytes).collect();
+        bytes[2 * BLOCK_BYTES..2 * BLOCK_BYTES + 96].copy_from_slice(&frame.repeat(2));
+        bytes
+    };
+    for (height, unit) in [(1800.0, "mm is assumed"), (180.0, "cm is assumed"), (1.8, ": m is assumed")] {
+        let motion = read_bytes_as(&of_height(height), false).unwrap();
+        assert!(motion.notes[0].contains(unit), "{:?}", motion.notes);
+        assert!((motion.positions_m[0][2].unwrap().z - 1.98).abs() < 0.01, "{unit}");
+    }
+    assert!(refusal(&of_height(30.0)).contains("the size of no person"));
+}
+
+#[test]
+fn names_go_on_in_further_lists() {
+    let lists = [("LABELS", "LANK"), ("LABELS2", "RANK"), ("LABELS3", "LHIP")];
+    let lists = lists.map(|(name, label)| parameter(1, name, -1, &[4, 1], label.as_bytes()));
+    let bytes = file_with(&[group(1, "POINT"), parameter(1, "UNITS", -1, &[2], b"mm"), lists.concat()], 2);
+    assert_eq!(read_bytes_as(&bytes, false).unwrap().names, ["LANK", "RANK", "LHIP"]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
