@@ -2,14 +2,14 @@
 
 use super::console::Console;
 use crate::cyclic::projection::{UpAxis, View};
-use crate::cyclic::recording::{RecordingOptions, angles};
-use crate::keypoints::{DEFAULT_MIN_CONFIDENCE, Facing};
+use crate::cyclic::recording::{RecordedAngles, RecordingOptions, all_angles, angles};
+use crate::keypoints::{DEFAULT_MIN_CONFIDENCE, Facing, PersonChoice};
 use crate::output::check_writable_file;
 use crate::registry::{MOTION, described};
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Options of `sinew angles`.
 #[derive(Debug, Args)]
@@ -57,6 +57,24 @@ pub struct AnglesArgs {
     /// train on.
     #[arg(long)]
     pub swap_sides: bool,
+    /// Size of the picture in pixels, for keypoints that are shares of it.
+    #[arg(long, value_name = "WIDTH,HEIGHT", value_parser = image_size)]
+    pub image_size: Option<[f64; 2]>,
+    /// Which of several people in keypoints: largest, longest, or a number from 1, counted by the
+    /// frames in which they are seen.
+    #[arg(long, value_name = "N|largest|longest", default_value = "largest")]
+    pub person: PersonChoice,
+    /// Write a table for each person in keypoints: `OUT_1.csv`, `OUT_2.csv`, ...
+    #[arg(long, conflicts_with = "person")]
+    pub all: bool,
+}
+
+fn image_size(text: &str) -> Result<[f64; 2], String> {
+    let sides: Vec<f64> = text.split([',', 'x']).filter_map(|side| side.trim().parse().ok()).collect();
+    match sides[..] {
+        [width, height] if [width, height].iter().all(|side| (1.0..1.0e6).contains(side)) => Ok([width, height]),
+        _ => Err("it has to be width and height in pixels, such as `1920,1080`".to_owned()),
+    }
 }
 
 /// Reads, projects or follows, and writes the table.
@@ -77,9 +95,21 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         min_confidence: confidence,
         partial: args.partial,
         swap_sides: args.swap_sides,
+        image_size_px: args.image_size,
+        person: args.person,
     };
-    let found = angles(&args.motion, &options)?;
-    found.table.write(&args.out)?;
+    if !args.all {
+        return write(&angles(&args.motion, &options)?, &args.out, console);
+    }
+    for (number, found) in (1..).zip(all_angles(&args.motion, &options)?) {
+        let stem = args.out.file_stem().unwrap_or_default().to_string_lossy();
+        write(&found, &args.out.with_file_name(format!("{stem}_{number}.csv")), console)?;
+    }
+    Ok(())
+}
+
+fn write(found: &RecordedAngles, out: &Path, console: &Console) -> Result<()> {
+    found.table.write(out)?;
     for note in &found.notes {
         console.note(note);
     }
@@ -93,14 +123,14 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         "{} frames at {rate}, {:.1} % of the angles missing\nwrote {}\n",
         rows.len(),
         100.0 * missing_share,
-        args.out.display()
+        out.display()
     );
     let json = json!({
         "frames": rows.len(),
         "rate_hz": found.rate_hz,
         "missing_share": missing_share,
         "notes": found.notes,
-        "out": args.out,
+        "out": out,
     });
-    console.answer_beside(&args.out, &report, &json)
+    console.answer_beside(out, &report, &json)
 }
