@@ -5,7 +5,7 @@
 use anyhow::{Context, Result, ensure};
 use sinew::cyclic::anatomy::{ANATOMICAL_ANGLES, AnatomicalSeries};
 use sinew::cyclic::image_joints::ExtraColumns;
-use sinew::keypoints::{self, DEFAULT_MIN_CONFIDENCE};
+use sinew::keypoints::{self, TrackOptions};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -33,8 +33,8 @@ fn detections() -> String {
 
 fn main() -> Result<()> {
     let name = Path::new("detections.csv"); // for messages only
-    let frames = keypoints::table::parse(&detections(), name)?;
-    let track = keypoints::track(&frames, DEFAULT_MIN_CONFIDENCE, name)?;
+    let detections = keypoints::table::parse(&detections(), name)?;
+    let track = keypoints::track(&detections, &TrackOptions::default(), name)?;
     let table = track.joints.angle_table(ExtraColumns::None)?;
     let series = AnatomicalSeries::of_table(&table, RATE_HZ);
 

@@ -11,6 +11,12 @@ pub(crate) fn csv_reader(text: &str) -> csv::Reader<&[u8]> {
     reader(text.as_bytes())
 }
 
+/// As [`csv_reader`], of cells that `separator` parts.
+pub(crate) fn separated_reader(text: &str, separator: u8) -> csv::Reader<&[u8]> {
+    let mut builder = csv::ReaderBuilder::new();
+    builder.has_headers(false).flexible(true).trim(csv::Trim::All).delimiter(separator).from_reader(text.as_bytes())
+}
+
 /// A reader of `text` whose first row has the columns' names.
 pub(crate) fn headed_reader(text: &str) -> csv::Reader<&[u8]> {
     csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes())

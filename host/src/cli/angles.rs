@@ -3,15 +3,15 @@
 use super::console::Console;
 use crate::cyclic::about::About;
 use crate::cyclic::projection::{UpAxis, View};
-use crate::cyclic::recording::{RecordedAngles, RecordingOptions, angles};
+use crate::cyclic::recording::{RecordedAngles, RecordingOptions, all_angles, angles};
 use crate::error::Error;
-use crate::keypoints::{DEFAULT_MIN_CONFIDENCE, Facing};
+use crate::keypoints::{DEFAULT_MIN_CONFIDENCE, Facing, PersonChoice};
 use crate::output::check_writable_file;
 use crate::registry::{MOTION, described};
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Options of `sinew angles`.
 #[derive(Debug, Args)]
@@ -67,6 +67,24 @@ pub struct AnglesArgs {
     /// shoulder, elbow, wrist, hip, knee, ankle, heel, toe. `#` begins a comment.
     #[arg(long, value_name = "FILE")]
     pub names: Option<PathBuf>,
+    /// Size of the picture in pixels, for keypoints that are shares of it.
+    #[arg(long, value_name = "WIDTH,HEIGHT", value_parser = image_size)]
+    pub image_size: Option<[f64; 2]>,
+    /// Which of several people in keypoints: largest, longest, or a number from 1, counted by the
+    /// frames in which they are seen.
+    #[arg(long, value_name = "N|largest|longest", default_value = "largest")]
+    pub person: PersonChoice,
+    /// Write a table for each person in keypoints: `OUT_1.csv`, `OUT_2.csv`, ...
+    #[arg(long, conflicts_with = "person")]
+    pub all: bool,
+}
+
+fn image_size(text: &str) -> Result<[f64; 2], String> {
+    let sides: Vec<f64> = text.split([',', 'x']).filter_map(|side| side.trim().parse().ok()).collect();
+    match sides[..] {
+        [width, height] if [width, height].iter().all(|side| (1.0..1.0e6).contains(side)) => Ok([width, height]),
+        _ => Err("it has to be width and height in pixels, such as `1920,1080`".to_owned()),
+    }
 }
 
 /// Reads, projects or follows, and writes the table.
@@ -88,10 +106,22 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         partial: args.partial,
         swap_sides: args.swap_sides,
         names: args.names.clone(),
+        image_size_px: args.image_size,
+        person: args.person,
     };
-    let found = angles(&args.motion, &options)?;
-    found.table.write(&args.out)?;
-    about(args, &found).write_beside(&args.out)?;
+    if !args.all {
+        return write(&angles(&args.motion, &options)?, args, &args.out, console);
+    }
+    for (number, found) in (1..).zip(all_angles(&args.motion, &options)?) {
+        let stem = args.out.file_stem().unwrap_or_default().to_string_lossy();
+        write(&found, args, &args.out.with_file_name(format!("{stem}_{number}.csv")), console)?;
+    }
+    Ok(())
+}
+
+fn write(found: &RecordedAngles, args: &AnglesArgs, out: &Path, console: &Console) -> Result<()> {
+    found.table.write(out)?;
+    about(args, found).write_beside(out)?;
     for note in &found.notes {
         console.note(note);
     }
@@ -108,7 +138,7 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         "{} frames at {rate}, {:.1} % of the angles missing\nwrote {}\n",
         rows.len(),
         100.0 * missing_share,
-        args.out.display()
+        out.display()
     );
     let json = json!({
         "frames": rows.len(),
@@ -116,9 +146,9 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         "missing_share": missing_share,
         "notes": found.notes,
         "doubts": found.doubts,
-        "out": args.out,
+        "out": out,
     });
-    console.answer_beside(&args.out, &report, &json)?;
+    console.answer_beside(out, &report, &json)?;
     let doubts = found.doubts.join("; ");
     ensure!(!args.strict || doubts.is_empty(), Error::Invalid(format!("--strict: {doubts}")));
     Ok(())
@@ -129,6 +159,8 @@ fn about(args: &AnglesArgs, found: &RecordedAngles) -> About {
     let mut about = About::of_source(&args.motion);
     about.rate_hz = found.rate_hz;
     about.facing = found.facing;
+    about.image_size_px = found.image_size_px;
+    about.layout.clone_from(&found.layout);
     about.notes.clone_from(&found.notes);
     about.doubts.clone_from(&found.doubts);
     about

@@ -6,7 +6,7 @@ use super::projection::{Forward, Plane, UpAxis, View};
 use super::resample::resample;
 use crate::cyclic::CyclicError;
 use crate::error::{Context, Result, bail, ensure, ensure_option};
-use crate::keypoints::{self, Facing};
+use crate::keypoints::{self, Detections, Facing, PersonChoice, Track, TrackOptions};
 use crate::motion::joint_names::JointSources;
 use crate::motion::markers::MarkerMotion;
 use crate::motion::{self, ReadOptions};
@@ -36,6 +36,10 @@ pub struct RecordingOptions {
     pub swap_sides: bool,
     /// File of names for points of a motion in space; see [`ReadOptions::names`].
     pub names: Option<PathBuf>,
+    /// Width and height of the picture of keypoints, pixels.
+    pub image_size_px: Option<[f64; 2]>,
+    /// Which of several people in keypoints.
+    pub person: PersonChoice,
 }
 
 /// An angle table and what was found on the way to it.
@@ -51,6 +55,10 @@ pub struct RecordedAngles {
     pub doubts: Vec<String>,
     /// Which way the person faces in the image; `None` for a motion in space.
     pub facing: Option<Facing>,
+    /// Width and height of the picture of keypoints, pixels, if the file says.
+    pub image_size_px: Option<[f64; 2]>,
+    /// The detector's order of points, for keypoints.
+    pub layout: Option<String>,
 }
 
 /// Reads a motion in space or keypoints, and gives its angles.
@@ -122,7 +130,15 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
         finished(&seen, Some(recorded_hz), options, facing, ExtraColumns::None)?
     };
     let rate_hz = Some(options.rate_hz.unwrap_or(recorded_hz));
-    Ok(RecordedAngles { table: table.at_rate(rate_hz), rate_hz, notes, doubts: Vec::new(), facing: None })
+    Ok(RecordedAngles {
+        table: table.at_rate(rate_hz),
+        rate_hz,
+        notes,
+        doubts: Vec::new(),
+        facing: None,
+        image_size_px: None,
+        layout: None,
+    })
 }
 
 /// Two angles a joint: those of `side`, and how far each segment points out of its plane.
@@ -156,23 +172,14 @@ fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAng
         "`--view space` needs a motion in space ({}); keypoints of a picture have one angle a joint",
         described(MOTION)
     );
-    let frames = keypoints::read(path)?;
-    let track = keypoints::track(&frames, options.min_confidence, path)?;
-    let mut notes = Vec::new();
-    if track.most_people > 1 {
-        notes.push(format!(
-            "up to {} people in a frame: the one that takes the most room at first was followed by nearness, and is missing in {} of {} frames",
-            track.most_people,
-            track.frames_without,
-            frames.len()
-        ));
-    } else if track.frames_without > 0 {
-        notes.push(format!(
-            "no person is seen in {} of {} frames: all angles are missing there",
-            track.frames_without,
-            frames.len()
-        ));
-    }
+    let detections = keypoints::read(path, options.image_size_px)?;
+    let input_rate_hz = input_rate(&detections, options, path)?;
+    let chosen =
+        TrackOptions { min_confidence: options.min_confidence, person: options.person, rate_hz: input_rate_hz };
+    let track = keypoints::track(&detections, &chosen, path)?;
+    let mut notes = detections.notes.clone();
+    notes.extend(keypoint_notes(&track, detections.frames.len()));
+    let doubts: Vec<String> = detections.doubts.iter().chain(&track.doubts).cloned().collect();
     let facing = match (options.facing, track.facing) {
         (Some(facing), _) => facing,
         (None, Some(Facing::Left)) => {
@@ -187,13 +194,74 @@ fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAng
             Facing::Right
         }
     };
-    if options.rate_hz.is_some() && options.input_rate_hz.is_none() {
+    if options.rate_hz.is_some() && input_rate_hz.is_none() {
         bail!("`--rate` needs `--input-rate HZ` for keypoints, which do not say how many frames a second they have");
     }
     let extra = ExtraColumns::RootAndLengths { facing };
-    let table = finished(&track.joints, options.input_rate_hz, options, facing, extra)?;
-    let rate_hz = options.rate_hz.or(options.input_rate_hz);
-    Ok(RecordedAngles { table: table.at_rate(rate_hz), rate_hz, notes, doubts: Vec::new(), facing: Some(facing) })
+    let table = finished(&track.joints, input_rate_hz, options, facing, extra)?;
+    let rate_hz = options.rate_hz.or(input_rate_hz);
+    Ok(RecordedAngles {
+        table: table.at_rate(rate_hz),
+        rate_hz,
+        notes,
+        doubts,
+        facing: Some(facing),
+        image_size_px: detections.image_size_px,
+        layout: Some(detections.layout.clone()),
+    })
+}
+
+/// Frames per second of keypoints: what the user says, else what their times say.
+fn input_rate(detections: &Detections, options: &RecordingOptions, path: &Path) -> Result<Option<f64>> {
+    /// A user's rate may be this far from that of the file's times. Chosen: 29.97 is called 30.
+    const MAX_DIFFERENCE: f64 = 0.05;
+    if let (Some(given), Some(found)) = (options.input_rate_hz, detections.rate_hz) {
+        ensure!(
+            (given / found - 1.0).abs() <= MAX_DIFFERENCE,
+            "`--input-rate {given}`: the times in `{}` say {found:.2} frames per second; leave the option out, or remove the column of times",
+            path.display()
+        );
+    }
+    Ok(detections.rate_hz.or(options.input_rate_hz))
+}
+
+/// What is said about whom a track follows.
+fn keypoint_notes(track: &Track, frames: usize) -> Vec<String> {
+    let mut notes = Vec::new();
+    if track.max_people > 1 {
+        notes.push(format!(
+            "up to {} people in a frame: the one of --person (default largest) was followed by nearness, and is missing in {} of {frames} frames",
+            track.max_people, track.frames_without
+        ));
+    } else if track.frames_without > 0 {
+        notes.push(format!(
+            "no person is seen in {} of {frames} frames: all angles are missing there",
+            track.frames_without
+        ));
+    }
+    if track.mended.frames > 0 {
+        notes.push(format!(
+            "left and right were exchanged by the detector and were mended in {} of {frames} frames: legs in {}, arms in {}",
+            track.mended.frames, track.mended.legs, track.mended.arms
+        ));
+    }
+    notes
+}
+
+/// The angles of everybody who is seen in ten frames or more, by the number of `--person`; of a
+/// motion in space, of its one person.
+///
+/// # Errors
+/// As [`angles`].
+pub fn all_angles(path: &Path, options: &RecordingOptions) -> Result<Vec<RecordedAngles>> {
+    let is_2d = path.is_dir() || find(path, &[Kind::Keypoints]).is_some();
+    if !is_2d {
+        return Ok(vec![angles(path, options)?]);
+    }
+    let people = keypoints::people(&keypoints::read(path, options.image_size_px)?, options.min_confidence);
+    let of_person =
+        |number| angles(path, &RecordingOptions { person: PersonChoice::Number(number), ..options.clone() });
+    people.into_iter().map(of_person).collect()
 }
 
 /// Resamples, mirrors, and takes the angles.

@@ -1,52 +1,74 @@
-//! One JSON file for all frames: COCO results (a list of detections), COCO annotations, MMPose
-//! predictions, or bare lists of points.
+//! One JSON file for all frames: COCO results (a list of detections), COCO annotations, lists of
+//! frames, or bare lists of points.
 
 use super::error::{KeypointError, json, read_text};
-use super::layout::{self, DetectedFrame};
-use super::openpose::{numbers, people};
-use super::point_lists;
+use super::openpose::people;
+use super::orders::{self, PointFrame, Points};
+use super::point_values::triples;
+use super::{file_numbers, frame_lists, point_lists};
 use serde_json::Value;
 use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Reads a JSON file: a list of results, an object with `annotations` (and `images`) or with
-/// `instance_info` (MMPose), one OpenPose frame, or a list of lists of numbers ([`point_lists`]).
+/// Frames of a JSON file, and the size of its pictures where it says so.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JsonFrames {
+    /// The frames, points not named yet.
+    pub frames: Vec<PointFrame>,
+    /// Width and height of the pictures, pixels.
+    pub image_size_px: Option<[f64; 2]>,
+}
+
+/// Reads a JSON file: a list of results or of frames, an object with `annotations` (and `images`)
+/// or with a list of frames ([`frame_lists`]), one OpenPose frame, or a list of lists of numbers
+/// ([`point_lists`]).
 ///
 /// # Errors
 /// Names the file, the entry and the rule that it broke.
-pub fn read(path: &Path) -> Result<Vec<DetectedFrame>, KeypointError> {
+pub fn read(path: &Path) -> Result<JsonFrames, KeypointError> {
     let text = read_text(path)?;
     let whole: &RawValue = json(&text, path)?;
-    let mut names = BTreeMap::new();
+    let frames_alone = |frames| Ok(JsonFrames { frames, image_size_px: None });
+    let list_of_frames = |list| frames_alone(each(list, path, |value, index| frame_lists::frame(&value, index, path))?);
+    let mut images = Images::default();
     let list = match items(whole) {
         Some(list) if list.iter().any(|entry| entry.get().starts_with('[')) => {
-            return each(list, path, |value, index| point_lists::frame(&value, index, path));
+            return frames_alone(each(list, path, |value, index| point_lists::frame(&value, index, path))?);
         }
-        Some(list) => Some(list),
+        Some(list) => {
+            let first = list.first().and_then(|entry| serde_json::from_str(entry.get()).ok());
+            if first.is_some_and(|entry: Value| frame_lists::is_frame(&entry)) {
+                return list_of_frames(list);
+            }
+            Some(list)
+        }
         None => {
             // Of a name that comes twice, the last value counts.
             let parts: BTreeMap<String, &RawValue> = serde_json::from_str(whole.get()).unwrap_or_default();
             if parts.contains_key("people") {
-                return Ok(vec![DetectedFrame { frame: 0, people: people(&json(&text, path)?, path)? }]);
+                return frames_alone(vec![PointFrame { frame: 0, people: people(&json(&text, path)?, path)? }]);
             }
             let part = |name: &str| parts.get(name).and_then(|part| items(part));
-            if let Some(frames) = part("instance_info") {
-                return each(frames, path, |value, index| mmpose_frame(&value, index, path));
+            if let Some(frames) = frame_lists::LIST_NAMES.iter().find_map(|name| part(name)) {
+                return list_of_frames(frames);
             }
-            names = image_names(part("images").unwrap_or_default());
+            images = Images::of(part("images").unwrap_or_default());
             part("annotations")
         }
     };
     let list = list.ok_or_else(|| {
-        KeypointError::unusable(path, "is neither a list of COCO results, nor has it `annotations` or `people`")
+        KeypointError::unusable(
+            path,
+            "is neither a list of COCO results or frames, nor has it `annotations`, `instance_info`, `frames` or `people`",
+        )
     })?;
-    let entries = each(list, path, |value, index| result(&value, index, &names, path))?;
+    let entries = each(list, path, |value, index| result(&value, index, &images.names, path))?;
     drop(text);
     if entries.is_empty() {
         return Err(KeypointError::unusable(path, "has no entry"));
     }
-    Ok(by_frame(entries, names.into_values()))
+    Ok(JsonFrames { frames: by_frame(entries, images.names.into_values()), image_size_px: images.size_px })
 }
 
 /// The items of a list, each as its text: as values, all of them together take ten times the memory
@@ -76,74 +98,55 @@ fn result(
     index: usize,
     names: &BTreeMap<String, String>,
     path: &Path,
-) -> Result<(String, Vec<layout::Keypoint>), KeypointError> {
+) -> Result<(String, Points), KeypointError> {
     let broken = |rule: &str| KeypointError::broken(path, format!("entry {index}"), rule);
     let image = match entry.get("image_id") {
         Some(Value::String(name)) => name.clone(),
         Some(id) if id.is_u64() => names.get(&id.to_string()).cloned().unwrap_or_else(|| id.to_string()),
         _ => return Err(broken("`image_id` has to be a whole number or a name")),
     };
-    let values = entry.get("keypoints").and_then(numbers);
+    let values = entry.get("keypoints").and_then(|points| triples(points, entry.get("keypoint_scores")));
     let values = values.ok_or_else(|| broken("`keypoints` has to be a list of numbers x, y, confidence"))?;
-    let person = layout::person(&values).map_err(|rule| broken(&format!("image `{image}`: {rule}")))?;
+    let person = orders::points(&values).map_err(|rule| broken(&format!("image `{image}`: {rule}")))?;
     Ok((image, person))
 }
 
-/// One frame of an MMPose prediction file: points and scores in separate lists.
-fn mmpose_frame(frame: &Value, index: usize, path: &Path) -> Result<DetectedFrame, KeypointError> {
-    let place = format!("instance_info[{index}]");
-    let broken = |rule: &str| KeypointError::broken(path, place.as_str(), rule);
-    let number = frame.get("frame_id").and_then(Value::as_u64).unwrap_or(index as u64);
-    let instances = frame.get("instances").and_then(Value::as_array);
-    let mut people = Vec::new();
-    for instance in instances.ok_or_else(|| broken("has no list `instances`"))? {
-        let points = instance.get("keypoints").and_then(numbers);
-        let points = points.ok_or_else(|| broken("`keypoints` has to be a list of points"))?;
-        let scores = instance.get("keypoint_scores").and_then(numbers);
-        let scores = scores.ok_or_else(|| broken("`keypoint_scores` has to be a list of numbers"))?;
-        if points.len() != 2 * scores.len() {
-            return Err(broken("`keypoints` and `keypoint_scores` have to be as many"));
+/// The pictures of an annotation file.
+#[derive(Debug, Default)]
+struct Images {
+    /// File name of each, by the text of its number.
+    names: BTreeMap<String, String>,
+    /// Width and height where all have the same.
+    size_px: Option<[f64; 2]>,
+}
+
+impl Images {
+    fn of(images: Vec<&RawValue>) -> Self {
+        let parsed = |image: &RawValue| serde_json::from_str::<Value>(image.get()).ok();
+        let images: Vec<Value> = images.into_iter().filter_map(parsed).collect();
+        let name = |image: &Value| Some((image.get("id")?.to_string(), image.get("file_name")?.as_str()?.to_owned()));
+        let size = |image: &Value| Some([image.get("width")?.as_f64()?, image.get("height")?.as_f64()?]);
+        let first = images.first().and_then(size).filter(|size| size.iter().all(|side| *side >= 1.0));
+        Self {
+            names: images.iter().filter_map(name).collect(),
+            size_px: first.filter(|_| images.iter().all(|image| size(image) == first)),
         }
-        let flat: Vec<f64> =
-            points.chunks(2).zip(&scores).flat_map(|(point, &score)| [point[0], point[1], score]).collect();
-        people.push(layout::person(&flat).map_err(|rule| broken(&rule))?);
     }
-    Ok(DetectedFrame { frame: number, people })
 }
 
-/// File name of each image of an annotation file, by the text of its number.
-fn image_names(images: Vec<&RawValue>) -> BTreeMap<String, String> {
-    let name = |image: &RawValue| {
-        let image: Value = serde_json::from_str(image.get()).ok()?;
-        Some((image.get("id")?.to_string(), image.get("file_name")?.as_str()?.to_owned()))
-    };
-    images.into_iter().filter_map(name).collect()
-}
-
-/// Groups entries by image, images in natural order. The number at the end of each name is the
-/// number of its frame if they rise; else images are counted from 0. Images of `listed` without an
-/// entry are frames without a person.
-fn by_frame(entries: Vec<(String, Vec<layout::Keypoint>)>, listed: impl Iterator<Item = String>) -> Vec<DetectedFrame> {
+/// Groups entries by image ([`file_numbers`]). Images of `listed` without an entry are frames
+/// without a person.
+fn by_frame(entries: Vec<(String, Points)>, listed: impl Iterator<Item = String>) -> Vec<PointFrame> {
     let mut names: Vec<String> = entries.iter().map(|entry| entry.0.clone()).chain(listed).collect();
-    names.sort_by(|a, b| natord::compare(a, b).then_with(|| a.cmp(b)));
+    names.sort_unstable();
     names.dedup();
-    let number = |name: &String| -> Option<u64> {
-        let stem = Path::new(name).file_stem()?.to_string_lossy().into_owned();
-        let digits = stem.trim_end_matches(|letter: char| letter.is_ascii_digit()).len();
-        stem.get(digits..)?.parse().ok()
-    };
-    let numbers: Option<Vec<u64>> = names.iter().map(number).collect();
-    let numbers = match numbers {
-        Some(numbers) if numbers.windows(2).all(|pair| pair[0] < pair[1]) => numbers,
-        _ => (0..names.len() as u64).collect(),
-    };
-    let mut people: BTreeMap<String, Vec<Vec<layout::Keypoint>>> = BTreeMap::new();
+    let mut people: BTreeMap<String, Vec<Points>> = BTreeMap::new();
     for (name, person) in entries {
         people.entry(name).or_default().push(person);
     }
     let frame =
-        |(frame, name): (u64, &String)| DetectedFrame { frame, people: people.remove(name).unwrap_or_default() };
-    numbers.into_iter().zip(&names).map(frame).collect()
+        |(frame, index): (u64, usize)| PointFrame { frame, people: people.remove(&names[index]).unwrap_or_default() };
+    file_numbers::frames(&names).frames.into_iter().map(frame).collect()
 }
 
 #[cfg(test)]
@@ -155,14 +158,14 @@ mod tests {
         (0..17).flat_map(|i| [f64::from(i) + shift, 5.0, 2.0]).collect()
     }
 
-    fn read_text(text: &str) -> Result<Vec<DetectedFrame>, String> {
+    fn read_text(text: &str) -> Result<Vec<PointFrame>, String> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("k.json");
         std::fs::write(&path, text).unwrap();
-        read(&path).map_err(|error| error.to_string())
+        read(&path).map(|found| found.frames).map_err(|error| error.to_string())
     }
 
-    fn counts(frames: &[DetectedFrame]) -> Vec<(u64, usize)> {
+    fn counts(frames: &[PointFrame]) -> Vec<(u64, usize)> {
         frames.iter().map(|frame| (frame.frame, frame.people.len())).collect()
     }
 
@@ -192,7 +195,7 @@ mod tests {
         let text = json!({ "instance_info": [{ "frame_id": 1, "instances": [instance] }, { "frame_id": 2, "instances": [] }] });
         let frames = read_text(&text.to_string()).unwrap();
         assert_eq!(counts(&frames), [(1, 1), (2, 0)]);
-        assert_eq!((frames[0].people[0][5].position_px, frames[0].people[0][5].confidence), ([6.0, 5.0], 0.7));
+        assert_eq!(frames[0].people[0][5], [6.0, 5.0, 0.7]);
         let text = json!({ "instance_info": [{ "instances": [{ "keypoints": points, "keypoint_scores": [1] }] }] });
         assert!(read_text(&text.to_string()).unwrap_err().contains("have to be as many"));
         let nested: Vec<[f64; 3]> = (0..17).map(|i| [f64::from(i) + 1.0, 5.0, 0.5]).collect();
@@ -210,7 +213,7 @@ mod tests {
         assert!(message.contains("k.json: entry 0: image `f_7.png`: keypoint `0` (nose) lies at"), "{message}");
         assert!(refusal(json!([{ "keypoints": [] }])).contains("entry 0: `image_id`"));
         assert!(refusal(json!([{ "image_id": 1 }])).contains("entry 0: `keypoints`"));
-        assert!(refusal(json!([{ "image_id": 1, "keypoints": [[1, 2]] }])).contains("2 numbers; each keypoint needs"));
+        assert!(refusal(json!([{ "image_id": 1, "keypoints": [1, 2] }])).contains("2 numbers; each keypoint needs"));
         assert!(refusal(json!([{ "image_id": 1, "keypoints": ["x"] }])).contains("has to be a list of numbers"));
         assert!(read_text("[").unwrap_err().contains("k.json: line 1: this is no JSON"));
     }

@@ -6,37 +6,58 @@ use crate::cyclic::image_joints::{ImageJoints, Point};
 use crate::motion::joint_names::{HIP_CENTER, JOINTS, NECK};
 
 /// Way across the image, in lengths of the trunk, beyond which travel decides.
-const TRAVEL_TRUNKS: f64 = 1.5;
+pub const TRAVEL_TRUNKS: f64 = 1.5;
+/// Mean of toes before heels, or of the nose before the neck, beyond which they decide, in lengths
+/// of the trunk. Chosen: a foot has half a trunk; who faces the camera has less than this.
+pub const CLEAR_TRUNKS: f64 = 0.05;
 
-/// Travel decides if the person gets far enough. Next come toes before heels (or ankles), then the
-/// nose before the neck, then knees before the line from hip to ankle. Each is a sum over all
-/// frames. `None` if none of these was seen.
+/// Toes before heels (or ankles) decide if they point clearly to a side, then the nose before the
+/// neck. Next comes travel if the person gets far enough: a camera that pans with the person may
+/// turn it round. Then come toes and nose that are less clear, and knees before the line from hip
+/// to ankle. `None` if none of these was seen.
 #[must_use]
 pub fn find(joints: &ImageJoints, people: &[Option<&Vec<Keypoint>>]) -> Option<Facing> {
-    let hints = [travel(joints), sum_over(people, toes), sum_over(people, nose), knees(joints)];
-    let hint = hints.into_iter().flatten().find(|hint| *hint != 0.0)?;
-    Some(if hint < 0.0 { Facing::Left } else { Facing::Right })
+    let [toes, nose] = [toes, nose].map(|hint| mean_over(people, hint));
+    let clear_px = trunk_px(joints).map_or(0.0, |trunk| CLEAR_TRUNKS * trunk);
+    let clear = |hint: Option<f64>| hint.filter(|hint| hint.abs() > clear_px);
+    let hints = [clear(toes), clear(nose), travel(joints), toes, nose, knees(joints)];
+    side(hints.into_iter().flatten().find(|hint| *hint != 0.0)?)
 }
 
-/// Way of the root if it is long enough.
-fn travel(joints: &ImageJoints) -> Option<f64> {
-    let roots: Vec<Point> = joints.frames.iter().filter_map(|frame| frame.joints[HIP_CENTER]).collect();
+/// The side that a hint points to.
+fn side(hint: f64) -> Option<Facing> {
+    (hint != 0.0).then_some(if hint < 0.0 { Facing::Left } else { Facing::Right })
+}
+
+/// Where feet point, or the nose where feet are not seen, in one frame; pixels to the right.
+#[must_use]
+pub fn hint_px(person: &[Keypoint]) -> Option<f64> {
+    toes(person).or_else(|| nose(person))
+}
+
+/// Median length of the trunk.
+#[must_use]
+pub fn trunk_px(joints: &ImageJoints) -> Option<f64> {
     let trunk = |joints: &[Option<Point>; JOINTS]| {
         let (neck, hip) = (joints[NECK]?, joints[HIP_CENTER]?);
         Some((neck[0] - hip[0]).hypot(neck[1] - hip[1]))
     };
-    let trunks: Vec<f64> = joints.frames.iter().filter_map(|frame| trunk(&frame.joints)).collect();
-    if trunks.is_empty() {
-        return None;
-    }
-    let way = roots.last()?[0] - roots.first()?[0];
-    let mean_trunk = trunks.iter().sum::<f64>() / trunks.len() as f64;
-    (way.abs() > TRAVEL_TRUNKS * mean_trunk).then_some(way)
+    let mut trunks: Vec<f64> = joints.frames.iter().filter_map(|frame| trunk(&frame.joints)).collect();
+    trunks.sort_by(f64::total_cmp);
+    trunks.get(trunks.len() / 2).copied()
 }
 
-fn sum_over(people: &[Option<&Vec<Keypoint>>], hint: fn(&[Keypoint]) -> Option<f64>) -> Option<f64> {
+/// Way of the root to the right, pixels, if it is long enough.
+#[must_use]
+pub fn travel(joints: &ImageJoints) -> Option<f64> {
+    let roots: Vec<Point> = joints.frames.iter().filter_map(|frame| frame.joints[HIP_CENTER]).collect();
+    let way = roots.last()?[0] - roots.first()?[0];
+    (way.abs() > TRAVEL_TRUNKS * trunk_px(joints)?).then_some(way)
+}
+
+fn mean_over(people: &[Option<&Vec<Keypoint>>], hint: fn(&[Keypoint]) -> Option<f64>) -> Option<f64> {
     let hints: Vec<f64> = people.iter().flatten().filter_map(|person| hint(person)).collect();
-    (!hints.is_empty()).then(|| hints.iter().sum())
+    (!hints.is_empty()).then(|| hints.iter().sum::<f64>() / hints.len() as f64)
 }
 
 fn place(person: &[Keypoint], part: Part) -> Option<f64> {
@@ -49,7 +70,8 @@ fn toes(person: &[Keypoint]) -> Option<f64> {
         Some(place(person, Part::Toe(side))? - back?)
     };
     let feet = [foot(Side::Left, 10), foot(Side::Right, 13)];
-    feet.iter().any(Option::is_some).then(|| feet.iter().flatten().sum())
+    let seen = feet.iter().flatten().count();
+    (seen > 0).then(|| feet.iter().flatten().sum::<f64>() / seen as f64)
 }
 
 fn nose(person: &[Keypoint]) -> Option<f64> {
@@ -92,11 +114,15 @@ mod tests {
     }
 
     #[test]
-    fn travel_counts_before_toes_before_nose_before_knees() {
+    fn toes_count_before_nose_before_travel_before_knees() {
         let toes_left = vec![point(Part::Toe(Side::Left), 3.0), point(Part::Heel(Side::Left), 9.0)];
         let nose_right = [toes_left.clone(), vec![point(Part::Nose, 9.0), point(Part::Joint(NECK), 3.0)]].concat();
-        assert_eq!(find(&joints(4.0, -5.0), &[Some(&nose_right)]), Some(Facing::Right));
-        assert_eq!(find(&joints(0.5, 5.0), &[Some(&nose_right)]), Some(Facing::Left));
+        assert_eq!(find(&joints(4.0, -5.0), &[Some(&nose_right)]), Some(Facing::Left));
+        let nose_alone = nose_right[2..].to_vec();
+        assert_eq!(find(&joints(-4.0, -5.0), &[Some(&nose_alone)]), Some(Facing::Right), "a camera that pans");
+        let unclear = vec![point(Part::Nose, 9.0), point(Part::Joint(NECK), 8.0)];
+        assert_eq!(find(&joints(-4.0, 5.0), &[Some(&unclear)]), Some(Facing::Left));
+        assert_eq!(find(&joints(0.5, -5.0), &[Some(&unclear)]), Some(Facing::Right));
         let nose_only = nose_right[2..].to_vec();
         assert_eq!(find(&joints(0.0, -5.0), &[None, Some(&nose_only)]), Some(Facing::Right));
         assert_eq!(find(&joints(0.0, -5.0), &[]), Some(Facing::Left));

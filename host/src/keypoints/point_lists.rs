@@ -2,8 +2,8 @@
 //! person. Nothing in it names the points.
 
 use super::error::KeypointError;
-use super::layout::{self, DetectedFrame};
-use super::openpose::numbers;
+use super::orders::{self, PointFrame};
+use super::point_values::triples;
 use serde_json::Value;
 use std::path::Path;
 
@@ -11,36 +11,32 @@ use std::path::Path;
 ///
 /// # Errors
 /// Names the frame and the rule that it broke.
-pub fn frame(value: &Value, index: usize, path: &Path) -> Result<DetectedFrame, KeypointError> {
+pub fn frame(value: &Value, index: usize, path: &Path) -> Result<PointFrame, KeypointError> {
     let broken = |rule: String| KeypointError::broken(path, format!("frame {index}"), rule);
-    let values = if value.is_null() { Some(Vec::new()) } else { numbers(value) };
+    let values = if value.is_null() { Some(Vec::new()) } else { triples(value, None) };
     let values = values.ok_or_else(|| broken("has to be a list of numbers x, y, confidence".into()))?;
-    let people = if values.is_empty() { Vec::new() } else { vec![layout::person(&values).map_err(broken)?] };
-    Ok(DetectedFrame { frame: index as u64, people })
+    let people = if values.is_empty() { Vec::new() } else { vec![orders::points(&values).map_err(broken)?] };
+    Ok(PointFrame { frame: index as u64, people })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::keypoints::layout::Part;
     use serde_json::json;
 
-    fn read(value: &Value) -> Result<Vec<DetectedFrame>, String> {
+    fn read(value: &Value) -> Result<Vec<PointFrame>, String> {
         let frames = value.as_array().unwrap().iter().enumerate();
         let frames = frames.map(|(index, value)| frame(value, index, Path::new("k.json")));
         frames.collect::<Result<_, _>>().map_err(|error| error.to_string())
     }
 
     #[test]
-    fn arms_of_seven_points_are_head_then_right_then_left() {
+    fn a_frame_is_a_list_of_numbers_or_nothing() {
         let flat: Vec<f64> = (0..7).flat_map(|i| [f64::from(i) + 1.0, 5.0, 0.5]).collect();
         let frames = read(&json!([flat, null, [], flat])).unwrap();
         let counts: Vec<(u64, usize)> = frames.iter().map(|frame| (frame.frame, frame.people.len())).collect();
         assert_eq!(counts, [(0, 1), (1, 0), (2, 0), (3, 1)]);
-        let parts: Vec<Part> = frames[0].people[0].iter().map(|point| point.part).collect();
-        let joints = [5, 6, 7, 2, 3, 4].map(Part::Joint);
-        assert_eq!(parts[1..], joints, "shoulder, elbow, wrist of the right, then of the left");
-        assert_eq!(parts[0], Part::Other);
+        assert_eq!(frames[0].people[0][6], [7.0, 5.0, 0.5]);
     }
 
     #[test]

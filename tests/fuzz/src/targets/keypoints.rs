@@ -4,7 +4,7 @@ use crate::Target;
 use crate::file::{file, folder};
 use serde_json::json;
 use sinew::cyclic::recording::{RecordingOptions, angles};
-use sinew::keypoints::{DEFAULT_MIN_CONFIDENCE, read, track};
+use sinew::keypoints::{TrackOptions, read, track};
 use std::fs;
 
 /// JSON in its forms, folders of OpenPose files, and tables.
@@ -49,11 +49,11 @@ fn table() -> String {
 
 fn keypoints(name: &str, bytes: &[u8]) {
     let path = file(name, bytes);
-    if let Ok(frames) = read(&path) {
-        let people = frames.iter().flat_map(|frame| &frame.people);
+    if let Ok(found) = read(&path, None) {
+        let people = found.frames.iter().flat_map(|frame| &frame.people);
         let is_sound = |point: f64| point.is_finite();
         assert!(people.flatten().all(|keypoint| keypoint.position_px.into_iter().all(is_sound)), "a keypoint");
-        let _ = track(&frames, DEFAULT_MIN_CONFIDENCE, &path);
+        let _ = track(&found, &TrackOptions::default(), &path);
     }
     if let Ok(recorded) = angles(&path, &RecordingOptions::default()) {
         let rows = recorded.table.rows().iter();
@@ -68,7 +68,7 @@ fn openpose(bytes: &[u8]) {
     for name in ["openpose/f_1_keypoints.json", "openpose/f_3_keypoints.json"] {
         let _ = file(name, bytes);
     }
-    if let Ok(read) = read(&frames) {
-        let _ = track(&read, DEFAULT_MIN_CONFIDENCE, &frames);
+    if let Ok(found) = read(&frames, None) {
+        let _ = track(&found, &TrackOptions::default(), &frames);
     }
 }
