@@ -1,22 +1,25 @@
-//! `sinew angles`: a motion in space or 2D keypoints as an angle table.
+//! `sinew angles`: a motion in space or 2D keypoints as an angle table, and its flexion angles.
 
 use super::console::Console;
+use super::filter_args::FilterArgs;
+use crate::cyclic::anatomy::MeasuredAngles;
 use crate::cyclic::projection::{UpAxis, View};
-use crate::cyclic::recording::{RecordingOptions, angles};
+use crate::cyclic::recording::{RecordedAngles, RecordingOptions, angles};
 use crate::keypoints::{DEFAULT_MIN_CONFIDENCE, Facing};
-use crate::output::check_writable_file;
+use crate::output::{check_writable_file, write_atomically};
 use crate::registry::{MOTION, described};
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Options of `sinew angles`.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   sinew simulate cyclic --model walking --out measured.csv
   sinew track cyclic measured.csv --model walking --out est.csv --report run
-  sinew angles run/joints.trc --rate 60 --out walk.csv")]
+  sinew angles run/joints.trc --rate 60 --out walk.csv
+  sinew angles squat.trc --out squat.csv --anatomical flexion.csv --filter gcv")]
 pub struct AnglesArgs {
     /// Motion in space or 2D keypoints.
     #[arg(help = format!(
@@ -57,6 +60,13 @@ pub struct AnglesArgs {
     /// train on.
     #[arg(long)]
     pub swap_sides: bool,
+    /// Flexion angles of what was measured to write, degrees: trunk, shoulders, elbows, hips, knees,
+    /// and ankles and feet where heels and toes are seen.
+    #[arg(long, value_name = "FLEXION.csv")]
+    pub anatomical: Option<PathBuf>,
+    /// How these are filtered.
+    #[command(flatten)]
+    pub filter: FilterArgs,
 }
 
 /// Reads, projects or follows, and writes the table.
@@ -67,6 +77,11 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
     let confidence = args.min_confidence;
     ensure!(confidence >= 0.0 && confidence.is_finite(), "`--min-confidence {confidence}`: it has to be zero or more");
     check_writable_file(&args.out)?;
+    args.anatomical.as_deref().map_or(Ok(()), check_writable_file)?;
+    ensure!(
+        args.anatomical.is_none() || args.view != View::Front,
+        "`--anatomical` needs the person from the side; leave out `--view front`"
+    );
     let options = RecordingOptions {
         skeleton: args.skeleton.clone(),
         rate_hz: args.rate,
@@ -78,8 +93,11 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         partial: args.partial,
         swap_sides: args.swap_sides,
     };
-    let found = angles(&args.motion, &options)?;
+    let mut found = angles(&args.motion, &options)?;
     found.table.write(&args.out)?;
+    if let Some(path) = &args.anatomical {
+        found.notes.extend(write_anatomical(&found, path, &args.filter)?);
+    }
     for note in &found.notes {
         console.note(note);
     }
@@ -89,11 +107,13 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
     let missing = cells.filter(|(row, angle)| found.table.row_angle_rad(*row, *angle).is_none()).count();
     let missing_share = missing as f64 / (count * rows.len()) as f64;
     let rate = found.rate_hz.map_or_else(|| "an unknown rate".to_owned(), |rate| format!("{rate} frames per second"));
+    let paths = std::iter::once(&args.out).chain(&args.anatomical);
+    let written: Vec<String> = paths.map(|path| format!("wrote {}\n", path.display())).collect();
     let report = format!(
-        "{} frames at {rate}, {:.1} % of the angles missing\nwrote {}\n",
+        "{} frames at {rate}, {:.1} % of the angles missing\n{}",
         rows.len(),
         100.0 * missing_share,
-        args.out.display()
+        written.join("")
     );
     let json = json!({
         "frames": rows.len(),
@@ -101,6 +121,18 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         "missing_share": missing_share,
         "notes": found.notes,
         "out": args.out,
+        "anatomical": args.anatomical,
     });
     console.answer_beside(&args.out, &report, &json)
+}
+
+/// Writes the filtered flexion angles; the result is what a user should know of the filter.
+fn write_anatomical(found: &RecordedAngles, path: &Path, filter: &FilterArgs) -> Result<Option<String>> {
+    let rate_hz = found.rate_hz.context(
+        "`--anatomical` filters over time: say with `--input-rate HZ` how many frames a second the recording has",
+    )?;
+    let (options, note) = filter.options(rate_hz)?;
+    let text = MeasuredAngles::of_table(&found.table, rate_hz, &options)?.to_csv();
+    write_atomically(path, |writer| Ok(writer.write_all(text.as_bytes())?))?;
+    Ok(note)
 }

@@ -2,6 +2,7 @@
 
 use super::angle_table::{ANGLES, AngleRow, AngleTable};
 use super::error::CyclicError;
+use super::feet::{self, Feet};
 use super::turns::unwrap_along_time;
 use crate::motion::joint_names::JOINTS;
 use sinew_core::skeleton::stick_figure::HUMAN;
@@ -16,6 +17,8 @@ pub struct JointFrame {
     pub frame: u64,
     /// The joints in the order of [`HUMAN`]; `None` where one was not seen.
     pub joints: [Option<Point>; JOINTS],
+    /// Heels and toes.
+    pub feet: Feet,
 }
 
 /// Joints over time.
@@ -58,7 +61,11 @@ impl ImageJoints {
     /// The mirror image of each frame.
     #[must_use]
     pub fn mirrored(&self) -> Self {
-        let frame = |frame: &JointFrame| JointFrame { frame: frame.frame, joints: mirrored(&frame.joints) };
+        let frame = |frame: &JointFrame| JointFrame {
+            frame: frame.frame,
+            joints: mirrored(&frame.joints),
+            feet: feet::sides_swapped(&feet::x_negated(&frame.feet)),
+        };
         Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
     }
 
@@ -68,6 +75,7 @@ impl ImageJoints {
         let frame = |frame: &JointFrame| JointFrame {
             frame: frame.frame,
             joints: frame.joints.map(|joint| joint.map(|[x, y]| [-x, y])),
+            feet: feet::x_negated(&frame.feet),
         };
         Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
     }
@@ -97,6 +105,7 @@ impl ImageJoints {
         let frame = |frame: &JointFrame| JointFrame {
             frame: frame.frame,
             joints: std::array::from_fn(|joint| frame.joints[usize::from(HUMAN.joints()[joint].mirror)]),
+            feet: feet::sides_swapped(&frame.feet),
         };
         Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
     }
@@ -110,7 +119,15 @@ impl ImageJoints {
         for angle in 0..ANGLES {
             unwrap_along_time(rows.iter_mut().map(|row| &mut row.angles_rad[angle]));
         }
-        AngleTable::new(rows, extra_columns(extra, self.unit))
+        let mut columns = extra_columns(extra, self.unit);
+        if let ExtraColumns::RootAndLengths { mirrored } = extra
+            && self.frames.iter().any(|frame| feet::is_seen(&frame.feet))
+        {
+            let side = if mirrored { -1.0 } else { 1.0 };
+            columns.extend(feet::columns(self.unit));
+            rows.iter_mut().zip(&self.frames).for_each(|(row, frame)| row.extra.extend(feet::cells(&frame.feet, side)));
+        }
+        AngleTable::new(rows, columns)
     }
 }
 
@@ -161,7 +178,7 @@ mod tests {
 
     #[test]
     fn angles_lengths_and_root_are_those_of_the_points() {
-        let frames = vec![JointFrame { frame: 4, joints: standing() }];
+        let frames = vec![JointFrame { frame: 4, joints: standing(), feet: Feet::default() }];
         let points = ImageJoints { frames, unit: "px" };
         let table = points.angle_table(ExtraColumns::RootAndLengths { mirrored: false }).unwrap();
         let row = table.row(4).unwrap();
@@ -175,7 +192,10 @@ mod tests {
 
     #[test]
     fn a_mirrored_person_has_swapped_sides_and_angles_of_pi_minus_theta() {
-        let points = ImageJoints { frames: vec![JointFrame { frame: 0, joints: standing() }], unit: "px" };
+        let points = ImageJoints {
+            frames: vec![JointFrame { frame: 0, joints: standing(), feet: Feet::default() }],
+            unit: "px",
+        };
         let table = points.mirrored().angle_table(ExtraColumns::RootAndLengths { mirrored: true }).unwrap();
         let row = &table.rows()[0];
         assert!((row.angles_rad[10].unwrap() - (PI - 4.0_f64.atan2(-3.0))).abs() < 1.0e-12);
@@ -194,7 +214,7 @@ mod tests {
             let mut joints = [None; JOINTS];
             joints[0] = Some([1.0, 1.0]);
             joints[1] = Some([1.0 + neck[0], 1.0 + neck[1]]);
-            ImageJoints { frames: vec![JointFrame { frame: 0, joints }], unit: "m" }
+            ImageJoints { frames: vec![JointFrame { frame: 0, joints, feet: Feet::default() }], unit: "m" }
         };
         let (side, front) = (seen([3.0, 4.0]), seen([5.0, 4.0]));
         let lean = |front: &ImageJoints| side.side_angles_rad(front)[0];
@@ -211,7 +231,7 @@ mod tests {
             let mut joints = [None; JOINTS];
             joints[0] = Some([0.0, 0.0]);
             joints[1] = Some([angle.cos(), angle.sin()]);
-            JointFrame { frame: index, joints }
+            JointFrame { frame: index, joints, feet: Feet::default() }
         };
         let table =
             ImageJoints { frames: (0..60).map(frame).collect(), unit: "m" }.angle_table(ExtraColumns::None).unwrap();

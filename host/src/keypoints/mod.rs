@@ -5,6 +5,7 @@
 pub mod coco;
 pub mod error;
 pub mod facing;
+pub mod feet;
 pub mod layout;
 pub mod openpose;
 pub mod person;
@@ -77,6 +78,7 @@ pub fn track(frames: &[DetectedFrame], min_confidence: f64, path: &Path) -> Resu
     let frame = |(frame, person): (&DetectedFrame, &Option<&Vec<Keypoint>>)| JointFrame {
         frame: frame.frame,
         joints: joints(person),
+        feet: person.map_or_else(Default::default, |person| feet::feet(person)),
     };
     let joints = ImageJoints { frames: sure.iter().zip(&chosen).map(frame).collect(), unit: "px" };
     Ok(Track {
