@@ -94,10 +94,10 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         swap_sides: args.swap_sides,
     };
     let mut found = angles(&args.motion, &options)?;
-    found.table.write(&args.out)?;
     if let Some(path) = &args.anatomical {
         found.notes.extend(write_anatomical(&found, path, &args.filter)?);
     }
+    found.table.write(&args.out)?;
     for note in &found.notes {
         console.note(note);
     }
