@@ -101,6 +101,39 @@ fn a_folder_of_keypoints_gives_angles_root_and_lengths() {
 }
 
 #[test]
+fn flexion_angles_of_what_was_measured_are_written() {
+    let root = tempfile::tempdir().unwrap();
+    write_openpose(&root.path().join("k"), 61, 1.0, false);
+    let mut command = sinew(root.path());
+    command.args(["k", "--out", "t.csv", "--anatomical", "f.csv"]).assert().failure().stderr(contains("--input-rate"));
+    let rate = ["k", "--input-rate", "30", "--out", "t.csv", "--anatomical", "f.csv"];
+    for (more, rule) in [
+        (["--cutoff", "14"], "give 13.500 or less"),
+        (["--filter", "gcv"], ""),
+        (["--gap-limit", "-1"], "zero or more"),
+        (["--view", "front"], "from the side"),
+    ] {
+        let mut command = sinew(root.path());
+        let run = command.args(rate).arg(format!("{}={}", more[0], more[1])).assert();
+        if rule.is_empty() { drop(run.success()) } else { drop(run.failure().stderr(contains(rule))) }
+    }
+    let mut command = sinew(root.path());
+    command.args(rate).assert().success().stdout(contains("wrote f.csv"));
+    let text = fs::read_to_string(root.path().join("f.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let knee = rows[0].iter().position(|name| *name == "l_knee_flexion_deg").unwrap();
+    assert_eq!((rows.len(), rows[0][..2].to_vec()), (62, vec!["frame", "time_s"]));
+    assert!(!text.contains("foot"), "no heel and no toe was seen");
+    let measured = table(&root.path().join("t.csv"));
+    for frame in 15..45 {
+        let angles_rad = &measured.row(frame).unwrap().angles_rad;
+        let raw_deg = (angles_rad[9].unwrap() - angles_rad[8].unwrap()).to_degrees();
+        let filtered_deg: f64 = rows[frame as usize + 1][knee].parse().unwrap();
+        assert!((raw_deg - filtered_deg).abs() < 1.0, "{frame}: {raw_deg} became {filtered_deg}");
+    }
+}
+
+#[test]
 fn rates_change_the_number_of_frames() {
     let root = tempfile::tempdir().unwrap();
     write_openpose(&root.path().join("k"), 61, 1.0, false);

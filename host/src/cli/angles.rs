@@ -1,14 +1,16 @@
-//! `sinew angles`: a motion in space or 2D keypoints as an angle table.
+//! `sinew angles`: a motion in space or 2D keypoints as an angle table, and its flexion angles.
 
 use super::console::Console;
+use super::filter_args::FilterArgs;
 use crate::cyclic::about::About;
+use crate::cyclic::anatomy::MeasuredAngles;
 use crate::cyclic::projection::{UpAxis, View};
 use crate::cyclic::recording::{RecordedAngles, RecordingOptions, all_angles, angles};
 use crate::error::Error;
 use crate::keypoints::{DEFAULT_MIN_CONFIDENCE, Facing, PersonChoice};
-use crate::output::check_writable_file;
+use crate::output::{check_writable_file, write_atomically};
 use crate::registry::{MOTION, described};
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -18,7 +20,8 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Examples:
   sinew simulate cyclic --model walking --out measured.csv
   sinew track cyclic measured.csv --model walking --out est.csv --report run
-  sinew angles run/joints.trc --rate 60 --out walk.csv")]
+  sinew angles run/joints.trc --rate 60 --out walk.csv
+  sinew angles squat.trc --out squat.csv --anatomical flexion.csv --filter gcv")]
 pub struct AnglesArgs {
     /// Motion in space or 2D keypoints.
     #[arg(help = format!(
@@ -75,8 +78,15 @@ pub struct AnglesArgs {
     #[arg(long, value_name = "N|largest|longest", default_value = "largest")]
     pub person: PersonChoice,
     /// Write a table for each person in keypoints: `OUT_1.csv`, `OUT_2.csv`, ...
-    #[arg(long, conflicts_with = "person")]
+    #[arg(long, conflicts_with_all = ["person", "anatomical"])]
     pub all: bool,
+    /// Flexion angles of what was measured to write, degrees: trunk, shoulders, elbows, hips, knees,
+    /// and ankles and feet where heels and toes are seen.
+    #[arg(long, value_name = "FLEXION.csv")]
+    pub anatomical: Option<PathBuf>,
+    /// How these are filtered.
+    #[command(flatten)]
+    pub filter: FilterArgs,
 }
 
 fn image_size(text: &str) -> Result<[f64; 2], String> {
@@ -95,6 +105,11 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
     let confidence = args.min_confidence;
     ensure!(confidence >= 0.0 && confidence.is_finite(), "`--min-confidence {confidence}`: it has to be zero or more");
     check_writable_file(&args.out)?;
+    args.anatomical.as_deref().map_or(Ok(()), check_writable_file)?;
+    ensure!(
+        args.anatomical.is_none() || args.view != View::Front,
+        "`--anatomical` needs the person from the side; leave out `--view front`"
+    );
     let options = RecordingOptions {
         skeleton: args.skeleton.clone(),
         rate_hz: args.rate,
@@ -110,7 +125,11 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
         person: args.person,
     };
     if !args.all {
-        return write(&angles(&args.motion, &options)?, args, &args.out, console);
+        let mut found = angles(&args.motion, &options)?;
+        if let Some(path) = &args.anatomical {
+            found.notes.extend(write_anatomical(&found, path, &args.filter)?);
+        }
+        return write(&found, args, &args.out, console);
     }
     for (number, found) in (1..).zip(all_angles(&args.motion, &options)?) {
         let stem = args.out.file_stem().unwrap_or_default().to_string_lossy();
@@ -134,11 +153,13 @@ fn write(found: &RecordedAngles, args: &AnglesArgs, out: &Path, console: &Consol
     let missing = cells.filter(|(row, angle)| found.table.row_angle_rad(*row, *angle).is_none()).count();
     let missing_share = missing as f64 / (count * rows.len()) as f64;
     let rate = found.rate_hz.map_or_else(|| "an unknown rate".to_owned(), |rate| format!("{rate} frames per second"));
+    let paths = std::iter::once(out).chain(args.anatomical.as_deref());
+    let written: Vec<String> = paths.map(|path| format!("wrote {}\n", path.display())).collect();
     let report = format!(
-        "{} frames at {rate}, {:.1} % of the angles missing\nwrote {}\n",
+        "{} frames at {rate}, {:.1} % of the angles missing\n{}",
         rows.len(),
         100.0 * missing_share,
-        out.display()
+        written.join("")
     );
     let json = json!({
         "frames": rows.len(),
@@ -147,6 +168,7 @@ fn write(found: &RecordedAngles, args: &AnglesArgs, out: &Path, console: &Consol
         "notes": found.notes,
         "doubts": found.doubts,
         "out": out,
+        "anatomical": args.anatomical,
     });
     console.answer_beside(out, &report, &json)?;
     let doubts = found.doubts.join("; ");
@@ -164,4 +186,15 @@ fn about(args: &AnglesArgs, found: &RecordedAngles) -> About {
     about.notes.clone_from(&found.notes);
     about.doubts.clone_from(&found.doubts);
     about
+}
+
+/// Writes the filtered flexion angles; the result is what a user should know of the filter.
+fn write_anatomical(found: &RecordedAngles, path: &Path, filter: &FilterArgs) -> Result<Option<String>> {
+    let rate_hz = found.rate_hz.context(
+        "`--anatomical` filters over time: say with `--input-rate HZ` how many frames a second the recording has",
+    )?;
+    let (options, note) = filter.options(rate_hz)?;
+    let text = MeasuredAngles::of_table(&found.table, rate_hz, &options)?.to_csv();
+    write_atomically(path, |writer| Ok(writer.write_all(text.as_bytes())?))?;
+    Ok(note)
 }

@@ -14,6 +14,7 @@ pub mod demo;
 pub mod doctor;
 pub mod evaluate;
 pub mod export;
+mod filter_args;
 pub mod image_run;
 pub mod record;
 pub mod report;

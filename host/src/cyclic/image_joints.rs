@@ -3,6 +3,7 @@
 use super::angle_table::{ANGLES, AngleRow, AngleTable};
 use super::error::CyclicError;
 use super::facing::Facing;
+use super::feet::{self, Feet};
 use super::turns::unwrap_along_time;
 use crate::motion::joint_names::JOINTS;
 use sinew_core::skeleton::stick_figure::HUMAN;
@@ -17,6 +18,8 @@ pub struct JointFrame {
     pub frame: u64,
     /// The joints in the order of [`HUMAN`]; `None` where one was not seen.
     pub joints: [Option<Point>; JOINTS],
+    /// Heels and toes.
+    pub feet: Feet,
 }
 
 /// Joints over time.
@@ -54,6 +57,7 @@ impl ImageJoints {
         let frame = |frame: &JointFrame| JointFrame {
             frame: frame.frame,
             joints: frame.joints.map(|joint| joint.map(|[x, y]| [-x, y])),
+            feet: feet::x_negated(&frame.feet),
         };
         Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
     }
@@ -83,6 +87,7 @@ impl ImageJoints {
         let frame = |frame: &JointFrame| JointFrame {
             frame: frame.frame,
             joints: std::array::from_fn(|joint| frame.joints[usize::from(HUMAN.joints()[joint].mirror)]),
+            feet: feet::sides_swapped(&frame.feet),
         };
         Self { frames: self.frames.iter().map(frame).collect(), unit: self.unit }
     }
@@ -96,7 +101,15 @@ impl ImageJoints {
         for angle in 0..ANGLES {
             unwrap_along_time(rows.iter_mut().map(|row| &mut row.angles_rad[angle]));
         }
-        AngleTable::new(rows, extra_columns(extra, self.unit))
+        let mut columns = extra_columns(extra, self.unit);
+        if let ExtraColumns::RootAndLengths { facing } = extra
+            && self.frames.iter().any(|frame| feet::is_seen(&frame.feet))
+        {
+            let side = facing.side();
+            columns.extend(feet::columns(self.unit));
+            rows.iter_mut().zip(&self.frames).for_each(|(row, frame)| row.extra.extend(feet::cells(&frame.feet, side)));
+        }
+        AngleTable::new(rows, columns)
     }
 }
 
@@ -150,7 +163,7 @@ mod tests {
 
     #[test]
     fn angles_lengths_and_root_are_those_of_the_points() {
-        let frames = vec![JointFrame { frame: 4, joints: standing() }];
+        let frames = vec![JointFrame { frame: 4, joints: standing(), feet: Feet::default() }];
         let points = ImageJoints { frames, unit: "px" };
         let table = points.angle_table(ExtraColumns::RootAndLengths { facing: Facing::Right }).unwrap();
         let row = table.row(4).unwrap();
@@ -164,7 +177,10 @@ mod tests {
 
     #[test]
     fn who_faces_left_has_angles_of_pi_minus_theta_and_the_own_sides() {
-        let points = ImageJoints { frames: vec![JointFrame { frame: 0, joints: standing() }], unit: "px" };
+        let points = ImageJoints {
+            frames: vec![JointFrame { frame: 0, joints: standing(), feet: Feet::default() }],
+            unit: "px",
+        };
         let extra = ExtraColumns::RootAndLengths { facing: Facing::Left };
         let table = points.x_negated().angle_table(extra).unwrap();
         let row = &table.rows()[0];
@@ -184,7 +200,7 @@ mod tests {
             let mut joints = [None; JOINTS];
             joints[0] = Some([1.0, 1.0]);
             joints[1] = Some([1.0 + neck[0], 1.0 + neck[1]]);
-            ImageJoints { frames: vec![JointFrame { frame: 0, joints }], unit: "m" }
+            ImageJoints { frames: vec![JointFrame { frame: 0, joints, feet: Feet::default() }], unit: "m" }
         };
         let (side, front) = (seen([3.0, 4.0]), seen([5.0, 4.0]));
         let lean = |front: &ImageJoints| side.side_angles_rad(front)[0];
@@ -201,7 +217,7 @@ mod tests {
             let mut joints = [None; JOINTS];
             joints[0] = Some([0.0, 0.0]);
             joints[1] = Some([angle.cos(), angle.sin()]);
-            JointFrame { frame: index, joints }
+            JointFrame { frame: index, joints, feet: Feet::default() }
         };
         let table =
             ImageJoints { frames: (0..60).map(frame).collect(), unit: "m" }.angle_table(ExtraColumns::None).unwrap();

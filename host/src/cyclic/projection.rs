@@ -1,5 +1,6 @@
 //! Motion in space as a camera sees it that stands beside, or before, the person.
 
+use super::feet_in_space::SpatialFeet;
 use super::heading::{headings, straightness};
 use super::image_joints::{ImageJoints, JointFrame};
 use super::planar::{knee_direction, level_axis};
@@ -102,6 +103,12 @@ impl Plane {
     /// Sees `frames` in this plane, metres; frames are counted from 0.
     #[must_use]
     pub fn project(&self, frames: &[SpatialJoints]) -> ImageJoints {
+        self.project_with_feet(frames, &[])
+    }
+
+    /// As [`Plane::project`], with the feet of each frame.
+    #[must_use]
+    pub fn project_with_feet(&self, frames: &[SpatialJoints], feet: &[SpatialFeet]) -> ImageJoints {
         let frame = |index: usize, joints: &SpatialJoints| {
             let right = if let [right] = self.right[..] { right } else { self.right.get(index).copied().flatten() };
             let root = if self.forward == Forward::Turning { joints[HIP_CENTER] } else { Some(Vec3::zeros()) };
@@ -112,6 +119,7 @@ impl Plane {
             JointFrame {
                 frame: index as u64,
                 joints: std::array::from_fn::<_, JOINTS, _>(|joint| point(joints[joint])),
+                feet: feet.get(index).map_or_else(Default::default, |feet| feet.map(|foot| foot.map(point))),
             }
         };
         ImageJoints {

@@ -1,6 +1,7 @@
 //! Any recording that holds a moving person, as an angle table.
 
 use super::angle_table::AngleTable;
+use super::feet_in_space::feet_in_space;
 use super::image_joints::{ExtraColumns, ImageJoints};
 use super::projection::{Forward, Plane, UpAxis, View};
 use super::resample::resample;
@@ -122,12 +123,14 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
             );
         }
     }
-    let seen = plane.project(covered);
+    let seen = plane.project_with_feet(covered, &feet_in_space(&motion));
     let facing = options.facing.unwrap_or(Facing::Right);
     let table = if options.view == View::Space {
         in_space(&seen, &plane.from_before().project(covered), recorded_hz, options)?
     } else {
-        finished(&seen, Some(recorded_hz), options, facing, ExtraColumns::None)?
+        let is_from_before = options.view == View::Front;
+        let extra = if is_from_before { ExtraColumns::None } else { ExtraColumns::RootAndLengths { facing } };
+        finished(&seen, Some(recorded_hz), options, facing, extra)?
     };
     let rate_hz = Some(options.rate_hz.unwrap_or(recorded_hz));
     Ok(RecordedAngles {

@@ -1,6 +1,7 @@
 //! Another number of frames a second for joints in the plane.
 
 use super::error::CyclicError;
+use super::feet::{FOOT_POINTS, Feet};
 use super::image_joints::{ImageJoints, JointFrame, Point};
 use super::spline::CubicSpline;
 use crate::motion::joint_names::JOINTS;
@@ -34,17 +35,18 @@ pub fn resample(joints: &ImageJoints, from_hz: f64, to_hz: f64) -> Result<ImageJ
         ));
     }
     let base = (first.frame as f64 / step).round() as u64;
-    let mut frames: Vec<JointFrame> =
-        (base..base + count as u64).map(|frame| JointFrame { frame, joints: [None; JOINTS] }).collect();
-    for joint in 0..JOINTS {
-        for run in runs(joints, joint, first.frame) {
+    let mut frames: Vec<JointFrame> = (base..base + count as u64)
+        .map(|frame| JointFrame { frame, joints: [None; JOINTS], feet: Feet::default() })
+        .collect();
+    for index in 0..POINTS {
+        for run in runs(joints, index, first.frame) {
             let first_inside = ((run.start - SAME_FRAME) / step).ceil().max(0.0) as usize;
-            for (index, frame) in frames.iter_mut().enumerate().skip(first_inside) {
-                let place = index as f64 * step;
+            for (number, frame) in frames.iter_mut().enumerate().skip(first_inside) {
+                let place = number as f64 * step;
                 if place > run.end + SAME_FRAME {
                     break;
                 }
-                frame.joints[joint] = Some(run.at(place));
+                *point_mut(frame, index) = Some(run.at(place));
             }
         }
     }
@@ -84,16 +86,30 @@ impl Run {
     }
 }
 
-fn runs(joints: &ImageJoints, joint: usize, first_frame: u64) -> Vec<Run> {
+/// Points of a frame: the joints, then heels and toes.
+const POINTS: usize = JOINTS + FOOT_POINTS.len();
+
+fn point(frame: &JointFrame, index: usize) -> Option<Point> {
+    index.checked_sub(JOINTS).map_or_else(|| frame.joints[index], |foot| frame.feet.as_flattened()[foot])
+}
+
+fn point_mut(frame: &mut JointFrame, index: usize) -> &mut Option<Point> {
+    match index.checked_sub(JOINTS) {
+        None => &mut frame.joints[index],
+        Some(foot) => &mut frame.feet.as_flattened_mut()[foot],
+    }
+}
+
+fn runs(joints: &ImageJoints, index: usize, first_frame: u64) -> Vec<Run> {
     let mut runs = Vec::new();
     let mut open: Option<(u64, Vec<Point>)> = None;
     for frame in &joints.frames {
         let place = frame.frame - first_frame;
         let goes_on = open.as_ref().is_some_and(|(start, points)| start + points.len() as u64 == place);
-        if !goes_on || frame.joints[joint].is_none() {
+        if !goes_on || point(frame, index).is_none() {
             runs.extend(open.take().map(|(start, points)| Run::new(start, points)));
         }
-        if let Some(point) = frame.joints[joint] {
+        if let Some(point) = point(frame, index) {
             open.get_or_insert_with(|| (place, Vec::new())).1.push(point);
         }
     }
@@ -108,7 +124,8 @@ mod tests {
     fn swinging(frames: impl Iterator<Item = u64>) -> ImageJoints {
         let frame = |frame: u64| {
             let time = frame as f64 * 0.2;
-            JointFrame { frame, joints: [Some([time.sin(), time]); JOINTS] }
+            let point = Some([time.sin(), time]);
+            JointFrame { frame, joints: [point; JOINTS], feet: [[point; 2]; 2] }
         };
         ImageJoints { frames: frames.map(frame).collect(), unit: "m" }
     }
@@ -120,7 +137,8 @@ mod tests {
         let halved = resample(&original, 120.0, 60.0).unwrap();
         assert_eq!(halved.frames.len(), 11);
         for (index, frame) in halved.frames.iter().enumerate() {
-            assert_eq!((frame.frame, frame.joints), (index as u64 + 3, original.frames[2 * index].joints));
+            let recorded = &original.frames[2 * index];
+            assert_eq!((frame.frame, frame.joints, frame.feet), (index as u64 + 3, recorded.joints, recorded.feet));
         }
     }
 

@@ -1,7 +1,8 @@
 //! What makes a recording unfit for a side view's angles.
 
-use super::facing::{self, CLEAR_TRUNKS, Facing, TRAVEL_TRUNKS};
+use super::facing::{self, CLEAR_TRUNKS, TRAVEL_TRUNKS};
 use super::layout::Keypoint;
+use crate::cyclic::facing::Facing;
 use crate::cyclic::image_joints::{ImageJoints, Point};
 use crate::motion::joint_names::{HIP_CENTER, NECK};
 

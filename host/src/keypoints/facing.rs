@@ -104,7 +104,7 @@ mod tests {
             joints[HIP_CENTER] = Some([u, 100.0]);
             joints[NECK] = Some([u, 50.0]);
             (joints[8], joints[9], joints[10]) = (Some([u, 100.0]), Some([u + knee, 140.0]), Some([u, 180.0]));
-            JointFrame { frame, joints }
+            JointFrame { frame, joints, feet: Default::default() }
         };
         ImageJoints { frames: (0..30).map(frame).collect(), unit: "px" }
     }

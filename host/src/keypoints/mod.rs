@@ -9,6 +9,7 @@ pub mod detections;
 mod doubts;
 pub mod error;
 pub mod facing;
+pub mod feet;
 mod file_numbers;
 mod folder;
 mod frame_lists;
@@ -170,6 +171,10 @@ fn followed(frames: &[DetectedFrame], track: &PersonTrack, rate_hz: Option<f64>)
 
 fn image_joints(numbers: &[u64], people: &[Option<Vec<Keypoint>>]) -> ImageJoints {
     let joints = |person: &Option<Vec<Keypoint>>| person.as_ref().map_or([None; JOINTS], |person| stick_joints(person));
-    let frame = |(frame, person): (&u64, &Option<Vec<Keypoint>>)| JointFrame { frame: *frame, joints: joints(person) };
+    let frame = |(frame, person): (&u64, &Option<Vec<Keypoint>>)| JointFrame {
+        frame: *frame,
+        joints: joints(person),
+        feet: person.as_ref().map_or_else(Default::default, |person| feet::feet(person)),
+    };
     ImageJoints { frames: numbers.iter().zip(people).map(frame).collect(), unit: "px" }
 }

@@ -2,16 +2,16 @@
 
 use super::median::median;
 
-/// Samples on each side of a window of seven. Source: the default of MATLAB's `hampel`; Pose2Sim and
-/// Sports2D have the same window.
+/// Samples on each side of a window of seven. Source: the default of MATLAB's `hampel`; Pose2Sim
+/// and Sports2D have the same window.
 const HALF_WINDOW: usize = 3;
 /// Standard deviations beyond which a value is an outlier. Source: Pearson 2002, "Outliers in
 /// process modeling and identification", and MATLAB's `hampel`.
 const THRESHOLD: f64 = 3.0;
 /// Standard deviation of a normal distribution over its median absolute deviation: 1 / 0.6745.
 const NORMAL_SCALE: f64 = 1.4826;
-/// Values in a window that judge its middle; fewer judge nothing. Chosen: with four, the first value
-/// of a bend is an outlier.
+/// Values in a window that judge its middle; fewer judge nothing. Chosen: with four, the first
+/// value of a bend is an outlier.
 const MIN_VALUES: usize = 5;
 
 /// Takes outliers out of `series`; true in the result where one was. Up to three in a row are found

@@ -1,5 +1,5 @@
-//! Filters of evenly sampled series with gaps: outlier rejection, a gap limit, and smoothing without
-//! lag.
+//! Filters of evenly sampled series with gaps: outlier rejection, a gap limit, and smoothing
+//! without lag.
 //!
 //! Own code: the published crates for Butterworth filters and smoothing splines are parts of large
 //! numerical suites, bring a second version of nalgebra, or are in their first release.

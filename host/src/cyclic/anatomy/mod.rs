@@ -6,10 +6,12 @@
 
 pub mod angles;
 pub mod curves;
+pub mod measured;
 pub mod repetition;
 pub mod symmetry;
 
 pub use angles::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT, PAIRS, of_pose};
 pub use curves::{CycleCurves, CyclePointStatistics};
+pub use measured::{FOOT_ANGLES, MeasuredAngles};
 pub use repetition::{Range, Repetition};
 pub use symmetry::Symmetry;
