@@ -17,7 +17,11 @@ fn doubts(of: impl Fn(f64) -> (Point, f64, f64)) -> Vec<String> {
         ]
     };
     let people: Vec<Vec<Keypoint>> = (0..60).map(person).collect();
-    let frame = |(frame, person): (u64, &Vec<Keypoint>)| JointFrame { frame, joints: stick_joints(person) };
+    let frame = |(frame, person): (u64, &Vec<Keypoint>)| JointFrame {
+        frame,
+        joints: stick_joints(person),
+        feet: Default::default(),
+    };
     let joints = ImageJoints { frames: (0..).zip(&people).map(frame).collect(), unit: "px" };
     let people: Vec<Option<&Vec<Keypoint>>> = people.iter().map(Some).collect();
     let facing = facing::find(&joints, &people);
