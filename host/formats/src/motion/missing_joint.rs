@@ -62,7 +62,10 @@ pub fn lines(missing: &[MissingJoint], partial: bool, names: &[String]) -> Strin
     let joints: String = missing.iter().map(|joint| format!("\n  {joint}")).collect();
     let remedy = if partial { "" } else { ", or take what is there with --partial" };
     let names: Vec<String> = names.iter().filter(|name| !name.is_empty()).cloned().collect();
-    format!("{joints}\nname its points with --names FILE (lines as `left_hip,NAME`){remedy}; it has {}", listed(&names))
+    format!(
+        "{joints}\nname its points with `sinew angles --names FILE` (lines as `left_hip,NAME`){remedy}\nit has {}",
+        listed(&names)
+    )
 }
 
 /// The name of this side whose rest is most like one of `parts`.

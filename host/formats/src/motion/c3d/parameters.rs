@@ -75,7 +75,7 @@ impl Parameters {
         self.contents(group, name).map(|content| content.numbers.as_slice())
     }
 
-    /// The texts of a parameter, without zeros and spaces at their ends; none where it is not there.
+    /// The texts of a parameter, without zeros and spaces at their ends; none where it is missing.
     pub fn texts(&self, group: &str, name: &str) -> Vec<String> {
         let text = |bytes: &[u8]| {
             let text: String = bytes.iter().copied().map(char::from).collect();
