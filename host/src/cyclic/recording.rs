@@ -128,8 +128,9 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
     let table = if options.view == View::Space {
         in_space(&seen, &plane.from_before().project(covered), recorded_hz, options)?
     } else {
-        let is_from_before = options.view == View::Front;
-        let extra = if is_from_before { ExtraColumns::None } else { ExtraColumns::RootAndLengths { facing } };
+        // Places without a scale would pass for metres.
+        let is_bare = options.view == View::Front || motion.is_scale_assumed;
+        let extra = if is_bare { ExtraColumns::None } else { ExtraColumns::RootAndLengths { facing } };
         finished(&seen, Some(recorded_hz), options, facing, extra)?
     };
     let rate_hz = Some(options.rate_hz.unwrap_or(recorded_hz));

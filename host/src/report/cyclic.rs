@@ -18,6 +18,14 @@ use std::fmt::Write;
 /// Name of the table with the joints' places.
 const JOINTS_TABLE: &str = "joints.csv";
 
+/// Tables of feet and of what was measured, with what they hold.
+const GAIT_TABLES: [(&str, &str); 4] = [
+    ("strides.csv", "Each stride from foot strike to foot strike"),
+    ("events.csv", "Foot strikes and toe-offs"),
+    ("gait_curves.csv", "Each joint from foot strike to foot strike, mean and standard deviation"),
+    ("measured_anatomical.csv", "Flexion angles of what was measured, filtered, without a model of the motion"),
+];
+
 /// The run in `folder`.
 pub fn cyclic_run(mut folder: RunFolder, pictures: &mut Pictures) -> Run {
     let summary = folder.json("summary.json").unwrap_or_default();
@@ -35,12 +43,13 @@ pub fn cyclic_run(mut folder: RunFolder, pictures: &mut Pictures) -> Run {
     let anatomical = folder.table("anatomical.csv", "Flexion angles of each frame");
     let repetitions = folder.optional_table("repetitions.csv", "Each whole cycle");
     let symmetry = folder.optional_table("symmetry.csv", "Left against right");
+    let gait: Vec<Table> = GAIT_TABLES.iter().filter_map(|(name, what)| folder.optional_table(name, what)).collect();
     let joints = joints(&mut folder, estimates.as_ref());
     run.plots.extend(estimates.iter().flat_map(|estimates| estimate_plots(estimates, measured.as_ref(), rate_hz)));
     run.plots.extend(cycle_plots(curves.as_ref(), anatomical.as_ref(), repetitions.as_ref()));
     run.player = player(&mut folder, &summary, estimates.as_ref(), joints.as_ref(), pictures);
-    run.tables =
-        [repetitions, symmetry, curves, anatomical, estimates, measured, joints].into_iter().flatten().collect();
+    run.tables = [repetitions, symmetry].into_iter().flatten().chain(gait).collect();
+    run.tables.extend([curves, anatomical, estimates, measured, joints].into_iter().flatten());
     if !summary["options"].is_null() {
         run.tables.push(options_table("options", &summary["options"]));
     }
@@ -57,9 +66,22 @@ fn tell_what_was_run(run: &mut Run, folder: &mut RunFolder, summary: &Value) {
         summary,
         &[("sinew_version", "Version"), ("seed", "Seed"), ("table", "Input"), ("model", "Motion model")],
     );
-    let options =
-        [("filter", "Filter"), ("sigma_deg", "Sigma, degrees"), ("rate_hz", "Frame rate, Hz"), ("smooth", "Smoothed")];
+    let options = [
+        ("filter", "Filter"),
+        ("sigma_deg", "Sigma, degrees"),
+        ("rate_hz", "Frame rate, Hz"),
+        ("finished", "Finished recording"),
+        ("smooth", "Smoothed"),
+    ];
     run.facts.extend(facts_of(&summary["options"], &options));
+    run.facts.extend(facts_of(&summary["recording"], &[("facing", "The person faces"), ("source", "Recording")]));
+    if let Some(facing) = summary["recording"]["facing"].as_str().filter(|facing| *facing == "left") {
+        folder.notice(Level::Note, format!("the person faces {facing}; left and right are the person's own"));
+    }
+    for doubt in summary["doubts"].as_array().into_iter().flatten().filter_map(Value::as_str) {
+        folder.notice(Level::Warning, format!("doubt: {doubt}"));
+    }
+    run.highlights.extend(gait_facts(&summary["gait"]));
     if let Some(skipped) = summary["skipped_frames"].as_u64().filter(|count| *count > 0) {
         folder.notice(Level::Skipped, format!("the table leaves out {skipped} frames between its first and its last"));
     }
@@ -76,6 +98,28 @@ fn tell_what_was_run(run: &mut Run, folder: &mut RunFolder, summary: &Value) {
     if summary["repetitions"].as_array().is_some_and(Vec::is_empty) {
         folder.notice(Level::Note, "there is no whole cycle; curves over the cycle need a longer recording");
     }
+}
+
+/// What a coach asks of the feet: left and right beside each other.
+fn gait_facts(gait: &Value) -> Vec<Fact> {
+    let mean = |foot: &str, name: &str, scale: f64, decimals: usize| {
+        gait[foot][name]["mean"].as_f64().map_or_else(|| "-".to_owned(), |mean| format!("{:.decimals$}", scale * mean))
+    };
+    let fact = |label: &str, name: &str, scale: f64, decimals: usize, unit: &str| {
+        let is_known = ["left", "right"].iter().any(|foot| gait[*foot][name]["mean"].is_number());
+        let [left, right] = ["left", "right"].map(|foot| mean(foot, name, scale, decimals));
+        is_known.then(|| Fact::new(label, format!("left {left}, right {right} {unit}")))
+    };
+    [
+        fact("Stance", "stance_share", 100.0, 1, "% of the stride"),
+        fact("Step time", "step_time_s", 1.0, 3, "s"),
+        fact("Flight time", "flight_time_s", 1.0, 3, "s"),
+        fact("Step length", "step_length_m", 1.0, 2, "m"),
+        fact("Speed", "speed_m_per_s", 1.0, 2, "m/s"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// `joints.trc` as a table whose frames are those of the estimates.

@@ -84,9 +84,10 @@ pub struct TrackCyclicArgs {
     /// estimate.
     #[arg(long, value_name = "FILE.gif")]
     pub animation: Option<PathBuf>,
-    /// Height of the person, metres: the scale of the report's joints.trc.
-    #[arg(long, value_name = "METRES", default_value_t = 1.75)]
-    pub height: f64,
+    /// Height of the person, metres: the scale of step lengths and speeds, which a table in pixels
+    /// has only so, and of the report's joints.trc [there: 1.75].
+    #[arg(long, value_name = "METRES")]
+    pub height: Option<f64>,
     /// End with an error where something speaks against the result; it is written all the same.
     #[arg(long)]
     pub strict: bool,
@@ -159,7 +160,8 @@ impl TrackCyclicArgs {
 
     /// What can be checked before anything is read.
     pub(super) fn check(&self) -> Result<()> {
-        ensure!((0.3..=3.0).contains(&self.height), "`height` has to lie from 0.3 to 3 metres, not {}", self.height);
+        let height = self.height_m();
+        ensure!((0.3..=3.0).contains(&height), "`height` has to lie from 0.3 to 3 metres, not {height}");
         ensure!(
             !self.viewer.is_wanted() || self.report.is_some(),
             "`--rerun` shows a run directory; give one with `--report DIR`"
@@ -172,6 +174,11 @@ impl TrackCyclicArgs {
             check_writable_file(path)?;
         }
         Ok(())
+    }
+
+    /// Height of the person, metres: that of an adult where none is given.
+    pub(super) fn height_m(&self) -> f64 {
+        self.height.unwrap_or(1.75)
     }
 
     /// The models of `--model`.

@@ -139,7 +139,7 @@ impl Shown<'_> {
         let interrupted =
             || Interrupted { finished: run.finished(), all: Some(run.rows()), unit: "rows", out: args.out.clone() };
         ensure!(is_complete, interrupted());
-        let report = Report::new(angles, &tracked, options);
+        let report = Report::new(angles, &tracked, options, args.height);
         let mut text = summary(&report);
         if let Some(motions) = &motions {
             text.push_str(&told_motions(&args.model, motions));
@@ -203,7 +203,7 @@ impl Shown<'_> {
             table: &args.table.display().to_string(),
             model: &args.model.join(", "),
             options: self.options,
-            height_m: args.height,
+            height_m: args.height_m(),
             motions,
             overlay: drawn.as_ref(),
             is_finished: args.is_finished(),
@@ -217,7 +217,7 @@ impl Shown<'_> {
     /// skipped.
     fn draw(&self, tracked: &Tracked, report: &Report, stop: &AtomicBool, console: &Console) -> Result<String> {
         let (args, angles) = (self.args, self.angles);
-        let body = Body::of_table(angles, args.height);
+        let body = Body::of_table(angles, args.height_m());
         let figures = figures(angles, tracked, &report.measured_shares, &body, self.options.sigma_rad)?;
         let mut text = String::new();
         if let Some((frames, folder)) = &self.overlay {

@@ -8,7 +8,7 @@ use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
 use crate::cyclic::tracking::{Tracked, TrackedFrame, TrackingOptions};
 use crate::cyclic::turns::least_angle;
 use crate::cyclic::{AngleTable, CyclicModel};
-use crate::error::Result;
+use crate::error::{Context, Result};
 use std::f64::consts::TAU;
 
 /// Longest time without any measurement that is bridged, cycles. Beyond it the person may have
@@ -47,7 +47,9 @@ fn finish_angles<const N: usize>(
     tracked: &Tracked,
     options: &TrackingOptions,
 ) -> Result<Finished> {
-    let seen = Seen::<N>::of_table(table, &options.updates);
+    let seen = Seen::<N>::of_table(table, &options.updates).context(
+        "frame numbers jump over more than a hundred frames for each row; cut the recording where it jumps, or track it with --online",
+    )?;
     let first = phases_of(tracked, seen.first_frame);
     let prior = Shape::of_model(model);
     let phased = phase::fitted(&seen, first, &prior);

@@ -14,7 +14,7 @@ const MIN_NOISE_RAD: f64 = 0.0087;
 /// too few successive frames were seen.
 #[must_use]
 pub fn of_table(table: &AngleTable, updates: &Updates) -> Option<f64> {
-    let seen = Seen::<ANGLES>::of_table(table, updates);
+    let seen = Seen::<ANGLES>::of_table(table, updates)?;
     let is_long = |name: &str| name != "l_shoulder" && name != "r_shoulder" && name != "l_hip" && name != "r_hip";
     let long = HUMAN.angle_names().enumerate().filter(|(_, name)| is_long(name));
     let mut stds_rad: Vec<f64> = long.filter_map(|(angle, _)| of_angle(&seen, angle)).collect();

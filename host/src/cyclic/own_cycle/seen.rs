@@ -1,6 +1,7 @@
 //! What was seen of a recording, frame by frame.
 
 use crate::cyclic::AngleTable;
+use crate::cyclic::even_rows::EvenRows;
 use crate::cyclic::tracking::Updates;
 use crate::cyclic::turns::unwrap_along_time;
 
@@ -14,11 +15,12 @@ pub struct Seen<const N: usize> {
 }
 
 impl<const N: usize> Seen<N> {
-    /// The measurements of a table that `updates` lets the filter see.
+    /// The measurements of a table that `updates` lets the filter see; `None` where frame numbers
+    /// leave out so many frames that they must be wrong.
     #[must_use]
-    pub fn of_table(table: &AngleTable, updates: &Updates) -> Self {
+    pub fn of_table(table: &AngleTable, updates: &Updates) -> Option<Self> {
         let first_frame = table.first_frame();
-        let mut angles_rad = vec![[None; N]; (table.end_frame() - first_frame) as usize];
+        let mut angles_rad = vec![[None; N]; EvenRows::new(table)?.count()];
         for (index, row) in table.rows().iter().enumerate() {
             if updates.sees(first_frame, row.frame) {
                 let frame = &mut angles_rad[(row.frame - first_frame) as usize];
@@ -29,7 +31,7 @@ impl<const N: usize> Seen<N> {
         for angle in 0..N {
             unwrap_along_time(seen.angles_rad.iter_mut().map(|frame| &mut frame[angle]));
         }
-        seen
+        Some(seen)
     }
 
     /// One angle over time, radians.

@@ -4,6 +4,7 @@ use super::contents::{Origin, OverlayOrigin, Report};
 use crate::cyclic::about::About;
 use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, Range, Repetition, Symmetry};
 use crate::cyclic::angle_table::COLUMNS;
+use crate::cyclic::gait::{FootMeans, Gait};
 use crate::cyclic::tracking::{FilterName, StartName, Summary, Tracked, Updates};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -112,6 +113,22 @@ pub struct Document<'a> {
     measured_shares: BTreeMap<&'static str, f64>,
     repetitions: Vec<RepetitionRecord>,
     symmetry: &'a [Symmetry],
+    gait: Option<GaitRecord<'a>>,
+}
+
+/// Means over the strides.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct GaitRecord<'a> {
+    is_running: bool,
+    strides: usize,
+    left: &'a FootMeans,
+    right: &'a FootMeans,
+}
+
+impl<'a> GaitRecord<'a> {
+    const fn new(gait: &'a Gait) -> Self {
+        Self { is_running: gait.is_running, strides: gait.strides.len(), left: &gait.left, right: &gait.right }
+    }
 }
 
 impl<'a> Document<'a> {
@@ -133,6 +150,7 @@ impl<'a> Document<'a> {
             measured_shares: COLUMNS[1..].iter().copied().zip(report.measured_shares).collect(),
             repetitions: report.repetitions.iter().map(Into::into).collect(),
             symmetry: &report.symmetries,
+            gait: report.gait.as_ref().map(GaitRecord::new),
         }
     }
 }

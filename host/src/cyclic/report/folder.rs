@@ -29,6 +29,14 @@ impl Report {
         text("anatomical.csv", to_csv(&self.series))?;
         text("repetitions.csv", repetition::to_csv(&self.repetitions))?;
         text("curves.csv", self.curves.to_csv())?;
+        if let Some(measured) = &self.measured {
+            text("measured_anatomical.csv", measured.to_csv())?;
+        }
+        if let (Some(gait), Some(curves)) = (&self.gait, &self.gait_curves) {
+            text("events.csv", gait.events.to_csv(tracked.rate_hz))?;
+            text("strides.csv", gait.strides_to_csv(tracked.rate_hz))?;
+            text("gait_curves.csv", curves.to_csv())?;
+        }
         text("symmetry.csv", symmetry::to_csv(&self.symmetries))?;
         text("angles.mot", mot::to_mot(&self.series, origin.table))?;
         let body = body::Body::of_table(table, origin.height_m);

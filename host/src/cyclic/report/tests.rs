@@ -20,7 +20,7 @@ fn report(table: &AngleTable) -> (Report, Tracked, TrackingOptions) {
     let model = CyclicModel::from_option("walking").unwrap();
     let options = TrackingOptions { rate_hz: Some(60.0), ..TrackingOptions::default() };
     let tracked = track(table, &model, &options).unwrap();
-    (Report::new(table, &tracked, &options), tracked, options)
+    (Report::new(table, &tracked, &options, None), tracked, options)
 }
 
 #[test]
