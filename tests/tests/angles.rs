@@ -200,7 +200,7 @@ fn bad_motions_are_refused_with_file_line_and_rule() {
     refused("m.c3d", "no", "this is no C3D file");
     refused("m.mov", "no", "is of no known kind; give a .bvh");
     refused("m.json", "{}", "neither a list of COCO results");
-    refused("m.json", "[[1, 2, 3]]", "frame 0: 1 keypoints; 7 (head and arms), 17 (COCO)");
+    refused("m.json", "[[1, 2, 3]]", "frame 0: 1 keypoints; 7 (head and arms), 14 (CrowdPose)");
     refused("m.json", "[[], [1, 2]]", "frame 1: 2 numbers; each keypoint needs x, y and confidence");
     refused("m.csv", "a,b\n1,2\n", "line 1: no column is a known joint's");
     refused("m.csv", "neck_x,neck_y\n1,2,3\n", "line 2: a row needs 2 columns as the header has, found 3");

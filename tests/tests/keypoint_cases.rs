@@ -34,10 +34,10 @@ fn apart(found: &RecordedAngles, wanted: &RecordedAngles, shift: i64) -> (f64, u
         let other = row.frame.checked_add_signed(shift).and_then(|frame| wanted.table.row(frame));
         let Some(other) = other else { continue };
         count += 1;
-        for limb in LIMBS {
-            let difference = row.angles_rad[limb].unwrap() - other.angles_rad[limb].unwrap();
-            largest = largest.max(((difference + PI).rem_euclid(TAU) - PI).abs());
-        }
+        let both = LIMBS.map(|limb| Some(row.angles_rad[limb]? - other.angles_rad[limb]?));
+        assert!(both.iter().flatten().count() >= 4, "frame {}: {both:?}", row.frame);
+        let off = |difference: &f64| ((difference + PI).rem_euclid(TAU) - PI).abs();
+        largest = both.iter().flatten().map(off).fold(largest, f64::max);
     }
     (largest, count)
 }

@@ -7,12 +7,12 @@ use super::layout::{DetectedFrame, Keypoint};
 const LOW_QUANTILE: f64 = 0.1;
 /// How far a step may be from a whole number of frames, in frames. Chosen: a phone's variable rate
 /// is more than that.
-const MAX_OFF_FRAMES: f64 = 0.25;
+const MAX_OFF_FRAMES: f64 = 0.2;
 /// As above, for times that are rounded to [`ROUNDINGS_S`]: 60 frames a second in two decimals are
 /// 0.6 off.
 const MAX_OFF_ROUNDED_FRAMES: f64 = 0.7;
 /// Times may be rounded to these, seconds.
-const ROUNDINGS_S: [f64; 2] = [0.1, 0.01];
+const ROUNDINGS_S: [f64; 3] = [0.1, 0.01, 0.001];
 /// Frames that are left out may make the median step this many times the step between frames.
 const MAX_MEDIAN_STEPS: f64 = 2.5;
 /// Share of the steps that have to be whole. Chosen: a recording may stall now and then.
@@ -20,8 +20,9 @@ const MIN_WHOLE_SHARE: f64 = 0.95;
 /// Longest step that is filled where frames come at uneven times, in median steps (the issue's
 /// 2.5).
 const MAX_FILLED_STEPS: f64 = 2.5;
-/// A rate this near to a whole number is that number: times are rounded.
-const WHOLE_RATE: f64 = 1.0e-3;
+/// A rate this near to a whole number, as a share of it, is that number: times are rounded. 29.97 is
+/// farther from 30.
+const WHOLE_RATE: f64 = 5.0e-4;
 /// Most frames that times may spread over. Chosen: a day at 120 frames a second is 1e7.
 const MAX_FRAMES: f64 = 1.0e8;
 
@@ -181,6 +182,20 @@ mod tests {
             let wanted = 100.0 * (times[0] + frame.frame as f64 / found.rate_hz);
             assert!((frame.people[0][0].position_px[0] - wanted).abs() < 1.0e-9);
         }
+    }
+
+    /// Steps of 22, 33 and 47 ms are no multiples of a common one.
+    #[test]
+    fn a_variable_rate_is_not_taken_for_left_out_frames() {
+        let mut time_s = 0.0;
+        let times: Vec<f64> = (0..120)
+            .map(|row: usize| {
+                time_s += [0.022, 0.033, 0.033, 0.047][row * 7 % 11 % 4];
+                time_s
+            })
+            .collect();
+        let found = timing(&times).unwrap();
+        assert!(!found.is_even && (found.rate_hz - 31.0).abs() < 3.0, "{found:?}");
     }
 
     #[test]
