@@ -34,7 +34,17 @@ fn a_tracked_motion_is_recorded_with_its_options() {
         let all = ["track", "cyclic", &csv, "--model", "walking", "--out", &est, "--report", &report];
         sinew(&[&all, more].concat()).unwrap();
     };
-    track(&["--rate", "50", "--sigma-deg", "3.7", "--update-every", "2", "--initial-cycle-velocity", "0.02"]);
+    track(&[
+        "--online",
+        "--rate",
+        "50",
+        "--sigma-deg",
+        "3.7",
+        "--update-every",
+        "2",
+        "--initial-cycle-velocity",
+        "0.02",
+    ]);
     sinew(&["record", &path("report"), "--out", &path("walk.rec")]).unwrap();
     let options = TrackingOptions {
         rate_hz: Some(50.0),
@@ -47,9 +57,13 @@ fn a_tracked_motion_is_recorded_with_its_options() {
     let wanted = cyclic_stream(&table, &model, &options).unwrap();
     assert!(fs::read(path("walk.rec")).unwrap() == wanted, "the streams differ");
 
-    track(&["--filter", "paper"]);
+    track(&["--online", "--rate", "50", "--filter", "paper"]);
     let refusal = format!("{:#}", sinew(&["record", &path("report"), "--out", &path("walk.rec")]).unwrap_err());
     assert!(refusal.contains("--filter coupled"), "{refusal}");
+
+    track(&["--rate", "50"]);
+    let refusal = format!("{:#}", sinew(&["record", &path("report"), "--out", &path("walk.rec")]).unwrap_err());
+    assert!(refusal.contains("track it with `--online`"), "{refusal}");
 }
 
 #[test]

@@ -108,14 +108,16 @@ fn every_filter_goes_on_wherever_it_was_broken_off() {
     // At the first row with an angle, after it, at the gap, twice, and before the last.
     let breaks: [&[usize]; 5] = [&[3], &[4], &[40], &[20, 60], &[ROWS - 1]];
     for filter in ["coupled", "paper", "paper-cut", "particle"] {
-        walker.resumes(&["--model", "walking", "--filter", filter, "--particles", "700"], &breaks);
+        let options = ["--model", "walking", "--filter", filter, "--particles", "700"];
+        walker.resumes(&[&options[..], &["--online"]].concat(), &breaks);
+        walker.resumes(&options, &[&[40]]);
     }
 }
 
 #[test]
-fn a_start_without_a_position_and_a_recording_at_another_rate_go_on() {
+fn a_start_without_a_position_and_with_few_measurements_goes_on() {
     let walker = Walker::new();
-    walker.resumes(&["--model", "walking", "--init", "uniform", "--rate", "50", "--update-every", "3"], &[&[50]]);
+    walker.resumes(&["--model", "walking", "--online", "--init", "uniform", "--update-every", "3"], &[&[50]]);
     let random = ["--model", "walking", "--filter", "particle", "--particles", "1500", "--init", "random"];
     walker.resumes(&random, &[&[30]]);
 }

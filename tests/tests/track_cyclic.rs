@@ -64,7 +64,7 @@ fn a_walk_gives_its_cadence_one_row_an_input_row_and_the_same_bytes_again() {
 #[test]
 fn the_rate_scales_cadence_and_velocity() {
     let root = tempfile::tempdir().unwrap();
-    walk(200, 2.0 / 64.0).write(&root.path().join("slow.csv")).unwrap();
+    walk(200, 2.0 / 64.0).at_rate(Some(30.0)).write(&root.path().join("slow.csv")).unwrap();
     track(root.path(), "slow.csv", "est.csv", &["--rate", "30"]);
     let path = root.path().join("est.csv");
     let (cadence, velocity) = (column(&path, "cadence_per_min"), column(&path, "cycle_velocity_per_frame"));
@@ -89,7 +89,7 @@ fn skipped_frames_and_missing_cells_are_missing_measurements() {
         }
         row
     });
-    let table = AngleTable::new(rows.collect(), Vec::new()).unwrap();
+    let table = AngleTable::new(rows.collect(), Vec::new()).unwrap().at_rate(Some(60.0));
     table.write(&root.path().join("gaps.csv")).unwrap();
     track(root.path(), "gaps.csv", "est.csv", &[]);
     let path = root.path().join("est.csv");
@@ -113,7 +113,7 @@ fn only_every_kth_measurement_is_used() {
         angles_rad: if row.frame % 8 == 0 { row.angles_rad } else { [None; ANGLES] },
         ..row.clone()
     });
-    let thin = AngleTable::new(thin.collect(), Vec::new()).unwrap();
+    let thin = AngleTable::new(thin.collect(), Vec::new()).unwrap().at_rate(Some(60.0));
     whole.write(&root.path().join("whole.csv")).unwrap();
     thin.write(&root.path().join("thin.csv")).unwrap();
     track(root.path(), "whole.csv", "every.csv", &["--update-every", "8"]);
@@ -191,8 +191,8 @@ fn broken_tables_are_refused_with_file_line_and_rule() {
     refused(&cell(13, "-inf"), &["bad.csv:12", "`r_ankle_rad` is `-inf`"]);
     refused(&cell(1, "1e999"), &["bad.csv:12", "`neck_rad`"]);
     refused(&cell(1, "left"), &["bad.csv:12", "`neck_rad`"]);
-    refused(&with("10,0.1,0.2".into()), &["bad.csv:12", "14 columns as the header has, found 3"]);
-    refused(&with(format!("{},1.0", lines[11])), &["bad.csv:12", "found 15"]);
+    refused(&with("10,0.1,0.2".into()), &["bad.csv:12", "15 columns as the header has, found 3"]);
+    refused(&with(format!("{},1.0", lines[11])), &["bad.csv:12", "found 16"]);
     refused(&cell(0, "9"), &["bad.csv:12", "frame 9 follows frame 9"]);
     refused(&cell(0, "4"), &["bad.csv:12", "frame 4 follows frame 9"]);
     refused(&cell(0, "-4"), &["bad.csv:12", "`frame`"]);

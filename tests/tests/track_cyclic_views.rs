@@ -68,7 +68,7 @@ fn keypoints(frames: u64) -> AngleTable {
         extra: vec![(100 + row.frame).to_string(), "90".into(), "60".into(), "right".into()],
         ..row.clone()
     });
-    AngleTable::new(rows.collect(), columns.to_vec()).unwrap()
+    AngleTable::new(rows.collect(), columns.to_vec()).unwrap().at_rate(Some(60.0))
 }
 
 #[test]

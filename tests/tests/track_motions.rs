@@ -37,7 +37,7 @@ fn write_noisy(folder: &Path, recording: &Path, skeleton: Option<&Path>, frames:
 }
 
 fn write_noisy_rows(folder: &Path, rows: Vec<AngleRow>) {
-    let truth = AngleTable::new(rows, Vec::new()).unwrap();
+    let truth = AngleTable::new(rows, Vec::new()).unwrap().at_rate(Some(60.0));
     measurements(&truth, Protocol::Noisy, 6.0_f64.to_radians(), 1).write(&folder.join("noisy.csv")).unwrap();
 }
 
@@ -174,7 +174,7 @@ fn random_angles_are_none_and_the_estimate_stays_whole() {
     let mut stream = Stream::new(8, 0, 0);
     let mut row = || std::array::from_fn(|_| Some(TAU * f64::from(stream.uniform()) - TAU / 2.0));
     let rows: Vec<[Option<f64>; ANGLES]> = (0..200).map(|_| row()).collect();
-    AngleTable::from_angles(0, &rows).unwrap().write(&root.path().join("noisy.csv")).unwrap();
+    AngleTable::from_angles(0, &rows).unwrap().at_rate(Some(60.0)).write(&root.path().join("noisy.csv")).unwrap();
     let motions = motions(root.path(), &BANK);
     assert_eq!(motions.len(), 200);
     assert!(share(&motions, "none") >= 0.99, "{}", share(&motions, "none"));
@@ -198,7 +198,7 @@ fn one_model_has_no_motion_and_unlike_models_are_refused() {
     let walking = sinew_tests::workspace_root().join("host/models/walking.json");
     let rows: Vec<[Option<f64>; ANGLES]> =
         (0..90).map(|frame| [Some(0.3 * (TAU * f64::from(frame) / 64.0).sin()); ANGLES]).collect();
-    AngleTable::from_angles(0, &rows).unwrap().write(&root.path().join("noisy.csv")).unwrap();
+    AngleTable::from_angles(0, &rows).unwrap().at_rate(Some(60.0)).write(&root.path().join("noisy.csv")).unwrap();
     let track = |models: &[&str]| {
         let mut command = sinew(root.path());
         command.args(["track", "cyclic", "noisy.csv", "--out", "est.csv"]);

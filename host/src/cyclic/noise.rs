@@ -16,6 +16,6 @@ impl AngleTable {
                 *angle = angle.map(|angle| angle + noise);
             }
         }
-        Self::new(rows, Vec::new()).expect("only angles were changed, by finite noise")
+        Self::new(rows, Vec::new()).expect("only angles were changed, by finite noise").at_rate(self.rate_hz())
     }
 }

@@ -3,7 +3,8 @@
 use sinew::cyclic::angle_table::ANGLES;
 use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
 
-/// The shipped walk's mean pose at so many cycles a frame, from frame 0 at the start of a cycle on.
+/// The shipped walk's mean pose at so many cycles a frame, from frame 0 at the start of a cycle on,
+/// at 60 frames a second.
 pub fn walk(frames: u64, cycles_per_frame: f64) -> AngleTable {
     let model = CyclicModel::from_option("walking").unwrap();
     let view = model.view();
@@ -12,5 +13,5 @@ pub fn walk(frames: u64, cycles_per_frame: f64) -> AngleTable {
         let pose = view.mean_pose_rad::<ANGLES>(view.point(position));
         AngleRow { frame, angles_rad: pose.map(|angle| Some(f64::from(angle))), extra: Vec::new() }
     };
-    AngleTable::new((0..frames).map(row).collect(), Vec::new()).unwrap()
+    AngleTable::new((0..frames).map(row).collect(), Vec::new()).unwrap().at_rate(Some(60.0))
 }

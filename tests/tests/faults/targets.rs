@@ -53,7 +53,9 @@ fn a_table_comes_on_standard_input() {
     assert!(run(&folder, "walk.csv").status.success());
     let track = |table: &str, out: &str, input: Stdio| {
         let mut command = sinew_command();
-        command.current_dir(folder.path()).args(["track", "cyclic", table, "--model", "walking", "--out", out]);
+        command
+            .current_dir(folder.path())
+            .args(["track", "cyclic", table, "--model", "walking", "--online", "--out", out]);
         let output = command.stdin(input).output().unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         fs::read(folder.path().join(out)).unwrap()

@@ -177,9 +177,9 @@ impl Errors {
 #[must_use]
 pub fn measurements(truth: &AngleTable, protocol: Protocol, sigma_rad: f64, seed: u64) -> AngleTable {
     match protocol {
-        Protocol::ExactMean => {
-            AngleTable::new(truth.rows().to_vec(), Vec::new()).expect("the rows are those of a table")
-        }
+        Protocol::ExactMean => AngleTable::new(truth.rows().to_vec(), Vec::new())
+            .expect("the rows are those of a table")
+            .at_rate(truth.rate_hz()),
         Protocol::Noisy => truth.with_noise(sigma_rad, seed),
     }
 }
