@@ -61,7 +61,7 @@ fn noise_moves_events_by_less_than_a_frame_and_adds_none() {
     let clean = swinging(0..400, 0.4, 0.5);
     let mut rows = clean.rows().to_vec();
     for (index, angle) in rows.iter_mut().flat_map(|row| &mut row.angles_rad).enumerate() {
-        let noise = (12.9898 * index as f64).sin() * 43_758.5453;
+        let noise = (12.9898 * index as f64).sin() * 43_758.545;
         *angle = angle.map(|rad| rad + 0.18 * (noise - noise.floor() - 0.5));
     }
     let noisy = of_table(&AngleTable::new(rows, Vec::new()).unwrap(), 60.0, Scale::default()).unwrap();
