@@ -11,7 +11,6 @@ pub mod even_rows;
 pub mod export;
 pub mod facing;
 pub mod feet;
-pub mod feet_in_space;
 pub mod gait;
 pub mod heading;
 pub mod image_joints;

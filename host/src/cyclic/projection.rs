@@ -1,6 +1,5 @@
 //! Motion in space as a camera sees it that stands beside, or before, the person.
 
-use super::feet_in_space::SpatialFeet;
 use super::heading::{headings, straightness};
 use super::image_joints::{ImageJoints, JointFrame};
 use super::planar::{knee_direction, level_axis};
@@ -108,7 +107,7 @@ impl Plane {
 
     /// As [`Plane::project`], with the feet of each frame.
     #[must_use]
-    pub fn project_with_feet(&self, frames: &[SpatialJoints], feet: &[SpatialFeet]) -> ImageJoints {
+    pub fn project_with_feet(&self, frames: &[SpatialJoints], feet: &[[[Option<Vec3>; 2]; 2]]) -> ImageJoints {
         let frame = |index: usize, joints: &SpatialJoints| {
             let right = if let [right] = self.right[..] { right } else { self.right.get(index).copied().flatten() };
             let root = if self.forward == Forward::Turning { joints[HIP_CENTER] } else { Some(Vec3::zeros()) };

@@ -1,7 +1,6 @@
 //! Any recording that holds a moving person, as an angle table.
 
 use super::angle_table::AngleTable;
-use super::feet_in_space::feet_in_space;
 use super::image_joints::{ExtraColumns, ImageJoints};
 use super::projection::{Forward, Plane, UpAxis, View};
 use super::resample::resample;
@@ -102,7 +101,8 @@ pub fn read_space(path: &Path, options: &RecordingOptions) -> Result<MarkerMotio
 
 fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
     let motion = read_space(path, options)?;
-    let frames = JointSources::of_seen(&motion, options.partial, path)?.of_motion(&motion);
+    let sources = JointSources::of_seen(&motion, options.partial, path)?;
+    let frames = sources.of_motion(&motion);
     let recorded_hz = rounded_rate(f64::from(motion.frames_per_second));
     // The way from the table's first to its last frame, whatever the recording has after that.
     let step = recorded_hz / options.rate_hz.unwrap_or(recorded_hz);
@@ -123,7 +123,7 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
             );
         }
     }
-    let seen = plane.project_with_feet(covered, &feet_in_space(&motion));
+    let seen = plane.project_with_feet(covered, &sources.feet_of_motion(&motion));
     let facing = options.facing.unwrap_or(Facing::Right);
     let table = if options.view == View::Space {
         in_space(&seen, &plane.from_before().project(covered), recorded_hz, options)?
