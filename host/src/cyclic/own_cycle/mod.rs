@@ -17,6 +17,9 @@ pub mod phase;
 pub mod seen;
 pub mod shape;
 
+#[cfg(test)]
+mod tests;
+
 pub use finish::{Finished, finish};
 pub use seen::Seen;
 pub use shape::Shape;

@@ -22,8 +22,8 @@ pub struct Summary {
     pub seen_s: f64,
     /// Cycles passed while the person was seen, with their fraction.
     pub cycles: f64,
-    /// Cycles per minute: cycles passed over the time that they took; `None` for less than
-    /// [`MIN_CYCLES`].
+    /// Cycles per minute: whole cycles over the time that they took; where there are less than two
+    /// of them, all that was passed; `None` for less than [`MIN_CYCLES`].
     pub cadence_per_min: Option<f64>,
     /// Standard deviation of the cadence from cycle to cycle; `None` for less than three whole
     /// cycles.
@@ -176,6 +176,15 @@ impl RunningSummary {
         self.log_likelihood += f64::from(estimate.log_likelihood);
     }
 
+    fn cadence_per_min(&self, whole_cycles_s: &[[f64; 2]]) -> Option<f64> {
+        let whole_s: f64 = whole_cycles_s.iter().map(|[start, end]| end - start).sum();
+        let seen_s = self.seen_frames as f64 / self.rate_hz;
+        if whole_cycles_s.len() as f64 >= MIN_CYCLES {
+            return Some(60.0 * whole_cycles_s.len() as f64 / whole_s);
+        }
+        (self.seen_cycles.abs() >= MIN_CYCLES).then(|| 60.0 * self.seen_cycles / seen_s)
+    }
+
     /// Rows so far.
     #[must_use]
     pub const fn rows(&self) -> u64 {
@@ -196,7 +205,7 @@ impl RunningSummary {
             duration_s: (frame_numbers - 1) as f64 / self.rate_hz,
             seen_s,
             cycles: self.seen_cycles,
-            cadence_per_min: (self.seen_cycles.abs() >= MIN_CYCLES).then(|| 60.0 * self.seen_cycles / seen_s),
+            cadence_per_min: self.cadence_per_min(&whole_cycles_s),
             cadence_std_per_min: spread_per_min(&whole_cycles_s),
             last_cadence_per_min: last_cadence.0,
             last_cadence_std_per_min: last_cadence.1,

@@ -1,0 +1,153 @@
+//! A synthetic person with their own cycle, whose recording is finished.
+
+use super::{Finished, Seen, Shape, finish};
+use crate::cyclic::angle_table::ANGLES;
+use crate::cyclic::tracking::{TrackingOptions, Updates, track};
+use crate::cyclic::turns::least_angle;
+use crate::cyclic::{AngleRow, AngleTable, CyclicModel, SyntheticPerson};
+use proptest::prelude::*;
+
+/// A person at 30 frames a second, and `cycles` of theirs with noise of a degree.
+fn recorded(model: &CyclicModel, cycles: u32, seed: u64) -> (SyntheticPerson<'_>, AngleTable) {
+    let person = SyntheticPerson::draw(model, 30.0, seed).unwrap();
+    let table = person.measured(cycles, 1.0_f64.to_radians(), 0.0, seed).unwrap();
+    (person, table)
+}
+
+fn finished(model: &CyclicModel, table: &AngleTable) -> Finished {
+    let options =
+        TrackingOptions { rate_hz: Some(30.0), sigma_rad: 1.0_f64.to_radians(), ..TrackingOptions::default() };
+    finish(table, model, &track(table, model, &options).unwrap(), &options).unwrap()
+}
+
+/// The table with `change` made to each row.
+fn with(table: &AngleTable, change: impl Fn(&mut AngleRow)) -> AngleTable {
+    let mut rows = table.rows().to_vec();
+    rows.iter_mut().for_each(change);
+    AngleTable::new(rows, Vec::new()).unwrap()
+}
+
+#[test]
+fn the_models_shape_is_its_mean_cycle() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    let shape = Shape::<ANGLES>::of_model(&model);
+    for percent in 0..100 {
+        let phase = f64::from(percent) / 100.0;
+        let pose = model.view().mean_pose_rad::<ANGLES>(model.view().point(phase as f32));
+        for (found, wanted) in shape.at(phase).0.iter().zip(pose) {
+            assert!(least_angle(found - f64::from(wanted)).abs() < 0.3_f64.to_radians(), "{phase}: {found} {wanted}");
+        }
+    }
+}
+
+#[test]
+fn phases_and_angles_are_those_of_the_person() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    for seed in 1..4 {
+        let (person, table) = recorded(&model, 6, seed);
+        let run = finished(&model, &table);
+        let frames = &run.tracked.frames;
+        let per_frame = frames[frames.len() - 1].cycles / (frames.len() - 1) as f64;
+        assert!((per_frame * person.cycle_frames() - 1.0).abs() < 0.01, "seed {seed}: {per_frame}");
+        let squares = frames.iter().map(|frame| {
+            let truth = person.pose_rad(frame.frame as f64);
+            least_angle(frame.angles_rad[9] - truth[9]).powi(2)
+        });
+        let rms = (squares.sum::<f64>() / frames.len() as f64).sqrt().to_degrees();
+        assert!((0.2..1.0).contains(&rms), "seed {seed}: shank {rms} degrees off at one of noise");
+        assert!(run.misfit.is_some_and(|misfit| (0.1..2.0).contains(&misfit)), "{:?}", run.misfit);
+    }
+}
+
+#[test]
+fn a_gap_has_the_persons_own_knee() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    let (person, table) = recorded(&model, 7, 2);
+    let gap = 90..110;
+    let run = finished(
+        &model,
+        &with(&table, |row| {
+            if gap.contains(&row.frame) {
+                row.angles_rad[9] = None;
+            }
+        }),
+    );
+    let off = |frame: u64| {
+        let truth = person.pose_rad(frame as f64)[9];
+        least_angle(run.tracked.frames[frame as usize].angles_rad[9] - truth).abs().to_degrees()
+    };
+    let worst = gap.clone().map(off).fold(0.0, f64::max);
+    assert!(worst < 4.0, "{worst} degrees off in the gap");
+    let std = |frame: usize| run.tracked.frames[frame].estimate.angle_variance_rad2[9];
+    assert!(std(100) > std(50), "less is known in the gap");
+}
+
+#[test]
+fn nothing_is_known_before_the_first_and_after_the_last_measurement_and_in_between_for_long() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    let (person, table) = recorded(&model, 9, 3);
+    let last = table.rows().len() as u64 - 1;
+    let is_seen = |frame: u64| (20..110).contains(&frame) || (180..last - 9).contains(&frame);
+    let run = finished(
+        &model,
+        &with(&table, |row| {
+            if !is_seen(row.frame) {
+                row.angles_rad = [None; ANGLES];
+            }
+        }),
+    );
+    for frame in &run.tracked.frames {
+        assert_eq!(frame.is_known, is_seen(frame.frame), "frame {}", frame.frame);
+    }
+    let summary = crate::cyclic::tracking::Summary::of(&run.tracked);
+    let truth = 60.0 * 30.0 / person.cycle_frames();
+    assert!((summary.cadence_per_min.unwrap() / truth - 1.0).abs() < 0.01, "{summary:?} {truth}");
+    assert!(summary.seen_s < summary.duration_s - 3.0);
+}
+
+#[test]
+fn a_pause_is_no_cycle() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    let person = SyntheticPerson::draw(&model, 30.0, 4).unwrap();
+    // Two seconds of standing in mid-stride after three seconds.
+    let moment = |frame: u64| frame.min(90) as f64 + frame.saturating_sub(150) as f64;
+    let angles: Vec<[Option<f64>; ANGLES]> = (0..300).map(|frame| person.pose_rad(moment(frame)).map(Some)).collect();
+    let table = AngleTable::from_angles(0, &angles).unwrap();
+    let run = finished(&model, &table);
+    let cycles = run.tracked.frames[299].cycles;
+    assert!((cycles - moment(299) / person.cycle_frames()).abs() < 0.15, "{cycles}");
+    let paused = run.tracked.frames[140].cycles - run.tracked.frames[100].cycles;
+    assert!(paused.abs() < 0.1, "{paused}");
+}
+
+#[test]
+fn frame_numbers_that_must_be_wrong_are_refused() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    let (_, table) = recorded(&model, 2, 1);
+    let far = with(&table, |row| {
+        if row.frame > 30 {
+            row.frame += 900_000_000_000;
+        }
+    });
+    let options = TrackingOptions { rate_hz: Some(30.0), ..TrackingOptions::default() };
+    let error = finish(&far, &model, &track(&far, &model, &options).unwrap(), &options).unwrap_err();
+    assert!(error.to_string().contains("frame numbers jump"), "{error}");
+    assert_eq!(Seen::<ANGLES>::of_table(&far, &Updates::All), None);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn every_recording_is_finished_with_finite_angles(
+        angles in prop::collection::vec(prop::array::uniform13(prop::option::weighted(0.6, -9.0..9.0_f64)), 1..60),
+    ) {
+        prop_assume!(angles.iter().flatten().any(Option::is_some));
+        let model = CyclicModel::from_option("walking").unwrap();
+        let table = AngleTable::from_angles(5, &angles).unwrap();
+        let run = finished(&model, &table);
+        for frame in &run.tracked.frames {
+            prop_assert!(frame.angles_rad.iter().all(|angle| angle.is_finite()) && frame.cycles.is_finite());
+            prop_assert!((0.0..=1.0).contains(&frame.estimate.cycle_position));
+        }
+    }
+}
