@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Column of which way the person faces in the image: `left` or `right`.
+pub const FACING: &str = "facing";
+
 /// Direction in the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "command", derive(clap::ValueEnum))]

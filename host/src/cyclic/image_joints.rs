@@ -2,7 +2,7 @@
 
 use super::angle_table::{ANGLES, AngleRow, AngleTable};
 use super::error::CyclicError;
-use super::facing::Facing;
+use super::facing::{FACING, Facing};
 use super::feet::{self, Feet};
 use super::turns::unwrap_along_time;
 use crate::motion::joint_names::JOINTS;
@@ -112,9 +112,6 @@ impl ImageJoints {
         AngleTable::new(rows, columns)
     }
 }
-
-/// Column of which way the person faces in the image: `left` or `right`.
-pub const FACING: &str = "facing";
 
 /// Names of the extra columns.
 fn extra_columns(extra: ExtraColumns, unit: &str) -> Vec<String> {

@@ -1,9 +1,7 @@
 //! Tables of earlier versions, in which left and right of a person who faces left were exchanged.
 
 use super::columns::{ANGLES, COLUMNS};
-use super::rows::AngleRow;
-use crate::cyclic::facing::Facing;
-use crate::cyclic::image_joints::FACING;
+use crate::cyclic::facing::{FACING, Facing};
 
 /// Column that said `1` where left and right were exchanged.
 const EXCHANGED: &str = "mirrored";
@@ -31,18 +29,18 @@ impl OwnSides {
         Some(Self { column, pairs })
     }
 
-    /// Gives a row its own sides back.
-    pub fn restore(&self, row: &mut AngleRow) {
-        let facing = if row.extra[self.column] == "1" { Facing::Left } else { Facing::Right };
-        facing.name().clone_into(&mut row.extra[self.column]);
+    /// Gives a row's angles and its extra cells their own sides back.
+    pub fn restore(&self, angles_rad: &mut [Option<f64>; ANGLES], extra: &mut [String]) {
+        let facing = if extra[self.column] == "1" { Facing::Left } else { Facing::Right };
+        facing.name().clone_into(&mut extra[self.column]);
         if facing == Facing::Right {
             return;
         }
-        self.pairs.iter().for_each(|[left, right]| row.extra.swap(*left, *right));
+        self.pairs.iter().for_each(|[left, right]| extra.swap(*left, *right));
         for left in 0..ANGLES {
             let other = COLUMNS[left + 1].strip_prefix("l_").map(|name| format!("r_{name}"));
             if let Some(right) = other.and_then(|name| COLUMNS[1..].iter().position(|column| *column == name)) {
-                row.angles_rad.swap(left, right);
+                angles_rad.swap(left, right);
             }
         }
     }

@@ -173,7 +173,7 @@ impl<R: Read> AngleRows<R> {
             checked.map_err(|rule| CyclicError::broken(path, line_of(&record), rule))?;
         }
         if let Some(own_sides) = &self.own_sides {
-            own_sides.restore(&mut row);
+            own_sides.restore(&mut row.angles_rad, &mut row.extra);
         }
         Ok(Some(ReadRow { row, side_rad, time_s }))
     }

@@ -95,3 +95,32 @@ proptest! {
         prop_assert_eq!(AngleTable::parse(&table.to_csv().unwrap(), Path::new("t.csv")).unwrap(), table);
     }
 }
+
+/// A table of version 0.2.0 of a person who faced left: left and right were exchanged.
+#[test]
+fn old_tables_get_their_own_sides_back() {
+    let angles: Vec<String> = (1..=ANGLES).map(|angle| format!("0.{angle:02}")).collect();
+    let text = format!(
+        "{},l_knee_length_px,r_knee_length_px,mirrored\n0,{},80.0,90.0,1\n1,{},80.0,90.0,0\n",
+        COLUMNS.join(","),
+        angles.join(","),
+        angles.join(",")
+    );
+    let table = AngleTable::parse(&text, Path::new("old.csv")).unwrap();
+    let [exchanged, plain] = table.rows() else { panic!("{table:?}") };
+    assert_eq!(exchanged.extra, ["90.0", "80.0", "left"]);
+    assert_eq!(plain.extra, ["80.0", "90.0", "right"]);
+    assert_eq!((exchanged.angles_rad[8], exchanged.angles_rad[11]), (plain.angles_rad[11], plain.angles_rad[8]));
+    assert_eq!(exchanged.angles_rad[0], plain.angles_rad[0]);
+}
+
+#[test]
+fn times_give_the_rate_and_are_written() {
+    let table = AngleTable::from_angles(3, &[[Some(0.5); ANGLES]; 4]).unwrap().at_rate(Some(29.97));
+    let text = table.to_csv().unwrap();
+    assert!(text.lines().next().unwrap().ends_with("r_ankle_rad,time_s"));
+    let read = AngleTable::parse(&text, Path::new("t.csv")).unwrap();
+    assert_eq!((read.rate_hz(), read.extra_columns().len()), (Some(29.97), 0));
+    let uneven = text.replace("4,0.5", "9,0.5");
+    assert!(AngleTable::parse(&uneven, Path::new("t.csv")).is_err());
+}

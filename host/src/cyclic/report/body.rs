@@ -3,8 +3,8 @@
 use crate::cyclic::AngleTable;
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::export::trc::standard_lengths_m;
-use crate::cyclic::facing::Facing;
-use crate::cyclic::image_joints::{FACING, Point};
+use crate::cyclic::facing::{FACING, Facing};
+use crate::cyclic::image_joints::Point;
 use crate::motion::anthropometry::{SHANK, THIGH, TRUNK};
 use sinew_core::skeleton::stick_figure::HUMAN;
 
