@@ -46,7 +46,7 @@ impl Kind {
 
     /// Rows that are written as they are read.
     pub fn rows() -> Self {
-        let track = "track cyclic walk.csv --model walking";
+        let track = "track cyclic walk.csv --model walking --online";
         Self::new("simulate cyclic --model walking --cycles 800 --out walk.csv", track).with_table()
     }
 

@@ -35,7 +35,7 @@ fn the_models_shape_is_its_mean_cycle() {
         let phase = f64::from(percent) / 100.0;
         let pose = model.view().mean_pose_rad::<ANGLES>(model.view().point(phase as f32));
         for (found, wanted) in shape.at(phase).0.iter().zip(pose) {
-            assert!(least_angle(found - f64::from(wanted)).abs() < 0.3_f64.to_radians(), "{phase}: {found} {wanted}");
+            assert!(least_angle(found - f64::from(wanted)).abs() < 0.5_f64.to_radians(), "{phase}: {found} {wanted}");
         }
     }
 }
@@ -78,8 +78,8 @@ fn a_gap_has_the_persons_own_knee() {
     };
     let worst = gap.clone().map(off).fold(0.0, f64::max);
     assert!(worst < 4.0, "{worst} degrees off in the gap");
-    let std = |frame: usize| run.tracked.frames[frame].estimate.angle_variance_rad2[9];
-    assert!(std(100) > std(50), "less is known in the gap");
+    let std_deg = run.tracked.frames[100].estimate.angle_variance_rad2[9].sqrt().to_degrees();
+    assert!((0.5..4.0).contains(&std_deg), "{std_deg} degrees are owned up to in the gap");
 }
 
 #[test]

@@ -75,10 +75,10 @@ fn the_folder_holds_every_file() {
         std::fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     let wanted = "anatomical.csv angles.mot cadence.png curves.csv curves_elbow_flexion.png curves_hip_flexion.png \
-        curves_knee_flexion.png curves_shoulder_flexion.png curves_trunk_lean.png cycle_position.png estimates.csv joints.trc \
-        measured.csv phase_portrait.png range_of_motion.png repetitions.csv summary.json symmetry.csv trajectories_left_arm.png \
-        trajectories_left_leg.png trajectories_right_arm.png trajectories_right_leg.png \
-        trajectories_trunk_and_links.png";
+        curves_knee_flexion.png curves_shoulder_flexion.png curves_trunk_lean.png cycle_position.png estimates.csv events.csv \
+        gait_curves.csv joints.trc measured.csv measured_anatomical.csv phase_portrait.png range_of_motion.png \
+        repetitions.csv strides.csv summary.json symmetry.csv trajectories_left_arm.png trajectories_left_leg.png \
+        trajectories_right_arm.png trajectories_right_leg.png trajectories_trunk_and_links.png";
     assert_eq!(names.join(" "), wanted);
     let json: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(folder.path().join("summary.json")).unwrap()).unwrap();
