@@ -159,7 +159,7 @@ fn a_run_begun_otherwise_is_refused_by_what_differs() {
     walker.break_off("run", &model, 33);
     let estimates = fs::read(walker.path("run/est.csv")).unwrap();
     refused(&["--model", "running"], &["model = [\"walking\"], not [\"running\"]", anew]);
-    refused(&["--model", "walking", "--sigma-deg", "3"], &["sigma_deg = 6.0, not 3.0", anew]);
+    refused(&["--model", "walking", "--sigma-deg", "3"], &["sigma_deg = null, not 3.0", anew]);
     refused(&["--model", "walking", "--smooth"], &["smooth = false, not true", anew]);
     refused(&["--model", "walking", "--filter", "particle"], &["filter = \"coupled\", not \"particle\"", anew]);
     let table = fs::read_to_string(walker.path("walk.csv")).unwrap();

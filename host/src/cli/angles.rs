@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
   sinew simulate cyclic --model walking --out measured.csv
   sinew track cyclic measured.csv --model walking --out est.csv --report run
   sinew angles run/joints.trc --rate 60 --out walk.csv
-  sinew angles squat.trc --out squat.csv --anatomical flexion.csv --filter gcv")]
+  sinew angles run/joints.trc --out walk.csv --anatomical flexion.csv --filter gcv")]
 pub struct AnglesArgs {
     /// Motion in space or 2D keypoints.
     #[arg(help = format!(
@@ -80,8 +80,8 @@ pub struct AnglesArgs {
     /// Write a table for each person in keypoints: `OUT_1.csv`, `OUT_2.csv`, ...
     #[arg(long, conflicts_with_all = ["person", "anatomical"])]
     pub all: bool,
-    /// Flexion angles of what was measured to write, degrees: trunk, shoulders, elbows, hips, knees,
-    /// and ankles and feet where heels and toes are seen.
+    /// Flexion angles of what was measured to write, degrees: trunk, shoulders, elbows, hips,
+    /// knees, and ankles and feet where heels and toes are seen.
     #[arg(long, value_name = "FLEXION.csv")]
     pub anatomical: Option<PathBuf>,
     /// How these are filtered.

@@ -20,8 +20,8 @@ const MIN_WHOLE_SHARE: f64 = 0.95;
 /// Longest step that is filled where frames come at uneven times, in median steps (the issue's
 /// 2.5).
 const MAX_FILLED_STEPS: f64 = 2.5;
-/// A rate this near to a whole number, as a share of it, is that number: times are rounded. 29.97 is
-/// farther from 30.
+/// A rate this near to a whole number, as a share of it, is that number: times are rounded. 29.97
+/// is farther from 30.
 const WHOLE_RATE: f64 = 5.0e-4;
 /// Most frames that times may spread over. Chosen: a day at 120 frames a second is 1e7.
 const MAX_FRAMES: f64 = 1.0e8;

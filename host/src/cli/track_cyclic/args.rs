@@ -53,9 +53,9 @@ pub struct TrackCyclicArgs {
     /// Use only the measurements of these frames.
     #[arg(long, value_name = "F1,F2,...", value_delimiter = ',')]
     pub update_at: Option<Vec<u64>>,
-    /// Estimate each frame from those before it alone, as firmware does, and keep none of them. Else
-    /// a table is taken as a finished recording: what was measured, filtered, and in gaps the
-    /// person's own cycle. So are tables of more than 100,000 rows, and what comes on standard input.
+    /// Estimate each frame from those before it alone, as firmware does; so are more than 100,000
+    /// rows, and what comes on standard input. Else a table is a finished recording: what was
+    /// measured, filtered, and in gaps the person's own cycle.
     #[arg(long, conflicts_with = "smooth")]
     pub online: bool,
     /// Give each frame what the filter says given the whole recording, later frames included (not

@@ -1,5 +1,5 @@
-//! MOT motion files: a short header, then a tab-separated table of time and angles in degrees, under
-//! the names of OpenSim's coordinates.
+//! MOT motion files: a short header, then a tab-separated table of time and angles in degrees,
+//! under the names of OpenSim's coordinates.
 
 use crate::cyclic::anatomy::{AnatomicalSeries, COUNT};
 use std::fmt::Write as _;

@@ -10,8 +10,8 @@ use crate::signal::{FilterKind, FilterOptions, filtered, hampel};
 /// What makes a row an outlier is at least so far off, radians: three degrees are seen in no angle
 /// that people read, though Hampel's identifier rejects less where nothing else is noisy.
 const MIN_OUTLIER_RAD: f64 = 0.052;
-/// The same in standard deviations of the noise: of 13 angles one is beyond 4.5 by chance in one row
-/// of ten thousand.
+/// The same in standard deviations of the noise: of 13 angles one is beyond 4.5 by chance in one
+/// row of ten thousand.
 const OUTLIER_STDS: f64 = 4.5;
 
 /// One angle in every frame.

@@ -34,7 +34,7 @@ pub fn estimated(tracked: &Tracked, summary: &Summary, measured_shares: &[f64; A
         frames.push(before.frame);
         poses.push(pose(&before.angles_rad, before.is_known));
         let step = after.frame - before.frame;
-        // Not so where there is no cadence, or a negative one: then there are no cycles to bridge for.
+        // Not so without a cadence, or with a negative one: there are no cycles to bridge for.
         if step as f64 <= longest {
             for k in 1..step {
                 let share = k as f64 / step as f64;
