@@ -1,6 +1,7 @@
 //! What cannot be right about a tracked recording, in words.
 
 use super::anatomy::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT};
+use super::gait::Gait;
 use super::model::CyclicModel;
 use super::tracking::Summary;
 use super::tracking::summary::MIN_CYCLES;
@@ -13,16 +14,12 @@ const CADENCE_RANGE: [f64; 2] = [0.4, 2.5];
 /// a side view except about the shoulder.
 const MAX_RANGE_DEG: f64 = 170.0;
 
-/// How far a person's own cycle may lie from the model's, in the standard deviations between people
-/// that the model was trained on.
-const MAX_MISFIT: f64 = 2.5;
-
 /// Angles whose range has a limit: all but the shoulders.
 const LIMITED: [&str; 5] = ["trunk_lean", "elbow_flexion", "hip_flexion", "knee_flexion", "ankle_dorsiflexion"];
 
 /// Doubts about a run, one sentence each, with the remedy.
 #[must_use]
-pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel, misfit: Option<f64>) -> Vec<String> {
+pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel, gait: Option<&Gait>) -> Vec<String> {
     let mut doubts = Vec::new();
     if summary.cycles < 0.0 {
         doubts.push(format!(
@@ -45,12 +42,18 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
     if model.numbers().turns_per_cycle.iter().all(|turns| *turns == 0) {
         doubts.extend(wide_ranges(series));
     }
-    if let Some(misfit) = misfit.filter(|misfit| *misfit > MAX_MISFIT) {
-        doubts.push(format!(
-            "the motion lies {misfit:.1} times as far from the model as people differ: another --model, or none, fits it"
-        ));
+    let (walks, runs) = (is_shipped(model, "walking"), is_shipped(model, "running"));
+    match gait.map(|gait| gait.is_running) {
+        Some(true) if walks => doubts.push("the feet run, and the model walks: use --model running".to_owned()),
+        Some(false) if runs => doubts.push("the feet walk, and the model runs: use --model walking".to_owned()),
+        _ => {}
     }
     doubts
+}
+
+/// Whether a model is the one that ships under this name.
+fn is_shipped(model: &CyclicModel, name: &str) -> bool {
+    CyclicModel::from_option(name).is_ok_and(|shipped| shipped.numbers() == model.numbers())
 }
 
 fn wide_ranges(series: &AnatomicalSeries) -> Vec<String> {

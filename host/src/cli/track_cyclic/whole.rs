@@ -6,7 +6,7 @@ use super::place::Place;
 use super::summary_line::summary_line;
 use crate::cli::console::Console;
 use crate::cyclic::about::About;
-use crate::cyclic::own_cycle::{Finished, finish, noise};
+use crate::cyclic::own_cycle::{finish, noise};
 use crate::cyclic::pictures::{OverlayFrames, animation};
 use crate::cyclic::plausibility;
 use crate::cyclic::report::body::Body;
@@ -130,10 +130,7 @@ impl Shown<'_> {
         let Self { args, angles, options, .. } = self;
         let (tracked, motions) = run.answered()?;
         let is_finished = is_complete && args.is_finished();
-        let Finished { tracked, misfit } = match is_finished {
-            true => finish(angles, &self.models[0], &tracked, options)?,
-            false => Finished { tracked, misfit: None },
-        };
+        let tracked = if is_finished { finish(angles, &self.models[0], &tracked, options)? } else { tracked };
         let motions = motions.map(|motions| motion_cells(&args.model, &motions));
         table::write(&tracked, motions.as_ref(), &args.out)?;
         let interrupted =
@@ -144,7 +141,7 @@ impl Shown<'_> {
         if let Some(motions) = &motions {
             text.push_str(&told_motions(&args.model, motions));
         }
-        let doubts = self.doubts(&report, misfit);
+        let doubts = self.doubts(&report);
         text.extend(doubts.iter().map(|doubt| format!("doubt: {doubt}\n")));
         text.push_str(&format!("wrote {}\n", args.out.display()));
         if let Some(output) = &self.output {
@@ -176,11 +173,11 @@ impl Shown<'_> {
     }
 
     /// What speaks against the recording or the result.
-    fn doubts(&self, report: &Report, misfit: Option<f64>) -> Vec<String> {
+    fn doubts(&self, report: &Report) -> Vec<String> {
         let of_recording = self.about.iter().flat_map(|about| about.doubts.clone());
         let model = &self.models[0];
         let of_run = match self.models.len() {
-            1 => plausibility::doubts(&report.summary, &report.series, model, misfit),
+            1 => plausibility::doubts(&report.summary, &report.series, model, report.gait.as_ref()),
             _ => Vec::new(),
         };
         of_recording.chain(of_run).collect()

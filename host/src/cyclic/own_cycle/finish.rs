@@ -15,16 +15,6 @@ use std::f64::consts::TAU;
 /// stopped: nothing is said, and the cycles on both sides are counted apart.
 const LONGEST_BRIDGE_CYCLES: f64 = 1.0;
 
-/// A finished recording.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Finished {
-    /// The filter's run with angles and phases of the whole recording.
-    pub tracked: Tracked,
-    /// How far the person's own cycle lies from the model's, in the standard deviations between
-    /// people; `None` where the model has none.
-    pub misfit: Option<f64>,
-}
-
 /// The run of a filter over a table with angles and phases of the whole recording: what was
 /// measured, filtered, and in gaps the person's own cycle. Rows in which nothing is known say so.
 ///
@@ -35,7 +25,7 @@ pub fn finish(
     model: &CyclicModel,
     tracked: &Tracked,
     options: &TrackingOptions,
-) -> Result<Finished> {
+) -> Result<Tracked> {
     let finish =
         if model.numbers().angle_count > ANGLES { finish_angles::<SPACE_ANGLES> } else { finish_angles::<ANGLES> };
     finish(table, model, tracked, options)
@@ -46,13 +36,12 @@ fn finish_angles<const N: usize>(
     model: &CyclicModel,
     tracked: &Tracked,
     options: &TrackingOptions,
-) -> Result<Finished> {
+) -> Result<Tracked> {
     let seen = Seen::<N>::of_table(table, &options.updates).context(
         "frame numbers jump over more than a hundred frames for each row; cut the recording where it jumps, or track it with --online",
     )?;
     let first = phases_of(tracked, seen.first_frame);
-    let prior = Shape::of_model(model);
-    let phased = phase::fitted(&seen, first, &prior);
+    let phased = phase::fitted(&seen, first, &Shape::of_model(model));
     let cycle_frames = seen.angles_rad.len() as f64 / (phased.phases[phased.phases.len() - 1] - phased.phases[0]).abs();
     let stretches = seen.stretches(LONGEST_BRIDGE_CYCLES * cycle_frames);
     let is_known: Vec<bool> = (0..seen.angles_rad.len())
@@ -70,8 +59,7 @@ fn finish_angles<const N: usize>(
         set_phase(row, &phased, frame, tracked.step_frames);
         row.cycles = phased.phases[frame] - origin;
     }
-    let misfit = phased.shape.distance(&prior, &model.view().deviation_std_rad::<N>());
-    Ok(Finished { tracked, misfit })
+    Ok(tracked)
 }
 
 /// The phase of every frame, those between rows on the straight line.

@@ -20,6 +20,6 @@ pub mod shape;
 #[cfg(test)]
 mod tests;
 
-pub use finish::{Finished, finish};
+pub use finish::finish;
 pub use seen::Seen;
 pub use shape::Shape;

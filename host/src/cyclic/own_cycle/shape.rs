@@ -82,18 +82,6 @@ impl<const N: usize> Shape<N> {
         )
     }
 
-    /// How far this shape lies from `other` along the cycle, root mean square over the angles that
-    /// have a standard deviation, in which it is; `None` where none has.
-    #[must_use]
-    pub fn distance(&self, other: &Self, std_rad: &[f32; N]) -> Option<f64> {
-        let mut squares = Vec::new();
-        for ((a, _), (b, _)) in self.entries.iter().zip(&other.entries) {
-            let of_angle = |angle: usize| least_angle(a[angle] - b[angle]) / f64::from(std_rad[angle]);
-            squares.extend((0..N).filter(|angle| std_rad[*angle] > 0.0).map(|angle| of_angle(angle).powi(2)));
-        }
-        (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
-    }
-
     /// This shape, as a prior, moved to what was seen at these phases; where nothing was, it stays.
     #[must_use]
     pub fn fitted(&self, seen: &Seen<N>, phases: &[f64]) -> Self {
