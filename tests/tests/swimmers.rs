@@ -63,7 +63,7 @@ fn bands_hold_the_truth_with_most_joints_missing() {
         let from = ["angles", path.to_str().unwrap(), "--input-rate", "30"];
         run(folder.path(), &[&from[..], &["--min-confidence", confidence, "--out", "t.csv"]].concat());
         let options = ["--model", "arm-circles", "--rate", "30", "--update-every", "2", "--out", "est.csv"];
-        run(folder.path(), &[&["track", "cyclic", "t.csv"], &options[..]].concat());
+        run(folder.path(), &[&["track", "cyclic", "t.csv", "--online"], &options[..]].concat());
         let found = withheld(folder.path());
         let share = |of: &[f64]| of.iter().filter(|one| one.abs() <= BAND_90).count() as f64 / of.len() as f64;
         println!("{file}: {} withheld, {:.3} of them inside", found.len(), share(&found));

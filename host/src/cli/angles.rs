@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
   sinew simulate cyclic --model walking --out measured.csv
   sinew track cyclic measured.csv --model walking --out est.csv --report run
   sinew angles run/joints.trc --rate 60 --out walk.csv
-  sinew angles run/joints.trc --out walk.csv --anatomical flexion.csv --filter gcv")]
+  sinew angles run/joints.trc --out walk.csv --anatomical flexion.csv")]
 pub struct AnglesArgs {
     /// Motion in space or 2D keypoints.
     #[arg(help = format!(

@@ -15,6 +15,9 @@ const STEP_STATES: f64 = 3.0;
 const STEP_SPREAD: f64 = 0.5;
 /// Steps are at most this many mean steps long.
 const LONGEST_STEP: f64 = 3.0;
+/// The way is smoothed over so much to both sides, cycles: its corners lie on even phases, and a
+/// tempo does not change from one to the next. Chosen: half of what a phase is fitted over later.
+const SMOOTH_CYCLES: f64 = 0.15;
 /// How far an angle may be off, standard deviations: more says no more.
 const MAX_OFF: f64 = 3.0;
 
@@ -51,7 +54,18 @@ pub fn likeliest<const N: usize>(seen: &Seen<N>, shape: &Shape<N>, std_rad: &[f6
             place
         })
         .collect();
-    (0..count).map(|frame| between(&corners, frame as f64 / stride as f64, velocity * stride as f64)).collect()
+    let way = (0..count).map(|frame| between(&corners, frame as f64 / stride as f64, velocity * stride as f64));
+    smoothed(&way.collect::<Vec<f64>>(), (SMOOTH_CYCLES / velocity).round() as usize)
+}
+
+/// Means of the phases around each, as many on both sides, so that even progress stays as it is.
+fn smoothed(phases: &[f64], half_width: usize) -> Vec<f64> {
+    let mean = |frame: usize| {
+        let half = half_width.min(frame).min(phases.len() - 1 - frame);
+        let around = &phases[frame - half..=frame + half];
+        around.iter().sum::<f64>() / around.len() as f64
+    };
+    (0..phases.len()).map(mean).collect()
 }
 
 /// Cost of passing each number of states in a step.
