@@ -16,6 +16,8 @@ impl AngleTable {
                 *angle = angle.map(|angle| angle + noise);
             }
         }
-        Self::new(rows, Vec::new()).expect("only angles were changed, by finite noise").at_rate(self.rate_hz())
+        Self::new(rows, self.extra_columns().to_vec())
+            .expect("only angles were changed, by finite noise")
+            .at_rate(self.rate_hz())
     }
 }

@@ -177,7 +177,7 @@ impl Errors {
 #[must_use]
 pub fn measurements(truth: &AngleTable, protocol: Protocol, sigma_rad: f64, seed: u64) -> AngleTable {
     match protocol {
-        Protocol::ExactMean => AngleTable::new(truth.rows().to_vec(), Vec::new())
+        Protocol::ExactMean => AngleTable::new(truth.rows().to_vec(), truth.extra_columns().to_vec())
             .expect("the rows are those of a table")
             .at_rate(truth.rate_hz()),
         Protocol::Noisy => truth.with_noise(sigma_rad, seed),
