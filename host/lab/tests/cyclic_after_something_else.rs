@@ -43,7 +43,7 @@ fn rows(data: &Path, file: &str, skeleton: Option<&str>, frames: Range<usize>) -
 
 /// Cycle position in each row of `rows`, numbered anew, with noise.
 fn positions(model: &CyclicModel, rows: Vec<AngleRow>, noise: Option<(f64, u64)>) -> Vec<f64> {
-    let numbered = rows.into_iter().zip(0..).map(|(row, frame)| AngleRow { frame, ..row });
+    let numbered = rows.into_iter().zip(0..).map(|(row, frame)| AngleRow { frame, extra: Vec::new(), ..row });
     let truth = AngleTable::new(numbered.collect(), Vec::new()).unwrap();
     let (sigma_deg, seed) = noise.unwrap_or((1.0, 1));
     let table = match noise {

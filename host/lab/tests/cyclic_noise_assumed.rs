@@ -50,7 +50,7 @@ fn with_noise(truth: &AngleTable, noise: &Noise, seed: u64) -> AngleTable {
             *angle = angle.map(|angle| angle + noise.std_deg.to_radians() * *off);
         }
     }
-    AngleTable::new(rows, Vec::new()).unwrap()
+    AngleTable::new(rows, truth.extra_columns().to_vec()).unwrap()
 }
 
 #[test]

@@ -20,7 +20,7 @@ const BACKWARDS: [(&str, Circles); 2] = [("13_29", &[(844, 914)]), ("13_31", &[(
 fn frames(folder: &Path, trial: &str, frames: Range<u64>) -> AngleTable {
     let table = AngleTable::read(&folder.join(format!("{trial}.csv"))).unwrap();
     let rows: Vec<AngleRow> = table.rows().iter().filter(|row| frames.contains(&row.frame)).cloned().collect();
-    AngleTable::new(rows, Vec::new()).unwrap()
+    AngleTable::new(rows, table.extra_columns().to_vec()).unwrap()
 }
 
 /// Angles whose whole turns at the end are not those of the truth, and the mean error, degrees.
