@@ -26,7 +26,7 @@ export function makeRuns(sinew, folder) {
   run('demo', '--out', at('demo'));
   run('demo', '--seed', '2', '--out', at('other'));
   walkTable(at('walk.csv'));
-  run('track', 'cyclic', at('walk.csv'), '--model', 'walking', '--out', at('estimate.csv'), '--report', at('walk'));
+  run('track', 'cyclic', at('walk.csv'), '--model', 'walking', '--rate', '60', '--out', at('estimate.csv'), '--report', at('walk'));
   run('simulate', 'arm', '--motion', 'builtin', '--frames', '30', '--out', at('frames'));
   for (const [name, rate] of [['slow', '15'], ['fast', '30']]) {
     run('track', 'arm', join(at('frames'), 'frames'), '--config', join(at('frames'), 'camera.toml'), '--rate', rate, '--overlay', '--out', at(name));

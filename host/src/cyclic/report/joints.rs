@@ -16,6 +16,8 @@ use std::fmt::Write as _;
 
 /// The segment whose length scales the noise of a keypoint.
 const TRUNK: usize = 0;
+/// Places of thigh and shank of the left leg.
+const LEG: [usize; 2] = [8, 9];
 
 /// Root, lengths and angles of a row: x forward, y down, in the table's unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +73,8 @@ pub fn figures(
     let options =
         PlaceOptions::of_person(trunk, body.metres_per_unit as f32, sigma_rad as f32, tracked.rate_hz as f32)?;
     let mut place = FigurePlace::<ANGLES>::with_lengths(options, &body.lengths.map(|length| length as f32))?;
+    // Hips as high as the legs are long: a marker at 0 0 0 passes for a missing one.
+    let standing = [0.0, -LEG.iter().map(|segment| body.lengths[*segment]).sum::<f64>()];
     let mut before = table.first_frame();
     let mut all = Vec::with_capacity(tracked.frames.len());
     for (row, frame) in table.rows().iter().zip(&tracked.frames) {
@@ -78,7 +82,7 @@ pub fn figures(
         let root = body.root(&row.extra).map(|root| root.map(|value| value as f32));
         place.step((frame.frame - before) as f32, root, &lengths);
         before = frame.frame;
-        let root = if body.has_root() { place.root_px().map(|root| root.map(f64::from)) } else { Some([0.0, 0.0]) };
+        let root = if body.has_root() { place.root_px().map(|root| root.map(f64::from)) } else { Some(standing) };
         let filtered = place.lengths_px();
         let lengths = std::array::from_fn(|angle| filtered[angle].map_or(body.lengths[angle], f64::from));
         let measured = |angle: usize| measured_shares[angle] > 0.0;
