@@ -4,6 +4,7 @@ use super::console::Console;
 use super::filter_args::FilterArgs;
 use crate::cyclic::about::About;
 use crate::cyclic::anatomy::MeasuredAngles;
+use crate::cyclic::place_columns::PlaceColumns;
 use crate::cyclic::projection::{UpAxis, View};
 use crate::cyclic::recording::{RecordedAngles, RecordingOptions, all_angles, angles};
 use crate::error::Error;
@@ -183,6 +184,7 @@ fn about(args: &AnglesArgs, found: &RecordedAngles) -> About {
     about.facing = found.facing;
     about.image_size_px = found.image_size_px;
     about.layout.clone_from(&found.layout);
+    about.unit = PlaceColumns::find(&found.table).map(|columns| columns.unit.to_owned());
     about.notes.clone_from(&found.notes);
     about.doubts.clone_from(&found.doubts);
     about

@@ -1,6 +1,7 @@
 //! Where a person was in the image, from the extra columns of an angle table: root, feet, lengths.
 
 use super::angle_table::{ANGLES, AngleRow, AngleTable};
+use super::facing::{FACING, Facing};
 use super::feet::FOOT_POINTS;
 use sinew_core::skeleton::stick_figure::HUMAN;
 
@@ -30,9 +31,22 @@ impl PlaceColumns {
                 root: point("hip_center", unit)?,
                 lengths: std::array::from_fn(|_| column(&format!("{}_length_{unit}", names.next()?))),
                 feet: FOOT_POINTS.map(|name| point(name, unit)),
-                facing: column("facing").or_else(|| column("mirrored")),
+                facing: column(FACING),
             })
         })
+    }
+
+    /// Whether the table says which way the person faced.
+    #[must_use]
+    pub const fn has_facing(&self) -> bool {
+        self.facing.is_some()
+    }
+
+    /// 1 where the image's x points forward, -1 where the person faced left.
+    #[must_use]
+    pub fn side(&self, row: &AngleRow) -> f64 {
+        let cell = self.facing.and_then(|column| row.extra.get(column));
+        if cell.is_some_and(|cell| cell == Facing::Left.name()) { Facing::Left.side() } else { Facing::Right.side() }
     }
 
     /// The root, forward and down.
@@ -66,10 +80,7 @@ impl PlaceColumns {
 
     /// A point, forward and down: x is turned for a person who faced left.
     fn point(&self, row: &AngleRow, columns: [usize; 2]) -> Option<[f64; 2]> {
-        let faces_left =
-            self.facing.and_then(|column| row.extra.get(column)).is_some_and(|cell| cell == "left" || cell == "1");
-        let side = if faces_left { -1.0 } else { 1.0 };
-        Some([side * number(row, columns[0])?, number(row, columns[1])?])
+        Some([self.side(row) * number(row, columns[0])?, number(row, columns[1])?])
     }
 }
 

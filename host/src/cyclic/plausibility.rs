@@ -15,7 +15,7 @@ const CADENCE_RANGE: [f64; 2] = [0.4, 2.5];
 const MAX_RANGE_DEG: f64 = 170.0;
 
 /// Angles whose range has a limit: all but the shoulders.
-const LIMITED: [&str; 5] = ["trunk_lean", "elbow_flexion", "hip_flexion", "knee_flexion", "ankle_dorsiflexion"];
+const LIMITED: [&str; 4] = ["trunk_lean", "elbow_flexion", "hip_flexion", "knee_flexion"];
 
 /// Doubts about a run, one sentence each, with the remedy.
 #[must_use]
@@ -42,10 +42,13 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
     if model.numbers().turns_per_cycle.iter().all(|turns| *turns == 0) {
         doubts.extend(wide_ranges(series));
     }
-    let (walks, runs) = (is_shipped(model, "walking"), is_shipped(model, "running"));
     match gait.map(|gait| gait.is_running) {
-        Some(true) if walks => doubts.push("the feet run, and the model walks: use --model running".to_owned()),
-        Some(false) if runs => doubts.push("the feet walk, and the model runs: use --model walking".to_owned()),
+        Some(true) if is_shipped(model, "walking") => {
+            doubts.push("the feet run, and the model walks: use --model running".to_owned());
+        }
+        Some(false) if is_shipped(model, "running") => {
+            doubts.push("the feet walk, and the model runs: use --model walking".to_owned());
+        }
         _ => {}
     }
     doubts

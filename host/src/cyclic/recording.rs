@@ -66,6 +66,15 @@ pub struct RecordedAngles {
 /// # Errors
 /// Names the file or option, the rule that it broke, and the remedy.
 pub fn angles(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
+    check(path, options)?;
+    if !holds_keypoints(path) {
+        return from_space(path, options);
+    }
+    of_detections(&read_keypoints(path, options)?, path, options)
+}
+
+/// Checks what does not depend on the kind of recording.
+fn check(path: &Path, options: &RecordingOptions) -> Result<()> {
     for (name, rate) in [("--rate", options.rate_hz), ("--input-rate", options.input_rate_hz)] {
         if let Some(rate) = rate {
             ensure!(rate > 0.0 && rate.is_finite(), "`{name} {rate}`: a rate has to be greater than zero");
@@ -73,8 +82,7 @@ pub fn angles(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
     }
     // Before its kind, which the name of a file that is not there may not show.
     std::fs::metadata(path).map_err(|reason| CyclicError::Unreadable { path: path.to_path_buf(), reason })?;
-    let is_2d = path.is_dir() || find(path, &[Kind::Keypoints]).is_some();
-    if is_2d { from_keypoints(path, options) } else { from_space(path, options) }
+    Ok(())
 }
 
 /// Reads any motion in space.
@@ -170,17 +178,24 @@ fn rounded_rate(rate_hz: f64) -> f64 {
     if (rate_hz - whole).abs() < 1.0e-3 * rate_hz { whole } else { rate_hz }
 }
 
-fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
+fn holds_keypoints(path: &Path) -> bool {
+    path.is_dir() || find(path, &[Kind::Keypoints]).is_some()
+}
+
+fn read_keypoints(path: &Path, options: &RecordingOptions) -> Result<Detections> {
     ensure_option!(
         options.view != View::Space,
         "`--view space` needs a motion in space ({}); keypoints of a picture have one angle a joint",
         described(MOTION)
     );
-    let detections = keypoints::read(path, options.image_size_px)?;
-    let input_rate_hz = input_rate(&detections, options, path)?;
+    Ok(keypoints::read(path, options.image_size_px)?)
+}
+
+fn of_detections(detections: &Detections, path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
+    let input_rate_hz = input_rate(detections, options, path)?;
     let chosen =
         TrackOptions { min_confidence: options.min_confidence, person: options.person, rate_hz: input_rate_hz };
-    let track = keypoints::track(&detections, &chosen, path)?;
+    let track = keypoints::track(detections, &chosen, path)?;
     let mut notes = detections.notes.clone();
     notes.extend(keypoint_notes(&track, detections.frames.len()));
     let doubts: Vec<String> = detections.doubts.iter().chain(&track.doubts).cloned().collect();
@@ -215,7 +230,7 @@ fn from_keypoints(path: &Path, options: &RecordingOptions) -> Result<RecordedAng
     })
 }
 
-/// Frames per second of keypoints: what the user says, else what their times say.
+/// Frames per second of keypoints: what their times say, else what the user says.
 fn input_rate(detections: &Detections, options: &RecordingOptions, path: &Path) -> Result<Option<f64>> {
     /// A user's rate may be this far from that of the file's times. Chosen: 29.97 is called 30.
     const MAX_DIFFERENCE: f64 = 0.05;
@@ -258,14 +273,16 @@ fn keypoint_notes(track: &Track, frames: usize) -> Vec<String> {
 /// # Errors
 /// As [`angles`].
 pub fn all_angles(path: &Path, options: &RecordingOptions) -> Result<Vec<RecordedAngles>> {
-    let is_2d = path.is_dir() || find(path, &[Kind::Keypoints]).is_some();
-    if !is_2d {
-        return Ok(vec![angles(path, options)?]);
+    check(path, options)?;
+    if !holds_keypoints(path) {
+        return Ok(vec![from_space(path, options)?]);
     }
-    let people = keypoints::people(&keypoints::read(path, options.image_size_px)?, options.min_confidence);
-    let of_person =
-        |number| angles(path, &RecordingOptions { person: PersonChoice::Number(number), ..options.clone() });
-    people.into_iter().map(of_person).collect()
+    let detections = read_keypoints(path, options)?;
+    let of_person = |number| {
+        let options = RecordingOptions { person: PersonChoice::Number(number), ..options.clone() };
+        of_detections(&detections, path, &options)
+    };
+    keypoints::people(&detections, options.min_confidence).into_iter().map(of_person).collect()
 }
 
 /// Resamples, mirrors, and takes the angles.

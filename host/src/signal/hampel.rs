@@ -1,6 +1,6 @@
 //! Outlier rejection by Hampel's identifier: a value is compared with the median of its window.
 
-use super::median::median;
+use super::median::{STD_PER_MEDIAN, median};
 
 /// Samples on each side of a window of seven. Source: the default of MATLAB's `hampel`; Pose2Sim
 /// and Sports2D have the same window.
@@ -8,8 +8,6 @@ const HALF_WINDOW: usize = 3;
 /// Standard deviations beyond which a value is an outlier. Source: Pearson 2002, "Outliers in
 /// process modeling and identification", and MATLAB's `hampel`.
 const THRESHOLD: f64 = 3.0;
-/// Standard deviation of a normal distribution over its median absolute deviation: 1 / 0.6745.
-const NORMAL_SCALE: f64 = 1.4826;
 /// Values in a window that judge its middle; fewer judge nothing. Chosen: with four, the first
 /// value of a bend is an outlier.
 const MIN_VALUES: usize = 5;
@@ -23,7 +21,7 @@ const MIN_VALUES: usize = 5;
 pub fn reject(series: &mut [Option<f64>]) -> Vec<bool> {
     let judged: Vec<Option<[f64; 2]>> = (0..series.len()).map(|sample| deviation_and_scale(series, sample)).collect();
     let mut deviations: Vec<f64> = judged.iter().flatten().map(|[deviation, _]| *deviation).collect();
-    let usual = NORMAL_SCALE * median(&mut deviations).unwrap_or(0.0);
+    let usual = STD_PER_MEDIAN * median(&mut deviations).unwrap_or(0.0);
     let is_outlier =
         |judged: Option<[f64; 2]>| judged.is_some_and(|[deviation, scale]| deviation > THRESHOLD * scale.max(usual));
     let outliers: Vec<bool> = judged.into_iter().map(is_outlier).collect();
@@ -44,7 +42,7 @@ fn deviation_and_scale(series: &[Option<f64>], sample: usize) -> Option<[f64; 2]
     }
     let middle = median(&mut values)?;
     values.iter_mut().for_each(|value| *value = (*value - middle).abs());
-    Some([(value - middle).abs(), NORMAL_SCALE * median(&mut values)?])
+    Some([(value - middle).abs(), STD_PER_MEDIAN * median(&mut values)?])
 }
 
 #[cfg(test)]

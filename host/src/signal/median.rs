@@ -1,5 +1,8 @@
 //! Medians.
 
+/// Standard deviation of a normal number over the median of its size, 1 / 0.6745.
+pub const STD_PER_MEDIAN: f64 = 1.4826;
+
 /// The median of `values`, which it sorts; the mean of the middle two of an even number. `None` of
 /// none.
 pub fn median(values: &mut [f64]) -> Option<f64> {

@@ -1,7 +1,8 @@
 //! Tables of earlier versions, in which left and right of a person who faces left were exchanged.
 
-use super::columns::{ANGLES, COLUMNS};
+use super::columns::ANGLES;
 use crate::cyclic::facing::{FACING, Facing};
+use sinew_core::skeleton::stick_figure::HUMAN;
 
 /// Column that said `1` where left and right were exchanged.
 const EXCHANGED: &str = "mirrored";
@@ -37,11 +38,10 @@ impl OwnSides {
             return;
         }
         self.pairs.iter().for_each(|[left, right]| extra.swap(*left, *right));
-        for left in 0..ANGLES {
-            let other = COLUMNS[left + 1].strip_prefix("l_").map(|name| format!("r_{name}"));
-            if let Some(right) = other.and_then(|name| COLUMNS[1..].iter().position(|column| *column == name)) {
-                angles_rad.swap(left, right);
-            }
+        // Joint 0 is the root, which has no angle.
+        let exchanged = *angles_rad;
+        for (angle, joint) in angles_rad.iter_mut().zip(&HUMAN.joints()[1..]) {
+            *angle = exchanged[usize::from(joint.mirror) - 1];
         }
     }
 }

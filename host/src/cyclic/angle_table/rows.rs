@@ -32,8 +32,6 @@ pub struct ReadRow {
     pub row: AngleRow,
     /// The angles out of the plane.
     pub side_rad: Option<[Option<f64>; ANGLES]>,
-    /// When it was seen, seconds, if the table says.
-    pub time_s: Option<f64>,
 }
 
 impl ReadRow {
@@ -175,7 +173,7 @@ impl<R: Read> AngleRows<R> {
         if let Some(own_sides) = &self.own_sides {
             own_sides.restore(&mut row.angles_rad, &mut row.extra);
         }
-        Ok(Some(ReadRow { row, side_rad, time_s }))
+        Ok(Some(ReadRow { row, side_rad }))
     }
 }
 

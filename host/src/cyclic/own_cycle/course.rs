@@ -37,7 +37,8 @@ impl Course {
         is_known: &[bool],
         rate_hz: f64,
     ) -> Result<Self> {
-        let mut measured = seen.series(angle);
+        let raw = seen.series(angle);
+        let mut measured = raw.clone();
         let rejected = hampel::reject(&mut measured);
         // Gaps stay: what is beside them is smooth already where the own cycle joins it.
         let smooth = filtered(&measured, rate_hz, &FILTER)?;
@@ -45,10 +46,10 @@ impl Course {
         let whole: Vec<Option<f64>> = (0..measured.len())
             .map(|frame| is_known[frame].then(|| measured[frame].unwrap_or(bridged[frame])))
             .collect();
-        let smooth = filtered(&whole, rate_hz, &FILTER)?;
+        // Without a gap that was the whole course.
+        let smooth = if whole == measured { smooth } else { filtered(&whole, rate_hz, &FILTER)? };
         let noise_rad = noise::of_angle(seen, angle).unwrap_or(phased.std_rad[angle]);
         let angles_rad = (0..measured.len()).map(|frame| smooth[frame].unwrap_or(bridged[frame])).collect();
-        let raw = seen.series(angle);
         let is_outlier = (0..raw.len()).map(|frame| {
             let off = raw[frame].zip(smooth[frame]).map_or(0.0, |(raw, smooth)| (raw - smooth).abs());
             rejected[frame] && off > MIN_OUTLIER_RAD.max(OUTLIER_STDS * noise_rad)

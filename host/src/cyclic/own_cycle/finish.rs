@@ -20,12 +20,7 @@ const LONGEST_BRIDGE_CYCLES: f64 = 1.0;
 ///
 /// # Errors
 /// A filter of the measured angles that does not fit the rate.
-pub fn finish(
-    table: &AngleTable,
-    model: &CyclicModel,
-    tracked: &Tracked,
-    options: &TrackingOptions,
-) -> Result<Tracked> {
+pub fn finish(table: &AngleTable, model: &CyclicModel, tracked: Tracked, options: &TrackingOptions) -> Result<Tracked> {
     let finish =
         if model.numbers().angle_count > ANGLES { finish_angles::<SPACE_ANGLES> } else { finish_angles::<ANGLES> };
     finish(table, model, tracked, options)
@@ -34,13 +29,13 @@ pub fn finish(
 fn finish_angles<const N: usize>(
     table: &AngleTable,
     model: &CyclicModel,
-    tracked: &Tracked,
+    mut tracked: Tracked,
     options: &TrackingOptions,
 ) -> Result<Tracked> {
     let seen = Seen::<N>::of_table(table, &options.updates).context(
         "frame numbers jump over more than a hundred frames for each row; cut the recording where it jumps, or track it with --online",
     )?;
-    let first = phases_of(tracked, seen.first_frame);
+    let first = phases_of(&tracked);
     let phased = phase::fitted(&seen, first, &Shape::of_model(model));
     let cycle_frames = seen.angles_rad.len() as f64 / (phased.phases[phased.phases.len() - 1] - phased.phases[0]).abs();
     let stretches = seen.stretches(LONGEST_BRIDGE_CYCLES * cycle_frames);
@@ -49,7 +44,6 @@ fn finish_angles<const N: usize>(
         .collect();
     let course = |angle| Course::new(&seen, angle, &phased, &is_known, tracked.rate_hz);
     let courses: Vec<Course> = (0..N).map(course).collect::<Result<_>>()?;
-    let mut tracked = tracked.clone();
     let origin = phased.phases[0];
     for row in &mut tracked.frames {
         let frame = (row.frame - seen.first_frame) as usize;
@@ -63,7 +57,7 @@ fn finish_angles<const N: usize>(
 }
 
 /// The phase of every frame, those between rows on the straight line.
-fn phases_of(tracked: &Tracked, first_frame: u64) -> Vec<f64> {
+fn phases_of(tracked: &Tracked) -> Vec<f64> {
     let origin = f64::from(tracked.frames[0].estimate.cycle_position);
     let mut phases = vec![origin + tracked.frames[0].cycles];
     for pair in tracked.frames.windows(2) {
@@ -71,7 +65,6 @@ fn phases_of(tracked: &Tracked, first_frame: u64) -> Vec<f64> {
         let way = pair[1].cycles - pair[0].cycles;
         phases.extend((1..=step).map(|k| origin + pair[0].cycles + way * k as f64 / step as f64));
     }
-    debug_assert_eq!(first_frame, tracked.frames[0].frame);
     phases
 }
 

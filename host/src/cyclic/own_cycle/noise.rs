@@ -4,11 +4,12 @@ use super::seen::Seen;
 use crate::cyclic::AngleTable;
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::tracking::Updates;
+use crate::signal::median::STD_PER_MEDIAN;
 use sinew_core::skeleton::stick_figure::HUMAN;
 
 /// Least noise, radians: half a degree, what annotators of keypoints differ by at a limb of 100
 /// pixels. A recording without noise still differs from every model.
-const MIN_NOISE_RAD: f64 = 0.0087;
+pub(super) const MIN_NOISE_RAD: f64 = 0.0087;
 
 /// Standard deviation of a measured angle, radians: the median over the long segments. `None` where
 /// too few successive frames were seen.
@@ -28,8 +29,6 @@ pub fn of_table(table: &AngleTable, updates: &Updates) -> Option<f64> {
 /// `None` where too few successive frames were seen.
 #[must_use]
 pub fn of_angle<const N: usize>(seen: &Seen<N>, angle: usize) -> Option<f64> {
-    /// Standard deviation of a normal number over the median of its size.
-    const STD_PER_MEDIAN: f64 = 1.4826;
     /// Standard deviation of the fourth difference of independent numbers: the root of
     /// 1 + 16 + 36 + 16 + 1.
     const DIFFERENCE_STD: f64 = 8.366_600_265_340_756;

@@ -1,9 +1,11 @@
 //! The phase of each frame: where the shape fits the frames around it best.
 
+use super::noise::MIN_NOISE_RAD;
 use super::path;
 use super::seen::Seen;
 use super::shape::Shape;
 use crate::cyclic::turns::least_angle;
+use crate::signal::median::STD_PER_MEDIAN;
 
 /// Rounds of shape and phase. Chosen: the cadence of three seconds changes by less than 0.1 % after
 /// six.
@@ -13,9 +15,6 @@ const ROUNDS: usize = 8;
 const REACH_CYCLES: f64 = 0.3;
 /// Largest step of a phase in a round, cycles: what is linear about a walker's knee.
 const MAX_STEP_CYCLES: f64 = 0.05;
-/// Standard deviation of an angle that fits as well as can be, radians: half a degree, what
-/// annotators of keypoints differ by at a limb of 100 pixels.
-const MIN_STD_RAD: f64 = 0.0087;
 
 /// Phases, in cycles, and the shape that they were fitted to.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,17 +56,15 @@ fn median_step(phases: &[f64]) -> f64 {
 }
 
 /// Standard deviation of each angle from the shape, by the median of its size, which a few wrong
-/// measurements do not move.
+/// measurements do not move; at least the least noise of a measurement.
 fn spread<const N: usize>(seen: &Seen<N>, phases: &[f64], shape: &Shape<N>) -> [f64; N] {
-    /// Standard deviation of a normal number over the median of its size.
-    const STD_PER_MEDIAN: f64 = 1.4826;
     let poses: Vec<[f64; N]> = phases.iter().map(|phase| shape.at(*phase).0).collect();
     std::array::from_fn(|angle| {
         let frames = seen.angles_rad.iter().zip(&poses);
         let mut sizes: Vec<f64> =
             frames.filter_map(|(frame, pose)| Some(least_angle(frame[angle]? - pose[angle]).abs())).collect();
         sizes.sort_by(f64::total_cmp);
-        sizes.get(sizes.len() / 2).map_or(f64::INFINITY, |median| (STD_PER_MEDIAN * median).max(MIN_STD_RAD))
+        sizes.get(sizes.len() / 2).map_or(f64::INFINITY, |median| (STD_PER_MEDIAN * median).max(MIN_NOISE_RAD))
     })
 }
 

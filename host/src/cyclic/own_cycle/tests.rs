@@ -17,7 +17,7 @@ fn recorded(model: &CyclicModel, cycles: u32, seed: u64) -> (SyntheticPerson<'_>
 fn finished(model: &CyclicModel, table: &AngleTable) -> Tracked {
     let options =
         TrackingOptions { rate_hz: Some(30.0), sigma_rad: 1.0_f64.to_radians(), ..TrackingOptions::default() };
-    finish(table, model, &track(table, model, &options).unwrap(), &options).unwrap()
+    finish(table, model, track(table, model, &options).unwrap(), &options).unwrap()
 }
 
 /// The table with `change` made to each row.
@@ -133,7 +133,7 @@ fn frame_numbers_that_must_be_wrong_are_refused() {
         }
     });
     let options = TrackingOptions { rate_hz: Some(30.0), ..TrackingOptions::default() };
-    let error = finish(&far, &model, &track(&far, &model, &options).unwrap(), &options).unwrap_err();
+    let error = finish(&far, &model, track(&far, &model, &options).unwrap(), &options).unwrap_err();
     assert!(error.to_string().contains("frame numbers jump"), "{error}");
     assert_eq!(Seen::<ANGLES>::of_table(&far, &Updates::All), None);
 }

@@ -12,8 +12,7 @@ use sinew_core::camera::Pixel;
 /// body.
 #[must_use]
 pub fn measured(row: &AngleRow, body: &Body, root: Option<Point>) -> JointPositions {
-    let lengths: [f64; ANGLES] =
-        std::array::from_fn(|angle| body.length(&row.extra, angle).unwrap_or(body.lengths[angle]));
+    let lengths: [f64; ANGLES] = std::array::from_fn(|angle| body.length(row, angle).unwrap_or(body.lengths[angle]));
     joint_positions(root, &lengths, &row.angles_rad)
 }
 

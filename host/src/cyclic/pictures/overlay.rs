@@ -121,8 +121,8 @@ impl OverlayFrames {
 /// The measured figure thin and grey, the estimated one on it, and position and cadence in words.
 fn draw_row(picture: &mut RgbImage, table: &AngleTable, tracked: &Tracked, row: usize, figure: &Figure, body: &Body) {
     let measured_row = &table.rows()[row];
-    let side = body.side(&measured_row.extra);
-    let seen = measured(measured_row, body, body.root(&measured_row.extra));
+    let side = body.side(measured_row);
+    let seen = measured(measured_row, body, body.root(measured_row));
     draw_figure(picture, &pixels(&in_image(&seen, side)), FigureStyle::Faint);
     draw_figure(picture, &pixels(&in_image(&figure.joints_about(figure.root), side)), FigureStyle::OnPicture);
     let position = tracked.frames[row].estimate.cycle_position;

@@ -1,12 +1,11 @@
 //! The person's size and place in a table.
 
-use crate::cyclic::AngleTable;
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::export::trc::standard_lengths_m;
-use crate::cyclic::facing::{FACING, Facing};
 use crate::cyclic::image_joints::Point;
+use crate::cyclic::place_columns::PlaceColumns;
+use crate::cyclic::{AngleRow, AngleTable};
 use crate::motion::anthropometry::{SHANK, THIGH, TRUNK};
-use sinew_core::skeleton::stick_figure::HUMAN;
 
 /// Lengths of the person's segments, their scale, and the columns of the place of the root.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,15 +14,7 @@ pub struct Body {
     pub lengths: [f64; ANGLES],
     /// Metres in the table's unit.
     pub metres_per_unit: f64,
-    columns: Option<Columns>,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-struct Columns {
-    unit: &'static str,
-    root: [usize; 2],
-    facing: usize,
-    lengths: [Option<usize>; ANGLES],
+    columns: Option<PlaceColumns>,
 }
 
 /// Thigh and shank of each side.
@@ -35,13 +26,11 @@ impl Body {
     #[must_use]
     pub fn of_table(table: &AngleTable, height_m: f64) -> Self {
         let standard = standard_lengths_m(height_m);
-        let Some(columns) = Columns::find(table) else {
+        let Some(columns) = PlaceColumns::find(table).filter(PlaceColumns::has_facing) else {
             return Self { lengths: standard, metres_per_unit: 1.0, columns: None };
         };
-        let medians = columns.lengths.map(|column| {
-            let column = column?;
-            median(table.rows().iter().filter_map(|row| number(&row.extra[column])))
-        });
+        let medians: [Option<f64>; ANGLES] =
+            std::array::from_fn(|angle| median(table.rows().iter().filter_map(|row| columns.length(row, angle))));
         let metres_per_unit = if columns.unit == "m" { 1.0 } else { metres_per_px(&medians, height_m) };
         let lengths = std::array::from_fn(|i| medians[i].unwrap_or(standard[i] / metres_per_unit));
         Self { lengths, metres_per_unit, columns: Some(columns) }
@@ -59,47 +48,22 @@ impl Body {
         self.columns.as_ref().is_some_and(|columns| columns.unit == "px")
     }
 
-    /// Which way the person faces in the image, from the cells of a row; `None` where the table
-    /// does not say.
+    /// 1 where the image's x points forward, -1 where the person faces left in a row.
     #[must_use]
-    pub fn facing(&self, extra: &[String]) -> Option<Facing> {
-        match extra[self.columns.as_ref()?.facing].as_str() {
-            "left" => Some(Facing::Left),
-            "right" => Some(Facing::Right),
-            _ => None,
-        }
-    }
-
-    /// 1 where the image's x points forward, -1 where the person faces left, from the extra cells
-    /// of a row.
-    #[must_use]
-    pub fn side(&self, extra: &[String]) -> f64 {
-        self.facing(extra).map_or(1.0, Facing::side)
+    pub fn side(&self, row: &AngleRow) -> f64 {
+        self.columns.as_ref().map_or(1.0, |columns| columns.side(row))
     }
 
     /// The measured root of a row: x forward, y down.
     #[must_use]
-    pub fn root(&self, extra: &[String]) -> Option<Point> {
-        let [u, v] = self.columns.as_ref()?.root;
-        Some([self.side(extra) * number(&extra[u])?, number(&extra[v])?])
+    pub fn root(&self, row: &AngleRow) -> Option<Point> {
+        self.columns.as_ref()?.root(row)
     }
 
     /// The measured length of a segment in a row.
     #[must_use]
-    pub fn length(&self, extra: &[String], angle: usize) -> Option<f64> {
-        number(&extra[self.columns.as_ref()?.lengths[angle]?])
-    }
-}
-
-impl Columns {
-    fn find(table: &AngleTable) -> Option<Self> {
-        let column = |name: &str| table.extra_columns().iter().position(|column| column == name);
-        ["px", "m"].into_iter().find_map(|unit| {
-            let [u, v] = ["u", "v"].map(|axis| column(&format!("hip_center_{axis}_{unit}")));
-            let mut names = HUMAN.angle_names();
-            let lengths = std::array::from_fn(|_| column(&format!("{}_length_{unit}", names.next()?)));
-            Some(Self { unit, root: [u?, v?], facing: column(FACING)?, lengths })
-        })
+    pub fn length(&self, row: &AngleRow, angle: usize) -> Option<f64> {
+        self.columns.as_ref()?.length(row, angle)
     }
 }
 
@@ -110,10 +74,6 @@ fn metres_per_px(lengths_px: &[Option<f64>; ANGLES], height_m: f64) -> f64 {
     let leg = leg.reduce(f64::max).map(|leg_px| f64::from(THIGH + SHANK) * height_m / leg_px);
     let trunk = lengths_px[NECK].map(|trunk_px| f64::from(TRUNK) * height_m / trunk_px);
     leg.or(trunk).filter(|size| size.is_finite() && *size > 0.0).unwrap_or(1.0)
-}
-
-fn number(cell: &str) -> Option<f64> {
-    cell.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
 fn median(values: impl Iterator<Item = f64>) -> Option<f64> {

@@ -78,8 +78,8 @@ pub fn figures(
     let mut before = table.first_frame();
     let mut all = Vec::with_capacity(tracked.frames.len());
     for (row, frame) in table.rows().iter().zip(&tracked.frames) {
-        let lengths = std::array::from_fn(|angle| body.length(&row.extra, angle).map(|length| length as f32));
-        let root = body.root(&row.extra).map(|root| root.map(|value| value as f32));
+        let lengths = std::array::from_fn(|angle| body.length(row, angle).map(|length| length as f32));
+        let root = body.root(row).map(|root| root.map(|value| value as f32));
         place.step((frame.frame - before) as f32, root, &lengths);
         before = frame.frame;
         let root = if body.has_root() { place.root_px().map(|root| root.map(f64::from)) } else { Some(standing) };
@@ -110,7 +110,7 @@ pub fn to_csv_px(positions: &[(u64, JointPositions)], table: &AngleTable, body: 
     }
     text.push('\n');
     for ((frame, joints), row) in positions.iter().zip(table.rows()) {
-        let side = body.side(&row.extra);
+        let side = body.side(row);
         let _ = write!(text, "{frame}");
         for place in in_image(joints, side) {
             let _ = match place {
