@@ -194,7 +194,8 @@ fn the_bvh_has_the_joints_of_the_table() {
         assert_eq!(motion.frame(3)[joint], motion.frame(2)[joint], "the frame without a file repeats the pose before");
     }
     let trc = sinew::motion::trc::read(&scene.path("out/track.trc")).unwrap();
-    assert_eq!((trc.names.len(), trc.positions_m.len()), (BODY_JOINT_NAMES.len(), FRAMES - 1));
+    assert_eq!((trc.names.len(), trc.positions_m.len()), (BODY_JOINT_NAMES.len(), FRAMES));
+    assert!(trc.positions_m[3].iter().all(Option::is_none), "the frame without a file is a gap in time");
 }
 
 #[test]
