@@ -1,5 +1,5 @@
 # A made-up walk as an angle table: `awk -v frames=1200 -v noise_deg=6 -f made_up_walk.awk > walk.csv`.
-# No recording stands behind it: 13 angles of smooth functions of the position in a cycle of 66 frames, a slow change of
+# No recording stands behind it: 60 frames a second, 13 angles of smooth functions of the position in a cycle of 66 frames, a slow change of
 # pace, and noise from a generator of its own, so that every awk writes the same.
 function uniform() {
     seed = (seed * 16807) % 2147483647
@@ -14,7 +14,7 @@ BEGIN {
     printf "frame"
     count = split(columns, name, " ")
     for (i = 1; i <= count; i++) printf ",%s_rad", name[i]
-    print ""
+    print ",time_s"
     for (frame = 0; frame < frames; frame++) {
         left = 2 * pi * (frame / 66 + 0.15 * sin(2 * pi * frame / 700))
         right = left + pi
@@ -37,6 +37,6 @@ BEGIN {
         angle[13] = leg_r + bent(right)
         printf "%d", frame
         for (i = 1; i <= 13; i++) printf ",%.6f", angle[i] + noise()
-        print ""
+        printf ",%.6f\n", frame / 60
     }
 }

@@ -112,7 +112,11 @@ fn data() -> Option<PathBuf> {
 fn walks_in_space_are_tracked_with_two_angles_a_joint() {
     let Some(data) = data() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let model = train(&cuts(&data, folder.path(), "train_cuts.csv"), TrainingOptions::default()).unwrap();
+    let model = train(
+        &cuts(&data, folder.path(), "train_cuts.csv"),
+        TrainingOptions { rate_hz: Some(60.0), ..TrainingOptions::default() },
+    )
+    .unwrap();
     assert_eq!(model.view().angle_count(), SPACE_ANGLES);
     let path = folder.path().join("model.json");
     fs::write(&path, model_file::to_json(&model).unwrap()).unwrap();
@@ -144,7 +148,11 @@ fn walks_in_space_are_tracked_with_two_angles_a_joint() {
 fn a_walk_of_another_source_is_followed_in_space() {
     let Some(data) = data() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let model = train(&cuts(&data, folder.path(), "train_cuts.csv"), TrainingOptions::default()).unwrap();
+    let model = train(
+        &cuts(&data, folder.path(), "train_cuts.csv"),
+        TrainingOptions { rate_hz: Some(60.0), ..TrainingOptions::default() },
+    )
+    .unwrap();
     let options = RecordingOptions { rate_hz: Some(60.0), view: View::Space, ..RecordingOptions::default() };
     let walk = angles(&data.join("mocap/bandai/dataset-2_walk_normal_001.bvh"), &options).unwrap().table;
     let mut misses = Vec::new();

@@ -7,7 +7,7 @@ use assert_cmd::Command;
 use cyclic_walk::walk;
 use sinew::cyclic::export::trc::{joint_positions, standard_lengths_m};
 use sinew_core::skeleton::stick_figure::HUMAN;
-use sinew_tests::sinew_command;
+use sinew_tests::{sinew_command, workspace_root};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -75,4 +75,57 @@ fn keypoints_become_cadence_and_joints_whichever_way_the_person_faces() {
             }
         }
     }
+}
+
+/// The commands of the page, without `sinew`.
+fn commands(page: &str) -> Vec<Vec<&str>> {
+    page.lines().filter_map(|line| line.strip_prefix("    sinew ")).map(|line| line.split(' ').collect()).collect()
+}
+
+/// Files that the page's table of the run names; `*` stands for one name or several.
+fn named_files(page: &str) -> Vec<&str> {
+    let cells = page.lines().filter_map(|line| line.strip_prefix("| `")?.split_once(" |"));
+    cells.flat_map(|(names, _)| names.split('`')).filter(|name| name.contains('.')).collect()
+}
+
+#[test]
+fn the_commands_of_the_page_run_one_after_the_other() {
+    let page = fs::read_to_string(workspace_root().join("docs/coach.md")).unwrap();
+    let root = tempfile::tempdir().unwrap();
+    let mut count = 0;
+    for words in commands(&page) {
+        // The page takes another recording of the reader's there.
+        if words[..2] == ["cut", "stroke.csv"] {
+            ["stroke.csv", "new.csv"]
+                .map(|name| fs::copy(root.path().join("walk.csv"), root.path().join(name)).unwrap());
+        }
+        sinew(root.path(), &words);
+        count += 1;
+        if words[..3] == ["track", "cyclic", "walk.csv"] {
+            check_run(root.path(), &page);
+        }
+    }
+    assert!(count >= 6, "{count}");
+}
+
+/// The run has the files of the page and the cadence of the person who was made up.
+fn check_run(folder: &Path, page: &str) {
+    let files: Vec<String> = fs::read_dir(folder.join("run"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    let named = named_files(page);
+    assert!(named.len() > 15, "{named:?}");
+    for name in named {
+        let (begin, end) = name.split_once('*').unwrap_or((name, ""));
+        assert!(files.iter().any(|file| file.starts_with(begin) && file.ends_with(end)), "{name} of {files:?}");
+    }
+    let again = ["simulate", "keypoints", "--out", "again.csv", "--json"];
+    let output = sinew_command().current_dir(folder).args(again).output().unwrap();
+    let truth: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let summary: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.join("run/summary.json")).unwrap()).unwrap();
+    let [truth, found] = [&truth, &summary].map(|json| json["cadence_per_min"].as_f64().unwrap());
+    assert!((found / truth - 1.0).abs() < 0.01, "{found} instead of {truth} a minute");
+    assert!(summary["doubts"].as_array().is_some_and(Vec::is_empty), "{}", summary["doubts"]);
 }

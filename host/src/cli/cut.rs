@@ -5,6 +5,7 @@ use super::data_error;
 use crate::cyclic::AngleTable;
 use crate::cyclic::cuts::{self, Cut};
 use crate::cyclic::cutting::{CuttingOptions, cycles};
+use crate::cyclic::rate;
 use crate::output::check_writable_file;
 use anyhow::{Context, Result};
 use clap::Args;
@@ -24,9 +25,9 @@ pub struct CutArgs {
     /// Cut list to write: file,start_frame,end_frame, end excluded.
     #[arg(long, value_name = "CUTS.csv")]
     pub out: PathBuf,
-    /// Frames per second of the tables.
-    #[arg(long, value_name = "HZ", default_value_t = 60.0)]
-    pub rate: f64,
+    /// Frames per second of tables that do not say.
+    #[arg(long, value_name = "HZ")]
+    pub rate: Option<f64>,
     /// Shortest cycle, seconds.
     #[arg(long, value_name = "S", default_value_t = 0.4)]
     pub shortest: f64,
@@ -42,16 +43,17 @@ pub struct CutArgs {
 /// Bad input, no cycle in any table, or an output that cannot be written.
 pub fn run(args: &CutArgs, console: &Console) -> Result<()> {
     check_writable_file(&args.out)?;
-    let options = CuttingOptions { rate_hz: args.rate, shortest_s: args.shortest, longest_s: args.longest };
     let mut all: Vec<Cut> = Vec::new();
     let (mut report, mut tables, mut left_out) = (String::new(), Vec::new(), Vec::new());
     for path in &args.tables {
         let table = AngleTable::read(path)?;
+        let rate_hz = rate::of_recording(path, table.rate_hz(), args.rate)?;
+        let options = CuttingOptions { rate_hz, shortest_s: args.shortest, longest_s: args.longest };
         match cycles(&table, &path.display().to_string(), options) {
             Ok(mut found) => {
                 let frames: u64 = found.iter().map(Cut::duration_frames).sum();
                 let mean = frames as f64 / found.len() as f64;
-                let per_minute = 60.0 * args.rate / mean;
+                let per_minute = 60.0 * rate_hz / mean;
                 writeln!(
                     report,
                     "{}: {} cycles of {mean:.1} frames on the mean, {per_minute:.1} a minute",

@@ -23,6 +23,7 @@ pub mod segment;
 pub mod signals;
 pub mod simulate;
 pub mod simulate_cyclic;
+pub mod simulate_keypoints;
 pub mod simulate_stereo;
 pub mod skin_args;
 pub mod stdout;

@@ -3,6 +3,7 @@
 use super::console::Console;
 use super::scene_args::{clear_frames, pair};
 use super::simulate_cyclic::{self, SimulateCyclicArgs};
+use super::simulate_keypoints::{self, SimulateKeypointsArgs};
 use super::simulate_stereo::{self, SimulateStereoArgs};
 use crate::motion::{self, ArmMotion, ArmSide, ReadOptions, Shortfall, reach};
 use crate::output::OutputDir;
@@ -22,7 +23,8 @@ const BUILTIN_FRAMES: usize = 250;
 #[command(after_help = "Examples:
   sinew simulate arm --motion builtin --frames 30 --out scene
   sinew simulate stereo --motion stick-wave --points 300 --out points
-  sinew simulate cyclic --model running --out run.csv")]
+  sinew simulate cyclic --model running --out run.csv
+  sinew simulate keypoints --out keypoints.csv")]
 pub struct SimulateArgs {
     /// The subject.
     #[command(subcommand)]
@@ -38,6 +40,8 @@ pub enum SimulateSubject {
     Stereo(SimulateStereoArgs),
     /// A person who walks, runs or moves as another model says: measured angles.
     Cyclic(SimulateCyclicArgs),
+    /// The same person filmed from the side: keypoints as a pose detector writes them.
+    Keypoints(SimulateKeypointsArgs),
 }
 
 impl From<SideChoice> for Sides {
@@ -121,6 +125,7 @@ pub fn run(args: &SimulateArgs, console: &Console) -> Result<()> {
         SimulateSubject::Arm(args) => run_arm(args, console),
         SimulateSubject::Stereo(args) => simulate_stereo::run(args, console),
         SimulateSubject::Cyclic(args) => simulate_cyclic::run(args, console),
+        SimulateSubject::Keypoints(args) => simulate_keypoints::run(args, console),
     }
 }
 

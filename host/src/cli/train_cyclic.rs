@@ -27,9 +27,9 @@ pub struct TrainCyclicArgs {
     /// Positions of the reference cycle, 10 to 1000.
     #[arg(long, default_value_t = 100)]
     pub length: usize,
-    /// Frames per second of the tables.
-    #[arg(long, value_name = "HZ", default_value_t = 60.0)]
-    pub rate: f64,
+    /// Frames per second of tables that do not say.
+    #[arg(long, value_name = "HZ")]
+    pub rate: Option<f64>,
 }
 
 /// Trains, writes the model, says what it was made of.

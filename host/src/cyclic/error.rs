@@ -56,6 +56,10 @@ impl CyclicError {
         Self::Broken { path: path.to_path_buf(), line, rule: with_short_quotes(&rule.into()) }
     }
 
+    pub(crate) fn unusable(path: &Path, rule: impl Into<String>) -> Self {
+        Self::Unusable { path: path.to_path_buf(), rule: rule.into() }
+    }
+
     pub(crate) fn parameter(parameter: &'static str, rule: impl Into<String>) -> Self {
         Self::Parameter { parameter, rule: rule.into() }
     }

@@ -72,14 +72,17 @@ fn segment(
     disc(image, end, 0.8 * width_px, colour, 1.0);
 }
 
-/// Writes `text` on a dark plate in the upper left corner; not on pictures with a side below 120
-/// pixels.
-pub fn caption(image: &mut RgbImage, text: &str) {
+/// Writes `lines` on dark plates in the upper left corner: the first on any picture with sides of
+/// 120 pixels or more, the others where they take less than a third of its height.
+pub fn caption(image: &mut RgbImage, lines: &[String]) {
     let smaller = image.width().min(image.height());
     let size_px = (11.5 * (f64::from(smaller) / 240.0).sqrt()).clamp(10.0, 46.0) as f32;
-    if let Some(letters) = Lettering::new(size_px).filter(|_| smaller >= 120) {
-        let text = letters.fit(text, image.width().saturating_sub(8));
-        letters.draw_on_plate(image, (0, 0), &text, lighter(INK));
+    let Some(letters) = Lettering::new(size_px).filter(|_| smaller >= 120) else { return };
+    let step_px = letters.line_height_px();
+    let fits = 3 * step_px * lines.len() as u32 <= image.height();
+    for (line, top_px) in lines.iter().zip((0..).step_by(step_px as usize)).take(if fits { lines.len() } else { 1 }) {
+        let text = letters.fit(line, image.width().saturating_sub(8));
+        letters.draw_on_plate(image, (0, top_px), &text, lighter(INK));
     }
 }
 

@@ -5,6 +5,7 @@ use super::error::{KeypointError, json, read_text};
 use super::openpose::people;
 use super::orders::{self, PointFrame, Points};
 use super::point_values::triples;
+use super::table_rows::{FrameTimes, grouped};
 use super::{file_numbers, frame_lists, point_lists};
 use serde_json::Value;
 use serde_json::value::RawValue;
@@ -16,6 +17,8 @@ use std::path::Path;
 pub struct JsonFrames {
     /// The frames, points not named yet.
     pub frames: Vec<PointFrame>,
+    /// When they were taken.
+    pub times: FrameTimes,
     /// Width and height of the pictures, pixels.
     pub image_size_px: Option<[f64; 2]>,
 }
@@ -29,8 +32,7 @@ pub struct JsonFrames {
 pub fn read(path: &Path) -> Result<JsonFrames, KeypointError> {
     let text = read_text(path)?;
     let whole: &RawValue = json(&text, path)?;
-    let frames_alone = |frames| Ok(JsonFrames { frames, image_size_px: None });
-    let list_of_frames = |list| frames_alone(each(list, path, |value, index| frame_lists::frame(&value, index, path))?);
+    let frames_alone = |frames| Ok(JsonFrames { frames, times: FrameTimes::default(), image_size_px: None });
     let mut images = Images::default();
     let list = match items(whole) {
         Some(list) if list.iter().any(|entry| entry.get().starts_with('[')) => {
@@ -39,7 +41,7 @@ pub fn read(path: &Path) -> Result<JsonFrames, KeypointError> {
         Some(list) => {
             let first = list.first().and_then(|entry| serde_json::from_str(entry.get()).ok());
             if first.is_some_and(|entry: Value| frame_lists::is_frame(&entry)) {
-                return list_of_frames(list);
+                return list_of_frames(list, path);
             }
             Some(list)
         }
@@ -51,7 +53,7 @@ pub fn read(path: &Path) -> Result<JsonFrames, KeypointError> {
             }
             let part = |name: &str| parts.get(name).and_then(|part| items(part));
             if let Some(frames) = frame_lists::LIST_NAMES.iter().find_map(|name| part(name)) {
-                return list_of_frames(frames);
+                return list_of_frames(frames, path);
             }
             images = Images::of(part("images").unwrap_or_default());
             part("annotations")
@@ -68,7 +70,22 @@ pub fn read(path: &Path) -> Result<JsonFrames, KeypointError> {
     if entries.is_empty() {
         return Err(KeypointError::unusable(path, "has no entry"));
     }
-    Ok(JsonFrames { frames: by_frame(entries, images.names.into_values()), image_size_px: images.size_px })
+    let frames = by_frame(entries, images.names.into_values());
+    Ok(JsonFrames { frames, times: FrameTimes::default(), image_size_px: images.size_px })
+}
+
+/// Frames with everybody in each; where the first one has a time, all of them need one.
+fn list_of_frames(list: Vec<&RawValue>, path: &Path) -> Result<JsonFrames, KeypointError> {
+    let first = list.first().and_then(|entry| serde_json::from_str::<Value>(entry.get()).ok()).unwrap_or_default();
+    let columns = frame_lists::columns(&first);
+    if columns.time.is_none() {
+        let frames = each(list, path, |value, index| frame_lists::frame(&value, index, path))?;
+        return Ok(JsonFrames { frames, times: FrameTimes::default(), image_size_px: None });
+    }
+    let rows = each(list, path, |value, index| frame_lists::row(&value, index, &columns, path))?;
+    let broken = |(index, rule)| KeypointError::broken(path, format!("frame {index} of the list"), rule);
+    let found = grouped(rows, &columns).map_err(broken)?;
+    Ok(JsonFrames { frames: found.frames, times: found.times, image_size_px: None })
 }
 
 /// The items of a list, each as its text: as values, all of them together take ten times the memory
@@ -200,6 +217,22 @@ mod tests {
         assert!(read_text(&text.to_string()).unwrap_err().contains("have to be as many"));
         let nested: Vec<[f64; 3]> = (0..17).map(|i| [f64::from(i) + 1.0, 5.0, 0.5]).collect();
         assert_eq!(counts(&read_text(&json!([{ "image_id": 3, "keypoints": nested }]).to_string()).unwrap()), [(3, 1)]);
+    }
+
+    #[test]
+    fn times_of_frames_give_their_rate_and_their_gaps() {
+        let points: Vec<[f64; 2]> = (0..17).map(|i| [f64::from(i) + 1.0, 5.0]).collect();
+        let frame = |time: f64| json!({ "timestamp_ms": time, "people": [{ "keypoints": points }] });
+        let times = (0..60).filter(|frame| frame % 20 != 7).map(|frame| f64::from(frame) * 40.0);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("k.json");
+        std::fs::write(&path, json!({ "frames": times.map(frame).collect::<Vec<_>>() }).to_string()).unwrap();
+        let found = read(&path).unwrap();
+        assert_eq!((found.times.rate_hz, found.frames.len(), found.frames[56].frame), (Some(25.0), 57, 59));
+        let message = read_text(&json!({ "frames": [frame(0.0), { "timestamp_ms": "x", "people": [] }] }).to_string());
+        assert!(message.unwrap_err().contains("frame 1 of the list: `timestamp_ms` has to be a number"));
+        let message = read_text(&json!({ "frames": [frame(40.0), frame(0.0)] }).to_string());
+        assert!(message.unwrap_err().contains("times have to rise"));
     }
 
     #[test]

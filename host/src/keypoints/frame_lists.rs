@@ -1,9 +1,11 @@
 //! JSON files with one entry a frame, each with everybody in it: MMPose, tools around MediaPipe and
 //! ultralytics.
 
+use super::columns::Columns;
 use super::error::KeypointError;
 use super::orders::{self, PointFrame, Points};
 use super::point_values::triples;
+use super::table_rows::Row;
 use serde_json::Value;
 use std::path::Path;
 
@@ -54,6 +56,31 @@ pub fn frame(entry: &Value, index: usize, path: &Path) -> Result<PointFrame, Key
         }
     }
     Ok(PointFrame { frame: number, people: found })
+}
+
+/// Which entries of a frame hold its number and its time.
+#[must_use]
+pub fn columns(entry: &Value) -> Columns {
+    let names = entry.as_object().into_iter().flat_map(serde_json::Map::keys);
+    let has_number = first(entry, &NUMBER_NAMES).is_some();
+    Columns { frame: has_number.then_some(0), ..Columns::of_header(names.map(String::as_str)) }
+}
+
+/// The frame `index` of a list with times, as a row of a table.
+///
+/// # Errors
+/// As [`frame`]; a time that is no number.
+pub fn row(entry: &Value, index: usize, columns: &Columns, path: &Path) -> Result<Row, KeypointError> {
+    let PointFrame { frame: number, people } = frame(entry, index, path)?;
+    let name = columns.time.map_or("", |(column, _)| columns.names[column].as_str());
+    let time = match entry.get(name) {
+        None | Some(Value::Null) => None,
+        Some(time) => Some(time.as_f64().ok_or_else(|| {
+            let rule = format!("`{name}` has to be a number");
+            KeypointError::broken(path, format!("frame {index} of the list"), rule)
+        })?),
+    };
+    Ok(Row { line: index as u64, frame: columns.frame.map(|_| number), time, person: None, people })
 }
 
 fn whole(number: &Value) -> Option<u64> {

@@ -63,7 +63,8 @@ pub fn read(path: &Path, image_size_px: Option<[f64; 2]>) -> Result<Detections, 
         }
         "json" => {
             let found = coco::read(path)?;
-            Detections { image_size_px: found.image_size_px, ..orders::name_points(&found.frames) }
+            let named = orders::name_points(&found.frames);
+            Detections { image_size_px: found.image_size_px, ..found.times.applied_to(named) }
         }
         "csv" => table::read(path)?,
         _ => return Err(KeypointError::unusable(path, unknown_kind())),

@@ -59,14 +59,8 @@ pub fn parse(text: &str, path: &Path) -> Result<Detections, KeypointError> {
         return Err(broken(2, "the table is empty; at least one frame has to follow the header".into()));
     }
     let grouped = grouped(rows, &columns).map_err(|(line, rule)| broken(line, rule))?;
-    let mut found = slots.named(grouped.frames).map_err(|rule| broken(1, rule))?;
-    found.rate_hz = grouped.rate_hz;
-    if let Some(times_s) = grouped.uneven_times_s {
-        found.frames = super::times::evened(&found.frames, &times_s, grouped.rate_hz.unwrap_or(1.0));
-    }
-    found.notes.extend(grouped.notes);
-    found.doubts.extend(grouped.doubts);
-    Ok(found)
+    let found = slots.named(grouped.frames).map_err(|rule| broken(1, rule))?;
+    Ok(grouped.times.applied_to(found))
 }
 
 /// The columns of a table with a header row each for scorers, individuals, body parts and

@@ -2,8 +2,9 @@
 
 use super::clock;
 use super::columns::Columns;
+use super::detections::Detections;
 use super::orders::{PointFrame, Points};
-use super::times::{rate_of_numbers, timing};
+use super::times::{evened, rate_of_numbers, timing};
 use std::collections::BTreeMap;
 
 /// A row of a table.
@@ -26,6 +27,13 @@ pub struct Row {
 pub struct Grouped {
     /// The frames, rising in number.
     pub frames: Vec<PointFrame>,
+    /// When they were taken.
+    pub times: FrameTimes,
+}
+
+/// What the times of frames say.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FrameTimes {
     /// Frames per second, where times are known.
     pub rate_hz: Option<f64>,
     /// Times of the frames where they come at uneven steps.
@@ -34,6 +42,20 @@ pub struct Grouped {
     pub notes: Vec<String>,
     /// What is in doubt.
     pub doubts: Vec<String>,
+}
+
+impl FrameTimes {
+    /// `found` with the rate; where frames come at uneven times, with frames at even ones.
+    #[must_use]
+    pub fn applied_to(self, mut found: Detections) -> Detections {
+        found.rate_hz = self.rate_hz;
+        if let Some(times_s) = self.uneven_times_s {
+            found.frames = evened(&found.frames, &times_s, self.rate_hz.unwrap_or(1.0));
+        }
+        found.notes.extend(self.notes);
+        found.doubts.extend(self.doubts);
+        found
+    }
 }
 
 /// A moment: a frame's number, or the bits of a time. Times are ordered by `total_cmp`.
@@ -70,11 +92,10 @@ pub fn grouped(rows: Vec<Row>, columns: &Columns) -> Result<Grouped, BrokenLine>
     }
     let moments_only: Vec<Moment> = moments.iter().map(|(moment, _)| *moment).collect();
     check_rising(&moments_only, columns)?;
-    let mut grouped = Grouped::default();
-    let numbers = numbered(&moments_only, columns, has_times, &mut grouped)?;
+    let mut times = FrameTimes::default();
+    let numbers = numbered(&moments_only, columns, has_times, &mut times)?;
     let frame = |(frame, (_, people)): (u64, Seen)| PointFrame { frame, people };
-    grouped.frames = numbers.into_iter().zip(moments).map(frame).collect();
-    Ok(grouped)
+    Ok(Grouped { frames: numbers.into_iter().zip(moments).map(frame).collect(), times })
 }
 
 /// Rows of which several belong to a frame.
@@ -131,7 +152,7 @@ fn numbered(
     moments: &[Moment],
     columns: &Columns,
     has_times: bool,
-    grouped: &mut Grouped,
+    found: &mut FrameTimes,
 ) -> Result<Vec<u64>, BrokenLine> {
     let frames: Option<Vec<u64>> = moments.iter().map(|moment| moment.frame).collect();
     let (Some((column, unit)), true) = (columns.time, has_times) else {
@@ -150,7 +171,7 @@ fn numbered(
     let unit_s = unit.unwrap_or_else(|| {
         let (seconds, words) = clock::unit(&times);
         if seconds != 1.0 {
-            grouped.notes.push(format!("the column `{name}` is taken for {words}"));
+            found.notes.push(format!("the column `{name}` is taken for {words}"));
         }
         seconds
     });
@@ -158,31 +179,27 @@ fn numbered(
     if let Some(frames) = &frames
         && let Some(rate_hz) = rate_of_numbers(frames, &times_s)
     {
-        grouped.rate_hz = Some(rate_hz);
+        found.rate_hz = Some(rate_hz);
         return Ok(frames.clone());
     }
-    let Some(found) = timing(&times_s) else {
+    let Some(timing) = timing(&times_s) else {
         if frames.is_none() && times.len() > 1 {
             return Err((moments[0].line, format!("`{name}` has steps from which no rate follows; remove the column")));
         }
         if times.len() > 1 {
-            grouped
-                .doubts
-                .push(format!("the column `{name}` has no times that rise: it is not used; give --input-rate"));
+            found.doubts.push(format!("the column `{name}` has no times that rise: it is not used; give --input-rate"));
         }
         return Ok(frames.unwrap_or_else(|| vec![0; moments.len()]));
     };
-    grouped.rate_hz = Some(found.rate_hz);
-    if !found.is_even {
-        grouped.notes.push(format!(
+    found.rate_hz = Some(timing.rate_hz);
+    if !timing.is_even {
+        found.notes.push(format!(
             "frames come at uneven times (`{name}`): points lie on straight lines between them, at {:.2} frames a second",
-            found.rate_hz
+            timing.rate_hz
         ));
-        grouped.uneven_times_s = Some(times_s);
+        found.uneven_times_s = Some(times_s);
     } else if frames.is_some() {
-        grouped
-            .notes
-            .push(format!("frames are numbered by the column `{name}`, with which their own numbers disagree"));
+        found.notes.push(format!("frames are numbered by the column `{name}`, with which their own numbers disagree"));
     }
-    Ok(found.frames)
+    Ok(timing.frames)
 }

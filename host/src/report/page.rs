@@ -12,8 +12,12 @@ use std::io::Write;
 /// What stands before the data; the policy lets the page ask for nothing from outside.
 const HEAD: &str = include_str!("page/head.html");
 const BODY: &str = include_str!("page/body.html");
-const STYLES: [&str; 3] =
-    [include_str!("page/theme.css"), include_str!("page/layout.css"), include_str!("page/plot.css")];
+const STYLES: [&str; 4] = [
+    include_str!("page/theme.css"),
+    include_str!("page/layout.css"),
+    include_str!("page/plot.css"),
+    include_str!("page/print.css"),
+];
 /// The parts of the script, each after those that it calls.
 const SCRIPTS: [&str; 13] = [
     include_str!("page/element.js"),

@@ -73,7 +73,7 @@ pub fn run_until(args: &EvaluateCyclicArgs, console: &Console, stop: Stop<'_>) -
     let output = OutputDir::create(&args.out)?;
     let (model, name) = match &args.train {
         Some(path) => {
-            let options = TrainingOptions { length: 100, rate_hz: args.rate };
+            let options = TrainingOptions { length: 100, rate_hz: Some(args.rate) };
             (train(&CutList::read(path)?, options)?, format!("trained on {}", path.display()))
         }
         None => (CyclicModel::from_option(&args.model)?, args.model.clone()),

@@ -34,5 +34,5 @@ pub fn trained(folder: &Path, recordings: &[(&str, Circles)]) -> CyclicModel {
         .flat_map(|(trial, circles)| circles.iter().map(move |(first, end)| format!("{trial}.csv,{first},{end}\n")));
     let cuts: String = lines.collect();
     let list = CutList::parse(&format!("file,start_frame,end_frame\n{cuts}"), &folder.join("cuts.csv")).unwrap();
-    train(&list, TrainingOptions::default()).unwrap()
+    train(&list, TrainingOptions { rate_hz: Some(60.0), ..TrainingOptions::default() }).unwrap()
 }

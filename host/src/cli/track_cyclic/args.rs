@@ -5,11 +5,12 @@ use crate::cli::viewer_args::ViewerArgs;
 use crate::cyclic::CyclicModel;
 use crate::cyclic::angle_table::AngleRows;
 use crate::cyclic::model_file::MODEL_VALUE;
+use crate::cyclic::rate;
 use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates};
 use crate::file::STANDARD_INPUT;
 use crate::output::check_writable_file;
 use crate::resume::{Begun, file_crc32, text_crc32};
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, ensure};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
@@ -75,10 +76,10 @@ pub struct TrackCyclicArgs {
     /// TRC and MOT files.
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
-    /// Draw the figure on the images of this folder, frame k of the table on image k in natural
-    /// order, counted from 0. The pictures are written into `EST_overlay` beside the estimates.
-    /// Needs a table from keypoints.
-    #[arg(long, value_name = "FRAMES_DIR")]
+    /// Draw figure and flexion angles on the frames of this video, or the images of this folder:
+    /// frame k of the table on image k in natural order, counted from 0. The pictures are written
+    /// into `EST_overlay` beside the estimates. Needs a table from keypoints.
+    #[arg(long, value_name = "VIDEO|FOLDER")]
     pub overlay: Option<PathBuf>,
     /// Write the stick figure alone as an animation, what was measured thin and grey behind the
     /// estimate.
@@ -105,9 +106,6 @@ pub struct TrackCyclicArgs {
 
 /// Rows beyond which a table is not kept whole: an hour at 25 frames a second takes 60 MB.
 const MAX_WHOLE_ROWS: usize = 100_000;
-
-/// How far a rate may lie from that of the table: 30 for 29.97 is the same camera.
-const MAX_RATE_ERROR: f64 = 0.002;
 
 /// The subcommand, in what it leaves.
 pub(super) const COMMAND: &str = "track cyclic";
@@ -145,17 +143,7 @@ impl TrackCyclicArgs {
     /// # Errors
     /// Both are unknown, or they contradict each other.
     pub(super) fn rate_hz(&self, of_table: Option<f64>) -> Result<f64> {
-        let table = self.table.display();
-        match (self.rate, of_table) {
-            (Some(rate), Some(of_table)) if (rate / of_table - 1.0).abs() > MAX_RATE_ERROR => bail!(
-                "`--rate {rate}`: the times in `{table}` say {of_table} frames a second; leave --rate out, or make the table anew by `sinew angles --input-rate {rate}`"
-            ),
-            (Some(rate), _) => Ok(rate),
-            (None, Some(of_table)) => Ok(of_table),
-            (None, None) => bail!(
-                "`{table}` does not say how many frames a second it has: give --rate HZ, or make it by `sinew angles` with --input-rate HZ"
-            ),
-        }
+        Ok(rate::of_recording(&self.table, of_table, self.rate)?)
     }
 
     /// What can be checked before anything is read.

@@ -7,7 +7,7 @@ use super::summary_line::summary_line;
 use crate::cli::console::Console;
 use crate::cyclic::about::About;
 use crate::cyclic::own_cycle::{finish, noise};
-use crate::cyclic::pictures::{OverlayFrames, animation};
+use crate::cyclic::pictures::{Drawn, OverlayFrames, animation};
 use crate::cyclic::plausibility;
 use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::figures;
@@ -33,7 +33,6 @@ pub(super) fn track(
     stop: &AtomicBool,
     notify: &mut dyn FnMut(usize),
 ) -> Result<()> {
-    let frames = args.overlay.as_deref().map(OverlayFrames::open).transpose()?;
     let place = Place::of(args)?;
     let left = place.left(args)?;
     let output = args.report.as_deref().map(OutputDir::create).transpose()?;
@@ -41,6 +40,8 @@ pub(super) fn track(
     let angles = AngleTable::read(&args.table)?;
     let options = &of_recording(args, &angles, options)?;
     let begun = args.begun(&models)?;
+    let overlay =
+        args.overlay.as_deref().map(|pictures| with_output(pictures, &angles, options, &args.out)).transpose()?;
     let mut run = TableRun::begin(&angles, &models, options)?;
     if let Some(left) = &left {
         left.begun.check_options(&begun, &args.out)?;
@@ -49,7 +50,6 @@ pub(super) fn track(
         let state = left.state.as_deref().filter(|_| !left.has_tables());
         run.restore(left.finished, state)?;
     }
-    let overlay = frames.as_ref().map(|frames| with_output(frames, &angles, &args.out)).transpose()?;
     let start = Instant::now();
     let seconds_before = left.map_or(0.0, |left| left.seconds);
     let save = |run: &mut TableRun<'_>| -> crate::Result<()> {
@@ -121,7 +121,7 @@ struct Shown<'a> {
     models: &'a [CyclicModel],
     options: &'a TrackingOptions,
     output: Option<OutputDir>,
-    overlay: Option<(&'a OverlayFrames, OutputDir)>,
+    overlay: Option<(RefCell<OverlayFrames>, OutputDir)>,
 }
 
 impl Shown<'_> {
@@ -194,7 +194,7 @@ impl Shown<'_> {
         let args = self.args;
         let drawn = self.overlay.as_ref().map(|(frames, folder)| OverlayOrigin {
             folder: folder.path().display().to_string(),
-            images: frames.names(),
+            images: frames.borrow().names(),
         });
         let origin = Origin {
             table: &args.table.display().to_string(),
@@ -218,7 +218,8 @@ impl Shown<'_> {
         let figures = figures(angles, tracked, &report.measured_shares, &body, self.options.sigma_rad)?;
         let mut text = String::new();
         if let Some((frames, folder)) = &self.overlay {
-            let overlaid = frames.draw((angles, tracked), &figures, &body, folder, stop)?;
+            let drawn = Drawn { table: angles, tracked, figures: &figures, body: &body };
+            let overlaid = frames.borrow_mut().draw(&drawn, folder, stop)?;
             for reason in overlaid.skipped.iter().take(TOLD_REASONS) {
                 console.note(format!("overlay: {reason}; skipped"));
             }
@@ -256,14 +257,16 @@ fn told_motions(names: &[String], motions: &MotionCells) -> String {
     format!("motion: {} frames\n", counts.join(", "))
 }
 
-/// The frames with the folder of their overlays.
-fn with_output<'f>(
-    frames: &'f OverlayFrames,
+/// The frames with the folder of their overlays; of a video as many a second as the table has.
+fn with_output(
+    pictures: &Path,
     angles: &AngleTable,
+    options: &TrackingOptions,
     out: &Path,
-) -> Result<(&'f OverlayFrames, OutputDir)> {
+) -> Result<(RefCell<OverlayFrames>, OutputDir)> {
     OverlayFrames::check(angles)?;
-    Ok((frames, OutputDir::create(&overlay_folder(out))?))
+    let rate_hz = options.rate_hz.unwrap_or_default();
+    Ok((RefCell::new(OverlayFrames::open(pictures, rate_hz)?), OutputDir::create(&overlay_folder(out))?))
 }
 
 /// `estimate_overlay` beside `estimate.csv`.

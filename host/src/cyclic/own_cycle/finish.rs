@@ -9,6 +9,7 @@ use crate::cyclic::tracking::{Tracked, TrackedFrame, TrackingOptions};
 use crate::cyclic::turns::least_angle;
 use crate::cyclic::{AngleTable, CyclicModel};
 use crate::error::{Context, Result};
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Longest time without any measurement that is bridged, cycles. Beyond it the person may have
@@ -39,11 +40,10 @@ fn finish_angles<const N: usize>(
     let phased = phase::fitted(&seen, first, &Shape::of_model(model));
     let cycle_frames = seen.angles_rad.len() as f64 / (phased.phases[phased.phases.len() - 1] - phased.phases[0]).abs();
     let stretches = seen.stretches(LONGEST_BRIDGE_CYCLES * cycle_frames);
-    let is_known: Vec<bool> = (0..seen.angles_rad.len())
-        .map(|frame| stretches.iter().any(|[first, last]| (*first..=*last).contains(&frame)))
-        .collect();
+    let mut is_known = vec![false; seen.angles_rad.len()];
+    stretches.iter().for_each(|[first, last]| is_known[*first..=*last].fill(true));
     let course = |angle| Course::new(&seen, angle, &phased, &is_known, tracked.rate_hz);
-    let courses: Vec<Course> = (0..N).map(course).collect::<Result<_>>()?;
+    let courses: Vec<Course> = (0..N).into_par_iter().map(course).collect::<Result<_>>()?;
     let origin = phased.phases[0];
     for row in &mut tracked.frames {
         let frame = (row.frame - seen.first_frame) as usize;

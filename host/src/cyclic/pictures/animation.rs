@@ -114,7 +114,7 @@ pub fn write(path: &Path, table: &AngleTable, figures: &[Figure], body: &Body, r
         let seen = measured(&table.rows()[picture.row], body, ROOT);
         draw_figure(&mut canvas, &pixels(&framing.place(&seen)), FigureStyle::Faint);
         draw_figure(&mut canvas, &pixels(&framing.place(estimate)), FigureStyle::OnCanvas);
-        caption(&mut canvas, &format!("frame {}", frames[picture.row]));
+        caption(&mut canvas, &[format!("frame {}", frames[picture.row])]);
         let delay = Delay::from_numer_denom_ms(10 * picture.ticks, 1);
         Frame::from_parts(DynamicImage::ImageRgb8(canvas).into_rgba8(), 0, 0, delay)
     };

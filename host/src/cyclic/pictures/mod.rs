@@ -5,7 +5,7 @@ pub mod figure;
 pub mod overlay;
 
 pub use figure::{has_pixels, measured};
-pub use overlay::{Overlaid, OverlayFrames};
+pub use overlay::{Drawn, Overlaid, OverlayFrames};
 
 #[cfg(test)]
 mod tests;

@@ -1,25 +1,32 @@
 //! The estimated figure drawn on the person's own frames.
 
 use super::figure::{measured, pixels};
+use crate::cyclic::anatomy::{PAIRS, of_pose};
 use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::{Figure, in_image};
 use crate::cyclic::tracking::Tracked;
 use crate::cyclic::tracking::summary::cadence_per_min;
 use crate::cyclic::{AngleTable, CyclicError};
 use crate::draw::stick_figure::{FigureStyle, caption, draw_figure};
-use crate::error::{Context, Result};
-use crate::images::{InputError, list_images, load_rgb};
+use crate::error::Result;
 use crate::output::OutputDir;
 use crate::track::pictures::overlay_names;
+use crate::track::{FrameSource, SkippedImage};
 use image::RgbImage;
 use rayon::prelude::*;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Images of a recording in natural order: frame k of the table is image k, counted from 0.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Pictures that are held at once.
+const HELD: usize = 8;
+
+/// Pictures of a recording: a folder of images in natural order, or a video. Frame k of the table
+/// is picture k, counted from 0.
+#[derive(Debug)]
 pub struct OverlayFrames {
-    files: Vec<PathBuf>,
+    source: FrameSource,
+    /// Names of the overlays of a folder's images.
+    overlays: Vec<(String, String)>,
 }
 
 /// What came of the overlays.
@@ -31,20 +38,33 @@ pub struct Overlaid {
     pub skipped: Vec<String>,
 }
 
+/// What is drawn: one figure a row of the table.
+#[derive(Debug, Clone, Copy)]
+pub struct Drawn<'a> {
+    /// The table that was tracked.
+    pub table: &'a AngleTable,
+    /// What came of it.
+    pub tracked: &'a Tracked,
+    /// The estimated figures.
+    pub figures: &'a [Figure],
+    /// The person's lengths.
+    pub body: &'a Body,
+}
+
 impl OverlayFrames {
-    /// The images of `folder`.
+    /// The pictures at `path`, a folder or a video; of a video `rate_hz` frames per second.
     ///
     /// # Errors
-    /// The folder is missing or holds no image.
-    pub fn open(folder: &Path) -> Result<Self, InputError> {
-        Ok(Self { files: list_images(folder)? })
+    /// What is there is neither, cannot be read, or has images of different sizes.
+    pub fn open(path: &Path, rate_hz: f64) -> Result<Self> {
+        let source = FrameSource::open(path, false, rate_hz)?;
+        Ok(Self { overlays: overlay_names(source.files()), source })
     }
 
-    /// File names in the order of frames.
+    /// File names of the pictures in the order of frames.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
-        let name = |file: &PathBuf| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        self.files.iter().map(name).collect()
+        (0..self.source.count()).map(|frame| self.source.name(frame)).collect()
     }
 
     /// Checks that `table` has the place of the person in the picture.
@@ -60,72 +80,90 @@ impl OverlayFrames {
         Err(CyclicError::parameter("overlay", rule))
     }
 
-    /// Draws `figures` (one a row of `table`) on their images and writes them into `folder`. A
-    /// frame without an image, an image that cannot be read, and one of another size than the
-    /// first are skipped and reported. Nothing more is drawn once `stop` is set.
+    /// Draws the figures on their pictures and writes them into `folder`. A frame without a picture
+    /// and one that cannot be read are skipped and reported. Nothing more is drawn once `stop` is set.
     ///
     /// # Errors
-    /// A picture that cannot be written.
-    pub fn draw(
-        &self,
-        (table, tracked): (&AngleTable, &Tracked),
-        figures: &[Figure],
-        body: &Body,
-        folder: &OutputDir,
-        stop: &AtomicBool,
-    ) -> Result<Overlaid> {
-        let names = overlay_names(&self.files);
-        let image = |frame: u64| usize::try_from(frame).ok().and_then(|frame| self.files.get(frame));
-        let rows: Vec<usize> = (0..figures.len()).filter(|row| image(figures[*row].frame).is_some()).collect();
-        let size = rows.iter().find_map(|row| Some(load_rgb(image(figures[*row].frame)?).ok()?.dimensions()));
-        let results: Vec<Result<Option<String>>> = rows
-            .par_iter()
-            .filter(|_| !stop.load(Ordering::Relaxed))
-            .map(|row| {
-                let figure = &figures[*row];
-                let file = image(figure.frame).with_context(|| format!("frame {} has no image", figure.frame))?;
-                let mut picture = match load_rgb(file) {
-                    Ok(picture) => picture,
-                    Err(error) => return Ok(Some(error.to_string())),
-                };
-                if let Some((width, height)) = size.filter(|size| *size != picture.dimensions()) {
-                    let (other, name) = (picture.dimensions(), file.display());
-                    return Ok(Some(format!(
-                        "`{name}` has {} x {} pixels, the first image {width} x {height}",
-                        other.0, other.1
-                    )));
-                }
-                draw_row(&mut picture, table, tracked, *row, figure, body);
-                folder.write_frame_png(&names[figure.frame as usize].1, &picture)?;
-                Ok(None)
-            })
-            .collect();
-        let mut overlaid = Overlaid::default();
-        for result in results {
-            match result? {
-                Some(reason) => overlaid.skipped.push(reason),
-                None => overlaid.written += 1,
+    /// A picture that cannot be written, a video that breaks off.
+    pub fn draw(&mut self, drawn: &Drawn<'_>, folder: &OutputDir, stop: &AtomicBool) -> Result<Overlaid> {
+        let numbers: Vec<Option<usize>> =
+            drawn.figures.iter().map(|figure| usize::try_from(figure.frame).ok()).collect();
+        let (mut overlaid, mut row, mut count) = (Overlaid::default(), 0, self.source.count());
+        while let Some(begin) = numbers.get(row).copied().flatten().filter(|begin| *begin < count) {
+            if stop.load(Ordering::Relaxed) {
+                return Ok(overlaid);
             }
+            let pictures = self.source.load(begin, HELD)?;
+            if pictures.is_empty() {
+                count = begin;
+            }
+            let end = row
+                + numbers[row..]
+                    .iter()
+                    .take_while(|number| number.is_some_and(|number| number < begin + pictures.len()))
+                    .count();
+            let written: Vec<Result<Option<String>>> = (row..end)
+                .into_par_iter()
+                .map(|row| self.draw_row(drawn, row, &pictures[drawn.figures[row].frame as usize - begin], folder))
+                .collect();
+            for reason in written {
+                match reason? {
+                    Some(reason) => overlaid.skipped.push(reason),
+                    None => overlaid.written += 1,
+                }
+            }
+            row = end;
         }
-        let without = figures.len() - rows.len();
-        if without > 0 {
-            let (count, last) = (self.files.len(), figures.last().map_or(0, |figure| figure.frame));
+        if let Some(last) = drawn.figures[row..].last() {
+            let (without, last) = (drawn.figures.len() - row, last.frame);
             overlaid.skipped.push(format!(
-                "{without} rows have no image: the folder holds {count}, frame numbers go up to {last} (frame 0 is the first image)"
+                "{without} rows have no image: there are {count}, frame numbers go up to {last} (frame 0 is the first image)"
             ));
         }
         Ok(overlaid)
     }
+
+    /// Why the row's picture was not drawn, if it was not.
+    fn draw_row(
+        &self,
+        drawn: &Drawn<'_>,
+        row: usize,
+        picture: &Result<RgbImage, SkippedImage>,
+        folder: &OutputDir,
+    ) -> Result<Option<String>> {
+        let mut picture = match picture {
+            Ok(picture) => picture.clone(),
+            Err(skipped) => return Ok(Some(format!("`{}`: {}", skipped.file, skipped.reason))),
+        };
+        draw_figures(&mut picture, drawn, row);
+        let frame = drawn.figures[row].frame as usize;
+        let name = self.overlays.get(frame).map_or_else(|| self.source.name(frame), |(_, overlay)| overlay.clone());
+        folder.write_frame_png(&name, &picture)?;
+        Ok(None)
+    }
 }
 
-/// The measured figure thin and grey, the estimated one on it, and position and cadence in words.
-fn draw_row(picture: &mut RgbImage, table: &AngleTable, tracked: &Tracked, row: usize, figure: &Figure, body: &Body) {
-    let measured_row = &table.rows()[row];
+/// The measured figure thin and grey, the estimated one on it, and position, cadence and flexion
+/// angles in words.
+fn draw_figures(picture: &mut RgbImage, drawn: &Drawn<'_>, row: usize) {
+    let (measured_row, figure, body) = (&drawn.table.rows()[row], &drawn.figures[row], drawn.body);
     let side = body.side(measured_row);
     let seen = measured(measured_row, body, body.root(measured_row));
     draw_figure(picture, &pixels(&in_image(&seen, side)), FigureStyle::Faint);
     draw_figure(picture, &pixels(&in_image(&figure.joints_about(figure.root), side)), FigureStyle::OnPicture);
-    let position = tracked.frames[row].estimate.cycle_position;
-    let (cadence, _) = cadence_per_min(tracked, row);
-    caption(picture, &format!("frame {}  cycle {position:.2}  {cadence:.1} a minute", figure.frame));
+    let position = drawn.tracked.frames[row].estimate.cycle_position;
+    let (cadence, _) = cadence_per_min(drawn.tracked, row);
+    let mut lines = vec![format!("frame {}  cycle {position:.2}  {cadence:.1} a minute", figure.frame)];
+    lines.extend(angle_lines(figure));
+    caption(picture, &lines);
+}
+
+/// One line for each joint: its flexion left and right, whole degrees; `-` where it is not known.
+fn angle_lines(figure: &Figure) -> impl Iterator<Item = String> {
+    let angles_deg = of_pose(&figure.angles_rad);
+    let cell = move |angle: usize| angles_deg[angle].map_or_else(|| "-".to_owned(), |angle| format!("{angle:.0}"));
+    PAIRS.into_iter().map(move |(name, left, right)| {
+        let joint = name.trim_end_matches("_flexion");
+        format!("{joint:<8}  left {:>4}  right {:>4}", cell(left), cell(right))
+    })
 }

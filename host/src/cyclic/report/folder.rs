@@ -10,6 +10,8 @@ use crate::cyclic::export::{mot, series::to_csv, trc};
 use crate::cyclic::tracking::{Tracked, table};
 use crate::error::Result;
 use crate::output::OutputDir;
+#[cfg(feature = "plots")]
+use rayon::prelude::*;
 
 /// File of the estimates.
 pub const ESTIMATES: &str = "estimates.csv";
@@ -46,9 +48,9 @@ impl Report {
             text("joints_px.csv", joints::to_csv_px(&positions, table, &body))?;
         }
         #[cfg(feature = "plots")]
-        for (name, picture) in plots::plots(self, table, tracked, &origin.options.updates)? {
-            output.write_png(&name, &picture)?;
-        }
+        plots::plots(self, table, tracked, &origin.options.updates)?
+            .par_iter()
+            .try_for_each(|(name, picture)| output.write_png(name, picture))?;
         let document = document::Document::new(self, origin, tracked);
         output.write("summary.json", |writer| Ok(serde_json::to_writer_pretty(writer, &document)?))
     }

@@ -10,6 +10,7 @@ use crate::cyclic::tracking::{Tracked, Updates};
 use crate::draw::plot::{Curve, bars_plot, curves_plot};
 use crate::error::Result;
 use image::RgbImage;
+use rayon::prelude::*;
 
 /// Half width of a normal's 90 % band, standard deviations.
 const HALF_90: f64 = 1.644_853_626_951;
@@ -22,6 +23,14 @@ const GROUPS: [(&str, &[usize]); 5] = [
     ("right leg", &[11, 12]),
 ];
 
+/// A plot that is to be drawn: its file, title, names of both axes, and curves.
+struct Planned {
+    file: String,
+    title: String,
+    axes: [&'static str; 2],
+    curves: Vec<Curve>,
+}
+
 /// Every plot with its file name. Those that need cycles or measured angles that are not there are
 /// left out.
 ///
@@ -33,42 +42,63 @@ pub fn plots(
     tracked: &Tracked,
     updates: &Updates,
 ) -> Result<Vec<(String, RgbImage)>> {
-    let mut all = Vec::new();
-    let mut add = |name: String, title: &str, x: &str, y: &str, curves: &[Curve]| -> Result<()> {
-        if curves.iter().flat_map(|curve| &curve.points).any(|(x, y)| x.is_finite() && y.is_finite()) {
-            all.push((name, curves_plot(title, x, y, false, curves)?));
-        }
-        Ok(())
+    let has_points = |plot: &Planned| {
+        plot.curves.iter().flat_map(|curve| &curve.points).any(|(x, y)| x.is_finite() && y.is_finite())
     };
-    for (name, angles) in GROUPS {
-        let curves: Vec<Curve> = angles.iter().map(|&angle| trajectory(table, tracked, updates, angle)).collect();
-        let title = format!("Angles of the stick figure, {name}: estimate, 90 % band and what was measured (dots)");
-        let file = format!("trajectories_{}.png", name.replace(' ', "_"));
-        add(file, &title, "time, seconds", "angle, degrees", &curves)?;
-    }
-    let position = [cycle_position(tracked)];
-    add("cycle_position.png".into(), "Position in the cycle", "time, seconds", "cycles", &position)?;
-    let portrait = phase_portrait(report);
-    add("phase_portrait.png".into(), "Phase portrait", "angle, degrees", "velocity, degrees a second", &portrait)?;
-    let title = "Cadence and its 90 % band";
-    add("cadence.png".into(), title, "time, seconds", "cycles a minute", &[cadence(tracked)])?;
-    for (name, left, right) in PAIRS {
-        let curves = [("left", left), ("right", right)].map(|(side, angle)| {
-            let mut curve = cycle_curve(&report.curves.curves[angle]);
-            curve.name = side.to_owned();
-            curve
-        });
-        let title = format!("{}: mean of {} cycles and spread", name.replace('_', " "), report.cycles.len());
-        add(format!("curves_{name}.png"), &title, "cycle, percent", "angle, degrees", &curves)?;
-    }
-    let lean = [cycle_curve(&report.curves.curves[0])];
-    let title = format!("trunk lean: mean of {} cycles and spread", report.cycles.len());
-    add("curves_trunk_lean.png".into(), &title, "cycle, percent", "angle, degrees", &lean)?;
+    let draw =
+        |Planned { file, title, axes: [x, y], curves }: Planned| Ok((file, curves_plot(&title, x, y, false, &curves)?));
+    let over_time = planned_over_time(table, tracked, updates);
+    let planned = over_time.into_iter().chain(planned_over_a_cycle(report)).filter(has_points);
+    let mut all: Vec<_> = planned.collect::<Vec<_>>().into_par_iter().map(draw).collect::<Result<_>>()?;
     if let Some(bars) = ranges(report) {
         let title = "Range of motion, mean over the cycles";
         all.push(("range_of_motion.png".into(), bars_plot(title, "degrees", &bars)?));
     }
     Ok(all)
+}
+
+fn planned_over_time(table: &AngleTable, tracked: &Tracked, updates: &Updates) -> Vec<Planned> {
+    let trajectories = GROUPS.into_iter().map(|(name, angles)| Planned {
+        file: format!("trajectories_{}.png", name.replace(' ', "_")),
+        title: format!("Angles of the stick figure, {name}: estimate, 90 % band and what was measured (dots)"),
+        axes: ["time, seconds", "angle, degrees"],
+        curves: angles.iter().map(|&angle| trajectory(table, tracked, updates, angle)).collect(),
+    });
+    let position = Planned {
+        file: "cycle_position.png".into(),
+        title: "Position in the cycle".into(),
+        axes: ["time, seconds", "cycles"],
+        curves: vec![cycle_position(tracked)],
+    };
+    let cadence = Planned {
+        file: "cadence.png".into(),
+        title: "Cadence and its 90 % band".into(),
+        axes: ["time, seconds", "cycles a minute"],
+        curves: vec![cadence(tracked)],
+    };
+    trajectories.chain([position, cadence]).collect()
+}
+
+fn planned_over_a_cycle(report: &Report) -> Vec<Planned> {
+    let cycles = report.cycles.len();
+    let mean = |name: &str, curves| Planned {
+        file: format!("curves_{name}.png"),
+        title: format!("{}: mean of {cycles} cycles and spread", name.replace('_', " ")),
+        axes: ["cycle, percent", "angle, degrees"],
+        curves,
+    };
+    let named =
+        |(side, angle): (&str, usize)| Curve { name: side.to_owned(), ..cycle_curve(&report.curves.curves[angle]) };
+    let portrait = Planned {
+        file: "phase_portrait.png".into(),
+        title: "Phase portrait".into(),
+        axes: ["angle, degrees", "velocity, degrees a second"],
+        curves: phase_portrait(report),
+    };
+    let pairs =
+        PAIRS.into_iter().map(|(name, left, right)| mean(name, [("left", left), ("right", right)].map(named).into()));
+    let lean = mean("trunk_lean", vec![cycle_curve(&report.curves.curves[0])]);
+    std::iter::once(portrait).chain(pairs).chain([lean]).collect()
 }
 
 fn seconds(tracked: &Tracked, frame: u64) -> f64 {

@@ -20,6 +20,7 @@ const LONGEST_GAP: f64 = 0.1;
 pub struct TrainingCycle {
     start_frame: f64,
     duration_frames: f64,
+    rate_hz: Option<f64>,
     curves: Vec<CubicSpline>,
 }
 
@@ -48,13 +49,19 @@ impl TrainingCycle {
             return Err(format!("the cut {start} to {end} is longer than {LONGEST_CYCLE_FRAMES} frames"));
         }
         let curves = (0..table.angle_count()).map(|angle| curve(table, angle, start, end)).collect::<Result<_, _>>()?;
-        Ok(Self { start_frame: start as f64, duration_frames: (end - start) as f64, curves })
+        Ok(Self { start_frame: start as f64, duration_frames: (end - start) as f64, rate_hz: table.rate_hz(), curves })
     }
 
     /// Length of the cycle, frames of the recording.
     #[must_use]
     pub fn duration_frames(&self) -> f64 {
         self.duration_frames
+    }
+
+    /// Frames per second of the recording, where its table says.
+    #[must_use]
+    pub fn rate_hz(&self) -> Option<f64> {
+        self.rate_hz
     }
 
     /// Number of angles: 13, or 26 of a motion in space.

@@ -12,6 +12,7 @@ use super::angle_table::AngleTable;
 use super::cuts::CutList;
 use super::error::CyclicError;
 use super::model::{CyclicModel, ModelNumbers, TrainedOn};
+use super::rate;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -20,13 +21,13 @@ use std::path::{Path, PathBuf};
 pub struct TrainingOptions {
     /// Positions l of the reference cycle, 10 to 1000; the paper's is 100.
     pub length: usize,
-    /// Frames per second of the tables, greater than zero.
-    pub rate_hz: f64,
+    /// Frames per second of tables that do not say, greater than zero.
+    pub rate_hz: Option<f64>,
 }
 
 impl Default for TrainingOptions {
     fn default() -> Self {
-        Self { length: 100, rate_hz: 60.0 }
+        Self { length: 100, rate_hz: None }
     }
 }
 
@@ -51,14 +52,15 @@ pub fn train_on(
     if !(10..=1000).contains(&options.length) {
         return Err(CyclicError::parameter("length", format!("has to lie from 10 to 1000, not {}", options.length)));
     }
-    if !(options.rate_hz > 0.0 && options.rate_hz.is_finite()) {
-        return Err(CyclicError::parameter("rate", format!("has to be greater than zero, not {}", options.rate_hz)));
+    if let Some(rate) = options.rate_hz.filter(|rate| !(*rate > 0.0 && rate.is_finite())) {
+        return Err(CyclicError::parameter("rate", format!("has to be greater than zero, not {rate}")));
     }
     if cycles.len() < 2 {
         let rule = "one training cycle only: how cycles differ (the covariance) is then not known; add a second row";
         return Err(CyclicError::broken(list.path(), list.cuts()[0].line, rule));
     }
-    let numbers = numbers(cycles, options);
+    let rate_hz = rate_hz(cycles, list, options.rate_hz)?;
+    let numbers = numbers(cycles, options.length, rate_hz);
     let mut tables: Vec<String> = list.cuts().iter().map(|cut| file_name(&cut.file)).collect();
     tables.sort();
     tables.dedup();
@@ -97,9 +99,26 @@ pub fn read_cycles(list: &CutList) -> Result<Vec<TrainingCycle>, CyclicError> {
     Ok(cycles)
 }
 
+/// Frames per second of all tables: a model has one rate.
+fn rate_hz(cycles: &[TrainingCycle], list: &CutList, given: Option<f64>) -> Result<f64, CyclicError> {
+    let mut all = None;
+    for (cycle, cut) in cycles.iter().zip(list.cuts()) {
+        let rate_hz = rate::of_recording(&list.table_path(cut), cycle.rate_hz(), given)?;
+        let first = *all.get_or_insert(rate_hz);
+        if !rate::is_same(rate_hz, first) {
+            let rule = format!(
+                "`{}` has {rate_hz} frames a second, the first table {first}; make them alike by `sinew angles --rate {first}`",
+                list.table_path(cut).display()
+            );
+            return Err(CyclicError::broken(list.path(), cut.line, rule));
+        }
+    }
+    all.ok_or_else(|| CyclicError::unusable(list.path(), "has no cycle"))
+}
+
 /// The model's numbers, rounded to `f32`.
-fn numbers(cycles: &[TrainingCycle], options: TrainingOptions) -> ModelNumbers {
-    let statistics = statistics::of_positions(cycles, options.length);
+fn numbers(cycles: &[TrainingCycle], length: usize, rate_hz: f64) -> ModelNumbers {
+    let statistics = statistics::of_positions(cycles, length);
     let rows = |row: fn(&statistics::PositionStatistics) -> &[f64]| -> Vec<f32> {
         statistics.iter().flat_map(row).map(|&value| value as f32).collect()
     };
@@ -110,10 +129,10 @@ fn numbers(cycles: &[TrainingCycle], options: TrainingOptions) -> ModelNumbers {
         acceleration_covariance: rows(|at| &at.acceleration_covariance),
         mean_pose_rad: rows(|at| &at.mean_pose_rad),
         mean_velocity: rows(|at| &at.mean_velocity),
-        turns_per_cycle: statistics::turns_per_cycle(cycles, options.length),
+        turns_per_cycle: statistics::turns_per_cycle(cycles, length),
         mean_duration_frames: (1.0 / mean_velocity) as f32,
-        rate_hz: options.rate_hz as f32,
-        deviation: Some(deviation::of_cycles(cycles, options.length)),
+        rate_hz: rate_hz as f32,
+        deviation: Some(deviation::of_cycles(cycles, length)),
     }
 }
 
@@ -136,7 +155,8 @@ mod tests {
 
     fn trained(folder: &Path, rows: &str) -> Result<CyclicModel, String> {
         let list = CutList::parse(&format!("file,start_frame,end_frame\n{rows}"), &folder.join("cuts.csv"));
-        train(&list.unwrap(), TrainingOptions::default()).map_err(|error| error.to_string())
+        train(&list.unwrap(), TrainingOptions { rate_hz: Some(60.0), ..TrainingOptions::default() })
+            .map_err(|error| error.to_string())
     }
 
     #[test]
