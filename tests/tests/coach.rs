@@ -96,8 +96,9 @@ fn the_commands_of_the_page_run_one_after_the_other() {
     for words in commands(&page) {
         // The page takes another recording of the reader's there.
         if words[..2] == ["cut", "stroke.csv"] {
-            ["stroke.csv", "new.csv"]
-                .map(|name| fs::copy(root.path().join("walk.csv"), root.path().join(name)).unwrap());
+            for name in ["stroke.csv", "new.csv"] {
+                fs::copy(root.path().join("walk.csv"), root.path().join(name)).unwrap();
+            }
         }
         sinew(root.path(), &words);
         count += 1;

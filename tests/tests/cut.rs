@@ -23,7 +23,11 @@ fn recorded_walks_are_cut_as_by_hand() {
     let mut count = 0;
     for list in ["train_cuts.csv", "test_cuts.csv"] {
         for wanted in CutList::read(&folder.join(list)).unwrap().cuts() {
-            sinew(root.path()).arg(folder.join(&wanted.file)).args(["--out", "c.csv"]).assert().success();
+            sinew(root.path())
+                .arg(folder.join(&wanted.file))
+                .args(["--rate", "60", "--out", "c.csv"])
+                .assert()
+                .success();
             let made = CutList::read(&root.path().join("c.csv")).unwrap();
             let near = made.cuts().iter().min_by_key(|cut| cut.start_frame.abs_diff(wanted.start_frame)).unwrap();
             assert!(near.duration_frames().abs_diff(wanted.duration_frames()) <= 2, "{near:?} is not {wanted:?}");
@@ -72,11 +76,16 @@ fn what_has_no_cycle_is_refused_with_the_reason() {
         sinew(root.path()).args(arguments).args(["--out", "c.csv"]).assert().code(status).stderr(contains(message));
         assert!(!root.path().join("c.csv").exists());
     };
-    refused(&["still.csv"], 65, "no cycle in `still.csv`: no angle moves");
-    refused(&["still.csv", "still.csv"], 65, "no table has a cycle");
+    refused(&["still.csv"], 65, "does not say how many frames a second it has; give --rate HZ");
+    refused(&["still.csv", "--rate", "60"], 65, "no cycle in `still.csv`: no angle moves");
+    refused(&["still.csv", "still.csv", "--rate", "60"], 65, "no table has a cycle");
     refused(&["empty.csv"], 65, "empty.csv:2: the table is empty");
     refused(&["still.csv", "--rate", "0"], 64, "`rate` has to be greater than zero");
-    refused(&["still.csv", "--shortest", "3", "--longest", "2"], 64, "`shortest cycle` has to be above zero and below");
+    refused(
+        &["still.csv", "--rate", "60", "--shortest", "3", "--longest", "2"],
+        64,
+        "`shortest cycle` has to be above zero and below",
+    );
     let mut command = sinew(root.path());
     command.args(["still.csv"]).assert().code(64).stderr(contains("--out").and(contains("required")));
 }

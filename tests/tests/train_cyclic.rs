@@ -120,7 +120,7 @@ fn an_angle_that_winds_in_some_cycles_only_is_reported() {
     write_input(root.path());
     let train = |cuts: &str| {
         fs::write(root.path().join("c.csv"), format!("file,start_frame,end_frame\n{cuts}")).unwrap();
-        sinew(root.path()).args(["--cuts", "c.csv", "--out", "m.json"]).assert().success()
+        sinew(root.path()).args(["--cuts", "c.csv", "--rate", "60", "--out", "m.json"]).assert().success()
     };
     train("tables/a.csv,10,70\ntables/b.csv,20,80\n").stderr(predicates::str::is_empty());
     // The right wrist goes round once in 60 frames, backwards.
@@ -157,7 +157,7 @@ fn the_shipped_walking_is_what_the_command_makes() {
     let absolute: Vec<String> =
         list.lines().skip(1).map(|line| tables.join(line).to_string_lossy().into_owned()).collect();
     fs::write(root.path().join("cuts.csv"), format!("file,start_frame,end_frame\n{}\n", absolute.join("\n"))).unwrap();
-    sinew(root.path()).args(["--cuts", "cuts.csv", "--out", "m.json"]).assert().success();
+    sinew(root.path()).args(["--cuts", "cuts.csv", "--rate", "60", "--out", "m.json"]).assert().success();
     let text = fs::read_to_string(root.path().join("m.json")).unwrap();
     assert_eq!(text, model_file::to_json(&shipped).unwrap());
 }
@@ -176,7 +176,7 @@ fn the_shipped_running_is_what_the_commands_make() {
             command.assert().success();
         }
     }
-    sinew(root.path()).args(["--cuts", "cuts.csv", "--out", "m.json"]).assert().success();
+    sinew(root.path()).args(["--cuts", "cuts.csv", "--rate", "60", "--out", "m.json"]).assert().success();
     let text = fs::read_to_string(root.path().join("m.json")).unwrap();
     assert_eq!(text, model_file::to_json(&CyclicModel::from_option("running").unwrap()).unwrap());
 }
@@ -194,7 +194,7 @@ fn the_shipped_arm_circles_are_what_the_commands_make() {
             command.args(["--rate", "60", "--out", &format!("{trial}{end}.csv")]).args(more).assert().success();
         }
     }
-    sinew(root.path()).args(["--cuts", "cuts.csv", "--out", "m.json"]).assert().success();
+    sinew(root.path()).args(["--cuts", "cuts.csv", "--rate", "60", "--out", "m.json"]).assert().success();
     let text = fs::read_to_string(root.path().join("m.json")).unwrap();
     assert_eq!(text, model_file::to_json(&CyclicModel::from_option("arm-circles").unwrap()).unwrap());
 }

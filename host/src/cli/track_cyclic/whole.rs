@@ -264,9 +264,9 @@ fn with_output(
     options: &TrackingOptions,
     out: &Path,
 ) -> Result<(RefCell<OverlayFrames>, OutputDir)> {
+    let frames = OverlayFrames::open(pictures, options.rate_hz.unwrap_or_default())?;
     OverlayFrames::check(angles)?;
-    let rate_hz = options.rate_hz.unwrap_or_default();
-    Ok((RefCell::new(OverlayFrames::open(pictures, rate_hz)?), OutputDir::create(&overlay_folder(out))?))
+    Ok((RefCell::new(frames), OutputDir::create(&overlay_folder(out))?))
 }
 
 /// `estimate_overlay` beside `estimate.csv`.

@@ -81,7 +81,8 @@ impl OverlayFrames {
     }
 
     /// Draws the figures on their pictures and writes them into `folder`. A frame without a picture
-    /// and one that cannot be read are skipped and reported. Nothing more is drawn once `stop` is set.
+    /// and one that cannot be read are skipped and reported. Nothing more is drawn once `stop` is
+    /// set.
     ///
     /// # Errors
     /// A picture that cannot be written, a video that breaks off.
