@@ -148,6 +148,18 @@ async function tables(page, file) {
   equal(await page.evaluate(() => navigator.clipboard.readText()), readFileSync(file, 'utf8'), 'a copied table is the file');
 }
 
+// On paper: dark ink on no ground, nothing to press, and no table that is not open.
+async function printed(file) {
+  const page = await open(file, { colorScheme: 'dark' });
+  await page.emulateMedia({ media: 'print' });
+  const ink = await page.locator('h1').evaluate((heading) => getComputedStyle(heading).color);
+  equal(ink, 'rgb(27, 35, 48)', 'ink is dark on paper');
+  equal(await page.locator('.transport').first().isVisible(), false, 'no slider on paper');
+  equal(await page.locator('details:not([open])').first().isVisible(), false, 'no closed table on paper');
+  check(await page.locator('.plot > svg').first().isVisible(), 'plots are on paper');
+  await close(page);
+}
+
 async function themes(file) {
   const ground = (page) => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   const light = await open(file, { colorScheme: 'light' });
@@ -258,6 +270,7 @@ try {
   const runs = makeRuns(sinew, folder);
   await demoPage(runs);
   await themes(join(folder, 'demo.html'));
+  await printed(join(folder, 'demo.html'));
   await twoRuns(runs);
   await twoRates(runs);
   await motionPage(runs);
