@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Output;
 
 /// A command of every kind, in an order in which each finds what it needs, with a key of its JSON.
-const COMMANDS: [(&str, &str); 27] = [
+const COMMANDS: [(&str, &str); 28] = [
     ("simulate arm --motion builtin --frames 12 --side both --out scene", "frames"),
     ("track arm scene/frames --config scene/camera.toml --out run --overlay", "run"),
     ("track arm --print-config", "tracker"),
@@ -25,7 +25,8 @@ const COMMANDS: [(&str, &str); 27] = [
     ("track body --print-config", "angular"),
     ("evaluate body --motion pelvic-lift --models guided --particles 5 --trials 1 --out eb", "report"),
     ("simulate cyclic --model walking --out walk.csv", "cycles"),
-    ("simulate keypoints --out points.csv", "image_size_px"),
+    ("simulate keypoints --out recordings/points.csv", "image_size_px"),
+    ("batch recordings --out batch", "good"),
     ("cut walk.csv --out cuts.csv", "tables"),
     ("train cyclic --cuts cuts.csv --out walk.json", "trained_on"),
     ("track cyclic walk.csv --model walk.json --out est.csv --report report", "summary"),

@@ -48,6 +48,7 @@ fn every_sinew_command_of_the_readme_is_understood() {
 fn every_sinew_command_of_the_pages_for_users_is_understood() {
     let pages = [
         ("coach.md", 5),
+        ("batch.md", 1),
         ("keypoints.md", 5),
         ("report.md", 3),
         ("first_run.md", 7),

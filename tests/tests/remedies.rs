@@ -5,7 +5,8 @@ use std::fs;
 use std::path::Path;
 
 /// Commands that read something, with `INPUT` in its place.
-const READERS: [&str; 28] = [
+const READERS: [&str; 29] = [
+    "batch INPUT --out o",
     "angles INPUT --out o.csv",
     "cut INPUT --out o.csv",
     "track cyclic INPUT --model walking --out o.csv",

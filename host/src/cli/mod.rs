@@ -5,6 +5,7 @@
 //! an arm here.
 
 pub mod angles;
+pub mod batch;
 pub mod blobs;
 pub mod checkpoint_args;
 pub mod completions;
@@ -74,6 +75,8 @@ pub enum Command {
     Report(report::ReportArgs),
     /// Turn a motion in space or 2D keypoints into an angle table.
     Angles(angles::AnglesArgs),
+    /// Track a list of recordings, each once.
+    Batch(batch::BatchArgs),
     /// Find the cycles in angle tables.
     Cut(cut::CutArgs),
     /// Make scenes with known truth, for whatever can be tracked.
@@ -116,6 +119,7 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
         Command::Track(track) => track::run(track, console),
         Command::Angles(args) => angles::run(args, console),
         Command::Report(args) => report::run(args, console),
+        Command::Batch(args) => batch::run(args, console),
         Command::Cut(args) => cut::run(args, console),
         Command::Simulate(args) => simulate::run(args, console),
         Command::Record(args) => record::run(args, console),

@@ -1,0 +1,38 @@
+//! The contents of inputs, as texts that go into a key.
+
+use crate::error::{Context, Result};
+use sha2::{Digest, Sha256};
+use std::fs::{self, File};
+use std::io;
+use std::path::Path;
+
+/// SHA-256 of a file, or names and contents of what is in a folder.
+///
+/// # Errors
+/// The operating system refuses a file.
+pub fn of(path: &Path) -> Result<String> {
+    if path.is_dir() {
+        let named = |name: String| Ok(format!("{name}\0{}\n", of(&path.join(&name))?));
+        return names_in(path)?.into_iter().map(named).collect();
+    }
+    let mut hash = Sha256::new();
+    File::open(path).and_then(|mut file| io::copy(&mut file, &mut hash)).with_context(|| cannot_read(path))?;
+    Ok(format!("{:x}", hash.finalize()))
+}
+
+/// Names of what is in `folder`, sorted.
+///
+/// # Errors
+/// The operating system refuses the folder.
+pub fn names_in(folder: &Path) -> Result<Vec<String>> {
+    let entries = fs::read_dir(folder).and_then(Iterator::collect::<io::Result<Vec<_>>>);
+    let name = |entry: &fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
+    let mut names: Vec<String> = entries.with_context(|| cannot_read(folder))?.iter().map(name).collect();
+    names.sort_unstable();
+    Ok(names)
+}
+
+/// What is said of a file or folder that the operating system refuses.
+pub fn cannot_read(path: &Path) -> String {
+    format!("`{}` cannot be read; check the path", path.display())
+}

@@ -1,0 +1,175 @@
+//! What is done with one recording: command lines of `sinew` itself.
+
+use super::content;
+use super::manifest::Row;
+use crate::cli::Cli;
+use crate::cyclic::angle_table::AngleRows;
+use crate::error::{Result, bail, ensure};
+use clap::{ArgAction, CommandFactory, Parser};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+/// What can be done with a recording: its name, and the commands with the output of each.
+const KINDS: [(&str, &[(&str, &str)]); 5] = [
+    ("recording", &[("angles", "angles.csv"), ("track cyclic", "estimate.csv")]),
+    ("cyclic", &[("track cyclic", "estimate.csv")]),
+    ("angles", &[("angles", "angles.csv")]),
+    ("arm", &[("track arm", "run")]),
+    ("body", &[("track body", "run")]),
+];
+/// Options that are the batch's own.
+const NOT_GIVEN: [&str; 6] = ["out", "resume", "quiet", "json", "help", "checkpoint"];
+/// The model of a cyclic motion where none is named.
+const DEFAULT_MODEL: &str = "walking";
+
+/// One recording with what is done with it.
+#[derive(Debug, Clone)]
+pub struct Job {
+    /// Content of everything that decides the result.
+    pub key: String,
+    input: PathBuf,
+    kind: usize,
+    options: BTreeMap<String, String>,
+}
+
+impl Job {
+    /// What `row` asks for.
+    ///
+    /// # Errors
+    /// An unknown kind or option, an input that cannot be read.
+    pub fn of(row: &Row) -> Result<Self> {
+        let kind = match &row.kind {
+            Some(name) => KINDS.iter().position(|(known, _)| known == name),
+            None => Some(usize::from(AngleRows::open(&row.input).is_ok())),
+        };
+        let Some(kind) = kind else {
+            let known: Vec<&str> = KINDS.iter().map(|(name, _)| *name).collect();
+            bail!("kind `{}` is none of {}", row.kind.as_deref().unwrap_or_default(), known.join(", "));
+        };
+        let folder = row.input.parent().unwrap_or(Path::new(""));
+        let mut hash = Sha256::new();
+        hash.update(format!("sinew {}\0{}\0", env!("CARGO_PKG_VERSION"), KINDS[kind].0));
+        let mut options = row.options.clone();
+        if KINDS[kind].1.iter().any(|(command, _)| *command == "track cyclic") {
+            options.entry("model".to_owned()).or_insert_with(|| DEFAULT_MODEL.to_owned());
+        }
+        for (name, value) in &mut options {
+            check_option(kind, name)?;
+            hash.update(format!("{name}\0{value}\0"));
+            let file = folder.join(&value);
+            if file.is_file() {
+                hash.update(content::of(&file)?);
+                *value = file.to_string_lossy().into_owned();
+            }
+        }
+        hash.update(content::of(&row.input)?);
+        Ok(Self { key: format!("{:x}", hash.finalize()), input: row.input.clone(), kind, options })
+    }
+
+    /// The command lines that put the result into `folder`.
+    ///
+    /// # Errors
+    /// An option has a value that it cannot have.
+    pub fn command_lines(&self, folder: &Path) -> Result<Vec<Cli>> {
+        let mut input = self.input.clone();
+        let mut lines = Vec::new();
+        for (words, output) in KINDS[self.kind].1 {
+            let output = folder.join(output);
+            let mut line: Vec<String> = std::iter::once("sinew").chain(words.split(' ')).map(str::to_owned).collect();
+            line.push(input.to_string_lossy().into_owned());
+            line.extend(["--out".to_owned(), output.to_string_lossy().into_owned()]);
+            for (name, value) in &self.options {
+                let Some(takes_value) = FLAGS[words].get(name) else { continue };
+                match (name.as_str(), *takes_value) {
+                    ("report", _) if is_yes(value) => {
+                        line.push(format!("--report={}", folder.join("report").display()));
+                    }
+                    ("report", _) => (),
+                    (_, true) => line.push(format!("--{name}={value}")),
+                    (_, false) if is_yes(value) => line.push(format!("--{name}")),
+                    (_, false) => (),
+                }
+            }
+            let parsed = Cli::try_parse_from(&line);
+            lines.push(parsed.map_err(|error| crate::error::Error::Option(first_line(&error.to_string())))?);
+            input = output;
+        }
+        Ok(lines)
+    }
+}
+
+/// A cell of an option that is on or off.
+fn is_yes(value: &str) -> bool {
+    matches!(value.to_ascii_lowercase().as_str(), "true" | "yes" | "1")
+}
+
+fn first_line(text: &str) -> String {
+    text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned()
+}
+
+/// The options of each command, and whether they take a value.
+static FLAGS: LazyLock<BTreeMap<&str, BTreeMap<String, bool>>> = LazyLock::new(|| {
+    let mut all = BTreeMap::new();
+    for words in KINDS.iter().flat_map(|(_, commands)| commands.iter().map(|(words, _)| *words)) {
+        let mut command = Cli::command();
+        for word in words.split(' ') {
+            command = command.find_subcommand(word).cloned().unwrap_or_default();
+        }
+        let takes_value = |arg: &clap::Arg| matches!(arg.get_action(), ArgAction::Set | ArgAction::Append);
+        let flags = command.get_arguments().filter_map(|arg| Some((arg.get_long()?.to_owned(), takes_value(arg))));
+        all.insert(words, flags.collect());
+    }
+    all
+});
+
+fn check_option(kind: usize, name: &str) -> Result<()> {
+    let (kind_name, commands) = KINDS[kind];
+    let known: Vec<&String> = commands.iter().flat_map(|(words, _)| FLAGS[words].keys()).collect();
+    ensure!(!NOT_GIVEN.contains(&name), "`{name}` is the batch's own; remove the column");
+    if known.iter().any(|flag| *flag == name) {
+        return Ok(());
+    }
+    let similar = known.iter().map(|flag| (strsim::jaro(flag, name), flag)).max_by(|a, b| a.0.total_cmp(&b.0));
+    let nearest = similar.map_or_else(String::new, |(_, flag)| format!("; the nearest is `{flag}`"));
+    bail!("a `{kind_name}` has no option `{name}`{nearest}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(folder: &Path, options: &[(&str, &str)]) -> Row {
+        let input = folder.join("walk.csv");
+        std::fs::write(&input, "l_knee_x,l_knee_y\n1,2\n").unwrap();
+        let options = options.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
+        Row { line: 2, id: "a".into(), input, kind: None, options }
+    }
+
+    #[test]
+    fn options_go_to_the_commands_that_have_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let job = Job::of(&row(folder.path(), &[("input-rate", "30"), ("online", "true"), ("strict", "no")])).unwrap();
+        let lines = job.command_lines(Path::new("out")).unwrap();
+        assert_eq!(lines.len(), 2);
+        assert!(matches!(&lines[0].command, crate::cli::Command::Angles(args) if args.input_rate == Some(30.0)));
+        let message = Job::of(&row(folder.path(), &[("modle", "walking")])).unwrap_err().to_string();
+        assert!(message.contains("no option `modle`; the nearest is `model`"), "{message}");
+        assert!(Job::of(&row(folder.path(), &[("out", "x")])).unwrap_err().to_string().contains("batch's own"));
+        let wrong = Job::of(&row(folder.path(), &[("input-rate", "fast")])).unwrap();
+        assert!(wrong.command_lines(Path::new("out")).unwrap_err().to_string().contains("fast"));
+    }
+
+    #[test]
+    fn a_key_is_that_of_contents_and_options() {
+        let folder = tempfile::tempdir().unwrap();
+        let key = |options: &[(&str, &str)]| Job::of(&row(folder.path(), options)).unwrap().key;
+        assert_eq!(key(&[]), key(&[]));
+        assert_ne!(key(&[]), key(&[("input-rate", "30")]));
+        std::fs::write(folder.path().join("m.json"), "1").unwrap();
+        let with_model = key(&[("model", "m.json")]);
+        std::fs::write(folder.path().join("m.json"), "2").unwrap();
+        assert_ne!(with_model, key(&[("model", "m.json")]));
+    }
+}

@@ -1,0 +1,168 @@
+//! The list of recordings: a CSV table or JSON lines.
+
+use super::content::{cannot_read, names_in};
+use crate::cli::data_error;
+use crate::file::{FileError, read_lines};
+use serde_json::Value;
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+
+/// Columns that are no options.
+const OWN: [&str; 3] = ["id", "input", "kind"];
+/// How the names of files end that lie beside angle tables.
+const ABOUT: &str = ".about.json";
+
+/// One recording.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Row {
+    /// Its line in the manifest.
+    pub line: usize,
+    /// Its name in all tables.
+    pub id: String,
+    /// The file or folder.
+    pub input: PathBuf,
+    /// What is done with it; found by the input where none is given.
+    pub kind: Option<String>,
+    /// Values of options by the names of their flags.
+    pub options: BTreeMap<String, String>,
+}
+
+/// The recordings of a manifest, whose inputs are relative to its folder, or everything in a
+/// folder.
+///
+/// # Errors
+/// The line and the rule that it broke: a column `id` or `input` that is missing or empty, an id
+/// that comes twice; a folder with nothing in it.
+pub fn read(path: &Path) -> anyhow::Result<Vec<Row>> {
+    if path.is_dir() {
+        return everything_in(path);
+    }
+    let text = read_lines(path).map_err(|error| match error {
+        FileError::Io(reason) => anyhow::Error::new(reason).context(cannot_read(path)),
+        other => data_error(format!("{}:{}: {other}", path.display(), other.line())),
+    })?;
+    let cells = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("jsonl" | "ndjson") => json_lines(&text),
+        _ => table(&text),
+    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let broken = |line: usize, rule: &str| data_error(format!("{}:{line}: {rule}", path.display()));
+    let mut lines: HashMap<String, usize> = HashMap::new();
+    let mut rows = Vec::new();
+    for (line, cells) in cells.map_err(|(line, rule)| broken(line, &rule))? {
+        let mut options: BTreeMap<String, String> = cells.into_iter().filter(|(_, value)| !value.is_empty()).collect();
+        let [id, input, kind] = OWN.map(|name| options.remove(name));
+        let id = id.ok_or_else(|| broken(line, "needs an `id`, the name of the recording in all tables"))?;
+        let input = input.ok_or_else(|| broken(line, "needs an `input`, a file or folder"))?;
+        if let Some(before) = lines.insert(id.clone(), line) {
+            return Err(broken(line, &format!("has the id `{id}` of line {before}; ids have to differ")));
+        }
+        rows.push(Row { line, id, input: folder.join(input), kind, options });
+    }
+    if rows.is_empty() {
+        return Err(broken(1, "names no recording; give a table with the columns `id` and `input`, a recording a row"));
+    }
+    Ok(rows)
+}
+
+/// One recording for each file and folder in `folder`, named by it.
+fn everything_in(folder: &Path) -> anyhow::Result<Vec<Row>> {
+    let mut names = names_in(folder)?;
+    names.retain(|name| !name.starts_with('.') && !name.ends_with(ABOUT));
+    let row = |(index, name): (usize, String)| {
+        let id = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem).to_owned();
+        Row { line: index + 1, id, input: folder.join(name), kind: None, options: BTreeMap::new() }
+    };
+    let mut rows: Vec<Row> = names.into_iter().enumerate().map(row).collect();
+    if rows.is_empty() {
+        return Err(data_error(format!("`{}` is empty; give a folder of recordings, or a manifest", folder.display())));
+    }
+    let of_one_stem: Vec<String> =
+        rows.windows(2).filter(|pair| pair[0].id == pair[1].id).map(|pair| pair[0].id.clone()).collect();
+    for row in rows.iter_mut().filter(|row| of_one_stem.contains(&row.id)) {
+        row.id = row.input.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    }
+    Ok(rows)
+}
+
+/// Each line with its number and its cells by name, or the line that is broken with its rule.
+type Cells = Result<Vec<(usize, Vec<(String, String)>)>, (usize, String)>;
+
+fn table(text: &str) -> Cells {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|error| (1, error.to_string()))?.clone();
+    let mut found = Vec::new();
+    for record in reader.records() {
+        let line = |error: &csv::Error| error.position().map_or(1, |position| position.line() as usize);
+        let record = record.map_err(|error| (line(&error), error.to_string()))?;
+        let cells = header.iter().zip(&record).map(|(name, cell)| (name.to_owned(), cell.to_owned()));
+        found.push((record.position().map_or(1, |position| position.line() as usize), cells.collect()));
+    }
+    Ok(found)
+}
+
+fn json_lines(text: &str) -> Cells {
+    let mut found = Vec::new();
+    for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+        let broken = |rule: String| (index + 1, rule);
+        let object: serde_json::Map<String, Value> =
+            serde_json::from_str(line).map_err(|error| broken(format!("is no JSON object ({error})")))?;
+        let cell = |(name, value): (String, Value)| match value {
+            Value::Null => Ok((name, String::new())),
+            Value::String(text) => Ok((name, text)),
+            Value::Bool(_) | Value::Number(_) => Ok((name, value.to_string())),
+            _ => Err(broken(format!("`{name}` has to be a text, a number, true or false"))),
+        };
+        found.push((index + 1, object.into_iter().map(cell).collect::<Result<_, _>>()?));
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn read_text(name: &str, text: &str) -> Result<Vec<Row>, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        let rows = read(&path).map_err(|error| error.to_string())?;
+        Ok(rows.into_iter().map(|row| Row { input: row.input.file_name().unwrap().into(), ..row }).collect())
+    }
+
+    #[test]
+    fn a_table_and_json_lines_say_the_same() {
+        let table =
+            read_text("m.csv", "id,input,kind,model,online\na,1.csv,cyclic,running,true\nb,2.csv,,,\n").unwrap();
+        let lines = "{\"id\":\"a\",\"input\":\"1.csv\",\"kind\":\"cyclic\",\"model\":\"running\",\"online\":true}\n\
+            {\"id\":\"b\",\"input\":\"2.csv\",\"model\":null}\n";
+        let mut lines = read_text("m.jsonl", lines).unwrap();
+        lines.iter_mut().for_each(|row| row.line += 1);
+        assert_eq!(table, lines);
+        assert_eq!((table[0].options["model"].as_str(), table[1].kind.as_deref()), ("running", None));
+    }
+
+    #[test]
+    fn a_folder_is_a_manifest_of_what_is_in_it() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["b.csv", "b.json", "a.trc", ".hidden", "a.about.json"] {
+            fs::write(folder.path().join(name), "1").unwrap();
+        }
+        let ids: Vec<String> = read(folder.path()).unwrap().into_iter().map(|row| row.id).collect();
+        assert_eq!(ids, ["a", "b.csv", "b.json"]);
+        let empty = tempfile::tempdir().unwrap();
+        assert!(read(empty.path()).unwrap_err().to_string().contains("is empty"));
+    }
+
+    #[test]
+    fn broken_manifests_name_the_line() {
+        let refusal = |name: &str, text: &str| read_text(name, text).unwrap_err();
+        assert!(refusal("m.csv", "id,input\na,1\na,2\n").contains("m.csv:3: has the id `a` of line 2"));
+        assert!(refusal("m.csv", "id,input\n,1\n").contains("m.csv:2: needs an `id`"));
+        assert!(refusal("m.csv", "id\na\n").contains("needs an `input`"));
+        assert!(refusal("m.csv", "id,input\n").contains("names no recording"));
+        assert!(refusal("m.jsonl", "[1]\n").contains("m.jsonl:1: is no JSON object"));
+        assert!(refusal("m.jsonl", "{\"id\":[1]}\n").contains("`id` has to be a text"));
+    }
+}
