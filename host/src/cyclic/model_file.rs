@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use sinew_core::numeric::semi_definite::packed_len;
 use std::path::Path;
+use std::sync::OnceLock;
 
 const KIND: ModelFileKind =
     ModelFileKind { name: "motion", command: "sinew train cyclic --cuts CUTS.csv", max_file_bytes: 64 << 20 };
@@ -53,16 +54,33 @@ impl CyclicModel {
     /// # Errors
     /// No such file, or a file that is no model.
     pub fn from_option(option: &str) -> Result<Self> {
-        if let Some((_, text)) = SHIPPED.iter().find(|(name, _)| *name == option) {
-            return parse(text);
+        if let Some(model) = shipped(option) {
+            return Ok(model.clone());
         }
         let path = Path::new(option);
         if !path.exists() {
-            let names = SHIPPED.map(|(name, _)| name).join(", ");
+            let names = shipped_names().join(", ");
             bail!("`--model {option}`: there is no such file; give {names}, or a file made by `sinew train cyclic`");
         }
         read(path)
     }
+}
+
+/// Names of the models that are shipped.
+#[must_use]
+pub fn shipped_names() -> [&'static str; 3] {
+    SHIPPED.map(|(name, _)| name)
+}
+
+/// The shipped model of this name, parsed once a process.
+///
+/// # Panics
+/// Never: tests read each of them.
+#[must_use]
+pub fn shipped(name: &str) -> Option<&'static CyclicModel> {
+    static MODELS: [OnceLock<CyclicModel>; 3] = [const { OnceLock::new() }; 3];
+    let index = SHIPPED.iter().position(|(shipped, _)| *shipped == name)?;
+    Some(MODELS[index].get_or_init(|| parse(SHIPPED[index].1).expect("tests read each shipped model")))
 }
 
 /// The JSON text of a model, one line for each position of a table.

@@ -3,6 +3,7 @@
 use super::anatomy::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT};
 use super::gait::Gait;
 use super::model::CyclicModel;
+use super::model_file;
 use super::tracking::Summary;
 use super::tracking::summary::MIN_CYCLES;
 
@@ -56,7 +57,7 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
 
 /// Whether a model is the one that ships under this name.
 fn is_shipped(model: &CyclicModel, name: &str) -> bool {
-    CyclicModel::from_option(name).is_ok_and(|shipped| shipped.numbers() == model.numbers())
+    model_file::shipped(name).is_some_and(|shipped| shipped.numbers() == model.numbers())
 }
 
 fn wide_ranges(series: &AnatomicalSeries) -> Vec<String> {
