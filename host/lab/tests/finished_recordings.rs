@@ -83,8 +83,7 @@ fn finished(poses: &Poses) -> Poses {
     let table = AngleTable::from_angles(0, poses).unwrap().at_rate(Some(RATE_HZ));
     let model = CyclicModel::from_option("walking").unwrap();
     let options = TrackingOptions { rate_hz: Some(RATE_HZ), ..TrackingOptions::default() };
-    let sigma_rad = noise::of_table(&table, &options.updates).unwrap_or(options.sigma_rad);
-    let options = TrackingOptions { sigma_rad, ..options };
+    let options = noise::with_noise_of(&table, options);
     let tracked = finish(&table, &model, track(&table, &model, &options).unwrap(), &options).unwrap();
     tracked.frames.iter().map(|frame| frame.angles_rad.map(Some)).collect()
 }

@@ -104,13 +104,9 @@ fn follow(
 
 /// The options with what the recording says: its rate, and its noise unless that is given.
 fn of_recording(args: &TrackCyclicArgs, angles: &AngleTable, options: TrackingOptions) -> Result<TrackingOptions> {
-    let rate_hz = Some(args.rate_hz(angles.rate_hz())?);
-    let sigma_rad = match args.sigma_deg {
-        Some(_) => options.sigma_rad,
-        None if args.online => options.sigma_rad,
-        None => noise::of_table(angles, &options.updates).unwrap_or(options.sigma_rad),
-    };
-    Ok(TrackingOptions { rate_hz, sigma_rad, ..options })
+    let options = TrackingOptions { rate_hz: Some(args.rate_hz(angles.rate_hz())?), ..options };
+    let is_noise_found = args.sigma_deg.is_none() && !args.online;
+    Ok(if is_noise_found { noise::with_noise_of(angles, options) } else { options })
 }
 
 /// What is made of a run.

@@ -3,7 +3,7 @@
 use super::seen::Seen;
 use crate::cyclic::AngleTable;
 use crate::cyclic::angle_table::ANGLES;
-use crate::cyclic::tracking::Updates;
+use crate::cyclic::tracking::{TrackingOptions, Updates};
 use crate::signal::median::STD_PER_MEDIAN;
 use sinew_core::skeleton::stick_figure::HUMAN;
 
@@ -21,6 +21,13 @@ pub fn of_table(table: &AngleTable, updates: &Updates) -> Option<f64> {
     let mut stds_rad: Vec<f64> = long.filter_map(|(angle, _)| of_angle(&seen, angle)).collect();
     stds_rad.sort_by(f64::total_cmp);
     stds_rad.get(stds_rad.len() / 2).map(|std_rad| std_rad.max(MIN_NOISE_RAD))
+}
+
+/// The options with the noise of `table` in place of their own, where the table shows it.
+#[must_use]
+pub fn with_noise_of(table: &AngleTable, options: TrackingOptions) -> TrackingOptions {
+    let sigma_rad = of_table(table, &options.updates).unwrap_or(options.sigma_rad);
+    TrackingOptions { sigma_rad, ..options }
 }
 
 /// Standard deviation of measured angles, radians, by the median of fourth differences: those of a
