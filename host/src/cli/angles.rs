@@ -2,9 +2,7 @@
 
 use super::console::Console;
 use super::filter_args::FilterArgs;
-use crate::cyclic::about::About;
 use crate::cyclic::anatomy::MeasuredAngles;
-use crate::cyclic::place_columns::PlaceColumns;
 use crate::cyclic::projection::{UpAxis, View};
 use crate::cyclic::recording::{RecordedAngles, RecordingOptions, all_angles, angles};
 use crate::error::Error;
@@ -141,7 +139,7 @@ pub fn run(args: &AnglesArgs, console: &Console) -> Result<()> {
 
 fn write(found: &RecordedAngles, args: &AnglesArgs, out: &Path, console: &Console) -> Result<()> {
     found.table.write(out)?;
-    about(args, found).write_beside(out)?;
+    found.about(&args.motion).write_beside(out)?;
     for note in &found.notes {
         console.note(note);
     }
@@ -175,19 +173,6 @@ fn write(found: &RecordedAngles, args: &AnglesArgs, out: &Path, console: &Consol
     let doubts = found.doubts.join("; ");
     ensure!(!args.strict || doubts.is_empty(), Error::Invalid(format!("--strict: {doubts}")));
     Ok(())
-}
-
-/// What later commands read beside the table.
-fn about(args: &AnglesArgs, found: &RecordedAngles) -> About {
-    let mut about = About::of_source(&args.motion);
-    about.rate_hz = found.rate_hz;
-    about.facing = found.facing;
-    about.image_size_px = found.image_size_px;
-    about.layout.clone_from(&found.layout);
-    about.unit = PlaceColumns::find(&found.table).map(|columns| columns.unit.to_owned());
-    about.notes.clone_from(&found.notes);
-    about.doubts.clone_from(&found.doubts);
-    about
 }
 
 /// Writes the filtered flexion angles; the result is what a user should know of the filter.

@@ -1,6 +1,7 @@
 //! Which way a person in a side view faces.
 
 use serde::{Deserialize, Serialize};
+use std::str::FromStr;
 
 /// Column of which way the person faces in the image: `left` or `right`.
 pub const FACING: &str = "facing";
@@ -14,6 +15,15 @@ pub enum Facing {
     Left,
     /// Towards larger u.
     Right,
+}
+
+impl FromStr for Facing {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let named = [Self::Left, Self::Right].into_iter().find(|facing| facing.name() == text);
+        named.ok_or_else(|| format!("has to be `left` or `right`, not `{text}`"))
+    }
 }
 
 impl Facing {

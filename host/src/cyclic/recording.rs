@@ -1,7 +1,9 @@
 //! Any recording that holds a moving person, as an angle table.
 
+use super::about::About;
 use super::angle_table::AngleTable;
 use super::image_joints::{ExtraColumns, ImageJoints};
+use super::place_columns::PlaceColumns;
 use super::projection::{Forward, Plane, UpAxis, View};
 use super::resample::resample;
 use crate::cyclic::CyclicError;
@@ -59,6 +61,22 @@ pub struct RecordedAngles {
     pub image_size_px: Option<[f64; 2]>,
     /// The detector's order of points, for keypoints.
     pub layout: Option<String>,
+}
+
+impl RecordedAngles {
+    /// What later commands read beside the table; `source` is what was read.
+    #[must_use]
+    pub fn about(&self, source: &Path) -> About {
+        let mut about = About::of_source(source);
+        about.rate_hz = self.rate_hz;
+        about.facing = self.facing;
+        about.image_size_px = self.image_size_px;
+        about.layout.clone_from(&self.layout);
+        about.unit = PlaceColumns::find(&self.table).map(|columns| columns.unit.to_owned());
+        about.notes.clone_from(&self.notes);
+        about.doubts.clone_from(&self.doubts);
+        about
+    }
 }
 
 /// Reads a motion in space or keypoints, and gives its angles.
@@ -191,7 +209,11 @@ fn read_keypoints(path: &Path, options: &RecordingOptions) -> Result<Detections>
     Ok(keypoints::read(path, options.image_size_px)?)
 }
 
-fn of_detections(detections: &Detections, path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
+/// The angles of one person in keypoints; `path` is for messages.
+///
+/// # Errors
+/// As [`angles`].
+pub fn of_detections(detections: &Detections, path: &Path, options: &RecordingOptions) -> Result<RecordedAngles> {
     let input_rate_hz = input_rate(detections, options, path)?;
     let chosen =
         TrackOptions { min_confidence: options.min_confidence, person: options.person, rate_hz: input_rate_hz };

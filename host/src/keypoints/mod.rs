@@ -2,6 +2,7 @@
 //!
 //! `docs/keypoints.md` has the formats and how they are read.
 
+pub mod arrays;
 mod clock;
 mod coco;
 mod columns;

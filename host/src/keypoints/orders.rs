@@ -22,6 +22,8 @@ pub struct PointFrame {
 #[derive(Debug)]
 struct Order {
     name: &'static str,
+    /// Its short name, for programs.
+    key: &'static str,
     /// How many points there are. Those after `parts` are not used.
     count: usize,
     /// Short names of the parts, see [`part`].
@@ -41,32 +43,44 @@ const BODY_25B: &str = "nose - - - - ls rs le re lw rw lh rh lk rk la ra - - lt 
 /// All orders; of those with as many points the usual one is first. Sources are the documentations
 /// of the detectors and data sets that the names say.
 const ORDERS: [Order; 18] = [
-    Order { name: "head and arms", count: 7, parts: "- rs re rw ls le lw" },
-    Order { name: "CrowdPose", count: 14, parts: "ls rs le re lw rw lh rh lk rk la ra - neck" },
-    Order { name: "LSP", count: 14, parts: "ra rk rh lh lk la rw re rs ls le lw neck -" },
-    Order { name: "AI Challenger", count: 14, parts: "rs re rw ls le lw rh rk ra lh lk la - neck" },
-    Order { name: "OpenPose MPI", count: 15, parts: "- neck rs re rw ls le lw rh rk ra lh lk la -" },
-    Order { name: "MPII", count: 16, parts: "ra rk rh lh lk la mid neck - - rw re rs ls le lw" },
-    Order { name: "COCO", count: 17, parts: COCO },
-    Order { name: "Human3.6M", count: 17, parts: "mid rh rk ra lh lk la - neck - - ls le lw rs re rw" },
-    Order { name: "OpenPose COCO", count: 18, parts: "nose neck rs re rw ls le lw rh rk ra lh lk la" },
-    Order { name: "COCO and neck", count: 18, parts: "nose - - - - ls rs le re lw rw lh rh lk rk la ra neck" },
-    Order { name: "COCO and feet", count: 23, parts: WHOLE_BODY },
+    Order { name: "head and arms", key: "arms7", count: 7, parts: "- rs re rw ls le lw" },
+    Order { name: "CrowdPose", key: "crowdpose14", count: 14, parts: "ls rs le re lw rw lh rh lk rk la ra - neck" },
+    Order { name: "LSP", key: "lsp14", count: 14, parts: "ra rk rh lh lk la rw re rs ls le lw neck -" },
+    Order { name: "AI Challenger", key: "aic14", count: 14, parts: "rs re rw ls le lw rh rk ra lh lk la - neck" },
+    Order { name: "OpenPose MPI", key: "mpi15", count: 15, parts: "- neck rs re rw ls le lw rh rk ra lh lk la -" },
+    Order { name: "MPII", key: "mpii16", count: 16, parts: "ra rk rh lh lk la mid neck - - rw re rs ls le lw" },
+    Order { name: "COCO", key: "coco17", count: 17, parts: COCO },
+    Order { name: "Human3.6M", key: "h36m17", count: 17, parts: "mid rh rk ra lh lk la - neck - - ls le lw rs re rw" },
+    Order {
+        name: "OpenPose COCO",
+        key: "openpose18",
+        count: 18,
+        parts: "nose neck rs re rw ls le lw rh rk ra lh lk la",
+    },
+    Order {
+        name: "COCO and neck",
+        key: "coco18",
+        count: 18,
+        parts: "nose - - - - ls rs le re lw rw lh rh lk rk la ra neck",
+    },
+    Order { name: "COCO and feet", key: "coco23", count: 23, parts: WHOLE_BODY },
     Order {
         name: "OpenPose BODY_25",
+        key: "body25",
         count: 25,
         parts: "nose neck rs re rw ls le lw mid rh rk ra lh lk la - - - - lt - lhl rt - rhl",
     },
-    Order { name: "OpenPose BODY_25B", count: 25, parts: BODY_25B },
-    Order { name: "HALPE", count: 26, parts: HALPE },
+    Order { name: "OpenPose BODY_25B", key: "body25b", count: 25, parts: BODY_25B },
+    Order { name: "HALPE", key: "halpe26", count: 26, parts: HALPE },
     Order {
         name: "MediaPipe",
+        key: "mediapipe33",
         count: 33,
         parts: "nose - - - - - - - - - - ls rs le re lw rw - - - - - - lh rh lk rk la ra lhl rhl lt rt",
     },
-    Order { name: "COCO-WholeBody", count: 133, parts: WHOLE_BODY },
-    Order { name: "OpenPose BODY_135", count: 135, parts: BODY_25B },
-    Order { name: "HALPE full body", count: 136, parts: HALPE },
+    Order { name: "COCO-WholeBody", key: "wholebody133", count: 133, parts: WHOLE_BODY },
+    Order { name: "OpenPose BODY_135", key: "body135", count: 135, parts: BODY_25B },
+    Order { name: "HALPE full body", key: "halpe136", count: 136, parts: HALPE },
 ];
 
 /// How many people are looked at to tell orders of as many points apart. Chosen: enough to average
@@ -133,15 +147,35 @@ pub fn points(values: &[f64]) -> Result<Points, String> {
     }
     let count = values.len() / 3;
     let parts = parts(count).ok_or_else(|| unknown_count(count))?;
-    let mut points = Vec::with_capacity(count);
-    for (number, (part, value)) in parts.into_iter().zip(values.chunks(3)).enumerate() {
-        let is_found = value.iter().all(|number| number.is_finite()) && (value[0] != 0.0 || value[1] != 0.0);
-        if is_found {
-            check_position([value[0], value[1]], part, &number.to_string())?;
-        }
-        points.push(if is_found { [value[0], value[1], value[2]] } else { [f64::NAN; 3] });
+    (0..).zip(parts).zip(values.chunks(3)).map(|(place, value)| found([value[0], value[1], value[2]], place)).collect()
+}
+
+/// A point with its number and part, as [`points`] gives it.
+///
+/// # Errors
+/// A place that no picture has.
+pub fn found(value: [f64; 3], (number, part): (usize, Part)) -> Result<[f64; 3], String> {
+    let is_found = value.iter().all(|number| number.is_finite()) && (value[0] != 0.0 || value[1] != 0.0);
+    if is_found {
+        check_position([value[0], value[1]], part, &number.to_string())?;
     }
-    Ok(points)
+    Ok(if is_found { value } else { [f64::NAN; 3] })
+}
+
+/// The joints of the stick figure in their own order, which no detector writes.
+const STICK_FIGURE: Order =
+    Order { name: "stick figure", key: "stick14", count: 14, parts: "mid neck ls le lw rs re rw lh lk la rh rk ra" };
+
+/// Short names of all orders.
+pub fn keys() -> impl Iterator<Item = &'static str> {
+    ORDERS.iter().chain([&STICK_FIGURE]).map(|order| order.key)
+}
+
+/// Name and parts of the order with this short name.
+#[must_use]
+pub fn by_key(key: &str) -> Option<(&'static str, Vec<Part>)> {
+    let order = ORDERS.iter().chain([&STICK_FIGURE]).find(|order| order.key == key)?;
+    Some((order.name, order.parts()))
 }
 
 /// Names the points. Of several orders with as many points it takes the one whose figure has short
