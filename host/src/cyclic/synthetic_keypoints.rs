@@ -2,6 +2,7 @@
 //! the commands without a video.
 
 use super::angle_table::ANGLES;
+use super::error::CyclicError;
 use super::export::trc::{JointPositions, joint_positions, standard_lengths_m};
 use super::facing::Facing;
 use super::synthetic_person::SyntheticPerson;
@@ -40,6 +41,29 @@ pub struct Filming {
     pub seed: u64,
 }
 
+impl Filming {
+    /// A person filmed for `seconds`, all else as in `like`.
+    ///
+    /// # Errors
+    /// Names the value out of range as the command's option does.
+    pub fn lasting(seconds: f64, like: Self) -> Result<Self, CyclicError> {
+        let Self { rate_hz, height_px, noise_px, missing_share, .. } = like;
+        let rules = [
+            ("seconds", (0.1..=36_000.0).contains(&seconds), "from 0.1 to 36000".to_owned(), seconds),
+            ("rate", (1.0..=1000.0).contains(&rate_hz), "from 1 to 1000 Hz".to_owned(), rate_hz),
+            ("height-px", (10.0..=10_000.0).contains(&height_px), "from 10 to 10000 pixels".to_owned(), height_px),
+            ("sigma-px", (0.0..=height_px).contains(&noise_px), format!("from 0 to {height_px} pixels"), noise_px),
+            ("missing", (0.0..1.0).contains(&missing_share), "in [0, 1)".to_owned(), missing_share),
+        ];
+        match rules.into_iter().find(|(_, is_kept, ..)| !is_kept) {
+            Some((name, _, range, value)) => {
+                Err(CyclicError::parameter(name, format!("has to lie {range}, not {value}")))
+            }
+            None => Ok(Self { frames: (seconds * rate_hz).round().max(1.0) as u32, ..like }),
+        }
+    }
+}
+
 /// A recording of keypoints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmedPerson {
@@ -76,6 +100,23 @@ impl FilmedPerson {
         Self { joints_px: poses.iter().enumerate().map(place).collect(), size_px }
     }
 
+    /// What a detector would find of each joint: x and y in pixels, and its confidence.
+    /// `None` where it finds nothing.
+    #[must_use]
+    pub fn detected(&self, filming: &Filming) -> Vec<[Option<[f64; 3]>; JOINTS]> {
+        let detected = |(frame, joints): (u64, &JointPositions)| {
+            let mut stream = Stream::new(filming.seed, frame, DRAWS);
+            joints.map(|joint| {
+                let noise_px = [(); 2].map(|()| filming.noise_px * f64::from(stream.normal()));
+                let confidence = CONFIDENCE[0] + (CONFIDENCE[1] - CONFIDENCE[0]) * stream.uniform();
+                let is_seen = f64::from(stream.uniform()) >= filming.missing_share;
+                let [x, y] = joint.filter(|_| is_seen)?;
+                Some([x + noise_px[0], y + noise_px[1], f64::from(confidence)])
+            })
+        };
+        (0..).zip(&self.joints_px).map(detected).collect()
+    }
+
     /// The table that a detector would write: `frame`, `time_s`, and place and confidence of each
     /// joint.
     #[must_use]
@@ -85,15 +126,11 @@ impl FilmedPerson {
         // Writing to a string cannot fail.
         text.extend(names.map(|name| format!(",{name}_x_px,{name}_y_px,{name}_confidence")));
         text.push('\n');
-        for (frame, joints) in (0_u64..).zip(&self.joints_px) {
+        for (frame, joints) in (0_u64..).zip(self.detected(filming)) {
             let _ = write!(text, "{frame},{:.6}", frame as f64 / filming.rate_hz);
-            let mut stream = Stream::new(filming.seed, frame, DRAWS);
             for joint in joints {
-                let noise_px = [(); 2].map(|()| filming.noise_px * f64::from(stream.normal()));
-                let confidence = CONFIDENCE[0] + (CONFIDENCE[1] - CONFIDENCE[0]) * stream.uniform();
-                let is_seen = f64::from(stream.uniform()) >= filming.missing_share;
-                let _ = match joint.filter(|_| is_seen) {
-                    Some([x, y]) => write!(text, ",{:.2},{:.2},{confidence:.2}", x + noise_px[0], y + noise_px[1]),
+                let _ = match joint {
+                    Some([x, y, confidence]) => write!(text, ",{x:.2},{y:.2},{confidence:.2}"),
                     None => write!(text, ",,,"),
                 };
             }
