@@ -4,6 +4,7 @@ pub mod bank;
 pub mod filter;
 mod kept;
 pub mod measurements;
+pub mod online_run;
 pub mod options;
 pub mod particles;
 pub mod run;
@@ -18,6 +19,7 @@ pub mod wide_vectors;
 
 pub use bank::NamedMotion;
 pub use measurements::Measurements;
+pub use online_run::OnlineRun;
 pub use options::{FilterName, StartName, TrackingOptions, Updates};
 pub use run::{SideEstimate, Tracked, TrackedFrame};
 pub use stream_run::StreamRun;

@@ -67,8 +67,10 @@ pub fn cadence_per_min(tracked: &Tracked, index: usize) -> (f64, f64) {
     cadence(velocity, 60.0 * tracked.rate_hz * tracked.step_frames)
 }
 
-/// Mean and standard deviation of the cadence, of a velocity and its variance.
-fn cadence([velocity, variance]: [f32; 2], per_min: f64) -> (f64, f64) {
+/// Mean and standard deviation of the cadence, of a velocity and its variance; `per_min` is a
+/// minute in the velocity's frames.
+#[must_use]
+pub fn cadence([velocity, variance]: [f32; 2], per_min: f64) -> (f64, f64) {
     (f64::from(velocity) * per_min, f64::from(variance).max(0.0).sqrt() * per_min)
 }
 
