@@ -1,0 +1,80 @@
+//! Errors of the library as exceptions of Python.
+
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::{PyErr, create_exception};
+use sinew::cyclic::CyclicError;
+use sinew::error::{Error, ErrorKind};
+use sinew::keypoints::KeypointError;
+use sinew::motion::MotionError;
+use std::io;
+
+create_exception!(
+    sinew,
+    SinewError,
+    PyValueError,
+    "A recording, table or model that cannot be used.\n\nThe message names the file, the rule and the remedy."
+);
+
+/// The command's options in messages, and what Python calls them. Longer ones are first.
+const NAMES: [(&str, &str); 27] = [
+    ("`sinew angles --min-confidence`", "`min_confidence` of `sinew.angles`"),
+    ("`sinew angles --input-rate HZ`", "`fps` of `sinew.angles`"),
+    ("`sinew angles` with --input-rate HZ", "`sinew.angles` with fps=HZ"),
+    ("`--image-size WIDTH,HEIGHT`", "`image_size_px=(WIDTH, HEIGHT)`"),
+    ("`--input-rate HZ`", "`fps`"),
+    ("`--input-rate ", "`fps="),
+    ("--input-rate", "fps"),
+    ("`--rate ", "`rate_hz="),
+    ("give --rate HZ", "give rate_hz"),
+    ("--rate", "rate_hz"),
+    ("`--model ", "`model="),
+    ("`--model`", "`model`"),
+    ("--model running", "model=\"running\""),
+    ("--model walking", "model=\"walking\""),
+    ("--facing", "facing"),
+    ("`--person`", "`person`"),
+    ("--person", "person"),
+    ("--online", "online=True"),
+    ("`sigma` ", "`sigma_deg` "),
+    ("`rate` ", "`rate_hz` "),
+    ("`height-px` ", "`height_px` "),
+    ("`sigma-px` ", "`sigma_px` "),
+    ("`rows` ", "`angles` "),
+    ("`sinew angles`", "`sinew.angles`"),
+    ("see `sinew.angles fps`", "see `fps` of `sinew.angles`"),
+    ("the table has no angle in any row", "`angles` has no angle in any frame"),
+    ("give a .csv table with the points' names", "give another `layout`"),
+];
+
+/// A message of the library with the names of Python's parameters.
+pub fn in_python(message: &str) -> String {
+    NAMES.iter().fold(message.to_owned(), |text, (command, python)| text.replace(command, python))
+}
+
+/// The exception for an error of the library: `ValueError` for a parameter, `OSError` for a file
+/// that the operating system refuses, else [`SinewError`].
+pub fn exception(error: &Error) -> PyErr {
+    let message = in_python(&error.chain());
+    match (refused(error.innermost()), error.kind()) {
+        (Some(kind), _) => io::Error::new(kind, message).into(),
+        (None, ErrorKind::NoInput | ErrorKind::CannotCreate | ErrorKind::Io) => PyOSError::new_err(message),
+        (None, ErrorKind::Usage) => PyValueError::new_err(message),
+        _ => SinewError::new_err(message),
+    }
+}
+
+/// Why the operating system refused a file, if it did.
+fn refused(error: &Error) -> Option<io::ErrorKind> {
+    match error {
+        Error::Io(reason)
+        | Error::Cyclic(CyclicError::Unreadable { reason, .. })
+        | Error::Keypoints(KeypointError::Unreadable { reason, .. })
+        | Error::Motion(MotionError::Unreadable { reason, .. }) => Some(reason.kind()),
+        _ => None,
+    }
+}
+
+/// A parameter that breaks its rule.
+pub fn wrong(parameter: &str, rule: &str) -> PyErr {
+    PyValueError::new_err(format!("`{parameter}` {rule}"))
+}
