@@ -1,6 +1,7 @@
 //! Files: configurations, models, persons, angle tables.
 
 use super::diagnosis::{Diagnosis, Severity};
+use super::recordings;
 use crate::body::BodyFile;
 use crate::body::run::tuning_file;
 use crate::config::Config;
@@ -24,6 +25,7 @@ pub(super) fn examine(path: &Path) -> Diagnosis {
         "toml" => configuration(path),
         "json" => json(path),
         "csv" => table(path),
+        _ if recordings::is_motion(path) => recordings::examine(path),
         _ if is_video(path) => video(path),
         _ if find(path, &[Kind::Image]).is_some() => {
             let mut diagnosis = Diagnosis::new(path, "image");
@@ -33,7 +35,7 @@ pub(super) fn examine(path: &Path) -> Diagnosis {
         }
         _ => {
             let mut diagnosis = Diagnosis::new(path, "file");
-            let known = "folders of images or clouds, run directories, .toml, .json, .csv, images and videos";
+            let known = "folders of images, clouds or keypoints, run directories, .toml, .json, .csv, motions in space, images and videos";
             diagnosis.add(Severity::Problem, format!("this kind of file is not known here; examined are {known}"));
             diagnosis
         }
@@ -98,16 +100,18 @@ fn json(path: &Path) -> Diagnosis {
             diagnosis.what = "person".to_owned();
             diagnosis.add_result(BodyFile::read(path).map(|_| "`sinew track body --skeleton` takes it".to_owned()));
         }
-        None => diagnosis.add(Severity::Warning, "neither a model nor a person: it has no `format`"),
+        None => return recordings::examine(path),
     }
     diagnosis
 }
 
-/// An angle table of `sinew track cyclic`.
+/// An angle table of `sinew track cyclic`, or a table of keypoints.
 fn table(path: &Path) -> Diagnosis {
     let mut diagnosis = Diagnosis::new(path, "angle table");
+    let header = read_text(path).unwrap_or_default().lines().next().unwrap_or_default().to_owned();
     let table = match AngleTable::read(path) {
         Ok(table) => table,
+        Err(_) if !header.contains(COLUMNS[1]) => return recordings::examine(path),
         Err(error) => {
             diagnosis.add(Severity::Problem, error.to_string());
             return diagnosis;
@@ -118,6 +122,7 @@ fn table(path: &Path) -> Diagnosis {
         Severity::Good,
         format!("{} rows, frames {} to {}", rows.len(), table.first_frame(), table.end_frame() - 1),
     );
+    recordings::beside(path, &table, &mut diagnosis);
     let missing = table.end_frame() - table.first_frame() - rows.len() as u64;
     if missing > 0 {
         diagnosis.add(

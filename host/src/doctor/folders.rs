@@ -1,7 +1,7 @@
 //! Folders: of images, of clouds, of runs.
 
 use super::diagnosis::{Diagnosis, Severity};
-use super::frames;
+use super::{frames, recordings};
 use crate::body::BodyFile;
 use crate::body::pose_file::read_pose;
 use crate::cloud::CloudFolder;
@@ -22,12 +22,19 @@ pub(super) fn examine(path: &Path) -> Diagnosis {
     }
     match list_images(path) {
         Ok(files) => frames::examine(path, &files),
+        Err(_) if holds_keypoints(path) => recordings::examine(path),
         Err(error) => {
             let mut diagnosis = Diagnosis::new(path, "folder");
             diagnosis.add(Severity::Problem, error.to_string());
             diagnosis
         }
     }
+}
+
+/// Whether a folder without images has files that pose detectors write.
+fn holds_keypoints(folder: &Path) -> bool {
+    let files = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    files.filter_map(|file| file.extension().map(std::ffi::OsStr::to_owned)).any(|end| end == "json" || end == "txt")
 }
 
 /// What a page about the run would say.

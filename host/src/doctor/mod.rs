@@ -5,6 +5,7 @@ mod diagnosis;
 mod files;
 mod folders;
 mod frames;
+mod recordings;
 
 pub use diagnosis::{Diagnosis, Finding, Severity};
 

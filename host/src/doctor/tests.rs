@@ -1,5 +1,9 @@
 use super::*;
 use crate::config::DEFAULT_FILE;
+use crate::cyclic::about::About;
+use crate::cyclic::facing::Facing;
+use crate::cyclic::synthetic_keypoints::{FilmedPerson, Filming};
+use crate::cyclic::{CyclicModel, SyntheticPerson};
 use crate::skin::model::DEFAULT_SKIN;
 use image::{Rgb, RgbImage};
 use std::fs;
@@ -55,15 +59,16 @@ fn problems_of_frames_are_reported() {
 #[test]
 fn configurations_models_and_tables_are_distinguished() {
     let folder = tempfile::tempdir().unwrap();
-    let cases: [(&str, &str, Severity, &str); 9] = [
+    let cases: [(&str, &str, Severity, &str); 10] = [
         ("arm.toml", DEFAULT_FILE, Severity::Good, "track arm"),
         ("body.toml", "[root]\npersistence = 0.4\n", Severity::Good, "track body"),
         ("typo.toml", "[tracker]\nparticle = 50\n", Severity::Problem, "particles"),
         ("cut.json", "{\"format\": \"sinew-", Severity::Problem, "no JSON"),
         ("model.json", "{\"format\": \"sinew-cyclic\", \"version\": 99}", Severity::Problem, "model.json"),
-        ("other.json", "{\"a\": 1}", Severity::Warning, "no `format`"),
+        ("other.json", "{\"a\": 1}", Severity::Problem, "neither a list of COCO results"),
         ("table.csv", "frame,neck_rad\n", Severity::Problem, "table.csv"),
-        ("notes.txt", "", Severity::Problem, "not known"),
+        ("notes.md", "", Severity::Problem, "not known"),
+        ("walk.bvh", "HIERARCHY", Severity::Problem, "walk.bvh"),
         ("nothing.csv", "", Severity::Problem, ""),
     ];
     for (name, text, severity, sentence) in cases {
@@ -77,6 +82,37 @@ fn configurations_models_and_tables_are_distinguished() {
     let empty = tempfile::tempdir().unwrap();
     assert_eq!(examine(empty.path()).worst(), Severity::Problem);
     assert!(["gaussian", "histogram"].contains(&DEFAULT_SKIN));
+}
+
+#[test]
+fn recordings_are_told_by_what_they_hold_and_doubts_are_warnings() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = CyclicModel::from_option("walking").unwrap();
+    let person = SyntheticPerson::draw(&model, 30.0, 1).unwrap();
+    let filming = Filming {
+        frames: 180,
+        rate_hz: 30.0,
+        height_px: 400.0,
+        facing: Facing::Right,
+        noise_px: 1.0,
+        missing_share: 0.0,
+        seed: 1,
+    };
+    let points = folder.path().join("points.csv");
+    fs::write(&points, FilmedPerson::film(&person, &filming).to_csv(&filming)).unwrap();
+    let diagnosis = examine(&points);
+    assert_eq!((diagnosis.what.as_str(), diagnosis.worst()), ("keypoints", Severity::Good), "{}", texts(&diagnosis));
+    assert!(texts(&diagnosis).contains("Good: 30 frames a second"), "{}", texts(&diagnosis));
+
+    let table = folder.path().join("walk.csv");
+    person.measured(4, 0.01, 0.0, 1).unwrap().write(&table).unwrap();
+    assert_eq!(examine(&table).worst(), Severity::Good, "{}", texts(&examine(&table)));
+    let mut about = About::of_source(&points);
+    about.doubts.push("the camera pans".to_owned());
+    about.write_beside(&table).unwrap();
+    assert!(texts(&examine(&table)).contains("Warning: doubt: the camera pans"), "{}", texts(&examine(&table)));
+    person.measured(4, 0.01, 0.0, 1).unwrap().at_rate(None).write(&table).unwrap();
+    assert!(texts(&examine(&table)).contains("give --rate HZ"), "{}", texts(&examine(&table)));
 }
 
 #[test]
