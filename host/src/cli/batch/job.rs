@@ -48,7 +48,6 @@ impl Job {
             let known: Vec<&str> = KINDS.iter().map(|(name, _)| *name).collect();
             bail!("kind `{}` is none of {}", row.kind.as_deref().unwrap_or_default(), known.join(", "));
         };
-        let folder = row.input.parent().unwrap_or(Path::new(""));
         let mut hash = Sha256::new();
         hash.update(format!("sinew {}\0{}\0", env!("CARGO_PKG_VERSION"), KINDS[kind].0));
         let mut options = row.options.clone();
@@ -58,8 +57,9 @@ impl Job {
         for (name, value) in &mut options {
             check_option(kind, name)?;
             hash.update(format!("{name}\0{value}\0"));
-            let file = folder.join(&value);
-            if file.is_file() {
+            // Beside the list, or as `--set` names it.
+            let named = [row.folder.join(&value), PathBuf::from(&value)];
+            if let Some(file) = named.into_iter().find(|file| file.is_file()) {
                 hash.update(content::of(&file)?);
                 *value = file.to_string_lossy().into_owned();
             }
@@ -144,7 +144,7 @@ mod tests {
         let input = folder.join("walk.csv");
         std::fs::write(&input, "l_knee_x,l_knee_y\n1,2\n").unwrap();
         let options = options.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
-        Row { line: 2, id: "a".into(), input, kind: None, options }
+        Row { line: 2, id: "a".into(), input, folder: folder.to_path_buf(), kind: None, options }
     }
 
     #[test]

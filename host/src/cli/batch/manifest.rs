@@ -21,6 +21,8 @@ pub struct Row {
     pub id: String,
     /// The file or folder.
     pub input: PathBuf,
+    /// Where files lie that options name.
+    pub folder: PathBuf,
     /// What is done with it; found by the input where none is given.
     pub kind: Option<String>,
     /// Values of options by the names of their flags.
@@ -57,7 +59,7 @@ pub fn read(path: &Path) -> anyhow::Result<Vec<Row>> {
         if let Some(before) = lines.insert(id.clone(), line) {
             return Err(broken(line, &format!("has the id `{id}` of line {before}; ids have to differ")));
         }
-        rows.push(Row { line, id, input: folder.join(input), kind, options });
+        rows.push(Row { line, id, input: folder.join(input), folder: folder.to_path_buf(), kind, options });
     }
     if rows.is_empty() {
         return Err(broken(1, "names no recording; give a table with the columns `id` and `input`, a recording a row"));
@@ -71,7 +73,8 @@ fn everything_in(folder: &Path) -> anyhow::Result<Vec<Row>> {
     names.retain(|name| !name.starts_with('.') && !name.ends_with(ABOUT));
     let row = |(index, name): (usize, String)| {
         let id = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem).to_owned();
-        Row { line: index + 1, id, input: folder.join(name), kind: None, options: BTreeMap::new() }
+        let input = folder.join(name);
+        Row { line: index + 1, id, input, folder: folder.to_path_buf(), kind: None, options: BTreeMap::new() }
     };
     let mut rows: Vec<Row> = names.into_iter().enumerate().map(row).collect();
     if rows.is_empty() {
@@ -128,7 +131,8 @@ mod tests {
         let path = folder.path().join(name);
         fs::write(&path, text).unwrap();
         let rows = read(&path).map_err(|error| error.to_string())?;
-        Ok(rows.into_iter().map(|row| Row { input: row.input.file_name().unwrap().into(), ..row }).collect())
+        let short = |row: Row| Row { input: row.input.file_name().unwrap().into(), folder: PathBuf::new(), ..row };
+        Ok(rows.into_iter().map(short).collect())
     }
 
     #[test]
