@@ -2,6 +2,7 @@
 
 use super::content::{cannot_read, names_in};
 use crate::cli::data_error;
+use crate::csv_text::headed_reader;
 use crate::file::{FileError, read_lines};
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
@@ -92,7 +93,7 @@ fn everything_in(folder: &Path) -> anyhow::Result<Vec<Row>> {
 type Cells = Result<Vec<(usize, Vec<(String, String)>)>, (usize, String)>;
 
 fn table(text: &str) -> Cells {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let mut reader = headed_reader(text);
     let header = reader.headers().map_err(|error| (1, error.to_string()))?.clone();
     let mut found = Vec::new();
     for record in reader.records() {

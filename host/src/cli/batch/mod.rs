@@ -90,12 +90,8 @@ pub fn run(args: &BatchArgs, console: &Console) -> Result<()> {
 /// # Errors
 /// As [`run`].
 pub fn run_until(args: &BatchArgs, console: &Console, stop: &AtomicBool) -> Result<()> {
-    let mut rows = manifest::read(&args.manifest)?;
-    let mut index = 0;
-    rows.retain(|_| {
-        index += 1;
-        args.is_mine(index - 1)
-    });
+    let all = manifest::read(&args.manifest)?.into_iter().enumerate();
+    let mut rows: Vec<_> = all.filter(|(index, _)| args.is_mine(*index)).map(|(_, row)| row).collect();
     for row in &mut rows {
         for (name, value) in &args.set {
             row.options.entry(name.clone()).or_insert_with(|| value.clone());
