@@ -2,7 +2,10 @@
 
 use super::until_signal;
 use crate::cyclic::experiments::FILTERS;
-use crate::cyclic::{CyclicReport, LONG_RUN_SIGMA_DEG, Setting, figures::figures, long_runs, synthetic, test_cycles};
+use crate::cyclic::rate::DEFAULT_RATE_HZ;
+use crate::cyclic::{
+    CyclicReport, LONG_RUN_SIGMA_DEG, LongRun, Setting, figures::figures, long_runs, rate_of, synthetic, test_cycles,
+};
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde_json::json;
@@ -32,9 +35,9 @@ pub struct EvaluateCyclicArgs {
     /// a break.
     #[arg(long, value_name = "CUTS.csv")]
     pub long: Option<PathBuf>,
-    /// Frames per second of the tables.
-    #[arg(long, value_name = "HZ", default_value_t = 60.0)]
-    pub rate: f64,
+    /// Frames per second of the tables [default: what they say, or 60].
+    #[arg(long, value_name = "HZ")]
+    pub rate: Option<f64>,
     /// Repetitions where noise or particles are drawn.
     #[arg(long, default_value_t = 5)]
     pub seeds: u64,
@@ -68,22 +71,24 @@ pub fn run(args: &EvaluateCyclicArgs, console: &Console) -> Result<()> {
 /// As [`run`].
 pub fn run_until(args: &EvaluateCyclicArgs, console: &Console, stop: Stop<'_>) -> Result<()> {
     ensure!(args.seeds > 0, "--seeds must be greater than zero");
-    ensure!(args.rate > 0.0 && args.rate.is_finite(), "--rate must be greater than zero, not {}", args.rate);
+    if let Some(rate) = args.rate {
+        ensure!(rate > 0.0 && rate.is_finite(), "--rate must be greater than zero, not {rate}");
+    }
     let particles = particles(&args.particles)?;
     let output = OutputDir::create(&args.out)?;
-    let (model, name) = match &args.train {
+    let (model, name) = model(args)?;
+    let (cycles, rate_hz) = match &args.test {
         Some(path) => {
-            let options = TrainingOptions { length: 100, rate_hz: Some(args.rate) };
-            (train(&CutList::read(path)?, options)?, format!("trained on {}", path.display()))
+            let list = CutList::read(path)?;
+            (test_cycles(&list)?, rate_of(&list, args.rate)?)
         }
-        None => (CyclicModel::from_option(&args.model)?, args.model.clone()),
-    };
-    let cycles = match &args.test {
-        Some(path) => test_cycles(&CutList::read(path)?)?,
-        None => synthetic::cycles(&model, args.rate)?,
+        None => {
+            let rate_hz = args.rate.unwrap_or(DEFAULT_RATE_HZ);
+            (synthetic::cycles(&model, rate_hz)?, rate_hz)
+        }
     };
     let cells = Cells::keep(&output, &begun(args, &model)?, args.resume, stop)?;
-    let setting = Setting { cycles: &cycles, model: &model, rate_hz: args.rate, seeds: args.seeds, cells: &cells };
+    let setting = Setting { cycles: &cycles, model: &model, rate_hz, seeds: args.seeds, cells: &cells };
     let sparse_particles: Vec<usize> = if particles.is_empty() { Vec::new() } else { SPARSE_PARTICLES.to_vec() };
     let measure = || {
         Ok(CyclicReport {
@@ -101,10 +106,7 @@ pub fn run_until(args: &EvaluateCyclicArgs, console: &Console, stop: Stop<'_>) -
             sparse: setting.sparse_measurements()?,
             sparse_particles: setting.sparse_particles(&sparse_particles)?,
             starts: setting.starts(&particles)?,
-            long_runs: match &args.long {
-                Some(path) => long_runs(&CutList::read(path)?, &model, args.rate, &FILTERS, (LONG_RUN_SIGMA_DEG, 1))?,
-                None => Vec::new(),
-            },
+            long_runs: long(args, &model)?,
         })
     };
     let report = console.busy("tracking", measure)?;
@@ -116,6 +118,22 @@ pub fn run_until(args: &EvaluateCyclicArgs, console: &Console, stop: Stop<'_>) -
     cells.end()?;
     let text = format!("{}tables and plots: {}\n", report.to_text(), args.out.display());
     console.answer(&text, &json!({ "out": args.out, "report": report }))
+}
+
+/// The model that is tested, and what it is called.
+fn model(args: &EvaluateCyclicArgs) -> Result<(CyclicModel, String)> {
+    let Some(path) = &args.train else { return Ok((CyclicModel::from_option(&args.model)?, args.model.clone())) };
+    let list = CutList::read(path)?;
+    let options = TrainingOptions { length: 100, rate_hz: Some(rate_of(&list, args.rate)?) };
+    Ok((train(&list, options)?, format!("trained on {}", path.display())))
+}
+
+/// The recordings of --long.
+fn long(args: &EvaluateCyclicArgs, model: &CyclicModel) -> Result<Vec<LongRun>> {
+    let Some(path) = &args.long else { return Ok(Vec::new()) };
+    let list = CutList::read(path)?;
+    let rate_hz = rate_of(&list, args.rate)?;
+    long_runs(&list, model, rate_hz, &FILTERS, (LONG_RUN_SIGMA_DEG, 1))
 }
 
 /// What the cells depend on, beside the cycles.

@@ -5,10 +5,12 @@ pub mod experiments;
 pub mod figures;
 pub mod long_runs;
 pub mod protocol;
+pub mod rate;
 pub mod report;
 pub mod synthetic;
 
 pub use experiments::{Cell, Setting};
 pub use long_runs::{LONG_RUN_SIGMA_DEG, LongRun, long_runs};
 pub use protocol::{Errors, Protocol, TestCycle, test_cycles};
+pub use rate::rate_of;
 pub use report::CyclicReport;

@@ -1,7 +1,8 @@
 //! What a run comes to: cycles, cadence, outliers.
 
+use super::cycle_times::CycleTimes;
 use super::run::{Tracked, TrackedFrame};
-use crate::resume::{List, long_real, real};
+use crate::resume::{long_real, real};
 use serde::Serialize;
 use sinew_core::saved_state::{SavedState, StateVisitor};
 
@@ -22,8 +23,9 @@ pub struct Summary {
     pub seen_s: f64,
     /// Cycles passed while the person was seen, with their fraction.
     pub cycles: f64,
-    /// Cycles per minute: whole cycles over the time that they took; where there are less than two
-    /// of them, all that was passed; `None` for less than [`MIN_CYCLES`].
+    /// Cycles per minute, of the mean time of a cycle from each of sixteen phases on; where the
+    /// person was never seen for two cycles in a row, of all that was passed; `None` for less than
+    /// [`MIN_CYCLES`].
     pub cadence_per_min: Option<f64>,
     /// Standard deviation of the cadence from cycle to cycle; `None` for less than three whole
     /// cycles.
@@ -88,27 +90,14 @@ pub struct RunningSummary {
     cycles: f64,
     /// Whether the last row is known.
     is_known: bool,
-    /// Whether a cycle began since the person was last lost.
-    has_start: bool,
     /// Cycles and frames between successive rows that are known.
     seen_cycles: f64,
     seen_frames: u64,
     /// Velocity at the last row and its variance.
     velocity: [f32; 2],
-    /// Where the next cycle begins, in cycles from position 0 before the first row.
-    next_start: f64,
     outliers: u64,
     log_likelihood: f64,
-    starts_s: Vec<Start>,
-}
-
-/// The start of a cycle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Start {
-    /// Seconds from the first row.
-    at_s: f64,
-    /// Whether the person was seen from the start before on.
-    follows: bool,
+    times: CycleTimes,
 }
 
 impl RunningSummary {
@@ -125,14 +114,12 @@ impl RunningSummary {
             origin,
             cycles: first.cycles,
             is_known: first.is_known,
-            has_start: false,
             seen_cycles: 0.0,
             seen_frames: 0,
             velocity: [0.0; 2],
-            next_start: origin.floor() + 1.0,
             outliers: 0,
             log_likelihood: 0.0,
-            starts_s: Vec::new(),
+            times: CycleTimes::new(origin),
         };
         begun.count(first);
         begun
@@ -143,9 +130,7 @@ impl RunningSummary {
         if self.is_known && row.is_known {
             self.pass(row);
         } else {
-            // What was passed meanwhile is not known: the next start is the first of a new stretch.
-            self.next_start = (self.origin + row.cycles).floor() + 1.0;
-            self.has_start = false;
+            self.times.lose(self.origin + row.cycles);
         }
         self.is_known = row.is_known;
         self.count(row);
@@ -157,15 +142,8 @@ impl RunningSummary {
         let step = row.frame - self.last_frame;
         self.seen_cycles += after - before;
         self.seen_frames += step;
-        // A step holds more than one start only where many frames were skipped; then the first one
-        // is reported.
-        if after >= self.next_start && after > before {
-            let share = ((self.next_start - before) / (after - before)).clamp(0.0, 1.0);
-            let frame = (self.last_frame - self.first_frame) as f64 + share * step as f64;
-            self.starts_s.push(Start { at_s: frame / self.rate_hz, follows: self.has_start });
-            self.has_start = true;
-            self.next_start = after.floor() + 1.0;
-        }
+        let at_s = |frame: u64| (frame - self.first_frame) as f64 / self.rate_hz;
+        self.times.pass([before, after], [at_s(self.last_frame), at_s(row.frame)]);
     }
 
     fn count(&mut self, row: &TrackedFrame) {
@@ -178,13 +156,12 @@ impl RunningSummary {
         self.log_likelihood += f64::from(estimate.log_likelihood);
     }
 
-    fn cadence_per_min(&self, whole_cycles_s: &[[f64; 2]]) -> Option<f64> {
-        let whole_s: f64 = whole_cycles_s.iter().map(|[start, end]| end - start).sum();
+    fn cadence_per_min(&self) -> Option<f64> {
         let seen_s = self.seen_frames as f64 / self.rate_hz;
-        if whole_cycles_s.len() as f64 >= MIN_CYCLES {
-            return Some(60.0 * whole_cycles_s.len() as f64 / whole_s);
-        }
-        (self.seen_cycles.abs() >= MIN_CYCLES).then(|| 60.0 * self.seen_cycles / seen_s)
+        // Backwards no cycle is timed.
+        let mean_s = self.times.mean_s().filter(|_| self.seen_cycles > 0.0);
+        let cycles_per_s = mean_s.map_or(self.seen_cycles / seen_s, f64::recip);
+        (self.seen_cycles.abs() >= MIN_CYCLES).then_some(60.0 * cycles_per_s)
     }
 
     /// Rows so far.
@@ -199,21 +176,20 @@ impl RunningSummary {
         let frame_numbers = self.last_frame - self.first_frame + 1;
         let last_cadence = cadence(self.velocity, 60.0 * self.rate_hz * self.step_frames);
         let seen_s = self.seen_frames as f64 / self.rate_hz;
-        let whole_cycles_s: Vec<[f64; 2]> =
-            self.starts_s.windows(2).filter(|pair| pair[1].follows).map(|pair| [pair[0].at_s, pair[1].at_s]).collect();
+        let whole_cycles_s = self.times.whole_s();
         Summary {
             frames: self.rows as usize,
             skipped_frames: frame_numbers - self.rows,
             duration_s: (frame_numbers - 1) as f64 / self.rate_hz,
             seen_s,
             cycles: self.seen_cycles,
-            cadence_per_min: self.cadence_per_min(&whole_cycles_s),
+            cadence_per_min: self.cadence_per_min(),
             cadence_std_per_min: spread_per_min(&whole_cycles_s),
             last_cadence_per_min: last_cadence.0,
             last_cadence_std_per_min: last_cadence.1,
             outliers: self.outliers as usize,
             log_likelihood: self.log_likelihood,
-            cycle_starts_s: self.starts_s.iter().map(|start| start.at_s).collect(),
+            cycle_starts_s: self.times.starts_s(),
             whole_cycles_s,
         }
     }
@@ -235,24 +211,12 @@ impl SavedState for RunningSummary {
         {
             visitor.long(count);
         }
-        for value in
-            [&mut self.origin, &mut self.cycles, &mut self.next_start, &mut self.log_likelihood, &mut self.seen_cycles]
-        {
+        for value in [&mut self.origin, &mut self.cycles, &mut self.log_likelihood, &mut self.seen_cycles] {
             long_real(value, visitor);
         }
         self.velocity.iter_mut().for_each(|value| real(value, visitor));
         visitor.flag(&mut self.is_known);
-        visitor.flag(&mut self.has_start);
-        let mut starts_s = List::new(std::mem::take(&mut self.starts_s), Start { at_s: 0.0, follows: false });
-        starts_s.visit(visitor);
-        self.starts_s = starts_s.entries;
-    }
-}
-
-impl SavedState for Start {
-    fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        long_real(&mut self.at_s, visitor);
-        visitor.flag(&mut self.follows);
+        self.times.visit(visitor);
     }
 }
 
@@ -291,9 +255,16 @@ mod tests {
         let summary = Summary::of(&run(&[0.0, 0.75, 1.25, 0.75, 1.25, 2.0, 2.5]));
         assert_eq!(summary.cycle_starts_s, [0.75, 2.5]);
         assert_eq!((summary.frames, summary.skipped_frames, summary.outliers), (7, 0, 1));
-        assert!((summary.cadence_per_min.unwrap() - 60.0 * 2.5 / 3.0).abs() < 1.0e-12);
         assert!((summary.last_cadence_per_min - 15.0).abs() < 1.0e-5, "{summary:?}");
         assert!((summary.last_cadence_std_per_min - 6.0).abs() < 1.0e-5, "{summary:?}");
+    }
+
+    #[test]
+    fn cadence_is_that_of_all_phases_and_backwards_that_of_what_was_passed() {
+        let cadence = |cycles: &[f64]| Summary::of(&run(cycles)).cadence_per_min;
+        assert_eq!(cadence(&[0.1, 0.6, 1.1, 1.6, 2.1]), Some(60.0));
+        assert_eq!(cadence(&[0.1, 0.6, 1.1, 1.6]), None);
+        assert_eq!(cadence(&[2.5, 1.5, 0.5]), Some(-120.0));
     }
 
     #[test]
