@@ -119,7 +119,7 @@ impl RunningSummary {
             velocity: [0.0; 2],
             outliers: 0,
             log_likelihood: 0.0,
-            times: CycleTimes::new(origin),
+            times: CycleTimes::new(origin + first.cycles),
         };
         begun.count(first);
         begun
