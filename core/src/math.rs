@@ -1,6 +1,6 @@
 //! The one place that computes transcendental functions, so that every target gives the same bits.
 //!
-//! `libm` works in `f32` for all that is used here but sine and cosine; those two are own code,
+//! `libm` works in `f32` for all that is used here but sine and cosine. Those two are own code,
 //! accurate to [`SIN_COS_MAX_ERROR`] for arguments up to [`SIN_COS_MAX_ARGUMENT_RAD`] in size.
 //! Comparisons are explicit ([`min`], [`max`], [`clamp`]), since `f32::min` of -0 and +0 differs
 //! between targets.

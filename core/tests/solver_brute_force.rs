@@ -41,8 +41,8 @@ fn spatial() -> Skeleton<3, 3> {
     chain([Vec3::z(), Vec3::y(), Vec3::z()], [[-100.0, 80.0], [-70.0, 60.0], [0.0, 140.0]])
 }
 
-/// Largest log density over all poses whose angles are `about` plus a whole number, `reach` at most
-/// either way, of `step_rad`, cut to the limits; and its pose.
+/// Largest log density over all poses of a grid, and its pose. The angles are `about` plus a whole
+/// number, `reach` at most either way, of `step_rad`, cut to the limits.
 fn best_around<const N: usize>(
     density: &PoseDensity<'_, N, N>,
     about: [f32; N],
@@ -77,8 +77,8 @@ fn brute_force<const N: usize>(density: &PoseDensity<'_, N, N>) -> f32 {
     best.1
 }
 
-/// A run: the angles that the search begins at and the goal, of a pose inside the limits or
-/// anywhere from beside the root to beyond reach.
+/// A run: the angles that the search begins at, and the goal. The goal is that of a pose inside the
+/// limits, or anywhere from beside the root to beyond reach.
 #[derive(Debug, Clone)]
 struct Case<const N: usize> {
     start_rad: [f32; N],

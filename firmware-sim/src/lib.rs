@@ -1,10 +1,10 @@
 //! Images for an emulated Cortex-M that track with `sinew-core`.
 //!
 //! An image reads recorded input record by record, tracks, and answers with records ([`port`]).
-//! What it does stands in a module of its own name ([`cyclic`], [`arm`], [`camera`]) and runs on
-//! any machine, so that tests on the host run the same code; `machine` is what only the
-//! emulated board has. A new image is a file `src/bin/NAME.rs` and what it has to answer,
-//! `expected/NAME.rec` (records) or `expected/NAME.txt` (its standard output).
+//! What it does stands in a module of its own name ([`cyclic`], [`arm`], [`camera`]). It runs on
+//! any machine, so tests on the host run the same code. `machine` is what only the emulated board
+//! has. A new image is a file `src/bin/NAME.rs` and what it has to answer, `expected/NAME.rec`
+//! (records) or `expected/NAME.txt` (its standard output).
 
 #![no_std]
 

@@ -17,9 +17,9 @@ use crate::math::{Vec3, clamp, length, max, sqrt, unit};
 
 /// The point nearest to `predicted_m` on the circle where an elbow can be, given shoulder and hand.
 ///
-/// The circle is that of the spheres of radius `upper_arm_m` around the shoulder and `forearm_m`
-/// around the hand; where they do not intersect (the hand is out of reach, or too near), the elbow
-/// lies on the line of shoulder and hand.
+/// The circle is the intersection of two spheres: radius `upper_arm_m` around the shoulder and
+/// `forearm_m` around the hand. Where they do not intersect (the hand is out of reach, or too
+/// near), the elbow lies on the line of shoulder and hand.
 ///
 /// ```
 /// use sinew_core::correction::elbow::nearest_elbow;

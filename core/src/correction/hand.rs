@@ -64,8 +64,8 @@ impl ReachableShell {
         }
     }
 
-    /// `point` if the hand can be there; else the nearest reachable point of `ray` in front of the
-    /// camera; else, where the ray misses the shell, the shell's nearest point to the ray.
+    /// `point` if the hand can be there, else the nearest reachable point of `ray` in front of the
+    /// camera. Where the ray misses the shell, it is the shell's nearest point to the ray.
     #[must_use]
     pub fn along_ray(&self, point: &Vec3, ray: &Ray) -> Vec3 {
         if self.contains(point) {

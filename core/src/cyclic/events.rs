@@ -112,8 +112,8 @@ impl CycleCounter {
         self.laps as f32 + (self.position - self.start)
     }
 
-    /// The same in two parts, of which the second stays exact over any number of cycles: passages
-    /// of position 0, and the position minus the first one.
+    /// The same in two parts: passages of position 0, and the position minus the first part. The
+    /// second part stays exact over any number of cycles.
     #[must_use]
     pub fn laps_and_part(&self) -> (i32, f32) {
         (self.laps, self.position - self.start)

@@ -69,8 +69,8 @@ pub enum CyclicFilter<const N: usize> {
 const _: () = assert!(size_of::<CyclicFilter<13>>() <= 2560, "the state has to fit 2.5 KiB");
 
 impl<const N: usize> CyclicFilter<N> {
-    /// The standard start: the angles of the first row; the position in the cycle by best match and
-    /// the velocity (cycles a frame of the model) by the model's mean where absent.
+    /// The standard start: the angles of the first row. Where absent, the position in the cycle
+    /// follows by best match and the velocity (cycles a frame of the model) by the model's mean.
     ///
     /// # Errors
     /// Those of the filter's own `new`.

@@ -1,5 +1,5 @@
-//! Ranges of the numbers in saved states of the cyclic filters: as wide as any step may need, and
-//! so narrow that the next step of a forged state stays finite.
+//! Ranges of the numbers in saved states of the cyclic filters. They are as wide as any step may
+//! need, and so narrow that the next step of a forged state stays finite.
 
 use crate::math::sqrt;
 use core::ops::RangeInclusive;

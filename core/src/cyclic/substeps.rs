@@ -1,7 +1,7 @@
 //! Substeps of a step of any length.
 //!
-//! They are at most one frame long, for which the noise of cyclic (9) and cyclic (10) is defined,
-//! or longer where their number is limited.
+//! They are at most one frame long, for which the noise of cyclic (9) and cyclic (10) is defined.
+//! They are longer where their number is limited.
 
 use crate::cyclic::measurement::MAX_STEP_FRAMES;
 use crate::math::{clamp, max, min};

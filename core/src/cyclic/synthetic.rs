@@ -17,8 +17,8 @@ pub fn mean_angle(index: usize, position: f32) -> f32 {
     0.3 * index as f32 - 1.5 + swing * phase.sin() + 0.1 * (2.0 * phase).cos() + winding
 }
 
-/// A model of that motion, 65 frames a cycle, whose acceleration has standard deviation `noise`
-/// (rad per frame^2) and whose covariance has the `rank` given.
+/// A model of that motion, 65 frames a cycle. Its acceleration has standard deviation `noise` (rad
+/// per frame^2), and its covariance has the `rank` given.
 pub fn table(noise: f32, rank: usize) -> Box<HumanModelTable> {
     let mut factor = [[0.0; ANGLES]; ANGLES];
     let mut stream = Stream::new(77, 0, 0);

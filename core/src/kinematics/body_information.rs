@@ -1,10 +1,10 @@
 //! Least squares of residuals on bones: sums bone by bone, then the information about the angles.
 //!
-//! A residual along a unit normal n at a place h of a bone changes with the bone's rigid motion (v,
-//! omega) by n'(v + omega x h) = [n; h x n]'[v; omega]. So all residuals of a bone are one 6x6
-//! information matrix and one 6-vector; a subtree's are the sum of its bones'; and an angle's
-//! column is its twist. The work for a point does not depend on how many angles move it (the
-//! composite rigid body method of dynamics, R. Featherstone, 1987, for least squares).
+//! Take a residual along a unit normal n at a place h of a bone. With the bone's rigid motion (v,
+//! omega) it changes by n'(v + omega x h) = [n; h x n]'[v; omega]. So all residuals of a bone are
+//! one 6x6 information matrix and one 6-vector. Those of a subtree are the sum of its bones', and
+//! an angle's column is its twist. The work for a point does not depend on how many angles move it
+//! (the composite rigid body method of dynamics, R. Featherstone, 1987, for least squares).
 
 use super::forward::Posture;
 use crate::math::Vec3;

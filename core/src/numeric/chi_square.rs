@@ -7,7 +7,8 @@ use crate::math::sqrt;
 pub const DEFAULT_GATE_SIGMAS: f32 = 3.09;
 
 /// Value that a chi-square variable with `degrees` degrees of freedom exceeds as often as a
-/// standard normal exceeds `sigmas` (Wilson and Hilferty 1931; within 4 % from `sigmas` 1 to 4).
+/// standard normal exceeds `sigmas`. Source: Wilson and Hilferty 1931, within 4 % from `sigmas` 1
+/// to 4.
 ///
 /// ```
 /// use sinew_core::numeric::chi_square::{DEFAULT_GATE_SIGMAS, chi_square_quantile};

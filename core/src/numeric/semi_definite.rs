@@ -40,7 +40,7 @@ pub const fn packed_index(row: usize, column: usize) -> usize {
 
 /// Smallest pivot that counts as positive, in a matrix scaled to a diagonal of ones.
 ///
-/// Chosen: ten cycles give a covariance of rank nine, and rounding to `f32` or to six decimals in a
+/// Chosen: ten cycles give a covariance of rank nine. Rounding to `f32` or to six decimals in a
 /// file leaves its other eigenvalues within this.
 pub const RELATIVE_TOLERANCE: f32 = 1.0e-4;
 

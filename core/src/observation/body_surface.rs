@@ -120,9 +120,9 @@ impl<const BONES: usize> BodySurface<BONES> {
     ///
     /// Entries beyond the last capsule are undefined.
     ///
-    /// With D the distance of the ball's centre from a bone, R the ball's radius and r the bone's,
-    /// no point is nearer than D - R - r or r - D - R, and none is farther than the root of (D +
-    /// R)^2 + r^2, the hidden case.
+    /// D is the distance of the ball's centre from a bone, R the ball's radius and r the bone's. No
+    /// point is nearer than D - R - r or r - D - R. None is farther than the root of
+    /// (D + R)^2 + r^2, the hidden case.
     #[must_use]
     pub(crate) fn distance_bounds(&self, centre_m: &Vec3, radius_m: f32) -> DistanceBounds<BONES> {
         let lanes = &self.lanes;

@@ -1,7 +1,7 @@
 //! Which temporal edge pixels belong to which limb; the arm paper leaves it open.
 //!
-//! A pixel belongs to the limb of the last estimate that is nearer to it in the image, if it lies
-//! within a band around that limb; a pixel far from both is dropped.
+//! A pixel belongs to the limb of the last estimate that is nearer to it in the image. It has to
+//! lie within a band around that limb: a pixel far from both is dropped.
 
 use crate::camera::Pixel;
 use crate::math::{abs, sqrt};

@@ -162,8 +162,8 @@ impl OrientationDensity {
 /// Orientation of a line that goes `du` across and `dv` down, in half turns from 0 to 1; within
 /// 2e-5 rad.
 ///
-/// atan(q) / pi of a slope q from -1 to 1 is q (1/4 + (1 - q^2) P(q^2)), exact at 0 and +-1.
-/// P is a minimax fit of third degree.
+/// For a slope q from -1 to 1, atan(q) / pi is q (1/4 + (1 - q^2) P(q^2)). It is exact at 0
+/// and +-1. P is a minimax fit of third degree.
 #[inline]
 fn half_turns(du: f32, dv: f32) -> f32 {
     let is_flat = dv * dv <= du * du;

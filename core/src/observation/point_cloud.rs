@@ -160,9 +160,9 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
     /// Becomes the cloud of `points_m`, which are brought into Morton order in place (those left
     /// out come last).
     ///
-    /// Points that are not finite, beyond [`MAX_M`] or at the camera are left out, and those beyond
-    /// the capacity, the last given first; all are counted. No point at all is a frame without
-    /// evidence.
+    /// Points that are not finite, beyond [`MAX_M`] or at the camera are left out. So are those
+    /// beyond the capacity, the last given first. All are counted. No point at all is a frame
+    /// without evidence.
     pub fn set(&mut self, points_m: &mut [Vec3], camera_m: &Vec3) -> LeftOut {
         let mut left_out = LeftOut::default();
         let mut kept = 0;

@@ -70,9 +70,9 @@ impl PointLikelihood {
 /// Lowers each entry of `least` to the squared distance of the block's points from one capsule's
 /// visible skin, squared metres.
 ///
-/// A point that is seen from p: (|x-p| - r)^2. A hidden one: |x-p|^2 - 2 r rho + r^2, with rho the
-/// part of x - p along v, or across the line of sight on the round ends; both are one formula in
-/// rho. Most points are seen: the hidden case is computed only for blocks that have a point to
+/// A point that is seen from p: (|x-p| - r)^2. A hidden one: |x-p|^2 - 2 r rho + r^2. There rho is
+/// the part of x - p along v, or across the line of sight on the round ends. Both are one formula
+/// in rho. Most points are seen: the hidden case is computed only for blocks that have a point to
 /// which it matters. Loops are branch-free, so that they run on vectors.
 #[inline(always)]
 pub(super) fn lower_to<const BONES: usize>(

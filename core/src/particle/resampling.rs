@@ -5,8 +5,8 @@ use crate::random::Stream;
 /// Writes the ancestors of a new generation into `ancestors`: systematic resampling with one
 /// uniform number.
 ///
-/// `weights` sum to one; `offset` lies in [0, 1). Invariants: the ancestors are in ascending order;
-/// an ancestor of weight w is taken floor(n w) or ceil(n w) times; over a uniform offset it is
+/// `weights` sum to one; `offset` lies in [0, 1). Invariants: the ancestors are in ascending order.
+/// An ancestor of weight w is taken floor(n w) or ceil(n w) times. Over a uniform offset it is
 /// taken n w times on average.
 ///
 /// ```

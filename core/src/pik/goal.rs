@@ -77,7 +77,7 @@ pub struct GoalPast<'a, const BONES: usize> {
     /// Their velocities by the filter's estimates, not the particle's own, metres a second. Beyond
     /// PIK (33).
     pub velocity_m_per_s: &'a [Vec3; BONES],
-    /// Share of its noise that a goal of each bone's end has in this frame: one is all of it, a
+    /// Share of its noise that a goal of each bone's end has in this frame. One is all of it. A
     /// limb at rest may have less and an unobserved one more.
     /// [`LinearGoals`](super::processes::extrapolation::LinearGoals) keeps to it; other processes
     /// may.
@@ -180,7 +180,7 @@ impl LinearExtrapolation {
     }
 
     /// Mean of the draw of a place that swings about a joint, which was at `joint_m` and moved with
-    /// `joint_velocity_m_per_s`: about it the place goes on along an arc. A hand at speed would
+    /// `joint_velocity_m_per_s`. About it the place goes on along an arc. A hand at speed would
     /// leave the arm's reach along a straight line.
     ///
     /// ```

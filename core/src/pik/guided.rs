@@ -30,8 +30,8 @@ const FAR_STEPS: usize = 2;
 pub(crate) const LOOSE_SHARE: f32 = 0.8;
 
 /// As [`super::end_effector::EndEffectorMotion`], but goals, stiffness, root *and* points make the
-/// density whose mode and Laplace expansion the pose is drawn from, so that the draw knows the
-/// frame's data.
+/// density. The pose is drawn from the mode and Laplace expansion of that density, so the draw
+/// knows the frame's data.
 ///
 /// ```
 /// use sinew_core::math::Vec3;
@@ -81,8 +81,8 @@ pub struct GuidedMotion<'a, P, const ANGLES: usize> {
     /// Most steps of the solver.
     pub solver_steps: usize,
     /// Most blocks of points that pull; of a larger cloud every n-th one does, n times as strongly.
-    /// With which one it begins each particle draws for itself: were it the same for all, what
-    /// the others show would be missing from every particle's mode alike.
+    /// Each particle draws for itself with which one it begins. Were it the same for all, what the
+    /// others show would be missing from every particle's mode alike.
     pub pulling_blocks: usize,
 }
 
@@ -305,7 +305,7 @@ mod tests {
         assert!(near_m < 0.03 && (far_m - near_m).abs() < 5.0e-3, "{near_m} {far_m}");
     }
 
-    /// Of two blocks, one shows the elbow more bent than it was and the other one less; particles
+    /// Of two blocks, one shows the elbow more bent than it was and the other one less. Particles
     /// that look at one each go either way.
     #[test]
     fn particles_look_at_points_of_their_own() {

@@ -98,9 +98,9 @@ impl<const BONES: usize, const ANGLES: usize> BodyScene<BONES, ANGLES> {
         posture(&self.skeleton, &Vec3::zeros(), angles_rad)
     }
 
-    /// log weights of a pose by its surface: the points' likelihood and what limbs in limbs cost in
-    /// the trunk's place, then each limb's own part of both, about the body that `expected`
-    /// has.
+    /// log weights of a pose by its surface, about the body that `expected` has. In the trunk's
+    /// place stand the points' likelihood and what limbs in limbs cost. Then follows each limb's
+    /// own part of both.
     #[must_use]
     pub fn log_weights(
         &self,
@@ -163,9 +163,9 @@ pub struct FramePast<'a, const BONES: usize, const ANGLES: usize> {
     pub blocks: &'a [PointBlock],
     /// Velocities of the coordinates by the filter's estimates, a second.
     pub angle_velocity_per_s: [f32; ANGLES],
-    /// What a coordinate changes by for every particle alike, before its noise: those of a free
-    /// root, and of the trunk where it is fitted to the points. `None` leaves it to the motion
-    /// model.
+    /// What a coordinate changes by for every particle alike, before its noise. It is set for the
+    /// coordinates of a free root, and of the trunk where it is fitted to the points. `None` leaves
+    /// it to the motion model.
     pub shared_change: [Option<f32>; ANGLES],
     /// Velocities of the bones' ends by the filter's estimates, metres a second.
     pub velocity_m_per_s: &'a [Vec3; BONES],

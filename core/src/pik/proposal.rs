@@ -1,9 +1,9 @@
 //! The Laplace proposal of a pose, cut to the limits (PIK (18) to (22)).
 //!
 //! With H = L L' an angle is drawn after those behind it, each from a one-dimensional normal cut to
-//! its limits. The density of such a draw is N(theta; m, H^-1) / prod M_i, with M_i the mass that
-//! the limits leave to angle i given the angles behind it. Where a limit is active the gradient at
-//! the mode is not zero, so the expansion is centred at m = theta* + H^-1 gradient.
+//! its limits. The density of such a draw is N(theta; m, H^-1) / prod M_i. There M_i is the mass
+//! that the limits leave to angle i given the angles behind it. Where a limit is active the
+//! gradient at the mode is not zero, so the expansion is centred at m = theta* + H^-1 gradient.
 
 use crate::kinematics::cholesky::Cholesky;
 use crate::kinematics::inverse::Mode;
@@ -97,8 +97,8 @@ pub struct PoseDraw<const ANGLES: usize> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LimitMass {
     /// Neither M_box nor the M_i: right where no limit is active. Where one is, poses count as the
-    /// sequential draw makes them and not as PIK (12) cut to the limits does, unless the angles
-    /// at limits do not depend on others.
+    /// sequential draw makes them, not as PIK (12) cut to the limits does. Both are the same if the
+    /// angles at limits do not depend on others.
     Neglected,
     /// Both: ln M_box is given, the M_i are known from the draw.
     Counted {
@@ -162,8 +162,9 @@ impl<const ANGLES: usize> LaplaceProposal<ANGLES> {
         result
     }
 
-    /// Estimate of ln M_box, the mass of N(m, H^-1) inside `limits`, from `count` draws of its own:
-    /// the mean of prod M_i over draws is M_box. Zero, the greatest there is, without draws.
+    /// Estimate of ln M_box, where M_box is the mass of N(m, H^-1) inside `limits`. It takes
+    /// `count` draws of its own: the mean of prod M_i over draws is M_box. Zero, the greatest there
+    /// is, without draws.
     #[must_use]
     pub fn log_box(&self, limits: &[Limit; ANGLES], count: usize, stream: &mut Stream) -> f32 {
         let mut greatest = f32::NEG_INFINITY;

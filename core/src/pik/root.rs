@@ -62,8 +62,8 @@ impl RootProcess {
     pub const FIXED: Self =
         Self { persistence: 0.0, std_per_sqrt_s: [0.0; FREE_ROOT_COORDINATES], shift_limits_m: NO_PLANES };
 
-    /// The pelvic lift's root (PIK (39)) over a floor at `floor_y_m`, camera axes with y down:
-    /// standard deviations `std` across and four times as much up and down, metres by root
+    /// The pelvic lift's root (PIK (39)) over a floor at `floor_y_m`, camera axes with y down. The
+    /// standard deviations are `std` across and four times as much up and down, metres by root
     /// second.
     #[must_use]
     pub fn pelvic_lift(std_m_per_sqrt_s: f32, turn_std_rad_per_sqrt_s: f32, floor_y_m: f32) -> Self {

@@ -8,8 +8,8 @@ pub use super::stream::LANES;
 
 /// The streams of [`LANES`] particles with successive indices.
 ///
-/// The generator is xoshiro128++ (Blackman and Vigna 2021), whose steps are additions, shifts and
-/// exclusive ors of 32 bits: on arrays of lanes compilers turn them into vector instructions.
+/// The generator is xoshiro128++ (Blackman and Vigna 2021). Its steps are additions, shifts and
+/// exclusive ors of 32 bits. On arrays of lanes compilers turn them into vector instructions.
 ///
 /// ```
 /// use sinew_core::random::lanes::{LANES, StreamLanes};

@@ -1,7 +1,7 @@
 //! Seeded random streams and draws with bounded work.
 //!
 //! Every particle of every frame draws from a [`Stream`] of its own, derived from (seed, frame,
-//! index), so a result depends neither on the order nor on the number of threads in which particles
+//! index). So a result depends neither on the order nor on the number of threads in which particles
 //! are handled.
 //!
 //! ```

@@ -2,8 +2,8 @@
 //! logarithm, root or branch.
 //!
 //! The size of a draw is the quantile of a tail probability x / 2^32 with x in [0.5, 2^31]. The
-//! upper bits of the floating-point number x choose one of four parts of one of 32 octaves, the
-//! others are the argument of that part's cubic. The table is computed at compile time from the
+//! upper bits of the floating-point number x choose one of four parts of one of 32 octaves. The
+//! other bits are the argument of that part's cubic. The table is computed at compile time from the
 //! rational approximation of [`super::normal`], 2 KiB.
 
 use super::normal::{NEAR_MIDDLE, quantile_in_tail, quantile_near_middle};

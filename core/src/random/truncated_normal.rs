@@ -1,7 +1,7 @@
 //! Draws from a standard normal distribution cut to an interval.
 //!
-//! One uniform number is turned into a draw by the inverse of the distribution function, so the
-//! work is bounded however far out the interval lies; beyond [`FAR_TAIL`] the inverse is taken in
+//! One uniform number is turned into a draw by the inverse of the distribution function. So the
+//! work is bounded however far out the interval lies. Beyond [`FAR_TAIL`] the inverse is taken in
 //! log space.
 //!
 //! ```
@@ -66,7 +66,7 @@ fn upper_part(low: f32, high: f32, u: f32) -> f32 {
     // ln of the tail probability relative to that at `low`: the tail falls from 1 to exp(-drop).
     let drop = if high.is_finite() { log_upper_tail(low) - log_upper_tail(high) } else { f32::INFINITY };
     let log_tail = ln(1.0 - u * (1.0 - exp(-min(drop, 80.0))));
-    // tail(x) / tail(low) is about exp((low^2 - x^2) / 2) low / x; two steps of the fixed point are
+    // tail(x) / tail(low) is about exp((low^2 - x^2) / 2) low / x. Two steps of the fixed point are
     // enough out here.
     let mut x = sqrt(low * low - 2.0 * log_tail);
     for _ in 0..2 {

@@ -10,7 +10,7 @@
 //! 3. *axial rotation* of the upper arm (positive: inwards),
 //!
 //! and the elbow by *flexion*. The singular directions of this order (deviation +-90 degrees) point
-//! inwards to the front and outwards to the back, where an arm cannot go: the limits exclude them.
+//! inwards to the front and outwards to the back, where an arm cannot go. The limits exclude them.
 //!
 //! ```
 //! use sinew_core::kinematics::forward::posture;

@@ -2,9 +2,9 @@
 //! (cyclic paper, section 2.1).
 //!
 //! Axes are the image's: x right, y down, in pixels. The angle of a joint is atan2(dy, dx) of the
-//! vector parent -> joint, relative to the image and not to the parent's own direction. The root
-//! has no angle: angle `i` belongs to joint `i + 1`. The tree is data, so figures with other joints
-//! work alike; [`HUMAN`] is the one of the paper.
+//! vector parent -> joint. It is relative to the image and not to the parent's own direction. The
+//! root has no angle: angle `i` belongs to joint `i + 1`. The tree is data, so figures with other
+//! joints work alike; [`HUMAN`] is the one of the paper.
 //!
 //! ```
 //! use sinew_core::skeleton::stick_figure::{HUMAN, HUMAN_ANGLES, HUMAN_JOINTS};

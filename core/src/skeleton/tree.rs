@@ -26,11 +26,11 @@ pub enum Joint {
     Fixed,
     /// One angle about a unit axis, given in the bone's own rest axes.
     Hinge(Vec3),
-    /// Three angles about unit axes, applied as R(axis 0) R(axis 1) R(axis 2); singular where the
-    /// middle angle reaches +-pi/2, which the limits should exclude.
+    /// Three angles about unit axes, applied as R(axis 0) R(axis 1) R(axis 2). They are singular
+    /// where the middle angle reaches +-pi/2, which the limits should exclude.
     Ball([Vec3; 3]),
-    /// Goes anywhere, at the root only: three shifts along the first three axes, metres, that stand
-    /// before the angles, and three angles about the last three, as those of a ball.
+    /// Goes anywhere, at the root only. Three shifts along the first three axes, metres, stand
+    /// before the angles. The three angles are about the last three axes, as those of a ball.
     Free([Vec3; 6]),
 }
 

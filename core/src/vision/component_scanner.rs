@@ -26,7 +26,7 @@ enum Slot {
 /// dropped.
 ///
 /// Invariant between lines: every run of the last line points at a root, or at nothing when it was
-/// dropped, and every root is pointed at.
+/// dropped. Every root is pointed at.
 ///
 /// ```
 /// use sinew_core::vision::component_scanner::ComponentScanner;

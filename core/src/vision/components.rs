@@ -104,7 +104,7 @@ impl Component {
     /// Lines must not go backwards.
     pub(super) fn add_run(&mut self, start: u16, end: u16, row: u16, pairs: [u32; 3]) {
         // No product of two factors exceeds 32 bits: sides are at most 8192 pixels. A run of n
-        // pixels with the middle m = s / 2 has the sums n m and n m^2 + n (n^2 - 1) / 12. Twice the
+        // pixels has the middle m = s / 2. Its sums are n m and n m^2 + n (n^2 - 1) / 12. Twice the
         // first and twelve times the second are whole.
         let (first, next, v) = (u32::from(start), u32::from(end), u32::from(row));
         let (area, s) = (next - first, first + next - 1);
@@ -224,8 +224,8 @@ pub(super) fn overlaps(above: (u16, u16), below: (u16, u16)) -> [u32; 3] {
 ///
 /// Rows cross the outline twice a run. Columns and diagonals cross it twice for each pixel without
 /// a set neighbour in that direction. These counts follow from the area and the `pairs` of set
-/// pixels (u, v) and (u + d, v + 1), where d is -1, 0 or 1. With diagonals 1/sqrt 2 apart,
-/// `P = pi/8 (rows + columns + (both diagonals) / sqrt 2)`.
+/// pixels. A pair is (u, v) and (u + d, v + 1), where d is -1, 0 or 1. With diagonals 1/sqrt 2
+/// apart, `P = pi/8 (rows + columns + (both diagonals) / sqrt 2)`.
 ///
 /// The mean over directions is unbiased. A straight edge reads from 5.2 % too short (upright and at
 /// 45 degrees) to 2.7 % too long (between), a disc right (asserted by tests).

@@ -258,8 +258,8 @@ pub struct EdgeDetector {
 pub const DEFAULT_MIN_GRADIENT: f32 = 8.0;
 /// Default of the smallest smoothed change, grey levels.
 ///
-/// Chosen: four to five standard deviations of the smoothed difference of two frames, which is 2.7
-/// levels for a webcam's noise of 5 levels (tested).
+/// Chosen: four to five standard deviations of the smoothed difference of two frames. That standard
+/// deviation is 2.7 levels for a webcam's noise of 5 levels (tested).
 pub const DEFAULT_MIN_MOTION: f32 = 12.0;
 
 impl Default for EdgeDetector {

@@ -126,7 +126,8 @@ impl Blob {
 /// Measures blobs; holds the working memory for one blob (about 38 KiB).
 ///
 /// Large components are measured on a grid of at most 80 x 80 cells, so the work for a blob is
-/// bounded: four distance transforms and 28 ellipses on at most 128 x 128 cells, and its runs.
+/// bounded. It is four distance transforms and 28 ellipses on at most 128 x 128 cells, and its
+/// runs.
 ///
 /// ```
 /// use sinew_core::vision::component_scanner::ComponentScanner;

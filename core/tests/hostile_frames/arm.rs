@@ -71,7 +71,7 @@ impl Subject for OneArm {
         };
         let estimate = self.trackers[0].step(&self.model, &frame);
         if corners.only_refused() {
-            // The twin sees the frame without what is refused: this tracker may lose a hand that is
+            // The twin sees the frame without what is refused. This tracker may lose a hand that is
             // missing for some frames, whatever it was given instead.
             let kept: Vec<_> = candidates.iter().filter(|candidate| **candidate == hand_blob()).copied().collect();
             let image = frame.image.map(|image| ArmImage { candidates: &kept, ..image });

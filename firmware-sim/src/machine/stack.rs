@@ -1,5 +1,5 @@
-//! The stack's limit, and how much of the stack was in use: it is painted before `main`, and paint
-//! that is left was never written over.
+//! The stack's limit, and how much of the stack was in use. The stack is painted before `main`, and
+//! paint that is left was never written over.
 
 #![expect(unsafe_code, reason = "the stack is memory that no variable names")]
 

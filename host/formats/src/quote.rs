@@ -3,8 +3,8 @@
 use crate::limits::MAX_QUOTED_CHARS;
 use std::borrow::Cow;
 
-/// Longest part of a message outside of quotes, characters: longer than any sentence here, so what
-/// exceeds it is text of a file that has a backquote.
+/// Longest part of a message outside of quotes, characters. It is longer than any sentence here, so
+/// what exceeds it is text of a file that has a backquote.
 const MAX_PLAIN_CHARS: usize = 500;
 /// Longest message, characters.
 const MAX_MESSAGE_CHARS: usize = 2000;

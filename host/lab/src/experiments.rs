@@ -1,5 +1,6 @@
-//! The comparisons of `evaluate arm`: variants against particle counts, each option's own effect,
-//! the trackers as the arm paper prints them, and recovery after the hand was away.
+//! The comparisons of `evaluate arm`. They are variants against particle counts, and each option's
+//! own effect. Others are the trackers as the arm paper prints them, and recovery after the hand
+//! was away.
 
 use super::clips::Clip;
 use super::observed::{ObservedScene, observe_all};

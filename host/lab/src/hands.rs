@@ -209,8 +209,8 @@ fn summarise(answers: &[Answered], size: (u32, u32)) -> HandScores {
     }
 }
 
-/// Share of all frames in which both hands are in one box while two are there, or each is in the
-/// box that the other had.
+/// Share of all frames in which the hands are confused. Both are in one box while two are there, or
+/// each is in the box that the other had.
 fn confused_share(answers: &[Answered]) -> f64 {
     let mut confused = 0_u32;
     // Whether the left hand was in the box further to the right, when that was last clear.

@@ -59,7 +59,7 @@ fn one(pair: &Pair, model: &SkinModel, morphology: bool) -> Result<Result<Confus
 }
 
 /// Judges each pair by a model that was trained on the images of the `count` - 1 folds in which it
-/// is not, once for each of `morphologies`. A cell is a fold.
+/// is not. It does so once for each of `morphologies`. A cell is a fold.
 ///
 /// # Errors
 /// An image that cannot be read, fewer images than folds, images without skin; as [`judge`].

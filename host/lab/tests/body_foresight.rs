@@ -1,6 +1,6 @@
 //! What no tracker has: the past without noise. How far goals in space are ahead of angles then is
-//! the most that a better memory could give them (docs/body_tracker.md, *what goals could gain at
-//! most*). Runs in release where `../shared/data` is at hand, and says so where not.
+//! the most that a better memory could give them. See docs/body_tracker.md, *what goals could gain
+//! at most*. Runs in release where `../shared/data` is at hand, and says so where not.
 
 mod shared_data;
 

@@ -37,8 +37,8 @@ fn cadence(poses: &[Pose]) -> Option<f64> {
     Summary::of(&finish(&table, &model, track(&table, &model, &options).unwrap(), &options).unwrap()).cadence_per_min
 }
 
-/// Cycles per minute after which the window is most like itself, by no model: the lag of 0.7 to
-/// 1.6 s with the least mean difference of directions.
+/// Cycles per minute after which the window is most like itself, by no model. They follow from the
+/// lag of 0.7 to 1.6 s with the least mean difference of directions.
 fn most_alike(poses: &[Pose]) -> f64 {
     let directions: Vec<Vec<f64>> = poses
         .iter()

@@ -1,6 +1,7 @@
-//! Arms that circle steadily: their cadence, and how many circles they did. People drawn from the
-//! shipped model at seven tempos, and the five recorded circles that it knows, each closed and
-//! repeated; these by models of one recording's circles alone, too.
+//! Arms that circle steadily: their cadence, and how many circles they did. The people are drawn
+//! from the shipped model at seven tempos. There are also the five recorded circles that this model
+//! knows, each closed and repeated. These are tracked by models of one recording's circles alone,
+//! too.
 
 #[path = "shared_data/circles.rs"]
 mod circles;

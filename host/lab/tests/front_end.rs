@@ -1,5 +1,5 @@
 //! The line front end of the core against the host's chain, on rendered scenes and on webcam
-//! frames: the same blobs, similar edges, and a likelihood that ranks them alike.
+//! frames. Both have the same blobs, similar edges, and a likelihood that ranks them alike.
 //!
 //! `cargo test --release -p sinew --test front_end -- --nocapture` prints what `docs/front_end.md`
 //! states.

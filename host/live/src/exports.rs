@@ -66,9 +66,9 @@ pub extern "C" fn picture() -> *mut u8 {
     FRAME.lock().rgba.as_mut_ptr()
 }
 
-/// Begins a session, or begins it anew for another choice: size of all pictures, side of the arm (0
-/// is right), particles, seed, distance of the shoulder in metres and its pixel. Distance and pixel
-/// are NaN where they are not known. The skin model stays.
+/// Begins a session, or begins it anew for another choice. A choice is the size of all pictures,
+/// side of the arm (0 is right), particles, seed, and the shoulder's distance (metres) and pixel.
+/// Distance and pixel are NaN where they are not known. The skin model stays.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn begin(
     width: u32,

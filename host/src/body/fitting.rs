@@ -52,9 +52,9 @@ impl FittedPose {
 
 /// The pose whose joints are nearest to `joints` (least sum of squares), inside the limits.
 ///
-/// Climbs from `start`, and where there is none, or that ends far away, also from a person who
-/// stands at the recorded pelvis and looks to four sides, or lies. What the joints do not show (an
-/// outstretched arm's turn) stays near the start.
+/// Climbs from `start`. Where there is none, or that ends far away, it also climbs from a person at
+/// the recorded pelvis. That person stands and looks to four sides, or lies. What the joints do not
+/// show (an outstretched arm's turn) stays near the start.
 #[must_use]
 pub fn fit_pose(skeleton: &BodySkeleton, joints: &BodyJoints, start: Option<&[f32; BODY_ANGLES]>) -> FittedPose {
     let goals: Vec<Goal> = joints

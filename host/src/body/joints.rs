@@ -1,5 +1,5 @@
-//! The 17 ends of a body's bones in recordings of many makers: the stick figure's 14 joints, the
-//! middle of the head, and the balls of the feet.
+//! The 17 ends of a body's bones in recordings of many makers. They are the stick figure's 14
+//! joints, the middle of the head, and the balls of the feet.
 //!
 //! The pelvis is the middle of the hips. What a recording lacks of head and toes is put where human
 //! proportions have it.

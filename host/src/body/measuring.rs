@@ -34,9 +34,9 @@ impl Frame {
 ///
 /// Shoulders are measured in the trunk's frame: up from the middle of the hips to the neck, left
 /// from the right to the left shoulder. Hips are measured along the line through them, since their
-/// middle is the pelvis. A foot has its length, the share of it that points outwards along the axis
-/// of a bent knee, and its median slope against the shank. The slope becomes the zero of the ankle.
-/// The girth is that of the stature that trunk and legs are a part of.
+/// middle is the pelvis. A foot has its length, and the share of it that points outwards along the
+/// axis of a bent knee. It also has its median slope against the shank. The slope becomes the zero
+/// of the ankle. The girth is that of the stature that trunk and legs are a part of.
 ///
 /// # Errors
 /// A segment that no frame shows.

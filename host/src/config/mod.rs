@@ -40,8 +40,8 @@ impl Config {
     /// Reads a TOML file.
     ///
     /// # Errors
-    /// Names the file and what is wrong: not readable, not TOML, an unknown key (with the nearest
-    /// right one), a value of the wrong type or out of range.
+    /// Names the file and what is wrong: it is not readable, or not TOML. A key may be unknown
+    /// (with the nearest right one), or a value may have the wrong type or be out of range.
     pub fn load(path: &Path) -> Result<Self> {
         let text = read_text(path).with_context(|| {
             format!("configuration `{}` cannot be read; `sinew track arm --print-config` writes one", path.display())

@@ -189,8 +189,8 @@ mod tests {
         assert_eq!(points.sides_swapped().frames[0].joints[8], None);
     }
 
-    /// A segment 3 ahead, 4 down and 5 to the left leans out of the plane by 45 degrees; seen in a
-    /// mirror, to the other side.
+    /// A segment 3 ahead, 4 down and 5 to the left leans out of the plane by 45 degrees. Seen in a
+    /// mirror, it leans to the other side.
     #[test]
     fn a_segment_leans_out_of_the_plane_to_the_left() {
         let seen = |neck: Point| {

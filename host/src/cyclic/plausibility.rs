@@ -7,12 +7,12 @@ use super::model_file;
 use super::tracking::Summary;
 use super::tracking::summary::MIN_CYCLES;
 
-/// Cadences that people have of one motion, over the model's mean: from a stroll of the elderly to
-/// a sprint, 40 to 220 strides a minute where the models have 50 to 90.
+/// Cadences that people have of one motion, over the model's mean. They reach from a stroll of the
+/// elderly to a sprint, 40 to 220 strides a minute where the models have 50 to 90.
 const CADENCE_RANGE: [f64; 2] = [0.4, 2.5];
 
-/// Largest range of an angle in degrees: no hinge of a person goes farther, and of no ball joint in
-/// a side view except about the shoulder.
+/// Largest range of an angle in degrees. No hinge of a person goes farther, and in a side view no
+/// ball joint except about the shoulder.
 const MAX_RANGE_DEG: f64 = 170.0;
 
 /// Angles whose range has a limit: all but the shoulders.

@@ -71,9 +71,9 @@ const ANKLES: [usize; 2] = [10, 13];
 
 impl Plane {
     /// Chooses the plane of `view`. Up is the axis that the necks lie along from the ankles (or
-    /// hips), unless `up` says it. Forward is the mean direction of travel; of a person who
-    /// gets less far than the trunk is long, it is square to the line through the hips. A recording
-    /// in one plane is seen along the plane's normal: forward is the way, or where the knees point.
+    /// hips), unless `up` says it. Forward is the mean direction of travel. Of a person who gets
+    /// less far than the trunk is long, it is square to the line through the hips. A recording in
+    /// one plane is seen along the plane's normal: forward is the way, or where the knees point.
     ///
     /// # Errors
     /// Neck and hips are in no frame together, or neither travel nor hips give a direction.

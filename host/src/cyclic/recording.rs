@@ -289,8 +289,8 @@ fn keypoint_notes(track: &Track, frames: usize) -> Vec<String> {
     notes
 }
 
-/// The angles of everybody who is seen in ten frames or more, by the number of `--person`; of a
-/// motion in space, of its one person.
+/// The angles of everybody who is seen in ten frames or more, by the number of `--person`. Of a
+/// motion in space they are those of its one person.
 ///
 /// # Errors
 /// As [`angles`].

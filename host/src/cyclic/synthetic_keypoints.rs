@@ -74,8 +74,8 @@ pub struct FilmedPerson {
 }
 
 impl FilmedPerson {
-    /// Films `person`. The hips go as fast as the ankle that is lower goes back, on the average, so
-    /// that feet on the floor stay about where they are; that ankle is on the floor.
+    /// Films `person`. The lower ankle is on the floor. The hips go as fast as that ankle goes
+    /// back, on the average, so that feet on the floor stay about where they are.
     #[must_use]
     pub fn film(person: &SyntheticPerson<'_>, filming: &Filming) -> Self {
         let lengths = standard_lengths_m(HEIGHT_M);

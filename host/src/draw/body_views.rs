@@ -52,9 +52,9 @@ pub fn drawn_bones(posture: &Posture<BODY_BONES, BODY_ANGLES>, radii_m: &[f32; B
     BODY_JOINT_NAMES.iter().enumerate().map(bone).collect()
 }
 
-/// Draws both views beside each other under `title`: as the camera looks (x, y), and from the
-/// picture's left with the camera on the left hand (z, y). No perspective; 160 pixels are a metre,
-/// and the bones are in the middle.
+/// Draws both views beside each other under `title`. One is as the camera looks (x, y), the other
+/// from the picture's left with the camera on the left hand (z, y). No perspective; 160 pixels are
+/// a metre, and the bones are in the middle.
 #[must_use]
 pub fn body_views(title: &str, points_m: &[Vec3], bones: &[DrawnBone]) -> RgbImage {
     let letters = Lettering::new(13.0);

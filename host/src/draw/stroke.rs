@@ -1,6 +1,6 @@
 //! Smooth thick lines and discs, clipped before they are drawn.
 //!
-//! A line is the set of points within half its width of a segment; a pixel's share of the colour
+//! A line is the set of points within half its width of a segment. A pixel's share of the colour
 //! falls off linearly over one pixel across the rim. `imageproc` draws smooth or thick lines, but
 //! not both, and no dashes.
 

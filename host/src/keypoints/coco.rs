@@ -23,9 +23,9 @@ pub struct JsonFrames {
     pub image_size_px: Option<[f64; 2]>,
 }
 
-/// Reads a JSON file: a list of results or of frames, an object with `annotations` (and `images`)
-/// or with a list of frames ([`frame_lists`]), one OpenPose frame, or a list of lists of numbers
-/// ([`point_lists`]).
+/// Reads a JSON file: a list of results or of frames, one OpenPose frame, or a list of lists of
+/// numbers ([`point_lists`]). It may also be an object with `annotations` (and `images`) or with a
+/// list of frames ([`frame_lists`]).
 ///
 /// # Errors
 /// Names the file, the entry and the rule that it broke.

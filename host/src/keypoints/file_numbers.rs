@@ -12,8 +12,8 @@ pub struct Numbered {
 }
 
 /// Finds the frame of each name. Of several numbers in the names it is one that rises from name to
-/// name in natural order, else one that is different in all of them; of several such numbers the
-/// one with the smallest span, which a time or a date exceeds. Names that have none are counted.
+/// name in natural order, else one that differs in all names. Of several such numbers it is the one
+/// with the smallest span, which a time or a date exceeds. Names that have none are counted.
 #[must_use]
 pub fn frames(names: &[String]) -> Numbered {
     let mut order: Vec<usize> = (0..names.len()).collect();

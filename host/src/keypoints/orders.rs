@@ -89,8 +89,8 @@ const MAX_LOOKED_AT: usize = 300;
 /// The second best order is as good as the best if it is worse by less than this. Chosen: wrong
 /// orders of the walks in the tests are worse by 0.5 and more.
 const CLEARLY_WORSE: f64 = 0.1;
-/// Share of a figure's mean segment that is added to lengths before they are compared, so that
-/// points at one place weigh no more than others. Chosen.
+/// Share of a figure's mean segment that is added to lengths before they are compared. So points at
+/// one place weigh no more than others. Chosen.
 const SHORTEST_SHARE: f64 = 0.1;
 
 /// The part of a short name: `l` or `r` before `s`houlder, `e`lbow, `w`rist, `h`ip, `k`nee,
@@ -179,7 +179,7 @@ pub fn by_key(key: &str) -> Option<(&'static str, Vec<Part>)> {
 }
 
 /// Names the points. Of several orders with as many points it takes the one whose figure has short
-/// segments, and as long ones on the left as on the right: a wrong one joins other points.
+/// segments, as long on the left as on the right. A wrong order joins other points.
 #[must_use]
 pub fn name_points(frames: &[PointFrame]) -> Detections {
     let mut samples: BTreeMap<usize, Vec<&Points>> = BTreeMap::new();

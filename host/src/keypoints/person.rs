@@ -71,8 +71,8 @@ struct Open<'a> {
     last: (usize, &'a Vec<Keypoint>),
 }
 
-/// Everybody's track, the longest first. Where no frame has more than one person it is one track:
-/// nobody else can be confused with them, and a box of few visible points says nothing about a
+/// Everybody's track, the longest first. Where no frame has more than one person it is one track,
+/// since there is no other person to confuse. A box of few visible points says nothing about a
 /// person's size.
 #[must_use]
 pub fn tracks(frames: &[DetectedFrame]) -> Vec<PersonTrack> {

@@ -23,10 +23,10 @@ fn number(value: &Value) -> Option<f64> {
     if value.is_null() { Some(f64::NAN) } else { value.as_f64() }
 }
 
-/// x, y and confidence of each point, flat. `value` is a flat list of x, y, confidence; a list of
-/// points (x, y; x, y, confidence; or x, y, z, visibility); a list of objects with `x` and `y`; or
-/// an object of the lists `x`, `y` and a confidence. `scores` are confidences that stand apart.
-/// `None` if it is none of these, or if there are not as many scores as points.
+/// x, y and confidence of each point, flat. `value` is a flat list of x, y, confidence, or a list
+/// of points (x, y; x, y, confidence; or x, y, z, visibility). It may also be a list of objects
+/// with `x` and `y`, or an object of the lists `x`, `y` and a confidence. `scores` are confidences
+/// that stand apart. `None` if it is none of these, or if there are not as many scores as points.
 #[must_use]
 pub fn triples(value: &Value, scores: Option<&Value>) -> Option<Vec<f64>> {
     if let Some(lists) = value.as_object() {

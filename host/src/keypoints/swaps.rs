@@ -3,7 +3,7 @@
 //!
 //! For the legs and for the arms, each frame is either as the detector says or exchanged. The path
 //! of least cost (Viterbi 1967) weighs how far points are from where the two frames before let them
-//! expect to be, against a price for each exchanged frame and for each change.
+//! expect to be. Against that it sets a price for each exchanged frame and for each change.
 
 use super::layout::{Keypoint, Part, Side};
 use crate::cyclic::image_joints::Point;
@@ -37,8 +37,8 @@ const EXCHANGED_COST: f64 = 0.5;
 /// detector's pixel noise is larger.
 const MIN_STD_TRUNKS: f64 = 0.03;
 /// Share of the misfits from which the standard deviation is taken, and the quantile of chi-square
-/// with four degrees of freedom (four coordinates) at that share. Feet accelerate much in a small
-/// part of a cycle, which the median would not see.
+/// at that share. Chi-square has four degrees of freedom (four coordinates). Feet accelerate much
+/// in a small part of a cycle, which the median would not see.
 const STD_QUANTILE: (f64, f64) = (0.75, 5.39);
 
 /// Frames in which limbs were exchanged.
@@ -111,7 +111,7 @@ fn seen(frames: &[u64], people: &[Option<Vec<Keypoint>>], pairs: &[Pair]) -> Vec
 }
 
 /// How far the points of a pair are from where `before` and `first` let them expect to be, squared
-/// and summed, if each of the three frames is exchanged or not.
+/// and summed. Each of the three frames is `exchanged` or not.
 fn misfit_px2(frames: [&Seen; 3], pair: usize, exchanged: [bool; 3]) -> Option<f64> {
     let [first, before, now] = frames;
     let (step, last) = (now.frame - before.frame, before.frame - first.frame);
@@ -151,8 +151,8 @@ fn deviations_px(seen: &[Seen], pairs: usize, trunk_px: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Half of a sum of squares where it is small; grows like its root where it is large, so that a
-/// wrong point is no proof (pseudo-Huber loss, Charbonnier et al. 1997).
+/// Half of a sum of squares where it is small. It grows like its root where it is large, so that a
+/// wrong point is no proof. Source: pseudo-Huber loss, Charbonnier et al. 1997.
 fn robust(squares: f64) -> f64 {
     2.0 * ((1.0 + 0.5 * squares).sqrt() - 1.0)
 }

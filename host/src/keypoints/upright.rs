@@ -11,7 +11,7 @@ const MIN_SHARE: f64 = 0.9;
 const ANKLES: [usize; 2] = [10, 13];
 
 /// Turns y over, with a note, where the neck lies below the hips and these below the ankles in
-/// nearly all frames. y is then counted down from the picture's height, or from the highest point.
+/// nearly all frames. Then y is counted down from the picture's height, or from the highest point.
 #[must_use]
 pub fn upright(mut detections: Detections) -> Detections {
     let people = detections.frames.iter().flat_map(|frame| &frame.people);

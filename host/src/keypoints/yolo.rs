@@ -1,5 +1,5 @@
-//! A folder of text files as ultralytics YOLO writes them: one file a frame, one line a person with
-//! class, box (centre and size) and points, all as shares of the picture.
+//! A folder of text files as ultralytics YOLO writes them: one file a frame, one line a person. A
+//! line has class, box (centre and size) and points, all as shares of the picture.
 
 use super::error::{KeypointError, read_lines};
 use super::file_numbers;

@@ -20,8 +20,8 @@ pub struct OutputDir {
 }
 
 impl OutputDir {
-    /// Creates `path` with its parents if needed, checks that files can be made in it, and removes
-    /// what a killed program left of its temporary files.
+    /// Creates `path` with its parents if needed, and checks that files can be made in it. Also
+    /// removes what a killed program left of its temporary files.
     ///
     /// # Errors
     /// Names the folder if it cannot be created, is a file, or refuses a file.

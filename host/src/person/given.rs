@@ -62,8 +62,9 @@ pub struct HandTable {
 }
 
 impl HandTable {
-    /// Reads a table with the columns frame (from 0), u_px, v_px (the middle of the hand), size_px
-    /// (its diameter), probability (that it is a hand, 0 to 1) and side (left, right or empty).
+    /// Reads a table with the columns frame, u_px, v_px, size_px, probability and side. Frames
+    /// count from 0. The middle of the hand is u_px, v_px, and its diameter is size_px. The
+    /// probability is that it is a hand, 0 to 1, and the side is left, right or empty.
     ///
     /// # Errors
     /// Names the file, the row and the rule that it broke.

@@ -12,8 +12,8 @@ use sinew_record::{CyclicInput, CyclicSetup, model_checksum};
 /// `model`. The tracker begins with the first of them.
 ///
 /// # Errors
-/// Another filter or start than the default, smoothing, a model with two angles a joint, frames
-/// beyond 32 bits, and what [`crate::cyclic::tracking::track`] refuses.
+/// Another filter or start than the default, smoothing, a model with two angles a joint, or frames
+/// beyond 32 bits. Also what [`crate::cyclic::tracking::track`] refuses.
 pub fn cyclic_stream(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions) -> Result<Vec<u8>> {
     ensure!(options.filter == FilterName::Coupled, "firmware plays runs of `--filter coupled` only");
     ensure!(options.start == StartName::Standard, "firmware plays runs of `--init standard` only");

@@ -1,5 +1,5 @@
-//! Going on with a run that did not reach its end: what it leaves beside its results, and what it
-//! is compared with when it is taken up.
+//! Going on with a run that did not reach its end. This module holds what the run leaves
+//! beside its results, and what it is compared with when it is taken up.
 //!
 //! [`Begun`] says how a run was begun, [`Left`] adds how far it got and in which state it was,
 //! [`ResumeFile`] is where that is kept. A state is text ([`to_text`]) by way of the core's saved

@@ -56,7 +56,7 @@ fn sections(cutoff: f64, order: usize) -> Vec<Section> {
 /// `cutoff` is a share of the rate in (0, 0.5); `order` is even.
 ///
 /// The ends are continued by three times the number of coefficients, as `filtfilt` of SciPy and
-/// MATLAB does, or as far as a short series goes.
+/// MATLAB does. A short series is continued as far as it goes.
 #[must_use]
 pub fn smoothed(values: &[f64], cutoff: f64, order: usize) -> Vec<f64> {
     let one_way = order / 2;

@@ -2,9 +2,8 @@
 //!
 //! The spline minimises the sum of (y - f)^2 plus lambda times the integral of f''^2 (Reinsch
 //! 1967). Its second derivatives gamma solve (R + lambda Q'Q) gamma = Q'y, and f = y - lambda Q
-//! gamma. The score is n RSS / tr(I - A)^2 (Craven and Wahba 1979), its trace by the five middle
-//! bands of the inverse (Hutchinson and de Hoog 1985), so that all is linear in the number of
-//! samples.
+//! gamma. The score is n RSS / tr(I - A)^2 (Craven and Wahba 1979). Its trace is by the five middle
+//! bands of the inverse (Hutchinson and de Hoog 1985). So all is linear in the number of samples.
 
 /// Decimal logarithms of lambda that are tried, samples cubed. Chosen: at the lower end nothing is
 /// smoothed; the upper one leaves half of a swing of 1100 samples.

@@ -17,7 +17,7 @@ const MIN_VALUES: usize = 5;
 ///
 /// The scale is the window's median absolute deviation, and at least that of the whole series about
 /// its running medians. Seven values alone make a scale so small by chance that 4.4 % of plain
-/// normal noise would be rejected; with the whole series it is 0.8 %.
+/// normal noise would be rejected. With the whole series it is 0.8 %.
 pub fn reject(series: &mut [Option<f64>]) -> Vec<bool> {
     let judged: Vec<Option<[f64; 2]>> = (0..series.len()).map(|sample| deviation_and_scale(series, sample)).collect();
     let mut deviations: Vec<f64> = judged.iter().flatten().map(|[deviation, _]| *deviation).collect();

@@ -1,5 +1,5 @@
-//! Locally weighted regression: at each sample the value of a parabola that is fitted to its
-//! neighbours, near ones with more weight (Cleveland and Devlin 1988).
+//! Locally weighted regression (Cleveland and Devlin 1988). At each sample it is the value of a
+//! parabola that is fitted to its neighbours, near ones with more weight.
 
 use nalgebra::{Matrix3, Vector3};
 

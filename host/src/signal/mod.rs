@@ -1,8 +1,9 @@
 //! Filters of evenly sampled series with gaps: outlier rejection, a gap limit, and smoothing
 //! without lag.
 //!
-//! Own code: the published crates for Butterworth filters and smoothing splines are parts of large
-//! numerical suites, bring a second version of nalgebra, or are in their first release.
+//! Own code, because of the published crates for Butterworth filters and smoothing splines. They
+//! are parts of large numerical suites, bring a second version of nalgebra, or are in their first
+//! release.
 
 pub mod butterworth;
 pub mod gaps;

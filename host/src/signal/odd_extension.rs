@@ -1,7 +1,7 @@
 //! What a filter sees beyond the ends of a series.
 
-/// `values` with up to `length` samples more at each end, turned about the end value by half a
-/// turn, so that level and slope go on. Also the number of samples that were put before.
+/// `values` with up to `length` samples more at each end. These are turned about the end value by
+/// half a turn, so that level and slope go on. Also the number of samples that were put before.
 pub fn extended(values: &[f64], length: usize) -> (Vec<f64>, usize) {
     let length = length.min(values.len().saturating_sub(1));
     let last = values.len().saturating_sub(1);

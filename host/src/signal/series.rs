@@ -31,7 +31,7 @@ pub fn filtered(series: &[Option<f64>], rate_hz: f64, options: &FilterOptions) -
     Ok(result)
 }
 
-/// As [`filtered`] for angles in radians: whole turns are added first, so that no step from pi to
+/// As [`filtered`] for angles in radians. Whole turns are added first, so that no step from pi to
 /// minus pi is smoothed, and stay in the result.
 ///
 /// # Errors

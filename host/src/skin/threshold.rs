@@ -93,8 +93,8 @@ impl Curve {
     /// Chooses a level on the plateau around the best one, where F1 is nearly the best.
     ///
     /// Whole images show all that a camera sees, so the plateau's middle is taken: the peak itself
-    /// is noise. A pixel list says little of the background that skin is separated from, so its
-    /// F1 flatters loose thresholds: there the plateau's tightest level is taken.
+    /// is noise. A pixel list says little of the background that skin is separated from, so its F1
+    /// flatters loose thresholds. There the plateau's tightest level is taken.
     #[must_use]
     pub fn choose(&self) -> Choice {
         let level_count = self.groups.first().map_or(0, Vec::len);

@@ -116,7 +116,7 @@ impl TrackRun {
     }
 
     /// Shows the front end the last finished frame, so that the next one has the edges that it
-    /// would have had, and puts it into its state.
+    /// would have had. Then puts the front end into its state.
     fn look_again(&mut self, left: &Left<ArmState>) -> Result<()> {
         let mut image = None;
         if let Some(last) = left.finished.checked_sub(1) {

@@ -111,7 +111,7 @@ impl FrameSource {
     ///
     /// # Errors
     /// A video that is broken, or a file that the operating system refuses, once all frames before
-    /// it were given; a frame of a video that was passed already.
+    /// it were given. Also a frame of a video that was passed already.
     pub fn load(&mut self, begin: usize, most: usize) -> Result<Vec<Result<RgbImage, SkippedImage>>> {
         match self {
             Self::Folder(folder) => {

@@ -1,10 +1,10 @@
 //! One angle's deviation from the mean cycle in the phase-coupled filter: five coefficients given
 //! (c, v).
 //!
-//! The five are a, p, q of `a + p cos 2 pi c + q sin 2 pi c`, the rest d and its slope per cycle.
-//! Their density given z = (c, v) is normal with mean `mean + regression (z - z_mean)` and
-//! covariance `covariance`: angles are independent of each other given z, so no covariance between
-//! angles is stored.
+//! Three of the five are a, p, q of `a + p cos 2 pi c + q sin 2 pi c`. The other two are the rest d
+//! and its slope per cycle. Their density given z = (c, v) is normal with mean
+//! `mean + regression (z - z_mean)` and covariance `covariance`. Angles are independent of each
+//! other given z, so no covariance between angles is stored.
 
 use crate::cyclic::saved_ranges::NUMBER;
 use crate::math::{abs, exp, max, sin_cos};
@@ -18,8 +18,8 @@ const REST: usize = 3;
 const SLOPE: usize = 4;
 
 /// Relative increase of each variance in every step. Derived: rounding changes entry (i, j) by at
-/// most 2^-23 of the root of both variances, and five times that on the diagonal of five rows keeps
-/// the matrix positive semi-definite.
+/// most 2^-23 of the root of both variances. Five times that on the diagonal of five rows keeps the
+/// matrix positive semi-definite.
 const ROUNDING: f32 = 5.0 / 8_388_608.0;
 
 /// Variance of the swing of an angle with an unusual offset, as a share of the squared offset.

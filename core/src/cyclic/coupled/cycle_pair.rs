@@ -6,8 +6,8 @@ use crate::saved_state::{SavedState, StateVisitor};
 
 /// Standard deviation of the temporal acceleration, cyclic (10), cycles per frame^2.
 ///
-/// Chosen between measurements: below it the filter follows changes of speed less well, and with
-/// 3e-4 the cadence of an elderly walker is 1.8 % off (`docs/cyclic_coupled.md`).
+/// Chosen between measurements: below it the filter follows changes of speed less well. With 3e-4
+/// the cadence of an elderly walker is 1.8 % off (`docs/cyclic_coupled.md`).
 const TEMPORAL_STD: f32 = 2.0e-4;
 
 /// Covariance of (c, v), in cycles and frames.
@@ -96,7 +96,8 @@ impl CyclePair {
     }
 
     /// Part of the sum of squared innovations that (c, v) explains, and ln det(1 + covariance times
-    /// information), by which the uncertainty of (c, v) widens their joint density.
+    /// information). By the latter the uncertainty of (c, v) widens the joint density of the
+    /// innovations.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
     pub(super) fn explained(&self, information: &Information) -> (f32, f32) {

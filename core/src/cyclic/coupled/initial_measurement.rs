@@ -1,7 +1,7 @@
 //! First measurement of the phase-coupled filter: its noise, and the angles with an unusual offset.
 //!
 //! The paper's first row is exact (cyclic paper, section 3.2). A user's first row is as noisy as
-//! the rest, and a person or a joint placement may have offsets beyond the spread of the training.
+//! the rest. A person or a joint placement may have offsets beyond the spread of the training.
 
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::error::ParameterError;

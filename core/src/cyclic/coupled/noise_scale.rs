@@ -1,9 +1,10 @@
 //! Scale of the measurement noise below the stated one, learned from the innovations.
 //!
-//! The scale r of the stated variances R follows by maximum likelihood, frame by frame (Mehra 1972,
-//! Approaches to Adaptive Filtering, IEEE Transactions on Automatic Control 17). The log-likelihood
-//! of an innovation nu of variance S = P + r R has the slope rho (nu^2 / S - 1) / 2 by ln r, with
-//! rho = r R / S. The slope is small where the prediction is uncertain. Each frame moves r up it.
+//! The scale r of the stated variances R follows by maximum likelihood, frame by frame. Source:
+//! Mehra 1972, Approaches to Adaptive Filtering, IEEE Transactions on Automatic Control 17. An
+//! innovation nu has variance S = P + r R. Its log-likelihood has the slope rho (nu^2 / S - 1) / 2
+//! by ln r, with rho = r R / S. The slope is small where the prediction is uncertain. Each frame
+//! moves r up it.
 //!
 //! Noise that is correlated from frame to frame looks like absent noise. So the scale applies to
 //! the gains, at least [`MIN_SCALE`], and never to the bands: see [`NoiseScale::band_scale`].

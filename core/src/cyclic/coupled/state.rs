@@ -2,7 +2,7 @@
 //! deviation is learned.
 //!
 //! An angle is the mean cycle at c plus its deviation ([`crate::cyclic::Deviation`]). Given (c, v)
-//! the angles are taken as independent of each other: each has a block of five numbers, all
+//! the angles are taken as independent of each other, and each has a block of five numbers. All
 //! together inform (c, v), and (c, v) informs each.
 
 use crate::angle::split_turns;

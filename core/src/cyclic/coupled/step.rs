@@ -14,7 +14,7 @@ pub const BAND_CALIBRATION: f32 = 0.9;
 impl<const N: usize> CoupledFilter<N> {
     /// One frame: predict over the measurement's step, then correct by the angles seen. On x86-64
     /// what every frame needs is inlined, so that a caller compiled for wider vectors than the
-    /// crate has them; elsewhere it would cost flash.
+    /// crate has them. Elsewhere it would cost flash.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn step(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
         self.predict(model, measurement.step_frames());

@@ -1,7 +1,7 @@
 //! Angles that wind unlike the mean cycle, and which of them inform the phase.
 //!
 //! A forearm that points at the camera winds in one cycle and swings in the next. Such an angle
-//! gains or loses a whole turn on the mean cycle, which no deviation of a person models, so the
+//! gains or loses a whole turn on the mean cycle. No deviation of a person models that, so the
 //! filter would estimate a wrong speed. An angle whose distance from the mean cycle passes half a
 //! turn does not inform the phase for [`EXCLUDED_CYCLES`] cycles.
 

@@ -63,9 +63,9 @@ impl PlaceOptions {
     /// For a person whose trunk is `trunk_px` long, a pixel `metres_per_px`, at `rate_hz` frames a
     /// second.
     ///
-    /// The noise of a keypoint follows from that of an angle, `sigma_rad`: an angle that is off by
-    /// sigma is that of a segment whose ends are off by sigma times its length / sqrt(2) each,
-    /// and the trunk gives the scale.
+    /// The noise of a keypoint follows from that of an angle, `sigma_rad`. An angle that is off by
+    /// sigma is that of a segment whose ends are off by sigma times its length / sqrt(2) each. The
+    /// trunk gives the scale.
     ///
     /// # Errors
     /// All four have to be positive.

@@ -5,8 +5,8 @@
 //! three N x N blocks, and no step needs a general matrix product.
 //!
 //! Rounding: an update subtracts w w' from the covariance. Row and column of the measured angle are
-//! set to r / s of their values instead, so that a precise measurement after a long gap subtracts
-//! no large numbers. The noise has full rank ([`DIAGONAL_EXCESS`]), so that no direction's variance
+//! set to r / s of their values instead. So a precise measurement after a long gap subtracts no
+//! large numbers. The noise has full rank ([`DIAGONAL_EXCESS`]), so that no direction's variance
 //! sinks below the resolution of `f32`. A test runs ten million frames with gaps and finds no
 //! eigenvalue below zero.
 
@@ -144,8 +144,8 @@ impl<const N: usize> KinematicCovariance<N> {
     }
 }
 
-/// Fills `matrix`, all zeros, with the symmetric matrix whose packed lower triangle is `scale`
-/// times the interpolation between `before` and `after`, its diagonal inflated by
+/// Fills `matrix`, all zeros, with a symmetric matrix. Its packed lower triangle is `scale` times
+/// the interpolation between `before` and `after`, with the diagonal inflated by
 /// [`DIAGONAL_EXCESS`]. Zeros stay beyond the triangles.
 #[inline(always)]
 fn interpolate<const N: usize>(matrix: &mut [[f32; N]; N], before: &[f32], after: &[f32], fraction: f32, scale: f32) {

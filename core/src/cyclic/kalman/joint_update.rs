@@ -1,9 +1,9 @@
 //! The measurement update by all angles seen in a frame, for independent noise.
 //!
-//! It equals the update by one angle after the other, P <- P - w w' / s, with the measured column w
-//! and the innovation's variance s. The sums have another order: first all columns w, which
-//! continue the factor L of the innovation's covariance L D L' to the rest of the state, then each
-//! entry of P once. No square root separates two angles. The measured angles come first, in
+//! It equals the update by one angle after the other, P <- P - w w' / s. There w is the measured
+//! column and s the innovation's variance. The sums have another order: first all columns w, then
+//! each entry of P once. The columns continue the factor L of the innovation's covariance L D L' to
+//! the rest of the state. No square root separates two angles. The measured angles come first, in
 //! `order`.
 //!
 //! A measurement of variance r scales row and column of its angle by r / s. The later columns are

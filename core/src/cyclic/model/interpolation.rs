@@ -108,8 +108,8 @@ impl MotionModel<'_> {
     /// at the model's mean speed; zero where the model has none.
     ///
     /// Follows from the deviation's parts: a swing moves by 2 pi of itself in a cycle, the rest by
-    /// its rate (the derivative of a Matern process of order 3/2, which is rough: people's
-    /// velocities differ by about six tenths of this).
+    /// its rate. That rate is the derivative of a Matern process of order 3/2, which is rough.
+    /// People's velocities differ by about six tenths of this.
     ///
     /// ```
     /// # #[cfg(feature = "walking-model")] {

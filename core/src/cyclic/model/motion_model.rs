@@ -3,7 +3,7 @@
 //!
 //! Immutable and borrowed: the numbers lie in flash (a `static` [`crate::cyclic::ModelTable`]) or
 //! in a host's vectors, the filters only read them. All derivatives are per frame of the reference
-//! cycle, in which the cycle takes l frames; a person who goes through the cycle k = v l times as
+//! cycle, in which the cycle takes l frames. A person who goes through the cycle k = v l times as
 //! fast has k times the velocity and k^2 times the acceleration.
 
 use crate::cyclic::model::deviation::Deviation;
@@ -155,9 +155,9 @@ impl<'a> MotionModel<'a> {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// From 1 to [`MAX_ANGLES`] angles, at least 4 positions, lengths that agree, finite numbers, a
-    /// positive duration and rate, covariances without a negative eigenvalue, spreads and rates
-    /// of the deviation positive.
+    /// A model has 1 to [`MAX_ANGLES`] angles and at least 4 positions. Its lengths agree and its
+    /// numbers are finite. Duration, rate, and spreads and rates of the deviation are positive. No
+    /// covariance has a negative eigenvalue.
     pub fn new(parts: ModelParts<'a>) -> Result<Self, ModelError> {
         let n = parts.angle_count;
         let fail = |parameter, rule| Err(ModelError::of_all(ParameterError::new(parameter, rule)));

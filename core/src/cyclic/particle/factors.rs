@@ -3,8 +3,8 @@
 //!
 //! The angles are cut into blocks of eight, the last one filled up with zeros. A position holds its
 //! mean acceleration, block after block, then its covariance's Cholesky factor in squares of eight
-//! rows and eight columns, those on and below the diagonal row after row of squares, each by
-//! columns.
+//! rows and eight columns. The squares are those on and below the diagonal, row after row of
+//! squares, each by columns.
 
 use crate::cyclic::MotionModel;
 use crate::cyclic::model::motion_model::MAX_ANGLES;

@@ -208,9 +208,9 @@ pub fn first_particle<const N: usize>(
     particle
 }
 
-/// Writes how far a uniform start is spread over the model's stored positions, as running sums:
-/// each has a weight by how well its mean pose, with the model's spread between people, agrees with
-/// the angles that the first frame shows.
+/// Writes how far a uniform start is spread over the model's stored positions, as running sums. A
+/// position's weight says how well its mean pose agrees with the angles that the first frame shows,
+/// given the model's spread between people.
 ///
 /// Every position is as likely as any other before the first frame, which is known when the
 /// particles are drawn. Without any angle seen, or a spread in the model, the sums rise evenly.
@@ -269,7 +269,7 @@ fn drawn_position(sums: &[f32], uniform: f32) -> f32 {
 /// frame.
 ///
 /// Between two stored positions the noise is that of one of them, drawn with the probabilities of
-/// linear interpolation: the covariance is then exactly the interpolated one.
+/// linear interpolation. The covariance is then exactly the interpolated one.
 #[inline(always)]
 pub(super) fn advance<const N: usize>(
     model: &MotionModel<'_>,

@@ -1,4 +1,4 @@
-//! Systematic resampling over chunks of particles, each by itself: where a chunk's part of the next
+//! Systematic resampling over chunks of particles, each by itself. Where a chunk's part of the next
 //! generation begins follows from the weights of the chunks before it.
 
 use crate::cyclic::particle::propose::CyclicParticle;

@@ -1,11 +1,11 @@
 //! A frame's work on the particles: move, weigh and sum them, chunk by chunk.
 //!
 //! The work for each particle is inlined into [`sweep`], so that a caller may compile it for wider
-//! vectors than its target has: the bits stay the same, as every operation is one of single
+//! vectors than its target has. The bits stay the same, as every operation is one of single
 //! numbers.
 //!
-//! A chunk's result depends on its particles alone and chunks are added in their order: the bits
-//! are the same however the chunks are spread over threads.
+//! A chunk's result depends on its particles alone, and chunks are added in their order. So the
+//! bits are the same however the chunks are spread over threads.
 
 use crate::cyclic::MotionModel;
 use crate::cyclic::particle::angle_blocks::AngleBlocks;

@@ -36,8 +36,8 @@ const POSE_SPREAD_RAD: f32 = 0.44;
 const POSE_LIMIT_SIGMAS: f32 = 1.5;
 /// Largest unexplained share of a recognised motion.
 ///
-/// Measured: of 77 walks and runs 1 % of the frames have more, of 18 recordings of other exercises
-/// and gestures 6 % have less (`docs/cyclic_tracker.md`).
+/// Measured: of 77 walks and runs 1 % of the frames have more. Of 18 recordings of other exercises
+/// and gestures 6 % of the frames have less (`docs/cyclic_tracker.md`).
 const MAX_UNEXPLAINED_SHARE: f32 = 0.67;
 /// Change of the unexplained share by which the odds of a motion change by e. Measured: logistic
 /// regression on the same recordings.

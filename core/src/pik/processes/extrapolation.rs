@@ -12,8 +12,9 @@ use heapless::Vec;
 const MIN_VARIANCE_M2: f32 = 1.0e-8;
 
 /// Each end-effector goes on from the place that it *reached*, with a share of the filter's
-/// velocity: those that the root carries (head, hands) relative to it, the others (feet, which
-/// stand) in space. Carried ones may go on along an arc about the joint that their limb hangs on.
+/// velocity. Those that the root carries (head, hands) go on relative to it, the others (feet,
+/// which stand) in space. Carried ones may go on along an arc about the joint that their limb hangs
+/// on.
 ///
 /// ```
 /// use sinew_core::math::Vec3;
@@ -83,7 +84,7 @@ impl LinearGoals {
     }
 
     /// The first end-effectors, as far as they are carried, swing about the ends of the bones
-    /// `joints`, one each, of a skeleton with `bones` bones: they go on along arcs about them
+    /// `joints`, one each, of a skeleton with `bones` bones. They go on along arcs about them
     /// ([`LinearExtrapolation::mean_about`]).
     ///
     /// # Errors

@@ -57,8 +57,8 @@ pub enum StickSight {
     Unseen,
 }
 
-/// Each hand lies at its share gamma of the way along the stick, which walks a little from frame to
-/// frame inside [0, 1]; other end-effectors (the head) go on linearly.
+/// Each hand lies at its share gamma of the way along the stick. The share walks a little from
+/// frame to frame inside [0, 1]. Other end-effectors (the head) go on linearly.
 ///
 /// ```
 /// use sinew_core::math::Vec3;
@@ -163,7 +163,7 @@ fn share_along(ends_m: &[Vec3; 2], place_m: &Vec3) -> f32 {
 }
 
 /// The place nearest to `place_m` in the plane through the camera and both rays, inside the wedge
-/// between them; parallel rays make a wedge that is a ray.
+/// between them. Parallel rays make a wedge that is a ray.
 fn into_wedge(camera_m: &Vec3, rays: &[Vec3; 2], place_m: &Vec3) -> Vec3 {
     let from = place_m - camera_m;
     if let Some(normal) = unit(rays[0].cross(&rays[1])) {

@@ -47,9 +47,9 @@ impl FrameContext<'_> {
         }
     }
 
-    /// H1 with its spread: the extrapolated hand on the ray of candidate `index`, its depth drawn
-    /// towards what the blob's area gives where that is wanted. `forearm` is where the forearm
-    /// is thought to point, a unit vector.
+    /// H1 with its spread: the extrapolated hand on the ray of candidate `index`. Its depth is
+    /// drawn towards what the blob's area gives where that is wanted. `forearm` is where the
+    /// forearm is thought to point, a unit vector.
     pub fn corrected_hand(
         &self,
         extrapolated_m: &Vec3,

@@ -35,8 +35,8 @@ use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Status {
-    /// A blob of this frame carries the estimate that is likely a hand, and at which nearly all
-    /// particles are that are at any blob; see
+    /// A blob of this frame that is likely a hand carries the estimate. Nearly all particles that
+    /// are at any blob are at this one. See
     /// [`ArmOptions::sure_likelihood`](super::ArmOptions::sure_likelihood) and
     /// [`ArmOptions::sure_share`](super::ArmOptions::sure_share).
     Tracking,

@@ -1,6 +1,6 @@
 //! What moving edges say of the limbs, for every place where the hand may be.
 //!
-//! Edge pixels are sorted to the limbs of a supposed arm. The last estimate is one such arm; each
+//! Edge pixels are sorted to the limbs of a supposed arm. The last estimate is one such arm. Each
 //! blob that particles are sent to gives another (the last estimate with its hand corrected to the
 //! blob). So a blob whose arm moves is preferred to one at which nothing moves, also when the last
 //! estimate was wrong.

@@ -1,7 +1,7 @@
 //! What is remembered of the blobs: which were not the hand, and which have not moved for long.
 //!
 //! A face has nearly the likelihood of a hand, frame after frame. While the hand is seen at another
-//! blob, a blob that stays where it is loses belief fast, and wins it back slowly; and a blob that
+//! blob, a blob that stays where it is loses belief fast, and wins it back slowly. A blob that
 //! rests is less likely a hand than one that moves. So a known face does not take the particles
 //! when the hand is hidden or fast. A blob that is new, or that moved on, has full belief, so a
 //! returning hand is not held back.

@@ -78,9 +78,9 @@ pub struct Gate {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct AreaCue {
-    /// Length-weighted area of the image of a hand seen from the side of its forearm (see
-    /// [`crate::vision::candidate::HandCandidate::length_weighted_area_px`]) times squared depth
-    /// over squared focal length, square metres.
+    /// Length-weighted area of the image of a hand seen from the side of its forearm, times squared
+    /// depth over squared focal length, square metres. For that area see
+    /// [`crate::vision::candidate::HandCandidate::length_weighted_area_px`].
     #[cfg_attr(feature = "serde", serde(skip))]
     pub hand_area_m2: f32,
     /// Weight of the image's long axis in that area; the short axis has the rest.
@@ -159,8 +159,8 @@ pub enum EstimateRule {
 
 /// Default of the share of the weights with which an estimate is sure.
 ///
-/// Chosen on `sinew demo` with the seeds 1 to 20: above it 1.8 % of the frames are more than 60
-/// pixels off, of all that have a likely blob 10 %.
+/// Chosen on `sinew demo` with the seeds 1 to 20. Above it 1.8 % of the frames are more than 60
+/// pixels off. Of all that have a likely blob it is 10 %.
 pub const DEFAULT_SURE_SHARE: f32 = 0.96;
 /// Default of the gate.
 pub const DEFAULT_GATE: Gate =
@@ -179,7 +179,7 @@ pub const DEFAULT_AREA_CUE: AreaCue =
     AreaCue { hand_area_m2: 0.0194, length_share: 0.65, foreshortening: 0.85, log_std: 0.3 };
 /// Default of the cluster's radius: 25 pixels of a 640 pixel image with 60 degrees.
 pub const DEFAULT_RADIUS_PER_FOCAL: f32 = 0.045;
-/// Multiple of the area cue's standard deviation where the shoulder is guessed: the depth that fits
+/// Multiple of the area cue's standard deviation where the shoulder is guessed. The depth that fits
 /// the arm may be far from the one that the area gives. Chosen: the cue still orders near and far.
 const GUESSED_AREA_DOUBT: f32 = 3.0;
 
@@ -231,7 +231,7 @@ pub struct ArmOptions {
     #[cfg_attr(feature = "serde", serde(with = "super::switch"))]
     pub area_cue: Option<AreaCue>,
     /// Whether a goal of a weight without correction is drawn along the ray from prediction and
-    /// area together (needs the area cue), which then does not stand in the weight again.
+    /// area together. This needs the area cue, which then does not stand in the weight again.
     pub depth_from_area: bool,
     /// Memory of blobs that are not the hand, or none.
     #[cfg_attr(feature = "serde", serde(with = "super::switch"))]
@@ -340,10 +340,9 @@ impl ArmOptions {
     }
 
     /// The same for candidates whose likelihoods are a posterior over time and whose areas are not
-    /// measured, as those of
-    /// [`HandFinder`](crate::vision::objects::hands::HandFinder): no gate and no memory, which
-    /// would count the past twice, and no depth from the area. The estimate is sure with half of
-    /// the weights, since the likelihood says the rest.
+    /// measured, as those of [`HandFinder`](crate::vision::objects::hands::HandFinder). There is no
+    /// gate and no memory, which would count the past twice, and no depth from the area. The
+    /// estimate is sure with half of the weights, since the likelihood says the rest.
     ///
     /// ```
     /// use sinew_core::tracker::arm::ArmOptions;

@@ -290,7 +290,7 @@ fn own_and_free(candidates: &[HandCandidate], own: Option<usize>, others: Option
     list
 }
 
-/// The blob in which both hands lie, and its halves for left and right: one side has it, the other
+/// The blob in which both hands lie, and its halves for left and right. One side has it, the other
 /// has none, and both expect their hand inside.
 fn touching(
     candidates: &[HandCandidate],

@@ -45,7 +45,7 @@ impl FrameContext<'_> {
         proposed
     }
 
-    /// The arm paper: elbow and hand by a first-order linear model, made reachable; a driven hand
+    /// The arm paper: elbow and hand by a first-order linear model, made reachable. A driven hand
     /// is corrected on the ray and the elbow goes to the nearest point of its circle.
     fn propose_by_joints(&self, ancestor: &Particle, driver: Option<usize>, stream: &mut Stream) -> Proposed {
         let (options, geometry) = (self.model.options(), self.model.geometry());
@@ -116,8 +116,8 @@ impl FrameContext<'_> {
     }
 
     /// A goal of a blob or of the transition alike, so that both have the same pose density. It is
-    /// reached with the geometric mean of both spreads: much wider than a blob's error, and the
-    /// blob term would let hardly a draw live.
+    /// reached with the geometric mean of both spreads. Were it much wider than a blob's error, the
+    /// blob term would let hardly any draw survive.
     fn weighted_goal(&self, position_m: Vec3) -> Goal {
         let options = self.model.options();
         let precision = Mat3::identity() / (options.reach_std_m * options.reach_across_std_m);

@@ -104,9 +104,8 @@ impl FrameContext<'_> {
     }
 
     /// ln p(blobs | hand) times the image's area: clutter + sum_b pi_b N(u(hand); CoG_b, R_b), with
-    /// the area cue as a factor of each blob. What the blobs' beliefs leave of one is clutter
-    /// too: a blob that was not the hand before is not the hand only because it is the only
-    /// one.
+    /// the area cue as a factor of each blob. What the blobs' beliefs leave of one is clutter too.
+    /// A blob that was not the hand before does not become the hand by being the only one.
     fn log_blob_term(&self, particle: &Particle, hand: Option<Pixel>) -> f32 {
         let hand_share = 1.0 - self.model.options().clutter_share;
         let sum_of_beliefs: f32 = self.beliefs.iter().sum();

@@ -2,8 +2,8 @@
 //! drawn.
 //!
 //! The PIK paper's subjects stand still. A root that moves has six coordinates that move
-//! everything, and particles that guess them one by one are lost on it; so every motion model may
-//! begin with the same look at the points.
+//! everything. Particles that guess them one by one are lost on it. So every motion model may begin
+//! with the same look at the points.
 
 use crate::error::{ParameterError, positive};
 use crate::kinematics::inverse::{PoseDensity, Solve};
@@ -47,7 +47,7 @@ pub struct RootAlignment {
     pub shift_std_m_per_sqrt_s: f32,
     /// How far it is believed to turn, radians by root second.
     pub turn_std_rad_per_sqrt_s: f32,
-    /// How far the other angles are believed to change, radians by root second: they give way, so
+    /// How far the other angles are believed to change, radians by root second. They give way, so
     /// that a moving arm does not carry the root along. How far a limb explains points is asked
     /// beside the whole pose.
     pub angle_std_rad_per_sqrt_s: f32,

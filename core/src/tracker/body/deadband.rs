@@ -15,7 +15,7 @@ use crate::skeleton::{Joint, Limbs, Skeleton};
 /// Motion within the jitter is followed too, in this time, seconds.
 /// Chosen: much longer than a frame.
 const REST_S: f32 = 2.0;
-/// A way counts this much of itself if the frame before was not off to the same side: a limb that
+/// A way counts this much of itself if the frame before was not off to the same side. A limb that
 /// starts at once is not waited for. Chosen: below one, since a single frame may be jitter.
 const ALONE: f32 = 0.7;
 /// Particles that all are in one place still have some jitter, metres.
@@ -46,8 +46,8 @@ impl<const BONES: usize, const ANGLES: usize> Deadband<BONES, ANGLES> {
     }
 
     /// The pose to report where the particles' mean is `now`. The ends of each limb's bones go from
-    /// where they were reported to where they are, the whole way if the limb moves by much more
-    /// than the jitter of its ends, `jitter_std_m`. The pose between the two has its ends
+    /// where they were reported to where they are. They go the whole way if the limb moves by much
+    /// more than the jitter of its ends, `jitter_std_m`. The pose between the two has its ends
     /// there. A mix of angles alone would move a hand with the jitter of the trunk's angles.
     pub(super) fn filter(
         &mut self,
@@ -92,8 +92,8 @@ impl<const BONES: usize, const ANGLES: usize> Deadband<BONES, ANGLES> {
         &self.reported
     }
 
-    /// How far the ends of a group's bones went, metres: root mean of the products of how far they
-    /// are off with how far they were in the frame before.
+    /// How far the ends of a group's bones went, metres. It is the root mean of the products of how
+    /// far they are off with how far they were in the frame before.
     fn moved_m(&self, (groups, group): (&[usize; BONES], usize), off_m: &[Vec3; BONES]) -> f32 {
         let twice_m = root_mean((groups, group), |bone| off_m[bone].dot(&self.off_m[bone]));
         let once_m = root_mean((groups, group), |bone| off_m[bone].dot(&off_m[bone]));
@@ -170,8 +170,8 @@ mod tests {
         BodyParticle::at(&scene.skeleton, scene.skeleton.clamp(angles_rad))
     }
 
-    /// How far the right wrist goes from frame to frame on the mean: as estimated and as reported;
-    /// and how far behind it is reported at last.
+    /// How far the right wrist goes from frame to frame on the mean, as estimated and as reported.
+    /// The third number is how far behind it is reported at last.
     fn followed(speed_rad_per_s: f32, noise_rad: f32) -> (f32, f32, f32) {
         let (scene, mut stream) = (scene(), Stream::new(5, 0, 0));
         let mut before = seen(&scene, 0.5, 0.0, &mut stream);

@@ -129,7 +129,7 @@ fn mean_ball<const BONES: usize, const ANGLES: usize>(
 }
 
 /// Puts the standard deviation of the ends of one group's bones into `spread_m`, and that of their
-/// means into `standard_error_m`, metres: particles of so many weights scatter their mean by the
+/// means into `standard_error_m`, metres. Particles of so many weights scatter their mean by the
 /// root of the summed squares of weight times distance.
 pub(super) fn spread_of_group<const BONES: usize, const ANGLES: usize>(
     (particles, weights): (&[BodyParticle<BONES, ANGLES>], &[f32]),
@@ -163,8 +163,9 @@ mod tests {
     use crate::skeleton::arm::FOREARM;
     use crate::skeleton::{ArmGeometry, Side};
 
-    /// Sets of particles of unlike weights: how far their means are from the place that they were
-    /// drawn about, root mean square, beside the standard error that each set estimates.
+    /// Sets of particles of unlike weights. Their means are off from the place that they were drawn
+    /// about, root mean square. That error is compared with the standard error that each set
+    /// estimates.
     #[test]
     fn means_are_off_by_their_standard_error() {
         let skeleton = ArmGeometry::new(Side::Left, 0.30, 0.35).unwrap().skeleton().unwrap();

@@ -25,13 +25,13 @@ const SCATTERED_M: f32 = 0.2;
 /// Chosen: a limb half hidden is observed.
 const MIN_SHARE: f32 = 0.25;
 
-/// Whether the points show each bone: enough of them lie on its skin and, where it is part of a
-/// limb, clearly on no other limb's nor the trunk's. A limb that is hidden before the trunk, say,
-/// would else be shown by the trunk's points.
+/// Whether the points show each bone. Enough of them have to lie on its skin and, where it is part
+/// of a limb, clearly on no other limb's nor the trunk's. A limb that is hidden before the trunk,
+/// say, would else be shown by the trunk's points.
 ///
 /// What to expect follows from the size in which each bone would appear to the camera, as if none
-/// hid another: a limb behind the trunk is not observed. Without points nothing is; a bone without
-/// flesh has no skin to show.
+/// hid another. So a limb behind the trunk is not observed. Without points nothing is; a bone
+/// without flesh has no skin to show.
 #[must_use]
 pub fn observed<const BONES: usize>(
     surface: &BodySurface<BONES>,
@@ -102,8 +102,8 @@ mod tests {
     use crate::skeleton::BodyMeasures;
     use crate::skeleton::full_body::{BODY_ANGLES, BODY_BONES, FOREARMS, TRUNK, body_radii_m, full_body};
 
-    /// Which bones a standing body 2.5 m away shows if the points lie on the visible skin of those
-    /// that are not in `hidden`, while the left arm is believed to lie across the trunk.
+    /// Which bones a standing body 2.5 m away shows while the left arm is believed to lie across
+    /// the trunk. The points lie on the visible skin of the bones that are not in `hidden`.
     fn shown(hidden: &[usize]) -> [bool; BODY_BONES] {
         let measures = BodyMeasures::of_height(1.75).unwrap();
         let (skeleton, radii_m) = (full_body(&measures).unwrap(), body_radii_m(&measures));

@@ -28,14 +28,14 @@ use crate::error::{ParameterError, Rule};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyOptions {
-    /// Weights are flattened until at least this share of a hundred particles is effective, and of
-    /// others a number that grows with the root of theirs: many particles separate a sharper
-    /// likelihood from chance. Zero never flattens.
+    /// Weights are flattened until at least this share of a hundred particles is effective. For
+    /// another number of particles the effective number grows with its root. Many particles
+    /// separate a sharper likelihood from chance. Zero never flattens.
     pub least_effective_share: f32,
     /// Whether each limb is weighed by what it explains itself and resampled apart from the others.
     pub limb_by_limb: bool,
-    /// How the expected pose is fitted to the points before particles are drawn, so that their
-    /// root, and trunk if asked for, set out from there; `None` leaves them to their process.
+    /// How the expected pose is fitted to the points before particles are drawn. Their root, and
+    /// trunk if asked for, set out from there. `None` leaves them to their process.
     pub alignment: Option<RootAlignment>,
     /// Deadband of the reported pose at rest, in standard errors of the particles' mean.
     pub jitter_std_errors: f32,

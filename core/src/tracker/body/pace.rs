@@ -83,8 +83,8 @@ impl SpeedScaledNoise {
         min(self.max_scale_seen, sqrt(self.rest_share * self.rest_share + swing * swing))
     }
 
-    /// The share one frame on: at once what a faster limb asks for, by and by what a slower one
-    /// does; of an unseen limb, more.
+    /// The share one frame on. It is at once what a faster limb asks for, and by and by what a
+    /// slower one does. Of an unseen limb it is more.
     fn follow(&self, share: f32, speed_m_per_s: Option<f32>, dt_s: f32) -> f32 {
         let Some(speed_m_per_s) = speed_m_per_s else {
             return min(max(share, self.max_scale_unseen), share + dt_s / self.unseen_growth_s);

@@ -1,7 +1,7 @@
 //! Resampling limb by limb: a new particle has its trunk from one particle of the last set and each
 //! limb from another.
 //!
-//! A limb that the points like lives on whatever became of the particle's other limbs, so a hundred
+//! A limb that the points like lives on whatever became of the particle's other limbs. So a hundred
 //! particles hold a hundred guesses about each of them. What is lost is how a limb's angles go
 //! together with its trunk's: after the root is fitted to the points trunks differ little.
 
@@ -17,8 +17,8 @@ where
     S: AsRef<[BodyParticle<BONES, ANGLES>]> + AsMut<[BodyParticle<BONES, ANGLES>]>,
 {
     /// Takes the coordinates of one group over into the next set, by the present weights. The order
-    /// is shuffled, so that no two limbs go together because of their places in the set; what
-    /// the motion model keeps goes with the trunk.
+    /// is shuffled, so that no two limbs go together because of their places in the set. What the
+    /// motion model keeps goes with the trunk.
     pub(super) fn resample_group(
         &mut self,
         skeleton: &Skeleton<BONES, ANGLES>,

@@ -1,8 +1,8 @@
 //! The cyclic tracker of firmware: the phase-coupled filter and the count of cycles.
 //!
 //! It gives the numbers of [`super::step::CyclicTracker`] with that filter. It is a type of its
-//! own, since its saved state, its 2.5 KiB instead of 4 and its flash hold no other filter, and
-//! since it begins in place in static memory.
+//! own, since its saved state, its 2.5 KiB instead of 4 and its flash hold no other filter. It also
+//! begins in place in static memory.
 
 use super::estimate::CyclicFrame;
 use super::options::FirstPhase;

@@ -133,7 +133,7 @@ impl<F: PixelFormat, const N: usize> SkinSample<F, N> {
         PersonColour::of_pixels(self.keys.iter().map(|key| F::rgb(*key)))
     }
 
-    /// `trained` adapted to the sample. Its part is n / (n + 30) for n pixels, at most 0.8; the
+    /// `trained` adapted to the sample. Its part is n / (n + 30) for n pixels, at most 0.8. The
     /// darkest accepted sum falls to half of the sample's tenth percentile if that is lower.
     ///
     /// # Errors
@@ -228,8 +228,8 @@ impl Moments {
     }
 }
 
-/// Moments of the half that is nearest to the median, with what is as near as its farthest; then, a
-/// few times, of what lies close to the last ones.
+/// Moments of the half that is nearest to the median, with what is as near as its farthest. Then, a
+/// few times, moments of what lies close to the last ones.
 fn trimmed(colours: &(impl Iterator<Item = Colour> + Clone)) -> Option<Moments> {
     let count = colours.clone().count();
     let median_r = kth_smallest_real(colours.clone().map(|colour| colour.r), count / 2);

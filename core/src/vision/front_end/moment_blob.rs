@@ -71,8 +71,8 @@ impl MomentBlob {
         blob
     }
 
-    /// Area as a part of that of the ellipse with the same second moments, 0 to 1: one for an
-    /// ellipse, 0.95 for a rectangle, less for what is bent, branched or hollow.
+    /// Area as a part of that of the ellipse with the same second moments, 0 to 1. It is one for an
+    /// ellipse, 0.95 for a rectangle, and less for what is bent, branched or hollow.
     #[must_use]
     pub fn ellipse_fill(&self) -> f32 {
         // The variance of one pixel's square is 1/12 in both directions.

@@ -22,8 +22,9 @@ const COLUMNS: usize = 40;
 const ROWS: usize = 30;
 /// Pixels of a face that are looked at.
 const FACE_PIXELS: usize = 128;
-/// Words of the skin table that a frame learns of a new colour at most, and colours of them that
-/// have to be judged one by one. Chosen: most faces are learned in a third of a second.
+/// Words of the skin table that a frame learns of a new colour at most. `JUDGED_COLOURS` limits
+/// the colours of them that have to be judged one by one. Chosen: most faces are learned in a third
+/// of a second.
 const LEARNED_WORDS: usize = 256;
 const JUDGED_COLOURS: usize = 1280;
 /// Bytes of luminance of a line.
@@ -33,13 +34,13 @@ const LINE_LEVELS: usize = 160;
 const PERSON_BYTES: usize = 28 * 1024;
 const _: () = assert!(size_of::<PersonLines<super::pixel_format::Rgb565>>() <= PERSON_BYTES);
 
-/// Reads the lines of a camera of at most 320 x 240 pixels, and follows the hands of the person
-/// whose face the caller gives now and then, from any detector.
+/// Reads the lines of a camera of at most 320 x 240 pixels, and follows the hands of one person.
+/// The caller gives the person's face now and then, from any detector.
 ///
-/// The middle of the face is looked at in the frame after, and a part of the skin table is learned
-/// of it at the end of each frame after that, so that no frame costs much more than another. Hands
-/// are found from the frame on in which all was learned, about ten after the first face, and none
-/// in between.
+/// The middle of the face is looked at in the frame after. A part of the skin table is learned of
+/// it at the end of each frame after that. So no frame costs much more than another. Hands are
+/// found from the frame on in which all was learned, about ten after the first face, and none in
+/// between.
 ///
 /// ```
 /// use sinew_core::vision::front_end::{PersonLines, pixel_format::Rgb565};

@@ -109,8 +109,7 @@ impl PixelFormat for Rgb565 {
         pair
     }
 
-    /// (2 R + 2 G + B) / 2 of R and B in 5 and G in 6 bits, which weighs them by 0.28, 0.58 and
-    /// 0.14.
+    /// (2 R + 2 G + B) / 2 of R and B in 5 and G in 6 bits. It weighs them by 0.28, 0.58 and 0.14.
     #[inline]
     fn luminances(pixels: &[u16; 8]) -> u32 {
         let two = |first: usize| {

@@ -30,7 +30,7 @@ pub(super) struct Evidence {
     pub shared: f32,
 }
 
-/// How lively the liveliest places of the last frames were, to which all others are compared: a
+/// How lively the liveliest places of the last frames were, to which all others are compared. A
 /// person at rest moves little, and noise moves everything a little.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Liveliness {
@@ -73,7 +73,7 @@ fn shape(place: &HandPlace) -> f32 {
     2.0 * (min(place.fill, 0.9) - 0.6) / 0.3 + 0.7 * (clamp(place.thickness, 0.1, 0.35) - 0.25) / 0.1
 }
 
-/// Hands hang beside the hips at rest, are on their own side, and within reach; what stays
+/// Hands hang beside the hips at rest, are on their own side, and within reach. What stays
 /// elsewhere is less likely a hand, far to the side of the person least.
 fn where_it_is(place: &HandPlace, side: Side, fresh: f32) -> f32 {
     let reached = from(shoulder(side), place.position);
@@ -86,8 +86,8 @@ fn where_it_is(place: &HandPlace, side: Side, fresh: f32) -> f32 {
     1.5 * rest - 2.0 * across - 4.0 * max(0.0, distance - ARM) - stale - aside
 }
 
-/// Whether an end is the hand's (1) or the elbow's (-1): the elbow is within an upper arm of the
-/// shoulder; where both ends are, it is lower and further out.
+/// Whether an end is the hand's (1) or the elbow's (-1). The elbow is within an upper arm of the
+/// shoulder. Where both ends are, it is lower and further out.
 fn far_from_elbow(place: &HandPlace, end: &ArmEnd, side: Side) -> f32 {
     let (here, other) = (from(shoulder(side), place.position), from(shoulder(side), end.other));
     let (distance, of_other) = (length(here), length(other));

@@ -45,7 +45,7 @@ impl Length for u8 {
 const MAX_SWEEPS: usize = 8;
 
 /// Distances from `start` to all cells of `within` for which `inside` holds and that hang together
-/// with it; cells outside of `within` keep what they have.
+/// with it. Cells outside of `within` keep what they have.
 ///
 /// `distances` has a number for each cell of the grid.
 pub(super) fn distances<L: Length>(

@@ -129,9 +129,9 @@ impl<const COLUMNS: usize, const ROWS: usize> CellGrid<COLUMNS, ROWS> {
         }
     }
 
-    /// A grid for pictures of this size before the first one; `None` for a size that is too
-    /// narrow or low for a cell. Cells are as small as the grid's capacity lets them be; what is
-    /// left of whole cells at the right and at the bottom is not seen.
+    /// A grid for pictures of this size before the first one; `None` for a size that is too narrow
+    /// or low for a cell. Cells are as small as the grid's capacity lets them be. What is left of
+    /// whole cells at the right and at the bottom is not seen.
     #[must_use]
     pub fn new(width_px: usize, height_px: usize) -> Option<Self> {
         let mut grid = Self::empty();

@@ -103,7 +103,7 @@ impl<const COLUMNS: usize, const ROWS: usize> HandFinder<COLUMNS, ROWS> {
         self.head
     }
 
-    /// Answers the frame that the grid holds: candidates for the left and for the right hand, whose
+    /// Answers the frame that the grid holds: candidates for the left and for the right hand. Their
     /// likelihood is the probability that the hand is there, by all frames so far.
     #[inline(never)]
     pub fn step(&mut self) -> &[Candidates; 2] {

@@ -2,10 +2,10 @@
 //! Beyond the arm paper, which takes each picture's blobs alone.
 //!
 //! The face gives the scale, the shoulders and the [colour](person_colour) of the skin. Lines of
-//! pixels fill a [grid] of cells. Places that may be hands are the ends of elongated
-//! objects and their thickest parts; each frame's evidence for each side goes into a
-//! belief about the pair of hands, whose marginals are the likelihoods of the candidates
-//! that an arm tracker takes. No picture is kept, and no work grows with the picture.
+//! pixels fill a [grid] of cells. Places that may be hands are the ends of elongated objects and
+//! their thickest parts. Each frame's evidence for each side goes into a belief about the pair of
+//! hands. The marginals of that belief are the likelihoods of the candidates that an arm tracker
+//! takes. No picture is kept, and no work grows with the picture.
 //!
 //! ```
 //! use sinew_core::vision::objects::grid::CellGrid;

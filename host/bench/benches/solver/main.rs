@@ -1,5 +1,5 @@
-//! The solver alone against the crate `k` on an arm of four angles: the same poses, goals, limits
-//! and tolerance, in turns in one process on one thread.
+//! The solver alone against the crate `k` on an arm of four angles. Both have the same poses,
+//! goals, limits and tolerance, and run in turns in one process on one thread.
 //!
 //! `k` moves along the pseudo-inverse of its Jacobian and cuts to the limits until the hand is
 //! within the tolerance. It takes whole steps, which are fastest here, and half steps, its default.
@@ -22,7 +22,7 @@ const GOALS: usize = 200;
 const ROUNDS: usize = 101;
 /// How near the hand has to come, metres.
 const TOLERANCE_M: f32 = 1.0e-3;
-/// A step ends the search when it promises less log density than this (`kinematics::inverse`): half
+/// A step ends the search when it promises less log density than this (`kinematics::inverse`). Half
 /// of it is what a miss of the tolerance may cost.
 const MIN_LOG_GAIN: f32 = 0.01;
 const MAX_STEPS: usize = 100;

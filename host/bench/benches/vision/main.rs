@@ -2,9 +2,9 @@
 //! imageproc.
 //!
 //! Prints a table of medians, measured in turns in this process on one thread. Then runs criterion
-//! on the whole chain of each. imageproc's chain is what its functions offer for the same steps,
-//! with its distance transform on the whole frame. It gives labels but no statistics of components.
-//! `SINEW_BENCH_FRAMES=first.png,second.png` adds a pair of real frames.
+//! on the whole chain of each. The chain of imageproc is what its functions offer for the same
+//! steps, with its distance transform on the whole frame. It gives labels but no statistics of
+//! components. `SINEW_BENCH_FRAMES=first.png,second.png` adds a pair of real frames.
 
 mod imageproc_chain;
 mod scene;

@@ -1,8 +1,8 @@
 //! The one list of names that are read, by joint.
 //!
 //! Each entry is an alternative: the first one that is in the file is taken. `+` is the middle of
-//! two points, and what stands after `&` has to be there too. `{L}` is left or right, `{l}` is l or
-//! r, and `{s}` is any of these before or behind the rest. All are written as
+//! two points, and what stands after `&` has to be there too. `{L}` is left or right, and `{l}` is
+//! l or r. `{s}` is any of these before or behind the rest. All are written as
 //! [`plain`](super::name_forms::plain) gives them.
 
 /// Names of one limb joint.

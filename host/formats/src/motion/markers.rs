@@ -39,8 +39,8 @@ impl From<&Motion> for MarkerMotion {
 /// Size of a person whose scale is not known, metres: the largest extent of their points. Chosen:
 /// people are 1 to 2.3 m tall, and markers leave out the crown.
 const PERSON_M: f32 = 1.6;
-/// Extents that a person's points may have, metres: from a child without head and feet to arms that
-/// are spread, or a few objects beside them.
+/// Extents that a person's points may have, metres. They reach from a child without head and feet
+/// to arms that are spread, or a few objects beside them.
 const PERSON_RANGE_M: [f32; 2] = [0.5, 5.0];
 
 impl MarkerMotion {

@@ -63,7 +63,7 @@ impl NameForms {
     }
 }
 
-/// The names that a part of a pattern stands for: `{L}` is left or right, `{l}` is l or r, and
+/// The names that a part of a pattern stands for. `{L}` is left or right, and `{l}` is l or r.
 /// `{s}` at the beginning is any of these before or behind the rest.
 pub fn sided(part: &str, left: bool) -> Vec<String> {
     let (long, short) = if left { ("left", "l") } else { ("right", "r") };
@@ -85,8 +85,8 @@ fn is_separator(letter: char) -> bool {
     matches!(letter, '_' | '.' | '-' | ' ' | '|' | '/')
 }
 
-/// The forms of one name: whole, without words behind it, without one word of its prefix after the
-/// other, and without what all names begin with.
+/// The forms of one name: whole, and without words behind it. Also without one word of its prefix
+/// after the other, and without what all names begin with.
 fn forms(name: &str, common: usize) -> Vec<String> {
     let mut forms = vec![plain(name)];
     if name.len() > MAX_SPLIT_BYTES {

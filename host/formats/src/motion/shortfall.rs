@@ -51,7 +51,7 @@ impl fmt::Display for Shortfall {
 }
 
 /// The rows of frames in a text, each with its line counted from 1. Where fewer are there than
-/// `promised`, a row that ends with the file but not with its line is left out: its last number may
+/// `promised`, a row that ends with the file but not with its line is left out. Its last number may
 /// be cut.
 pub(crate) fn whole_rows<'a>(
     lines: impl Iterator<Item = (usize, &'a str)>,

@@ -52,7 +52,7 @@ pub struct Course {
     /// Hidden frames in which the forearm is said to be observed.
     pub frames_said_observed: usize,
     /// How many frames after its return (1 is the first with points) its error is below twice the
-    /// level before; absent where none of the first ten is.
+    /// level before. Absent where none of the first ten is.
     pub back_after_frames: Option<usize>,
 }
 
@@ -70,7 +70,7 @@ impl Course {
 }
 
 /// Left and right arm in turns, hidden for `length` frames as often as a motion of `frames` frames
-/// lets them be; seeds differ in which arm begins.
+/// lets them be. Seeds differ in which arm begins.
 #[must_use]
 pub fn windows(frames: usize, length: usize, seed: u64) -> Vec<Hidden> {
     let first = 1 + SETTLING + BEFORE;

@@ -76,8 +76,7 @@ impl SeenMotion {
     }
 
     /// Eq. (34) of the poses nearest to the true joints, over the recorded markers and from the
-    /// second frame on, metres: what no tracker of this body gets below. `None` without such
-    /// markers.
+    /// second frame on, metres. No tracker of this body gets below it. `None` without such markers.
     ///
     /// # Errors
     /// Measures that no body has.

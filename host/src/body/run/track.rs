@@ -280,8 +280,8 @@ fn first_look(filter: &BodyFilter, blocks: &[PointBlock], stick: StickSight) -> 
     estimate
 }
 
-/// Reads one cloud, at most [`MAX_POINTS`] of it: as it is, and in the blocks in which it is
-/// weighed; or why it is no cloud.
+/// Reads one cloud, at most [`MAX_POINTS`] of it, as it is and in the blocks in which it is
+/// weighed. Where it is no cloud, the answer says why.
 ///
 /// # Errors
 /// The operating system refuses the file.

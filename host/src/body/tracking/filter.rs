@@ -1,5 +1,5 @@
-//! A body or its upper part, tracked: one tracker of the core for each size, and its answers in the
-//! order of a whole body's bones.
+//! A body or its upper part, tracked. There is one tracker of the core for each size, and its
+//! answers are in the order of a whole body's bones.
 
 use super::model_kind::BodyModelKind;
 use super::sized::{SeenFrame, SizedBody, SizedFilter};

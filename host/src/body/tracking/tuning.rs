@@ -340,7 +340,7 @@ impl BodyTuning {
 }
 
 /// Found by a random search for the least error (34) with 100 particles on 18 clips that no result
-/// is reported on (docs/body_tracker.md); so was [`ANGULAR_JOINTS`].
+/// is reported on (docs/body_tracker.md). So was [`ANGULAR_JOINTS`].
 const GOAL_JOINTS: JointStd =
     JointStd { trunk: 0.268, head: 0.6, shoulder: 1.02, elbow: 1.31, hip: 0.65, knee: 1.2, ankle: 0.062 };
 /// The angular model's noise.

@@ -36,9 +36,9 @@ impl Channels {
     }
 
     /// The same signals, ready to be compared over `period` frames. Each is taken about its mean
-    /// over one period, so that a slow turn or lean of the person does not count as a late step.
-    /// Each is weighted by how closely it repeats after a period, so that angles that wind
-    /// irregularly count little.
+    /// over one period, so a slow turn or lean of the person does not count as a late step. Each is
+    /// weighted by how closely it repeats after a period, so that angles that wind irregularly
+    /// count little.
     #[must_use]
     pub fn over_period(&self, period: usize) -> Self {
         let weighed = |signal: &Vec<f64>| {

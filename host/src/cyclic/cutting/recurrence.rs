@@ -47,8 +47,8 @@ pub fn boundaries(table: &AngleTable, channels: &Channels, period: usize) -> Vec
     starts.windows(2).zip(follows.iter().skip(1)).filter_map(cycle).collect()
 }
 
-/// By how many frames the swing's peaks lie later than the starts: the middle one of all, so that
-/// no single step decides where a person's cycles begin.
+/// By how many frames the swing's peaks lie later than the starts. It is the middle one of all, so
+/// that no single step decides where a person's cycles begin.
 fn to_peaks(starts: &[usize], peaks: &[usize], period: usize) -> isize {
     let from_start = |&start: &usize| {
         let distances = peaks.iter().map(|&peak| peak as i64 - start as i64);

@@ -5,7 +5,7 @@ use crate::cyclic::anatomy::{AnatomicalSeries, COUNT};
 use std::fmt::Write as _;
 
 /// Name and sign of each anatomical angle as a coordinate of OpenSim's models since 2016 (Rajagopal
-/// et al., IEEE Transactions on Biomedical Engineering 63): there the pelvis tilts backwards, and
+/// et al., IEEE Transactions on Biomedical Engineering 63). There the pelvis tilts backwards, and
 /// the trunk here has no joint between pelvis and chest.
 const COORDINATES: [(&str, f64); COUNT] = [
     ("pelvis_tilt", -1.0),

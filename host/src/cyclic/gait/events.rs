@@ -29,7 +29,7 @@ pub enum PointUsed {
     /// The tip of the foot.
     Toe,
     /// The ankle, where heel or toe are not seen. Its toe-offs are 15 to 44 ms before those of the
-    /// toe on walks (`base.trc`, CMU 02 and 35) and 35 to 62 ms after them in running.
+    /// toe on walks (`base.trc`, CMU 02 and 35). In running they are 35 to 62 ms after them.
     Ankle,
 }
 

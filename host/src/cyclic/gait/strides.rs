@@ -12,8 +12,8 @@ use std::fmt::Write as _;
 const FLAT_SHARES: [f64; 2] = [0.2, 0.5];
 
 /// Way of the hips in the picture over their way by the feet, between which the camera stands
-/// still. Chosen: by the feet a walk is 10 % short, and a camera that pans, a treadmill and a view
-/// that turns with the person have about 0.
+/// still. Chosen: by the feet a walk is 10 % short. A camera that pans, a treadmill and a view that
+/// turns with the person have about 0.
 const HIPS_AGREE: [f64; 2] = [0.7, 1.6];
 
 /// A foot: the person's own side.

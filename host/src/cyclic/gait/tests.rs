@@ -105,9 +105,10 @@ fn gait_of(path: &Path, without_feet: bool) -> (Gait, f64) {
 }
 
 /// A walk over ground with markers on heels and toes, 100 frames a second; 52.5 strides a minute by
-/// force plates. The reference is what the markers' own vertical velocities give: the foot's centre
-/// falls fastest before it strikes and rises fastest as it leaves the ground (C. M. O'Connor, S. K.
-/// Thorpe, M. J. O'Malley, C. L. Vaughan, Gait & Posture 25, 2007), by SciPy at 12 Hz.
+/// force plates. The reference is what the markers' own vertical velocities give, by SciPy at
+/// 12 Hz. The foot's centre falls fastest before it strikes and rises fastest as it leaves the
+/// ground. Source: C. M. O'Connor, S. K. Thorpe, M. J. O'Malley, C. L. Vaughan, Gait & Posture 25,
+/// 2007.
 #[test]
 fn a_marker_walk_has_the_events_of_its_vertical_velocities() {
     let Some(path) = shared("cases/trc/base.trc") else { return };

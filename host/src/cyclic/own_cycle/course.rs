@@ -7,7 +7,7 @@ use super::seen::Seen;
 use crate::error::Result;
 use crate::signal::{FilterKind, FilterOptions, filtered, hampel};
 
-/// What makes a row an outlier is at least so far off, radians: three degrees are seen in no angle
+/// What makes a row an outlier is at least so far off, radians. Three degrees are seen in no angle
 /// that people read, though Hampel's identifier rejects less where nothing else is noisy.
 const MIN_OUTLIER_RAD: f64 = 0.052;
 /// The same in standard deviations of the noise: of 13 angles one is beyond 4.5 by chance in one

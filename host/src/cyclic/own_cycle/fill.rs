@@ -3,9 +3,9 @@
 use super::phase::Phased;
 use crate::cyclic::turns::least_angle;
 
-/// How fast a deviation from the own cycle is forgotten where it was last seen on one side only:
-/// it falls by e in so many cycles. Chosen: what differs from cycle to cycle lasts about a quarter
-/// of one in the shipped models.
+/// How fast a deviation from the own cycle is forgotten where it was last seen on one side only. It
+/// falls by e in so many cycles. Chosen: what differs from cycle to cycle lasts about a quarter of
+/// one in the shipped models.
 const FADE_CYCLES: f64 = 0.25;
 
 /// The angle `angle` in every frame: `measured` where it is there, else the own cycle and what the

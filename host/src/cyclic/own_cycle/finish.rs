@@ -16,8 +16,9 @@ use std::f64::consts::TAU;
 /// stopped: nothing is said, and the cycles on both sides are counted apart.
 const LONGEST_BRIDGE_CYCLES: f64 = 1.0;
 
-/// The run of a filter over a table with angles and phases of the whole recording: what was
-/// measured, filtered, and in gaps the person's own cycle. Rows in which nothing is known say so.
+/// The run of a filter over a table with angles and phases of the whole recording. The angles are
+/// what was measured, filtered, and in gaps the person's own cycle. Rows in which nothing is known
+/// say so.
 ///
 /// # Errors
 /// A filter of the measured angles that does not fit the rate.

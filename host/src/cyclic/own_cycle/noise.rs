@@ -30,7 +30,7 @@ pub fn with_noise_of(table: &AngleTable, options: TrackingOptions) -> TrackingOp
     TrackingOptions { sigma_rad, ..options }
 }
 
-/// Standard deviation of measured angles, radians, by the median of fourth differences: those of a
+/// Standard deviation of measured angles, radians, by the median of fourth differences. Those of a
 /// limb's motion are below half a degree at 30 frames a second.
 ///
 /// `None` where too few successive frames were seen.

@@ -15,14 +15,14 @@ const STEP_STATES: f64 = 3.0;
 const STEP_SPREAD: f64 = 0.5;
 /// Steps are at most this many mean steps long.
 const LONGEST_STEP: f64 = 3.0;
-/// The way is smoothed over so much to both sides, cycles: its corners lie on even phases, and a
+/// The way is smoothed over so much to both sides, cycles. Its corners lie on even phases, and a
 /// tempo does not change from one to the next. Chosen: half of what a phase is fitted over later.
 const SMOOTH_CYCLES: f64 = 0.15;
 /// How far an angle may be off, standard deviations: more says no more.
 const MAX_OFF: f64 = 3.0;
 
-/// Phases, in cycles, of every frame, given the shape of the cycle, how far the angles lie about it
-/// (radians), and the mean velocity, cycles per frame.
+/// Phases, in cycles, of every frame, given the shape of the cycle. Also given are how far the
+/// angles lie about it (radians), and the mean velocity, cycles per frame.
 #[must_use]
 pub fn likeliest<const N: usize>(seen: &Seen<N>, shape: &Shape<N>, std_rad: &[f64; N], velocity: f64) -> Vec<f64> {
     let count = seen.angles_rad.len();

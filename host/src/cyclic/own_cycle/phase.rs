@@ -55,8 +55,8 @@ fn median_step(phases: &[f64]) -> f64 {
     steps.get(steps.len() / 2).map_or(MIN_VELOCITY, |step| step.max(MIN_VELOCITY))
 }
 
-/// Standard deviation of each angle from the shape, by the median of its size, which a few wrong
-/// measurements do not move; at least the least noise of a measurement.
+/// Standard deviation of each angle from the shape, by the median of its size. A few wrong
+/// measurements do not move the median. It is at least the least noise of a measurement.
 fn spread<const N: usize>(seen: &Seen<N>, phases: &[f64], shape: &Shape<N>) -> [f64; N] {
     let poses: Vec<[f64; N]> = phases.iter().map(|phase| shape.at(*phase).0).collect();
     std::array::from_fn(|angle| {

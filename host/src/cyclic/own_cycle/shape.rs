@@ -10,10 +10,10 @@ use std::f64::consts::TAU;
 const HARMONICS: usize = 10;
 /// Constant, cosines, sines.
 const TERMS: usize = 2 * HARMONICS + 1;
-/// Parts of a cycle in which measurements are averaged before the fit: a hundredth of a walker's
+/// Parts of a cycle in which measurements are averaged before the fit. A hundredth of a walker's
 /// cycle is shorter than a frame at 60 frames a second.
 const BINS: usize = 100;
-/// Weight of the prior on harmonic h, in cycles of measurements over h^4: the higher a harmonic,
+/// Weight of the prior on harmonic h, in cycles of measurements over h^4. The higher a harmonic,
 /// the less one cycle says against the model's. Chosen: a tenth of what leaves a knee's fourth
 /// harmonic to the data after one cycle.
 const PRIOR_CYCLES: f64 = 1.0e-4;

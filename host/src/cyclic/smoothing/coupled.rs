@@ -76,8 +76,8 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
     }
 
     /// There is none where the position is searched for or was found anew. An angle whose constant
-    /// was opened at the gate has that much more noise, so that what is learned anew after it
-    /// says nothing about what was before.
+    /// was opened at the gate has that much more noise. So what is learned anew after it says
+    /// nothing about what was before.
     fn link(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, next: &Self) -> Option<Link> {
         if next.0.relocks() != self.0.relocks() || next.0.is_searching() {
             return None;
@@ -133,7 +133,7 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
             }
             angle_variance_rad2[angle] = f64::from(self.0.band_calibration()) * variance.max(0.0);
         }
-        // An angle that is judged by itself moves its own parts but not (c, v): what looks back
+        // An angle that is judged by itself moves its own parts but not (c, v). What looks back
         // adds that up as if it knew less of them.
         let filtered = self.0.cycle();
         let variance = |index: usize, filtered: f32| moments.covariance[(index, index)].clamp(0.0, f64::from(filtered));

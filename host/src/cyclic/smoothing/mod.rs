@@ -2,7 +2,7 @@
 //! a filter. Source: Rauch, Tung and Striebel, "Maximum likelihood estimates of linear dynamic
 //! systems", AIAA Journal 3, 1965.
 //!
-//! The states of the forward pass are kept as they were; means, covariances and the step to the
+//! The states of the forward pass are kept as they were. Means, covariances and the step to the
 //! next frame are taken from them in `f64`, frame by frame. The predicted covariance is that of the
 //! step, F P F' + Q, not the filter's rounded or limited one.
 

@@ -16,7 +16,7 @@ pub struct Moments {
 const RIDGES: [f64; 3] = [0.0, 1.0e-9, 1.0e-6];
 
 /// The moments of x(k) given everything: m + G `surprise`, P + G (P(k+1, smoothed) - P(k+1,
-/// predicted)) G' with G = `cross` / P(k+1, predicted).
+/// predicted)) G'. There G = `cross` / P(k+1, predicted).
 ///
 /// `filtered` are the moments of x(k) given the measurements up to k. `cross` is the covariance of
 /// x(k) with x(k+1) before the measurement k+1, and `predicted_covariance` that of x(k+1).

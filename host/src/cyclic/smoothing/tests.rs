@@ -113,7 +113,7 @@ fn the_smoothed_paper_filter_is_the_joint_posterior() {
     });
 }
 
-/// The shipped walk at 60 cycles a minute: frame f is at f / 60 of a cycle and `jump` of a cycle
+/// The shipped walk at 60 cycles a minute. Frame f is at f / 60 of a cycle and `jump` of a cycle
 /// further from frame `at` on.
 fn walk(frames: u64, at: u64, jump: f64) -> AngleTable {
     let model = CyclicModel::from_option("walking").unwrap();

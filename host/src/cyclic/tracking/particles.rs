@@ -1,7 +1,7 @@
 //! The paper's particle filter over many threads: the core's stages on chunks of particles (cyclic
 //! paper, section 3.3).
 //!
-//! Every particle draws from its own stream and the chunks' sums are added in their order, so the
+//! Every particle draws from its own stream, and the chunks' sums are added in their order. So the
 //! result has the same bits on any number of threads.
 
 use super::saved_estimate::visit_estimate;

@@ -45,8 +45,8 @@ impl<'a> StreamRun<'a> {
     /// angles a joint.
     ///
     /// # Errors
-    /// An option out of range, a rate so low that a step is too long, smoothing, or a model with
-    /// two angles a joint for rows with one.
+    /// An option out of range, smoothing, or a rate so low that a step is too long. Also a model
+    /// with two angles a joint for rows with one.
     pub fn new(model: &'a CyclicModel, options: &'a TrackingOptions, is_spatial: bool) -> Result<Self> {
         ensure!(!options.smooth, "`--smooth` needs a recording that is kept whole");
         check_angles(model, is_spatial)?;

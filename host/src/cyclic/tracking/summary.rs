@@ -23,9 +23,9 @@ pub struct Summary {
     pub seen_s: f64,
     /// Cycles passed while the person was seen, with their fraction.
     pub cycles: f64,
-    /// Cycles per minute, of the mean time of a cycle from each of sixteen phases on; where the
-    /// person was never seen for two cycles in a row, of all that was passed; `None` for less than
-    /// [`MIN_CYCLES`].
+    /// Cycles per minute, of the mean time of a cycle from each of sixteen phases on. Where the
+    /// person was never seen for two cycles in a row, it is of all that was passed. `None` for less
+    /// than [`MIN_CYCLES`].
     pub cadence_per_min: Option<f64>,
     /// Standard deviation of the cadence from cycle to cycle; `None` for less than three whole
     /// cycles.

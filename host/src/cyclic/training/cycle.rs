@@ -32,8 +32,8 @@ impl TrainingCycle {
     /// own other end.
     ///
     /// # Errors
-    /// The cut lies outside of the table, is shorter than four frames or longer than a million, or
-    /// an angle is missing for more than a tenth of it.
+    /// The cut lies outside of the table, or is shorter than four frames or longer than a million.
+    /// Or an angle is missing for more than a tenth of it.
     pub fn new(table: &AngleTable, cut: &Cut) -> Result<Self, String> {
         let (start, end) = (cut.start_frame, cut.end_frame);
         if start < table.first_frame() || end > table.end_frame() {

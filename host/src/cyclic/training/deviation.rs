@@ -22,8 +22,8 @@ const SHRINKAGE: f64 = 0.2;
 /// The same for the rest, which differs from cycle to cycle as well and is known from more than a
 /// few people.
 const REST_INFLATION: f64 = 2.0;
-/// The same part of the rest's variance. It is more: how much of an angle's fine movement is a
-/// person's own depends on how the joints were placed, which for short links differs most between
+/// The same part of the rest's variance. It is more, since how much of an angle's fine movement is
+/// a person's own depends on how the joints were placed. For short links that differs most between
 /// sources.
 const REST_SHRINKAGE: f64 = 0.35;
 /// Smallest standard deviation, radians (a third of a degree): labels are no better.

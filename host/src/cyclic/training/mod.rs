@@ -34,8 +34,8 @@ impl Default for TrainingOptions {
 /// Trains a model on the cycles of `list`.
 ///
 /// # Errors
-/// A table that cannot be read, a cut that cannot be used (named with the list's line), less than
-/// two cycles, or options out of their range.
+/// A table that cannot be read, a cut that cannot be used (named with the list's line), or less
+/// than two cycles. Also options out of their range.
 pub fn train(list: &CutList, options: TrainingOptions) -> Result<CyclicModel, CyclicError> {
     train_on(&read_cycles(list)?, list, options)
 }

@@ -48,7 +48,7 @@ pub fn of_positions(cycles: &[TrainingCycle], length: usize) -> Vec<PositionStat
 /// along the cycle. The last row is where the mean cycle ends.
 ///
 /// A limb that points at the camera may turn either way, so an angle may wind in some cycles only.
-/// Then it is the mean of the cycles with the commonest number of turns: the mean of both ways is a
+/// Then it is the mean of the cycles with the commonest number of turns. The mean of both ways is a
 /// pose that does not occur.
 #[must_use]
 pub fn mean_pose(cycles: &[TrainingCycle], length: usize) -> Vec<Vec<f64>> {

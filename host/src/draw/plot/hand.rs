@@ -24,8 +24,8 @@ const PATH_RIM_PX: (u32, u32) = (84, 80);
 type Track = (Side, Vec<HandSample>);
 
 /// Plots the hands' way in an image of `image_size` (width and height, pixels). Over time it plots
-/// their column, row and depth with one standard deviation, the likelihood of the carrying blob
-/// shaded by status, and the effective sample size.
+/// their column, row and depth with one standard deviation. It also plots the likelihood of the
+/// carrying blob shaded by status, and the effective sample size.
 ///
 /// Samples of both sides may be mixed. Numbers that are not finite leave gaps, no samples at all
 /// leave empty axes.

@@ -2,8 +2,8 @@ use super::*;
 use crate::cyclic::image_joints::JointFrame;
 use crate::keypoints::layout::{Part, stick_joints};
 
-/// A person of 60 frames whose trunk is 100 px: place of the hips, where the nose is before the
-/// neck, length of the left thigh.
+/// A person of 60 frames whose trunk is 100 px. The numbers are the place of the hips, where the
+/// nose is before the neck, and the length of the left thigh.
 fn doubts(of: impl Fn(f64) -> (Point, f64, f64)) -> Vec<String> {
     let point = |part: Part, position_px: Point| Keypoint { part, position_px, confidence: 1.0 };
     let person = |frame: u32| {

@@ -3,8 +3,8 @@
 //! 1. While the filter is searching, it relocks as soon as one mode of the grid holds
 //!    [`MIN_MODE_WEIGHT`].
 //! 2. While it is locked, it relocks when such a mode has disagreed with it for
-//!    [`MAX_DISAGREEMENT_FRAMES`] in a row, unless the filter overrules the grid: its NIS is good
-//!    and its lock is not spurious.
+//!    [`MAX_DISAGREEMENT_FRAMES`] in a row, unless the filter overrules the grid. It overrules the
+//!    grid when its NIS is good and its lock is not spurious.
 //! 3. For [`FUSION_CYCLES`] after a relock, the grid's phase is fused with the filter's.
 
 use super::agreement::MIN_MODE_WEIGHT;

@@ -6,8 +6,8 @@ use super::parameters::Parameters;
 /// points.
 const MAX_LISTS: usize = 257;
 
-/// Names of the first points, at most `points`: those of `LABELS`, then `LABELS2` and so on, each
-/// of which goes on where the one before was full.
+/// Names of the first points, at most `points`. They are those of `LABELS`, then `LABELS2` and so
+/// on, each of which goes on where the one before was full.
 pub fn read(parameters: &Parameters, points: usize) -> Vec<String> {
     let name = |number: usize| if number == 1 { "LABELS".to_owned() } else { format!("LABELS{number}") };
     let list = |number: usize| parameters.texts("POINT", &name(number));

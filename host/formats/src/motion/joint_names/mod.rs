@@ -60,8 +60,8 @@ pub struct JointSources {
     feet: [FootSources; 2],
 }
 
-/// The points of one more joint, by `patterns` as for the limbs. Each entry is an alternative; `+`
-/// is the middle of points, `{L}` and `{l}` the side, and `{s}` at the beginning any form of the
+/// The points of one more joint, by `patterns` as for the limbs. Each entry is an alternative. `+`
+/// is the middle of points, `{L}` and `{l}` the side. `{s}` at the beginning is any form of the
 /// side before or behind the rest. `None` where no choice is among `names`.
 #[must_use]
 pub fn named_points(names: &[String], patterns: &[&str], left: bool) -> Option<Vec<usize>> {

@@ -94,9 +94,9 @@ pub struct LiftSamples {
 }
 
 /// Tracks the built-in lift to its ninth frame with the model of the pelvic lift. Then draws ten
-/// samples of the next frame by PIK (22), PIK (38) and PIK (39): an ancestor by its weight, the
-/// root, the goals and the mode of PIK (12). The pose comes from a Laplace expansion, as wide as
-/// the models' `[draw]` says.
+/// samples of the next frame by PIK (22), PIK (38) and PIK (39). Each takes an ancestor by its
+/// weight, the root, the goals and the mode of PIK (12). The pose comes from a Laplace expansion,
+/// as wide as the models' `[draw]` says.
 ///
 /// # Errors
 /// Numbers of the model that break a rule.

@@ -27,7 +27,8 @@ pub struct PredictionReport {
 }
 
 /// Draws poses of the person of `motion` from the first pose (figure 2) and of the built-in pelvic
-/// lift (figures 19 and 20), and the figures with their file names.
+/// lift (figures 19 and 20). The second part of the answer is the figures with
+/// their file names.
 ///
 /// # Errors
 /// Measures or numbers of a model that break a rule.
