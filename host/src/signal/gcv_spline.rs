@@ -65,16 +65,17 @@ impl Fit {
         let inner = values.len() - 2;
         let factors = Factors::new(inner, lambda);
         let bends: Vec<f64> = values.windows(3).map(|three| three[0] - 2.0 * three[1] + three[2]).collect();
-        let gamma = factors.solve(bends);
-        let at = |i: usize| gamma.get(i).copied().unwrap_or(0.0);
-        let change = |i: usize| {
-            let before = i.checked_sub(1).map_or(0.0, at);
-            lambda * (i.checked_sub(2).map_or(0.0, at) - 2.0 * before + at(i))
-        };
-        let changes: Vec<f64> = (0..values.len()).map(change).collect();
+        let (gamma, trace) = factors.solve_and_trace(bends);
+        // Second derivatives are zero beyond both ends.
+        let mut changes = vec![0.0; values.len()];
+        let (mut second, mut before) = (0.0, 0.0);
+        for (change, at) in changes.iter_mut().zip(gamma.into_iter().chain([0.0; 2])) {
+            *change = lambda * (second - 2.0 * before + at);
+            (second, before) = (before, at);
+        }
         Self {
             residual: changes.iter().map(|change| change * change).sum(),
-            freedom: lambda * factors.trace_with_bends(),
+            freedom: lambda * trace,
             smooth: values.iter().zip(&changes).map(|(value, change)| value - change).collect(),
         }
     }
@@ -107,48 +108,44 @@ impl Factors {
             if i >= 2 {
                 pivot -= second_below[i - 2] * second_below[i - 2] * pivots[i - 2];
             }
-            pivots[i] = pivot;
-            below[i] = if i + 1 < size { next / pivot } else { 0.0 };
-            second_below[i] = if i + 2 < size { second / pivot } else { 0.0 };
+            (pivots[i], below[i], second_below[i]) = (pivot, next / pivot, second / pivot);
+            if i >= 2 && (1..=2).all(|back| pivots[i - back] == pivot && below[i - back] == below[i]) {
+                // A row hangs on the two before it only: all further ones are the same.
+                pivots[i..].fill(pivot);
+                below[i..].fill(next / pivot);
+                second_below[i..].fill(second / pivot);
+                break;
+            }
         }
+        below[size - 1..].fill(0.0);
+        second_below[size.saturating_sub(2)..].fill(0.0);
         factors
     }
 
-    fn solve(&self, mut right: Vec<f64>) -> Vec<f64> {
-        let size = right.len();
-        for i in 0..size {
-            if i >= 1 {
-                right[i] -= self.below[i - 1] * right[i - 1];
-            }
-            if i >= 2 {
-                right[i] -= self.second_below[i - 2] * right[i - 2];
-            }
+    /// The solution of a right side, and the trace of the inverse times Q'Q, from the last row of
+    /// the inverse's bands to the first.
+    fn solve_and_trace(&self, mut right: Vec<f64>) -> (Vec<f64>, f64) {
+        // What the solutions one and two rows before take from a row.
+        let (mut first, mut second, mut next_second) = (0.0, 0.0, 0.0);
+        for (value, (below, second_below)) in right.iter_mut().zip(self.below.iter().zip(&self.second_below)) {
+            *value = *value - first - second;
+            (first, second, next_second) = (below * *value, next_second, second_below * *value);
         }
-        for i in (0..size).rev() {
-            right[i] /= self.pivots[i];
-            for (step, band) in [(1, &self.below), (2, &self.second_below)] {
-                if i + step < size {
-                    right[i] -= band[i] * right[i + step];
-                }
-            }
-        }
-        right
-    }
-
-    /// Trace of the inverse times Q'Q, from the last row of the inverse's bands to the first.
-    fn trace_with_bends(&self) -> f64 {
         // The inverse at (i + 1, i + 1), (i + 1, i + 2) and (i + 2, i + 2).
         let (mut next, mut beside, mut second) = (0.0, 0.0, 0.0);
+        let (mut after, mut second_after) = (0.0, 0.0);
         let mut trace = 0.0;
-        for i in (0..self.pivots.len()).rev() {
-            let (below, second_below) = (self.below[i], self.second_below[i]);
+        let bands = self.below.iter().zip(&self.second_below);
+        for ((value, pivot), (below, second_below)) in right.iter_mut().zip(&self.pivots).zip(bands).rev() {
+            *value = *value / pivot - below * after - second_below * second_after;
+            (second_after, after) = (after, *value);
             let to_next = -below * next - second_below * beside;
             let to_second = -below * beside - second_below * second;
-            let here = 1.0 / self.pivots[i] - below * to_next - second_below * to_second;
+            let here = 1.0 / pivot - below * to_next - second_below * to_second;
             trace += 6.0 * here - 8.0 * to_next + 2.0 * to_second;
             (next, beside, second) = (here, to_next, next);
         }
-        trace
+        (right, trace)
     }
 }
 

@@ -63,8 +63,12 @@ fn spread<const N: usize>(seen: &Seen<N>, phases: &[f64], shape: &Shape<N>) -> [
         let frames = seen.angles_rad.iter().zip(&poses);
         let mut sizes: Vec<f64> =
             frames.filter_map(|(frame, pose)| Some(least_angle(frame[angle]? - pose[angle]).abs())).collect();
-        sizes.sort_by(f64::total_cmp);
-        sizes.get(sizes.len() / 2).map_or(f64::INFINITY, |median| (STD_PER_MEDIAN * median).max(MIN_NOISE_RAD))
+        if sizes.is_empty() {
+            return f64::INFINITY;
+        }
+        let middle = sizes.len() / 2;
+        let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
+        (STD_PER_MEDIAN * *median).max(MIN_NOISE_RAD)
     })
 }
 

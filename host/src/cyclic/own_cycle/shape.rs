@@ -3,8 +3,9 @@
 use super::seen::Seen;
 use crate::cyclic::CyclicModel;
 use crate::cyclic::turns::least_angle;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::f64::consts::TAU;
+use std::sync::LazyLock;
 
 /// Harmonics: ten hold the mean cycles of the shipped models within 0.2 degrees on the mean.
 const HARMONICS: usize = 10;
@@ -20,6 +21,10 @@ const PRIOR_CYCLES: f64 = 1.0e-4;
 /// Entries of the table that the shape is read from, by straight lines between them: their error is
 /// below a hundredth of a degree.
 const ENTRIES: usize = 400;
+
+/// Harmonics and their slopes at the phases of the table.
+static EVEN_BASES: LazyLock<Vec<([f64; TERMS], [f64; TERMS])>> =
+    LazyLock::new(|| (0..=ENTRIES).map(|index| bases(index as f64 / ENTRIES as f64)).collect());
 
 /// Angles as functions of the phase, in cycles.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,29 +46,27 @@ impl<const N: usize> Shape<N> {
         let model = model.view();
         let phases: Vec<f64> = (0..BINS).map(|bin| bin as f64 / BINS as f64).collect();
         let poses: Vec<[f32; N]> = phases.iter().map(|phase| model.mean_pose_rad(model.point(*phase as f32))).collect();
+        let fit = Fit::new(0.0, &phases.iter().map(|phase| (*phase, 1.0)).collect::<Vec<_>>());
         let terms = (0..N).map(|angle| {
-            let mut fit = Fit::new(0.0);
             let mut before = f64::from(poses[0][angle]);
-            for (phase, pose) in phases.iter().zip(&poses) {
+            let unwound = phases.iter().zip(&poses).map(|(phase, pose)| {
                 let flat = f64::from(pose[angle]) - TAU * turns[angle] * phase;
                 before += least_angle(flat - before);
-                fit.add(*phase, before, 1.0);
-            }
-            fit.solved()
+                before
+            });
+            fit.solved(unwound)
         });
         Self::new(turns, terms.collect())
     }
 
     fn new(turns: [f64; N], terms: Vec<[f64; TERMS]>) -> Self {
-        let entry = |index: usize| {
-            let phase = index as f64 / ENTRIES as f64;
-            let (value, slope) = bases(phase);
+        let entry = |(value, slope): &([f64; TERMS], [f64; TERMS])| {
             let sum =
                 |basis: &[f64; TERMS], angle: usize| basis.iter().zip(&terms[angle]).map(|(b, t)| b * t).sum::<f64>();
-            let slopes = std::array::from_fn(|angle| sum(&slope, angle) + TAU * turns[angle]);
-            (std::array::from_fn(|angle| sum(&value, angle)), slopes)
+            let slopes = std::array::from_fn(|angle| sum(slope, angle) + TAU * turns[angle]);
+            (std::array::from_fn(|angle| sum(value, angle)), slopes)
         };
-        let entries = (0..=ENTRIES).map(entry).collect();
+        let entries = EVEN_BASES.iter().map(entry).collect();
         Self { turns, terms, entries }
     }
 
@@ -86,20 +89,28 @@ impl<const N: usize> Shape<N> {
     #[must_use]
     pub fn fitted(&self, seen: &Seen<N>, phases: &[f64]) -> Self {
         let cycles = (phases[phases.len() - 1] - phases[0]).abs().max(1.0);
+        let poses: Vec<[f64; N]> = phases.iter().map(|phase| self.at(*phase).0).collect();
+        // Angles that were seen in the same frames share a fit.
+        let mut shared: Option<(Vec<(f64, f64)>, Fit)> = None;
         let terms = (0..N).map(|angle| {
             let mut bins = [(0.0, 0.0, 0.0); BINS];
-            for (frame, phase) in seen.angles_rad.iter().zip(phases) {
+            for ((frame, phase), pose) in seen.angles_rad.iter().zip(phases).zip(&poses) {
                 let Some(angle_rad) = frame[angle] else { continue };
                 let part = phase.rem_euclid(1.0);
                 let bin = &mut bins[((part * BINS as f64) as usize).min(BINS - 1)];
-                *bin = (bin.0 + 1.0, bin.1 + part, bin.2 + least_angle(angle_rad - self.at(*phase).0[angle]));
+                *bin = (bin.0 + 1.0, bin.1 + part, bin.2 + least_angle(angle_rad - pose[angle]));
             }
-            let count: f64 = bins.iter().map(|bin| bin.0).sum();
-            let mut fit = Fit::new(PRIOR_CYCLES * (count / cycles).max(1.0));
-            for (count, part, off) in bins.into_iter().filter(|bin| bin.0 > 0.0) {
-                fit.add(part / count, off / count, count);
-            }
-            let change = fit.solved();
+            let filled = || bins.iter().filter(|bin| bin.0 > 0.0);
+            let places: Vec<(f64, f64)> = filled().map(|(count, part, _)| (part / count, *count)).collect();
+            let (_, fit) = match shared.take().filter(|(before, _)| *before == places) {
+                Some(same) => shared.insert(same),
+                None => {
+                    let count: f64 = bins.iter().map(|bin| bin.0).sum();
+                    let fit = Fit::new(PRIOR_CYCLES * (count / cycles).max(1.0), &places);
+                    shared.insert((places, fit))
+                }
+            };
+            let change = fit.solved(filled().map(|(count, _, off)| off / count));
             std::array::from_fn(|term| self.terms[angle][term] + change[term])
         });
         Self::new(self.turns, terms.collect())
@@ -119,29 +130,31 @@ fn bases(phase: f64) -> ([f64; TERMS], [f64; TERMS]) {
     (value, slope)
 }
 
-/// Least squares with a prior at zero.
+/// Least squares with a prior at zero, of values at the same phases.
 struct Fit {
-    gram: DMatrix<f64>,
-    right: DVector<f64>,
+    /// Harmonics at each phase, and its weight.
+    bases: Vec<(DVector<f64>, f64)>,
+    factor: Option<Cholesky<f64, Dyn>>,
 }
 
 impl Fit {
-    /// `weight` times h^4 pulls harmonic h to zero.
-    fn new(weight: f64) -> Self {
-        let pull = |term: usize| weight * (term.div_ceil(2) as f64).powi(4) + 1.0e-9;
-        let gram = DMatrix::from_diagonal(&DVector::from_fn(TERMS, |term, _| pull(term)));
-        Self { gram, right: DVector::zeros(TERMS) }
+    /// Of phases with their weights; `pull` times h^4 pulls harmonic h to zero.
+    fn new(pull: f64, places: &[(f64, f64)]) -> Self {
+        let bases: Vec<(DVector<f64>, f64)> =
+            places.iter().map(|(phase, weight)| (DVector::from_column_slice(&bases(*phase).0), *weight)).collect();
+        let pull = |term: usize| pull * (term.div_ceil(2) as f64).powi(4) + 1.0e-9;
+        let mut gram = DMatrix::from_diagonal(&DVector::from_fn(TERMS, |term, _| pull(term)));
+        bases.iter().for_each(|(basis, weight)| gram.ger(*weight, basis, basis, 1.0));
+        Self { bases, factor: gram.cholesky() }
     }
 
-    fn add(&mut self, phase: f64, value: f64, weight: f64) {
-        let basis = DVector::from_column_slice(&bases(phase).0);
-        self.gram.ger(weight, &basis, &basis, 1.0);
-        self.right.axpy(weight * value, &basis, 1.0);
-    }
-
-    /// The harmonics; zero where nothing was added.
-    fn solved(self) -> [f64; TERMS] {
-        let solved = self.gram.cholesky().map(|factor| factor.solve(&self.right));
+    /// The harmonics of a value at each phase; zero where there is none.
+    fn solved(&self, values: impl Iterator<Item = f64>) -> [f64; TERMS] {
+        let mut right = DVector::zeros(TERMS);
+        for ((basis, weight), value) in self.bases.iter().zip(values) {
+            right.axpy(weight * value, basis, 1.0);
+        }
+        let solved = self.factor.as_ref().map(|factor| factor.solve(&right));
         std::array::from_fn(|term| solved.as_ref().map_or(0.0, |solved| solved[term]))
     }
 }

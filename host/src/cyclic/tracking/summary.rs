@@ -262,8 +262,8 @@ mod tests {
     #[test]
     fn cadence_is_that_of_all_phases_and_backwards_that_of_what_was_passed() {
         let cadence = |cycles: &[f64]| Summary::of(&run(cycles)).cadence_per_min;
-        assert_eq!(cadence(&[0.1, 0.6, 1.1, 1.6, 2.1]), Some(60.0));
-        assert_eq!(cadence(&[0.1, 0.6, 1.1, 1.6]), None);
+        assert_eq!(cadence(&[0.25, 0.75, 1.25, 1.75, 2.25]), Some(60.0));
+        assert_eq!(cadence(&[0.25, 0.75, 1.25, 1.75]), None);
         assert_eq!(cadence(&[2.5, 1.5, 0.5]), Some(-120.0));
     }
 
