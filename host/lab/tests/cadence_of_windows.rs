@@ -19,10 +19,10 @@ const WALKS: [&str; 5] = [
 const RATE_HZ: f64 = 30.0;
 /// A window begins every half second; a walk that is shorter is its own window.
 const STEP_FRAMES: usize = 15;
-/// Seconds of a window, and the mean error of its cadence in percent.
-const WINDOWS: [(f64, f64); 3] = [(3.0, 0.27), (5.0, 0.16), (9.0, 0.08)];
+/// Seconds of a window, and the mean error of its cadence in percent: of all walks, of the worst.
+const WINDOWS: [(f64, [f64; 2]); 3] = [(3.0, [0.27, 0.39]), (5.0, [0.16, 0.30]), (9.0, [0.11, 0.73])];
 /// Room of these numbers, and what none of the walks may pass, percent.
-const ROOM_PERCENT: f64 = 0.05;
+const ROOM_PERCENT: f64 = 0.02;
 const LIMIT_PERCENT: f64 = 1.0;
 /// Trunk, arms and legs among the angles: lines from side to side have no direction in a side view.
 const LIMBS: [usize; 9] = [0, 2, 3, 5, 6, 8, 9, 11, 12];
@@ -64,7 +64,7 @@ fn squared(directions: &[Vec<f64>], frame: usize, place: f64) -> f64 {
 #[test]
 fn cadence_is_within_a_hundredth_of_the_windows_own() {
     for (window_s, stated_percent) in WINDOWS {
-        let mut all_percent = Vec::new();
+        let (mut all_percent, mut worst_percent) = (Vec::new(), 0.0_f64);
         for walk in WALKS {
             let Some(folder) = shared_data::in_release("mocap") else { return };
             let options = RecordingOptions { rate_hz: Some(RATE_HZ), ..RecordingOptions::default() };
@@ -77,10 +77,13 @@ fn cadence_is_within_a_hundredth_of_the_windows_own() {
             let mean_percent = found.iter().sum::<f64>() / found.len() as f64;
             println!("{window_s} s of {walk}: {mean_percent:.2} % off in {} windows", found.len());
             assert!(mean_percent <= LIMIT_PERCENT, "{walk}, {window_s} s: {mean_percent} %");
+            worst_percent = worst_percent.max(mean_percent);
             all_percent.extend(found);
         }
         let mean_percent = all_percent.iter().sum::<f64>() / all_percent.len() as f64;
         println!("{window_s} s: {mean_percent:.2} % off in {} windows", all_percent.len());
-        assert!((mean_percent - stated_percent).abs() <= ROOM_PERCENT, "{window_s} s: {mean_percent} %");
+        for (found, stated) in [mean_percent, worst_percent].into_iter().zip(stated_percent) {
+            assert!((found - stated).abs() <= ROOM_PERCENT, "{window_s} s: {found} instead of {stated} %");
+        }
     }
 }
