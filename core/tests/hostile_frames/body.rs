@@ -2,7 +2,7 @@
 
 use crate::corners::Corners;
 use crate::drive::{Recovery, Subject, drive, holds};
-use sinew_core::math::Vec3;
+use sinew_core::math::{Vec3, min};
 use sinew_core::observation::point_cloud::{PointBlock, PointCloud};
 use sinew_core::pik::example::{arm_points, arm_scene, bending_elbow, guided_arm, hand_goals, rod_points, rod_scene};
 use sinew_core::pik::goal::LinearExtrapolation;
@@ -74,7 +74,13 @@ struct Body<const B: usize, const A: usize> {
 impl<const B: usize, const A: usize> Subject for Body<B, A> {
     fn hostile(&mut self, corners: &mut Corners) -> Result<(), String> {
         let blocks = hostile_blocks(corners, &(self.points)(&self.scene), &self.scene.camera_m);
-        let frame = BodyFrame { dt_s: corners.number(DT_S), blocks: &blocks };
+        let mut dt_s = corners.number(DT_S);
+        // A time that is too long counts as the longest, ten seconds: after it the body may be
+        // anywhere, so that is no number that is refused.
+        if corners.only_refused() && dt_s.is_finite() {
+            dt_s = min(dt_s, DT_S);
+        }
+        let frame = BodyFrame { dt_s, blocks: &blocks };
         let estimate = self.trackers[0].step(&self.scene, &(self.motion)(&self.goals), &frame);
         let is_sound = estimate.angles_rad.iter().chain([&estimate.log_evidence]).all(|x| x.is_finite())
             && estimate.ends_m.iter().all(|end_m| end_m.iter().all(|x| x.is_finite()))
