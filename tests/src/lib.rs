@@ -52,7 +52,7 @@ fn build_sinew() -> PathBuf {
             // A test among the targets makes cargo choose the features of `cargo test --workspace`,
             // so that the library is not compiled once more.
             "--test",
-            "help",
+            "project",
             "--profile",
             profile,
             "--target-dir",

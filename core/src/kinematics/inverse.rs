@@ -13,8 +13,8 @@ use crate::math::{abs, max};
 const MAX_HALVINGS: usize = 6;
 /// A step shorter than this ends the iteration, radians.
 ///
-/// Chosen: 0.06 degrees; `cargo test -p sinew-core --test solver_brute_force` holds the error of
-/// the mode.
+/// Chosen: 0.06 degrees; `cargo test -p sinew-core --test tracking solver_brute_force` holds the
+/// error of the mode.
 const STEP_TOLERANCE_RAD: f32 = 1.0e-3;
 
 /// A step with a smaller predicted gain of log density ends the iteration.

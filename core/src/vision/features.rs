@@ -14,8 +14,8 @@ use crate::vision::candidate::HandCandidate;
 /// blob's area.
 ///
 /// Chosen: about the palm's radius of an open hand, so that gaps between spread fingers are filled.
-/// Measured: `cargo test -p sinew --test hand_likelihood_roc`; `docs/hand_likelihood.md` compares
-/// it with DTmax.
+/// Measured: `cargo test -p sinew-lab --test accuracy hand_likelihood_roc`;
+/// `docs/hand_likelihood.md` compares it with DTmax.
 pub const DEFAULT_FILL_RATIO: f32 = 0.75;
 
 /// Shape features of a set of pixels.

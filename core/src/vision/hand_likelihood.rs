@@ -93,7 +93,8 @@ pub const DEFAULT_SCALE: f32 = 5.0;
 /// The smooth area term is a half at this many times TH_min, and at TH_max.
 ///
 /// Chosen: a hand at arm's length from a desk's camera has ten to thirty times TH_min.
-/// Measured with the other area parameters: `cargo test -p sinew --test hand_likelihood_roc`.
+/// Measured with the other area parameters:
+/// `cargo test -p sinew-lab --test accuracy hand_likelihood_roc`.
 const HALF_AT_TIMES_MIN: f32 = 5.0;
 /// Far below that, the term goes as the area to this power.
 ///

@@ -20,6 +20,8 @@ static BYTES: &[u8] = include_bytes!("walking.sinewmodel");
 pub static WALKING: HumanModelTable = match HumanModelTable::from_bytes(BYTES) {
     Ok(table) => table,
     Err(_) => {
-        panic!("walking.sinewmodel has to be made again: SINEW_REGENERATE=1 cargo test -p sinew --test walking_model")
+        panic!(
+            "walking.sinewmodel has to be made again: SINEW_REGENERATE=1 cargo test -p sinew --test library walking_model"
+        )
     }
 };

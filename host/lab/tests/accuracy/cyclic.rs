@@ -1,7 +1,7 @@
 //! The accuracy of the cyclic filters that the book states, on real walkers. Runs in release where
 //! `../shared/data` is at hand, and says so where not.
 
-mod shared_data;
+use crate::shared_data;
 
 use sinew::cyclic::CutList;
 use sinew::cyclic::tracking::FilterName;

@@ -1,6 +1,6 @@
 //! `sinew report` as a user types it, over every kind of run directory, whole and broken.
 
-mod cyclic_walk;
+use crate::cyclic_walk;
 
 use serde_json::Value;
 use sinew_tests::sinew_command;

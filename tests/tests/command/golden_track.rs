@@ -2,8 +2,8 @@
 //! to the last digit.
 //!
 //! Results are the same in every build, so there is no tolerance. After a change that is meant to
-//! change tracks, run `SINEW_REGENERATE=1 cargo test -p sinew-tests --test golden_track`, look at
-//! the difference, and commit it.
+//! change tracks, run `SINEW_REGENERATE=1 cargo test -p sinew-tests --test command golden_track`,
+//! look at the difference, and commit it.
 
 use assert_cmd::Command;
 use sinew::motion::reach::random_reaches;

@@ -2,19 +2,15 @@
 //! model was trained on, by the phase-coupled filter. Runs in release where `../shared/data` is at
 //! hand, and says so where not.
 
-mod shared_data;
-#[path = "shared_data/walk_cuts.rs"]
-mod walk_cuts;
-#[path = "shared_data/walks.rs"]
-mod walks;
+use crate::shared_data;
 
+use crate::walk_cuts::list;
+use crate::walks::WALKS;
 use sinew::cyclic::CyclicModel;
 use sinew::cyclic::tracking::FilterName;
 use sinew::resume::Cells;
 use sinew_lab::cyclic::experiments::SIGMAS_DEG;
 use sinew_lab::cyclic::{Cell, LONG_RUN_SIGMA_DEG, Protocol, Setting, long_runs, test_cycles};
-use walk_cuts::list;
-use walks::WALKS;
 
 /// Largest relative error of the mean cadence from the third cycle on.
 const CADENCE: f64 = 0.02;

@@ -2,7 +2,7 @@
 //! the most that a better memory could give them. See docs/body_tracker.md, *what goals could gain
 //! at most*. Runs in release where `../shared/data` is at hand, and says so where not.
 
-mod shared_data;
+use crate::shared_data;
 
 use sinew::body::run::score::RunningMean;
 use sinew::body::tracking::end_effectors::{CARRIED, END_EFFECTORS};

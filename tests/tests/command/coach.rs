@@ -1,10 +1,8 @@
 //! The way that docs/coach.md goes: a table of keypoints in pixels, angles, cadence, joints in
 //! pixels again.
 
-mod cyclic_walk;
-
+use crate::cyclic_walk::walk;
 use assert_cmd::Command;
-use cyclic_walk::walk;
 use sinew::cyclic::export::trc::{joint_positions, standard_lengths_m};
 use sinew_core::skeleton::stick_figure::HUMAN;
 use sinew_tests::{sinew_command, workspace_root};

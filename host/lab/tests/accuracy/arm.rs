@@ -1,7 +1,7 @@
 //! The accuracy of the default arm tracker that the book states, on rendered scenes that real
 //! motion drives. Runs in release where `../shared/data` is at hand, and says so where not.
 
-mod shared_data;
+use crate::shared_data;
 
 use sinew::config::Config;
 use sinew::resume::Cells;

@@ -1,9 +1,7 @@
 //! `sinew evaluate cyclic` as a user types it.
 
-mod cyclic_walk;
-
+use crate::cyclic_walk::walk;
 use assert_cmd::Command;
-use cyclic_walk::walk;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use sinew_tests::sinew_command;

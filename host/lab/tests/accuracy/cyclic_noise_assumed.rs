@@ -1,19 +1,15 @@
 //! Whole walks whose noise is as large as `coupled` assumes, smaller, or as large but slow: errors
 //! and bands. Runs in release where `../shared/data` is at hand, and says so where not.
 
-mod shared_data;
-#[path = "shared_data/walk_cuts.rs"]
-mod walk_cuts;
-#[path = "shared_data/walks.rs"]
-mod walks;
+use crate::shared_data;
 
+use crate::walk_cuts::list;
+use crate::walks::WALKS;
 use sinew::cyclic::tracking::{TrackingOptions, track};
 use sinew::cyclic::{AngleTable, CyclicModel};
 use sinew_core::random::Stream;
 use sinew_lab::cyclic::Errors;
 use std::ops::Range;
-use walk_cuts::list;
-use walks::WALKS;
 
 /// Standard deviation that the filter assumes, degrees.
 const ASSUMED_DEG: f64 = 6.0;

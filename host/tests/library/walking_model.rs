@@ -13,6 +13,6 @@ fn the_model_for_flash_is_the_shipped_one() {
     }
     assert!(
         std::fs::read(&path).unwrap() == bytes,
-        "the model was trained anew; SINEW_REGENERATE=1 cargo test -p sinew --test walking_model"
+        "the model was trained anew; SINEW_REGENERATE=1 cargo test -p sinew --test library walking_model"
     );
 }

@@ -1,7 +1,7 @@
 //! The cadence of short windows of walks that nothing was trained or chosen on. Runs in release
 //! where `../shared/data` is at hand, and says so where not.
 
-mod shared_data;
+use crate::shared_data;
 
 use sinew::cyclic::angle_table::ANGLES;
 use sinew::cyclic::own_cycle::{finish, noise};

@@ -2,7 +2,7 @@
 //! (docs/measurements.md). Runs in release where `../shared/data` is at hand, and says so where
 //! not.
 
-mod shared_data;
+use crate::shared_data;
 
 use sinew::body::BodyPart;
 use sinew::body::tracking::{BodyModelKind, BodyTuning};

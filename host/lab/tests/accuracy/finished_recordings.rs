@@ -2,7 +2,7 @@
 //! them as they are, or filter them. Runs in release where `../shared/data` is at hand, and says so
 //! where not.
 
-mod shared_data;
+use crate::shared_data;
 
 use sinew::cyclic::anatomy::of_pose;
 use sinew::cyclic::angle_table::ANGLES;

@@ -153,7 +153,7 @@ fn the_shipped_walking_is_what_the_command_makes() {
     let Some(tables) = shared_data("cyclic-walking") else { return };
     let root = tempfile::tempdir().unwrap();
     let shipped = CyclicModel::from_option("walking").unwrap();
-    let list = include_str!("../../host/models/cuts/walking.csv");
+    let list = include_str!("../../../host/models/cuts/walking.csv");
     let absolute: Vec<String> =
         list.lines().skip(1).map(|line| tables.join(line).to_string_lossy().into_owned()).collect();
     fs::write(root.path().join("cuts.csv"), format!("file,start_frame,end_frame\n{}\n", absolute.join("\n"))).unwrap();
@@ -166,7 +166,7 @@ fn the_shipped_walking_is_what_the_command_makes() {
 fn the_shipped_running_is_what_the_commands_make() {
     let Some(runs) = shared_data("mocap/cmu-expmap") else { return };
     let root = tempfile::tempdir().unwrap();
-    let list = include_str!("../../host/models/cuts/running.csv");
+    let list = include_str!("../../../host/models/cuts/running.csv");
     fs::write(root.path().join("cuts.csv"), list).unwrap();
     for number in 1..=3 {
         for (end, more) in [("", None), ("_swapped", Some("--swap-sides"))] {
@@ -185,7 +185,7 @@ fn the_shipped_running_is_what_the_commands_make() {
 fn the_shipped_arm_circles_are_what_the_commands_make() {
     let Some(mocap) = shared_data("mocap") else { return };
     let root = tempfile::tempdir().unwrap();
-    fs::write(root.path().join("cuts.csv"), include_str!("../../host/models/cuts/arm-circles.csv")).unwrap();
+    fs::write(root.path().join("cuts.csv"), include_str!("../../../host/models/cuts/arm-circles.csv")).unwrap();
     for trial in ["13_29", "13_31"] {
         for (end, more) in [("", None), ("_swapped", Some("--swap-sides"))] {
             let mut command = Command::from_std(sinew_command());

@@ -3,11 +3,9 @@
 //! knows, each closed and repeated. These are tracked by models of one recording's circles alone,
 //! too.
 
-#[path = "shared_data/circles.rs"]
-mod circles;
-mod shared_data;
+use crate::shared_data;
 
-use circles::{Circles, FORWARDS, table, trained, write_tables};
+use crate::circles::{Circles, FORWARDS, table, trained, write_tables};
 use sinew::cyclic::angle_table::ANGLES;
 use sinew::cyclic::cuts::{self, Cut};
 use sinew::cyclic::synthetic_person::SyntheticPerson;

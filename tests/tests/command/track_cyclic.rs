@@ -1,9 +1,7 @@
 //! `sinew track cyclic` as a user types it.
 
-mod cyclic_walk;
-
+use crate::cyclic_walk::walk;
 use assert_cmd::Command;
-use cyclic_walk::walk;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use sinew::cyclic::angle_table::ANGLES;

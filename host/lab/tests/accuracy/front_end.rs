@@ -1,8 +1,8 @@
 //! The line front end of the core against the host's chain, on rendered scenes and on webcam
 //! frames. Both have the same blobs, similar edges, and a likelihood that ranks them alike.
 //!
-//! `cargo test --release -p sinew --test front_end -- --nocapture` prints what `docs/front_end.md`
-//! states.
+//! `cargo test --release -p sinew-lab --test accuracy front_end -- --nocapture` prints what
+//! `docs/front_end.md` states.
 
 use image::RgbImage;
 use image::imageops::{FilterType, resize};

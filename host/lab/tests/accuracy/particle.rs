@@ -1,7 +1,7 @@
 //! What the book says about the particle filter's accuracy on real walkers. Runs in release where
 //! `../shared/data` is at hand, and says so where not.
 
-mod shared_data;
+use crate::shared_data;
 
 use sinew::cyclic::CutList;
 use sinew::cyclic::tracking::StartName;

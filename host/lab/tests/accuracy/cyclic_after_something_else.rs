@@ -2,10 +2,9 @@
 //! walk found, and how soon? Runs in release where `../shared/data` is at hand, and says so where
 //! not.
 
-mod shared_data;
-#[path = "shared_data/walks.rs"]
-mod walks;
+use crate::shared_data;
 
+use crate::walks::WALKS;
 use sinew::cyclic::recording::{RecordingOptions, angles};
 use sinew::cyclic::tracking::{TrackingOptions, track};
 use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
@@ -13,7 +12,6 @@ use sinew_lab::cyclic::Protocol;
 use sinew_lab::cyclic::protocol::measurements;
 use std::ops::Range;
 use std::path::Path;
-use walks::WALKS;
 
 /// Noise, degrees, with the greatest share of frames off in the second second of walking, and from
 /// then on.

@@ -2,7 +2,7 @@
 //! that cutting does not use. Runs in release where `../shared/data` is at hand, and says so where
 //! not.
 
-mod shared_data;
+use crate::shared_data;
 
 use sinew::cyclic::AngleTable;
 use sinew::cyclic::cuts::Cut;

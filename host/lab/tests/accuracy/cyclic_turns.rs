@@ -1,11 +1,9 @@
 //! Arms that go round: real arm circles of one person in two recordings, forwards and backwards.
 //! Runs in release where `../shared/data` is at hand, and says so where not.
 
-#[path = "shared_data/circles.rs"]
-mod circles;
-mod shared_data;
+use crate::shared_data;
 
-use circles::{Circles, FORWARDS, trained, write_tables};
+use crate::circles::{Circles, FORWARDS, trained, write_tables};
 use sinew::cyclic::tracking::{FilterName, TrackingOptions, track};
 use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
 use sinew_lab::cyclic::Protocol;

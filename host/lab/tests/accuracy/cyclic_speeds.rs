@@ -2,20 +2,16 @@
 //! `coupled` keeps the position. Runs in release where `../shared/data` is present, and reports
 //! where it is not.
 
-mod shared_data;
-#[path = "shared_data/walk_cuts.rs"]
-mod walk_cuts;
-#[path = "shared_data/walks.rs"]
-mod walks;
+use crate::shared_data;
 
+use crate::walk_cuts::list;
+use crate::walks::WALKS;
 use sinew::cyclic::cuts::{self, Cut};
 use sinew::cyclic::tracking::FilterName;
 use sinew::cyclic::{AngleRow, AngleTable, CutList, CyclicModel};
 use sinew_lab::cyclic::{LongRun, long_runs};
 use std::f64::consts::TAU;
 use std::path::Path;
-use walk_cuts::list;
-use walks::WALKS;
 
 /// Noise, degrees, with the largest mean error of the cadence from the third cycle on over all
 /// tempos. Then the largest share of runs whose position is off by a fifth of a cycle at some time.

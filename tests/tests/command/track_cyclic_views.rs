@@ -1,9 +1,7 @@
 //! What `sinew track cyclic` shows of a finished recording: looking back, overlays, animations.
 
-mod cyclic_walk;
-
+use crate::cyclic_walk::walk;
 use assert_cmd::Command;
-use cyclic_walk::walk;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use sinew::cyclic::{AngleRow, AngleTable};
