@@ -142,6 +142,11 @@ pub fn parse(text: &str) -> Result<CyclicModel> {
     let n = if file.angles.len() > ANGLES { 2 * ANGLES } else { ANGLES };
     let wanted = angle_names(n);
     ensure!(file.angles == wanted, "its field `angles` has to be {}", wanted.join(", "));
+    if let Some(DeviationNumbers { inflation, shrinkage, .. }) = file.deviation {
+        for (name, value) in [("inflation", inflation), ("shrinkage", shrinkage)] {
+            ensure!(value.is_finite(), "`deviation.{name}` has to be a finite number");
+        }
+    }
     let l = file.mean_acceleration.len();
     let table = |name: &str, rows: Rows<f32>, width: usize| -> Result<Vec<f32>> {
         ensure!(rows.len() == l, "`{name}` has {} rows, but `mean_acceleration` has {l}", rows.len());
@@ -186,6 +191,12 @@ mod tests {
         let mut value: serde_json::Value = serde_json::from_str(&walking_json()).unwrap();
         change(&mut value);
         refusal(&value.to_string())
+    }
+
+    #[test]
+    fn a_number_beyond_the_range_is_refused() {
+        let message = changed(|value| value["deviation"]["shrinkage"] = serde_json::json!(1.0e308));
+        assert!(message.contains("`deviation.shrinkage` has to be a finite number"), "{message}");
     }
 
     #[test]

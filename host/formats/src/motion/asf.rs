@@ -2,7 +2,8 @@
 
 use super::error::{MotionError, number, read_text};
 use crate::limits::MAX_JOINTS;
-use sinew_core::math::{Mat3, Vec3, axis_rotation};
+use sinew_core::math::{Mat3, SIN_COS_MAX_ARGUMENT_RAD, Vec3, axis_rotation};
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 const METRES_PER_INCH: f32 = 0.0254;
@@ -303,5 +304,12 @@ pub(crate) fn rotation_axis(kind: &str) -> Option<RotationAxis> {
 /// Rotation about a coordinate axis.
 pub(crate) fn about(axis: usize, angle_rad: f32) -> Mat3 {
     let unit = [Vec3::x(), Vec3::y(), Vec3::z()][axis];
-    axis_rotation(&unit, angle_rad)
+    rotation(&unit, angle_rad)
+}
+
+/// Rotation about the unit vector `axis` by any number of turns. Sine and cosine of the core are
+/// exact up to [`SIN_COS_MAX_ARGUMENT_RAD`]; beyond it whole turns are taken off.
+pub(crate) fn rotation(axis: &Vec3, angle_rad: f32) -> Mat3 {
+    let is_exact = angle_rad.abs() <= SIN_COS_MAX_ARGUMENT_RAD;
+    axis_rotation(axis, if is_exact { angle_rad } else { (f64::from(angle_rad) % TAU) as f32 })
 }

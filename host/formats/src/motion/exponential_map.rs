@@ -11,7 +11,7 @@ use super::anthropometry as fraction;
 use super::asf;
 use super::error::{MotionError, number, read_text};
 use super::recording::Motion;
-use sinew_core::math::{Mat3, Vec3, axis_rotation, length};
+use sinew_core::math::{Mat3, Vec3, length};
 use std::path::Path;
 
 /// Numbers in a row: the root's position and 38 rotation vectors (End Sites count as joints).
@@ -161,7 +161,7 @@ fn place(values: &[f32], table: &[Joint], unit_m: f32, positions_m: &mut Vec<Vec
         let vector = Vec3::new(values[at], values[at + 1], values[at + 2]);
         let angle_rad = length(&vector);
         let rotation =
-            if angle_rad > 1.0e-9 { axis_rotation(&(vector / angle_rad), -angle_rad) } else { Mat3::identity() };
+            if angle_rad > 1.0e-9 { asf::rotation(&(vector / angle_rad), -angle_rad) } else { Mat3::identity() };
         let (parent, frame) = globals.get(joint.parent).copied().unwrap_or((root_m, Mat3::identity()));
         globals.push((parent + frame * Vec3::from(joint.offset) * unit_m, frame * rotation));
     }
@@ -184,6 +184,14 @@ mod tests {
 
     fn parsed(rows: &[String]) -> Result<Motion, MotionError> {
         parse(&rows.join("\n"), Path::new("m.txt"), 120.0)
+    }
+
+    /// A rotation by millions of turns is one all the same: bones keep their length.
+    #[test]
+    fn any_number_of_turns_is_a_rotation() {
+        let turned = row(&[(3 + 3 * 15, 875_557_001.0), (3 + 3 * 15 + 1, 5.0)]);
+        let motion = parsed(&[row(&[]), turned]).unwrap();
+        assert!(motion.positions_m[0].iter().all(|position_m| position_m.norm() < 2.0), "{:?}", motion.positions_m);
     }
 
     #[test]

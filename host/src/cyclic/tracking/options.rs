@@ -128,6 +128,8 @@ impl Default for TrackingOptions {
     }
 }
 
+/// Maximum number of frames per second. Chosen: no camera is as fast.
+pub const MAX_RATE_HZ: f64 = 1.0e6;
 /// Maximum number of particles that a run is asked for.
 pub const MAX_PARTICLES: usize = 10_000_000;
 
@@ -151,8 +153,8 @@ impl TrackingOptions {
                 format!("has to lie from {low:.3} to {high:.0} degrees, not {}", self.sigma_rad.to_degrees()),
             );
         }
-        if let Some(rate) = self.rate_hz.filter(|rate| !(*rate > 0.0 && rate.is_finite())) {
-            return refuse("rate", format!("has to be greater than zero, not {rate}"));
+        if let Some(rate) = self.rate_hz.filter(|rate| !(*rate > 0.0 && *rate <= MAX_RATE_HZ)) {
+            return refuse("rate", format!("has to be greater than zero and at most {MAX_RATE_HZ}, not {rate}"));
         }
         if let Some(position) = self.initial_cycle_position.filter(|position| !(0.0..1.0).contains(position)) {
             return refuse("initial-cycle-position", format!("has to lie in [0, 1), not {position}"));
@@ -209,6 +211,7 @@ mod tests {
             (TrackingOptions { sigma_rad: 0.0, ..good.clone() }, "sigma"),
             (TrackingOptions { sigma_rad: 1.0e4, filter: FilterName::Paper, ..good.clone() }, "sigma"),
             (TrackingOptions { rate_hz: Some(-1.0), ..good.clone() }, "rate"),
+            (TrackingOptions { rate_hz: Some(1.0e30), ..good.clone() }, "rate"),
             (TrackingOptions { initial_cycle_position: Some(1.0), ..good.clone() }, "initial-cycle-position"),
             (TrackingOptions { initial_cycle_velocity: Some(f64::NAN), ..good.clone() }, "initial-cycle-velocity"),
             (TrackingOptions { updates: Updates::Every(0), ..good.clone() }, "update-every"),
