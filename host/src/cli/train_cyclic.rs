@@ -18,7 +18,7 @@ use std::path::PathBuf;
   sinew train cyclic --cuts cuts.csv --out my_walk.json")]
 pub struct TrainCyclicArgs {
     /// Cycles to train on: a CSV file `file,start_frame,end_frame`, end excluded, file relative to
-    /// CUTS or absolute.
+    /// CUTS or absolute. A column `person` after them gives each person the same weight.
     #[arg(long, value_name = "CUTS.csv")]
     pub cuts: PathBuf,
     /// Model file to write.
@@ -30,6 +30,9 @@ pub struct TrainCyclicArgs {
     /// Frames per second of tables that do not say.
     #[arg(long, value_name = "HZ")]
     pub rate: Option<f64>,
+    /// Also use each cycle with left and right exchanged, half a cycle later, as of walks and runs.
+    #[arg(long)]
+    pub mirror: bool,
 }
 
 /// Trains, writes the model, says what it was made of.
@@ -39,8 +42,9 @@ pub struct TrainCyclicArgs {
 pub fn run(args: &TrainCyclicArgs, console: &Console) -> Result<()> {
     check_writable_file(&args.out)?;
     let list = CutList::read(&args.cuts)?;
-    let cycles = read_cycles(&list)?;
-    let model = train_on(&cycles, &list, TrainingOptions { length: args.length, rate_hz: args.rate })?;
+    let cycles = read_cycles(&list, args.mirror)?;
+    let options = TrainingOptions { length: args.length, rate_hz: args.rate, mirror: args.mirror };
+    let model = train_on(&cycles, &list, options)?;
     let json = model_file::to_json(&model)?;
     write_atomically(&args.out, |writer| Ok(writer.write_all(json.as_bytes())?))?;
     let (numbers, on) = (model.numbers(), model.trained_on());

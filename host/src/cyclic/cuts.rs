@@ -7,8 +7,10 @@ use crate::error::Result;
 use crate::output::write_atomically;
 use std::path::{Path, PathBuf};
 
-/// Columns of a cut list.
+/// Columns that every cut list has.
 pub const COLUMNS: [&str; 3] = ["file", "start_frame", "end_frame"];
+/// The column after them that a list may have.
+pub const PERSON: &str = "person";
 
 /// One cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,6 +21,8 @@ pub struct Cut {
     pub start_frame: u64,
     /// Frame after the last one: the first of the next cycle.
     pub end_frame: u64,
+    /// Whose cycle it is, where the list says.
+    pub person: Option<String>,
     /// Line of the list, from 1.
     pub line: u64,
 }
@@ -33,7 +37,7 @@ impl Cut {
 
 /// Cycles in the order of their list.
 ///
-/// Invariants: at least one cut; each ends after it starts.
+/// Invariants: at least one cut; each ends after it starts; all have a person or none has.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CutList {
     /// Where the list lies, for messages and relative names.
@@ -42,7 +46,8 @@ pub struct CutList {
 }
 
 impl CutList {
-    /// Reads a list from a CSV file with the header `file,start_frame,end_frame`.
+    /// Reads a list from a CSV file with the header `file,start_frame,end_frame`, after which
+    /// `person` may stand.
     ///
     /// # Errors
     /// Names the file, the line and the rule that it broke.
@@ -62,8 +67,8 @@ impl CutList {
             let line = record.position().map_or(0, csv::Position::line);
             if index > 0 {
                 cuts.push(cut(&record, line).map_err(|rule| CyclicError::broken(path, line, rule))?);
-            } else if record.iter().ne(COLUMNS) {
-                let rule = format!("the header has to be `{}`", COLUMNS.join(","));
+            } else if record.iter().take(3).ne(COLUMNS) || record.iter().skip(3).any(|name| name != PERSON) {
+                let rule = format!("the header has to be `{}`, and `,{PERSON}` if it is known", COLUMNS.join(","));
                 return Err(CyclicError::broken(path, line, rule));
             }
         }
@@ -97,8 +102,10 @@ impl CutList {
 }
 
 fn cut(record: &csv::StringRecord, line: u64) -> Result<Cut, String> {
-    let [file, start, end] = record.iter().collect::<Vec<_>>()[..] else {
-        return Err(format!("a row needs 3 columns, found {}", record.len()));
+    let (file, start, end, person) = match record.iter().collect::<Vec<_>>()[..] {
+        [file, start, end] => (file, start, end, None),
+        [file, start, end, person] => (file, start, end, Some(person)),
+        _ => return Err(format!("a row needs 3 columns, or 4 with `{PERSON}`, found {}", record.len())),
     };
     let frame = |name: &str, cell: &str| -> Result<u64, String> {
         cell.parse().map_err(|_| format!("`{name}` has to be a whole number from 0, found `{cell}`"))
@@ -110,7 +117,11 @@ fn cut(record: &csv::StringRecord, line: u64) -> Result<Cut, String> {
     if end_frame <= start_frame {
         return Err(format!("`end_frame` {end_frame} has to lie after `start_frame` {start_frame}"));
     }
-    Ok(Cut { file: cell_name(file).to_owned(), start_frame, end_frame, line })
+    if person == Some("") {
+        return Err(format!("`{PERSON}` is empty; say whose cycle it is, or leave the column out"));
+    }
+    let person = person.map(|person| cell_name(person).to_owned());
+    Ok(Cut { file: cell_name(file).to_owned(), start_frame, end_frame, person, line })
 }
 
 /// Writes a cut list under a temporary name, then renames it.
@@ -120,9 +131,13 @@ fn cut(record: &csv::StringRecord, line: u64) -> Result<Cut, String> {
 pub fn write(path: &Path, cuts: &[Cut]) -> Result<()> {
     write_atomically(path, |output| {
         let mut writer = csv::Writer::from_writer(output);
-        writer.write_record(COLUMNS)?;
+        let has_person = cuts.iter().any(|cut| cut.person.is_some());
+        writer.write_record(COLUMNS.into_iter().chain(has_person.then_some(PERSON)))?;
         for cut in cuts {
-            writer.write_record([&name_cell(&cut.file), &*cut.start_frame.to_string(), &*cut.end_frame.to_string()])?;
+            let [file, person] = [&cut.file, cut.person.as_deref().unwrap_or_default()].map(|name| name_cell(name));
+            let frames = [cut.start_frame, cut.end_frame].map(|frame| frame.to_string());
+            let [start, end] = frames.each_ref().map(String::as_str);
+            writer.write_record([&*file, start, end].into_iter().chain(has_person.then_some(&*person)))?;
         }
         Ok(writer.flush()?)
     })
@@ -151,22 +166,31 @@ mod tests {
         let list = parsed("a b.csv,3,70\nt.csv,0,1\n").unwrap();
         write(&path, list.cuts()).unwrap();
         assert_eq!(CutList::read(&path).unwrap().cuts(), list.cuts());
+        let mut cuts = list.cuts().to_vec();
+        for (cut, person) in cuts.iter_mut().zip(["ann", "=bob"]) {
+            cut.person = Some(person.into());
+        }
+        write(&path, &cuts).unwrap();
+        assert_eq!(CutList::read(&path).unwrap().cuts(), cuts);
     }
 
     #[test]
     fn broken_lists_name_file_line_and_rule() {
         let cases = [
-            ("t.csv,3\n", "a/cuts.csv:2: a row needs 3 columns, found 2"),
+            ("t.csv,3\n", "a/cuts.csv:2: a row needs 3 columns, or 4 with `person`, found 2"),
             ("t.csv,3,x\n", "a/cuts.csv:2: `end_frame` has to be a whole number"),
             ("t.csv,3,70\nt.csv,-3,70\n", "a/cuts.csv:3: `start_frame` has to be a whole number"),
             ("t.csv,70,70\n", "a/cuts.csv:2: `end_frame` 70 has to lie after"),
             (",3,70\n", "a/cuts.csv:2: `file` is empty"),
+            ("t.csv,3,70,ann\n", "a/cuts.csv:2: "),
             ("", "a/cuts.csv:1: the list is empty"),
         ];
         for (rows, message) in cases {
             let found = parsed(rows).unwrap_err().to_string();
             assert!(found.starts_with(message), "{found}");
         }
+        let nobody = CutList::parse("file,start_frame,end_frame,person\nt.csv,1,2,\n", Path::new("c.csv"));
+        assert!(nobody.unwrap_err().to_string().starts_with("c.csv:2: `person` is empty"));
         let header = CutList::parse("t.csv,1,2\n", Path::new("c.csv")).unwrap_err().to_string();
         assert!(header.starts_with("c.csv:1: the header has to be `file,start_frame,end_frame`"), "{header}");
     }

@@ -32,19 +32,21 @@ pub fn unwrap_along_time<'a>(angles_rad: impl IntoIterator<Item = &'a mut Option
     }
 }
 
-/// Mean of angles on the circle: the arithmetic mean after each was moved to the turn nearest to
-/// the mean direction.
+/// Mean of angles on the circle, each with its weight: the arithmetic mean after each was moved to
+/// the turn nearest to the mean direction.
 ///
 /// `None` where there is no angle. Where the angles cancel, the mean direction is that of the
 /// first.
 #[must_use]
-pub fn circular_mean(angles_rad: &[f64]) -> Option<f64> {
-    let first = *angles_rad.first()?;
-    let (sine, cosine) = angles_rad.iter().fold((0.0, 0.0), |(s, c), angle| (s + angle.sin(), c + angle.cos()));
-    let cancel = f64::hypot(sine, cosine) < 1.0e-9 * angles_rad.len() as f64;
+pub fn circular_mean(weighted_rad: &[(f64, f64)]) -> Option<f64> {
+    let (first, _) = *weighted_rad.first()?;
+    let total: f64 = weighted_rad.iter().map(|(_, weight)| weight).sum();
+    let along = |(s, c), (angle, weight): &(f64, f64)| (s + weight * angle.sin(), c + weight * angle.cos());
+    let (sine, cosine) = weighted_rad.iter().fold((0.0, 0.0), along);
+    let cancel = f64::hypot(sine, cosine) < 1.0e-9 * total;
     let direction = if cancel { first } else { sine.atan2(cosine) };
-    let sum: f64 = angles_rad.iter().map(|angle| wrapped(angle - direction)).sum();
-    Some(direction + sum / angles_rad.len() as f64)
+    let sum: f64 = weighted_rad.iter().map(|(angle, weight)| weight * wrapped(angle - direction)).sum();
+    Some(direction + sum / total)
 }
 
 #[cfg(test)]
@@ -63,10 +65,10 @@ mod tests {
 
     #[test]
     fn the_mean_does_not_break_at_the_seam() {
-        let mean = circular_mean(&[PI - 0.1, -PI + 0.3, TAU * 3.0 - PI]).unwrap();
+        let mean = circular_mean(&[PI - 0.1, -PI + 0.3, TAU * 3.0 - PI].map(|angle| (angle, 2.0))).unwrap();
         assert!(wrapped(mean - (PI + 0.2 / 3.0)).abs() < 1.0e-12, "{mean}");
         assert_eq!(circular_mean(&[]), None);
-        assert!(circular_mean(&[0.0, PI]).unwrap().is_finite());
+        assert!(circular_mean(&[(0.0, 1.0), (PI, 1.0)]).unwrap().is_finite());
     }
 
     proptest! {

@@ -124,7 +124,7 @@ pub fn run_until(args: &EvaluateCyclicArgs, console: &Console, stop: Stop<'_>) -
 fn model(args: &EvaluateCyclicArgs) -> Result<(CyclicModel, String)> {
     let Some(path) = &args.train else { return Ok((CyclicModel::from_option(&args.model)?, args.model.clone())) };
     let list = CutList::read(path)?;
-    let options = TrainingOptions { length: 100, rate_hz: Some(rate_of(&list, args.rate)?) };
+    let options = TrainingOptions { rate_hz: Some(rate_of(&list, args.rate)?), ..TrainingOptions::default() };
     Ok((train(&list, options)?, format!("trained on {}", path.display())))
 }
 

@@ -23,7 +23,8 @@ const PAPERS_OWN: [&str; 6] = ["2.81", "4.40", "5.32", "8.09", "9.52", "11.12"];
 /// The model of three people and the cycles of four others.
 fn walkers(recordings: &Path) -> Result<(CyclicModel, Vec<TestCycle>)> {
     let list = |name| CutList::read(&recordings.join("cyclic-walking").join(name));
-    let model = train(&list("train_cuts.csv")?, TrainingOptions { length: 100, rate_hz: Some(RATE_HZ) })?;
+    let model =
+        train(&list("train_cuts.csv")?, TrainingOptions { rate_hz: Some(RATE_HZ), ..TrainingOptions::default() })?;
     Ok((model, test_cycles(&list("test_cuts.csv")?)?))
 }
 

@@ -40,7 +40,7 @@ fn errors_deg(cells: &[Cell], protocol: Protocol, filter: FilterName) -> Vec<f64
 fn the_filters_are_as_accurate_as_the_book_says() {
     let Some(folder) = shared_data::in_release("cyclic-walking") else { return };
     let list = CutList::read(&folder.join("train_cuts.csv")).unwrap();
-    let model = train(&list, TrainingOptions { length: 100, rate_hz: Some(60.0) }).unwrap();
+    let model = train(&list, TrainingOptions { rate_hz: Some(60.0), ..TrainingOptions::default() }).unwrap();
     let cycles = test_cycles(&CutList::read(&folder.join("test_cuts.csv")).unwrap()).unwrap();
     assert_eq!(cycles.iter().map(|cycle| cycle.truth.rows().len()).sum::<usize>(), 886);
     let setting = Setting { cycles: &cycles, model: &model, rate_hz: 60.0, seeds: 20, cells: &Cells::not_kept() };

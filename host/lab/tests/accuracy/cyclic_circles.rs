@@ -39,7 +39,13 @@ fn write(folder: &Path, file: &str, cycle_frames: u64, pose_rad: impl Fn(u64) ->
     let rows: Vec<_> = (0..=CYCLES * cycle_frames).map(|frame| pose_rad(frame).map(Some)).collect();
     AngleTable::from_angles(0, &rows).unwrap().write(&folder.join(file)).unwrap();
     let border = |cycle| cycle * cycle_frames;
-    let cut = |cycle| Cut { file: file.to_owned(), start_frame: border(cycle), end_frame: border(cycle + 1), line: 0 };
+    let cut = |cycle| Cut {
+        file: file.to_owned(),
+        start_frame: border(cycle),
+        end_frame: border(cycle + 1),
+        person: None,
+        line: 0,
+    };
     (0..CYCLES).map(cut).collect()
 }
 

@@ -22,7 +22,7 @@ fn data() -> Option<PathBuf> {
 fn walkers() -> Option<(CyclicModel, Vec<TestCycle>)> {
     let folder = data()?;
     let list = CutList::read(&folder.join("train_cuts.csv")).unwrap();
-    let model = train(&list, TrainingOptions { length: 100, rate_hz: Some(60.0) }).unwrap();
+    let model = train(&list, TrainingOptions { rate_hz: Some(60.0), ..TrainingOptions::default() }).unwrap();
     Some((model, test_cycles(&CutList::read(&folder.join("test_cuts.csv")).unwrap()).unwrap()))
 }
 

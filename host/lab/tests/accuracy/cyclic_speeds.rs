@@ -79,7 +79,8 @@ fn play(walk: &Walk, (_, source): Tempo, folder: &Path, file: &str) -> Vec<Cut> 
     AngleTable::new(rows.collect(), Vec::new()).unwrap().write(&folder.join(file)).unwrap();
     let frame_of = |border: u64| frames.partition_point(|&frame| seen(frame) < border as f64 - 0.5) as u64;
     let borders: Vec<u64> = walk.borders.iter().map(|&border| frame_of(border)).collect();
-    let cut = |pair: &[u64]| Cut { file: file.to_owned(), start_frame: pair[0], end_frame: pair[1], line: 0 };
+    let cut =
+        |pair: &[u64]| Cut { file: file.to_owned(), start_frame: pair[0], end_frame: pair[1], person: None, line: 0 };
     borders.windows(2).map(cut).collect()
 }
 

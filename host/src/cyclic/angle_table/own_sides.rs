@@ -38,10 +38,13 @@ impl OwnSides {
             return;
         }
         self.pairs.iter().for_each(|[left, right]| extra.swap(*left, *right));
-        // Joint 0 is the root, which has no angle.
-        let exchanged = *angles_rad;
-        for (angle, joint) in angles_rad.iter_mut().zip(&HUMAN.joints()[1..]) {
-            *angle = exchanged[usize::from(joint.mirror) - 1];
-        }
+        *angles_rad = sides_exchanged(angles_rad);
     }
+}
+
+/// The angles of a row with left and right exchanged.
+#[must_use]
+pub fn sides_exchanged(angles_rad: &[Option<f64>; ANGLES]) -> [Option<f64>; ANGLES] {
+    // Joint 0 is the root, which has no angle.
+    std::array::from_fn(|angle| angles_rad[usize::from(HUMAN.joints()[angle + 1].mirror) - 1])
 }

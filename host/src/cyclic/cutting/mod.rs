@@ -70,6 +70,7 @@ pub fn cycles(table: &AngleTable, file: &str, options: CuttingOptions) -> Result
             file: file.to_owned(),
             start_frame: table.first_frame() + start as u64,
             end_frame: table.first_frame() + end as u64,
+            person: None,
             line: 0,
         })
         .collect();

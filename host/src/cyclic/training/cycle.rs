@@ -4,6 +4,7 @@ use crate::cyclic::angle_table::{AngleTable, angle_columns};
 use crate::cyclic::cuts::Cut;
 use crate::cyclic::spline::CubicSpline;
 use crate::cyclic::turns::unwrap_along_time;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// Frames on each side of the cut that the curve goes through, where the recording has them. What
@@ -22,6 +23,8 @@ pub struct TrainingCycle {
     duration_frames: f64,
     rate_hz: Option<f64>,
     curves: Vec<CubicSpline>,
+    person: Option<String>,
+    weight: f64,
 }
 
 impl TrainingCycle {
@@ -49,7 +52,14 @@ impl TrainingCycle {
             return Err(format!("the cut {start} to {end} is longer than {LONGEST_CYCLE_FRAMES} frames"));
         }
         let curves = (0..table.angle_count()).map(|angle| curve(table, angle, start, end)).collect::<Result<_, _>>()?;
-        Ok(Self { start_frame: start as f64, duration_frames: (end - start) as f64, rate_hz: table.rate_hz(), curves })
+        Ok(Self {
+            start_frame: start as f64,
+            duration_frames: (end - start) as f64,
+            rate_hz: table.rate_hz(),
+            curves,
+            person: cut.person.clone(),
+            weight: 1.0,
+        })
     }
 
     /// Length of the cycle, frames of the recording.
@@ -64,6 +74,25 @@ impl TrainingCycle {
         self.rate_hz
     }
 
+    /// Whose cycle it is, where the list says.
+    #[must_use]
+    pub fn person(&self) -> Option<&str> {
+        self.person.as_deref()
+    }
+
+    /// The same of this person.
+    #[must_use]
+    pub fn of_person(mut self, person: &str) -> Self {
+        self.person = Some(person.to_owned());
+        self
+    }
+
+    /// Weight of the cycle in means: 1, or the inverse of the number of its person's cycles.
+    #[must_use]
+    pub fn weight(&self) -> f64 {
+        self.weight
+    }
+
     /// Number of angles: 13, or 26 of a motion in space.
     #[must_use]
     pub fn angle_count(&self) -> usize {
@@ -76,10 +105,22 @@ impl TrainingCycle {
     pub fn angle_at(&self, angle: usize, position: f64) -> f64 {
         self.curves[angle].at(self.start_frame + position * self.duration_frames)
     }
+
     /// Whole turns that the angle makes from the beginning of the cycle to its end.
     #[must_use]
     pub fn turns(&self, angle: usize) -> i32 {
         ((self.angle_at(angle, 1.0) - self.angle_at(angle, 0.0)) / TAU).round() as i32
+    }
+}
+
+/// Gives every person the same weight, however many cycles each has.
+pub fn weigh_people(cycles: &mut [TrainingCycle]) {
+    let mut counts: BTreeMap<Option<String>, f64> = BTreeMap::new();
+    for cycle in &*cycles {
+        *counts.entry(cycle.person.clone()).or_default() += 1.0;
+    }
+    for cycle in cycles.iter_mut().filter(|cycle| cycle.person.is_some()) {
+        cycle.weight = 1.0 / counts[&cycle.person];
     }
 }
 
@@ -163,7 +204,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn cut(start_frame: u64, end_frame: u64) -> Cut {
-        Cut { file: "t.csv".into(), start_frame, end_frame, line: 2 }
+        Cut { file: "t.csv".into(), start_frame, end_frame, person: None, line: 2 }
     }
 
     /// All angles swing with a period of 60 frames; the last winds once a period.

@@ -3,9 +3,9 @@
 //!
 //! Each cycle's deviation from the mean is split into a constant, a swing with the cycle's own
 //! period, and a rest. Variances are taken from pairs of cycles: half the squared difference of two
-//! is an unbiased estimate. Ten cycles seldom come from ten people, and two cycles of one person
-//! say little about the next one. It is not known whose cycle it is, so only the half of the pairs
-//! that differ most is used.
+//! is an unbiased estimate. Two cycles of one person say little about the next one, so pairs of
+//! different people are used, each person with the same weight. Where it is not known whose cycle
+//! it is, the half of the pairs that differ most is used.
 
 use super::cycle::TrainingCycle;
 use super::statistics::{angle_count, mean_pose};
@@ -13,14 +13,15 @@ use crate::cyclic::model::DeviationNumbers;
 use crate::cyclic::turns::wrapped;
 use std::f64::consts::TAU;
 
-/// Factor of the variances of constant and swing, which come from about three people. The spread of
-/// a new person is that of a t distribution with few degrees of freedom, and the mean cycle is as
-/// uncertain.
+/// Factor of the variances of constant and swing, where it is not known whose cycle it is.
+///
+/// Chosen: they come from about three people. The spread of a new person is that of a t
+/// distribution with few degrees of freedom, and the mean cycle is as uncertain.
 const INFLATION: f64 = 4.0;
 /// Part of the variance of constant and swing that is replaced by the mean over the angles.
 const SHRINKAGE: f64 = 0.2;
 /// The same for the rest, which differs from cycle to cycle as well and is known from more than a
-/// few people.
+/// few cycles.
 const REST_INFLATION: f64 = 2.0;
 /// The same part of the rest's variance. It is more, since how much of an angle's fine movement is
 /// a person's own depends on how the joints were placed. For short links that differs most between
@@ -43,9 +44,16 @@ pub fn of_cycles(cycles: &[TrainingCycle], length: usize) -> DeviationNumbers {
     let (poses, count) = (mean_pose(cycles, length), angle_count(cycles));
     let parts: Vec<Vec<Parts>> =
         cycles.iter().map(|cycle| (0..count).map(|angle| split(cycle, angle, &poses, length)).collect()).collect();
-    let pairs = far_pairs(&parts);
+    let people = people(cycles);
+    let (pairs, inflation, rest_inflation) = if people < 2 {
+        (far_pairs(&parts), INFLATION, REST_INFLATION)
+    } else {
+        let factor = new_person_factor(people);
+        (pairs_of_people(cycles), factor, factor.min(REST_INFLATION))
+    };
+    let total: f64 = pairs.iter().map(|(_, weight)| weight).sum();
     let over_pairs = |value: &dyn Fn(&Parts, &Parts) -> f64, angle: usize| {
-        pairs.iter().map(|&(i, k)| value(&parts[i][angle], &parts[k][angle])).sum::<f64>() / pairs.len() as f64
+        pairs.iter().map(|&((i, k), weight)| weight * value(&parts[i][angle], &parts[k][angle])).sum::<f64>() / total
     };
     let coefficient = |which: usize| -> Vec<f64> {
         let of_angle = |angle| over_pairs(&|a, b| half_square(a.coefficients[which] - b.coefficients[which]), angle);
@@ -59,11 +67,11 @@ pub fn of_cycles(cycles: &[TrainingCycle], length: usize) -> DeviationNumbers {
         (slope / rest[angle].max(f64::MIN_POSITIVE)).sqrt().clamp(RATE_PER_CYCLE.0, RATE_PER_CYCLE.1)
     };
     DeviationNumbers {
-        inflation: INFLATION as f32,
+        inflation: inflation as f32,
         shrinkage: SHRINKAGE as f32,
-        offset_std_rad: stds(&offset, INFLATION, SHRINKAGE),
-        swing_std_rad: stds(&swing, INFLATION, SHRINKAGE),
-        rest_std_rad: stds(&rest, REST_INFLATION, REST_SHRINKAGE),
+        offset_std_rad: stds(&offset, inflation, SHRINKAGE),
+        swing_std_rad: stds(&swing, inflation, SHRINKAGE),
+        rest_std_rad: stds(&rest, rest_inflation, REST_SHRINKAGE),
         rest_rate_per_cycle: (0..count).map(|angle| rate(angle) as f32).collect(),
     }
 }
@@ -85,9 +93,36 @@ fn split(cycle: &TrainingCycle, angle: usize, poses: &[Vec<f64>], length: usize)
     Parts { coefficients, rest: deviation }
 }
 
+/// Number of people; 0 where it is not known whose cycles these are.
+fn people(cycles: &[TrainingCycle]) -> usize {
+    let mut people: Vec<_> = cycles.iter().filter_map(TrainingCycle::person).collect();
+    people.sort_unstable();
+    people.dedup();
+    people.len()
+}
+
+/// Ratio of the variance of a new person about the mean of `people` to the variance between people:
+/// that of a t distribution with `people` - 1 degrees of freedom, about a mean that is uncertain by
+/// one part in `people`. At most that of unknown people, which few people would exceed.
+fn new_person_factor(people: usize) -> f64 {
+    let n = people as f64;
+    if people <= 3 { INFLATION } else { ((1.0 + 1.0 / n) * (n - 1.0) / (n - 3.0)).min(INFLATION) }
+}
+
+/// Two cycles, and the weight of what they differ by.
+type Pair = ((usize, usize), f64);
+
+/// The pairs of cycles of different people.
+fn pairs_of_people(cycles: &[TrainingCycle]) -> Vec<Pair> {
+    let all = (0..cycles.len()).flat_map(|i| (0..i).map(move |k| (i, k)));
+    all.filter(|&(i, k)| cycles[i].person() != cycles[k].person())
+        .map(|(i, k)| ((i, k), cycles[i].weight() * cycles[k].weight()))
+        .collect()
+}
+
 /// The half of the pairs of cycles that differ most, each coefficient of each angle relative to its
 /// own spread.
-fn far_pairs(parts: &[Vec<Parts>]) -> Vec<(usize, usize)> {
+fn far_pairs(parts: &[Vec<Parts>]) -> Vec<Pair> {
     let all: Vec<(usize, usize)> = (0..parts.len()).flat_map(|i| (0..i).map(move |k| (i, k))).collect();
     let squares = |&(i, k): &(usize, usize)| -> Vec<f64> {
         let both = parts[i].iter().zip(&parts[k]);
@@ -101,7 +136,7 @@ fn far_pairs(parts: &[Vec<Parts>]) -> Vec<(usize, usize)> {
     let mut ranked: Vec<(f64, (usize, usize))> = table.iter().map(distance).zip(all).collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
     ranked.truncate(ranked.len().div_ceil(2));
-    ranked.into_iter().map(|(_, pair)| pair).collect()
+    ranked.into_iter().map(|(_, pair)| (pair, 1.0)).collect()
 }
 
 fn half_square(difference: f64) -> f64 {
@@ -148,7 +183,8 @@ mod tests {
             angles
         };
         let table = AngleTable::from_angles(0, &(0..180).map(row).collect::<Vec<_>>()).unwrap();
-        TrainingCycle::new(&table, &Cut { file: String::new(), start_frame: 60, end_frame: 120, line: 2 }).unwrap()
+        TrainingCycle::new(&table, &Cut { file: String::new(), start_frame: 60, end_frame: 120, person: None, line: 2 })
+            .unwrap()
     }
 
     #[test]
@@ -176,6 +212,29 @@ mod tests {
         let mean = (half_square(0.8) + half_square(0.79) + half_square(0.78)) / 3.0;
         let wanted = (INFLATION * mean * (0.8 + 0.2 / ANGLES as f64)).sqrt();
         assert!((f64::from(numbers.offset_std_rad[0]) - wanted).abs() < 0.02, "{numbers:?}");
+    }
+
+    /// The more people, the nearer the spread of the next one is to that of those seen.
+    #[test]
+    fn the_spread_of_a_new_person_shrinks_with_the_number_of_people() {
+        let factors: Vec<f64> = (2..40).map(new_person_factor).collect();
+        assert!(factors.windows(2).all(|pair| pair[1] <= pair[0] && pair[1] > 1.0), "{factors:?}");
+        assert!((new_person_factor(8) - 1.575).abs() < 1.0e-12);
+        assert_eq!(new_person_factor(3).to_bits(), INFLATION.to_bits());
+    }
+
+    /// Four people with offsets of -3, -1, 1 and 3 twentieths of a radian: cycles of one person do
+    /// not count, nor does how many there are.
+    #[test]
+    fn the_spread_between_people_is_that_of_their_cycles() {
+        let offsets = [("a", -0.15), ("b", -0.05), ("b", -0.05), ("b", -0.05), ("c", 0.05), ("d", 0.15)];
+        let mut cycles: Vec<_> =
+            offsets.iter().map(|&(person, offset)| cycle(offset, 0.0, 0.0).of_person(person)).collect();
+        crate::cyclic::training::cycle::weigh_people(&mut cycles);
+        let numbers = of_cycles(&cycles, 100);
+        let variance = (2.0 * 0.15_f64.powi(2) + 2.0 * 0.05_f64.powi(2)) / 3.0;
+        let wanted = (new_person_factor(4) * variance * (0.8 + 0.2 / ANGLES as f64)).sqrt();
+        assert!((f64::from(numbers.offset_std_rad[0]) - wanted).abs() < 1.0e-3, "{numbers:?} {wanted}");
     }
 
     #[test]

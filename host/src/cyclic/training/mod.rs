@@ -9,7 +9,7 @@ pub use cycle::TrainingCycle;
 pub use winding::{UnevenTurns, uneven_turns};
 
 use super::angle_table::AngleTable;
-use super::cuts::CutList;
+use super::cuts::{Cut, CutList};
 use super::error::CyclicError;
 use super::model::{CyclicModel, ModelNumbers, TrainedOn};
 use super::rate;
@@ -23,11 +23,14 @@ pub struct TrainingOptions {
     pub length: usize,
     /// Frames per second of tables that do not say, greater than zero.
     pub rate_hz: Option<f64>,
+    /// Each cycle also with left and right exchanged, half a cycle later: a motion that is the same
+    /// on both sides.
+    pub mirror: bool,
 }
 
 impl Default for TrainingOptions {
     fn default() -> Self {
-        Self { length: 100, rate_hz: None }
+        Self { length: 100, rate_hz: None, mirror: false }
     }
 }
 
@@ -37,7 +40,7 @@ impl Default for TrainingOptions {
 /// A table that cannot be read, a cut that cannot be used (named with the list's line), or less
 /// than two cycles. Also options out of their range.
 pub fn train(list: &CutList, options: TrainingOptions) -> Result<CyclicModel, CyclicError> {
-    train_on(&read_cycles(list)?, list, options)
+    train_on(&read_cycles(list, options.mirror)?, list, options)
 }
 
 /// Trains a model on `cycles`, which were read from `list`.
@@ -70,13 +73,15 @@ pub fn train_on(
     })
 }
 
-/// The cycles of `list` in its order.
+/// The cycles of `list` in its order; where `mirror` says so, then those of the mirror image, of
+/// all cycles beside which the table goes on for half a cycle.
 ///
 /// # Errors
-/// A table that cannot be read, or a cut that cannot be used, named with the list's line.
-pub fn read_cycles(list: &CutList) -> Result<Vec<TrainingCycle>, CyclicError> {
+/// A table that cannot be read, or a cut that cannot be used, named with the list's line. To mirror
+/// a motion in space.
+pub fn read_cycles(list: &CutList, mirror: bool) -> Result<Vec<TrainingCycle>, CyclicError> {
     let mut tables: BTreeMap<PathBuf, AngleTable> = BTreeMap::new();
-    let mut cycles = Vec::with_capacity(list.cuts().len());
+    let (mut cycles, mut mirrored) = (Vec::with_capacity(list.cuts().len()), Vec::new());
     for cut in list.cuts() {
         let path = list.table_path(cut);
         if !tables.contains_key(&path) {
@@ -95,8 +100,33 @@ pub fn read_cycles(list: &CutList) -> Result<Vec<TrainingCycle>, CyclicError> {
             return Err(CyclicError::broken(list.path(), cut.line, rule));
         }
         cycles.push(cycle);
+        if mirror {
+            let image = mirror_image(&tables[&path], cut)
+                .map_err(|rule| CyclicError::broken(list.path(), cut.line, format!("`{}`: {rule}", path.display())))?;
+            mirrored.extend(image);
+        }
     }
+    cycles.append(&mut mirrored);
+    cycle::weigh_people(&mut cycles);
     Ok(cycles)
+}
+
+/// The cycle of the mirror image that begins half a cycle later, or earlier where the table ends;
+/// `None` where neither is in the table.
+fn mirror_image(table: &AngleTable, cut: &Cut) -> Result<Option<TrainingCycle>, String> {
+    let Some(exchanged) = table.sides_exchanged() else {
+        return Err("a motion in space cannot be mirrored; train on angles in the plane, or without --mirror".into());
+    };
+    let half = cut.duration_frames() / 2;
+    let moved = |start_frame: u64, end_frame: u64| Cut { start_frame, end_frame, ..cut.clone() };
+    let cut = if cut.end_frame + half <= table.end_frame() {
+        moved(cut.start_frame + half, cut.end_frame + half)
+    } else if cut.start_frame >= table.first_frame() + half {
+        moved(cut.start_frame - half, cut.end_frame - half)
+    } else {
+        return Ok(None);
+    };
+    TrainingCycle::new(&exchanged, &cut).map(Some)
 }
 
 /// Frames per second of all tables: a model has one rate.
@@ -122,7 +152,8 @@ fn numbers(cycles: &[TrainingCycle], length: usize, rate_hz: f64) -> ModelNumber
     let rows = |row: fn(&statistics::PositionStatistics) -> &[f64]| -> Vec<f32> {
         statistics.iter().flat_map(row).map(|&value| value as f32).collect()
     };
-    let mean_velocity = cycles.iter().map(|cycle| 1.0 / cycle.duration_frames()).sum::<f64>() / cycles.len() as f64;
+    let weights: f64 = cycles.iter().map(TrainingCycle::weight).sum();
+    let mean_velocity = cycles.iter().map(|cycle| cycle.weight() / cycle.duration_frames()).sum::<f64>() / weights;
     ModelNumbers {
         angle_count: statistics::angle_count(cycles),
         mean_acceleration: rows(|at| &at.mean_acceleration),
@@ -171,6 +202,35 @@ mod tests {
             (model.trained_on().cycles, model.trained_on().tables.as_slice()),
             (2, &["a.csv".to_owned(), "b.csv".to_owned()][..])
         );
+    }
+
+    /// The left side swings by 0.4 and the right one half a cycle later by 0.6: with the mirror
+    /// image both swing by their mean.
+    #[test]
+    fn mirrored_cycles_make_both_sides_alike() {
+        let folder = tempfile::tempdir().unwrap();
+        let swing =
+            |amplitude: f64, frame: usize| Some(amplitude * (std::f64::consts::TAU * frame as f64 / 60.0).sin());
+        let row = |frame: usize| {
+            let mut angles = [swing(0.1, frame); ANGLES];
+            // Left and right hip.
+            (angles[7], angles[10]) = (swing(0.4, frame), swing(0.6, frame + 30));
+            angles
+        };
+        let table = AngleTable::from_angles(0, &(0..200).map(row).collect::<Vec<_>>()).unwrap();
+        table.write(&folder.path().join("a.csv")).unwrap();
+        let list =
+            CutList::parse("file,start_frame,end_frame\na.csv,10,70\na.csv,130,190\n", &folder.path().join("c.csv"));
+        let options = TrainingOptions { rate_hz: Some(60.0), mirror: true, ..TrainingOptions::default() };
+        let model = train(&list.unwrap(), options).unwrap();
+        assert_eq!(model.trained_on().cycles, 4, "the second one's image begins half a cycle sooner");
+        let pose = |position: f32| model.view().mean_pose_rad::<ANGLES>(model.view().point(position));
+        for i in 0..20 {
+            let (here, later) = (pose(i as f32 / 20.0), pose((i as f32 / 20.0 + 0.5).fract()));
+            assert!((here[7] - later[10]).abs() < 1.0e-3, "{i}: {} and {}", here[7], later[10]);
+            let wanted = 0.5 * (std::f32::consts::TAU * (i as f32 / 20.0 + 1.0 / 6.0)).sin();
+            assert!((here[7] - wanted).abs() < 2.0e-3, "{i}: {} is not {wanted}", here[7]);
+        }
     }
 
     #[test]

@@ -12,7 +12,7 @@ pub struct PositionStatistics {
     /// Mean angular acceleration, rad per reference frame squared.
     pub mean_acceleration: Vec<f64>,
     /// Covariance of the acceleration as a packed lower triangle, rad^2 per reference frame^4;
-    /// divided by cycles - 1.
+    /// divided by cycles - 1 where all have the same weight.
     pub acceleration_covariance: Vec<f64>,
     /// Mean angles, radians; see [`mean_pose`].
     pub mean_pose_rad: Vec<f64>,
@@ -32,12 +32,13 @@ pub fn of_positions(cycles: &[TrainingCycle], length: usize) -> Vec<PositionStat
                 cycles.iter().map(|cycle| derivatives(cycle, position, length)).collect();
             let accelerations: Vec<&[f64]> = derivatives.iter().map(|d| d.acceleration.as_slice()).collect();
             let velocities: Vec<&[f64]> = derivatives.iter().map(|d| d.velocity.as_slice()).collect();
-            let mean_acceleration = mean(&accelerations);
+            let weights: Vec<f64> = cycles.iter().map(TrainingCycle::weight).collect();
+            let mean_acceleration = mean(&accelerations, &weights);
             PositionStatistics {
-                acceleration_covariance: covariance(&accelerations, &mean_acceleration),
+                acceleration_covariance: covariance(&accelerations, &weights, &mean_acceleration),
                 mean_acceleration,
                 mean_pose_rad: poses[position].clone(),
-                mean_velocity: mean(&velocities),
+                mean_velocity: mean(&velocities, &weights),
             }
         })
         .collect()
@@ -58,7 +59,7 @@ pub fn mean_pose(cycles: &[TrainingCycle], length: usize) -> Vec<Vec<f64>> {
         let usual = usual_cycles(cycles, angle);
         let at = |position: usize| {
             let place = position as f64 / length as f64;
-            circular_mean(&usual.iter().map(|cycle| cycle.angle_at(angle, place)).collect::<Vec<_>>())
+            circular_mean(&usual.iter().map(|cycle| (cycle.angle_at(angle, place), cycle.weight())).collect::<Vec<_>>())
         };
         let mut series: Vec<Option<f64>> = (0..=length).map(at).collect();
         unwrap_along_time(&mut series);
@@ -118,15 +119,20 @@ fn derivatives(cycle: &TrainingCycle, position: usize, length: usize) -> Derivat
     }
 }
 
-fn mean(rows: &[&[f64]]) -> Vec<f64> {
+fn mean(rows: &[&[f64]], weights: &[f64]) -> Vec<f64> {
     let count = rows.first().map_or(0, |row| row.len());
-    (0..count).map(|i| rows.iter().map(|row| row[i]).sum::<f64>() / rows.len() as f64).collect()
+    let total: f64 = weights.iter().sum();
+    (0..count).map(|i| rows.iter().zip(weights).map(|(row, weight)| weight * row[i]).sum::<f64>() / total).collect()
 }
 
-fn covariance(rows: &[&[f64]], mean: &[f64]) -> Vec<f64> {
+/// The unbiased covariance of weighted rows.
+fn covariance(rows: &[&[f64]], weights: &[f64], mean: &[f64]) -> Vec<f64> {
+    let total: f64 = weights.iter().sum();
+    let squares: f64 = weights.iter().map(|weight| weight * weight).sum();
     let entry = |i: usize, j: usize| {
-        let sum: f64 = rows.iter().map(|row| (row[i] - mean[i]) * (row[j] - mean[j])).sum();
-        sum / (rows.len() - 1) as f64
+        let weighted = rows.iter().zip(weights);
+        let sum: f64 = weighted.map(|(row, weight)| weight * (row[i] - mean[i]) * (row[j] - mean[j])).sum();
+        sum / (total - squares / total)
     };
     (0..mean.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| entry(i, j)).collect()
 }
@@ -148,8 +154,27 @@ mod tests {
             angles
         };
         let table = AngleTable::from_angles(0, &(0..3 * frames).map(row).collect::<Vec<_>>()).unwrap();
-        TrainingCycle::new(&table, &Cut { file: String::new(), start_frame: frames, end_frame: 2 * frames, line: 2 })
-            .unwrap()
+        TrainingCycle::new(
+            &table,
+            &Cut { file: String::new(), start_frame: frames, end_frame: 2 * frames, person: None, line: 2 },
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn people_have_the_same_weight_however_many_cycles_each_has() {
+        let one = [cycle(0.5, 0.0, 50), cycle(1.0, 0.0, 50)];
+        let own = |cycle: &TrainingCycle, person: &str| cycle.clone().of_person(person);
+        let mut many = [own(&one[0], "a"), own(&one[0], "a"), own(&one[0], "a"), own(&one[1], "b")];
+        crate::cyclic::training::cycle::weigh_people(&mut many);
+        for (few, many) in of_positions(&one, 100).iter().zip(of_positions(&many, 100)) {
+            for (few, many) in few.mean_pose_rad.iter().zip(&many.mean_pose_rad) {
+                assert!((few - many).abs() < 1.0e-9);
+            }
+            for (few, many) in few.mean_acceleration.iter().zip(&many.mean_acceleration) {
+                assert!((few - many).abs() < 1.0e-9);
+            }
+        }
     }
 
     #[test]
