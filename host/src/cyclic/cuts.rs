@@ -61,13 +61,15 @@ impl CutList {
     /// Names the file, the line and the rule that it broke.
     pub fn parse(text: &str, path: &Path) -> Result<Self, CyclicError> {
         let mut reader = csv_reader(text);
-        let mut cuts = Vec::new();
+        let (mut cuts, mut columns) = (Vec::new(), COLUMNS.len());
         for (index, record) in reader.records().enumerate() {
             let record = record.map_err(|error| CyclicError::broken(path, index as u64 + 1, error.to_string()))?;
             let line = record.position().map_or(0, csv::Position::line);
             if index > 0 {
-                cuts.push(cut(&record, line).map_err(|rule| CyclicError::broken(path, line, rule))?);
-            } else if record.iter().take(3).ne(COLUMNS) || record.iter().skip(3).any(|name| name != PERSON) {
+                cuts.push(cut(&record, columns, line).map_err(|rule| CyclicError::broken(path, line, rule))?);
+            } else if record.iter().eq(COLUMNS) || record.iter().eq(COLUMNS.into_iter().chain([PERSON])) {
+                columns = record.len();
+            } else {
                 let rule = format!("the header has to be `{}`, and `,{PERSON}` if it is known", COLUMNS.join(","));
                 return Err(CyclicError::broken(path, line, rule));
             }
@@ -101,11 +103,11 @@ impl CutList {
     }
 }
 
-fn cut(record: &csv::StringRecord, line: u64) -> Result<Cut, String> {
+fn cut(record: &csv::StringRecord, columns: usize, line: u64) -> Result<Cut, String> {
     let (file, start, end, person) = match record.iter().collect::<Vec<_>>()[..] {
-        [file, start, end] => (file, start, end, None),
-        [file, start, end, person] => (file, start, end, Some(person)),
-        _ => return Err(format!("a row needs 3 columns, or 4 with `{PERSON}`, found {}", record.len())),
+        [file, start, end] if columns == 3 => (file, start, end, None),
+        [file, start, end, person] if columns == 4 => (file, start, end, Some(person)),
+        _ => return Err(format!("a row needs {columns} columns, as the header, found {}", record.len())),
     };
     let frame = |name: &str, cell: &str| -> Result<u64, String> {
         cell.parse().map_err(|_| format!("`{name}` has to be a whole number from 0, found `{cell}`"))
@@ -177,12 +179,12 @@ mod tests {
     #[test]
     fn broken_lists_name_file_line_and_rule() {
         let cases = [
-            ("t.csv,3\n", "a/cuts.csv:2: a row needs 3 columns, or 4 with `person`, found 2"),
+            ("t.csv,3\n", "a/cuts.csv:2: a row needs 3 columns, as the header, found 2"),
             ("t.csv,3,x\n", "a/cuts.csv:2: `end_frame` has to be a whole number"),
             ("t.csv,3,70\nt.csv,-3,70\n", "a/cuts.csv:3: `start_frame` has to be a whole number"),
             ("t.csv,70,70\n", "a/cuts.csv:2: `end_frame` 70 has to lie after"),
             (",3,70\n", "a/cuts.csv:2: `file` is empty"),
-            ("t.csv,3,70,ann\n", "a/cuts.csv:2: "),
+            ("t.csv,3,70,ann\n", "a/cuts.csv:2: a row needs 3 columns, as the header, found 4"),
             ("", "a/cuts.csv:1: the list is empty"),
         ];
         for (rows, message) in cases {
