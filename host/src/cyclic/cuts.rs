@@ -191,8 +191,8 @@ mod tests {
             let found = parsed(rows).unwrap_err().to_string();
             assert!(found.starts_with(message), "{found}");
         }
-        let nobody = CutList::parse("file,start_frame,end_frame,person\nt.csv,1,2,\n", Path::new("c.csv"));
-        assert!(nobody.unwrap_err().to_string().starts_with("c.csv:2: `person` is empty"));
+        let unnamed = CutList::parse("file,start_frame,end_frame,person\nt.csv,1,2,\n", Path::new("c.csv"));
+        assert!(unnamed.unwrap_err().to_string().starts_with("c.csv:2: `person` is empty"));
         let header = CutList::parse("t.csv,1,2\n", Path::new("c.csv")).unwrap_err().to_string();
         assert!(header.starts_with("c.csv:1: the header has to be `file,start_frame,end_frame`"), "{header}");
     }

@@ -10,5 +10,6 @@ mod table;
 mod tests;
 
 pub use columns::{ANGLES, COLUMNS, MAX_FRAME, SIDE_COLUMNS, SPACE_ANGLES, TIME_COLUMN, angle_columns, time_cell};
+pub use own_sides::sides_exchanged;
 pub use rows::{AngleRow, AngleRows, ReadRow};
 pub use table::AngleTable;

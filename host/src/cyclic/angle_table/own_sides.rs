@@ -42,9 +42,9 @@ impl OwnSides {
     }
 }
 
-/// The angles of a row with left and right exchanged.
+/// What belongs to the angles, with left and right exchanged.
 #[must_use]
-pub fn sides_exchanged(angles_rad: &[Option<f64>; ANGLES]) -> [Option<f64>; ANGLES] {
+pub fn sides_exchanged<T: Clone>(of_angles: &[T; ANGLES]) -> [T; ANGLES] {
     // Joint 0 is the root, which has no angle.
-    std::array::from_fn(|angle| angles_rad[usize::from(HUMAN.joints()[angle + 1].mirror) - 1])
+    std::array::from_fn(|angle| of_angles[usize::from(HUMAN.joints()[angle + 1].mirror) - 1].clone())
 }

@@ -1,7 +1,6 @@
 //! Angles over time.
 
 use super::columns::{ANGLES, COLUMNS, MAX_FRAME, SPACE_ANGLES, TIME_COLUMN, angle_columns, time_cell};
-use super::own_sides::sides_exchanged;
 use super::rows::{AngleRow, AngleRows};
 use crate::cyclic::error::{CyclicError, read_text};
 use crate::error::{Error, Result};
@@ -115,22 +114,6 @@ impl AngleTable {
             extra: Vec::new(),
         };
         Self::new((0..).zip(angles_rad).map(row).collect(), Vec::new())
-    }
-
-    /// The angles in the plane with left and right exchanged, as those of a person who moves as the
-    /// mirror image does and is seen from the other side. `None` for a motion in space.
-    #[must_use]
-    pub fn sides_exchanged(&self) -> Option<Self> {
-        if self.side_rad.is_some() {
-            return None;
-        }
-        let row = |row: &AngleRow| AngleRow {
-            frame: row.frame,
-            angles_rad: sides_exchanged(&row.angles_rad),
-            extra: Vec::new(),
-        };
-        let rows = self.rows.iter().map(row).collect();
-        Some(Self { rows, extra_columns: Vec::new(), side_rad: None, rate_hz: self.rate_hz })
     }
 
     /// The rows, at least one, rising in frame number.

@@ -1,6 +1,6 @@
 //! One training cycle as a smooth curve over the cycle position.
 
-use crate::cyclic::angle_table::{AngleTable, angle_columns};
+use crate::cyclic::angle_table::{ANGLES, AngleTable, angle_columns, sides_exchanged};
 use crate::cyclic::cuts::Cut;
 use crate::cyclic::spline::CubicSpline;
 use crate::cyclic::turns::unwrap_along_time;
@@ -85,6 +85,15 @@ impl TrainingCycle {
     pub fn of_person(mut self, person: &str) -> Self {
         self.person = Some(person.to_owned());
         self
+    }
+
+    /// The same with left and right exchanged, as of a person who moves as the mirror image does
+    /// and is seen from the other side. `None` for a motion in space.
+    #[must_use]
+    pub fn sides_exchanged(mut self) -> Option<Self> {
+        let curves: &[CubicSpline; ANGLES] = self.curves.as_slice().try_into().ok()?;
+        self.curves = sides_exchanged(curves).into();
+        Some(self)
     }
 
     /// Weight of the cycle in means: 1, or the inverse of the number of its person's cycles.
@@ -200,7 +209,6 @@ fn check_gaps(knots: &[(f64, f64)], start: f64, end: f64) -> Result<(), (f64, f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cyclic::angle_table::ANGLES;
     use proptest::prelude::*;
 
     fn cut(start_frame: u64, end_frame: u64) -> Cut {

@@ -8,7 +8,7 @@ pub mod winding;
 pub use cycle::TrainingCycle;
 pub use winding::{UnevenTurns, uneven_turns};
 
-use super::angle_table::AngleTable;
+use super::angle_table::{ANGLES, AngleTable};
 use super::cuts::{Cut, CutList};
 use super::error::CyclicError;
 use super::model::{CyclicModel, ModelNumbers, TrainedOn};
@@ -114,9 +114,9 @@ pub fn read_cycles(list: &CutList, mirror: bool) -> Result<Vec<TrainingCycle>, C
 /// The cycle of the mirror image that begins half a cycle later, or earlier where the table ends;
 /// `None` where neither is in the table.
 fn mirror_image(table: &AngleTable, cut: &Cut) -> Result<Option<TrainingCycle>, String> {
-    let Some(exchanged) = table.sides_exchanged() else {
+    if table.angle_count() > ANGLES {
         return Err("a motion in space cannot be mirrored; train on angles in the plane, or without --mirror".into());
-    };
+    }
     let half = cut.duration_frames() / 2;
     let moved = |start_frame: u64, end_frame: u64| Cut { start_frame, end_frame, ..cut.clone() };
     let cut = if cut.end_frame + half <= table.end_frame() {
@@ -126,7 +126,7 @@ fn mirror_image(table: &AngleTable, cut: &Cut) -> Result<Option<TrainingCycle>, 
     } else {
         return Ok(None);
     };
-    TrainingCycle::new(&exchanged, &cut).map(Some)
+    Ok(TrainingCycle::new(table, &cut)?.sides_exchanged())
 }
 
 /// Frames per second of all tables: a model has one rate.
@@ -174,7 +174,6 @@ fn file_name(file: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cyclic::angle_table::ANGLES;
 
     fn write_tables(folder: &Path) {
         for (name, amplitude) in [("a.csv", 0.4), ("b.csv", 0.6)] {
