@@ -26,7 +26,7 @@
 /**
  * Bytes that always suffice for the saved state of a cyclic tracker.
  */
-#define SINEW_CYCLIC_STATE_MAX_BYTES 3072
+#define SINEW_CYCLIC_STATE_MAX_BYTES 3328
 
 /**
  * Alignment that suffices for every object of this library.

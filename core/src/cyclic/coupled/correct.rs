@@ -21,20 +21,21 @@ impl<const N: usize> CoupledFilter<N> {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);
-        let (nis_scale, noise_scale) = (self.watch.nis.noise_scale(), self.watch.noise.scale());
-        let mut evidence = PhaseEvidence::none(model.winds(), self.watch.noise.score());
+        let mut evidence = PhaseEvidence::none(model.winds());
         let mut seen: [Option<(AnglePrediction, f32, f32)>; N] = [None; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
-            let stated = nis_scale * measurement.std_rad()[i] * measurement.std_rad()[i];
-            let noise = noise_scale * stated;
+            let stated = measurement.std_rad()[i] * measurement.std_rad()[i];
+            let noise = self.noise.scale(i) * stated;
             let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
             let mut prediction = self.blocks[i].predict_angle(&basis, slope[i]);
             let given = prediction.variance + noise;
             let (total, informs_phase) = (given + self.pair.along(&prediction.gradient), self.winding.informs_phase(i));
             if informs_phase {
                 evidence.add(&prediction.gradient, given, residual);
-                evidence.noise.add(stated, total - noise, residual);
+                if self.watch.agrees {
+                    self.noise.add(i, [stated, total - noise], residual);
+                }
             } else {
                 evidence.add_excluded(total, residual);
             }
@@ -46,8 +47,10 @@ impl<const N: usize> CoupledFilter<N> {
             }
             seen[i] = Some((prediction, noise, residual));
         }
-        self.watch.noise.update(&evidence.noise);
-        let innovation = evidence.innovation(&self.pair, nis_scale * noise_scale);
+        if self.watch.agrees {
+            self.noise.update();
+        }
+        let innovation = evidence.innovation(&self.pair);
         let shift = self.pair.correct(&evidence.gated);
         for (block, seen) in self.blocks.iter_mut().zip(&seen) {
             block.follow(shift);

@@ -1,7 +1,6 @@
 //! Evidence of a frame's angles for (c, v) in the phase-coupled filter, and the frame's innovation.
 
 use crate::cyclic::coupled::cycle_pair::{CyclePair, Information};
-use crate::cyclic::coupled::noise_scale::NoiseScore;
 use crate::numeric::chi_square::{DEFAULT_GATE_SIGMAS, is_outlier};
 use crate::numeric::log_product::LogProduct;
 use core::f32::consts::TAU;
@@ -9,14 +8,11 @@ use core::f32::consts::TAU;
 /// Inflation of an angle's variance as evidence for the phase. Chosen: angles deviate together, so
 /// 13 of them carry less evidence than 13 independent ones.
 const TEMPERING: f32 = 2.5;
-/// Standard deviation of a person's cycle shape, rad: no angle informs the phase better.
+/// Standard deviation of a person's cycle shape in a motion with a winding angle, rad: no angle
+/// informs the phase better.
 ///
-/// Chosen: with noise of one or two degrees, a person's shape would count as a change of speed.
-const SHAPE_STD_RAD: f32 = 0.08;
-/// The same in a motion with a winding angle, rad.
-///
-/// Chosen: about four times as much, since a winding angle varies by 1.8 rad over the cycle and a
-/// walker's limbs by 0.4 rad.
+/// Chosen: in an even circle an offset and a leading phase are the same. Without it circles are a
+/// third too slow.
 const WINDING_SHAPE_STD_RAD: f32 = 0.3;
 
 /// Innovations of the measured angles with their derivatives by (c, v).
@@ -25,8 +21,6 @@ pub(super) struct PhaseEvidence {
     all: Information,
     /// Of the angles within the gate, tempered: for the correction.
     pub(super) gated: Information,
-    /// Score of the noise scale.
-    pub(super) noise: NoiseScore,
     /// Sum of squared innovations over their variance given (c, v).
     squares: f32,
     /// Product of those variances times 2 pi.
@@ -34,7 +28,7 @@ pub(super) struct PhaseEvidence {
     count: usize,
     /// NIS and number of the angles that are excluded from the phase's evidence.
     excluded: (f32, usize),
-    /// Variance of a person's cycle shape, rad^2.
+    /// Least variance of an angle as evidence for the phase, rad^2.
     shape_rad2: f32,
 }
 
@@ -48,18 +42,15 @@ pub(super) struct FrameInnovation {
     pub(super) present: usize,
     /// Whether the innovation lies beyond the gate.
     pub(super) outlier: bool,
-    /// Scale of the stated noise variances in the NIS.
-    pub(super) noise_scale: f32,
 }
 
 impl PhaseEvidence {
     /// Without angles so far, in a motion in which some angle winds or none does.
-    pub(super) const fn none(winds: bool, noise: NoiseScore) -> Self {
-        let shape_std_rad = if winds { WINDING_SHAPE_STD_RAD } else { SHAPE_STD_RAD };
+    pub(super) const fn none(winds: bool) -> Self {
+        let shape_std_rad = if winds { WINDING_SHAPE_STD_RAD } else { 0.0 };
         Self {
             all: Information::NONE,
             gated: Information::NONE,
-            noise,
             squares: 0.0,
             volume: LogProduct::one(),
             count: 0,
@@ -94,10 +85,9 @@ impl PhaseEvidence {
         self.gated.add(gradient, weight, residual);
     }
 
-    /// Innovation of all angles at `noise_scale` times the stated noise variances; `pair` is the
-    /// prior of (c, v).
+    /// Innovation of all angles; `pair` is the prior of (c, v).
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn innovation(&self, pair: &CyclePair, noise_scale: f32) -> FrameInnovation {
+    pub(super) fn innovation(&self, pair: &CyclePair) -> FrameInnovation {
         let (explained, log_growth) = pair.explained(&self.all);
         let squared = crate::math::max(self.squares - explained, 0.0);
         FrameInnovation {
@@ -105,7 +95,6 @@ impl PhaseEvidence {
             squared,
             present: self.count,
             outlier: is_outlier(squared + self.excluded.0, self.count + self.excluded.1, DEFAULT_GATE_SIGMAS),
-            noise_scale,
         }
     }
 }

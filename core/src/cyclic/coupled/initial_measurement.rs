@@ -10,8 +10,6 @@ use crate::math::{max, min, sqrt, wrap_angle};
 /// Smallest standard deviation of an angle of the first row, rad. Chosen: the root of the Kalman
 /// filter's first variance (`KalmanOptions::angle_variance`, 1e-4 rad^2).
 const MIN_STD_RAD: f32 = 0.01;
-/// Inflation of the spread between people in a model: `inflation` of the model files, by training.
-const SPREAD_INFLATION: f32 = 4.0;
 /// Median of chi-square with one degree of freedom (tables: 0.454936).
 const MEDIAN_CHI_SQUARE: f32 = 0.454_9;
 /// Noise that the spread between people hides, rad. Chosen: below it the stated noise is halved at
@@ -54,7 +52,7 @@ impl<const N: usize> InitialMeasurement<N> {
             if let Some(angle) = first.angle_rad(i) {
                 let off = wrap_angle(angle - pose[i]);
                 unusual_offset_rad2[i] = off * off;
-                let _ = excess.push(off * off / MEDIAN_CHI_SQUARE - spread[i] * spread[i] / SPREAD_INFLATION);
+                let _ = excess.push(off * off / MEDIAN_CHI_SQUARE - spread[i] * spread[i]);
             }
         }
         let row_std_rad = sqrt(median(&excess));

@@ -125,11 +125,10 @@ impl<const N: usize> CoupledFilter<N> {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);
-        let scale = self.watch.noise_scale();
         let mut inflation_rad2 = [0.0; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
-            let noise = scale * measurement.std_rad()[i] * measurement.std_rad()[i];
+            let noise = self.noise.scale(i) * measurement.std_rad()[i] * measurement.std_rad()[i];
             let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
             let prediction = self.blocks[i].predict_angle(&basis, slope[i]);
             let total = prediction.variance + noise + self.pair.along(&prediction.gradient);

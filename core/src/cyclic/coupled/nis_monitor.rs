@@ -6,7 +6,7 @@
 
 use crate::cyclic::coupled::evidence::FrameInnovation;
 use crate::cyclic::saved_ranges::VARIANCE;
-use crate::math::{clamp, min};
+use crate::math::min;
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 
 /// Gain of the recent NIS in a frame. Chosen: a mean over about twenty frames.
@@ -25,8 +25,6 @@ const MAX_GOOD_RATIO: f32 = 1.3;
 /// Recent NIS over its floor above which the phase counts as lost, also where the motion runs
 /// backwards. Chosen: above the median of 1.4 at a needed jump.
 const MIN_LOST_RATIO: f32 = 1.6;
-/// Largest inflation of the stated noise variances. Chosen: four times the standard deviation.
-const MAX_NOISE_SCALE: f32 = 16.0;
 
 /// NIS per angle by the stated noise: recent mean and running minimum.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,17 +51,12 @@ impl NisMonitor {
         Self { recent: 1.0, floor: 1.0, frames: 0.0 }
     }
 
-    /// Inflation of the stated noise variances that makes the NIS consistent, in [1, 16].
-    pub(super) fn noise_scale(&self) -> f32 {
-        clamp(self.floor, 1.0, MAX_NOISE_SCALE)
-    }
-
     /// Adds a frame's NIS, `step_frames` after the last one. A frame without angles changes only
     /// the time.
     pub(super) fn update(&mut self, innovation: &FrameInnovation, step_frames: f32) {
         self.frames += step_frames;
         if innovation.present > 0 {
-            let nis = innovation.noise_scale * min(innovation.squared / innovation.present as f32, MAX_FRAME_NIS);
+            let nis = min(innovation.squared / innovation.present as f32, MAX_FRAME_NIS);
             self.recent += RECENT_GAIN * (nis - self.recent);
             let gain = if self.recent < self.floor { RECENT_GAIN } else { FLOOR_RISE };
             self.floor += gain * (self.recent - self.floor);
@@ -104,30 +97,25 @@ impl NisMonitor {
 mod tests {
     use super::*;
 
-    fn innovation(squared: f32, present: usize, noise_scale: f32) -> FrameInnovation {
-        FrameInnovation { log_likelihood: 0.0, squared, present, outlier: false, noise_scale }
+    fn innovation(squared: f32, present: usize) -> FrameInnovation {
+        FrameInnovation { log_likelihood: 0.0, squared, present, outlier: false }
     }
 
-    /// Adds `frames` whose NIS per angle by the stated noise is `nis`.
+    /// Adds `frames` whose NIS per angle is `nis`.
     fn seen(monitor: &mut NisMonitor, nis: f32, frames: usize) {
-        for _ in 0..frames {
-            let squared = 13.0 * nis / monitor.noise_scale();
-            monitor.update(&innovation(squared, 13, monitor.noise_scale()), 1.0);
-        }
+        (0..frames).for_each(|_| monitor.update(&innovation(13.0 * nis, 13), 1.0));
     }
 
     #[test]
-    fn a_high_nis_at_a_confirmed_phase_inflates_the_noise() {
+    fn a_high_nis_at_a_confirmed_phase_raises_the_floor() {
         let mut monitor = NisMonitor::new();
         seen(&mut monitor, 4.0, 60);
-        assert!(monitor.noise_scale() < 1.5, "the phase may be wrong");
+        assert!(monitor.is_lost(), "the phase may be wrong");
         for _ in 0..60 {
             seen(&mut monitor, 4.0, 3);
             monitor.raise_floor(3.0);
         }
-        assert!((3.8..4.01).contains(&monitor.noise_scale()), "{monitor:?}");
-        seen(&mut monitor, 0.5, 200);
-        assert!(monitor.noise_scale() == 1.0, "never below the stated noise");
+        assert!(monitor.is_good(50.0), "{monitor:?}");
     }
 
     #[test]
@@ -153,7 +141,7 @@ mod tests {
     fn frames_without_a_measurement_leave_the_nis_unchanged() {
         let mut monitor = NisMonitor::new();
         let before = monitor;
-        monitor.update(&innovation(0.0, 0, 1.0), 7.0);
+        monitor.update(&innovation(0.0, 0), 7.0);
         assert_eq!(monitor, NisMonitor { frames: 7.0, ..before });
     }
 }

@@ -24,11 +24,8 @@ const SPEED_CHANGE: f32 = 0.01;
 /// Share of the weight that moves to each neighbouring position in a frame. Chosen: a person's
 /// speed lies between those of the grid.
 const BLUR: f32 = 0.05;
-/// Frames that repeat the same evidence. Chosen: a person's deviation from the mean lasts for many
-/// frames, so its variance is inflated by this.
-const REPEATED_FRAMES: f32 = 4.0;
-/// Inflation of an angle's variance as evidence for the phase. Chosen: angles deviate together, as
-/// in `evidence.rs`.
+/// Inflation of an angle's variance as evidence for the phase. Chosen: angles deviate together,
+/// and for many frames, so 13 of them carry less evidence than 13 independent ones.
 const TEMPERING: f32 = 2.5;
 /// Number of angles up to which [`TEMPERING`] holds; more of them carry no more evidence together.
 /// Chosen: the angles of the paper's figure.
@@ -52,7 +49,7 @@ const LIMIT_SIGMAS: f32 = 4.0;
 ///     let position = 0.7 + f32::from(frame) * model.mean_cycle_velocity();
 ///     let pose_rad = model.mean_pose_rad::<13>(model.point(position));
 ///     grid.advance(&model, 1.0);
-///     grid.weigh(&model, &AngleMeasurement::new(&pose_rad.map(Some), 0.1)?, 1.0);
+///     grid.weigh(&model, &AngleMeasurement::new(&pose_rad.map(Some), 0.1)?);
 /// }
 /// assert!(grid.weight_near(0.7 + 29.0 * model.mean_cycle_velocity()) > 0.9);
 /// # }
@@ -163,10 +160,10 @@ impl PhaseGrid {
         }
     }
 
-    /// Updates by a measurement of an unknown person, `frames` after the last one.
+    /// Updates by a measurement of an unknown person.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub fn weigh<const N: usize>(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) {
-        let likelihood = likelihood_table(model, measurement, frames);
+    pub fn weigh<const N: usize>(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
+        let likelihood = likelihood_table(model, measurement);
         // Of the table's positions a speed's cells lie behind all even or all odd ones.
         let every_second = |first: usize| core::array::from_fn(|i| likelihood[(2 * i + first) % TABLE]);
         let [even, odd]: [[f32; TABLE]; 2] = [every_second(0), every_second(1)];
@@ -284,12 +281,7 @@ fn sums_around(cells: &[f32; POSITIONS]) -> [f32; POSITIONS] {
 
 /// Likelihood of a measurement at each position of the table, the greatest being one.
 #[cfg_attr(target_arch = "x86_64", inline(always))]
-fn likelihood_table<const N: usize>(
-    model: &MotionModel<'_>,
-    measurement: &AngleMeasurement<N>,
-    frames: f32,
-) -> [f32; TABLE] {
-    let repeated = max(REPEATED_FRAMES / frames, 1.0);
+fn likelihood_table<const N: usize>(model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> [f32; TABLE] {
     let spread = model.deviation_std_rad::<N>();
     let count = model.angle_count().min(N);
     let tempering = max(TEMPERING * measurement.present(count) as f32 / TEMPERED_ANGLES, TEMPERING);
@@ -298,7 +290,7 @@ fn likelihood_table<const N: usize>(
     // A missing angle has no precision.
     let precision: [f32; N] = core::array::from_fn(|i| {
         let std = measurement.std_rad()[i];
-        if seen(i).is_some() { 0.5 / (tempering * (repeated * spread[i] * spread[i] + std * std)) } else { 0.0 }
+        if seen(i).is_some() { 0.5 / (tempering * (spread[i] * spread[i] + std * std)) } else { 0.0 }
     });
     let limit = 0.5 * LIMIT_SIGMAS * LIMIT_SIGMAS / tempering;
     let mut scores = [0.0_f32; TABLE];

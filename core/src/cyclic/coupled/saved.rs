@@ -21,6 +21,7 @@ impl<const N: usize> SavedState for CoupledFilter<N> {
         visitor.integer(&mut self.cycles);
         self.grid.visit(visitor);
         self.watch.visit(visitor);
+        self.noise.visit(visitor);
         self.winding.visit(visitor);
         self.path.visit(visitor);
         self.swing.visit(visitor);

@@ -4,6 +4,7 @@ use crate::cyclic::coupled::block::AngleBlock;
 use crate::cyclic::coupled::cycle_pair::CyclePair;
 use crate::cyclic::coupled::initial_measurement::InitialMeasurement;
 use crate::cyclic::coupled::measured_path::MeasuredPath;
+use crate::cyclic::coupled::measurement_noise::MeasurementNoise;
 use crate::cyclic::coupled::phase_grid::PhaseGrid;
 use crate::cyclic::coupled::state::{CoupledFilter, spread};
 use crate::cyclic::coupled::stored_grid::StoredGrid;
@@ -103,6 +104,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.cycles = 0;
         self.grid = StoredGrid::uniform();
         self.watch = Watch::new();
+        self.noise = MeasurementNoise::new();
         self.winding = Winding::new();
         self.path = MeasuredPath::new();
         self.relocks = 0;

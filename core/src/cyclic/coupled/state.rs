@@ -10,6 +10,7 @@ use crate::cyclic::MotionModel;
 use crate::cyclic::coupled::block::{AngleBlock, Spread};
 use crate::cyclic::coupled::cycle_pair::CyclePair;
 use crate::cyclic::coupled::measured_path::MeasuredPath;
+use crate::cyclic::coupled::measurement_noise::MeasurementNoise;
 use crate::cyclic::coupled::stored_grid::StoredGrid;
 use crate::cyclic::coupled::watch::agreement::Watch;
 use crate::cyclic::coupled::winding::Winding;
@@ -33,7 +34,7 @@ pub(super) const LOST_STD: f32 = 0.15;
 /// // A person walks into view at an unknown phase: the filter searches the whole cycle.
 /// let model = WALKING.model()?;
 /// let position = |frame: u8| 0.7 + f32::from(frame) * model.mean_cycle_velocity();
-/// let seen = |frame| AngleMeasurement::new(&model.mean_pose_rad::<13>(model.point(position(frame))).map(Some), 0.1);
+/// let seen = |frame| AngleMeasurement::new(&model.mean_pose_rad::<13>(model.point(position(frame))).map(Some), 0.3);
 /// let mut filter = CoupledFilter::anywhere(&model, &seen(0)?)?;
 /// assert!(filter.is_searching());
 /// for frame in 1..=90 {
@@ -56,6 +57,7 @@ pub struct CoupledFilter<const N: usize> {
     pub(super) cycles: i32,
     pub(super) grid: StoredGrid,
     pub(super) watch: Watch,
+    pub(super) noise: MeasurementNoise<N>,
     pub(super) winding: Winding<N>,
     pub(super) path: MeasuredPath<N>,
     /// Variance that the mean cycle explains at the filter's position.
@@ -64,7 +66,7 @@ pub struct CoupledFilter<const N: usize> {
     pub(super) relocks: u16,
 }
 
-const _: () = assert!(size_of::<CoupledFilter<13>>() <= 2560, "the state has to fit 2.5 KiB");
+const _: () = assert!(size_of::<CoupledFilter<13>>() <= 2704, "the state has to fit 2.7 KiB");
 
 impl<const N: usize> CoupledFilter<N> {
     /// A filter before [`Self::begin`], for static memory: it takes no stack. Its estimates are
@@ -81,6 +83,7 @@ impl<const N: usize> CoupledFilter<N> {
             cycles: 0,
             grid: StoredGrid::uniform(),
             watch: Watch::new(),
+            noise: MeasurementNoise::new(),
             winding: Winding::new(),
             path: MeasuredPath::new(),
             relocks: 0,

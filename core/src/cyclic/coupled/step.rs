@@ -4,13 +4,6 @@ use crate::cyclic::coupled::block::Basis;
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::{AngleMeasurement, CyclicEstimate, MotionModel};
 
-/// Reported share of the computed variance of an angle.
-///
-/// Inflation of the spread between people and tempering serve the gains. Measured on
-/// `cyclic-walking`: with all of the variance the 90 % band holds 95.5 % of the truth
-/// (`docs/cyclic_coupled.md`).
-pub const BAND_CALIBRATION: f32 = 0.9;
-
 impl<const N: usize> CoupledFilter<N> {
     /// One frame: predict over the measurement's step, then correct by the angles seen. On x86-64
     /// what every frame needs is inlined, so that a caller compiled for wider vectors than the
@@ -49,11 +42,11 @@ impl<const N: usize> CoupledFilter<N> {
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn estimate(&self, model: &MotionModel<'_>, log_likelihood: f32, outlier: bool) -> CyclicEstimate<N> {
         let slope = self.pose_slope(model);
-        let (basis, band_calibration) = (Basis::at(self.position), self.band_calibration());
+        let basis = Basis::at(self.position);
         let mut angle_variance_rad2 = [0.0; N];
         for i in 0..model.angle_count().min(N) {
             let prediction = self.blocks[i].predict_angle(&basis, slope[i]);
-            angle_variance_rad2[i] = band_calibration * (prediction.variance + self.pair.along(&prediction.gradient));
+            angle_variance_rad2[i] = self.band_scale(i) * (prediction.variance + self.pair.along(&prediction.gradient));
         }
         CyclicEstimate {
             angles_rad: self.angles_rad,
@@ -68,13 +61,13 @@ impl<const N: usize> CoupledFilter<N> {
         }
     }
 
-    /// Factor of the reported variances of the angles: [`BAND_CALIBRATION`] over the learned noise
-    /// scale.
+    /// Factor of the reported variance of the angle at `index`, at least one: the inverse of a
+    /// learned noise scale below one.
     ///
     /// Noise that moves slowly looks like absent noise, so bands stay as wide as the stated noise
     /// makes them.
     #[must_use]
-    pub fn band_calibration(&self) -> f32 {
-        BAND_CALIBRATION * self.watch.noise.band_scale()
+    pub fn band_scale(&self, index: usize) -> f32 {
+        self.noise.band_scale(index)
     }
 }

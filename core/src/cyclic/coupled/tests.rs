@@ -197,7 +197,7 @@ fn the_bands_hold_where_the_noise_is_larger_than_stated() {
         let share = inside_the_band(&winding.model().unwrap(), person, stated);
         assert!((0.8..0.99).contains(&share), "stated {stated} rad: {share} inside the 90 % band, winding");
         let share = inside_the_band(&swinging.model().unwrap(), |i, position| person(i % 12, position), stated);
-        assert!((0.8..0.97).contains(&share), "stated {stated} rad: {share} inside the 90 % band");
+        assert!((0.8..0.98).contains(&share), "stated {stated} rad: {share} inside the 90 % band");
     }
 }
 

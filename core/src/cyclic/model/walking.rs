@@ -1,5 +1,5 @@
-//! The walking model: ten cycles of three people, the same numbers as the host's shipped model of
-//! that name.
+//! The walking model: 53 cycles of eight people, each also with its sides exchanged. The same
+//! numbers as the host's shipped model of that name.
 
 use crate::cyclic::model::table::HumanModelTable;
 

@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// Noise, degrees, with the greatest share of frames off in the second second of walking, and from
 /// then on.
-const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.14, 0.07), (6.0, 0.14, 0.07), (29.0, 0.23, 0.14)];
+const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.04, 0.02), (6.0, 0.04, 0.02), (29.0, 0.16, 0.06)];
 const SEEDS: [u64; 2] = [1, 2];
 /// Error of the position beyond which a frame is off, cycles.
 const OFF: f64 = 0.15;

@@ -131,7 +131,7 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
                     variance += gradient[i] * gradient[j] * moments.covariance[(index(i), index(j))];
                 }
             }
-            angle_variance_rad2[angle] = f64::from(self.0.band_calibration()) * variance.max(0.0);
+            angle_variance_rad2[angle] = f64::from(self.0.band_scale(angle)) * variance.max(0.0);
         }
         // An angle that is judged by itself moves its own parts but not (c, v). What looks back
         // adds that up as if it knew less of them.

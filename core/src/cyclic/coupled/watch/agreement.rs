@@ -1,7 +1,6 @@
 //! How the filter's phase agrees with the grid's, over time.
 
 use crate::cyclic::coupled::nis_monitor::NisMonitor;
-use crate::cyclic::coupled::noise_scale::NoiseScale;
 use crate::cyclic::coupled::phase_grid::PhaseMode;
 use crate::cyclic::phase::position_difference;
 use crate::math::{abs, clamp};
@@ -35,10 +34,10 @@ pub(in crate::cyclic::coupled) struct Watch {
     pub(super) disagreement_frames: f32,
     /// Whether the phase is unknown, so that the estimate is the mean over the grid.
     pub(in crate::cyclic::coupled) searching: bool,
+    /// Whether the grid confirmed the filter's phase when it was last updated.
+    pub(in crate::cyclic::coupled) agrees: bool,
     /// How well measurements are predicted.
     pub(in crate::cyclic::coupled) nis: NisMonitor,
-    /// Factor of the noise variance that the innovations show.
-    pub(in crate::cyclic::coupled) noise: NoiseScale,
 }
 
 impl SavedState for Watch {
@@ -47,22 +46,22 @@ impl SavedState for Watch {
         visitor.real(&mut self.mean_phase_offset, &(-MAX_PHASE_OFFSET..=MAX_PHASE_OFFSET));
         visitor.real(&mut self.disagreement_frames, &NOT_NEGATIVE);
         visitor.flag(&mut self.searching);
+        visitor.flag(&mut self.agrees);
         self.nis.visit(visitor);
-        self.noise.visit(visitor);
     }
 }
 
 impl Watch {
     /// Locked, with no disagreement so far.
     pub(in crate::cyclic::coupled) const fn new() -> Self {
-        let (nis, noise) = (NisMonitor::new(), NoiseScale::new());
-        Self { unwatched_frames: 0.0, mean_phase_offset: 0.0, disagreement_frames: 0.0, searching: false, nis, noise }
-    }
-
-    /// Factor of the given noise variances by which measurements are weighted.
-    #[inline]
-    pub(in crate::cyclic::coupled) fn noise_scale(&self) -> f32 {
-        self.nis.noise_scale() * self.noise.scale()
+        Self {
+            unwatched_frames: 0.0,
+            mean_phase_offset: 0.0,
+            disagreement_frames: 0.0,
+            searching: false,
+            agrees: false,
+            nis: NisMonitor::new(),
+        }
     }
 
     /// Compares the grid's `mode` with the filter's `position`, `frames` after the last comparison.
@@ -73,7 +72,8 @@ impl Watch {
             -MAX_PHASE_OFFSET,
             MAX_PHASE_OFFSET,
         );
-        if mode.weight > MIN_AGREED_WEIGHT && abs(beyond) < MAX_AGREEMENT_CYCLES {
+        self.agrees = mode.weight > MIN_AGREED_WEIGHT && abs(beyond) < MAX_AGREEMENT_CYCLES;
+        if self.agrees {
             self.nis.raise_floor(frames);
         }
         let disagrees = mode.weight > MIN_MODE_WEIGHT && abs(beyond) > MIN_DISAGREEMENT_CYCLES;

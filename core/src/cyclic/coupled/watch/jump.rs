@@ -47,7 +47,7 @@ const MIN_FILLED_SHARE: f32 = 0.28;
 /// Positions at which the cycle's own variance is computed. Chosen: few, since each update checks
 /// it.
 const CYCLE_POSITIONS: u8 = 8;
-/// Most frames for which one measurement counts in the grid. Chosen: as its `REPEATED_FRAMES`.
+/// Most frames for which one comparison with the grid counts. Chosen: a gap is no disagreement.
 const MAX_GRID_FRAMES: f32 = 4.0;
 
 impl<const N: usize> CoupledFilter<N> {
@@ -79,6 +79,7 @@ impl<const N: usize> CoupledFilter<N> {
         }
         if self.velocity < 0.0 && !self.watch.nis.is_lost() && !self.is_spurious_lock(model, measurement) {
             // The grid has forward motion only.
+            self.watch.agrees = false;
             return Some(mode);
         }
         self.watch.compare(&mode, self.position, frames);
@@ -99,7 +100,7 @@ impl<const N: usize> CoupledFilter<N> {
     fn update_grid(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) -> PhaseMode {
         let mut grid = self.grid.load();
         grid.advance(model, frames);
-        grid.weigh(model, measurement, clamp(frames, 1.0, MAX_GRID_FRAMES));
+        grid.weigh(model, measurement);
         self.grid.store(&grid);
         grid.mode(model)
     }

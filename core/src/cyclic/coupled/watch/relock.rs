@@ -51,6 +51,7 @@ impl<const N: usize> CoupledFilter<N> {
             block.regression = [[0.0; 2]; PARTS];
         }
         self.watch.searching = false;
+        self.watch.agrees = false;
         self.relocks = self.relocks.wrapping_add(1);
         self.watch.disagreement_frames = 0.0;
         self.watch.nis.restart();
