@@ -11,7 +11,7 @@ use crate::math::{abs, exp, max};
 const FORGETTING: f32 = 0.02;
 /// Most substeps of a step. Chosen: bounded work after a gap, with estimates nearly those of a step
 /// a frame.
-pub const MAX_SUBSTEPS: u8 = 6;
+pub const MAX_SUBSTEPS: u8 = 5;
 
 impl<const N: usize> CoupledFilter<N> {
     /// Moves on by `step_frames`, in substeps of one frame, longer ones where that would be more
