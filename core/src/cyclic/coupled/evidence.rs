@@ -28,7 +28,7 @@ pub(super) struct PhaseEvidence {
     count: usize,
     /// NIS and number of the angles that are excluded from the phase's evidence.
     excluded: (f32, usize),
-    /// Least variance of an angle as evidence for the phase, rad^2.
+    /// Variance of a person's cycle shape, rad^2: what the tempered variance is increased by.
     shape_rad2: f32,
 }
 
