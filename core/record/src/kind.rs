@@ -1,7 +1,7 @@
 //! Version and kinds of records.
 
 /// Version of the format that this library writes and reads.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 
 /// What a record holds. The numbers never change their meaning.
 ///

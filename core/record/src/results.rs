@@ -57,7 +57,7 @@ impl CyclicResult {
 
 impl Payload for CyclicResult {
     const KIND: Kind = Kind::CyclicResult;
-    const MAX_BYTES: usize = 4 + 12 * HUMAN_ANGLES + 5 * 4 + 1 + 4 + 8;
+    const MAX_BYTES: usize = 4 + 12 * HUMAN_ANGLES + 5 * 4 + 2 + 4 + 8;
 
     fn write(&self, fields: &mut FieldWriter<'_>) {
         let estimate = &self.estimate;
@@ -73,6 +73,7 @@ impl Payload for CyclicResult {
             estimate.log_likelihood,
         ]);
         fields.u8(u8::from(estimate.outlier));
+        fields.u8(u8::from(estimate.misfit));
         fields.u32(self.cycles_completed as u32);
         fields.f32s(&self.cadence_per_min);
     }
@@ -94,6 +95,7 @@ impl Payload for CyclicResult {
             cycle_velocity_variance: fields.f32()?,
             log_likelihood: fields.f32()?,
             outlier: fields.flag("outlier")?,
+            misfit: fields.flag("misfit")?,
         };
         Ok(Self { frame, estimate, cycles_completed: fields.u32()? as i32, cadence_per_min: fields.f32s()? })
     }

@@ -185,6 +185,7 @@ fn results_and_costs_come_back() {
             cycle_velocity_variance: 0.03,
             log_likelihood: -7.0,
             outlier: true,
+            misfit: false,
         },
         cycles_completed: -2,
         cadence_per_min: [50.0, 1.0],

@@ -55,6 +55,9 @@ pub struct SinewCyclicResult {
     pub is_outlier: u32,
     /// 1 while the position in the cycle is not known and the pose is the mean of all positions.
     pub is_searching: u32,
+    /// 1 if the person has for a cycle or two differed from the model's mean cycle by more than people
+    /// do in the training: another motion, or wrong angles.
+    pub is_misfit: u32,
 }
 
 impl SinewCyclicFrame {
@@ -99,6 +102,7 @@ impl SinewCyclicResult {
             log_likelihood: estimate.log_likelihood,
             is_outlier: u32::from(estimate.outlier),
             is_searching: u32::from(is_searching),
+            is_misfit: u32::from(estimate.misfit),
         }
     }
 }

@@ -49,6 +49,9 @@ pub struct CyclicEstimate<const N: usize> {
     pub log_likelihood: f32,
     /// Whether this frame's measurement lies beyond the innovation gate.
     pub outlier: bool,
+    /// Whether the person has for a cycle or two differed from the model's mean cycle by more than
+    /// people do in the training: another motion, or wrong measurements. Filter `coupled` only.
+    pub misfit: bool,
 }
 
 impl<const N: usize> CyclicEstimate<N> {
@@ -76,5 +79,6 @@ impl<const N: usize> SavedState for CyclicEstimate<N> {
         visitor.real(&mut self.cycle_velocity_variance, &VARIANCE);
         visitor.real(&mut self.log_likelihood, &FINITE);
         visitor.flag(&mut self.outlier);
+        visitor.flag(&mut self.misfit);
     }
 }

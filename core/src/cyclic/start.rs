@@ -104,6 +104,7 @@ impl<const N: usize> CycleStart<N> {
             cycle_velocity_variance: 0.0,
             log_likelihood: 0.0,
             outlier: false,
+            misfit: false,
         }
     }
 

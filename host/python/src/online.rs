@@ -79,6 +79,7 @@ impl Tracker {
         named.set_item("cadence_std_per_min", cadence_std_per_min)?;
         named.set_item("log_likelihood", f64::from(estimate.log_likelihood))?;
         named.set_item("outlier", estimate.outlier)?;
+        named.set_item("misfit", estimate.misfit)?;
         Ok(named)
     }
 }

@@ -135,6 +135,8 @@ fn answer<'py>(py: Python<'py>, found: &Found) -> PyResult<Bound<'py, PyDict>> {
     answer.set_item("is_known", is_known.into_pyarray(py))?;
     let outlier: Vec<bool> = frames.iter().map(|frame| frame.is_known && frame.estimate.outlier).collect();
     answer.set_item("outlier", outlier.into_pyarray(py))?;
+    let misfit: Vec<bool> = frames.iter().map(|frame| frame.is_known && frame.estimate.misfit).collect();
+    answer.set_item("misfit", misfit.into_pyarray(py))?;
     let position = numbers(|frame| f64::from(frame.estimate.cycle_position));
     answer.set_item("cycle_position", position.into_pyarray(py))?;
     answer.set_item("cycles", numbers(|frame| frame.cycles).into_pyarray(py))?;

@@ -18,7 +18,7 @@ def track(walk):
 def test_shapes_and_types(walk, track):
     n = len(walk)
     assert len(track) == n
-    for name in ("frame", "time_s", "is_known", "outlier", "cycle_position", "cycles"):
+    for name in ("frame", "time_s", "is_known", "outlier", "misfit", "cycle_position", "cycles"):
         assert getattr(track, name).shape == (n,), name
     assert track.angles_rad.shape == track.std_rad.shape == (n, 13)
     assert track.angles_rad.dtype == np.float64 and track.is_known.dtype == bool

@@ -61,7 +61,8 @@ fn tell_what_was_run(run: &mut Run, folder: &mut RunFolder, summary: &Value) {
     run.highlights.extend(number(&summary["cadence_per_min"], 2, "a minute").map(|value| Fact::new("Cadence", value)));
     run.highlights.extend(number(&summary["cycles"], 2, "").map(|value| Fact::new("Cycles", value)));
     run.highlights.extend(number(&summary["duration_s"], 2, "s").map(|value| Fact::new("Duration", value)));
-    run.highlights.extend(facts_of(summary, &[("frames", "Frames"), ("outliers", "Outliers")]));
+    run.highlights
+        .extend(facts_of(summary, &[("frames", "Frames"), ("outliers", "Outliers"), ("misfits", "Unlike the model")]));
     run.facts = facts_of(
         summary,
         &[("sinew_version", "Version"), ("seed", "Seed"), ("table", "Input"), ("model", "Motion model")],
@@ -170,9 +171,18 @@ fn player(
         table: estimates.map(|estimates| estimates.name.clone()),
         rate_hz: summary["options"]["rate_hz"].as_f64(),
         figures: joints.map(figure).into_iter().collect(),
-        shown: ["frame", "cycle_position", "cadence_per_min", "cycles", "log_likelihood", "outlier", "motion"]
-            .map(str::to_owned)
-            .to_vec(),
+        shown: [
+            "frame",
+            "cycle_position",
+            "cadence_per_min",
+            "cycles",
+            "log_likelihood",
+            "outlier",
+            "misfit",
+            "motion",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         ..Player::default()
     };
     if let Some(recorded) = summary["overlay"]["folder"].as_str() {

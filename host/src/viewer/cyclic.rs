@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Columns that are plotted, beside the angles.
-const PLOTTED: [&str; 5] = ["cadence_per_min", "cycle_position", "cycles", "log_likelihood", "outlier"];
+const PLOTTED: [&str; 6] = ["cadence_per_min", "cycle_position", "cycles", "log_likelihood", "outlier", "misfit"];
 
 /// Writes the run in `folder`.
 pub(super) fn write(folder: &Path, summary: &Value, recording: &mut Recording<'_>) -> Result<Shown> {

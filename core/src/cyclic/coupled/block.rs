@@ -75,6 +75,12 @@ pub(super) struct Spread {
 }
 
 impl Spread {
+    /// With the variances multiplied by `factor`.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
+    pub(super) fn scaled(&self, factor: f32) -> Self {
+        Self { offset: factor * self.offset, swing: factor * self.swing, rest: factor * self.rest, rate: self.rate }
+    }
+
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn diagonal(&self) -> [f32; PARTS] {
         [self.offset, self.swing, self.swing, self.rest, self.rest * self.rate * self.rate]
@@ -193,7 +199,13 @@ impl AngleBlock {
         self.covariance[packed_index(i, j)]
     }
 
-    /// Inflates the offset's variance by `variance`, rad^2.
+    /// Multiplies all variances by `factor`.
+    #[inline]
+    pub(super) fn inflate(&mut self, factor: f32) {
+        self.covariance.iter_mut().for_each(|value| *value *= factor);
+    }
+
+    /// Adds `variance`, rad^2, to that of the offset.
     pub(super) fn inflate_offset(&mut self, variance: f32) {
         self.covariance[0] += variance;
     }

@@ -2,9 +2,10 @@
 
 use crate::cyclic::coupled::block::{AnglePrediction, Basis};
 use crate::cyclic::coupled::evidence::{FrameInnovation, PhaseEvidence};
+use crate::cyclic::coupled::spread_scale::FrameProducts;
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::{AngleMeasurement, MotionModel};
-use crate::math::{clamp, sqrt, wrap_angle};
+use crate::math::{clamp, max, sqrt, wrap_angle};
 
 /// Gate of a single angle, standard deviations. An angle beyond it does not inform the phase, and
 /// its offset is learned again. Chosen: short links that wind in a side view would drag the phase.
@@ -22,6 +23,7 @@ impl<const N: usize> CoupledFilter<N> {
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);
         let mut evidence = PhaseEvidence::none(model.winds());
+        let mut products = FrameProducts::NONE;
         let mut seen: [Option<(AnglePrediction, f32, f32)>; N] = [None; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
@@ -31,10 +33,13 @@ impl<const N: usize> CoupledFilter<N> {
             let mut prediction = self.blocks[i].predict_angle(&basis, slope[i]);
             let given = prediction.variance + noise;
             let (total, informs_phase) = (given + self.pair.along(&prediction.gradient), self.winding.informs_phase(i));
+            let innovations = [residual, self.last_innovation_rad[i]];
+            self.last_innovation_rad[i] = residual;
+            products.add(innovations, max(total, total - noise + stated));
             if informs_phase {
                 evidence.add(&prediction.gradient, given, residual);
                 if self.watch.agrees {
-                    self.noise.add(i, [stated, total - noise], residual);
+                    self.noise.add(i, [stated, noise, total - noise], innovations);
                 }
             } else {
                 evidence.add_excluded(total, residual);
@@ -58,6 +63,10 @@ impl<const N: usize> CoupledFilter<N> {
                 block.correct(prediction, *noise, *residual, shift);
                 block.mean[0] = wrap_angle(block.mean[0]);
             }
+        }
+        let growth = self.spread_scale.update(&products, model.mean_cycle_velocity());
+        if growth > 1.0 {
+            self.blocks.iter_mut().for_each(|block| block.inflate(growth));
         }
         self.velocity = clamp(self.velocity + shift[1], -0.5, 0.5);
         self.move_by(clamp(shift[0], -0.5, 0.5));

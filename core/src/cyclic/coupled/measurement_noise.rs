@@ -44,8 +44,6 @@ pub(super) struct MeasurementNoise<const N: usize> {
     frames: [f32; N],
     /// Scale of all angles together.
     shared: f32,
-    /// Innovation of each angle before, rad.
-    last_rad: [f32; N],
 }
 
 impl<const N: usize> SavedState for MeasurementNoise<N> {
@@ -55,14 +53,13 @@ impl<const N: usize> SavedState for MeasurementNoise<N> {
         visitor.reals(&mut self.sums, &(-MOST * MAX_SQUARE * MAX_SCALE..=MOST * MAX_SQUARE * MAX_SCALE));
         visitor.reals(&mut self.frames, &(*NOT_NEGATIVE.start()..=MOST));
         visitor.real(&mut self.shared, &(MIN_SCALE..=MAX_SCALE));
-        visitor.reals(&mut self.last_rad, &(-1.01 * PI..=1.01 * PI));
     }
 }
 
 impl<const N: usize> MeasurementNoise<N> {
     /// Noise as stated.
     pub(super) const fn new() -> Self {
-        Self { sums: [0.0; N], frames: [0.0; N], shared: 1.0, last_rad: [0.0; N] }
+        Self { sums: [0.0; N], frames: [0.0; N], shared: 1.0 }
     }
 
     /// Factor of the stated variance of the angle at `index` for the gains, in [[`MIN_SCALE`],
@@ -82,23 +79,18 @@ impl<const N: usize> MeasurementNoise<N> {
         1.0 / min(self.scale(index), 1.0)
     }
 
-    /// Adds the wrapped innovation of the angle at `index`, with the variances of stated noise and
-    /// prediction, rad^2.
+    /// Adds the wrapped innovations of the angle at `index` in this frame and the last one, with the
+    /// variances of stated noise, scaled noise and prediction, rad^2.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline)]
-    pub(super) fn add(&mut self, index: usize, [stated, predicted]: [f32; 2], innovation_rad: f32) {
-        let scale = self.scale(index);
-        let (sum, frames, last_rad) =
-            (self.sums.get_mut(index), self.frames.get_mut(index), self.last_rad.get_mut(index));
-        let (Some(sum), Some(frames), Some(last_rad)) = (sum, frames, last_rad) else { return };
-        let noise = scale * stated;
+    pub(super) fn add(&mut self, index: usize, [stated, noise, predicted]: [f32; 3], innovations_rad: [f32; 2]) {
+        let (Some(sum), Some(frames)) = (self.sums.get_mut(index), self.frames.get_mut(index)) else { return };
         let variance = predicted + noise;
         let share = noise / variance;
-        let change_rad = least_angle(innovation_rad - *last_rad);
-        *last_rad = innovation_rad;
+        let change_rad = least_angle(innovations_rad[0] - innovations_rad[1]);
         let square = min(0.5 * change_rad * change_rad * wrapping(2.0 * variance), MAX_SQUARE * variance);
         // Of the square, the noise's part in stated variances, times the weight share^2.
-        let beyond = scale * share * (square - predicted) / variance;
+        let beyond = noise / stated * share * (square - predicted) / variance;
         *sum = KEPT * *sum + beyond;
         *frames = KEPT * *frames + share * share;
     }
@@ -137,12 +129,13 @@ mod tests {
     /// Scales after `frames` with predicted and stated variances, where the true noise variance of
     /// each angle is `truly` of the stated one.
     fn scales([stated, predicted]: [f32; 2], truly: impl Fn(usize) -> f32, frames: u64) -> [f32; N] {
-        let mut noise = MeasurementNoise::<N>::new();
+        let (mut noise, mut last_rad) = (MeasurementNoise::<N>::new(), [0.0; N]);
         for frame in 0..frames {
             let mut stream = Stream::new(3, frame, 0);
             for i in 0..N {
                 let innovation = wrap_angle(sqrt(predicted + truly(i) * stated) * stream.normal());
-                noise.add(i, [stated, predicted], innovation);
+                noise.add(i, [stated, noise.scale(i) * stated, predicted], [innovation, last_rad[i]]);
+                last_rad[i] = innovation;
             }
             noise.update();
         }
@@ -175,13 +168,15 @@ mod tests {
 
     #[test]
     fn what_a_model_does_not_fit_is_no_noise() {
-        let mut noise = MeasurementNoise::<N>::new();
+        let (mut noise, mut last_rad) = (MeasurementNoise::<N>::new(), [0.0; N]);
         for frame in 0..120_u16 {
             let mut stream = Stream::new(3, u64::from(frame), 0);
             for i in 0..N {
                 // Two standard deviations off, up and down once in a cycle of 60 frames.
                 let off_rad = 0.2 * crate::math::sin_cos(f32::from(frame) * PI / 30.0 + i as f32).0;
-                noise.add(i, [0.01, 1.0e-3], off_rad + 0.1 * stream.normal());
+                let innovation = off_rad + 0.1 * stream.normal();
+                noise.add(i, [0.01, 0.01 * noise.scale(i), 1.0e-3], [innovation, last_rad[i]]);
+                last_rad[i] = innovation;
             }
             noise.update();
         }
@@ -198,7 +193,7 @@ mod tests {
 
     #[test]
     fn bands_are_never_narrower_than_the_stated_noise_makes_them() {
-        let noise = MeasurementNoise { sums: [-400.0, 400.0], frames: [100.0; 2], shared: 1.0, last_rad: [0.0; 2] };
+        let noise = MeasurementNoise { sums: [-400.0, 400.0], frames: [100.0; 2], shared: 1.0 };
         assert_eq!([noise.band_scale(0), noise.band_scale(1), noise.band_scale(2)], [4.0, 1.0, 1.0]);
         assert!(noise.scale(1) > 2.5);
     }

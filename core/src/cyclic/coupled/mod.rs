@@ -13,6 +13,7 @@ mod nis_monitor;
 pub mod phase_grid;
 pub mod predict;
 mod saved;
+mod spread_scale;
 mod start;
 pub mod state;
 pub mod step;

@@ -35,7 +35,7 @@ impl<const N: usize> CoupledFilter<N> {
                 // The linearisation by (c, v) does not hold.
                 self.blocks[i].regression = [[0.0; 2]; PARTS];
             }
-            self.blocks[i].advance(&spread(model, i), phase, memory, &map, &rest);
+            self.blocks[i].advance(&spread(model, i).scaled(self.spread_scale.scale()), phase, memory, &map, &rest);
         }
         self.move_by(step * self.velocity);
     }

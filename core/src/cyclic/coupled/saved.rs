@@ -22,6 +22,8 @@ impl<const N: usize> SavedState for CoupledFilter<N> {
         self.grid.visit(visitor);
         self.watch.visit(visitor);
         self.noise.visit(visitor);
+        self.spread_scale.visit(visitor);
+        visitor.reals(&mut self.last_innovation_rad, &(-1.01 * PI..=1.01 * PI));
         self.winding.visit(visitor);
         self.path.visit(visitor);
         self.swing.visit(visitor);

@@ -6,6 +6,7 @@ use crate::cyclic::coupled::initial_measurement::InitialMeasurement;
 use crate::cyclic::coupled::measured_path::MeasuredPath;
 use crate::cyclic::coupled::measurement_noise::MeasurementNoise;
 use crate::cyclic::coupled::phase_grid::PhaseGrid;
+use crate::cyclic::coupled::spread_scale::SpreadScale;
 use crate::cyclic::coupled::state::{CoupledFilter, spread};
 use crate::cyclic::coupled::stored_grid::StoredGrid;
 use crate::cyclic::coupled::watch::agreement::Watch;
@@ -105,6 +106,8 @@ impl<const N: usize> CoupledFilter<N> {
         self.grid = StoredGrid::uniform();
         self.watch = Watch::new();
         self.noise = MeasurementNoise::new();
+        self.spread_scale = SpreadScale::new();
+        self.last_innovation_rad = [0.0; N];
         self.winding = Winding::new();
         self.path = MeasuredPath::new();
         self.relocks = 0;

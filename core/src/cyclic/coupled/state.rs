@@ -11,6 +11,7 @@ use crate::cyclic::coupled::block::{AngleBlock, Spread};
 use crate::cyclic::coupled::cycle_pair::CyclePair;
 use crate::cyclic::coupled::measured_path::MeasuredPath;
 use crate::cyclic::coupled::measurement_noise::MeasurementNoise;
+use crate::cyclic::coupled::spread_scale::SpreadScale;
 use crate::cyclic::coupled::stored_grid::StoredGrid;
 use crate::cyclic::coupled::watch::agreement::Watch;
 use crate::cyclic::coupled::winding::Winding;
@@ -58,6 +59,9 @@ pub struct CoupledFilter<const N: usize> {
     pub(super) grid: StoredGrid,
     pub(super) watch: Watch,
     pub(super) noise: MeasurementNoise<N>,
+    pub(super) spread_scale: SpreadScale,
+    /// Innovation of each angle in the last frame that had it, rad.
+    pub(super) last_innovation_rad: [f32; N],
     pub(super) winding: Winding<N>,
     pub(super) path: MeasuredPath<N>,
     /// Variance that the mean cycle explains at the filter's position.
@@ -66,7 +70,7 @@ pub struct CoupledFilter<const N: usize> {
     pub(super) relocks: u16,
 }
 
-const _: () = assert!(size_of::<CoupledFilter<13>>() <= 2704, "the state has to fit 2.7 KiB");
+const _: () = assert!(size_of::<CoupledFilter<13>>() <= 2728, "the state has to fit 2.7 KiB");
 
 impl<const N: usize> CoupledFilter<N> {
     /// A filter before [`Self::begin`], for static memory: it takes no stack. Its estimates are
@@ -84,6 +88,8 @@ impl<const N: usize> CoupledFilter<N> {
             grid: StoredGrid::uniform(),
             watch: Watch::new(),
             noise: MeasurementNoise::new(),
+            spread_scale: SpreadScale::new(),
+            last_innovation_rad: [0.0; N],
             winding: Winding::new(),
             path: MeasuredPath::new(),
             relocks: 0,

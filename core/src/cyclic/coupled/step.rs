@@ -58,6 +58,7 @@ impl<const N: usize> CoupledFilter<N> {
             cycle_velocity_variance: self.pair.vv,
             log_likelihood,
             outlier,
+            misfit: self.spread_scale.is_misfit(),
         }
     }
 

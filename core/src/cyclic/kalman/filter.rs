@@ -218,6 +218,7 @@ impl<const N: usize> KalmanFilter<N> {
             cycle_velocity_variance: self.cycle.velocity_variance,
             log_likelihood: innovation.log_likelihood,
             outlier,
+            misfit: false,
         }
     }
 

@@ -211,6 +211,7 @@ impl<const N: usize> ParticleMoments<N> {
             ),
             log_likelihood: 0.0,
             outlier: false,
+            misfit: false,
         }
     }
 }

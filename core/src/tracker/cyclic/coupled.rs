@@ -37,7 +37,7 @@ pub struct CoupledTracker<const N: usize> {
     counter: CycleCounter,
 }
 
-const _: () = assert!(size_of::<CoupledTracker<13>>() <= 2880, "the tracker has to fit 2.9 KiB");
+const _: () = assert!(size_of::<CoupledTracker<13>>() <= 2904, "the tracker has to fit 2.9 KiB");
 
 impl<const N: usize> CoupledTracker<N> {
     /// A tracker that begins with the frame `first`.

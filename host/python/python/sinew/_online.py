@@ -37,6 +37,8 @@ class CyclicEstimate:
     """Log-likelihood of the frame's measurement."""
     outlier: bool
     """Whether the measurement did not belong to the prediction."""
+    misfit: bool
+    """Whether the motion was not the model's."""
 
 
 class CyclicTracker:

@@ -40,6 +40,8 @@ class CyclicTrack:
         """Whether anything is known of the person, (n,)."""
         self.outlier: npt.NDArray[np.bool_] = found["outlier"]
         """Whether a measurement of the row did not belong to the motion, (n,)."""
+        self.misfit: npt.NDArray[np.bool_] = found["misfit"]
+        """Whether the motion was not the model's, (n,)."""
         self.cycle_position: FloatArray = found["cycle_position"]
         """Position in the cycle, (n,) in [0, 1)."""
         self.cycles: FloatArray = found["cycles"]
@@ -108,7 +110,7 @@ class CyclicTrack:
         columns |= {f"{name}_rad": self.angles_rad[:, i] for i, name in enumerate(ANGLES)}
         columns |= {f"{name}_std_rad": self.std_rad[:, i] for i, name in enumerate(ANGLES)}
         columns |= {f"{name}_deg": values for name, values in self.flexion_deg.items()}
-        for name in ("cycle_position", "cycles", "is_known", "outlier"):
+        for name in ("cycle_position", "cycles", "is_known", "outlier", "misfit"):
             columns[name] = getattr(self, name)
         return pandas.DataFrame(columns, index=pandas.Index(self.frame, name="frame"))
 

@@ -6,7 +6,7 @@ use crate::cyclic::CyclicModel;
 use crate::cyclic::angle_table::AngleRows;
 use crate::cyclic::model_file::MODEL_VALUE;
 use crate::cyclic::rate;
-use crate::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates};
+use crate::cyclic::tracking::{FilterName, ScalingName, StartName, TrackingOptions, Updates};
 use crate::file::STANDARD_INPUT;
 use crate::output::check_writable_file;
 use crate::resume::{Begun, file_crc32, text_crc32};
@@ -48,6 +48,13 @@ pub struct TrackCyclicArgs {
     /// Cycles per frame at the first frame [default: the model's mean].
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub initial_cycle_velocity: Option<f64>,
+    /// Growth of the noise of the trained accelerations with the cycle's velocity (paper, paper-cut).
+    #[arg(long, value_enum, default_value_t = ScalingName::FourthPower)]
+    pub covariance_scaling: ScalingName,
+    /// Standard deviation of the temporal acceleration, cycles per frame^2 (paper, paper-cut,
+    /// particle) [default: 0.0001; 0.0008 for `particle`].
+    #[arg(long, value_name = "X")]
+    pub temporal_std: Option<f64>,
     /// Use only every K-th measurement after the first.
     #[arg(long, value_name = "K", conflicts_with = "update_at")]
     pub update_every: Option<u64>,
@@ -184,6 +191,8 @@ impl TrackCyclicArgs {
             "init": self.init,
             "initial_cycle_position": self.initial_cycle_position,
             "initial_cycle_velocity": self.initial_cycle_velocity,
+            "covariance_scaling": self.covariance_scaling,
+            "temporal_std": self.temporal_std,
             "update_every": self.update_every,
             "update_at": self.update_at,
             "smooth": self.smooth,
@@ -214,6 +223,8 @@ impl TrackCyclicArgs {
             start: self.init,
             initial_cycle_position: self.initial_cycle_position,
             initial_cycle_velocity: self.initial_cycle_velocity,
+            covariance_scaling: self.covariance_scaling,
+            temporal_std: self.temporal_std,
             updates,
             rate_hz: self.rate,
             particles: self.particles,

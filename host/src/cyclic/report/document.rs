@@ -5,7 +5,7 @@ use crate::cyclic::about::About;
 use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, Range, Repetition, Symmetry};
 use crate::cyclic::angle_table::COLUMNS;
 use crate::cyclic::gait::{FootMeans, Gait};
-use crate::cyclic::tracking::{FilterName, StartName, Summary, Tracked, Updates};
+use crate::cyclic::tracking::{FilterName, ScalingName, StartName, Summary, Tracked, Updates};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -22,6 +22,8 @@ pub struct OptionsRecord {
     init: StartName,
     initial_cycle_position: Option<f64>,
     initial_cycle_velocity: Option<f64>,
+    covariance_scaling: ScalingName,
+    temporal_std: Option<f64>,
     update_every: Option<u64>,
     update_at: Option<Vec<u64>>,
     rate_hz: f64,
@@ -46,6 +48,8 @@ impl OptionsRecord {
             init: options.start,
             initial_cycle_position: options.initial_cycle_position,
             initial_cycle_velocity: options.initial_cycle_velocity,
+            covariance_scaling: options.covariance_scaling,
+            temporal_std: options.temporal_std,
             update_every,
             update_at,
             rate_hz,

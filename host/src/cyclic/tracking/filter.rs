@@ -1,13 +1,14 @@
 //! The core's filters behind one type.
 
-use super::options::{FilterName, StartName, TrackingOptions};
+use super::options::{FilterName, ScalingName, StartName, TrackingOptions};
 use super::particles::ParticleFilter;
 use super::wide_vectors::{coupled_step, kalman_step};
 use crate::cyclic::smoothing::{CoupledState, KalmanState, Smoothed, backward};
 use crate::error::Result;
 use sinew_core::cyclic::particle::propose::{ParticleOptions, Spread};
 use sinew_core::cyclic::{
-    AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel,
+    AngleMeasurement, CoupledFilter, CovarianceScaling, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions,
+    MotionModel,
 };
 use sinew_core::saved_state::{SavedState, StateVisitor};
 
@@ -44,11 +45,11 @@ impl<'m, const N: usize> Filter<'m, N> {
         let mut first_told = start.estimate();
         let kind = match options.filter {
             FilterName::Paper => {
-                let kalman = KalmanOptions::default();
+                let kalman = paper_options(KalmanOptions::default(), options);
                 Kind::Kalman(Box::new(KalmanFilter::new(&model, &kalman, &start)?), kalman)
             }
             FilterName::PaperCut => {
-                let kalman = KalmanOptions::cut();
+                let kalman = paper_options(KalmanOptions::cut(), options);
                 Kind::Kalman(Box::new(KalmanFilter::new(&model, &kalman, &start)?), kalman)
             }
             FilterName::Particle => {
@@ -57,7 +58,10 @@ impl<'m, const N: usize> Filter<'m, N> {
                     StartName::Uniform => Spread::UniformPosition,
                     StartName::Random => Spread::Random,
                 };
-                let particle = ParticleOptions { spread, ..ParticleOptions::default() };
+                let usual = ParticleOptions::default();
+                let temporal_acceleration_std =
+                    options.temporal_std.map_or(usual.temporal_acceleration_std, |std| std as f32);
+                let particle = ParticleOptions { spread, temporal_acceleration_std, ..usual };
                 let filter = ParticleFilter::new(&model, particle, &start, first_told, options.particles, options.seed);
                 Kind::Particle(Box::new(filter))
             }
@@ -91,6 +95,16 @@ impl<'m, const N: usize> Filter<'m, N> {
             Kind::Coupled(filter) => coupled_step(filter, &self.model, measurement),
         }
     }
+}
+
+/// `usual` with what `options` has of the paper's filter.
+fn paper_options(usual: KalmanOptions, options: &TrackingOptions) -> KalmanOptions {
+    let scaling = match options.covariance_scaling {
+        ScalingName::FourthPower => CovarianceScaling::FourthPower,
+        ScalingName::Square => CovarianceScaling::Square,
+    };
+    let temporal_acceleration_std = options.temporal_std.map_or(usual.temporal_acceleration_std, |std| std as f32);
+    KalmanOptions { scaling, temporal_acceleration_std, ..usual }
 }
 
 impl<const N: usize> SavedState for Filter<'_, N> {

@@ -21,7 +21,7 @@ pub mod wide_vectors;
 pub use bank::NamedMotion;
 pub use measurements::Measurements;
 pub use online_run::OnlineRun;
-pub use options::{FilterName, StartName, TrackingOptions, Updates};
+pub use options::{FilterName, ScalingName, StartName, TrackingOptions, Updates};
 pub use run::{SideEstimate, Tracked, TrackedFrame};
 pub use stream_run::StreamRun;
 pub use summary::Summary;

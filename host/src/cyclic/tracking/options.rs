@@ -54,6 +54,18 @@ pub enum StartName {
     Random,
 }
 
+/// How the noise of the trained accelerations grows with the cycle's velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+pub enum ScalingName {
+    /// Its covariance by the fourth power, since the acceleration grows by the square.
+    #[default]
+    FourthPower,
+    /// Its covariance by the square like the mean, the cyclic paper's wording.
+    Square,
+}
+
 /// Which rows' measurements the filter sees; the others are only compared with.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Updates {
@@ -98,6 +110,11 @@ pub struct TrackingOptions {
     /// First velocity, cycles per frame of the recording; that of the model's mean cycle where
     /// `None`.
     pub initial_cycle_velocity: Option<f64>,
+    /// Growth of the acceleration's noise with the velocity (paper, paper-cut).
+    pub covariance_scaling: ScalingName,
+    /// Standard deviation of the temporal acceleration, cycles per frame^2 at the model's rate
+    /// (paper, paper-cut, particle); the filter's own where `None`.
+    pub temporal_std: Option<f64>,
     /// Rows that are used.
     pub updates: Updates,
     /// Frames per second of the recording; the model's where `None`.
@@ -119,6 +136,8 @@ impl Default for TrackingOptions {
             start: StartName::Standard,
             initial_cycle_position: None,
             initial_cycle_velocity: None,
+            covariance_scaling: ScalingName::FourthPower,
+            temporal_std: None,
             updates: Updates::All,
             rate_hz: None,
             particles: 10_000,
@@ -130,6 +149,9 @@ impl Default for TrackingOptions {
 
 /// Maximum number of frames per second. Chosen: no camera is as fast.
 pub const MAX_RATE_HZ: f64 = 1.0e6;
+/// Largest standard deviation of the temporal acceleration, cycles per frame^2. Chosen: from rest to
+/// half a cycle a frame, the largest velocity, in ten frames.
+pub const MAX_TEMPORAL_STD: f64 = 0.05;
 /// Maximum number of particles that a run is asked for.
 pub const MAX_PARTICLES: usize = 10_000_000;
 
@@ -162,6 +184,7 @@ impl TrackingOptions {
         if let Some(velocity) = self.initial_cycle_velocity.filter(|velocity| !(velocity.abs() <= 0.5)) {
             return refuse("initial-cycle-velocity", format!("has to lie within +-0.5 cycles a frame, not {velocity}"));
         }
+        self.check_paper_options()?;
         if self.updates == Updates::Every(0) {
             return refuse("update-every", "has to be at least 1".into());
         }
@@ -190,6 +213,22 @@ impl TrackingOptions {
         }
         Ok(())
     }
+
+    /// Checks what only the paper's filters have.
+    fn check_paper_options(&self) -> Result<(), CyclicError> {
+        let is_kalman = matches!(self.filter, FilterName::Paper | FilterName::PaperCut);
+        if self.covariance_scaling == ScalingName::Square && !is_kalman {
+            let rule = format!("is no option of `{}`; use --filter paper or paper-cut", self.filter.name());
+            return Err(CyclicError::parameter("covariance-scaling", rule));
+        }
+        let Some(std) = self.temporal_std else { return Ok(()) };
+        let rule = match self.filter {
+            FilterName::Coupled => "is no option of `coupled`; use --filter paper, paper-cut or particle".to_owned(),
+            _ if (0.0..=MAX_TEMPORAL_STD).contains(&std) => return Ok(()),
+            _ => format!("has to lie from 0 to {MAX_TEMPORAL_STD} cycles per frame^2, not {std}"),
+        };
+        Err(CyclicError::parameter("temporal-std", rule))
+    }
 }
 
 #[cfg(test)]
@@ -215,6 +254,9 @@ mod tests {
             (TrackingOptions { initial_cycle_position: Some(1.0), ..good.clone() }, "initial-cycle-position"),
             (TrackingOptions { initial_cycle_velocity: Some(f64::NAN), ..good.clone() }, "initial-cycle-velocity"),
             (TrackingOptions { updates: Updates::Every(0), ..good.clone() }, "update-every"),
+            (TrackingOptions { covariance_scaling: ScalingName::Square, ..good.clone() }, "covariance-scaling"),
+            (TrackingOptions { temporal_std: Some(1.0e-4), ..good.clone() }, "temporal-std"),
+            (TrackingOptions { temporal_std: Some(-1.0), filter: FilterName::Paper, ..good.clone() }, "temporal-std"),
             (TrackingOptions { filter: FilterName::Particle, particles: 0, ..good.clone() }, "particles"),
             (TrackingOptions { filter: FilterName::Particle, smooth: true, ..good.clone() }, "smooth"),
             (TrackingOptions { filter: FilterName::Paper, start: StartName::Uniform, ..good.clone() }, "init"),

@@ -115,5 +115,6 @@ fn in_plane<const N: usize>(estimate: &CyclicEstimate<N>) -> CyclicEstimate<ANGL
         cycle_velocity_variance: estimate.cycle_velocity_variance,
         log_likelihood: estimate.log_likelihood,
         outlier: estimate.outlier,
+        misfit: estimate.misfit,
     }
 }

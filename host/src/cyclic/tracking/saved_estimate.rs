@@ -19,4 +19,5 @@ pub(super) fn visit_estimate<const N: usize>(estimate: &mut CyclicEstimate<N>, v
         real(value, visitor);
     }
     visitor.flag(&mut estimate.outlier);
+    visitor.flag(&mut estimate.misfit);
 }

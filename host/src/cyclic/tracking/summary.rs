@@ -36,6 +36,8 @@ pub struct Summary {
     pub last_cadence_std_per_min: f64,
     /// Rows whose measurement did not belong to the prediction.
     pub outliers: usize,
+    /// Rows in which the motion was not the model's.
+    pub misfits: usize,
     /// Sum of the rows' log-likelihoods.
     pub log_likelihood: f64,
     /// When the cycle began anew, seconds from the first row, between frames by the velocity. A
@@ -96,6 +98,7 @@ pub struct RunningSummary {
     /// Velocity at the last row and its variance.
     velocity: [f32; 2],
     outliers: u64,
+    misfits: u64,
     log_likelihood: f64,
     times: CycleTimes,
 }
@@ -118,6 +121,7 @@ impl RunningSummary {
             seen_frames: 0,
             velocity: [0.0; 2],
             outliers: 0,
+            misfits: 0,
             log_likelihood: 0.0,
             times: CycleTimes::new(origin + first.cycles),
         };
@@ -153,6 +157,7 @@ impl RunningSummary {
         self.cycles = row.cycles;
         self.velocity = [estimate.cycle_velocity_per_frame, estimate.cycle_velocity_variance];
         self.outliers += u64::from(estimate.outlier);
+        self.misfits += u64::from(estimate.misfit);
         self.log_likelihood += f64::from(estimate.log_likelihood);
     }
 
@@ -188,6 +193,7 @@ impl RunningSummary {
             last_cadence_per_min: last_cadence.0,
             last_cadence_std_per_min: last_cadence.1,
             outliers: self.outliers as usize,
+            misfits: self.misfits as usize,
             log_likelihood: self.log_likelihood,
             cycle_starts_s: self.times.starts_s(),
             whole_cycles_s,
@@ -206,9 +212,14 @@ fn spread_per_min(cycles_s: &[[f64; 2]]) -> Option<f64> {
 
 impl SavedState for RunningSummary {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        for count in
-            [&mut self.rows, &mut self.first_frame, &mut self.last_frame, &mut self.outliers, &mut self.seen_frames]
-        {
+        for count in [
+            &mut self.rows,
+            &mut self.first_frame,
+            &mut self.last_frame,
+            &mut self.outliers,
+            &mut self.misfits,
+            &mut self.seen_frames,
+        ] {
             visitor.long(count);
         }
         for value in [&mut self.origin, &mut self.cycles, &mut self.log_likelihood, &mut self.seen_cycles] {
@@ -241,6 +252,7 @@ mod tests {
                 cycle_velocity_variance: 0.01,
                 log_likelihood: -1.0,
                 outlier: index == 1,
+                misfit: index > 4,
             },
             angles_rad: [0.0; ANGLES],
             side: None,
@@ -254,7 +266,7 @@ mod tests {
     fn starts_lie_between_frames_and_count_once() {
         let summary = Summary::of(&run(&[0.0, 0.75, 1.25, 0.75, 1.25, 2.0, 2.5]));
         assert_eq!(summary.cycle_starts_s, [0.75, 2.5]);
-        assert_eq!((summary.frames, summary.skipped_frames, summary.outliers), (7, 0, 1));
+        assert_eq!((summary.frames, summary.outliers, summary.misfits), (7, 1, 2));
         assert!((summary.last_cadence_per_min - 15.0).abs() < 1.0e-5, "{summary:?}");
         assert!((summary.last_cadence_std_per_min - 6.0).abs() < 1.0e-5, "{summary:?}");
     }

@@ -9,7 +9,7 @@ use std::io::Write;
 use std::path::Path;
 
 /// Columns after the angles.
-pub const ESTIMATE_COLUMNS: [&str; 8] = [
+pub const ESTIMATE_COLUMNS: [&str; 9] = [
     "cycle_position",
     "cycle_velocity_per_frame",
     "cadence_per_min",
@@ -17,6 +17,7 @@ pub const ESTIMATE_COLUMNS: [&str; 8] = [
     "outlier",
     "cadence_std_per_min",
     "cycles",
+    "misfit",
     TIME_COLUMN,
 ];
 
@@ -32,7 +33,7 @@ pub type MotionCells = Vec<(String, f64)>;
 ///
 /// After [`ESTIMATE_COLUMNS`] come the angles' standard deviations. A model with two angles a joint
 /// gives the angles out of the plane after those in it. Motions, if there are any, come last.
-/// `cycle_velocity_per_frame` is per frame of the recording; `outlier` is 0 or 1. A row about which
+/// `cycle_velocity_per_frame` is per frame of the recording; `outlier` and `misfit` are 0 or 1. A row about which
 /// nothing is known has its frame and time, and motions, alone.
 #[derive(Debug)]
 pub struct EstimateTable<W: Write> {
@@ -83,6 +84,7 @@ impl<W: Write> EstimateTable<W> {
             u8::from(estimate.outlier).to_string(),
             format!("{:.4}", velocity_std * per_min),
             format!("{:.5}", frame.cycles),
+            u8::from(estimate.misfit).to_string(),
         ];
         let side = frame.side.as_ref();
         let side_angles = side.iter().flat_map(|side| side.angles_rad);

@@ -4,7 +4,7 @@ use super::cyclic_files::swing;
 use super::models::walking;
 use crate::Target;
 use crate::numbers::{Numbers, seeds};
-use sinew::cyclic::tracking::{FilterName, StartName, TableRun, TrackingOptions, Updates};
+use sinew::cyclic::tracking::{FilterName, ScalingName, StartName, TableRun, TrackingOptions, Updates};
 use sinew::cyclic::{AngleTable, CyclicModel};
 use sinew_core::cyclic::example::{swing_pose_rad, swing_table};
 use sinew_core::cyclic::filter::{CyclicFilter, FilterChoice};
@@ -170,6 +170,8 @@ pub fn tracking_options(numbers: &mut Numbers<'_>) -> TrackingOptions {
         sigma_rad: f64::from(numbers.number(0.1)),
         initial_cycle_position: numbers.flag().then(|| f64::from(numbers.number(0.2))),
         initial_cycle_velocity: numbers.flag().then(|| f64::from(numbers.number(0.01))),
+        covariance_scaling: if numbers.flag() { ScalingName::Square } else { ScalingName::FourthPower },
+        temporal_std: numbers.flag().then(|| f64::from(numbers.number(1.0e-3))),
         updates: if numbers.flag() { Updates::Every(u64::from(numbers.byte())) } else { Updates::All },
         rate_hz: numbers.flag().then(|| f64::from(numbers.number(60.0))),
         particles: 40,

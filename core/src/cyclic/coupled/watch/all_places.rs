@@ -52,6 +52,7 @@ impl<const N: usize> CoupledFilter<N> {
             cycle_velocity_variance: mode.covariance[2],
             log_likelihood: -0.5 * (squares + volume.ln()),
             outlier: is_outlier(squares, count, DEFAULT_GATE_SIGMAS),
+            misfit: self.spread_scale.is_misfit(),
         }
     }
 

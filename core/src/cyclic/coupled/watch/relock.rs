@@ -3,6 +3,7 @@
 use crate::cyclic::coupled::block::PARTS;
 use crate::cyclic::coupled::cycle_pair::{CyclePair, Information};
 use crate::cyclic::coupled::phase_grid::PhaseMode;
+use crate::cyclic::coupled::spread_scale::SpreadScale;
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::phase::position_difference;
@@ -56,6 +57,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.watch.disagreement_frames = 0.0;
         self.watch.nis.restart();
         self.swing = ExplainedVariance::new();
+        self.spread_scale = SpreadScale::new();
         self.winding = Winding::new();
     }
 }
