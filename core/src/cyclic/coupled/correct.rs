@@ -1,5 +1,6 @@
 //! Correction of the phase-coupled filter: an extended Kalman update of phase and angles.
 
+use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::block::{AnglePrediction, Basis};
 use crate::cyclic::coupled::evidence::{FrameInnovation, PhaseEvidence};
 use crate::cyclic::coupled::spread_scale::FrameProducts;
@@ -44,7 +45,7 @@ impl<const N: usize> CoupledFilter<N> {
             } else {
                 evidence.add_excluded(total, residual);
             }
-            if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total {
+            if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total && is_on(Part::AngleGate) {
                 self.blocks[i].inflate_offset(residual * residual);
                 prediction.inflate_offset(residual * residual);
             } else if informs_phase {
@@ -79,7 +80,8 @@ impl<const N: usize> CoupledFilter<N> {
     /// at a jump.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn pose_slope(&self, model: &MotionModel<'_>) -> [f32; N] {
-        model.mean_pose_secant(self.position, sqrt(self.pair.cc))
+        let half_width = if is_on(Part::Secant) { sqrt(self.pair.cc) } else { 0.0 };
+        model.mean_pose_secant(self.position, half_width)
     }
 
     /// Angles from the state.

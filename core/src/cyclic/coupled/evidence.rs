@@ -1,5 +1,6 @@
 //! Evidence of a frame's angles for (c, v) in the phase-coupled filter, and the frame's innovation.
 
+use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::cycle_pair::{CyclePair, Information};
 use crate::numeric::chi_square::{DEFAULT_GATE_SIGMAS, is_outlier};
 use crate::numeric::log_product::LogProduct;
@@ -46,8 +47,8 @@ pub(super) struct FrameInnovation {
 
 impl PhaseEvidence {
     /// Without angles so far, in a motion in which some angle winds or none does.
-    pub(super) const fn none(winds: bool) -> Self {
-        let shape_std_rad = if winds { WINDING_SHAPE_STD_RAD } else { 0.0 };
+    pub(super) fn none(winds: bool) -> Self {
+        let shape_std_rad = if winds && is_on(Part::WindingShape) { WINDING_SHAPE_STD_RAD } else { 0.0 };
         Self {
             all: Information::NONE,
             gated: Information::NONE,
@@ -81,7 +82,8 @@ impl PhaseEvidence {
     /// Adds an angle within the gate to the correction of (c, v), tempered.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn add_gated(&mut self, gradient: &[f32; 2], variance: f32, residual: f32) {
-        let weight = 1.0 / (TEMPERING * variance + self.shape_rad2);
+        let tempering = if is_on(Part::Tempering) { TEMPERING } else { 1.0 };
+        let weight = 1.0 / (tempering * variance + self.shape_rad2);
         self.gated.add(gradient, weight, residual);
     }
 

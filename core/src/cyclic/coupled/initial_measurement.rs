@@ -3,6 +3,7 @@
 //! The paper's first row is exact (cyclic paper, section 3.2). A user's first row is as noisy as
 //! the rest. A person or a joint placement may have offsets beyond the spread of the training.
 
+use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::{AngleMeasurement, MotionModel};
 use crate::error::ParameterError;
 use crate::math::{max, min, sqrt, wrap_angle};
@@ -55,12 +56,12 @@ impl<const N: usize> InitialMeasurement<N> {
                 let _ = excess.push(off * off / MEDIAN_CHI_SQUARE - spread[i] * spread[i]);
             }
         }
-        let row_std_rad = sqrt(median(&excess));
+        let row_std_rad = if is_on(Part::FirstRowNoise) { sqrt(median(&excess)) } else { f32::MAX };
         let std_rad =
             first.std_rad().map(|std| max(min(std, row_std_rad), max(min(0.5 * std, SMALL_STD_RAD), MIN_STD_RAD)));
         let within = MIN_UNUSUAL_SIGMAS * MIN_UNUSUAL_SIGMAS;
         for ((square, spread), std) in unusual_offset_rad2.iter_mut().zip(spread).zip(std_rad) {
-            if *square <= within * (spread * spread + std * std) {
+            if *square <= within * (spread * spread + std * std) || !is_on(Part::UnusualOffset) {
                 *square = 0.0;
             }
         }

@@ -4,6 +4,7 @@
 //! arc between two measurements is short unless their noise is wide or the interval is long.
 
 use crate::cyclic::AngleMeasurement;
+use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::math::{round_small, wrap_angle};
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::TAU;
@@ -62,7 +63,7 @@ impl<const N: usize> MeasuredPath<N> {
             return 0;
         };
         let is_noisy = measurement.std_rad().get(index).is_none_or(|std_rad| *std_rad > MAX_STD_RAD);
-        if is_noisy || measurement.step_frames() > MAX_INTERVAL_FRAMES {
+        if is_noisy || measurement.step_frames() > MAX_INTERVAL_FRAMES || !is_on(Part::MeasuredPath) {
             return 0;
         }
         self.known |= bit;

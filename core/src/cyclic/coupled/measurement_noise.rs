@@ -12,6 +12,7 @@
 //! applies to the gains, at least [`MIN_SCALE`], and never to the bands: see
 //! [`MeasurementNoise::band_scale`].
 
+use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::math::{clamp, exp, least_angle, ln, max, min, sqrt};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 use core::f32::consts::PI;
@@ -66,6 +67,9 @@ impl<const N: usize> MeasurementNoise<N> {
     /// [`MAX_SCALE`]]: between its own and that of all angles together.
     #[inline]
     pub(super) fn scale(&self, index: usize) -> f32 {
+        if !is_on(Part::NoiseScale) {
+            return 1.0;
+        }
         let own = self.sums.get(index).zip(self.frames.get(index));
         own.map_or(1.0, |(sum, frames)| {
             clamp((sum + SHARED_FRAMES * self.shared) / (frames + SHARED_FRAMES), MIN_SCALE, MAX_SCALE)

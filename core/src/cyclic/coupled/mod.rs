@@ -1,6 +1,10 @@
 //! The phase-coupled filter: measurements move the cycle position, and a person's own cycle is
 //! learned.
 
+#[cfg(feature = "ablation")]
+pub mod ablation;
+#[cfg(not(feature = "ablation"))]
+mod ablation;
 pub mod block;
 mod correct;
 mod cycle_pair;

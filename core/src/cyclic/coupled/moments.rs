@@ -1,5 +1,6 @@
 //! Moments of the phase-coupled filter and its linear step, for a smoother over a whole recording.
 
+use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::block::{AngleBlock, Basis, PARTS};
 use crate::cyclic::coupled::correct::GATE_SIGMAS;
 use crate::cyclic::coupled::cycle_pair::CyclePair;
@@ -132,7 +133,7 @@ impl<const N: usize> CoupledFilter<N> {
             let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
             let prediction = self.blocks[i].predict_angle(&basis, slope[i]);
             let total = prediction.variance + noise + self.pair.along(&prediction.gradient);
-            if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total {
+            if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total && is_on(Part::AngleGate) {
                 inflation_rad2[i] = residual * residual;
             }
         }

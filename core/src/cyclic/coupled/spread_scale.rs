@@ -11,6 +11,7 @@
 //! Bar-Shalom, Li and Kirubarajan, Estimation with Applications to Tracking and Navigation (2001),
 //! section 5.4, with the covariance matching of Mehra 1972.
 
+use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::math::{clamp, max, min, sqrt};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 
@@ -111,7 +112,7 @@ impl SpreadScale {
         let excess = min(self.nis_excess, self.product);
         // White innovations with the variance 1 + e have products with that standard deviation.
         let white_std = (1.0 + max(self.nis_excess, 0.0)) * sqrt(self.product_variance);
-        if excess > GATE_SIGMAS * white_std {
+        if excess > GATE_SIGMAS * white_std && is_on(Part::SpreadScale) {
             let before = self.scale;
             self.scale = min(before * (1.0 + min(GROWTH * cycles * excess, 1.0)), MAX_SCALE);
             return self.scale / before;

@@ -5,6 +5,7 @@
 //! filter would estimate a wrong speed. An angle whose distance from the mean cycle passes half a
 //! turn does not inform the phase for [`EXCLUDED_CYCLES`] cycles.
 
+use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::math::round_small;
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::TAU;
@@ -72,7 +73,8 @@ impl<const N: usize> Winding<N> {
     /// Whether the angle at `index` winds like the mean cycle and so informs the phase.
     #[inline]
     pub(super) fn informs_phase(&self, index: usize) -> bool {
-        self.turn_offsets.get(index).is_none_or(|turn_offset| turn_offset.excluded_cycles() == 0)
+        !is_on(Part::WindingExclusion)
+            || self.turn_offsets.get(index).is_none_or(|turn_offset| turn_offset.excluded_cycles() == 0)
     }
 
     /// Updates the exclusions by the number of completed cycles.

@@ -1,5 +1,7 @@
 //! `sinew evaluate ...`, and what only this program has
 
+#[cfg(feature = "ablation")]
+pub mod ablation;
 pub mod arm;
 pub mod body;
 pub mod cyclic;
@@ -43,6 +45,10 @@ pub enum Command {
   sinew evaluate cyclic --model walking --seeds 1 --particles none --out cyclic"
     )]
     Evaluate(Evaluate),
+    /// Print what each part of the phase-coupled filter is worth.
+    #[cfg(feature = "ablation")]
+    #[command(override_usage = "sinew-lab ablation [OPTIONS] --cuts <CUTS.csv>")]
+    Ablation(ablation::AblationArgs),
     /// Write or check the tables of the book.
     #[command(override_usage = "sinew-lab tables [OPTIONS] [NAME]...")]
     Tables(TablesArgs),
@@ -76,6 +82,8 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
         Command::Evaluate(Evaluate::Cyclic(args)) => cyclic::run(args, console),
         Command::Evaluate(Evaluate::Hands(args)) => hands::run(args, console),
         Command::Evaluate(Evaluate::Skin(args)) => skin::run(args, console),
+        #[cfg(feature = "ablation")]
+        Command::Ablation(args) => ablation::run(args, console),
         Command::Tables(args) => tables::run(args, console),
     }
 }

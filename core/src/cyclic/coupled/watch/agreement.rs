@@ -1,5 +1,6 @@
 //! How the filter's phase agrees with the grid's, over time.
 
+use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::nis_monitor::NisMonitor;
 use crate::cyclic::coupled::phase_grid::PhaseMode;
 use crate::cyclic::phase::position_difference;
@@ -67,11 +68,8 @@ impl Watch {
     /// Compares the grid's `mode` with the filter's `position`, `frames` after the last comparison.
     pub(super) fn compare(&mut self, mode: &PhaseMode, position: f32, frames: f32) {
         let beyond = position_difference(position_difference(mode.position, position), self.mean_phase_offset);
-        self.mean_phase_offset = clamp(
-            self.mean_phase_offset + frames / OFFSET_AVERAGING_FRAMES * beyond,
-            -MAX_PHASE_OFFSET,
-            MAX_PHASE_OFFSET,
-        );
+        let share = if is_on(Part::MeanPhaseOffset) { frames / OFFSET_AVERAGING_FRAMES } else { 0.0 };
+        self.mean_phase_offset = clamp(self.mean_phase_offset + share * beyond, -MAX_PHASE_OFFSET, MAX_PHASE_OFFSET);
         self.agrees = mode.weight > MIN_AGREED_WEIGHT && abs(beyond) < MAX_AGREEMENT_CYCLES;
         if self.agrees {
             self.nis.raise_floor(frames);

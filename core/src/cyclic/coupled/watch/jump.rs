@@ -8,6 +8,7 @@
 //! 3. For [`FUSION_CYCLES`] after a relock, the grid's phase is fused with the filter's.
 
 use super::agreement::MIN_MODE_WEIGHT;
+use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::block::AngleBlock;
 use crate::cyclic::coupled::phase_grid::PhaseMode;
 use crate::cyclic::coupled::state::{CoupledFilter, LOST_STD, spread};
@@ -83,7 +84,10 @@ impl<const N: usize> CoupledFilter<N> {
             return Some(mode);
         }
         self.watch.compare(&mode, self.position, frames);
-        if self.watch.disagreement_frames > MAX_DISAGREEMENT_FRAMES && !self.overrules_grid(model, measurement) {
+        if self.watch.disagreement_frames > MAX_DISAGREEMENT_FRAMES
+            && !self.overrules_grid(model, measurement)
+            && is_on(Part::Relock)
+        {
             // What was learned of the person since the last lock was learned at a wrong phase.
             self.blocks = core::array::from_fn(|i| AngleBlock::unknown(&spread(model, i)));
             let position = mode.position - self.watch.mean_phase_offset;
@@ -115,14 +119,15 @@ impl<const N: usize> CoupledFilter<N> {
     /// Whether the filter has learned the person and predicts well by it. The grid knows the mean
     /// person only.
     fn overrules_grid(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
-        self.watch.nis.is_good(LEARNING_CYCLES / model.mean_cycle_velocity())
+        is_on(Part::OverrulesGrid)
+            && self.watch.nis.is_good(LEARNING_CYCLES / model.mean_cycle_velocity())
             && !self.is_spurious_lock(model, measurement)
     }
 
     /// Whether the person swings and the mean cycle, at the filter's phase, explains nothing of it.
     /// A good NIS is then due to deviations that follow any motion.
     fn is_spurious_lock(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
-        if self.swing.filled_share() < MIN_FILLED_SHARE {
+        if self.swing.filled_share() < MIN_FILLED_SHARE || !is_on(Part::SpuriousLock) {
             return false;
         }
         let cycle_rad2 = cycle_variances_rad2(model, CYCLE_POSITIONS);
@@ -133,6 +138,6 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Whether the filter relocked less than [`FUSION_CYCLES`] ago.
     fn was_relocked_lately(&self, model: &MotionModel<'_>) -> bool {
-        self.relocks > 0 && self.watch.nis.is_new(FUSION_CYCLES / model.mean_cycle_velocity())
+        is_on(Part::Fusion) && self.relocks > 0 && self.watch.nis.is_new(FUSION_CYCLES / model.mean_cycle_velocity())
     }
 }
