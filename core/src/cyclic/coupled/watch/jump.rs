@@ -85,7 +85,9 @@ impl<const N: usize> CoupledFilter<N> {
         self.watch.compare(&mode, self.position, frames);
         if self.watch.disagreement_frames > MAX_DISAGREEMENT_FRAMES && !self.overrules_grid(model, measurement) {
             // What was learned of the person since the last lock was learned at a wrong phase.
-            self.blocks = core::array::from_fn(|i| AngleBlock::unknown(&spread(model, i)));
+            for (i, block) in self.blocks.iter_mut().enumerate() {
+                *block = AngleBlock::unknown(&spread(model, i));
+            }
             let position = mode.position - self.watch.mean_phase_offset;
             self.relock_to(&PhaseMode { position, ..mode });
             self.learn_offsets_here(model, measurement);
@@ -97,6 +99,7 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Moves the grid on by `frames`, updates it by the measurement, and returns its mode.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn update_grid(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) -> PhaseMode {
         let mut grid = self.grid.load();
         grid.advance(model, frames);
@@ -121,6 +124,7 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Whether the person swings and the mean cycle, at the filter's phase, explains nothing of it.
     /// A good NIS is then due to deviations that follow any motion.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn is_spurious_lock(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
         if self.swing.filled_share() < MIN_FILLED_SHARE {
             return false;
