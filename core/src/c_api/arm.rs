@@ -80,7 +80,7 @@ pub unsafe extern "C" fn sinew_arm_init(
             (&raw mut (*arm).fingerprint).write(config.fingerprint(side as u32));
             (&raw mut (*arm).config).write(*config);
             config.write_model(side, Some(&mut *(&raw mut (*arm).model).cast()))?;
-            place.install(handle)
+            place.install(handle, Stateful::begin)
         })()
     })
 }

@@ -75,7 +75,7 @@ pub unsafe extern "C" fn sinew_arm_pair_init(
             (&raw mut (*arms).config).write(*config);
             config.write_model(Side::Left, Some(&mut *(&raw mut (*arms).left).cast()))?;
             config.write_model(Side::Right, Some(&mut *(&raw mut (*arms).right).cast()))?;
-            place.install(handle)
+            place.install(handle, Stateful::begin)
         })()
     })
 }

@@ -90,7 +90,7 @@ pub unsafe extern "C" fn sinew_cyclic_init(
             let cyclic = place.clear();
             (&raw mut (*cyclic).fingerprint).write(fingerprint(&model));
             (&raw mut (*cyclic).model).write(model);
-            place.install(handle)
+            place.install(handle, Stateful::begin)
         })()
     })
 }

@@ -3,7 +3,6 @@
 //! An object is its seal, its content, and a mark behind it. The seal is read alone and first, so
 //! memory that is no object, or a smaller one of another kind, is not read any further.
 
-use super::stateful::Stateful;
 use super::status::{Answer, SinewStatus, VERSION};
 use core::ffi::c_void;
 use core::marker::PhantomData;
@@ -45,7 +44,7 @@ pub(super) struct Object<C> {
 /// It is an [`Object`] of the content and nothing else.
 pub(super) unsafe trait Handle: Sized {
     /// What the object holds.
-    type Content: Stateful;
+    type Content;
     /// Names the kind.
     const KIND: [u8; 4];
     /// See [`Seal::layout`].
@@ -258,17 +257,21 @@ impl<T: Handle> Place<'_, T> {
         }
     }
 
-    /// Begins the object, seals it and hands it out. The seal comes last: an object that did not
-    /// begin is none.
+    /// Begins the object by `begin`, seals it and hands it out. The seal comes last: an object that
+    /// did not begin is none.
     ///
     /// # Safety
     /// After [`Self::clear`] all of the content's fields were written for which zeros are no legal
     /// value.
-    pub unsafe fn install(self, handle: &mut MaybeUninit<*mut T>) -> Answer {
+    pub unsafe fn install(
+        self,
+        handle: &mut MaybeUninit<*mut T>,
+        begin: impl FnOnce(&mut T::Content) -> Answer,
+    ) -> Answer {
         let address = self.object.addr();
         // SAFETY: zeros are legal for the seal, and by the caller's duty for the rest.
         let object = unsafe { &mut *self.object };
-        object.content.begin()?;
+        begin(&mut object.content)?;
         object.end = end_mark(address);
         let in_use = AtomicU32::new(0);
         object.seal = Seal { mark: MARK, kind: u32::from_le_bytes(T::KIND), layout: T::LAYOUT, in_use, address };

@@ -33,7 +33,7 @@ pub(super) trait Stateful {
 ///
 /// # Safety
 /// `pointer` comes from the object's `init`, or cannot be used.
-pub(super) unsafe fn reset_object<T: Handle>(pointer: *mut T) -> SinewStatus {
+pub(super) unsafe fn reset_object<T: Handle<Content: Stateful>>(pointer: *mut T) -> SinewStatus {
     // SAFETY: the caller's duty.
     status(unsafe { object(pointer) }.and_then(|mut object| object.reset()))
 }
@@ -42,7 +42,7 @@ pub(super) unsafe fn reset_object<T: Handle>(pointer: *mut T) -> SinewStatus {
 ///
 /// # Safety
 /// `pointer` comes from the object's `init`, or cannot be used; `buffer` has `buffer_bytes` bytes.
-pub(super) unsafe fn save_object<T: Handle>(
+pub(super) unsafe fn save_object<T: Handle<Content: Stateful>>(
     pointer: *mut T,
     buffer: *mut u8,
     buffer_bytes: usize,
@@ -67,7 +67,11 @@ pub(super) unsafe fn save_object<T: Handle>(
 ///
 /// # Safety
 /// `pointer` comes from the object's `init`, or cannot be used; `state` has `state_bytes` bytes.
-pub(super) unsafe fn restore_object<T: Handle>(pointer: *mut T, state: *const u8, state_bytes: usize) -> SinewStatus {
+pub(super) unsafe fn restore_object<T: Handle<Content: Stateful>>(
+    pointer: *mut T,
+    state: *const u8,
+    state_bytes: usize,
+) -> SinewStatus {
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {

@@ -149,7 +149,7 @@ pub unsafe extern "C" fn sinew_vision_init(
             (&raw mut (*vision).config).write(config);
             (&raw mut (*vision).trained).write(trained);
             (&raw mut (*vision).skin).cast::<u32>().write(config.pixel_format);
-            place.install(handle)
+            place.install(handle, Stateful::begin)
         })()
     })
 }
