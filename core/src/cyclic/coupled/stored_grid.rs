@@ -39,7 +39,18 @@ impl StoredGrid {
     /// The grid with weights in `f32`.
     #[inline]
     pub(super) fn load(&self) -> PhaseGrid {
-        PhaseGrid { weights: self.weights.map(|row| row.map(Bf16::get)), travelled: self.travelled }
+        let mut grid = PhaseGrid::uniform();
+        self.load_into(&mut grid);
+        grid
+    }
+
+    /// The same, where it stays: one that is returned stands on the stack twice.
+    #[inline]
+    pub(super) fn load_into(&self, grid: &mut PhaseGrid) {
+        grid.travelled = self.travelled;
+        for (weight, short) in grid.weights.as_flattened_mut().iter_mut().zip(self.weights.as_flattened()) {
+            *weight = short.get();
+        }
     }
 
     /// The mode with the largest weight; the grid is loaded in a frame of its own.

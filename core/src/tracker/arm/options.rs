@@ -359,7 +359,6 @@ impl ArmOptions {
     ///
     /// # Errors
     /// Names the first value that is out of its range.
-    #[inline(never)]
     pub fn check(&self) -> Result<(), ParameterError> {
         if self.particles == 0 {
             return Err(ParameterError::new("particles", Rule::NotEmpty));

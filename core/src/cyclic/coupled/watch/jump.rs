@@ -9,7 +9,7 @@
 
 use super::agreement::MIN_MODE_WEIGHT;
 use crate::cyclic::coupled::block::AngleBlock;
-use crate::cyclic::coupled::phase_grid::PhaseMode;
+use crate::cyclic::coupled::phase_grid::{PhaseGrid, PhaseMode};
 use crate::cyclic::coupled::state::{CoupledFilter, LOST_STD, spread};
 use crate::cyclic::recognition::explained_variance::cycle_variances_rad2;
 use crate::cyclic::{AngleMeasurement, MotionModel};
@@ -101,7 +101,8 @@ impl<const N: usize> CoupledFilter<N> {
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn update_grid(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) -> PhaseMode {
-        let mut grid = self.grid.load();
+        let mut grid = PhaseGrid::uniform();
+        self.grid.load_into(&mut grid);
         grid.advance(model, frames);
         grid.weigh(model, measurement);
         self.grid.store(&grid);
