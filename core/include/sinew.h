@@ -153,7 +153,8 @@ enum SinewStatus
    */
   SINEW_STATUS_TOO_SMALL = -3,
   /**
-   * The object was not initialised, or its first bytes were overwritten.
+   * The object was not initialised, is of another kind, or its first or last bytes were
+   * overwritten.
    */
   SINEW_STATUS_NOT_INITIALISED = -4,
   /**
@@ -200,6 +201,18 @@ enum SinewStatus
    * A calibration ended that was not begun, or nothing of its box was seen.
    */
   SINEW_STATUS_NO_SAMPLE = -15,
+  /**
+   * Another call uses the object: one that an interrupt broke into, or one of another task.
+   */
+  SINEW_STATUS_BUSY = -16,
+  /**
+   * The object lies elsewhere than where it was made: it was copied or moved.
+   */
+  SINEW_STATUS_MOVED = -17,
+  /**
+   * A structure or buffer lies within the object's own memory.
+   */
+  SINEW_STATUS_OVERLAP = -18,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -1022,6 +1035,15 @@ SinewStatus sinew_vision_save(struct SinewVision *vision, uint8_t *buffer, size_
  * `vision` comes from the object's `init`, `state` has the size that is said.
  */
 SinewStatus sinew_vision_restore(struct SinewVision *vision, const uint8_t *state, size_t state_bytes);
+
+/**
+ * Is called where the library panics: define it to stop motors, to log or to reset. Where the
+ * program defines none, or it returns, the library loops for ever.
+ *
+ * It has to stand in an object file of the program; one in an archive may not be taken. In a
+ * library that was built without `panic-handler` the program's own handler runs instead.
+ */
+extern void sinew_on_panic(void);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -554,6 +554,12 @@ pub fn axis_rotation(axis: &Vec3, angle_rad: f32) -> Mat3 {
     turn_columns(axis, sin_cos(angle_rad)).into()
 }
 
+/// A matrix, by its columns, times a vector; the bits of nalgebra's product, which may panic.
+#[inline(always)]
+pub(crate) fn transform([first, second, third]: &[[f32; 3]; 3], [x, y, z]: [f32; 3]) -> [f32; 3] {
+    core::array::from_fn(|i| third[i] * z + (second[i] * y + first[i] * x))
+}
+
 /// The columns of [`axis_rotation`], from sine and cosine of the angle.
 #[inline(always)]
 pub(crate) fn turn_columns(axis: &Vec3, (sine, cosine): (f32, f32)) -> [[f32; 3]; 3] {

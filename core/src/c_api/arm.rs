@@ -4,8 +4,8 @@ use super::arm_frame::{
     ArmMemory, SINEW_ARM_PARTICLES, SINEW_SIDE_LEFT, SINEW_SIDE_RIGHT, SinewArmConfig, SinewArmFrame, SinewArmResult,
 };
 use super::cyclic::SINEW_ALIGN;
-use super::object::{Seal, Sealed, given, object, place, room};
-use super::stateful::{Stateful, install, size_functions, state_functions};
+use super::object::{Handle, Object, given, object, place, room};
+use super::stateful::{Stateful, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
 use crate::saved_state::StateKind;
 use crate::skeleton::Side;
@@ -19,24 +19,28 @@ pub const SINEW_ARM_MAX_BYTES: usize = 12288;
 pub const SINEW_ARM_STATE_MAX_BYTES: usize = 4096;
 
 const _: () = assert!(size_of::<SinewArm>() <= SINEW_ARM_MAX_BYTES && align_of::<SinewArm>() <= SINEW_ALIGN);
+const _: () = assert!(offset_of!(SinewArm, 0) == 0);
 
 type Tracker = ArmTracker<SINEW_ARM_PARTICLES>;
 
 /// An arm tracker; see `sinew_arm_init`. Saved states fit the same configuration; seed and
 /// shoulders may differ.
 #[derive(Debug)]
-pub struct SinewArm {
-    seal: Seal,
+pub struct SinewArm(Object<Arm>);
+
+/// What an arm tracker holds.
+#[derive(Debug)]
+pub(super) struct Arm {
     fingerprint: u32,
     config: SinewArmConfig,
     model: ArmModel,
     memory: ArmMemory<Tracker>,
 }
 
-// SAFETY: the seal is that field.
-unsafe impl Sealed for SinewArm {
-    const SEAL: Seal = Seal::of(*b"SNar");
-    const SEAL_AT: usize = offset_of!(SinewArm, seal);
+// SAFETY: that is its only field.
+unsafe impl Handle for SinewArm {
+    type Content = Arm;
+    const KIND: [u8; 4] = *b"SNar";
 }
 
 size_functions!(SinewArm, sinew_arm_size, sinew_arm_align);
@@ -60,18 +64,23 @@ pub unsafe extern "C" fn sinew_arm_init(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (handle, config) = (room(tracker)?, *given(config)?);
-            let place = place::<SinewArm>(memory, memory_bytes)?;
+            let (handle, config) = (room(tracker)?, given(config)?);
+            let mut place = place::<SinewArm>(memory, memory_bytes)?;
+            place.is_apart(tracker, 1)?;
+            place.is_apart(config, 1)?;
             let side = match side {
                 SINEW_SIDE_LEFT => Side::Left,
                 SINEW_SIDE_RIGHT => Side::Right,
                 _ => return Err(SinewStatus::OutOfRange),
             };
-            let model = config.model(side)?;
-            let fingerprint = config.fingerprint(side as u32);
-            let memory = ArmMemory::new(Tracker::empty());
-            let object = place.write(SinewArm { seal: Seal::BROKEN, fingerprint, config, model, memory });
-            install(object, handle)
+            config.check()?;
+            config.shoulder(side)?;
+            // Zeros are a memory that did not begin.
+            let arm = place.clear();
+            (&raw mut (*arm).fingerprint).write(config.fingerprint(side as u32));
+            (&raw mut (*arm).config).write(*config);
+            config.write_model(side, Some(&mut *(&raw mut (*arm).model).cast()))?;
+            place.install(handle, Stateful::begin)
         })()
     })
 }
@@ -92,9 +101,13 @@ pub unsafe extern "C" fn sinew_arm_step(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (tracker, frame) = (object(tracker)?, given(frame)?);
-            let result = room(result)?;
-            let SinewArm { model, memory, .. } = tracker;
+            let mut tracker = object(tracker)?;
+            tracker.is_apart(frame, 1)?;
+            tracker.is_apart(result, 1)?;
+            let (frame, result) = (given(frame)?, room(result)?);
+            tracker.is_apart(frame.candidates, frame.candidate_count as usize)?;
+            tracker.is_apart(frame.edges, frame.edge_count as usize)?;
+            let Arm { model, memory, .. } = &mut *tracker;
             let frame_of_arm = ArmFrame {
                 timestamp_us: frame.timestamp_us,
                 image: frame.image()?,
@@ -110,13 +123,9 @@ pub unsafe extern "C" fn sinew_arm_step(
 
 state_functions!(SinewArm, tracker, sinew_arm_reset, sinew_arm_save, sinew_arm_restore);
 
-impl Stateful for SinewArm {
+impl Stateful for Arm {
     type Memory = ArmMemory<Tracker>;
     const KIND: StateKind = StateKind::Arm;
-
-    fn seal_mut(&mut self) -> &mut Seal {
-        &mut self.seal
-    }
 
     fn fingerprint(&self) -> u32 {
         self.fingerprint

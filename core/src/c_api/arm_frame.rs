@@ -12,6 +12,7 @@ use crate::skeleton::{ArmGeometry, Side};
 use crate::tracker::arm::{ArmEstimate, ArmImage, ArmModel, ArmOptions, Status};
 use crate::vision::candidate::HandCandidate;
 use crate::vision::edges::EdgePixel;
+use core::mem::MaybeUninit;
 
 /// Particles of an arm tracker.
 pub const SINEW_ARM_PARTICLES: usize = 50;
@@ -124,11 +125,6 @@ pub(super) struct ArmMemory<T> {
 }
 
 impl<T> ArmMemory<T> {
-    /// The memory of no frame.
-    pub const fn new(tracker: T) -> Self {
-        Self { timestamp_us: None, tracker }
-    }
-
     /// Forgets the last frame's timestamp.
     pub const fn forget(&mut self) {
         self.timestamp_us = None;
@@ -161,8 +157,9 @@ fn shoulder(shoulders_m: &[[f32; 3]; 2], side: Side) -> Result<Vec3, SinewStatus
 }
 
 impl SinewArmConfig {
-    /// Camera, arm of one side and options.
-    pub(super) fn model(&self, side: Side) -> Result<ArmModel, SinewStatus> {
+    /// Writes camera, arm of one side and options where they stay, or only checks them.
+    #[inline(never)]
+    pub(super) fn write_model(&self, side: Side, place: Option<&mut MaybeUninit<ArmModel>>) -> Answer {
         let [focal_u, focal_v] = self.focal_px;
         let [u_px, v_px] = self.principal_point_px;
         for length_px in [focal_u, focal_v] {
@@ -180,7 +177,14 @@ impl SinewArmConfig {
         }
         let geometry = ArmGeometry::new(side, self.upper_arm_m, self.forearm_m)?;
         let options = ArmOptions { particles: SINEW_ARM_PARTICLES, ..ArmOptions::default() };
-        Ok(ArmModel::new(camera, (self.image_width_px, self.image_height_px), geometry, options)?)
+        ArmModel::write_into(place, camera, (self.image_width_px, self.image_height_px), &geometry, &options)?;
+        Ok(())
+    }
+
+    /// Whether a tracker can begin with it, before anything is written.
+    pub(super) fn check(&self) -> Answer {
+        self.write_model(Side::Left, None)?;
+        self.write_model(Side::Right, None)
     }
 
     /// Where the shoulder of `side` is to begin with.

@@ -2,8 +2,8 @@
 
 use super::arm_frame::{ArmMemory, SINEW_ARM_PARTICLES, SinewArmConfig, SinewArmFrame, SinewArmResult};
 use super::cyclic::SINEW_ALIGN;
-use super::object::{Seal, Sealed, given, object, place, room};
-use super::stateful::{Stateful, install, size_functions, state_functions};
+use super::object::{Handle, Object, given, object, place, room};
+use super::stateful::{Stateful, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
 use crate::saved_state::StateKind;
 use crate::skeleton::Side;
@@ -18,14 +18,18 @@ pub const SINEW_ARM_PAIR_STATE_MAX_BYTES: usize = 8192;
 
 const _: () =
     assert!(size_of::<SinewArmPair>() <= SINEW_ARM_PAIR_MAX_BYTES && align_of::<SinewArmPair>() <= SINEW_ALIGN);
+const _: () = assert!(offset_of!(SinewArmPair, 0) == 0);
 
 type Tracker = ArmPair<SINEW_ARM_PARTICLES>;
 
 /// A tracker of both arms; see `sinew_arm_pair_init`. Saved states fit the same configuration; seed
 /// and shoulders may differ.
 #[derive(Debug)]
-pub struct SinewArmPair {
-    seal: Seal,
+pub struct SinewArmPair(Object<BothArms>);
+
+/// What a tracker of both arms holds.
+#[derive(Debug)]
+pub(super) struct BothArms {
     fingerprint: u32,
     config: SinewArmConfig,
     left: ArmModel,
@@ -33,10 +37,10 @@ pub struct SinewArmPair {
     memory: ArmMemory<Tracker>,
 }
 
-// SAFETY: the seal is that field.
-unsafe impl Sealed for SinewArmPair {
-    const SEAL: Seal = Seal::of(*b"SNap");
-    const SEAL_AT: usize = offset_of!(SinewArmPair, seal);
+// SAFETY: that is its only field.
+unsafe impl Handle for SinewArmPair {
+    type Content = BothArms;
+    const KIND: [u8; 4] = *b"SNap";
 }
 
 size_functions!(SinewArmPair, sinew_arm_pair_size, sinew_arm_pair_align);
@@ -58,13 +62,20 @@ pub unsafe extern "C" fn sinew_arm_pair_init(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (handle, config) = (room(tracker)?, *given(config)?);
-            let place = place::<SinewArmPair>(memory, memory_bytes)?;
-            let (left, right) = (config.model(Side::Left)?, config.model(Side::Right)?);
-            let fingerprint = config.fingerprint(2);
-            let memory = ArmMemory::new(Tracker::empty());
-            let object = place.write(SinewArmPair { seal: Seal::BROKEN, fingerprint, config, left, right, memory });
-            install(object, handle)
+            let (handle, config) = (room(tracker)?, given(config)?);
+            let mut place = place::<SinewArmPair>(memory, memory_bytes)?;
+            place.is_apart(tracker, 1)?;
+            place.is_apart(config, 1)?;
+            config.check()?;
+            config.shoulder(Side::Left)?;
+            config.shoulder(Side::Right)?;
+            // Zeros are a memory that did not begin.
+            let arms = place.clear();
+            (&raw mut (*arms).fingerprint).write(config.fingerprint(2));
+            (&raw mut (*arms).config).write(*config);
+            config.write_model(Side::Left, Some(&mut *(&raw mut (*arms).left).cast()))?;
+            config.write_model(Side::Right, Some(&mut *(&raw mut (*arms).right).cast()))?;
+            place.install(handle, Stateful::begin)
         })()
     })
 }
@@ -86,9 +97,13 @@ pub unsafe extern "C" fn sinew_arm_pair_step(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (tracker, frame) = (object(tracker)?, given(frame)?);
-            let results = room(results.cast::<[SinewArmResult; 2]>())?;
-            let SinewArmPair { left, right, memory, .. } = tracker;
+            let mut tracker = object(tracker)?;
+            tracker.is_apart(frame, 1)?;
+            tracker.is_apart(results, 2)?;
+            let (frame, results) = (given(frame)?, room(results.cast::<[SinewArmResult; 2]>())?);
+            tracker.is_apart(frame.candidates, frame.candidate_count as usize)?;
+            tracker.is_apart(frame.edges, frame.edge_count as usize)?;
+            let BothArms { left, right, memory, .. } = &mut *tracker;
             let pair_frame = PairFrame {
                 timestamp_us: frame.timestamp_us,
                 image: frame.image()?,
@@ -107,13 +122,9 @@ pub unsafe extern "C" fn sinew_arm_pair_step(
 
 state_functions!(SinewArmPair, tracker, sinew_arm_pair_reset, sinew_arm_pair_save, sinew_arm_pair_restore);
 
-impl Stateful for SinewArmPair {
+impl Stateful for BothArms {
     type Memory = ArmMemory<Tracker>;
     const KIND: StateKind = StateKind::ArmPair;
-
-    fn seal_mut(&mut self) -> &mut Seal {
-        &mut self.seal
-    }
 
     fn fingerprint(&self) -> u32 {
         self.fingerprint

@@ -2,8 +2,8 @@
 
 use super::cyclic_frame::{SINEW_MAX_ANGLES, SinewCyclicFrame, SinewCyclicResult};
 use super::model::{fingerprint, read_model};
-use super::object::{Seal, Sealed, given, object, place, room};
-use super::stateful::{Stateful, install, size_functions, state_functions};
+use super::object::{Handle, Object, given, object, place, room};
+use super::stateful::{Stateful, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
 use crate::cyclic::measurement::MAX_STEP_FRAMES;
 use crate::cyclic::phase::wrap_position;
@@ -23,14 +23,18 @@ pub const SINEW_CYCLIC_STATE_MAX_BYTES: usize = 3328;
 pub const SINEW_ALIGN: usize = 8;
 
 const _: () = assert!(size_of::<SinewCyclic>() <= SINEW_CYCLIC_MAX_BYTES && align_of::<SinewCyclic>() <= SINEW_ALIGN);
+const _: () = assert!(offset_of!(SinewCyclic, 0) == 0);
 
 type Tracker = CoupledTracker<SINEW_MAX_ANGLES>;
 
 /// A cyclic tracker; see `sinew_cyclic_init`. Saved states fit the same model. After a reset the
 /// next frame may have any timestamp.
 #[derive(Debug)]
-pub struct SinewCyclic {
-    seal: Seal,
+pub struct SinewCyclic(Object<Cyclic>);
+
+/// What a cyclic tracker holds.
+#[derive(Debug)]
+pub(super) struct Cyclic {
     fingerprint: u32,
     model: MotionModel<'static>,
     memory: Memory,
@@ -45,10 +49,10 @@ pub(super) struct Memory {
     tracker: Tracker,
 }
 
-// SAFETY: the seal is that field.
-unsafe impl Sealed for SinewCyclic {
-    const SEAL: Seal = Seal::of(*b"SNcy");
-    const SEAL_AT: usize = offset_of!(SinewCyclic, seal);
+// SAFETY: that is its only field.
+unsafe impl Handle for SinewCyclic {
+    type Content = Cyclic;
+    const KIND: [u8; 4] = *b"SNcy";
 }
 
 size_functions!(SinewCyclic, sinew_cyclic_size, sinew_cyclic_align);
@@ -78,11 +82,15 @@ pub unsafe extern "C" fn sinew_cyclic_init(
     status(unsafe {
         (|| {
             let handle = room(tracker)?;
-            let place = place::<SinewCyclic>(memory, memory_bytes)?;
+            let mut place = place::<SinewCyclic>(memory, memory_bytes)?;
+            place.is_apart(tracker, 1)?;
+            place.is_apart(model.cast::<u8>(), model_bytes)?;
             let model = read_model(model, model_bytes)?;
-            let fingerprint = fingerprint(&model);
-            let memory = Memory { timestamp_us: 0, has_begun: false, tracker: Tracker::empty() };
-            install(place.write(SinewCyclic { seal: Seal::BROKEN, fingerprint, model, memory }), handle)
+            // Zeros are a memory that did not begin.
+            let cyclic = place.clear();
+            (&raw mut (*cyclic).fingerprint).write(fingerprint(&model));
+            (&raw mut (*cyclic).model).write(model);
+            place.install(handle, Stateful::begin)
         })()
     })
 }
@@ -105,7 +113,10 @@ pub unsafe extern "C" fn sinew_cyclic_step(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (tracker, frame, result) = (object(tracker)?, given(frame)?, room(result)?);
+            let mut tracker = object(tracker)?;
+            tracker.is_apart(frame, 1)?;
+            tracker.is_apart(result, 1)?;
+            let (frame, result) = (given(frame)?, room(result)?);
             let answer = tracker.step(frame)?;
             result.write(SinewCyclicResult::of(frame.timestamp_us, &answer, tracker.memory.is_searching()));
             Ok(())
@@ -131,6 +142,7 @@ pub unsafe extern "C" fn sinew_cyclic_mean_pose(
     status(unsafe {
         (|| {
             let tracker = object(tracker)?;
+            tracker.is_apart(angles_rad, angle_count)?;
             let position = wrap_position(crate::error::finite("cycle_position", cycle_position)?);
             let pose = tracker.model.mean_pose_rad::<SINEW_MAX_ANGLES>(tracker.model.point(position));
             if angle_count > tracker.model.angle_count() {
@@ -146,13 +158,9 @@ pub unsafe extern "C" fn sinew_cyclic_mean_pose(
 
 state_functions!(SinewCyclic, tracker, sinew_cyclic_reset, sinew_cyclic_save, sinew_cyclic_restore);
 
-impl Stateful for SinewCyclic {
+impl Stateful for Cyclic {
     type Memory = Memory;
     const KIND: StateKind = StateKind::Cyclic;
-
-    fn seal_mut(&mut self) -> &mut Seal {
-        &mut self.seal
-    }
 
     fn fingerprint(&self) -> u32 {
         self.fingerprint
@@ -168,7 +176,7 @@ impl Stateful for SinewCyclic {
     }
 }
 
-impl SinewCyclic {
+impl Cyclic {
     fn step(&mut self, frame: &SinewCyclicFrame) -> Result<CyclicFrame<SINEW_MAX_ANGLES>, SinewStatus> {
         let measurement = frame.measurement(self.model.angle_count())?;
         if !self.memory.has_begun {

@@ -8,11 +8,13 @@
 //! - A pointer that is null or misaligned, an object that was not initialised, a number out of
 //!   range are answered with a status, and the object is as before; where a function says otherwise
 //!   it says what is left.
+//! - An object is refused while another call uses it, as an interrupt's may, and where it was
+//!   copied or moved.
 //! - Structures are read and written whole; the caller owns all memory.
 //!
 //! This folder has `unsafe` code: it turns the caller's pointers into references, after checking
 //! what can be checked. The rest is the caller's duty: that a pointer which is not null points at
-//! memory of the size that was said, and that no other thread uses the same object meanwhile.
+//! memory of the size that was said, and that tasks which share an object take turns.
 #![allow(unsafe_code)]
 
 pub mod arm;
@@ -20,8 +22,11 @@ pub mod arm_frame;
 pub mod arm_pair;
 pub mod cyclic;
 pub mod cyclic_frame;
+#[cfg(test)]
+mod misuse;
 mod model;
 mod object;
+pub mod on_panic;
 #[cfg(feature = "panic-handler")]
 mod panic;
 #[cfg(feature = "prove-no-panic")]

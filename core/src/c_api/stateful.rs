@@ -1,19 +1,15 @@
 //! What all objects have in common, from one definition: size, alignment, reset, save and restore.
 
-use super::object::{Seal, Sealed, bytes_mut, list, object, room};
+use super::object::{Handle, bytes_mut, list, object, room};
 use super::status::{Answer, SinewStatus, status};
 use crate::saved_state::{SavedState, StateError, StateKind, restore, save, saved_bytes};
-use core::mem::MaybeUninit;
 
-/// An object whose memory can be saved.
-pub(super) trait Stateful: Sealed {
+/// The content of an object, whose memory can be saved.
+pub(super) trait Stateful {
     /// What is saved.
     type Memory: SavedState;
     /// The kind that its saved states name.
     const KIND: StateKind;
-
-    /// The place of its seal.
-    fn seal_mut(&mut self) -> &mut Seal;
 
     /// A checksum of the configuration that a saved state belongs to.
     fn fingerprint(&self) -> u32;
@@ -33,29 +29,20 @@ pub(super) trait Stateful: Sealed {
     fn after_restore(&mut self) {}
 }
 
-/// Begins `object`, seals it and hands it out. The seal comes last: an object that did not begin is
-/// none.
-pub(super) fn install<T: Stateful>(object: &mut T, handle: &mut MaybeUninit<*mut T>) -> Answer {
-    object.begin()?;
-    *object.seal_mut() = T::SEAL;
-    handle.write(object);
-    Ok(())
-}
-
 /// See `state_functions`.
 ///
 /// # Safety
 /// `pointer` comes from the object's `init`, or cannot be used.
-pub(super) unsafe fn reset_object<T: Stateful>(pointer: *mut T) -> SinewStatus {
+pub(super) unsafe fn reset_object<T: Handle<Content: Stateful>>(pointer: *mut T) -> SinewStatus {
     // SAFETY: the caller's duty.
-    status(unsafe { object(pointer) }.and_then(T::reset))
+    status(unsafe { object(pointer) }.and_then(|mut object| object.reset()))
 }
 
 /// See `state_functions`.
 ///
 /// # Safety
 /// `pointer` comes from the object's `init`, or cannot be used; `buffer` has `buffer_bytes` bytes.
-pub(super) unsafe fn save_object<T: Stateful>(
+pub(super) unsafe fn save_object<T: Handle<Content: Stateful>>(
     pointer: *mut T,
     buffer: *mut u8,
     buffer_bytes: usize,
@@ -64,10 +51,13 @@ pub(super) unsafe fn save_object<T: Stateful>(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (object, buffer, written) = (object(pointer)?, bytes_mut(buffer, buffer_bytes)?, room(written)?);
+            let mut object = object(pointer)?;
+            object.is_apart(buffer, buffer_bytes)?;
+            object.is_apart(written, 1)?;
+            let (buffer, written) = (bytes_mut(buffer, buffer_bytes)?, room(written)?);
             let fingerprint = object.fingerprint();
             written.write(saved_bytes(object.memory()));
-            save(T::KIND, fingerprint, object.memory(), buffer)?;
+            save(T::Content::KIND, fingerprint, object.memory(), buffer)?;
             Ok(())
         })()
     })
@@ -77,13 +67,19 @@ pub(super) unsafe fn save_object<T: Stateful>(
 ///
 /// # Safety
 /// `pointer` comes from the object's `init`, or cannot be used; `state` has `state_bytes` bytes.
-pub(super) unsafe fn restore_object<T: Stateful>(pointer: *mut T, state: *const u8, state_bytes: usize) -> SinewStatus {
+pub(super) unsafe fn restore_object<T: Handle<Content: Stateful>>(
+    pointer: *mut T,
+    state: *const u8,
+    state_bytes: usize,
+) -> SinewStatus {
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (object, state) = (object(pointer)?, list(state, state_bytes)?);
+            let mut object = object(pointer)?;
+            object.is_apart(state, state_bytes)?;
+            let state = list(state, state_bytes)?;
             let fingerprint = object.fingerprint();
-            let answer = restore(T::KIND, fingerprint, object.memory(), state);
+            let answer = restore(T::Content::KIND, fingerprint, object.memory(), state);
             if answer == Err(StateError::Illegal) {
                 object.begin()?;
             }

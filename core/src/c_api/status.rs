@@ -19,7 +19,8 @@ pub enum SinewStatus {
     Misaligned = -2,
     /// The memory or buffer given is too small.
     TooSmall = -3,
-    /// The object was not initialised, or its first bytes were overwritten.
+    /// The object was not initialised, is of another kind, or its first or last bytes were
+    /// overwritten.
     NotInitialised = -4,
     /// A number is NaN or infinite.
     NotFinite = -5,
@@ -43,6 +44,12 @@ pub enum SinewStatus {
     NoFrame = -14,
     /// A calibration ended that was not begun, or nothing of its box was seen.
     NoSample = -15,
+    /// Another call uses the object: one that an interrupt broke into, or one of another task.
+    Busy = -16,
+    /// The object lies elsewhere than where it was made: it was copied or moved.
+    Moved = -17,
+    /// A structure or buffer lies within the object's own memory.
+    Overlap = -18,
 }
 
 /// A short English text for a status, for people; `status` may be any number.
@@ -50,12 +57,12 @@ pub enum SinewStatus {
 /// The text is constant and ends with a zero byte.
 #[unsafe(no_mangle)]
 pub extern "C" fn sinew_error_text(status: i32) -> *const c_char {
-    const TEXTS: [&core::ffi::CStr; 16] = [
+    const TEXTS: [&core::ffi::CStr; 19] = [
         c"done",
         c"a pointer is null",
         c"a pointer is not aligned as its type asks for",
         c"the memory or buffer is too small",
-        c"the object was not initialised",
+        c"the object was not initialised, or is of another kind",
         c"a number is NaN or infinite",
         c"a number is out of its range",
         c"a list is longer than its capacity",
@@ -67,6 +74,9 @@ pub extern "C" fn sinew_error_text(status: i32) -> *const c_char {
         c"the state was saved with another model or other options",
         c"no frame was begun",
         c"nothing was seen to calibrate with",
+        c"another call uses the object",
+        c"the object was copied or moved",
+        c"a structure or buffer lies within the object's memory",
     ];
     let text = match status {
         1 => Some(&c"no frame so far showed enough to begin with"),
@@ -75,20 +85,23 @@ pub extern "C" fn sinew_error_text(status: i32) -> *const c_char {
     text.unwrap_or(&c"an unknown status").as_ptr()
 }
 
+const fn number(text: &str) -> u32 {
+    let (mut digits, mut value) = (text.as_bytes(), 0);
+    while let Some((digit, rest)) = digits.split_first() {
+        value = 10 * value + (*digit - b'0') as u32;
+        digits = rest;
+    }
+    value
+}
+
+/// See [`sinew_version`].
+pub(super) const VERSION: u32 = number(env!("CARGO_PKG_VERSION_MAJOR")) << 16
+    | number(env!("CARGO_PKG_VERSION_MINOR")) << 8
+    | number(env!("CARGO_PKG_VERSION_PATCH"));
+
 /// Version of the library: major * 65536 + minor * 256 + patch.
 #[unsafe(no_mangle)]
 pub extern "C" fn sinew_version() -> u32 {
-    const fn number(text: &str) -> u32 {
-        let (mut digits, mut value) = (text.as_bytes(), 0);
-        while let Some((digit, rest)) = digits.split_first() {
-            value = 10 * value + (*digit - b'0') as u32;
-            digits = rest;
-        }
-        value
-    }
-    const VERSION: u32 = number(env!("CARGO_PKG_VERSION_MAJOR")) << 16
-        | number(env!("CARGO_PKG_VERSION_MINOR")) << 8
-        | number(env!("CARGO_PKG_VERSION_PATCH"));
     VERSION
 }
 
@@ -143,7 +156,7 @@ mod tests {
 
     #[test]
     fn each_status_has_its_own_text() {
-        let texts: Vec<_> = (-15..=1).map(text).collect();
+        let texts: Vec<_> = (-18..=1).map(text).collect();
         for (index, text) in texts.iter().enumerate() {
             assert_ne!(text, "an unknown status", "{index}");
             assert!(!texts[..index].contains(text), "{text}");
@@ -152,7 +165,7 @@ mod tests {
             text(SinewStatus::NoFrame as i32).contains("frame")
                 && text(SinewStatus::NullPointer as i32).contains("null")
         );
-        for unknown in [2, -16, i32::MIN, i32::MAX] {
+        for unknown in [2, -19, i32::MIN, i32::MAX] {
             assert_eq!(text(unknown), "an unknown status");
         }
     }

@@ -34,25 +34,25 @@ use core::mem::MaybeUninit;
 use core::ptr::{null, null_mut};
 
 /// Memory of one object.
-struct Memory(Box<[MaybeUninit<u64>]>);
+pub(super) struct Memory(Box<[MaybeUninit<u64>]>);
 
 impl Memory {
-    fn new(bytes: usize) -> Self {
+    pub fn new(bytes: usize) -> Self {
         assert_eq!(bytes % 8, 0);
         Self(Box::new_uninit_slice(bytes / 8))
     }
 
-    fn start(&mut self) -> *mut c_void {
+    pub fn start(&mut self) -> *mut c_void {
         self.0.as_mut_ptr().cast()
     }
 
-    fn bytes(&self) -> usize {
+    pub fn bytes(&self) -> usize {
         size_of_val(&*self.0)
     }
 }
 
 /// What a function that was answered with OK wrote.
-fn written<T>(call: impl FnOnce(*mut T) -> SinewStatus) -> T {
+pub(super) fn written<T>(call: impl FnOnce(*mut T) -> SinewStatus) -> T {
     let mut room = MaybeUninit::uninit();
     assert_eq!(call(room.as_mut_ptr()), SinewStatus::Ok);
     // SAFETY: the status says that it was written.
@@ -102,13 +102,13 @@ fn memory_that_was_not_initialised_is_no_object() {
 }
 
 /// The model of `swing_table` in words, which are aligned to four bytes, and its length in bytes.
-fn model() -> (Vec<u32>, usize) {
+pub(super) fn model() -> (Vec<u32>, usize) {
     let mut bytes = vec![0; 8192];
     let count = write(&swing_table().model().unwrap(), &mut bytes).unwrap();
     (bytes[..count].as_chunks::<4>().0.iter().map(|word| u32::from_ne_bytes(*word)).collect(), count)
 }
 
-fn swing(timestamp_us: u64, seen: u32) -> SinewCyclicFrame {
+pub(super) fn swing(timestamp_us: u64, seen: u32) -> SinewCyclicFrame {
     let mut angles_rad = [0.0; SINEW_MAX_ANGLES];
     angles_rad[..2].copy_from_slice(&swing_pose_rad(timestamp_us as f32 * 1.0e-6));
     SinewCyclicFrame { timestamp_us, seen, angle_count: 2, angles_rad, std_rad: [0.05; SINEW_MAX_ANGLES] }
@@ -190,7 +190,7 @@ fn arm_frame(timestamp_us: u64, (candidates, edges): &([HandCandidate; 2], [Edge
     }
 }
 
-fn arm_config() -> SinewArmConfig {
+pub(super) fn arm_config() -> SinewArmConfig {
     // SAFETY: there is room for one.
     written(|config| unsafe { sinew_arm_default_config(320, 240, 1.0, config) })
 }
@@ -213,7 +213,7 @@ fn wrong_lists() -> ([HandCandidate; 2], [EdgePixel; 3]) {
 }
 
 /// A frame without an image, whose lists are not looked at.
-fn dark(timestamp_us: u64) -> SinewArmFrame {
+pub(super) fn dark(timestamp_us: u64) -> SinewArmFrame {
     let absent = SinewArmFrame { candidates: null(), edges: null(), ..arm_frame(timestamp_us, &arm_lists()) };
     SinewArmFrame { has_image: 0, ..absent }
 }

@@ -2,14 +2,15 @@
 //! frame buffer.
 
 use super::cyclic::SINEW_ALIGN;
-use super::object::{Seal, Sealed, given, list, object, place, room};
-use super::stateful::{Stateful, install, size_functions, state_functions};
+use super::object::{Handle, Object, given, list, object, place, room};
+use super::stateful::{Stateful, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
 use super::vision_frame::{
     SINEW_PIXEL_RGB565, SINEW_PIXEL_RGB565_SWAPPED, SINEW_PIXEL_YUYV, SinewBox, SinewSkin, SinewVisionConfig,
     SinewVisionResult,
 };
 use crate::saved_state::{SavedState, StateKind, StateVisitor};
+use crate::slot::Slot;
 use crate::vision::front_end::QvgaFrontEnd;
 use crate::vision::front_end::calibration::SkinSample;
 use crate::vision::front_end::edge_lines::EdgeSteps;
@@ -27,12 +28,16 @@ pub const SINEW_VISION_MAX_BYTES: usize = 20480;
 pub const SINEW_VISION_STATE_MAX_BYTES: usize = 8320;
 
 const _: () = assert!(size_of::<SinewVision>() <= SINEW_VISION_MAX_BYTES && align_of::<SinewVision>() <= SINEW_ALIGN);
+const _: () = assert!(offset_of!(SinewVision, 0) == 0);
 
 /// A front end; see `sinew_vision_init`. Saved states hold the skin table, no frames, and fit the
 /// same pixel format.
 #[derive(Debug)]
-pub struct SinewVision {
-    seal: Seal,
+pub struct SinewVision(Object<Vision>);
+
+/// What a front end holds.
+#[derive(Debug)]
+pub(super) struct Vision {
     config: SinewVisionConfig,
     /// The last model that the caller gave.
     trained: GaussianSkin,
@@ -41,12 +46,14 @@ pub struct SinewVision {
     front_end: QvgaFrontEnd,
 }
 
-/// Skin of one of the formats.
+/// Skin of one of the formats, whose number is the first word.
 #[derive(Debug)]
+#[repr(u32)]
+#[expect(dead_code, reason = "made in place, from zeros and its number")]
 pub(super) enum Skin {
-    Rgb565(SkinOf<Rgb565>),
-    Swapped(SkinOf<SwappedRgb565>),
-    Yuyv(SkinOf<Yuyv>),
+    Rgb565(SkinOf<Rgb565>) = SINEW_PIXEL_RGB565,
+    Swapped(SkinOf<SwappedRgb565>) = SINEW_PIXEL_RGB565_SWAPPED,
+    Yuyv(SkinOf<Yuyv>) = SINEW_PIXEL_YUYV,
 }
 
 /// Words of the skin table that are learned: all, and under Miri, which would take a minute for
@@ -60,16 +67,12 @@ const SAMPLE_PIXELS: usize = 256;
 #[derive(Debug)]
 pub(super) struct SkinOf<F> {
     table: SkinTable<F>,
-    sample: Option<SkinSample<F, SAMPLE_PIXELS>>,
+    sample: Slot<SkinSample<F, SAMPLE_PIXELS>>,
 }
 
 impl<F: PixelFormat> SkinOf<F> {
-    const fn new() -> Self {
-        Self { table: SkinTable::new(), sample: None }
-    }
-
     fn line(&mut self, row: usize, line: &[u16], front_end: &mut QvgaFrontEnd) {
-        if let Some(sample) = &mut self.sample {
+        if let Some(sample) = self.sample.get_mut() {
             sample.line(row, line);
         }
         front_end.line(row, line, &self.table);
@@ -77,10 +80,10 @@ impl<F: PixelFormat> SkinOf<F> {
 
     /// `trained` adapted to the sample, which the table learns then.
     fn adapt(&mut self, trained: &GaussianSkin) -> Result<GaussianSkin, SinewStatus> {
-        let sample = self.sample.as_ref().filter(|sample| !sample.is_empty()).ok_or(SinewStatus::NoSample)?;
+        let sample = self.sample.get().filter(|sample| !sample.is_empty()).ok_or(SinewStatus::NoSample)?;
         let adapted = sample.adapted(trained)?;
         self.learn(&adapted);
-        self.sample = None;
+        self.sample = Slot::Empty;
         Ok(adapted)
     }
 
@@ -106,10 +109,10 @@ impl Skin {
     }
 }
 
-// SAFETY: the seal is that field.
-unsafe impl Sealed for SinewVision {
-    const SEAL: Seal = Seal::of(*b"SNvi");
-    const SEAL_AT: usize = offset_of!(SinewVision, seal);
+// SAFETY: that is its only field.
+unsafe impl Handle for SinewVision {
+    type Content = Vision;
+    const KIND: [u8; 4] = *b"SNvi";
 }
 
 size_functions!(SinewVision, sinew_vision_size, sinew_vision_align);
@@ -134,18 +137,19 @@ pub unsafe extern "C" fn sinew_vision_init(
     status(unsafe {
         (|| {
             let (handle, config) = (room(vision)?, *given(config)?);
-            let place = place::<SinewVision>(memory, memory_bytes)?;
-            let model = config.skin.model()?;
-            let skin = match config.pixel_format {
-                SINEW_PIXEL_RGB565 => Skin::Rgb565(SkinOf::new()),
-                SINEW_PIXEL_RGB565_SWAPPED => Skin::Swapped(SkinOf::new()),
-                SINEW_PIXEL_YUYV => Skin::Yuyv(SkinOf::new()),
-                _ => return Err(SinewStatus::OutOfRange),
-            };
-            let size = (config.width_px as usize, config.height_px as usize);
-            let front_end = QvgaFrontEnd::new(size, HandLikelihood::default(), EdgeSteps::default())?;
-            let (seal, is_in_frame) = (Seal::BROKEN, false);
-            install(place.write(SinewVision { seal, config, trained: model, is_in_frame, skin, front_end }), handle)
+            let mut place = place::<SinewVision>(memory, memory_bytes)?;
+            place.is_apart(vision, 1)?;
+            let trained = config.skin.model()?;
+            if config.pixel_format > SINEW_PIXEL_YUYV {
+                return Err(SinewStatus::OutOfRange);
+            }
+            QvgaFrontEnd::check_size(config.size())?;
+            // Zeros are a front end that did not begin, an empty table and no sample.
+            let vision = place.clear();
+            (&raw mut (*vision).config).write(config);
+            (&raw mut (*vision).trained).write(trained);
+            (&raw mut (*vision).skin).cast::<u32>().write(config.pixel_format);
+            place.install(handle, Stateful::begin)
         })()
     })
 }
@@ -159,9 +163,11 @@ pub unsafe extern "C" fn sinew_vision_learn_skin(vision: *mut SinewVision, skin:
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (vision, skin) = (object(vision)?, given(skin)?);
-            vision.trained = skin.model()?;
-            vision.skin.learn(&vision.trained);
+            let mut vision = object(vision)?;
+            vision.is_apart(skin, 1)?;
+            let trained = given(skin)?.model()?;
+            vision.trained = trained;
+            vision.skin.learn(&trained);
             Ok(())
         })()
     })
@@ -184,9 +190,11 @@ pub unsafe extern "C" fn sinew_vision_begin_calibration(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (vision, box_px) = (object(vision)?, given(box_px)?);
+            let mut vision = object(vision)?;
+            vision.is_apart(box_px, 1)?;
+            let box_px = given(box_px)?;
             let bounds = box_px.inside(vision.config.width_px, vision.config.height_px)?;
-            of_any_format!(&mut vision.skin, of => of.sample = Some(SkinSample::new(bounds)));
+            of_any_format!(&mut vision.skin, of => of.sample = Slot::Full(SkinSample::new(bounds)));
             Ok(())
         })()
     })
@@ -206,7 +214,8 @@ pub unsafe extern "C" fn sinew_vision_end_calibration(vision: *mut SinewVision, 
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let vision = object(vision)?;
+            let mut vision = object(vision)?;
+            vision.is_apart(skin, 1)?;
             let answer = if skin.is_null() { None } else { Some(room(skin)?) };
             let trained = vision.trained;
             let adapted = of_any_format!(&mut vision.skin, of => of.adapt(&trained))?;
@@ -225,7 +234,7 @@ pub unsafe extern "C" fn sinew_vision_end_calibration(vision: *mut SinewVision, 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sinew_vision_begin_frame(vision: *mut SinewVision) -> SinewStatus {
     // SAFETY: the caller's duty.
-    status(unsafe { object(vision) }.map(|vision| {
+    status(unsafe { object(vision) }.map(|mut vision| {
         vision.front_end.begin_frame();
         vision.is_in_frame = true;
     }))
@@ -251,8 +260,9 @@ pub unsafe extern "C" fn sinew_vision_line(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (vision, line) = (object(vision)?, list(pixels, pixel_count)?);
-            vision.line(row, line)
+            let mut vision = object(vision)?;
+            vision.is_apart(pixels, pixel_count)?;
+            vision.line(row, list(pixels, pixel_count)?)
         })()
     })
 }
@@ -272,7 +282,9 @@ pub unsafe extern "C" fn sinew_vision_end_frame(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (vision, result) = (object(vision)?, room(result)?);
+            let mut vision = object(vision)?;
+            vision.is_apart(result, 1)?;
+            let result = room(result)?;
             if !vision.is_in_frame {
                 return Err(SinewStatus::NoFrame);
             }
@@ -285,13 +297,9 @@ pub unsafe extern "C" fn sinew_vision_end_frame(
 
 state_functions!(SinewVision, vision, sinew_vision_reset, sinew_vision_save, sinew_vision_restore);
 
-impl Stateful for SinewVision {
+impl Stateful for Vision {
     type Memory = Skin;
     const KIND: StateKind = StateKind::Vision;
-
-    fn seal_mut(&mut self) -> &mut Seal {
-        &mut self.seal
-    }
 
     fn fingerprint(&self) -> u32 {
         self.config.pixel_format
@@ -307,6 +315,8 @@ impl Stateful for SinewVision {
     }
 
     fn begin(&mut self) -> Answer {
+        self.front_end.begin(self.config.size(), HandLikelihood::default(), EdgeSteps::default())?;
+        self.is_in_frame = false;
         self.skin.learn(&self.config.skin.model()?);
         Ok(())
     }
@@ -316,7 +326,7 @@ impl Stateful for SinewVision {
     }
 }
 
-impl SinewVision {
+impl Vision {
     fn line(&mut self, row: u32, line: &[u16]) -> Answer {
         if !self.is_in_frame {
             return Err(SinewStatus::NoFrame);

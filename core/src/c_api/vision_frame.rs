@@ -100,6 +100,13 @@ impl SinewSkin {
     }
 }
 
+impl SinewVisionConfig {
+    /// Width and height.
+    pub(super) const fn size(&self) -> (usize, usize) {
+        (self.width_px as usize, self.height_px as usize)
+    }
+}
+
 impl SinewBox {
     /// The box, if it lies inside of a frame of `width_px` x `height_px` pixels.
     pub(super) fn inside(&self, width_px: u32, height_px: u32) -> Result<BoundingBox, SinewStatus> {

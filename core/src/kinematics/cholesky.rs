@@ -79,8 +79,10 @@ impl<const N: usize> Cholesky<N> {
 
     fn by_columns(matrix: &[[f32; N]; N], first: usize) -> Option<Self> {
         let mut lower = [[0.0; N]; N];
-        for i in first..N {
-            lower[i][first..=i].copy_from_slice(&matrix[i][first..=i]);
+        for (i, (row, given)) in lower.iter_mut().zip(matrix).enumerate().skip(first) {
+            for (entry, given) in row.iter_mut().zip(given).take(i + 1).skip(first) {
+                *entry = *given;
+            }
         }
         for k in first..N {
             if !(lower[k][k] > 0.0 && lower[k][k] < f32::INFINITY) {
@@ -98,7 +100,7 @@ impl<const N: usize> Cholesky<N> {
                 if factor == 0.0 {
                     continue;
                 }
-                for j in k + 1..=i {
+                for j in k + 1..i + 1 {
                     lower[i][j] -= factor * column[j];
                 }
             }

@@ -159,8 +159,8 @@ pub trait Solve<const BONES: usize, const ANGLES: usize>: PoseObjective<BONES, A
                 break;
             };
             let mut longest = 0.0;
-            for i in 0..ANGLES {
-                longest = max(longest, abs(next[i] - angles_rad[i]));
+            for (next, last) in next.iter().zip(&angles_rad) {
+                longest = max(longest, abs(next - last));
             }
             (angles_rad, log_density) = (next, log_next);
             core::mem::swap(&mut here, &mut there);
@@ -187,7 +187,9 @@ fn free_direction<const BONES: usize, const ANGLES: usize>(
     hessian: &[[f32; ANGLES]; ANGLES],
 ) -> Option<([f32; ANGLES], f32)> {
     let (mut reduced, mut right) = (*hessian, *gradient);
-    for (i, limit) in objective.skeleton().limits().iter().enumerate() {
+    // A constant bound, so that no index is checked.
+    for i in 0..ANGLES {
+        let limit = &objective.skeleton().limits()[i];
         let held = i < objective.held()
             || (angles_rad[i] <= limit.low_rad && gradient[i] < 0.0)
             || (angles_rad[i] >= limit.high_rad && gradient[i] > 0.0);

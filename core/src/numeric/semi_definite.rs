@@ -7,6 +7,9 @@ use crate::math::{abs, sqrt};
 
 /// Most rows of a matrix here: two angles a joint of a body of 16 joints.
 pub const MAX_ROWS: usize = 32;
+/// Rows of a matrix that is judged with less stack. Chosen: the angles of the
+/// figures.
+const FEW_ROWS: usize = 13;
 
 /// Entries of the lower triangle of a matrix with `rows` rows.
 ///
@@ -68,29 +71,34 @@ pub const DIAGONAL_EXCESS: f32 = 1.0e-4;
 /// ```
 #[must_use]
 pub fn is_positive_semi_definite(packed: &[f32], rows: usize) -> bool {
-    if rows > MAX_ROWS || packed.len() != packed_len(rows) {
+    // On the stack of who begins with a model: a sixth where that suffices.
+    if rows <= FEW_ROWS { is_sound::<FEW_ROWS>(packed, rows) } else { is_sound::<MAX_ROWS>(packed, rows) }
+}
+
+#[inline(never)]
+fn is_sound<const R: usize>(packed: &[f32], rows: usize) -> bool {
+    if rows > R || packed.len() != packed_len(rows) {
         return false;
     }
-    let mut matrix = [[0.0; MAX_ROWS]; MAX_ROWS];
+    let mut matrix = [[0.0; R]; R];
     if !correlation(packed, rows, &mut matrix) {
         return false;
     }
-    let mut done = [false; MAX_ROWS];
+    let mut done = [false; R];
     for _ in 0..rows {
         let Some(pivot) = greatest_pivot(&matrix, &done, rows) else { break };
-        let diagonal = matrix[pivot][pivot];
+        let Some((row, diagonal)) = matrix.get(pivot).and_then(|row| Some((*row, *row.get(pivot)?))) else { break };
         if diagonal <= RELATIVE_TOLERANCE {
             return rest_is_zero(&matrix, &done, rows);
         }
-        done[pivot] = true;
-        for i in 0..rows {
-            if done[i] {
-                continue;
-            }
-            let factor = matrix[i][pivot] / diagonal;
-            for j in 0..rows {
-                if !done[j] {
-                    matrix[i][j] -= factor * matrix[pivot][j];
+        if let Some(done) = done.get_mut(pivot) {
+            *done = true;
+        }
+        for (line, _) in matrix.iter_mut().zip(&done).take(rows).filter(|(_, done)| !**done) {
+            let factor = line.get(pivot).map_or(0.0, |entry| entry / diagonal);
+            for ((entry, above), done) in line.iter_mut().zip(&row).zip(&done).take(rows) {
+                if !done {
+                    *entry -= factor * above;
                 }
             }
         }
@@ -101,46 +109,46 @@ pub fn is_positive_semi_definite(packed: &[f32], rows: usize) -> bool {
 /// Writes the full matrix scaled to a diagonal of ones; a row of zeros keeps its zeros. False where
 /// an entry is out of the question by itself: not finite, a negative variance, a covariance beside
 /// a variance of zero.
-fn correlation(packed: &[f32], rows: usize, matrix: &mut [[f32; MAX_ROWS]; MAX_ROWS]) -> bool {
+fn correlation<const R: usize>(packed: &[f32], rows: usize, matrix: &mut [[f32; R]; R]) -> bool {
     let entry = |i: usize, j: usize| packed.get(packed_index(i, j)).copied().unwrap_or(f32::NAN);
-    let mut scale = [0.0_f32; MAX_ROWS];
-    for i in 0..rows {
+    let mut scale = [0.0_f32; R];
+    for (i, scale) in scale.iter_mut().enumerate().take(rows) {
         let variance = entry(i, i);
         if !(variance >= 0.0 && variance.is_finite()) {
             return false;
         }
-        scale[i] = if variance > 0.0 { 1.0 / sqrt(variance) } else { 0.0 };
+        *scale = if variance > 0.0 { 1.0 / sqrt(variance) } else { 0.0 };
     }
-    for i in 0..rows {
-        for j in 0..rows {
+    for (i, (line, of_row)) in matrix.iter_mut().zip(&scale).enumerate().take(rows) {
+        for (j, (slot, of_column)) in line.iter_mut().zip(&scale).enumerate().take(rows) {
             let value = entry(i, j);
-            if !value.is_finite() || (scale[i] * scale[j] == 0.0 && value != 0.0) {
+            if !value.is_finite() || (of_row * of_column == 0.0 && value != 0.0) {
                 return false;
             }
-            matrix[i][j] = (value * scale[i]) * scale[j];
+            *slot = (value * of_row) * of_column;
         }
     }
     true
 }
 
-fn greatest_pivot(matrix: &[[f32; MAX_ROWS]; MAX_ROWS], done: &[bool; MAX_ROWS], rows: usize) -> Option<usize> {
-    let mut best = None;
-    for i in 0..rows {
-        if !done[i] && best.is_none_or(|b: usize| matrix[i][i] > matrix[b][b]) {
-            best = Some(i);
+fn greatest_pivot<const R: usize>(matrix: &[[f32; R]; R], done: &[bool; R], rows: usize) -> Option<usize> {
+    let mut best: Option<(usize, f32)> = None;
+    for (i, (line, _)) in matrix.iter().zip(done).enumerate().take(rows).filter(|(_, (_, done))| !**done) {
+        let diagonal = line.get(i).copied().unwrap_or(0.0);
+        if best.is_none_or(|(_, greatest)| diagonal > greatest) {
+            best = Some((i, diagonal));
         }
     }
-    best
+    best.map(|(pivot, _)| pivot)
 }
 
 /// Whether all that is left of the elimination is zero up to rounding. Off the diagonal the limit
 /// is wider: a pivot of `RELATIVE_TOLERANCE` may stand beside entries of up to that size by
 /// rounding of both rows.
-fn rest_is_zero(matrix: &[[f32; MAX_ROWS]; MAX_ROWS], done: &[bool; MAX_ROWS], rows: usize) -> bool {
-    (0..rows).filter(|&i| !done[i]).all(|i| {
-        (0..rows)
-            .filter(|&j| !done[j])
-            .all(|j| abs(matrix[i][j]) <= if i == j { 1.0 } else { 2.0 } * RELATIVE_TOLERANCE)
+fn rest_is_zero<const R: usize>(matrix: &[[f32; R]; R], done: &[bool; R], rows: usize) -> bool {
+    matrix.iter().zip(done).enumerate().take(rows).filter(|(_, (_, done))| !**done).all(|(i, (line, _))| {
+        let left = line.iter().zip(done).enumerate().take(rows).filter(|(_, (_, done))| !**done);
+        left.into_iter().all(|(j, (entry, _))| abs(*entry) <= if i == j { 1.0 } else { 2.0 } * RELATIVE_TOLERANCE)
     })
 }
 

@@ -67,7 +67,7 @@ impl HoughSettings {
     /// Bins from 2 to [`MAX_BINS`], window from 2 to [`MAX_WINDOW`], gamma and separation positive,
     /// pairs from 10 to 65,535.
     pub fn check(&self) -> Result<(), ParameterError> {
-        OrientationDensity::uniform(self.bins)?;
+        OrientationDensity::check(self.bins)?;
         if !(2..=MAX_WINDOW).contains(&self.window) {
             return Err(ParameterError::new("hough.window", Rule::Within { low: 2.0, high: MAX_WINDOW as f32 }));
         }

@@ -71,7 +71,7 @@ impl OrientationDensity {
 
     /// Makes it uniform over its bins.
     pub fn forget(&mut self) {
-        self.bins = [1.0; MAX_BINS];
+        self.bins.fill(1.0);
     }
 
     /// The uniform density over `bins` bins.
@@ -79,11 +79,22 @@ impl OrientationDensity {
     /// # Errors
     /// From 2 to [`MAX_BINS`] bins.
     pub fn uniform(bins: usize) -> Result<Self, ParameterError> {
+        Self::check(bins)?;
+        Ok(Self { bins: [1.0; MAX_BINS], len: bins })
+    }
+
+    /// Whether there is room for so many bins.
+    pub(crate) fn check(bins: usize) -> Result<(), ParameterError> {
         if (2..=MAX_BINS).contains(&bins) {
-            Ok(Self { bins: [1.0; MAX_BINS], len: bins })
-        } else {
-            Err(ParameterError::new("orientation_bins", Rule::Within { low: 2.0, high: MAX_BINS as f32 }))
+            return Ok(());
         }
+        Err(ParameterError::new("orientation_bins", Rule::Within { low: 2.0, high: MAX_BINS as f32 }))
+    }
+
+    /// Becomes [`Self::uniform`] in place, with the most bins where there is no room for so many.
+    pub(crate) fn begin(&mut self, bins: usize) {
+        self.forget();
+        self.len = if Self::check(bins).is_ok() { bins } else { MAX_BINS };
     }
 
     /// The density with `counts` votes in its bins (normalised to mass one); uniform without a

@@ -147,15 +147,17 @@ impl<const ANGLES: usize> LaplaceProposal<ANGLES> {
             if i < self.held {
                 break;
             }
+            // Always there: the compiler sees by it that `i` is in bounds, at opt-level z too.
+            let Some(limit) = limits.get(i) else { continue };
             let mut pull = 0.0;
             for j in i + 1..ANGLES {
                 pull += lower[j][i] * offset[j];
             }
-            let low = (limits[i].low_rad - self.centre_rad[i]) * lower[i][i] + pull;
-            let high = (limits[i].high_rad - self.centre_rad[i]) * lower[i][i] + pull;
+            let low = (limit.low_rad - self.centre_rad[i]) * lower[i][i] + pull;
+            let high = (limit.high_rad - self.centre_rad[i]) * lower[i][i] + pull;
             let z = stream.truncated_normal(low, high);
             offset[i] = (z - pull) / lower[i][i];
-            result.angles_rad[i] = limits[i].clamp(self.centre_rad[i] + offset[i]);
+            result.angles_rad[i] = limit.clamp(self.centre_rad[i] + offset[i]);
             result.squared_distance += z * z;
             result.log_mass += log_interval_mass(low, high);
         }

@@ -33,7 +33,7 @@
 
 use super::tree::{Bone, Joint, Limit, Skeleton};
 use crate::error::{ParameterError, Rule, finite};
-use crate::math::{Mat3, Vec3, abs, acos, asin, atan2, axis_rotation, clamp, unit};
+use crate::math::{Mat3, Vec3, abs, acos, asin, atan2, clamp, sin_cos, transform, turn_columns, unit};
 use crate::ranges::{MAX_M, length};
 use core::f32::consts::{FRAC_1_SQRT_2, PI};
 
@@ -181,14 +181,20 @@ impl ArmGeometry {
     /// The body's up in camera axes, a unit vector.
     #[must_use]
     pub fn up(&self) -> Vec3 {
-        self.torso.column(1).into()
+        self.torso_axis(1)
     }
 
     /// Outward, up and front in camera axes.
     fn directions(&self) -> (Vec3, Vec3, Vec3) {
-        let left: Vec3 = self.torso.column(0).into();
+        let left = self.torso_axis(0);
         let outward = if self.side == Side::Left { left } else { -left };
-        (outward, self.torso.column(1).into(), self.torso.column(2).into())
+        (outward, self.torso_axis(1), self.torso_axis(2))
+    }
+
+    /// A column of the torso's axes: left, up, front.
+    fn torso_axis(&self, column: usize) -> Vec3 {
+        let [x, y, z] = self.torso.data.0.get(column).copied().unwrap_or_default();
+        Vec3::new(x, y, z)
     }
 
     /// The arm as a tree of bones in camera axes.
@@ -235,9 +241,13 @@ impl ArmGeometry {
         }
         if let Some(fore) = unit(hand_m - elbow_m) {
             let down = -up;
-            let swing =
-                axis_rotation(&down.cross(&in_plane), angles[0]) * axis_rotation(&down.cross(&out_of_plane), angles[1]);
-            let local = swing.transpose() * fore;
+            let turn = |axis: Vec3, angle_rad: f32| turn_columns(&axis, sin_cos(angle_rad));
+            let (elevation, deviation) =
+                (turn(down.cross(&in_plane), angles[0]), turn(down.cross(&out_of_plane), angles[1]));
+            let [x, y, z] = deviation.map(|column| transform(&elevation, column));
+            // Times the transposed matrix, whose columns are the rows.
+            let rows = [[x[0], y[0], z[0]], [x[1], y[1], z[1]], [x[2], y[2], z[2]]];
+            let local = Vec3::from(transform(&rows, [fore.x, fore.y, fore.z]));
             angles[3] = acos(local.dot(&down));
             let (ahead, inward) = (local.dot(&front), local.dot(&-outward));
             if ahead * ahead + inward * inward > 1.0e-8 {
@@ -271,6 +281,17 @@ mod tests {
 
     fn arm(side: Side) -> ArmGeometry {
         ArmGeometry::new(side, 0.3, 0.35).unwrap()
+    }
+
+    proptest! {
+        #[test]
+        fn a_transformed_vector_has_the_bits_of_nalgebra_s_product(
+            columns in prop::array::uniform3(prop::array::uniform3(-2.0_f32..2.0)),
+            vector in prop::array::uniform3(-2.0_f32..2.0),
+        ) {
+            let product = Mat3::from(columns) * Vec3::from(vector);
+            prop_assert_eq!(transform(&columns, vector), [product.x, product.y, product.z]);
+        }
     }
 
     #[test]

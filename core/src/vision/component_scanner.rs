@@ -4,13 +4,14 @@ use super::components::{Component, overlaps};
 use super::mask::Mask;
 use super::runs::{LineRun, NO_SLOT, RunPool, find_runs};
 
-/// A place of the table of components that are still growing.
+/// A place of the table of components that are still growing; all zeros are one that is free.
 #[derive(Debug, Clone, Copy)]
+#[repr(u8)]
 enum Slot {
     /// Not in use; the next free slot.
     Free { next: u16 },
     /// Holds a component, last seen in `row`.
-    Root { component: Component, row: u16 },
+    Root { row: u16, component: Component },
     /// Was found to be the same component as another slot's.
     Merged { into: u16 },
 }

@@ -3,6 +3,7 @@
 use super::runs::{Run, RunList, RunPool};
 use crate::camera::Pixel;
 use core::f32::consts::{FRAC_1_SQRT_2, PI};
+use core::num::NonZeroU64;
 
 /// Smallest upright rectangle of whole pixels around a component; both corners belong to it.
 ///
@@ -167,8 +168,8 @@ impl Component {
     /// Centre of gravity.
     #[must_use]
     pub fn centroid(&self) -> Pixel {
-        let area = u64::from(self.area_px.max(1));
-        let mean = |sum: u64| (sum / area) as f32 + (sum % area) as f32 / area as f32;
+        let area = NonZeroU64::new(u64::from(self.area_px)).unwrap_or(NonZeroU64::MIN);
+        let mean = |sum: u64| (sum / area) as f32 + (sum % area) as f32 / area.get() as f32;
         Pixel::new(mean(self.twice_sum_u / 2), mean(self.sum_v))
     }
 

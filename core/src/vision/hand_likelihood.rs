@@ -32,6 +32,7 @@ use crate::math::{clamp, exp, ln, max};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[repr(u8)]
 pub enum LikelihoodForm {
     /// arm (6) to (9) as printed: an area gate, features of the plain blob, weights as factors.
     Paper,

@@ -39,12 +39,16 @@ impl<const ERODE: bool, const WORDS: usize> LineSweep<ERODE, WORDS> {
     fn push(&mut self, line: &mut Line<WORDS>, width: usize) -> bool {
         let earlier = (self.lines & 1) as usize;
         let all = [line.occupied, self.occupied[0], self.occupied[1]];
-        self.occupied[earlier] = line.occupied;
+        if let Some(occupied) = self.occupied.get_mut(earlier) {
+            *occupied = line.occupied;
+        }
         let stays = if ERODE { all.iter().all(|&o| o) } else { all.iter().any(|&o| o) };
         if stays {
             line.occupied = self.join(earlier, &mut line.bits, width);
         } else {
-            self.kept[earlier] = line.bits;
+            if let Some(kept) = self.kept.get_mut(earlier) {
+                *kept = line.bits;
+            }
             if line.occupied {
                 *line = Line { bits: [0; WORDS], occupied: false };
             }
@@ -74,15 +78,15 @@ impl<const ERODE: bool, const WORDS: usize> LineSweep<ERODE, WORDS> {
         let (mut before, mut here, mut any) = (outside, outside, 0);
         // Each round takes the column of a word and finishes the word before it.
         for (i, (old, kept)) in replaced.iter_mut().zip(later.iter()).enumerate().take(last + 1) {
-            let word = bits[i];
+            let Some(&word) = bits.get(i) else { break };
             let column = join::<ERODE>(word, join::<ERODE>(*old, *kept));
             let after = if ERODE && i == last { column | !pixels } else { column };
             *old = word;
-            if i > 0 {
+            if let Some(finished) = i.checked_sub(1).and_then(|before| bits.get_mut(before)) {
                 // Most words are empty, and so are their results.
                 let empty = if ERODE { here == 0 } else { before | here | after == 0 };
                 let done = if empty { 0 } else { spread::<ERODE>(before, here, after) };
-                bits[i - 1] = done;
+                *finished = done;
                 any |= done;
             }
             (before, here) = (here, after);

@@ -55,7 +55,8 @@ void reset(void) {
     }
     register uint32_t *top __asm("r0");
     __asm volatile("mov %0, sp" : "=r"(top));
-    for (uint32_t *word = __stack_low; word < top; word++) {
+    /* Volatile, so that the loop does not become a call of memset, which would paint its own stack. */
+    for (volatile uint32_t *word = __stack_low; word < top; word++) {
         *word = UNUSED_WORD;
     }
     run();

@@ -79,9 +79,26 @@ fn missing(what: &str) {
 
 /// Whether the targets come from Debian's compiler, which builds their core library from source
 /// (`.ci/run` says so).
-fn builds_with_debian() -> bool {
+///
+/// What it compiles is a little larger or smaller than what stands in tables.
+#[must_use]
+pub fn builds_with_debian() -> bool {
     std::env::var("SINEW_BARE_METAL").as_deref() == Ok("debian")
 }
+
+/// Whether every target and level is to be checked, which takes many builds of the library;
+/// otherwise those of [`SHORT`].
+#[must_use]
+pub fn checks_all_targets() -> bool {
+    std::env::var_os("SINEW_ALL_TARGETS").is_some()
+}
+
+/// Targets and levels that are always checked.
+pub const SHORT: [(&str, &str); 3] =
+    [("thumbv7em-none-eabihf", "3"), ("thumbv7em-none-eabihf", "s"), ("thumbv6m-none-eabi", "s")];
+
+/// Levels that firmware is built at.
+pub const LEVELS: [&str; 4] = ["2", "3", "s", "z"];
 
 /// Cargo that builds for `target`, or for this machine: `cargo SUBCOMMAND`.
 #[must_use]
@@ -112,7 +129,7 @@ fn rustc() -> std::ffi::OsString {
 
 /// Builds the static library of `package` as a user does, and gives its path.
 ///
-/// `target` is a triple, or `None` for this machine; `opt_level` is `3` or `s`.
+/// `target` is a triple, or `None` for this machine; `opt_level` is `2`, `3`, `s` or `z`.
 ///
 /// # Panics
 /// If it cannot be built.

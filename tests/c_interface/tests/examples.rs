@@ -60,8 +60,12 @@ fn the_examples_run_on_this_computer_under_the_sanitizers() {
     }
 }
 
-fn link_for_the_emulator(example: &str, library: &Path, program: &Path) {
+/// Levels at which the examples and their start are compiled for the emulator; the last flag counts.
+const LEVELS: [&str; 3] = ["-O0", "-O2", "-Os"];
+
+fn link_for_the_emulator(example: &str, level: &str, library: &Path, program: &Path) {
     let mut command = compiler("arm-none-eabi-gcc", "c11");
+    command.arg(level);
     command.args(["-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16", "--specs=rdimon.specs"]);
     command.args(["-nostartfiles", "-ffunction-sections", "-Wl,--gc-sections", "-T"]).arg(folder().join("mps2.ld"));
     // `bkpt` and the registers of a call are no standard C.
@@ -80,14 +84,14 @@ fn the_examples_run_on_an_emulated_cortex_m4f() {
     // proof.
     let library = static_library("sinew-core", Some(TARGET), "3", "c-api,walking-model,prove-no-panic");
     let scratch = tempfile::tempdir().unwrap();
-    for example in EXAMPLES {
+    for (example, level) in EXAMPLES.into_iter().flat_map(|example| LEVELS.map(|level| (example, level))) {
         let program = scratch.path().join(example);
-        link_for_the_emulator(example, &library, &program);
+        link_for_the_emulator(example, level, &library, &program);
         let mut emulator = Command::new("timeout");
         emulator.args(["120", "qemu-system-arm", "-machine", "mps2-an386", "-nographic", "-monitor", "none"]);
         emulator.args(["-serial", "none", "-semihosting-config", "enable=on,target=native", "-kernel"]).arg(&program);
         let output = expect_success(&mut emulator);
-        eprintln!("{example}: {}", String::from_utf8_lossy(&output.stderr));
+        eprintln!("{example} {level}: {}", String::from_utf8_lossy(&output.stderr));
         expect_output(example, &output.stdout);
     }
 }

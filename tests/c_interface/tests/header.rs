@@ -5,7 +5,7 @@ use std::fs;
 use std::process::Command;
 
 /// Sources of the interface, and of the structures that it shares with the trackers.
-const SOURCES: [&str; 12] = [
+const SOURCES: [&str; 13] = [
     "c_api/status.rs",
     "c_api/cyclic_frame.rs",
     "c_api/cyclic.rs",
@@ -15,6 +15,7 @@ const SOURCES: [&str; 12] = [
     "c_api/vision_frame.rs",
     "c_api/vision.rs",
     "c_api/model.rs",
+    "c_api/on_panic.rs",
     "camera.rs",
     "vision/candidate.rs",
     "vision/edges.rs",

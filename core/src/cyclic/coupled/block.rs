@@ -175,7 +175,9 @@ impl AngleBlock {
     pub(super) fn unknown(spread: &Spread) -> Self {
         let mut covariance = [0.0; PACKED];
         for (i, variance) in spread.diagonal().into_iter().enumerate() {
-            covariance[packed_index(i, i)] = variance;
+            if let Some(entry) = covariance.get_mut(packed_index(i, i)) {
+                *entry = variance;
+            }
         }
         Self { mean: [0.0; PARTS], regression: [[0.0; 2]; PARTS], covariance }
     }
@@ -192,11 +194,11 @@ impl AngleBlock {
         core::array::from_fn(|i| core::array::from_fn(|j| self.covariance(i, j)))
     }
 
-    /// Covariance of parts `i` and `j` given z.
+    /// Covariance of parts `i` and `j` given z; 0 beyond the parts.
     #[inline]
     #[must_use]
     pub fn covariance(&self, i: usize, j: usize) -> f32 {
-        self.covariance[packed_index(i, j)]
+        self.covariance.get(packed_index(i, j)).copied().unwrap_or(0.0)
     }
 
     /// Multiplies all variances by `factor`.

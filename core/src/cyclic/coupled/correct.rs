@@ -15,6 +15,7 @@ pub(super) const GATE_SIGMAS: f32 = 4.0;
 impl<const N: usize> CoupledFilter<N> {
     /// The extended Kalman correction about the present position; returns the innovation.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub(super) fn correct_phase(
         &mut self,
         model: &MotionModel<'_>,

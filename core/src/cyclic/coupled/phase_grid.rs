@@ -133,6 +133,7 @@ impl PhaseGrid {
 
     /// Moves on by `step_frames`; speeds may change to the next slower or faster one.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn advance(&mut self, model: &MotionModel<'_>, step_frames: f32) {
         for (travelled, ratio) in self.travelled.iter_mut().zip(SPEED_RATIOS) {
             *travelled = wrap_position(*travelled + ratio * model.mean_cycle_velocity() * step_frames);
@@ -162,6 +163,7 @@ impl PhaseGrid {
 
     /// Updates by a measurement of an unknown person.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn weigh<const N: usize>(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
         let likelihood = likelihood_table(model, measurement);
         // Of the table's positions a speed's cells lie behind all even or all odd ones.
@@ -208,9 +210,13 @@ impl PhaseGrid {
     #[must_use]
     pub fn by_position(&self) -> [f32; POSITIONS] {
         let mut sums = [0.0; POSITIONS];
+        // One room for all rows.
+        let mut twice = [0.0; 2 * POSITIONS];
         for (weights, &travelled) in self.weights.iter().zip(&self.travelled) {
             let (shift, part) = cells_and_rest(travelled, POSITIONS);
-            let twice = twice(weights);
+            for half in twice.as_chunks_mut::<POSITIONS>().0 {
+                *half = *weights;
+            }
             let before = twice.iter().skip(POSITIONS - 1 - shift);
             let here = twice.iter().skip(POSITIONS - shift);
             for (sum, (before, here)) in sums.iter_mut().zip(before.zip(here)) {
@@ -223,6 +229,7 @@ impl PhaseGrid {
     /// The mode with the largest weight.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn mode(&self, model: &MotionModel<'_>) -> PhaseMode {
         let sums = self.by_position();
         let mut best = (0, 0.0);
@@ -281,6 +288,7 @@ fn sums_around(cells: &[f32; POSITIONS]) -> [f32; POSITIONS] {
 
 /// Likelihood of a measurement at each position of the table, the greatest being one.
 #[cfg_attr(target_arch = "x86_64", inline(always))]
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 fn likelihood_table<const N: usize>(model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> [f32; TABLE] {
     let spread = model.deviation_std_rad::<N>();
     let count = model.angle_count().min(N);

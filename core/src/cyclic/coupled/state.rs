@@ -116,11 +116,13 @@ impl<const N: usize> CoupledFilter<N> {
         self.position = wrapped;
     }
 
-    /// Sets an angle; its turns follow from the shorter way since the last one.
+    /// Sets an angle; its turns follow from the shorter way since the last one. Beyond `N` it does
+    /// nothing.
     pub(super) fn turn_to(&mut self, index: usize, angle_rad: f32) {
-        let (_, turns_less) = split_turns(angle_rad - self.angles_rad[index]);
-        self.turns[index] = self.turns[index].saturating_sub(turns_less);
-        self.angles_rad[index] = angle_rad;
+        let (Some(last_rad), Some(turns)) = (self.angles_rad.get_mut(index), self.turns.get_mut(index)) else { return };
+        let (_, turns_less) = split_turns(angle_rad - *last_rad);
+        *turns = turns.saturating_sub(turns_less);
+        *last_rad = angle_rad;
     }
 }
 

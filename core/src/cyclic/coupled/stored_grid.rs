@@ -1,6 +1,7 @@
 //! The phase grid as the filter stores it between two updates: weights in bfloat16.
 
-use crate::cyclic::coupled::phase_grid::{POSITIONS, PhaseGrid, SPEEDS};
+use crate::cyclic::MotionModel;
+use crate::cyclic::coupled::phase_grid::{POSITIONS, PhaseGrid, PhaseMode, SPEEDS};
 use crate::cyclic::phase::POSITIONS_IN_CYCLE;
 use crate::numeric::bf16::Bf16;
 use crate::saved_state::{SavedState, StateVisitor};
@@ -14,12 +15,14 @@ pub(super) struct StoredGrid {
 
 impl SavedState for StoredGrid {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        let mut grid = self.load();
-        visitor.reals(grid.weights.as_flattened_mut(), &(0.0..=1.001));
-        visitor.reals(&mut grid.travelled, &POSITIONS_IN_CYCLE);
-        self.store(&grid);
+        for short in self.weights.as_flattened_mut() {
+            let mut weight = short.get();
+            visitor.real(&mut weight, &(0.0..=1.001));
+            *short = Bf16::new(weight);
+        }
+        visitor.reals(&mut self.travelled, &POSITIONS_IN_CYCLE);
         // As they are stored, which is rounded.
-        let sum: f32 = self.load().weights.iter().flatten().sum();
+        let sum: f32 = self.weights.as_flattened().iter().map(|short| short.get()).sum();
         if !(0.99..=1.01).contains(&sum) {
             visitor.refuse();
         }
@@ -36,7 +39,30 @@ impl StoredGrid {
     /// The grid with weights in `f32`.
     #[inline]
     pub(super) fn load(&self) -> PhaseGrid {
-        PhaseGrid { weights: self.weights.map(|row| row.map(Bf16::get)), travelled: self.travelled }
+        let mut grid = PhaseGrid::uniform();
+        self.load_into(&mut grid);
+        grid
+    }
+
+    /// The same, where it stays: one that is returned stands on the stack twice.
+    #[inline]
+    pub(super) fn load_into(&self, grid: &mut PhaseGrid) {
+        grid.travelled = self.travelled;
+        for (weight, short) in grid.weights.as_flattened_mut().iter_mut().zip(self.weights.as_flattened()) {
+            *weight = short.get();
+        }
+    }
+
+    /// The mode with the largest weight; the grid is loaded in a frame of its own.
+    #[inline(never)]
+    pub(super) fn mode(&self, model: &MotionModel<'_>) -> PhaseMode {
+        self.load().mode(model)
+    }
+
+    /// Weight by position alone; the grid is loaded in a frame of its own.
+    #[inline(never)]
+    pub(super) fn by_position(&self) -> [f32; POSITIONS] {
+        self.load().by_position()
     }
 
     /// Stores `grid`.

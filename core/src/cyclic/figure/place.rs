@@ -147,8 +147,9 @@ impl<const N: usize> FigurePlace<N> {
         let options = self.options;
         let root_px = root_px.filter(|root| root.iter().all(|coordinate_px| is_pixel(*coordinate_px)));
         if let Some(filters) = &mut self.root {
-            for (axis, filter) in filters.iter_mut().enumerate() {
-                filter.step(step_frames, root_px.map(|seen| seen[axis]), options.keypoint_std_px);
+            let seen = root_px.map_or([None; 2], |root| root.map(Some));
+            for (filter, seen) in filters.iter_mut().zip(seen) {
+                filter.step(step_frames, seen, options.keypoint_std_px);
             }
         } else if let Some([x, y]) = root_px {
             self.root = options.root_filter(x).zip(options.root_filter(y)).map(|(x, y)| [x, y]);

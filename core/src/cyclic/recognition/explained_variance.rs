@@ -153,10 +153,10 @@ impl<const N: usize> ExplainedVariance<N> {
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(in crate::cyclic) fn add(&mut self, cycles: f32, measurement: &AngleMeasurement<N>, expected_rad: &[f32; N]) {
         self.keep = exp(-cycles);
-        for (i, sums) in self.angles.iter_mut().enumerate() {
+        for ((sums, seen_rad), expected_rad) in self.angles.iter_mut().zip(measurement.angles_rad()).zip(expected_rad) {
             sums.fade(self.keep);
-            if let Some(seen_rad) = measurement.angle_rad(i) {
-                sums.add(seen_rad, expected_rad[i]);
+            if let Some(seen_rad) = *seen_rad {
+                sums.add(seen_rad, *expected_rad);
             }
         }
     }

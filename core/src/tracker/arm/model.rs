@@ -10,6 +10,8 @@ use crate::observation::limbs::ArmImagePoints;
 use crate::skeleton::arm::{ARM_ANGLES, ARM_BONES, ArmAngles, ArmGeometry, FOREARM, UPPER_ARM, WIDE_ARM_LIMITS};
 use crate::skeleton::{Side, Skeleton};
 use crate::vision::candidate::HandCandidate;
+#[cfg(feature = "c-api")]
+use core::mem::MaybeUninit;
 
 /// Camera, arm and options of one arm tracker; immutable.
 ///
@@ -54,11 +56,25 @@ impl ArmModel {
         geometry: ArmGeometry,
         options: ArmOptions,
     ) -> Result<Self, ParameterError> {
-        options.check()?;
-        let image_area_px = crate::error::positive("image_size_px", image_size_px.0 as f32 * image_size_px.1 as f32)?;
-        let limits = if options.joint_limits { geometry.limits } else { WIDE_ARM_LIMITS };
-        let geometry = ArmGeometry { limits, ..geometry };
-        Ok(Self { camera, image_area_px, skeleton: geometry.skeleton()?, geometry, options })
+        let (image_area_px, geometry, skeleton) = parts(image_size_px, &geometry, &options)?;
+        Ok(Self { camera, image_area_px, geometry, skeleton, options })
+    }
+
+    /// Writes what [`Self::new`] gives where it stays, or only checks whether it would.
+    #[cfg(feature = "c-api")]
+    #[inline(never)]
+    pub(crate) fn write_into(
+        place: Option<&mut MaybeUninit<Self>>,
+        camera: Camera,
+        image_size_px: (u32, u32),
+        geometry: &ArmGeometry,
+        options: &ArmOptions,
+    ) -> Result<(), ParameterError> {
+        let (image_area_px, geometry, skeleton) = parts(image_size_px, geometry, options)?;
+        if let Some(place) = place {
+            place.write(Self { camera, image_area_px, geometry, skeleton, options: *options });
+        }
+        Ok(())
     }
 
     /// The camera.
@@ -145,4 +161,19 @@ impl ArmModel {
     pub fn waiting_pose(&self) -> ArmAngles {
         self.skeleton.clamp([0.5, 0.25, 0.3, 1.4])
     }
+}
+
+/// Pixels of the image, the arm with the limits that the options ask for, and its bones.
+#[inline(always)]
+fn parts(
+    image_size_px: (u32, u32),
+    geometry: &ArmGeometry,
+    options: &ArmOptions,
+) -> Result<(f32, ArmGeometry, Skeleton<ARM_BONES, ARM_ANGLES>), ParameterError> {
+    options.check()?;
+    let image_area_px = crate::error::positive("image_size_px", image_size_px.0 as f32 * image_size_px.1 as f32)?;
+    let limits = if options.joint_limits { geometry.limits } else { WIDE_ARM_LIMITS };
+    let geometry = ArmGeometry { limits, ..*geometry };
+    let skeleton = geometry.skeleton()?;
+    Ok((image_area_px, geometry, skeleton))
 }

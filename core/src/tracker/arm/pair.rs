@@ -178,20 +178,9 @@ impl<const CAPACITY: usize> ArmPair<CAPACITY> {
         let expected = [(&*left, left_model), (&*right, right_model)]
             .map(|(tracker, model)| expected(tracker, model, frame.timestamp_us));
         let lists = share_out(&candidates, &expected);
-        let answer = |tracker: &mut ArmTracker<CAPACITY>, model: &ArmModel, list: &SideCandidates, shoulder_m: Vec3| {
-            let arm_frame = ArmFrame {
-                timestamp_us: frame.timestamp_us,
-                image: frame.image.map(|image| ArmImage { candidates: list, edges: image.edges }),
-                shoulder_m,
-            };
-            let mut estimate = tracker.step(model, &arm_frame);
-            let carrier = estimate.candidate.and_then(|index| list.get(index));
-            estimate.candidate = carrier.and_then(|carrier| nearest_index(image.candidates, carrier.centre));
-            estimate.dropped_candidates = dropped;
-            estimate
-        };
+        let image = (frame, image.candidates, dropped);
         let ([of_left, of_right], [left_m, right_m]) = (&lists, frame.shoulders_m);
-        [answer(left, left_model, of_left, left_m), answer(right, right_model, of_right, right_m)]
+        [answer(left, left_model, of_left, image, left_m), answer(right, right_model, of_right, image, right_m)]
     }
 }
 
@@ -202,6 +191,27 @@ impl<const CAPACITY: usize> ArmPair<CAPACITY> {
         let ([left, right], [left_model, right_model], [of_left, of_right]) = (&mut self.trackers, models, frames);
         [left.step(left_model, of_left), right.step(right_model, of_right)]
     }
+}
+
+/// One side's answer by its `list` of the candidates that the frame has; how many were dropped.
+#[inline(never)]
+fn answer<const CAPACITY: usize>(
+    tracker: &mut ArmTracker<CAPACITY>,
+    model: &ArmModel,
+    list: &SideCandidates,
+    (frame, candidates, dropped): (&PairFrame<'_>, &[HandCandidate], usize),
+    shoulder_m: Vec3,
+) -> ArmEstimate {
+    let arm_frame = ArmFrame {
+        timestamp_us: frame.timestamp_us,
+        image: frame.image.map(|image| ArmImage { candidates: list, edges: image.edges }),
+        shoulder_m,
+    };
+    let mut estimate = tracker.step(model, &arm_frame);
+    let carrier = estimate.candidate.and_then(|index| list.get(index));
+    estimate.candidate = carrier.and_then(|carrier| nearest_index(candidates, carrier.centre));
+    estimate.dropped_candidates = dropped;
+    estimate
 }
 
 /// Where a side expects its hand.
@@ -242,6 +252,7 @@ fn log_fit(candidate: &HandCandidate, expected: Option<&Expected>) -> f32 {
 }
 
 /// Gives each side its blob of the likeliest pair, and to both the blobs of neither.
+#[inline(never)]
 fn share_out(candidates: &[HandCandidate], expected: &[Option<Expected>; 2]) -> [SideCandidates; 2] {
     let fit = |expected: &Option<Expected>, choice: Option<usize>| {
         let candidate = choice.and_then(|index| candidates.get(index));

@@ -128,7 +128,8 @@ impl FrameContext<'_> {
     /// depth, the hand slides along the ray.
     fn driven_goal(&self, position_m: Vec3, ray: &Ray) -> Goal {
         let options = self.model.options();
-        let along = ray.direction * ray.direction.transpose();
+        let axis = [ray.direction.x, ray.direction.y, ray.direction.z];
+        let along = Mat3::from(axis.map(|factor| axis.map(|entry| entry * factor)));
         let precision = (Mat3::identity() - along) / (options.reach_across_std_m * options.reach_across_std_m)
             + along / (options.reach_std_m * options.reach_std_m);
         Goal { bone: FOREARM, position_m, precision }
@@ -154,8 +155,8 @@ impl FrameContext<'_> {
         if !corrects_weight {
             // The draw spreads as far as a frame's stiffness lets it: wider, the expansion would
             // leave the goal.
-            for (i, variance) in variances.iter().enumerate() {
-                mode.hessian[i][i] += 1.0 / variance - density.stiffness[i];
+            for i in 0..ARM_ANGLES {
+                mode.hessian[i][i] += 1.0 / variances[i] - density.stiffness[i];
             }
         }
         let Some(proposal) = LaplaceProposal::new(&mode) else {

@@ -111,7 +111,8 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     /// Those of [`Self::new`]; the tracker is as before then.
     pub fn begin(&mut self, model: &ArmModel, shoulder_m: Vec3, seed: u64) -> Result<(), ParameterError> {
         crate::ranges::place("shoulder_m", &shoulder_m)?;
-        let uniform = OrientationDensity::uniform(model.options().hough.bins)?;
+        let bins = model.options().hough.bins;
+        OrientationDensity::check(bins)?;
         self.weights.begin(model.options().particles)?;
         let waiting = model.waiting_pose();
         let (elbow_m, hand_m) = model.elbow_and_hand(&shoulder_m, &waiting);
@@ -131,8 +132,9 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         self.unseen_s = UNSEEN_AT_START_S;
         self.ever_seen = false;
         self.current = 0;
-        self.limbs = LimbDensities { upper: uniform, fore: uniform };
-        self.memory = BlobMemory::empty();
+        self.limbs.upper.begin(bins);
+        self.limbs.fore.begin(bins);
+        self.memory.blobs.clear();
         self.estimate = ArmJoints { shoulder_m, elbow_m, hand_m };
         self.hand_velocity_m_per_s = ORIGIN_M;
         self.elbow_velocity_m_per_s = ORIGIN_M;

@@ -157,6 +157,15 @@ impl<const WORDS: usize, const ROWS: usize> EdgeLines<WORDS, ROWS> {
         }
     }
 
+    /// Becomes what [`Self::new`] gives, in place.
+    pub(super) fn begin(&mut self, steps: EdgeSteps) {
+        self.cells.as_flattened_mut().fill([0; BLOCK_WORDS]);
+        self.map.rows.as_flattened_mut().fill(0);
+        self.known = false;
+        self.thinning = EdgeThinning::new();
+        self.steps = steps;
+    }
+
     /// Forgets the previous frame: the next one has no temporal edges.
     pub fn forget_last_frame(&mut self) {
         self.known = false;

@@ -123,8 +123,7 @@ impl<
         likelihood: HandLikelihood,
         steps: EdgeSteps,
     ) -> Result<Self, ParameterError> {
-        side("width", width, 32 * WORDS)?;
-        side("height", height, EDGE_CELL_PX * MAP_ROWS)?;
+        Self::check_size((width, height))?;
         Ok(Self {
             edge_lines: EdgeLines::new(steps),
             skin_bits: [0; WORDS],
@@ -140,6 +139,34 @@ impl<
             edges: EdgeList::new(),
             losses: FrameLosses::default(),
         })
+    }
+
+    /// Whether frames of this size have room.
+    pub(crate) fn check_size((width, height): (usize, usize)) -> Result<(), ParameterError> {
+        side("width", width, 32 * WORDS)?;
+        side("height", height, EDGE_CELL_PX * MAP_ROWS)
+    }
+
+    /// Begins anew, in place, as what [`Self::new`] gives: also with frames of another size.
+    ///
+    /// # Errors
+    /// Those of [`Self::new`]; the front end is as before then.
+    pub fn begin(
+        &mut self,
+        size: (usize, usize),
+        likelihood: HandLikelihood,
+        steps: EdgeSteps,
+    ) -> Result<(), ParameterError> {
+        Self::check_size(size)?;
+        (self.width, self.height) = size;
+        self.likelihood = likelihood;
+        self.min_area_fraction = DEFAULT_MIN_AREA_FRACTION;
+        self.skin_bits.fill(0);
+        self.candidates.fill(HandCandidate::default());
+        self.edge_lines.begin(steps);
+        self.begin_frame();
+        self.forget_last_frame();
+        Ok(())
     }
 
     /// The same front end without components below another fraction of the image's area.

@@ -199,3 +199,26 @@ fn sizes_without_room_are_refused_by_name() {
     assert_eq!(new((321, 1)), ParameterError::new("width", Rule::Capacity { capacity: 320 }));
     assert_eq!(new((320, 241)), ParameterError::new("height", Rule::Capacity { capacity: 240 }));
 }
+
+#[test]
+fn a_front_end_that_begins_anew_is_a_new_one() {
+    let size = (64, 20);
+    let square = |first: usize| -> Vec<u32> {
+        (0..20).flat_map(|v| [if (4..14).contains(&v) { 0x3ff << first } else { 0 }, 0]).collect()
+    };
+    let (before, after) = (square(2), square(9));
+    let mask = |words| Mask::new(words, 64, 20).unwrap();
+    let mut used = front_end::<2, 12, 12, 4, 64, 10>((33, 20));
+    read(&mut used, &mask(&before));
+    used.begin_frame();
+    used.line(0, &[SKIN; 33], &table());
+    assert!(used.begin((65, 20), HandLikelihood::default(), EdgeSteps::default()).is_err());
+    used.begin(size, HandLikelihood::default(), EdgeSteps::default()).unwrap();
+    let mut new = LineFrontEnd::<2, 12, 12, 4, 64, 10>::new(size, HandLikelihood::default(), EdgeSteps::default());
+    let new = new.as_mut().unwrap();
+    for words in [&before, &after, &before] {
+        let (found, wanted) = (read(&mut used, &mask(words)), read(new, &mask(words)));
+        assert_eq!((found.blobs, found.candidates, found.edges), (wanted.blobs, wanted.candidates, wanted.edges));
+        assert_eq!(found.blobs.len(), 1);
+    }
+}

@@ -14,13 +14,14 @@ use core::f32::consts::TAU;
 impl<const N: usize> CoupledFilter<N> {
     /// The mean pose over the grid's positions by weight, corrected angle by angle. `mode` is the
     /// grid's mode where it is known.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub(in crate::cyclic::coupled) fn estimate_of_all_places(
         &mut self,
         model: &MotionModel<'_>,
         measurement: &AngleMeasurement<N>,
         mode: Option<PhaseMode>,
     ) -> CyclicEstimate<N> {
-        let mode = mode.unwrap_or_else(|| self.grid.load().mode(model));
+        let mode = mode.unwrap_or_else(|| self.grid.mode(model));
         self.move_by(position_difference(mode.position, self.position));
         self.velocity = mode.velocity;
         self.path = MeasuredPath::new();
@@ -58,10 +59,11 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Mean and variance of each angle over the grid's positions, with the person's learned
     /// deviation.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn pose_of_all_places(&self, model: &MotionModel<'_>) -> ([f32; N], [f32; N]) {
         let reference = model.mean_pose_rad::<N>(model.point(self.position));
         let (mut mean, mut square) = ([0.0; N], [0.0; N]);
-        for (cell, weight) in self.grid.load().by_position().into_iter().enumerate() {
+        for (cell, weight) in self.grid.by_position().into_iter().enumerate() {
             let pose = model.mean_pose_rad::<N>(model.point(cell as f32 / POSITIONS as f32));
             for i in 0..model.angle_count().min(N) {
                 let off = wrap_angle(pose[i] - reference[i]);

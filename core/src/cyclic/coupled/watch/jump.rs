@@ -10,7 +10,7 @@
 use super::agreement::MIN_MODE_WEIGHT;
 use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::block::AngleBlock;
-use crate::cyclic::coupled::phase_grid::PhaseMode;
+use crate::cyclic::coupled::phase_grid::{PhaseGrid, PhaseMode};
 use crate::cyclic::coupled::state::{CoupledFilter, LOST_STD, spread};
 use crate::cyclic::recognition::explained_variance::cycle_variances_rad2;
 use crate::cyclic::{AngleMeasurement, MotionModel};
@@ -89,7 +89,9 @@ impl<const N: usize> CoupledFilter<N> {
             && is_on(Part::Relock)
         {
             // What was learned of the person since the last lock was learned at a wrong phase.
-            self.blocks = core::array::from_fn(|i| AngleBlock::unknown(&spread(model, i)));
+            for (i, block) in self.blocks.iter_mut().enumerate() {
+                *block = AngleBlock::unknown(&spread(model, i));
+            }
             let position = mode.position - self.watch.mean_phase_offset;
             self.relock_to(&PhaseMode { position, ..mode });
             self.learn_offsets_here(model, measurement);
@@ -101,8 +103,10 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Moves the grid on by `frames`, updates it by the measurement, and returns its mode.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn update_grid(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) -> PhaseMode {
-        let mut grid = self.grid.load();
+        let mut grid = PhaseGrid::uniform();
+        self.grid.load_into(&mut grid);
         grid.advance(model, frames);
         grid.weigh(model, measurement);
         self.grid.store(&grid);
@@ -126,6 +130,7 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Whether the person swings and the mean cycle, at the filter's phase, explains nothing of it.
     /// A good NIS is then due to deviations that follow any motion.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn is_spurious_lock(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
         if self.swing.filled_share() < MIN_FILLED_SHARE || !is_on(Part::SpuriousLock) {
             return false;
