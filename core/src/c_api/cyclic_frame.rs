@@ -55,8 +55,8 @@ pub struct SinewCyclicResult {
     pub is_outlier: u32,
     /// 1 while the position in the cycle is not known and the pose is the mean of all positions.
     pub is_searching: u32,
-    /// 1 if the person has for a cycle or two differed from the model's mean cycle by more than people
-    /// do in the training: another motion, or wrong angles.
+    /// 1 if the person has for a cycle or two differed from the model's mean cycle by far more than
+    /// people do in the training: another motion, or wrong angles.
     pub is_misfit: u32,
 }
 

@@ -16,7 +16,7 @@ const CADENCE_RANGE: [f64; 2] = [0.4, 2.5];
 const MAX_RANGE_DEG: f64 = 170.0;
 
 /// Share of the rows that may be unlike the model's motion. Chosen: walkers of the training source
-/// reach 0.1, and other motions 0.3 to 0.9.
+/// have none, and other motions 0.3 to 0.8.
 const MAX_MISFIT_SHARE: f64 = 0.25;
 
 /// Angles whose range has a limit: all but the shoulders.
@@ -40,7 +40,7 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
     let misfit_share = summary.misfits as f64 / summary.frames as f64;
     if misfit_share > MAX_MISFIT_SHARE {
         doubts.push(format!(
-            "in {:.0} % of the rows the motion is not the model's: another motion, or wrong keypoints; see --model",
+            "in {:.0} % of the rows the motion is far from the model's: another motion (--model), joints at other places, or wrong keypoints",
             100.0 * misfit_share
         ));
     }

@@ -60,7 +60,8 @@ fn the_examples_run_on_this_computer_under_the_sanitizers() {
     }
 }
 
-/// Levels at which the examples and their start are compiled for the emulator; the last flag counts.
+/// Levels at which the examples and their start are compiled for the emulator; the last flag
+/// counts.
 const LEVELS: [&str; 3] = ["-O0", "-O2", "-Os"];
 
 fn link_for_the_emulator(example: &str, level: &str, library: &Path, program: &Path) {

@@ -6,6 +6,18 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 /// A part that can be switched off.
+///
+/// ```
+/// # #[cfg(feature = "ablation")] {
+/// use sinew_core::cyclic::coupled::ablation::{Part, switch_off};
+///
+/// for part in Part::ALL {
+///     switch_off(Some(part));
+///     // ... the same recordings as with all parts ...
+/// }
+/// switch_off(None);
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// The scale of each angle's noise; without it the noise is as stated.

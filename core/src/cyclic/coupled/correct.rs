@@ -66,7 +66,8 @@ impl<const N: usize> CoupledFilter<N> {
                 block.mean[0] = wrap_angle(block.mean[0]);
             }
         }
-        let growth = self.spread_scale.update(&products, model.mean_cycle_velocity());
+        // In an even circle an offset and a leading phase are the same: no spread can be learned.
+        let growth = if model.winds() { 1.0 } else { self.spread_scale.update(&products, model.mean_cycle_velocity()) };
         if growth > 1.0 {
             self.blocks.iter_mut().for_each(|block| block.inflate(growth));
         }

@@ -83,8 +83,8 @@ impl<const N: usize> MeasurementNoise<N> {
         1.0 / min(self.scale(index), 1.0)
     }
 
-    /// Adds the wrapped innovations of the angle at `index` in this frame and the last one, with the
-    /// variances of stated noise, scaled noise and prediction, rad^2.
+    /// Adds the wrapped innovations of the angle at `index` in this frame and the last one, rad,
+    /// with the variances of stated noise, scaled noise and prediction, rad^2.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline)]
     pub(super) fn add(&mut self, index: usize, [stated, noise, predicted]: [f32; 3], innovations_rad: [f32; 2]) {

@@ -48,7 +48,7 @@ pub struct TrackCyclicArgs {
     /// Cycles per frame at the first frame [default: the model's mean].
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub initial_cycle_velocity: Option<f64>,
-    /// Growth of the noise of the trained accelerations with the cycle's velocity (paper, paper-cut).
+    /// Growth of the trained accelerations' noise with the cycle's velocity (paper, paper-cut).
     #[arg(long, value_enum, default_value_t = ScalingName::FourthPower)]
     pub covariance_scaling: ScalingName,
     /// Standard deviation of the temporal acceleration, cycles per frame^2 (paper, paper-cut,

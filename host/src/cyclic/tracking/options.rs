@@ -149,8 +149,8 @@ impl Default for TrackingOptions {
 
 /// Maximum number of frames per second. Chosen: no camera is as fast.
 pub const MAX_RATE_HZ: f64 = 1.0e6;
-/// Largest standard deviation of the temporal acceleration, cycles per frame^2. Chosen: from rest to
-/// half a cycle a frame, the largest velocity, in ten frames.
+/// Largest standard deviation of the temporal acceleration, cycles per frame^2. Chosen: from rest
+/// to half a cycle a frame, the largest velocity, in ten frames.
 pub const MAX_TEMPORAL_STD: f64 = 0.05;
 /// Maximum number of particles that a run is asked for.
 pub const MAX_PARTICLES: usize = 10_000_000;

@@ -33,8 +33,8 @@ pub type MotionCells = Vec<(String, f64)>;
 ///
 /// After [`ESTIMATE_COLUMNS`] come the angles' standard deviations. A model with two angles a joint
 /// gives the angles out of the plane after those in it. Motions, if there are any, come last.
-/// `cycle_velocity_per_frame` is per frame of the recording; `outlier` and `misfit` are 0 or 1. A row about which
-/// nothing is known has its frame and time, and motions, alone.
+/// `cycle_velocity_per_frame` is per frame of the recording; `outlier` and `misfit` are 0 or 1. A
+/// row about which nothing is known has its frame and time, and motions, alone.
 #[derive(Debug)]
 pub struct EstimateTable<W: Write> {
     writer: csv::Writer<W>,

@@ -124,6 +124,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// person only.
     fn overrules_grid(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
         is_on(Part::OverrulesGrid)
+            && !self.spread_scale.is_misfit()
             && self.watch.nis.is_good(LEARNING_CYCLES / model.mean_cycle_velocity())
             && !self.is_spurious_lock(model, measurement)
     }

@@ -1,0 +1,78 @@
+//! Motions that are not the model's: most of their rows are flagged, and the band widens. Runs in
+//! release where `../shared/data` is at hand, and says so where not.
+
+use crate::shared_data;
+use crate::walks::WALKS;
+use sinew::cyclic::CyclicModel;
+use sinew::cyclic::recording::{RecordingOptions, angles};
+use sinew::cyclic::tracking::{Tracked, TrackingOptions, track};
+use sinew_lab::cyclic::protocol::measurements;
+use sinew_lab::cyclic::{Errors, Protocol};
+
+/// Motions of which the model of walking knows nothing.
+const OTHERS: [&str; 2] = ["cmu-expmap/train_basketball_signal_3.txt", "cmu-expmap/train_directing_traffic_1.txt"];
+/// Runners of another source.
+const RUNNERS: [&str; 3] = [
+    "bandai/dataset-2_run_active_001.bvh",
+    "bandai/dataset-2_run_active_002.bvh",
+    "bandai/dataset-2_run_exhausted_001.bvh",
+];
+/// Noise, degrees.
+const SIGMAS_DEG: [f64; 3] = [1.5, 6.0, 29.0];
+/// Least share of the truth inside the 90 % band of a runner by the model of walking. The first
+/// second, in which nothing is known of the runner, is included.
+const RUNNERS_BAND: f64 = 0.80;
+
+/// A recording tracked by the model of walking, with what is inside the 90 % band.
+fn tracked(file: &str, sigma_deg: f64) -> Option<(Tracked, f64)> {
+    let path = shared_data::in_release("mocap")?.join(file);
+    let options = RecordingOptions { rate_hz: Some(60.0), ..RecordingOptions::default() };
+    let truth = angles(&path, &options).unwrap().table;
+    let options =
+        TrackingOptions { sigma_rad: sigma_deg.to_radians(), rate_hz: Some(60.0), ..TrackingOptions::default() };
+    let seen = measurements(&truth, Protocol::Noisy, options.sigma_rad, 1);
+    let tracked = track(&seen, &CyclicModel::from_option("walking").unwrap(), &options).unwrap();
+    let (inside, _) = Errors::of(&tracked, &truth).inside_90();
+    Some((tracked, inside))
+}
+
+/// Share of the rows with `misfit`.
+fn misfit_share(file: &str, sigma_deg: f64) -> Option<f64> {
+    let (tracked, inside) = tracked(file, sigma_deg)?;
+    let misfits = tracked.frames.iter().filter(|frame| frame.estimate.misfit).count();
+    let share = misfits as f64 / tracked.frames.len() as f64;
+    println!("{file}, sigma {sigma_deg}: {:.0} % flagged, {:.0} % inside", 100.0 * share, 100.0 * inside);
+    Some(share)
+}
+
+#[test]
+fn another_motion_is_flagged() {
+    for file in OTHERS {
+        // With more noise the filter relocks again and again, and starts anew each time.
+        for sigma_deg in &SIGMAS_DEG[..2] {
+            let Some(share) = misfit_share(file, *sigma_deg) else { return };
+            assert!((0.5..1.0).contains(&share), "{file}: {share}");
+        }
+    }
+}
+
+#[test]
+fn the_band_of_a_runner_widens() {
+    for file in RUNNERS {
+        for sigma_deg in SIGMAS_DEG {
+            misfit_share(file, sigma_deg);
+            let Some((_, inside)) = tracked(file, sigma_deg) else { return };
+            assert!((RUNNERS_BAND..0.97).contains(&inside), "{file}: {inside}");
+        }
+    }
+}
+
+#[test]
+fn walks_of_other_sources_are_seldom_flagged() {
+    for sigma_deg in SIGMAS_DEG {
+        let shares: Option<Vec<f64>> = WALKS.iter().map(|file| misfit_share(file, sigma_deg)).collect();
+        let Some(shares) = shares else { return };
+        let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+        assert!(mean < 0.15, "sigma {sigma_deg}: {shares:?}");
+    }
+}
