@@ -325,6 +325,11 @@ typedef struct SinewCyclicResult {
    * 1 while the position in the cycle is not known and the pose is the mean of all positions.
    */
   uint32_t is_searching;
+  /**
+   * 1 if the person has for a cycle or two differed from the model's mean cycle by far more than
+   * people do in the training: another motion, or wrong angles.
+   */
+  uint32_t is_misfit;
 } SinewCyclicResult;
 
 /**
