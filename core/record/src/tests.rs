@@ -101,8 +101,8 @@ fn a_whole_stream_has_no_error() {
 #[test]
 fn versions_kinds_and_lengths_are_distinguished() {
     let (mut bytes, _) = stream(1);
-    bytes[4] = 2;
-    assert_eq!(read_all(&bytes), (vec![], vec![RecordError::WrongVersion { found: 2 }, RecordError::Lost]));
+    bytes[4] = VERSION as u8 + 1;
+    assert_eq!(read_all(&bytes), (vec![], vec![RecordError::WrongVersion { found: VERSION + 1 }, RecordError::Lost]));
     assert_eq!(decode(&bytes).unwrap_err().code(), 3);
     let (mut bytes, _) = stream(1);
     bytes[8..12].copy_from_slice(&300_u32.to_le_bytes());

@@ -15,10 +15,6 @@ const CADENCE_RANGE: [f64; 2] = [0.4, 2.5];
 /// ball joint except about the shoulder.
 const MAX_RANGE_DEG: f64 = 170.0;
 
-/// Share of the rows that may be unlike the model's motion. Chosen: walkers of the training source
-/// have none, and other motions 0.3 to 0.8.
-const MAX_MISFIT_SHARE: f64 = 0.25;
-
 /// Angles whose range has a limit: all but the shoulders.
 const LIMITED: [&str; 4] = ["trunk_lean", "elbow_flexion", "hip_flexion", "knee_flexion"];
 
@@ -35,13 +31,6 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
         doubts.push(format!(
             "{:.1} cycles were seen: with less than {MIN_CYCLES} there is no cadence; record longer",
             summary.cycles
-        ));
-    }
-    let misfit_share = summary.misfits as f64 / summary.frames as f64;
-    if misfit_share > MAX_MISFIT_SHARE {
-        doubts.push(format!(
-            "in {:.0} % of the rows the motion is far from the model's: another motion (--model), joints at other places, or wrong keypoints",
-            100.0 * misfit_share
         ));
     }
     let mean_per_min = 60.0 * f64::from(model.numbers().rate_hz) / f64::from(model.numbers().mean_duration_frames);

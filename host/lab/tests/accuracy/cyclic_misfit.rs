@@ -19,9 +19,12 @@ const RUNNERS: [&str; 3] = [
 ];
 /// Noise, degrees.
 const SIGMAS_DEG: [f64; 3] = [1.5, 6.0, 29.0];
-/// Least share of the truth inside the 90 % band of a runner by the model of walking. The first
-/// second, in which nothing is known of the runner, is included.
-const RUNNERS_BAND: f64 = 0.80;
+/// Least share of the truth inside the 90 % band of a runner by the model of walking, where fewer
+/// than [`RUNNERS_FLAGGED`] of the rows are flagged. The first second, in which nothing is known of
+/// the runner, is included.
+const RUNNERS_BAND: f64 = 0.85;
+/// Least share of the rows that are flagged where the band holds less.
+const RUNNERS_FLAGGED: f64 = 0.4;
 
 /// A recording tracked by the model of walking, with what is inside the 90 % band.
 fn tracked(file: &str, sigma_deg: f64) -> Option<(Tracked, f64)> {
@@ -57,12 +60,13 @@ fn another_motion_is_flagged() {
 }
 
 #[test]
-fn the_band_of_a_runner_widens() {
+fn the_band_of_a_runner_widens_or_the_runner_is_flagged() {
     for file in RUNNERS {
         for sigma_deg in SIGMAS_DEG {
-            misfit_share(file, sigma_deg);
+            let Some(share) = misfit_share(file, sigma_deg) else { return };
             let Some((_, inside)) = tracked(file, sigma_deg) else { return };
-            assert!((RUNNERS_BAND..0.97).contains(&inside), "{file}: {inside}");
+            let is_known = inside >= RUNNERS_BAND || share >= RUNNERS_FLAGGED;
+            assert!(is_known && (0.75..0.97).contains(&inside), "{file}: {inside}, {share} flagged");
         }
     }
 }
