@@ -13,7 +13,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 /// First word of every object, `SNOB`.
 const MARK: u32 = u32::from_le_bytes(*b"SNOB");
 
-/// What stands before the content of an object.
+/// Header of an object, before its content.
 #[derive(Debug)]
 #[repr(C)]
 struct Seal {

@@ -1,8 +1,8 @@
 //! `sinew-lab ablation`: the phase-coupled filter without each of its parts.
 
 use crate::cyclic::protocol::pooled;
-use crate::cyclic::{Protocol, long_runs, rate_of, test_cycles};
-use crate::tables::markdown::{Rows, line, named, table};
+use crate::cyclic::{Protocol, TestCycle, long_runs, rate_of, test_cycles};
+use crate::tables::markdown::{Rows, named, table};
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde_json::json;
@@ -12,6 +12,10 @@ use sinew::cyclic::tracking::{FilterName, TrackingOptions};
 use sinew::cyclic::{CutList, CyclicModel};
 use sinew_core::cyclic::coupled::ablation::{Part, switch_off};
 use std::path::PathBuf;
+
+/// What a cell of the table holds.
+const LEGEND: &str =
+    "each cell: error of the angles in degrees; truth inside the 90 % band, error of the cadence, lost runs, in %";
 
 /// Largest error of the position beyond which a run was lost for a while, cycles.
 const LOST: f64 = 0.2;
@@ -54,17 +58,16 @@ struct Score {
 pub fn run(args: &AblationArgs, console: &Console) -> Result<()> {
     ensure!(args.seeds > 0, "--seeds must be greater than zero");
     ensure!(args.sigma_deg.iter().all(|sigma| *sigma > 0.0), "--sigma-deg must be greater than zero");
-    let whole = scores(args, None)?;
-    let parts = Part::ALL.iter().map(|part| Ok((*part, scores(args, Some(*part))?))).collect::<Result<Vec<_>>>()?;
+    let material = Material::read(args)?;
+    let whole = material.scores(args, None)?;
+    let parts = Part::ALL.into_iter().map(|part| Ok((part, material.scores(args, Some(part))?)));
+    let parts = parts.collect::<Result<Vec<_>>>()?;
     let mut rows: Rows = vec![named("", whole.iter().map(|score| format!("sigma {}", score.sigma_deg)))];
     rows.push(named("all parts", whole.iter().map(cell)));
     rows.extend(parts.iter().map(|(part, scores)| named(format!("without `{part:?}`"), scores.iter().map(cell))));
-    let legend = line([
-        "each cell: error of the angles in degrees; truth inside the 90 % band, error of the cadence, lost runs, in %",
-    ]);
     let without: serde_json::Map<_, _> =
         parts.iter().map(|(part, scores)| (format!("{part:?}"), json!(scores))).collect();
-    console.answer(&format!("{}\n\n{}", legend[0], table(&rows)), &json!({ "all": whole, "without": without }))
+    console.answer(&format!("{LEGEND}\n\n{}", table(&rows)), &json!({ "all": whole, "without": without }))
 }
 
 fn cell(score: &Score) -> String {
@@ -77,35 +80,49 @@ fn cell(score: &Score) -> String {
     )
 }
 
-/// The filter without `off`, at each noise.
-fn scores(args: &AblationArgs, off: Option<Part>) -> Result<Vec<Score>> {
-    let list = CutList::read(&args.cuts)?;
-    let model = CyclicModel::from_option(&args.model)?;
-    switch_off(off);
-    let scores = args.sigma_deg.iter().map(|sigma| score(&list, &model, *sigma, args.seeds)).collect();
-    switch_off(None);
-    scores
+/// What every row of the table is measured on.
+struct Material {
+    list: CutList,
+    cycles: Vec<TestCycle>,
+    model: CyclicModel,
+    rate_hz: f64,
 }
 
-fn score(list: &CutList, model: &CyclicModel, sigma_deg: f64, seeds: u64) -> Result<Score> {
-    let rate_hz = rate_of(list, None)?;
-    let options = TrackingOptions {
-        sigma_rad: sigma_deg.to_radians(),
-        initial_cycle_position: Some(0.0),
-        rate_hz: Some(rate_hz),
-        ..TrackingOptions::default()
-    };
-    let errors = pooled(&test_cycles(list)?, model, Protocol::Noisy, &options, seeds)?;
-    let mut runs = Vec::new();
-    for seed in 1..=seeds {
-        runs.extend(long_runs(list, model, rate_hz, &[FilterName::Coupled], (sigma_deg, seed))?);
+impl Material {
+    fn read(args: &AblationArgs) -> Result<Self> {
+        let list = CutList::read(&args.cuts)?;
+        let (cycles, rate_hz) = (test_cycles(&list)?, rate_of(&list, None)?);
+        Ok(Self { list, cycles, model: CyclicModel::from_option(&args.model)?, rate_hz })
     }
-    let count = runs.len() as f64;
-    Ok(Score {
-        sigma_deg,
-        error_deg: errors.all_deg(),
-        inside_90: errors.inside_90().0,
-        cadence_error: runs.iter().map(|run| run.cadence_error.abs()).sum::<f64>() / count,
-        lost: runs.iter().filter(|run| run.phase_max > LOST).count() as f64 / count,
-    })
+
+    /// The filter without `off`, at each noise.
+    fn scores(&self, args: &AblationArgs, off: Option<Part>) -> Result<Vec<Score>> {
+        switch_off(off);
+        let scores = args.sigma_deg.iter().map(|sigma| self.score(*sigma, args.seeds)).collect();
+        switch_off(None);
+        scores
+    }
+
+    fn score(&self, sigma_deg: f64, seeds: u64) -> Result<Score> {
+        let options = TrackingOptions {
+            sigma_rad: sigma_deg.to_radians(),
+            initial_cycle_position: Some(0.0),
+            rate_hz: Some(self.rate_hz),
+            ..TrackingOptions::default()
+        };
+        let errors = pooled(&self.cycles, &self.model, Protocol::Noisy, &options, seeds)?;
+        let mut runs = Vec::new();
+        for seed in 1..=seeds {
+            let coupled = [FilterName::Coupled];
+            runs.extend(long_runs(&self.list, &self.model, self.rate_hz, &coupled, (sigma_deg, seed))?);
+        }
+        let count = runs.len() as f64;
+        Ok(Score {
+            sigma_deg,
+            error_deg: errors.all_deg(),
+            inside_90: errors.inside_90().0,
+            cadence_error: runs.iter().map(|run| run.cadence_error.abs()).sum::<f64>() / count,
+            lost: runs.iter().filter(|run| run.phase_max > LOST).count() as f64 / count,
+        })
+    }
 }

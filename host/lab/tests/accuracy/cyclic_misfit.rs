@@ -20,6 +20,7 @@ const RUNNERS: [(&str, [f64; 3]); 3] = [
 ];
 /// Noise, degrees.
 const SIGMAS_DEG: [f64; 3] = [1.5, 6.0, 29.0];
+
 /// A recording tracked by the model of walking, with what is inside the 90 % band.
 fn tracked(file: &str, sigma_deg: f64) -> Option<(Tracked, f64)> {
     let path = shared_data::in_release("mocap")?.join(file);
