@@ -1,10 +1,12 @@
 //! Angles of recordings: keypoints in memory, and files.
 
-use crate::arrays::array_of_options;
-use crate::errors::{exception, wrong};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray3};
+use crate::arrays::{Pose, array_of_options, poses};
+use crate::errors::{SinewError, exception, wrong};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
+use sinew::cyclic::about::About;
 use sinew::cyclic::recording::{RecordedAngles, RecordingOptions, angles, of_detections};
+use sinew::cyclic::{AngleRow, AngleTable, CyclicError};
 use sinew::keypoints::arrays::{self, ARRAY, from_points};
 use sinew::keypoints::{Facing, PersonChoice};
 use std::path::{Path, PathBuf};
@@ -14,6 +16,15 @@ use std::path::{Path, PathBuf};
 pub fn layouts() -> Vec<&'static str> {
     arrays::layouts()
 }
+
+/// Angles, frames, angles out of the plane, names and cells of other columns, and the rest as JSON.
+type Parts<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray1<i64>>,
+    Option<Bound<'py, PyArray2<f64>>>,
+    (Vec<String>, Vec<Vec<String>>),
+    String,
+);
 
 /// Angles of a recording.
 #[pyclass(frozen, module = "sinew._sinew")]
@@ -60,6 +71,68 @@ impl Angles {
     #[getter]
     fn doubts(&self) -> Vec<String> {
         self.recorded.doubts.clone()
+    }
+
+    /// Angles in memory; `frames` are the numbers of the rows.
+    #[staticmethod]
+    fn of_array(
+        angles: PyReadonlyArray2<'_, f64>,
+        frames: PyReadonlyArray1<'_, i64>,
+        rate_hz: Option<f64>,
+    ) -> PyResult<Self> {
+        let frames = frames.as_array();
+        let row = |(&frame, angles_rad): (&i64, Pose)| AngleRow {
+            frame: frame.unsigned_abs(),
+            angles_rad,
+            extra: Vec::new(),
+        };
+        let rows = frames.iter().zip(poses(angles.as_array())).map(row).collect();
+        let table = AngleTable::new(rows, Vec::new()).map_err(|error| exception(&error.into()))?;
+        Ok(Self { recorded: RecordedAngles::of_table(table.at_rate(rate_hz)), source: PathBuf::from(ARRAY) })
+    }
+
+    /// All of it, which `of_parts` takes: for pickle.
+    fn parts<'py>(&self, py: Python<'py>) -> PyResult<Parts<'py>> {
+        let table = &self.recorded.table;
+        let side = table.side_rad().map(|rows| array_of_options(py, rows.iter().copied()));
+        let cells: Vec<Vec<String>> = table.rows().iter().map(|row| row.extra.clone()).collect();
+        let about = serde_json::to_string(&self.recorded.about(&self.source))
+            .map_err(|error| SinewError::new_err(error.to_string()))?;
+        Ok((self.angles_rad(py), self.frame(py), side, (table.extra_columns().to_vec(), cells), about))
+    }
+
+    #[staticmethod]
+    fn of_parts(
+        angles: PyReadonlyArray2<'_, f64>,
+        frames: PyReadonlyArray1<'_, i64>,
+        side: Option<PyReadonlyArray2<'_, f64>>,
+        other: (Vec<String>, Vec<Vec<String>>),
+        about: &str,
+    ) -> PyResult<Self> {
+        let broken = |error: CyclicError| exception(&error.into());
+        let about: About = serde_json::from_str(about).map_err(|error| SinewError::new_err(error.to_string()))?;
+        let (columns, cells) = other;
+        let frames = frames.as_array();
+        let rows = frames
+            .iter()
+            .zip(poses(angles.as_array()))
+            .zip(cells)
+            .map(|((&frame, angles_rad), extra)| AngleRow { frame: frame.unsigned_abs(), angles_rad, extra });
+        let mut table = AngleTable::new(rows.collect(), columns).map_err(broken)?.at_rate(about.rate_hz);
+        if let Some(side) = side {
+            table = table.with_side(poses(side.as_array())).map_err(broken)?;
+        }
+        let source = PathBuf::from(&about.source);
+        let recorded = RecordedAngles {
+            rate_hz: about.rate_hz,
+            notes: about.notes,
+            doubts: about.doubts,
+            facing: about.facing,
+            image_size_px: about.image_size_px,
+            layout: about.layout,
+            ..RecordedAngles::of_table(table)
+        };
+        Ok(Self { recorded, source })
     }
 
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {

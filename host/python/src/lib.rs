@@ -12,6 +12,7 @@ mod model;
 mod online;
 mod simulate;
 mod track;
+mod train;
 
 use pyo3::prelude::*;
 
@@ -29,7 +30,9 @@ mod _sinew {
     #[pymodule_export]
     use crate::simulate::simulate_keypoints;
     #[pymodule_export]
-    use crate::track::{track_angles, track_array, track_file};
+    use crate::track::{track_angles, track_file};
+    #[pymodule_export]
+    use crate::train::{train_angles, train_file};
     use pyo3::prelude::*;
 
     #[pymodule_init]

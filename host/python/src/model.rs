@@ -7,7 +7,8 @@ use pyo3::exceptions::PyFileNotFoundError;
 use pyo3::prelude::*;
 use sinew::cyclic::CyclicModel;
 use sinew::cyclic::model_file::{parse, shipped, shipped_names, to_json};
-use std::path::Path;
+use sinew::output::write_atomically;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Names of the models that are part of the package.
@@ -22,6 +23,13 @@ pub fn models() -> Vec<&'static str> {
 pub struct Model {
     name: String,
     pub model: &'static CyclicModel,
+}
+
+impl Model {
+    /// A model that was trained here.
+    pub fn of(model: CyclicModel) -> Self {
+        Self { name: "trained".to_owned(), model: kept(model) }
+    }
 }
 
 /// The model as one that is never freed; equal ones are kept once.
@@ -62,6 +70,15 @@ impl Model {
 
     fn to_json(&self) -> PyResult<String> {
         to_json(self.model).map_err(|error| exception(&error))
+    }
+
+    /// Writes the file that `sinew train cyclic` writes.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let write = || {
+            let json = to_json(self.model)?;
+            write_atomically(&path, |writer| Ok(writer.write_all(json.as_bytes())?))
+        };
+        py.detach(write).map_err(|error| exception(&error))
     }
 
     #[getter]

@@ -3,7 +3,8 @@
 use crate::arrays::pose;
 use crate::errors::{exception, wrong};
 use crate::model::Model;
-use numpy::{IntoPyArray, PyReadonlyArray1};
+use crate::track::covariance;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sinew::cyclic::tracking::summary::cadence;
@@ -49,6 +50,11 @@ impl Tracker {
     #[getter]
     fn rate_hz(&self) -> f64 {
         self.run.rates().0
+    }
+
+    /// Covariance of the angles after the last frame, rad^2; NaN where it is unknown.
+    fn covariance_rad2<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        covariance(&self.run).to_vec().into_pyarray(py)
     }
 
     /// Frame and state, which `restore` takes.

@@ -1,29 +1,33 @@
 //! Tracking of whole recordings.
 
 use crate::angles::Angles;
-use crate::arrays::{Pose, array, array_of_options, poses};
+use crate::arrays::{array, array_of_options};
 use crate::errors::{exception, in_python};
 use crate::model::Model;
-use numpy::{IntoPyArray, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sinew::cyclic::about::About;
 use sinew::cyclic::anatomy::{ANATOMICAL_ANGLES, COUNT};
-use sinew::cyclic::angle_table::{ANGLES, AngleRow};
+use sinew::cyclic::angle_table::ANGLES;
 use sinew::cyclic::own_cycle::{finish, noise};
 use sinew::cyclic::report::Report;
-use sinew::cyclic::tracking::{Tracked, TrackedFrame, TrackingOptions, track};
+use sinew::cyclic::tracking::{OnlineRun, Tracked, TrackedFrame, TrackingOptions, track};
 use sinew::cyclic::{AngleTable, CyclicModel, plausibility, rate};
 use sinew::error::Result;
 use std::path::{Path, PathBuf};
 
-/// How a recording is tracked.
-#[derive(Debug, Clone, Copy)]
-struct How {
-    model: &'static CyclicModel,
-    rate_hz: f64,
+/// How a recording is tracked, as Python hands it over.
+#[derive(Debug, FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct How {
+    rate_hz: Option<f64>,
     sigma_deg: Option<f64>,
-    online: bool,
+    smooth: bool,
+    filter: String,
+    particles: usize,
+    seed: u64,
+    covariance: bool,
 }
 
 /// What a recording comes to.
@@ -33,89 +37,101 @@ struct Found {
     report: Report,
     options: TrackingOptions,
     doubts: Vec<String>,
+    /// Of the angles of each row; NaN where it is unknown.
+    covariance_rad2: Option<Vec<Covariance>>,
+}
+
+/// Covariance of the angles of a row, rad^2.
+type Covariance = [f64; ANGLES * ANGLES];
+
+/// A recording with what was said about it.
+struct Recording<'a> {
+    table: &'a AngleTable,
+    rate_hz: f64,
+    doubts: &'a [String],
 }
 
 impl How {
     /// Does what the command `sinew track cyclic --report` does.
-    fn track(&self, table: &AngleTable, doubts: &[String]) -> Result<Found> {
+    fn track(&self, recording: &Recording<'_>, model: &'static CyclicModel) -> Result<Found> {
         let default = TrackingOptions::default();
-        let sigma_rad = self.sigma_deg.map_or(default.sigma_rad, f64::to_radians);
-        let options = TrackingOptions { rate_hz: Some(self.rate_hz), sigma_rad, ..default };
+        let options = TrackingOptions {
+            filter: self.filter.parse()?,
+            rate_hz: Some(recording.rate_hz),
+            sigma_rad: self.sigma_deg.map_or(default.sigma_rad, f64::to_radians),
+            particles: self.particles,
+            seed: self.seed,
+            ..default
+        };
         options.check()?;
-        let is_noise_found = self.sigma_deg.is_none() && !self.online;
+        let table = recording.table;
+        let is_noise_found = self.sigma_deg.is_none() && self.smooth;
         let options = if is_noise_found { noise::with_noise_of(table, options) } else { options };
-        let filtered = track(table, self.model, &options)?;
-        let tracked = if self.online { filtered } else { finish(table, self.model, filtered, &options)? };
+        let filtered = track(table, model, &options)?;
+        let tracked = if self.smooth { finish(table, model, filtered, &options)? } else { filtered };
         let report = Report::new(table, &tracked, &options, None);
-        let of_run = plausibility::doubts(&report.summary, &report.series, self.model, report.gait.as_ref());
-        let doubts = doubts.iter().cloned().chain(of_run).map(|doubt| in_python(&doubt)).collect();
-        Ok(Found { tracked, report, options, doubts })
+        let of_run = plausibility::doubts(&report.summary, &report.series, model, report.gait.as_ref());
+        let doubts = recording.doubts.iter().cloned().chain(of_run).map(|doubt| in_python(&doubt)).collect();
+        let covariance_rad2 = if self.covariance { Some(covariances(table, model, &options)?) } else { None };
+        Ok(Found { tracked, report, options, doubts, covariance_rad2 })
     }
 }
 
-/// Tracks an array of frames and angles; `frames` are the numbers of the rows.
-#[pyfunction]
-pub fn track_array<'py>(
-    py: Python<'py>,
-    angles: PyReadonlyArray2<'py, f64>,
-    frames: PyReadonlyArray1<'py, i64>,
-    model: &Model,
-    rate_hz: f64,
-    sigma_deg: Option<f64>,
-    online: bool,
-) -> PyResult<Bound<'py, PyDict>> {
-    let poses = poses(angles.as_array());
-    let frames: Vec<u64> = frames.as_array().iter().map(|frame| frame.unsigned_abs()).collect();
-    let how = How { model: model.model, rate_hz, sigma_deg, online };
-    let found = py.detach(|| how.track(&table(&frames, &poses)?.at_rate(Some(rate_hz)), &[]));
-    answer(py, &found.map_err(|error| exception(&error))?)
+/// Covariance of the filter's angles in each row. The filter runs once more, row by row.
+fn covariances(table: &AngleTable, model: &'static CyclicModel, options: &TrackingOptions) -> Result<Vec<Covariance>> {
+    let mut run = OnlineRun::new(model, options.clone())?;
+    let mut before = None;
+    let mut all = Vec::with_capacity(table.rows().len());
+    for row in table.rows() {
+        let angles_rad = row.angles_rad.map(|angle| angle.map(|angle| angle as f32));
+        run.step(&angles_rad, before.map_or(1, |before| row.frame - before))?;
+        before = Some(row.frame);
+        all.push(covariance(&run));
+    }
+    Ok(all)
 }
 
-fn table(frames: &[u64], poses: &[Pose]) -> Result<AngleTable> {
-    let row = |(&frame, &angles_rad): (&u64, &Pose)| AngleRow { frame, angles_rad, extra: Vec::new() };
-    Ok(AngleTable::new(frames.iter().zip(poses).map(row).collect(), Vec::new())?)
+/// Covariance of the angles after the last row, rad^2; NaN where it is unknown.
+pub fn covariance(run: &OnlineRun<'_>) -> Covariance {
+    let known = run.angle_covariance_rad2();
+    std::array::from_fn(|i| known.map_or(f64::NAN, |known| f64::from(known[i / ANGLES][i % ANGLES])))
 }
 
-/// Tracks what `sinew.angles` found.
+/// Tracks angles in memory.
 #[pyfunction]
-pub fn track_angles<'py>(
-    py: Python<'py>,
-    angles: &Angles,
-    model: &Model,
-    rate_hz: Option<f64>,
-    sigma_deg: Option<f64>,
-    online: bool,
-) -> PyResult<Bound<'py, PyDict>> {
+pub fn track_angles<'py>(py: Python<'py>, angles: &Angles, model: &Model, how: How) -> PyResult<Bound<'py, PyDict>> {
     let recorded = &angles.recorded;
     let found = py.detach(|| {
-        let rate_hz = rate::of_recording(Path::new("angles"), recorded.rate_hz, rate_hz)?;
-        How { model: model.model, rate_hz, sigma_deg, online }.track(&recorded.table, &recorded.doubts)
+        let rate_hz = rate::of_recording(Path::new("angles"), recorded.rate_hz, how.rate_hz)?;
+        let recording = Recording { table: &recorded.table, rate_hz, doubts: &recorded.doubts };
+        how.track(&recording, model.model)
     });
     answer(py, &found.map_err(|error| exception(&error))?)
 }
 
-/// Tracks an angle table.
+/// Tracks an angle table. Beside the answer, the notes of what made the table.
 #[pyfunction]
 pub fn track_file<'py>(
     py: Python<'py>,
     path: PathBuf,
     model: &Model,
-    rate_hz: Option<f64>,
-    sigma_deg: Option<f64>,
-    online: bool,
-) -> PyResult<Bound<'py, PyDict>> {
+    how: How,
+) -> PyResult<(Bound<'py, PyDict>, Vec<String>)> {
     let found = py.detach(|| {
         let table = AngleTable::read(&path)?;
-        let rate_hz = rate::of_recording(&path, table.rate_hz(), rate_hz)?;
-        let doubts = About::read_beside(&path)?.map_or_else(Vec::new, |about| about.doubts);
-        How { model: model.model, rate_hz, sigma_deg, online }.track(&table, &doubts)
+        let rate_hz = rate::of_recording(&path, table.rate_hz(), how.rate_hz)?;
+        let (notes, doubts) =
+            About::read_beside(&path)?.map_or_else(Default::default, |about| (about.notes, about.doubts));
+        let recording = Recording { table: &table, rate_hz, doubts: &doubts };
+        Ok((how.track(&recording, model.model)?, notes))
     });
-    answer(py, &found.map_err(|error| exception(&error))?)
+    let (found, notes) = found.map_err(|error| exception(&error))?;
+    Ok((answer(py, &found)?, notes))
 }
 
 /// Arrays and texts by name.
 fn answer<'py>(py: Python<'py>, found: &Found) -> PyResult<Bound<'py, PyDict>> {
-    let Found { tracked, report, options, doubts } = found;
+    let Found { tracked, report, options, doubts, covariance_rad2 } = found;
     let frames = &tracked.frames;
     let known = |frame: &TrackedFrame, value: f64| if frame.is_known { value } else { f64::NAN };
     let numbers = |value: fn(&TrackedFrame) -> f64| -> Vec<f64> {
@@ -131,6 +147,8 @@ fn answer<'py>(py: Python<'py>, found: &Found) -> PyResult<Bound<'py, PyDict>> {
     answer.set_item("rate_hz", tracked.rate_hz)?;
     answer.set_item("angles_rad", array(py, frames.iter().map(angles_rad)))?;
     answer.set_item("std_rad", array(py, frames.iter().map(std_rad)))?;
+    let covariance_rad2 = covariance_rad2.as_ref().map(|rows| array(py, rows.iter().copied()));
+    answer.set_item("covariance_rad2", covariance_rad2)?;
     let is_known: Vec<bool> = frames.iter().map(|frame| frame.is_known).collect();
     answer.set_item("is_known", is_known.into_pyarray(py))?;
     let outlier: Vec<bool> = frames.iter().map(|frame| frame.is_known && frame.estimate.outlier).collect();

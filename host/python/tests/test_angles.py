@@ -138,3 +138,17 @@ def test_a_model_of_a_file(tmp_path, walk):
     path.write_text(sinew.Model("walking")._native.to_json())
     of_file, shipped = (sinew.track_cyclic(walk, model) for model in (path, "walking"))
     np.testing.assert_array_equal(of_file.angles_rad, shipped.angles_rad)
+
+
+def test_angles_are_pickled_whole(tmp_path, walk):
+    again = pickle.loads(pickle.dumps(walk))
+    np.testing.assert_array_equal(again.angles_rad, walk.angles_rad)
+    np.testing.assert_array_equal(again.frame, walk.frame)
+    for name in ("rate_hz", "facing", "layout", "notes", "doubts"):
+        assert getattr(again, name) == getattr(walk, name), name
+    walk.save(tmp_path / "a.csv")
+    again.save(tmp_path / "b.csv")
+    assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
+    track, of_again = sinew.track_cyclic(walk), sinew.track_cyclic(again)
+    np.testing.assert_array_equal(track.angles_rad, of_again.angles_rad)
+    assert track.gait == of_again.gait and track.notes == of_again.notes == walk.notes

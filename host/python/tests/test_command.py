@@ -40,7 +40,7 @@ def test_a_table_is_tracked_as_the_command_does(tmp_path, walk, command, model, 
     options = ["--sigma-deg", sigma_deg] if sigma_deg else []
     options += ["--online"] if online else []
     said = command("track", "cyclic", table, "--model", model, "--out", out, "--report", tmp_path / "run", *options)
-    track = sinew.track_cyclic(table, model, sigma_deg=sigma_deg, online=online)
+    track = sinew.track_cyclic(table, model, sigma_deg=sigma_deg, smooth=not online)
     printed = rows_of(out)
     np.testing.assert_array_equal(track.frame, printed["frame"])
     for index, name in enumerate(sinew.ANGLE_NAMES):
@@ -54,6 +54,34 @@ def test_a_table_is_tracked_as_the_command_does(tmp_path, walk, command, model, 
     assert track.symmetries == said["symmetries"]
     assert track.cadence_per_min == said["summary"]["cadence_per_min"]
     assert len(track.doubts) == len(said["doubts"])
+
+
+@pytest.mark.parametrize("filter", ["paper", "paper-cut", "particle"])
+def test_the_papers_filters_are_the_commands(tmp_path, walk, command, filter):
+    table, out = tmp_path / "walk.csv", tmp_path / "est.csv"
+    walk.save(table)
+    options = ["--filter", filter, "--particles", 200, "--seed", 7, "--online", "--report", tmp_path / "run"]
+    said = command("track", "cyclic", table, "--model", "walking", "--out", out, *options)
+    track = sinew.track_cyclic(table, filter=filter, particles=200, seed=7, smooth=False)
+    printed = rows_of(out)
+    for index, name in enumerate(sinew.ANGLE_NAMES):
+        same(track.angles_rad[:, index], printed[f"{name}_rad"], SIX_DECIMALS)
+    assert track.summary == said["summary"]
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_a_model_is_trained_as_the_command_does(tmp_path, walk, command, mirror):
+    table, cuts, model, own = (tmp_path / name for name in ("walk.csv", "cuts.csv", "walk.json", "own.json"))
+    walk.save(table)
+    command("cut", table, "--out", cuts)
+    command("train", "cyclic", "--cuts", cuts, "--out", model, *(["--mirror"] if mirror else []))
+    of_list = sinew.train_cyclic(cuts, mirror=mirror)
+    of_list.save(own)
+    assert own.read_bytes() == model.read_bytes()
+    # The table has six decimals.
+    of_angles = sinew.train_cyclic([walk], mirror=mirror)
+    np.testing.assert_allclose(of_angles.mean_cycle_rad, of_list.mean_cycle_rad, atol=2.0e-6)
+    assert of_angles.trained_cycles == of_list.trained_cycles
 
 
 def test_an_array_is_tracked_as_its_table(tmp_path, walk):

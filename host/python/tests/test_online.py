@@ -9,7 +9,7 @@ import sinew
 
 
 def test_answers_are_those_of_an_online_track(walk):
-    track = sinew.track_cyclic(walk.angles_rad, rate_hz=30.0, online=True)
+    track = sinew.track_cyclic(walk.angles_rad, rate_hz=30.0, smooth=False)
     tracker = sinew.CyclicTracker("walking", rate_hz=30.0)
     for index, row in enumerate(walk.angles_rad):
         if index % 25 == 10:
@@ -26,7 +26,7 @@ def test_answers_are_those_of_an_online_track(walk):
 def test_left_out_frames_count(walk):
     some = np.r_[0:50, 55:100]
     time_s = np.arange(len(walk)) / 30.0
-    track = sinew.track_cyclic(walk.angles_rad[some], time_s=time_s[some], rate_hz=30.0, online=True)
+    track = sinew.track_cyclic(walk.angles_rad[some], time_s=time_s[some], rate_hz=30.0, smooth=False)
     tracker = sinew.CyclicTracker(sinew.Model("walking"), rate_hz=30)
     for frame in some:
         estimate = tracker.update(list(walk.angles_rad[frame]), dt_frames=6 if frame == 55 else 1)

@@ -94,7 +94,7 @@ def test_times_give_frames_and_rate(walk, track):
     np.testing.assert_array_equal(found.time_s, time_s)
     np.testing.assert_allclose(found.angles_rad, track.angles_rad, atol=1.0e-4)
     rounded = np.round(np.arange(3000) / 30.0, 3)
-    found = sinew.track_cyclic(np.tile(walk.angles_rad, (17, 1))[:3000], time_s=rounded, online=True)
+    found = sinew.track_cyclic(np.tile(walk.angles_rad, (17, 1))[:3000], time_s=rounded, smooth=False)
     np.testing.assert_array_equal(found.frame, np.arange(3000))
     some = np.r_[0:50, 55 : len(walk)]
     found = sinew.track_cyclic(walk.angles_rad[some], time_s=time_s[some])
@@ -209,3 +209,38 @@ def test_threads_give_the_same(walk, track):
         thread.join()
     for one in found:
         np.testing.assert_array_equal(one.angles_rad, track.angles_rad)
+
+
+def test_a_table_of_arrow_has_the_frames_columns(track):
+    pyarrow = pytest.importorskip("pyarrow")
+    table = track.to_arrow()
+    assert isinstance(table, pyarrow.Table)
+    assert table.column_names == ["frame", *track.to_pandas().columns]
+    np.testing.assert_array_equal(table["l_knee_rad"].to_numpy(), track.to_pandas()["l_knee_rad"])
+
+
+def test_the_covariance_is_that_of_the_online_tracker(walk):
+    track = sinew.track_cyclic(walk, smooth=False, covariance=True)
+    assert track.covariance_rad2.shape == (len(walk), 13, 13)
+    tracker = sinew.CyclicTracker(rate_hz=walk.rate_hz)
+    for row, covariance in zip(walk.angles_rad, track.covariance_rad2):
+        tracker.update(row)
+        np.testing.assert_array_equal(tracker.covariance_rad2, covariance)
+    variance = np.diagonal(track.covariance_rad2, axis1=1, axis2=2)
+    np.testing.assert_allclose(np.sqrt(variance[1:]), track.std_rad[1:], rtol=1.0e-6)
+    np.testing.assert_array_equal(track.covariance_rad2, np.swapaxes(track.covariance_rad2, 1, 2))
+    assert np.linalg.eigvalsh(track.covariance_rad2[1:]).min() > 0.0
+    paper = sinew.track_cyclic(walk, filter="paper", smooth=False, covariance=True)
+    assert np.linalg.eigvalsh(paper.covariance_rad2).min() > 0.0
+    assert sinew.track_cyclic(walk).covariance_rad2 is None
+
+
+def test_a_recording_that_cannot_have_it_is_refused(walk):
+    with pytest.raises(ValueError, match="`covariance`.*smooth=False"):
+        sinew.track_cyclic(walk, covariance=True)
+    with pytest.raises(ValueError, match="`filter`.*coupled, paper"):
+        sinew.track_cyclic(walk, filter="kalman")
+    with pytest.raises(ValueError, match="`particles`"):
+        sinew.track_cyclic(walk, filter="particle", particles=0)
+    with pytest.raises(ValueError, match="`seed`"):
+        sinew.track_cyclic(walk, seed=-1)

@@ -84,6 +84,24 @@ impl CutList {
         Ok(Self { path: path.to_path_buf(), cuts })
     }
 
+    /// Cycles of tables that are in memory; `path` stands for them in messages.
+    ///
+    /// # Errors
+    /// Names the rule of [`CutList`] that does not hold, and the cut.
+    pub fn of_cuts(cuts: Vec<Cut>, path: &Path) -> Result<Self, CyclicError> {
+        if cuts.is_empty() {
+            return Err(CyclicError::unusable(path, "has no cycle; give at least two"));
+        }
+        if let Some(cut) = cuts.iter().find(|cut| cut.end_frame <= cut.start_frame) {
+            let rule = format!("the end {} has to lie after the start {}", cut.end_frame, cut.start_frame);
+            return Err(CyclicError::broken(path, cut.line, rule));
+        }
+        if let Some(cut) = cuts.iter().find(|cut| cut.person.is_some() != cuts[0].person.is_some()) {
+            return Err(CyclicError::broken(path, cut.line, "either all cycles have a person or none"));
+        }
+        Ok(Self { path: path.to_path_buf(), cuts })
+    }
+
     /// The cuts, at least one.
     #[must_use]
     pub fn cuts(&self) -> &[Cut] {

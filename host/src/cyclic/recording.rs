@@ -64,6 +64,20 @@ pub struct RecordedAngles {
 }
 
 impl RecordedAngles {
+    /// A table about which nothing else is known.
+    #[must_use]
+    pub fn of_table(table: AngleTable) -> Self {
+        Self {
+            rate_hz: table.rate_hz(),
+            table,
+            notes: Vec::new(),
+            doubts: Vec::new(),
+            facing: None,
+            image_size_px: None,
+            layout: None,
+        }
+    }
+
     /// What later commands read beside the table; `source` is what was read.
     #[must_use]
     pub fn about(&self, source: &Path) -> About {

@@ -116,6 +116,12 @@ impl CyclePair {
         max(g * g * self.cc + 2.0 * g * h * self.cv + h * h * self.vv, 0.0)
     }
 
+    /// Covariance of two quantities with the given `gradients` by (c, v).
+    #[must_use]
+    pub(super) fn between(&self, [[g, h], [k, l]]: [&[f32; 2]; 2]) -> f32 {
+        g * k * self.cc + (g * l + h * k) * self.cv + h * l * self.vv
+    }
+
     /// Inverse (cc, cv, vv); the correlation is clamped to 0.999 so that it exists.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]

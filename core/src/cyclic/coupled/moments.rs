@@ -7,7 +7,7 @@ use crate::cyclic::coupled::cycle_pair::CyclePair;
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::cycle_state::CycleState;
 use crate::cyclic::{AngleMeasurement, MotionModel};
-use crate::math::wrap_angle;
+use crate::math::{sqrt, wrap_angle};
 
 /// How one angle's parts move on: parts <- map parts + noise.
 ///
@@ -87,6 +87,31 @@ impl<const N: usize> CoupledFilter<N> {
     #[must_use]
     pub const fn relocks(&self) -> u16 {
         self.relocks
+    }
+
+    /// Covariance of the angles, rad^2, symmetric, with the variances of the estimate on its
+    /// diagonal. Angles are tied to each other by the cycle alone: each has its own deviation.
+    /// `None` while the phase is unknown. Those beyond the model's angles are zero.
+    #[must_use]
+    pub fn angle_covariance_rad2(&self, model: &MotionModel<'_>) -> Option<[[f32; N]; N]> {
+        if self.is_searching() {
+            return None;
+        }
+        let (slope, basis) = (self.pose_slope(model), Basis::at(self.position));
+        let count = model.angle_count().min(N);
+        let predictions: [_; N] = core::array::from_fn(|i| self.blocks[i].predict_angle(&basis, slope[i]));
+        let bands: [f32; N] = core::array::from_fn(|i| sqrt(self.band_scale(i)));
+        let mut covariance_rad2 = [[0.0; N]; N];
+        for i in 0..count {
+            let given = self.band_scale(i) * (predictions[i].variance + self.pair.along(&predictions[i].gradient));
+            covariance_rad2[i][i] = given;
+            for j in 0..i {
+                let gradients = [&predictions[i].gradient, &predictions[j].gradient];
+                covariance_rad2[i][j] = bands[i] * bands[j] * self.pair.between(gradients);
+                covariance_rad2[j][i] = covariance_rad2[i][j];
+            }
+        }
+        Some(covariance_rad2)
     }
 
     /// The linear step of [`Self::predict`] from here, by its effect on unit vectors and on zero
@@ -192,6 +217,24 @@ mod tests {
         let cc =
             old.position_variance + 5.0 * old.covariance + 6.25 * old.velocity_variance + transition.cycle_noise[0];
         assert!((cc / new.position_variance - 1.0).abs() < 1.0e-4);
+    }
+
+    #[test]
+    fn the_covariance_has_the_estimates_variances_and_is_positive() {
+        let table = table(0.001, 9);
+        let model = table.model().unwrap();
+        let mut filter = started(&model);
+        let angles = core::array::from_fn(|i| Some(mean_angle(i, 0.5)));
+        let estimate = filter.step(&model, &AngleMeasurement::new(&angles, 0.05).unwrap());
+        let covariance = filter.angle_covariance_rad2(&model).unwrap();
+        let matrix = nalgebra::DMatrix::from_fn(N, N, |i, j| f64::from(covariance[i][j]));
+        assert_eq!(core::array::from_fn(|i| covariance[i][i]), estimate.angle_variance_rad2);
+        assert!(matrix.symmetric_eigenvalues().min() > 0.0);
+        let correlated = |(i, j): (usize, usize)| covariance[i][j].abs() / (covariance[i][i] * covariance[j][j]).sqrt();
+        let strongest = (0..N).flat_map(|i| (0..i).map(move |j| (i, j))).map(correlated).fold(0.0, f32::max);
+        assert!((0.01..1.0).contains(&strongest), "{strongest}: a late phase moves all angles");
+        let searching = CoupledFilter::<N>::anywhere(&model, &AngleMeasurement::nothing()).unwrap();
+        assert_eq!(searching.angle_covariance_rad2(&model), None);
     }
 
     #[test]

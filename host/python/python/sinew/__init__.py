@@ -22,6 +22,7 @@ from ._sinew import VERSION as __version__
 from ._sinew import SinewError
 from ._track import track_cyclic
 from ._track_result import CyclicTrack
+from ._train import train_cyclic
 
 __all__ = [
     "ANGLE_NAMES",
@@ -39,4 +40,5 @@ __all__ = [
     "models",
     "simulate_keypoints",
     "track_cyclic",
+    "train_cyclic",
 ]

@@ -58,6 +58,9 @@ class Angles:
         """Write an angle table (CSV) that the command ``sinew`` reads, six decimals an angle."""
         self._native.save(path)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _of_parts, self._native.parts()
+
     def __len__(self) -> int:
         return len(self.frame)
 
@@ -68,6 +71,10 @@ class Angles:
         rate = "unknown rate" if self.rate_hz is None else f"{self.rate_hz:g} Hz"
         missing = 100.0 * float(np.isnan(self.angles_rad).mean())
         return f"<sinew.Angles: {len(self)} frames at {rate}, {missing:.1f} % missing>"
+
+
+def _of_parts(*parts: Any) -> Angles:
+    return Angles(_sinew.Angles.of_parts(*parts))
 
 
 def angles(

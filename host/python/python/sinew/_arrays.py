@@ -57,3 +57,16 @@ def positive(value: Any, name: str) -> float:
     if not (number > 0.0 and np.isfinite(number)):
         raise ValueError(f"`{name}` has to be greater than zero, not {number}")
     return number
+
+
+def whole(value: Any, name: str, least: int = 0) -> int:
+    """A whole number of at least `least`, below 2^53.
+
+    Raises
+    ------
+    ValueError
+        It is none.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value < 2**53:
+        raise ValueError(f"`{name}` has to be a whole number of at least {least}, not {value!r}")
+    return int(value)

@@ -63,6 +63,10 @@ class Model:
         """Number of cycles that it was trained on."""
         return self._native.trained_cycles
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the model as ``sinew train cyclic`` does; the command and firmware take the file."""
+        self._native.save(path)
+
     def __repr__(self) -> str:
         return f"Model({self.name!r})"
 
@@ -70,10 +74,15 @@ class Model:
         return _from_json, (self.name, self._native.to_json())
 
 
-def _from_json(name: str, text: str) -> Model:
+def trained(native: _sinew.Model) -> Model:
+    """A model of the extension."""
     model = Model.__new__(Model)
-    model._native = _sinew.Model.from_json(name, text)
+    model._native = native
     return model
+
+
+def _from_json(name: str, text: str) -> Model:
+    return trained(_sinew.Model.from_json(name, text))
 
 
 def native_model(model: Any) -> _sinew.Model:

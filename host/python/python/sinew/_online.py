@@ -6,10 +6,8 @@ import os
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from . import _sinew
-from ._arrays import FloatArray, floats, positive
+from ._arrays import FloatArray, floats, positive, whole
 from ._model import Model, native_model
 
 
@@ -44,7 +42,7 @@ class CyclicEstimate:
 class CyclicTracker:
     """A tracker that answers each frame from those before it.
 
-    The answers are those of :func:`track_cyclic` with ``online=True``. It can be pickled at any
+    The answers are those of :func:`track_cyclic` with ``smooth=False``. It can be pickled at any
     frame and goes on where it was.
 
     Parameters
@@ -89,9 +87,7 @@ class CyclicTracker:
         row = floats(z, "z")
         if row.shape != (13,):
             raise ValueError(f"`z` has to have the shape (13,), not {row.shape}")
-        if not isinstance(dt_frames, (int, np.integer)) or not 1 <= dt_frames < 2**53:
-            raise ValueError(f"`dt_frames` has to be a whole number of at least 1, not {dt_frames!r}")
-        answer = self._native.update(row, int(dt_frames))
+        answer = self._native.update(row, whole(dt_frames, "dt_frames", 1))
         return None if answer is None else CyclicEstimate(**answer)
 
     @property
@@ -108,6 +104,11 @@ class CyclicTracker:
     def frame(self) -> int | None:
         """Number of the last frame; None before the first one."""
         return self._native.frame
+
+    @property
+    def covariance_rad2(self) -> FloatArray:
+        """Covariance of the last frame's angles, (13, 13) rad^2; NaN while the phase is unknown."""
+        return self._native.covariance_rad2().reshape(13, 13)
 
     def __repr__(self) -> str:
         return f"CyclicTracker({self.model.name!r}, rate_hz={self.rate_hz:g})"

@@ -14,7 +14,10 @@ from ._sinew import ANGLES, FLEXIONS
 
 if TYPE_CHECKING:
     import pandas
+    import pyarrow
     from matplotlib.axes import Axes
+
+ROW_COLUMNS = ("cycle_position", "cycles", "is_known", "outlier", "misfit")
 
 
 class CyclicTrack:
@@ -24,7 +27,9 @@ class CyclicTrack:
     arrays and plain Python objects alone, so it can be pickled.
     """
 
-    def __init__(self, found: dict[str, Any], time_s: FloatArray | None = None) -> None:
+    def __init__(
+        self, found: dict[str, Any], time_s: FloatArray | None = None, notes: list[str] | None = None
+    ) -> None:
         said = json.loads(found["json"])
         self.rate_hz: float = found["rate_hz"]
         """Frames per second."""
@@ -35,7 +40,11 @@ class CyclicTrack:
         self.angles_rad: FloatArray = found["angles_rad"]
         """Estimated angles, (n, 13) radians, unwrapped along time."""
         self.std_rad: FloatArray = found["std_rad"]
-        """Standard deviations of the filter's angles, (n, 13) radians."""
+        """Standard deviations of the angles, (n, 13) radians."""
+        covariance = found["covariance_rad2"]
+        self.covariance_rad2: FloatArray | None = None if covariance is None else covariance.reshape(-1, 13, 13)
+        """Covariance of the filter's angles, (n, 13, 13) rad^2, if it was asked for; NaN where the
+        phase was unknown."""
         self.is_known: npt.NDArray[np.bool_] = found["is_known"]
         """Whether anything is known of the person, (n,)."""
         self.outlier: npt.NDArray[np.bool_] = found["outlier"]
@@ -54,6 +63,8 @@ class CyclicTrack:
         """Left against right, one entry a joint."""
         self.gait: dict[str, Any] | None = said["gait"]
         """Foot strikes, toe-offs, strides and means; None where the feet do not walk or run."""
+        self.notes: list[str] = list(notes or [])
+        """What a user should know of the recording, one sentence each."""
         self.doubts: list[str] = found["doubts"]
         """What speaks against the recording or the result, one sentence each."""
         self.sigma_deg: float = found["sigma_deg"]
@@ -106,13 +117,28 @@ class CyclicTrack:
             import pandas
         except ImportError as error:
             raise ImportError("`to_pandas` needs pandas: pip install pandas") from error
-        columns: dict[str, Any] = {"time_s": self.time_s}
+        return pandas.DataFrame(self._columns(), index=pandas.Index(self.frame, name="frame"))
+
+    def to_arrow(self) -> pyarrow.Table:
+        """The rows as a table of Arrow: the columns of :meth:`to_pandas`, ``frame`` first.
+
+        Raises
+        ------
+        ImportError
+            pyarrow is not installed.
+        """
+        try:
+            import pyarrow
+        except ImportError as error:
+            raise ImportError("`to_arrow` needs pyarrow: pip install pyarrow") from error
+        return pyarrow.table({"frame": self.frame, **self._columns()})
+
+    def _columns(self) -> dict[str, npt.NDArray[Any]]:
+        columns: dict[str, npt.NDArray[Any]] = {"time_s": self.time_s}
         columns |= {f"{name}_rad": self.angles_rad[:, i] for i, name in enumerate(ANGLES)}
         columns |= {f"{name}_std_rad": self.std_rad[:, i] for i, name in enumerate(ANGLES)}
         columns |= {f"{name}_deg": values for name, values in self.flexion_deg.items()}
-        for name in ("cycle_position", "cycles", "is_known", "outlier", "misfit"):
-            columns[name] = getattr(self, name)
-        return pandas.DataFrame(columns, index=pandas.Index(self.frame, name="frame"))
+        return columns | {name: getattr(self, name) for name in ROW_COLUMNS}
 
     def plot(self, names: list[str] | None = None, ax: Axes | None = None) -> Axes:
         """Draw flexion angles over time, with a line where each cycle begins.

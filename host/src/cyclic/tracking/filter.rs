@@ -97,6 +97,22 @@ impl<'m, const N: usize> Filter<'m, N> {
     }
 }
 
+impl<const N: usize> Filter<'_, N> {
+    /// Covariance of the angles after the last step, rad^2; `None` while the phase is unknown, and
+    /// for particles.
+    #[must_use]
+    pub fn angle_covariance_rad2(&self) -> Option<[[f32; N]; N]> {
+        match &self.kind {
+            Kind::Coupled(filter) => filter.angle_covariance_rad2(&self.model),
+            Kind::Kalman(filter, _) => {
+                let entry = |i, j| filter.covariance().entry(i, j);
+                Some(std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))))
+            }
+            Kind::Particle(_) => None,
+        }
+    }
+}
+
 /// `usual` with what `options` has of the paper's filter.
 fn paper_options(usual: KalmanOptions, options: &TrackingOptions) -> KalmanOptions {
     let scaling = match options.covariance_scaling {

@@ -88,6 +88,13 @@ impl<'m> OnlineRun<'m> {
         Ok(Some(tracked(frame, &estimate, cycles(&begun.counter))))
     }
 
+    /// Covariance of the angles after the last row, rad^2. `None` before the first row with an
+    /// angle, while the phase is unknown, and for particles.
+    #[must_use]
+    pub fn angle_covariance_rad2(&self) -> Option<[[f32; ANGLES]; ANGLES]> {
+        self.begun.as_ref()?.filter.angle_covariance_rad2()
+    }
+
     /// The state after the last row as text, which [`OnlineRun::restore`] takes; `None` before the
     /// first row with an angle.
     ///

@@ -3,6 +3,7 @@
 use crate::cyclic::CyclicError;
 use serde::{Deserialize, Serialize};
 use sinew_core::ranges::ANGLE_STD_RAD;
+use std::str::FromStr;
 
 /// Which filter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -21,6 +22,9 @@ pub enum FilterName {
 }
 
 impl FilterName {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Coupled, Self::Paper, Self::PaperCut, Self::Particle];
+
     /// The name on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -36,6 +40,16 @@ impl FilterName {
     #[must_use]
     pub const fn is_random(self) -> bool {
         matches!(self, Self::Particle)
+    }
+}
+
+impl FromStr for FilterName {
+    type Err = CyclicError;
+
+    fn from_str(name: &str) -> Result<Self, CyclicError> {
+        let rule = || format!("has to be one of {}, not {name}", Self::ALL.map(Self::name).join(", "));
+        let known = Self::ALL.into_iter().find(|filter| filter.name() == name);
+        known.ok_or_else(|| CyclicError::parameter("filter", rule()))
     }
 }
 

@@ -80,12 +80,24 @@ pub fn train_on(
 /// A table that cannot be read, or a cut that cannot be used, named with the list's line. To mirror
 /// a motion in space.
 pub fn read_cycles(list: &CutList, mirror: bool) -> Result<Vec<TrainingCycle>, CyclicError> {
+    cycles_of(list, mirror, &AngleTable::read)
+}
+
+/// As [`read_cycles`], of tables that `table` finds by the path that `list` gives them.
+///
+/// # Errors
+/// As [`read_cycles`].
+pub fn cycles_of(
+    list: &CutList,
+    mirror: bool,
+    table: &dyn Fn(&Path) -> Result<AngleTable, CyclicError>,
+) -> Result<Vec<TrainingCycle>, CyclicError> {
     let mut tables: BTreeMap<PathBuf, AngleTable> = BTreeMap::new();
     let (mut cycles, mut mirrored) = (Vec::with_capacity(list.cuts().len()), Vec::new());
     for cut in list.cuts() {
         let path = list.table_path(cut);
         if !tables.contains_key(&path) {
-            tables.insert(path.clone(), AngleTable::read(&path)?);
+            tables.insert(path.clone(), table(&path)?);
         }
         let cycle = TrainingCycle::new(&tables[&path], cut)
             .map_err(|rule| CyclicError::broken(list.path(), cut.line, format!("`{}`: {rule}", path.display())))?;
