@@ -3,6 +3,7 @@
 pub mod body;
 pub mod cli;
 pub mod clips;
+pub mod cluster;
 pub mod cyclic;
 pub mod experiments;
 pub mod hand_ranking;

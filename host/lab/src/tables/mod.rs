@@ -2,6 +2,7 @@
 
 mod arm;
 mod body;
+mod cluster;
 mod cyclic;
 mod hands;
 pub mod markdown;
@@ -49,7 +50,7 @@ pub struct Table {
 }
 
 /// All tables that have a maker.
-pub const TABLES: [Table; 13] = [
+pub const TABLES: [Table; 15] = [
     Table {
         name: "arm-hands",
         page: "measurements_arm.md",
@@ -64,6 +65,8 @@ pub const TABLES: [Table; 13] = [
         recordings: Some("video/handtracking"),
         rows: hands::ranking,
     },
+    Table { name: "cluster-work", page: "cluster.md", cost: Cost::Cheap, recordings: None, rows: cluster::work },
+    Table { name: "cluster-chunks", page: "cluster.md", cost: Cost::Cheap, recordings: None, rows: cluster::chunks },
     Table { name: "skin-scores", page: "skin.md", cost: Cost::Long, recordings: Some("skin"), rows: skin::scores },
     Table {
         name: "body-figure-2",
