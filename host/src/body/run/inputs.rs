@@ -1,11 +1,13 @@
 //! What a run reads: clouds, and beside them who is seen, by which camera, from which pose on.
 
 use super::measures_source::read_measures;
-use super::options::{BodyTrackOptions, check_rate};
+use super::options::BodyTrackOptions;
 use crate::body::BodyPart;
 use crate::body::pose_file::read_pose;
 use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::tracking::BodyModelKind;
+use crate::body::tracking::stream::stick_at;
+use crate::body::tracking::stream_options::{check_part, check_rate};
 use crate::cloud::{CloudFolder, MAX_DISTANCE_M};
 use crate::error::{Context, Result, ensure};
 use crate::json_file::read_json;
@@ -135,21 +137,6 @@ impl BodyInputs {
     }
 }
 
-/// Refuses a model of limbs that are not tracked.
-///
-/// # Errors
-/// Names both options.
-pub fn check_part(part: BodyPart, model: BodyModelKind) -> Result<()> {
-    ensure!(
-        part == BodyPart::Whole || model != BodyModelKind::PelvicLift,
-        "--model {} holds the feet, and --body {} has none; choose another model, or --body {}",
-        model.name(),
-        part.name(),
-        BodyPart::Whole.name()
-    );
-    Ok(())
-}
-
 fn read_scene(path: &Path) -> Result<SceneReport> {
     let inner = || -> Result<SceneReport> {
         let scene: SceneReport = read_json(path)?;
@@ -195,8 +182,8 @@ fn sights(stick: &[SeenStick], camera: Option<&StereoCamera>, notes: &mut Vec<St
     let (mut blind, mut far) = (0, 0);
     let mut sight = |seen: &SeenStick| {
         if let Some(ends_m) = seen.ends_m {
-            if ends_m.iter().all(|end| end.norm() <= MAX_DISTANCE_M) {
-                return StickSight::Ends(ends_m);
+            if let Some(sight) = stick_at(ends_m) {
+                return sight;
             }
             far += 1;
         }
