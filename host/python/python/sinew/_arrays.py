@@ -57,3 +57,30 @@ def positive(value: Any, name: str) -> float:
     if not (number > 0.0 and np.isfinite(number)):
         raise ValueError(f"`{name}` has to be greater than zero, not {number}")
     return number
+
+
+def number(value: Any, name: str) -> float:
+    """A number.
+
+    Raises
+    ------
+    ValueError
+        It is none.
+    """
+    try:
+        return float(value)
+    except (OverflowError, TypeError, ValueError):
+        raise ValueError(f"`{name}` has to be a number, not {value!r}") from None
+
+
+def whole(value: Any, name: str, low: int, high: int) -> int:
+    """A whole number from ``low`` to ``high``.
+
+    Raises
+    ------
+    ValueError
+        It is none.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
+        raise ValueError(f"`{name}` has to be a whole number from {low} to {high}, not {value!r}")
+    return int(value)

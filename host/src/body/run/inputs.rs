@@ -1,9 +1,9 @@
 //! What a run reads: clouds, and beside them who is seen, by which camera, from which pose on.
 
-use super::measures_source::read_measures;
+use super::measures_source::{measures_of_height, read_measures};
 use super::options::BodyTrackOptions;
 use crate::body::BodyPart;
-use crate::body::pose_file::read_pose;
+use crate::body::pose_file::{inside_limits, read_pose};
 use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::tracking::BodyModelKind;
 use crate::body::tracking::stream::stick_at;
@@ -16,12 +16,9 @@ use serde::{Deserialize, Serialize};
 use sinew_core::math::unit;
 use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::skeleton::BodyMeasures;
-use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, full_body};
+use sinew_core::skeleton::full_body::BODY_ANGLES;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-/// Height of a person of whom nothing is known, metres.
-pub const UNKNOWN_HEIGHT_M: f32 = 1.75;
 
 /// Where each input came from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -157,24 +154,12 @@ fn measures(options: &BodyTrackOptions, file: Option<&Path>, notes: &mut Vec<Str
     if let Some(path) = file {
         return read_measures(path, options.partial, notes);
     }
-    if options.height_m.is_none() {
-        notes.push(format!("nothing says who is tracked; a person {UNKNOWN_HEIGHT_M} m tall (--height, --skeleton)"));
-    }
-    let height_m = options.height_m.unwrap_or(UNKNOWN_HEIGHT_M);
-    ensure!((0.5..=2.5).contains(&height_m), "--height has to be from 0.5 to 2.5 metres, not {height_m}");
-    Ok(BodyMeasures::of_height(height_m)?)
+    measures_of_height(options.height_m, notes)
 }
 
 /// Reads the first pose and brings it inside the limits.
 fn first_pose(path: &Path, measures: &BodyMeasures, notes: &mut Vec<String>) -> Result<[f32; BODY_ANGLES]> {
-    let given = read_pose(path)?;
-    let inside = full_body(measures)?.clamp(given);
-    for (name, (given, inside)) in BODY_ANGLE_NAMES.iter().zip(given.iter().zip(&inside)) {
-        if given != inside {
-            notes.push(format!("`{}`: {name} = {given} breaks its limit; {inside} is used", path.display()));
-        }
-    }
-    Ok(inside)
+    inside_limits(read_pose(path)?, measures, &path.display().to_string(), notes)
 }
 
 /// Ends where they are known in space, rays where only in the picture.
