@@ -13,7 +13,8 @@ Angles are radians unless a name ends in ``_deg``. Missing numbers are NaN.
 """
 
 from ._angles import Angles, angles, layouts
-from ._body import BodyEstimate, BodyTracker
+from ._body import BodyTracker
+from ._body_estimate import BodyEstimate
 from ._model import Model, models
 from ._motion import Motion, read_motion
 from ._online import CyclicEstimate, CyclicTracker

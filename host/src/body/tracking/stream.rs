@@ -93,7 +93,8 @@ pub struct BodyStream {
 }
 
 impl BodyStream {
-    /// A stream of the person with `measures`. Without a first pose it is found in the first points.
+    /// A stream of the person with `measures`. Without a first pose it is found in the first
+    /// points.
     ///
     /// # Errors
     /// Names the option or number that broke a rule.
@@ -283,4 +284,77 @@ fn first_look(filter: &BodyFilter, seen: &SeenPoints, stick: StickSight) -> Whol
 #[must_use]
 pub fn stick_at(ends_m: [Vec3; 2]) -> Option<StickSight> {
     ends_m.iter().all(|end| end.norm() <= MAX_DISTANCE_M).then_some(StickSight::Ends(ends_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::tracking::BodyModelKind;
+    use crate::stereo::{StereoOptions, StereoScene, StereoSource};
+
+    const UNSEEN: StickSight = StickSight::Unseen;
+
+    fn scene() -> StereoScene {
+        let source = StereoSource { rate_hz: 2.0, ..StereoSource::default() };
+        let options = StereoOptions { points: 300, ..StereoOptions::default() };
+        StereoScene::new(source.read().unwrap().recording, options).unwrap()
+    }
+
+    fn stream(scene: &StereoScene, threads: usize) -> BodyStream {
+        let options = BodyStreamOptions { particles: 12, threads: Some(threads), rate_hz: 2.0, ..Default::default() };
+        BodyStream::new(options, *scene.measures(), None).unwrap()
+    }
+
+    #[test]
+    fn a_stream_as_text_goes_on_bit_for_bit() {
+        let scene = scene();
+        let (mut whole, mut broken) = (stream(&scene, 1), stream(&scene, 2));
+        for frame in 0..6 {
+            // The person is not there in the first frame.
+            let points_m = if frame == 0 { Vec::new() } else { scene.points_m(frame) };
+            broken = BodyStream::restored(&broken.saved().unwrap()).unwrap();
+            let wanted = whole.update(points_m.clone(), FrameTime::Next, UNSEEN).unwrap();
+            assert_eq!(broken.update(points_m, FrameTime::Next, UNSEEN).unwrap(), wanted);
+            assert_eq!(wanted.estimate.is_none(), frame == 0);
+        }
+        assert_eq!(broken.state_crc32().unwrap(), whole.state_crc32().unwrap());
+        let mut other = stream(&scene, 1);
+        assert_ne!(other.state_crc32().unwrap(), whole.state_crc32().unwrap());
+        let cut = broken.saved().unwrap().replace("\"particles\":12", "\"particles\":13");
+        for wrong in ["", "{}", &cut] {
+            assert!(BodyStream::restored(wrong).unwrap_err().to_string().contains("not whole"));
+        }
+    }
+
+    #[test]
+    fn what_is_seen_may_be_prepared_ahead() {
+        let scene = scene();
+        let (mut ahead, mut at_once) = (stream(&scene, 1), stream(&scene, 1));
+        let seen: Vec<SeenPoints> =
+            (0..4).map(|frame| ahead.seen(PointCloud::from_points(scene.points_m(frame)), frame as u64)).collect();
+        for (frame, seen) in seen.iter().enumerate() {
+            let estimate = ahead.step(seen, FrameTime::Number(frame as u64), UNSEEN).unwrap();
+            assert_eq!(estimate, at_once.update(scene.points_m(frame), FrameTime::Next, UNSEEN).unwrap().estimate);
+        }
+        assert!(ahead.step(&seen[0], FrameTime::Number(3), UNSEEN).is_err());
+    }
+
+    #[test]
+    fn options_out_of_range_are_named() {
+        let measures = BodyMeasures::of_height(1.75).unwrap();
+        let default = BodyStreamOptions::default;
+        for (options, name) in [
+            (BodyStreamOptions { particles: 0, ..default() }, "--particles"),
+            (BodyStreamOptions { threads: Some(0), ..default() }, "--threads"),
+            (BodyStreamOptions { rate_hz: f32::NAN, ..default() }, "--rate"),
+            (BodyStreamOptions { floor_y_m: Some(f32::NAN), ..default() }, "`floor_y_m`"),
+            (
+                BodyStreamOptions { part: crate::body::BodyPart::Upper, model: BodyModelKind::PelvicLift, ..default() },
+                "--model pelvic-lift",
+            ),
+        ] {
+            let message = BodyStream::new(options, measures, None).unwrap_err().to_string();
+            assert!(message.contains(name), "{message}");
+        }
+    }
 }
