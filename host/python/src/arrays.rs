@@ -1,9 +1,10 @@
 //! Arrays of numpy to rows and back; NaN is missing.
 
-use numpy::ndarray::{Array2, ArrayView1, ArrayView2};
-use numpy::{IntoPyArray, PyArray2};
+use numpy::ndarray::{Array2, Array3, ArrayView1, ArrayView2};
+use numpy::{IntoPyArray, PyArray2, PyArray3};
 use pyo3::prelude::*;
 use sinew::cyclic::angle_table::ANGLES;
+use sinew_core::math::Vec3;
 
 /// Angles of one frame.
 pub type Pose = [Option<f64>; ANGLES];
@@ -40,4 +41,24 @@ pub fn array_of_options<'py, const N: usize>(
     rows: impl ExactSizeIterator<Item = [Option<f64>; N]>,
 ) -> Bound<'py, PyArray2<f64>> {
     array(py, rows.map(|row| row.map(|value| value.unwrap_or(f64::NAN))))
+}
+
+/// An array of points.
+pub fn points_array<'py>(py: Python<'py>, points_m: &[Vec3]) -> Bound<'py, PyArray2<f32>> {
+    let values: Vec<f32> = points_m.iter().flat_map(|point| point.iter().copied()).collect();
+    // Three numbers a point.
+    Array2::from_shape_vec((points_m.len(), 3), values).unwrap_or_default().into_pyarray(py)
+}
+
+/// An array of frames of `count` points; those that are missing are NaN.
+pub fn frames_array<'py, F: AsRef<[Option<Vec3>]>>(
+    py: Python<'py>,
+    frames: &[F],
+    count: usize,
+) -> Bound<'py, PyArray3<f32>> {
+    let missing = Vec3::repeat(f32::NAN);
+    let places = frames.iter().flat_map(|frame| frame.as_ref().iter().map(|place| place.unwrap_or(missing)));
+    let values: Vec<f32> = places.flat_map(<[f32; 3]>::from).collect();
+    // As many points as the caller counts in each frame.
+    Array3::from_shape_vec((frames.len(), count, 3), values).unwrap_or_default().into_pyarray(py)
 }

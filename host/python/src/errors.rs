@@ -1,7 +1,9 @@
 //! Errors of the library as exceptions of Python.
 
+use crate::names_of_body::OF_BODY;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::{PyErr, create_exception};
+use sinew::cloud::CloudError;
 use sinew::cyclic::CyclicError;
 use sinew::error::{Error, ErrorKind};
 use sinew::keypoints::KeypointError;
@@ -48,7 +50,7 @@ const NAMES: [(&str, &str); 27] = [
 
 /// A message of the library with the names of Python's parameters.
 pub fn in_python(message: &str) -> String {
-    NAMES.iter().fold(message.to_owned(), |text, (command, python)| text.replace(command, python))
+    NAMES.iter().chain(&OF_BODY).fold(message.to_owned(), |text, (command, python)| text.replace(command, python))
 }
 
 /// The exception for an error of the library: `ValueError` for a parameter, `OSError` for a file
@@ -69,6 +71,7 @@ fn refused(error: &Error) -> Option<io::ErrorKind> {
         Error::Io(reason)
         | Error::Cyclic(CyclicError::Unreadable { reason, .. })
         | Error::Keypoints(KeypointError::Unreadable { reason, .. })
+        | Error::Cloud(CloudError::Unreadable { reason, .. })
         | Error::Motion(MotionError::Unreadable { reason, .. }) => Some(reason.kind()),
         _ => None,
     }

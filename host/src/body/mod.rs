@@ -2,6 +2,7 @@
 //! nearest to them.
 
 pub mod body_file;
+pub mod camera_axes;
 pub mod export;
 pub mod fitting;
 pub mod joints;

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use sinew_core::skeleton::BodyMeasures;
 use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, body_radii_m};
 use sinew_core::skeleton::upper_body::{UPPER_BONES, UPPER_COORDINATES};
+use std::str::FromStr;
 
 /// A whole body, or its upper part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -29,6 +30,9 @@ const ALL_COORDINATES: [usize; BODY_ANGLES] = {
 };
 
 impl BodyPart {
+    /// Both, in the order of texts.
+    pub const ALL: [Self; 2] = [Self::Whole, Self::Upper];
+
     /// The name by which the command knows it.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -62,5 +66,30 @@ impl BodyPart {
         let mut radii_m = body_radii_m(measures);
         radii_m[self.bones()..].fill(0.0);
         radii_m
+    }
+}
+
+impl FromStr for BodyPart {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let named = Self::ALL.into_iter().find(|part| part.name() == text);
+        named.ok_or_else(|| format!("has to be one of {}, not `{text}`", Self::ALL.map(Self::name).join(", ")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_files_and_of_the_command() {
+        for part in BodyPart::ALL {
+            assert_eq!(part.name().parse(), Ok(part));
+            assert_eq!(serde_json::to_value(part).unwrap(), part.name());
+            #[cfg(feature = "command")]
+            assert_eq!(clap::ValueEnum::to_possible_value(&part).unwrap().get_name(), part.name());
+        }
+        assert!("lower".parse::<BodyPart>().unwrap_err().contains("whole, upper"));
     }
 }

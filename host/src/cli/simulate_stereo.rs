@@ -3,21 +3,15 @@
 use super::console::Console;
 use super::scene_args::{clear_frames, pair};
 use crate::body::recording::DEFAULT_RATE_HZ;
-use crate::body::{BodyPart, BodyRecording, BodyRecordingOptions, Placement, RecordedBody};
-use crate::motion::{DEFAULT_FRAMES_PER_SECOND, Shortfall, endings_without_rate};
+use crate::body::{BodyPart, Placement};
+use crate::motion::{DEFAULT_FRAMES_PER_SECOND, endings_without_rate};
 use crate::output::OutputDir;
 use crate::registry::{MOTION, choice};
-use crate::stereo::stick_wave::StickEnds;
-use crate::stereo::{Hidden, StereoOptions, StereoScene, pelvic_lift, stick_wave};
-use anyhow::{Context, Result, bail, ensure};
+use crate::stereo::{Hidden, StereoMotion, StereoOptions, StereoScene, StereoSource};
+use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
-
-/// Name of the built-in motion with a stick.
-const STICK_WAVE: &str = "stick-wave";
-/// Name of the built-in motion of a person who lies.
-const PELVIC_LIFT: &str = "pelvic-lift";
 
 /// Arguments of `sinew simulate stereo`.
 #[derive(Debug, Args)]
@@ -88,27 +82,21 @@ pub struct SimulateStereoArgs {
 /// A motion that cannot be read, an option out of range, a folder that cannot be written or holds
 /// points already.
 pub fn run(args: &SimulateStereoArgs, console: &Console) -> Result<()> {
-    ensure!(args.rate > 0.0 && args.rate.is_finite(), "--rate has to be greater than zero, not {}", args.rate);
-    ensure!(args.rate <= 1000.0, "--rate has to be at most 1000 Hz, not {}", args.rate);
-    ensure!(
-        args.distance >= 1.0 && args.distance <= 20.0,
-        "--distance has to be from 1 to 20 metres, not {}",
-        args.distance
-    );
-    let placement = Placement {
-        mean_distance_m: args.distance,
-        least_distance_m: Placement::default().least_distance_m.min(args.distance),
-        heading_rad: args.heading.to_radians(),
-        ..Placement::default()
+    let source = StereoSource {
+        motion: args.motion.clone(),
+        skeleton: args.skeleton.clone(),
+        motion_rate_hz: args.motion_rate,
+        between_s: args.between,
+        partial: args.partial,
+        distance_m: args.distance,
+        heading_deg: args.heading,
+        rate_hz: args.rate,
+        seed: args.seed,
     };
-    ensure!(placement.heading_rad.is_finite(), "--heading has to be finite");
-    let (recording, stick_m, shortfall) = motion(args, placement)?;
-    let notes: Vec<String> = shortfall.iter().map(ToString::to_string).collect();
+    let motion = source.read()?;
+    motion.check_hidden(&args.hide)?;
+    let StereoMotion { recording, stick_m, floor_y_m, notes } = motion;
     notes.iter().for_each(|note| console.note(note));
-    for hidden in &args.hide {
-        let (last, frames) = (hidden.frames.end(), recording.joints_m.len());
-        ensure!(*last < frames, "--hide names frame {last}; the last one is {}", frames.saturating_sub(1));
-    }
     let options = StereoOptions {
         part: args.body,
         points: args.points,
@@ -122,35 +110,7 @@ pub fn run(args: &SimulateStereoArgs, console: &Console) -> Result<()> {
     let output = OutputDir::create(&args.out)?;
     clear_frames(&output.join("points"), "", ".ply", args.force)?;
     let name = args.motion.display().to_string();
-    scene.write_folder(&name, placement.camera_height_m, stick_m.as_deref(), &notes, &output)?;
+    scene.write_folder(&name, floor_y_m, stick_m.as_deref(), &notes, &output)?;
     let text = format!("{} frames of points with their truth in `{}`\n", scene.len(), args.out.display());
     console.answer(&text, &json!({ "frames": scene.len(), "notes": notes, "out": args.out }))
-}
-
-/// The person's joints, the ends of a stick in each frame, and whether the motion ends early.
-type StereoMotion = (BodyRecording, Option<Vec<StickEnds>>, Option<Shortfall>);
-
-fn motion(args: &SimulateStereoArgs, placement: Placement) -> Result<StereoMotion> {
-    let built_in = args.motion.to_str().filter(|name| [STICK_WAVE, PELVIC_LIFT].contains(name));
-    if built_in.is_none() {
-        let options = BodyRecordingOptions {
-            skeleton: args.skeleton.as_deref(),
-            input_rate_hz: args.motion_rate,
-            rate_hz: args.rate,
-            between_s: args.between,
-            placement,
-            partial: args.partial,
-        };
-        let RecordedBody { recording, shortfall, .. } = BodyRecording::read_with_markers(&args.motion, &options)?;
-        return Ok((recording, None, shortfall));
-    }
-    if args.skeleton.is_some() || args.motion_rate.is_some() || args.between.is_some() || args.heading != 0.0 {
-        bail!("--skeleton, --motion-rate, --between and --heading are for motion files; leave them out");
-    }
-    let (height_m, distance_m) = (placement.camera_height_m, args.distance);
-    if built_in == Some(STICK_WAVE) {
-        let wave = stick_wave(args.seed, args.rate, height_m, distance_m)?;
-        return Ok((wave.recording, Some(wave.stick_m), None));
-    }
-    Ok((pelvic_lift(args.rate, height_m, distance_m)?, None, None))
 }

@@ -6,7 +6,7 @@ use super::signals::stop_flag;
 use super::viewer_args::ViewerArgs;
 use crate::body::BodyPart;
 use crate::body::run::{BodyEvent, BodyRunReport, BodyTrackOptions, BodyTrackRun, tuning_file};
-use crate::body::tracking::{BodyModelKind, BodyTuning};
+use crate::body::tracking::{BodyModelKind, BodyStreamOptions, BodyTuning};
 use crate::cloud::MAX_POINTS;
 use crate::registry::{Kind, MEASURABLE, choice, extensions};
 use anyhow::{Context, Result};
@@ -37,7 +37,7 @@ pub struct TrackBodyArgs {
     #[arg(long, value_enum)]
     pub body: Option<BodyPart>,
     /// How particles move.
-    #[arg(long, value_enum, default_value_t = BodyModelKind::Guided)]
+    #[arg(long, value_enum, default_value_t)]
     pub model: BodyModelKind,
     /// Number of particles [default: 50 of guided, 500 of the others].
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
@@ -68,7 +68,7 @@ pub struct TrackBodyArgs {
     #[arg(long)]
     pub print_config: bool,
     /// Seed of all that is random; the same seed gives the same result on any number of threads.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = BodyStreamOptions::default().seed)]
     pub seed: u64,
     /// Number of threads [default: all].
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
@@ -112,7 +112,7 @@ pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
         folder: args.folder.clone().context("no DIR was given")?,
         part: args.body,
         model: args.model,
-        particles: args.particles.unwrap_or(BodyTrackOptions::default_particles(args.model)),
+        particles: args.particles.unwrap_or(args.model.default_particles()),
         skeleton: args.skeleton.clone(),
         partial: args.partial,
         height_m: args.height,

@@ -54,7 +54,7 @@ fn kinds_can_be_told_apart() {
     let bad = Error::from(positive("rate_hz", -1.0).unwrap_err());
     assert!(matches!(bad, Error::Parameter(_)));
     assert_eq!(bad.kind(), ErrorKind::Data);
-    let slow = crate::body::run::options::check_rate("--rate", 0.0).unwrap_err();
+    let slow = crate::body::tracking::stream_options::check_rate("--rate", 0.0).unwrap_err();
     assert_eq!(slow.kind(), ErrorKind::Usage);
     let stopped = Err::<(), _>(interrupted()).writing(|| "`cells` cannot be written").unwrap_err();
     assert_eq!((stopped.kind(), stopped.interrupted()), (ErrorKind::Interrupted, Some(&interrupted())));

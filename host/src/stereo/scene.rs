@@ -8,6 +8,7 @@ use super::patches::{Disc, Patches};
 use super::visible::{VisiblePixel, capsules, visible_pixels};
 use crate::body::{BodyJoints, BodyPart, BodyRecording, measure};
 use crate::error::{Result, ensure};
+use rayon::prelude::*;
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
 use sinew_core::random::Stream;
@@ -155,6 +156,12 @@ impl StereoScene {
         let hides = |bone: usize| self.options.hidden.iter().any(|hidden| hidden.hides(bone, frame));
         let points = self.points_with_bones(frame).into_iter();
         points.filter(|(_, bone)| !bone.is_some_and(hides)).map(|(point, _)| point).collect()
+    }
+
+    /// [`Self::points_m`] of all frames.
+    #[must_use]
+    pub fn clouds_m(&self) -> Vec<Vec<Vec3>> {
+        (0..self.len()).into_par_iter().map(|frame| self.points_m(frame)).collect()
     }
 
     fn points_with_bones(&self, frame: usize) -> Vec<BonePoint> {

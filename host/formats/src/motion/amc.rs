@@ -40,10 +40,13 @@ pub fn read_with_skeleton(path: &Path, options: &ReadOptions<'_>) -> Result<Moti
 pub fn parse(text: &str, path: &Path, skeleton: &Skeleton, frames_per_second: f32) -> Result<Motion, MotionError> {
     let mut joints = vec!["root".to_string()];
     joints.extend(skeleton.bones.iter().map(|bone| bone.name.clone()));
+    // The joint of a bone is its end, behind the root.
+    let mut parents = vec![None];
+    parents.extend(skeleton.bones.iter().map(|bone| Some(bone.parent.map_or(0, |parent| parent + 1))));
     let index: BTreeMap<&str, usize> = skeleton.bones.iter().enumerate().map(|(i, b)| (b.name.as_str(), i)).collect();
     let radians_per_unit = core::f32::consts::PI / 180.0;
     let mut reader = Reader { path, skeleton, index, radians_per_unit, frame: None, bytes: text.len() };
-    let mut motion = Motion { frames_per_second, joints, positions_m: Vec::new(), shortfall: None };
+    let mut motion = Motion { frames_per_second, joints, parents, positions_m: Vec::new(), shortfall: None };
     let mut line = 0;
     for content in text.lines() {
         line += 1;

@@ -203,6 +203,7 @@ mod tests {
         Motion {
             frames_per_second: 30.0,
             joints: NAMES.map(String::from).to_vec(),
+            parents: vec![None; NAMES.len()],
             positions_m: positions_m.map(Vec3::from).to_vec(),
             shortfall: None,
         }

@@ -132,7 +132,8 @@ fn parse_joints(
     unit_m: f32,
 ) -> Result<Motion, MotionError> {
     let joints = table.iter().map(|joint| joint.name.to_string()).collect();
-    let mut motion = Motion { frames_per_second, joints, positions_m: Vec::new(), shortfall: None };
+    let parents = table.iter().map(|joint| (joint.parent != ROOT).then_some(joint.parent)).collect();
+    let mut motion = Motion { frames_per_second, joints, parents, positions_m: Vec::new(), shortfall: None };
     let mut rows = 0;
     for (index, content) in text.lines().enumerate().filter(|(_, content)| !content.trim().is_empty()) {
         let words: Vec<&str> = content.split(',').map(str::trim).collect();

@@ -36,6 +36,9 @@ pub(super) fn add_named_points(motion: &mut MarkerMotion, path: &Path) -> Result
             return Err(broken(format!("`{joint}` needs the name of a point after a comma")));
         }
         motion.names.push(format!("{PREFIX}{joint}"));
+        if !motion.parents.is_empty() {
+            motion.parents.push(None);
+        }
         for positions_m in &mut motion.positions_m {
             positions_m.push(middle(points.iter().map(|&point| positions_m[point])));
         }

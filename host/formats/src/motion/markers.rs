@@ -12,6 +12,9 @@ pub struct MarkerMotion {
     pub frames_per_second: f32,
     /// Names, in the file's order.
     pub names: Vec<String>,
+    /// Place of each point's parent among them, `None` of a root; empty where the file has no
+    /// skeleton.
+    pub parents: Vec<Option<usize>>,
     /// Positions in metres, one row of `names.len()` a frame; `None` where the point was not seen.
     pub positions_m: Vec<Vec<Option<Vec3>>>,
     /// How many frames its header promises, where these are more than there are.
@@ -27,6 +30,7 @@ impl From<&Motion> for MarkerMotion {
         Self {
             frames_per_second: motion.frames_per_second,
             names: motion.joints.clone(),
+            parents: motion.parents.clone(),
             positions_m: (0..motion.len())
                 .map(|frame| motion.frame(frame).iter().copied().map(Some).collect())
                 .collect(),

@@ -10,6 +10,8 @@ pub struct Motion {
     pub frames_per_second: f32,
     /// Names, in the file's order.
     pub joints: Vec<String>,
+    /// Place of each joint's parent among them; `None` of a root.
+    pub parents: Vec<Option<usize>>,
     /// Positions in metres, `frames` rows of `joints.len()`, row by row; axes as in the file.
     pub positions_m: Vec<Vec3>,
     /// How many frames its header promises, where these are more than there are.

@@ -13,32 +13,50 @@ Angles are radians unless a name ends in ``_deg``. Missing numbers are NaN.
 """
 
 from ._angles import Angles, angles, layouts
+from ._body import BodyTracker
+from ._body_estimate import BodyEstimate
 from ._model import Model, models
+from ._motion import Motion, read_motion
 from ._online import CyclicEstimate, CyclicTracker
+from ._points import read_cloud
 from ._simulate import SimulatedKeypoints, simulate_keypoints
 from ._sinew import ANGLES as ANGLE_NAMES
+from ._sinew import BODY_COORDINATES as BODY_COORDINATE_NAMES
+from ._sinew import BODY_JOINTS as BODY_JOINT_NAMES
+from ._sinew import BODY_PARENTS
 from ._sinew import FLEXIONS as FLEXION_NAMES
 from ._sinew import VERSION as __version__
 from ._sinew import SinewError
+from ._stereo import SimulatedStereo, simulate_stereo
 from ._track import track_cyclic
 from ._track_result import CyclicTrack
 from ._train import train_cyclic
 
 __all__ = [
     "ANGLE_NAMES",
+    "BODY_COORDINATE_NAMES",
+    "BODY_JOINT_NAMES",
+    "BODY_PARENTS",
     "FLEXION_NAMES",
     "Angles",
+    "BodyEstimate",
+    "BodyTracker",
     "CyclicEstimate",
     "CyclicTrack",
     "CyclicTracker",
     "Model",
+    "Motion",
     "SimulatedKeypoints",
+    "SimulatedStereo",
     "SinewError",
     "__version__",
     "angles",
     "layouts",
     "models",
+    "read_cloud",
+    "read_motion",
     "simulate_keypoints",
+    "simulate_stereo",
     "track_cyclic",
     "train_cyclic",
 ]

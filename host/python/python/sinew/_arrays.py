@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+MAX_WHOLE = 2**53 - 1
+"""Largest frame number or count."""
 
 
 def is_path(value: Any) -> bool:
@@ -59,14 +61,28 @@ def positive(value: Any, name: str) -> float:
     return number
 
 
-def whole(value: Any, name: str, least: int = 0) -> int:
-    """A whole number of at least `least`, below 2^53.
+def number(value: Any, name: str) -> float:
+    """A number.
 
     Raises
     ------
     ValueError
         It is none.
     """
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value < 2**53:
-        raise ValueError(f"`{name}` has to be a whole number of at least {least}, not {value!r}")
+    try:
+        return float(value)
+    except (OverflowError, TypeError, ValueError):
+        raise ValueError(f"`{name}` has to be a number, not {value!r}") from None
+
+
+def whole(value: Any, name: str, low: int, high: int) -> int:
+    """A whole number from ``low`` to ``high``.
+
+    Raises
+    ------
+    ValueError
+        It is none.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
+        raise ValueError(f"`{name}` has to be a whole number from {low} to {high}, not {value!r}")
     return int(value)

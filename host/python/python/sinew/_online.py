@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import _sinew
-from ._arrays import FloatArray, floats, positive, whole
+from ._arrays import MAX_WHOLE, FloatArray, floats, positive, whole
 from ._model import Model, native_model
 
 
@@ -87,7 +87,7 @@ class CyclicTracker:
         row = floats(z, "z")
         if row.shape != (13,):
             raise ValueError(f"`z` has to have the shape (13,), not {row.shape}")
-        answer = self._native.update(row, whole(dt_frames, "dt_frames", 1))
+        answer = self._native.update(row, whole(dt_frames, "dt_frames", 1, MAX_WHOLE))
         return None if answer is None else CyclicEstimate(**answer)
 
     @property

@@ -9,10 +9,18 @@ import numpy.typing as npt
 _Floats = npt.NDArray[np.float64]
 _Ints = npt.NDArray[np.int64]
 _Size = tuple[float, float]
+_Points = npt.NDArray[np.float32]
+_Path = str | os.PathLike[str]
+_Given = str | bytes | None
 
 VERSION: str
 ANGLES: list[str]
 FLEXIONS: list[str]
+BODY_JOINTS: list[str]
+BODY_COORDINATES: list[str]
+BODY_PARENTS: list[int]
+UPPER_BODY_COORDINATES: list[int]
+MAX_CLOUD_POINTS: int
 
 class SinewError(ValueError):
     """A recording, table or model that cannot be used."""
@@ -57,6 +65,46 @@ class Angles:
     def of_parts(
         angles: _Floats, frames: _Ints, side: _Floats | None, other: tuple[list[str], list[list[str]]], about: str
     ) -> Angles: ...
+
+class Body:
+    def __init__(
+        self,
+        height_m: float | None,
+        measures: _Given,
+        part: str,
+        model: str,
+        particles: int | None,
+        seed: int,
+        rate_hz: float,
+        first_pose: _Given,
+        floor_y_m: float | None,
+        threads: int | None,
+        config: _Given,
+    ) -> None: ...
+    def update(
+        self, points: _Points | None, time_s: float | None, stick: list[list[float]] | None
+    ) -> dict[str, Any]: ...
+    @property
+    def frame(self) -> int | None: ...
+    @property
+    def part(self) -> str: ...
+    @property
+    def model(self) -> str: ...
+    @property
+    def particles(self) -> int: ...
+    @property
+    def seed(self) -> int: ...
+    @property
+    def rate_hz(self) -> float: ...
+    @property
+    def measures_json(self) -> str: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def state_crc32(self) -> int: ...
+    def saved(self) -> str: ...
+    @staticmethod
+    def restored(saved: str, notes: list[str]) -> Body: ...
 
 class Tracker:
     def __init__(self, model: Model, rate_hz: float, sigma_deg: float | None) -> None: ...
@@ -105,3 +153,29 @@ def train_angles(
     rate_hz: float | None,
     mirror: bool,
 ) -> Model: ...
+def read_cloud(path: _Path) -> _Points: ...
+def read_motion(
+    path: _Path,
+    skeleton: _Path | None,
+    rate_hz: float | None,
+    metres_per_unit: float | None,
+    names: _Path | None,
+    partial: bool,
+) -> dict[str, Any]: ...
+def turn_of_up(up: str) -> list[list[float]]: ...
+def simulate_stereo(
+    motion: _Path,
+    skeleton: _Path | None,
+    motion_rate_hz: float | None,
+    between_s: tuple[float, float] | None,
+    partial: bool,
+    distance_m: float,
+    heading_deg: float,
+    rate_hz: float,
+    part: str,
+    points: int,
+    outliers: float,
+    patches: int,
+    hide: list[str],
+    seed: int,
+) -> dict[str, Any]: ...

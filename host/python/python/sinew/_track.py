@@ -10,7 +10,7 @@ import numpy.typing as npt
 from . import _sinew
 from ._angle_rows import angle_rows
 from ._angles import Angles
-from ._arrays import is_path, positive, whole
+from ._arrays import MAX_WHOLE, is_path, positive, whole
 from ._model import Model, native_model
 from ._track_result import CyclicTrack
 
@@ -79,8 +79,8 @@ def track_cyclic(
         "sigma_deg": None if sigma_deg is None else positive(sigma_deg, "sigma_deg"),
         "smooth": bool(smooth),
         "filter": str(filter),
-        "particles": whole(particles, "particles"),
-        "seed": whole(seed, "seed"),
+        "particles": whole(particles, "particles", 1, MAX_WHOLE),
+        "seed": whole(seed, "seed", 0, 2**64 - 1),
         "covariance": bool(covariance),
     }
     if isinstance(angles, Angles) or is_path(angles):

@@ -8,7 +8,7 @@ from typing import Any
 from . import _sinew
 from ._angle_rows import angle_rows
 from ._angles import Angles
-from ._arrays import is_path, positive, whole
+from ._arrays import MAX_WHOLE, is_path, positive, whole
 from ._model import Model, trained
 
 
@@ -56,7 +56,7 @@ def train_cyclic(
         The list or a table cannot be read.
     """
     rate = None if rate_hz is None else positive(rate_hz, "rate_hz")
-    positions = whole(length, "length", 10)
+    positions = whole(length, "length", 10, 1000)
     if is_path(recordings):
         for name, given in (("cycles", cycles), ("people", people)):
             if given is not None:
@@ -80,4 +80,4 @@ def _native(recording: Any, rate_hz: float | None, index: int) -> _sinew.Angles:
 
 
 def _frames(cycles: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
-    return [(whole(start, "cycles"), whole(end, "cycles")) for start, end in cycles]
+    return [(whole(start, "cycles", 0, MAX_WHOLE), whole(end, "cycles", 0, MAX_WHOLE)) for start, end in cycles]

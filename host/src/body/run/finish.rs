@@ -49,6 +49,7 @@ impl BodyTrackRun {
         self.report.seconds_per_step = self.step_s / self.report.frames_finished.max(1) as f64;
         self.report.effective_share = self.effective_share.mean().unwrap_or(0.0);
         (self.report.error_m, self.report.joint_error_m) = (self.score.marker_m.mean(), self.score.joint_m.mean());
+        self.report.state_crc32 = self.stream.state_crc32()?;
         let mut files = self.motion_files()?;
         files.push(finished_table(self.table)?);
         files.extend(self.particles.map(finished_table).transpose()?);
@@ -80,7 +81,7 @@ impl BodyTrackRun {
                 // before.
                 frames.extend((number + 1..*frame).map(|_| last.clone()));
             }
-            let pose = bvh_frame(part, &self.filter.scene().skeleton, &estimate.angles_rad);
+            let pose = bvh_frame(part, &self.stream.filter().scene().skeleton, &estimate.angles_rad);
             frames.push(pose.clone());
             let place = |end: &Vec3| Some(<[f32; 3]>::from(upwards(end)).map(f64::from));
             markers.push(TrcFrame {
@@ -89,7 +90,7 @@ impl BodyTrackRun {
             });
             before = Some((*frame, pose));
         }
-        let layout = body_layout(part, &self.filter.scene().skeleton)?;
+        let layout = body_layout(part, &self.stream.filter().scene().skeleton)?;
         let bvh = self.out.pending("track.bvh", |writer| Ok(write_bvh(&layout, &frames, rate_hz, writer)?))?;
         let heading =
             TrcHeading { name: "track.trc", markers: &BODY_JOINT_NAMES[..part.bones()], rate_hz, unit: TrcUnit::Metre };

@@ -1,11 +1,13 @@
 //! What a run reads: clouds, and beside them who is seen, by which camera, from which pose on.
 
-use super::measures_source::read_measures;
-use super::options::{BodyTrackOptions, check_rate};
+use super::measures_source::{measures_of_height, read_measures};
+use super::options::BodyTrackOptions;
 use crate::body::BodyPart;
-use crate::body::pose_file::read_pose;
+use crate::body::pose_file::{inside_limits, read_pose};
 use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::tracking::BodyModelKind;
+use crate::body::tracking::stream::stick_at;
+use crate::body::tracking::stream_options::{check_part, check_rate};
 use crate::cloud::{CloudFolder, MAX_DISTANCE_M};
 use crate::error::{Context, Result, ensure};
 use crate::json_file::read_json;
@@ -14,12 +16,9 @@ use serde::{Deserialize, Serialize};
 use sinew_core::math::unit;
 use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::skeleton::BodyMeasures;
-use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, full_body};
+use sinew_core::skeleton::full_body::BODY_ANGLES;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-/// Height of a person of whom nothing is known, metres.
-pub const UNKNOWN_HEIGHT_M: f32 = 1.75;
 
 /// Where each input came from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -135,21 +134,6 @@ impl BodyInputs {
     }
 }
 
-/// Refuses a model of limbs that are not tracked.
-///
-/// # Errors
-/// Names both options.
-pub fn check_part(part: BodyPart, model: BodyModelKind) -> Result<()> {
-    ensure!(
-        part == BodyPart::Whole || model != BodyModelKind::PelvicLift,
-        "--model {} holds the feet, and --body {} has none; choose another model, or --body {}",
-        model.name(),
-        part.name(),
-        BodyPart::Whole.name()
-    );
-    Ok(())
-}
-
 fn read_scene(path: &Path) -> Result<SceneReport> {
     let inner = || -> Result<SceneReport> {
         let scene: SceneReport = read_json(path)?;
@@ -170,24 +154,12 @@ fn measures(options: &BodyTrackOptions, file: Option<&Path>, notes: &mut Vec<Str
     if let Some(path) = file {
         return read_measures(path, options.partial, notes);
     }
-    if options.height_m.is_none() {
-        notes.push(format!("nothing says who is tracked; a person {UNKNOWN_HEIGHT_M} m tall (--height, --skeleton)"));
-    }
-    let height_m = options.height_m.unwrap_or(UNKNOWN_HEIGHT_M);
-    ensure!((0.5..=2.5).contains(&height_m), "--height has to be from 0.5 to 2.5 metres, not {height_m}");
-    Ok(BodyMeasures::of_height(height_m)?)
+    measures_of_height(options.height_m, notes)
 }
 
 /// Reads the first pose and brings it inside the limits.
 fn first_pose(path: &Path, measures: &BodyMeasures, notes: &mut Vec<String>) -> Result<[f32; BODY_ANGLES]> {
-    let given = read_pose(path)?;
-    let inside = full_body(measures)?.clamp(given);
-    for (name, (given, inside)) in BODY_ANGLE_NAMES.iter().zip(given.iter().zip(&inside)) {
-        if given != inside {
-            notes.push(format!("`{}`: {name} = {given} breaks its limit; {inside} is used", path.display()));
-        }
-    }
-    Ok(inside)
+    inside_limits(read_pose(path)?, measures, &path.display().to_string(), notes)
 }
 
 /// Ends where they are known in space, rays where only in the picture.
@@ -195,8 +167,8 @@ fn sights(stick: &[SeenStick], camera: Option<&StereoCamera>, notes: &mut Vec<St
     let (mut blind, mut far) = (0, 0);
     let mut sight = |seen: &SeenStick| {
         if let Some(ends_m) = seen.ends_m {
-            if ends_m.iter().all(|end| end.norm() <= MAX_DISTANCE_M) {
-                return StickSight::Ends(ends_m);
+            if let Some(sight) = stick_at(ends_m) {
+                return sight;
             }
             far += 1;
         }

@@ -11,6 +11,8 @@ use sinew_core::skeleton::BodyMeasures;
 use sinew_core::skeleton::full_body::{BODY_ANGLES, full_body};
 use std::path::Path;
 
+/// Height of a person of whom nothing is known, metres.
+pub const UNKNOWN_HEIGHT_M: f32 = 1.75;
 /// Farthest joint from the pelvis of a standing person, metres.
 const MAX_REACH_M: f32 = 2.0;
 
@@ -32,13 +34,40 @@ pub fn read_measures(path: &Path, partial: bool, notes: &mut Vec<String>) -> Res
             extensions(MEASURABLE)
         ),
     };
-    let skeleton = full_body(&measures).with_context(|| format!("`{}` is no person's skeleton", path.display()))?;
+    checked(measures, &path.display().to_string())
+}
+
+/// The measures of a JSON text as `body.json` has it; messages call it `name`.
+///
+/// # Errors
+/// Names the text, and what is missing in it or breaks a rule.
+pub fn measures_from_json(text: &str, name: &str) -> Result<BodyMeasures> {
+    let parsed = || -> Result<BodyMeasures> { serde_json::from_str::<BodyFile>(text)?.measures() };
+    checked(parsed().with_context(|| format!("`{name}` is no body.json"))?, name)
+}
+
+/// The measures of a person of whom the height is known, metres; `None` is one of
+/// [`UNKNOWN_HEIGHT_M`], of which a note is made.
+///
+/// # Errors
+/// No person is as tall.
+pub fn measures_of_height(height_m: Option<f32>, notes: &mut Vec<String>) -> Result<BodyMeasures> {
+    if height_m.is_none() {
+        notes.push(format!("nothing says who is tracked; a person {UNKNOWN_HEIGHT_M} m tall (--height, --skeleton)"));
+    }
+    let height_m = height_m.unwrap_or(UNKNOWN_HEIGHT_M);
+    ensure!((0.5..=2.5).contains(&height_m), "--height has to be from 0.5 to 2.5 metres, not {height_m}");
+    Ok(BodyMeasures::of_height(height_m)?)
+}
+
+/// Refuses what is no person's measures; `name` is where they come from.
+fn checked(measures: BodyMeasures, name: &str) -> Result<BodyMeasures> {
+    let skeleton = full_body(&measures).with_context(|| format!("`{name}` is no person's skeleton"))?;
     let ends_m = posture(&skeleton, &Vec3::zeros(), &[0.0; BODY_ANGLES]).ends;
     let farthest_m = ends_m.iter().map(Vec3::norm).fold(0.0, f32::max);
     ensure!(
         farthest_m <= MAX_REACH_M,
-        "the person of `{}` has a joint {farthest_m} m from the pelvis, and {MAX_REACH_M} m is the most; give lengths in metres",
-        path.display()
+        "the person of `{name}` has a joint {farthest_m} m from the pelvis, and {MAX_REACH_M} m is the most; give lengths in metres"
     );
     Ok(measures)
 }

@@ -14,7 +14,6 @@ pub mod pictures;
 pub mod report;
 mod resume;
 pub mod score;
-pub mod start;
 pub mod table;
 pub mod track;
 pub mod tuning_file;

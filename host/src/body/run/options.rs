@@ -1,15 +1,11 @@
 //! What decides the result of a run.
 
 use crate::body::BodyPart;
-use crate::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
+use crate::body::tracking::stream_options::{check_particles, check_rate, check_threads};
+use crate::body::tracking::{BodyModelKind, BodyStreamOptions, BodyTuning};
 use crate::error::{Result, ensure_option};
 use serde::Serialize;
 use std::path::PathBuf;
-
-/// Slowest and fastest rate of frames, Hz.
-pub const RATES_HZ: [f32; 2] = [0.1, 1000.0];
-/// Maximum number of threads.
-pub const MAX_THREADS: usize = 256;
 
 /// Everything that decides the result of a run; results do not depend on `threads`.
 #[derive(Debug, Clone, Serialize)]
@@ -50,29 +46,39 @@ pub struct BodyTrackOptions {
     pub tuning: BodyTuning,
 }
 
-impl BodyTrackOptions {
-    /// Default number of particles of `model`.
-    #[must_use]
-    pub fn default_particles(model: BodyModelKind) -> usize {
-        if model == BodyModelKind::Guided { 50 } else { 500 }
+impl Default for BodyTrackOptions {
+    /// Those of the command. The folder is still to be named.
+    fn default() -> Self {
+        let BodyStreamOptions { model, particles, seed, threads, tuning, .. } = BodyStreamOptions::default();
+        Self {
+            folder: PathBuf::new(),
+            part: None,
+            model,
+            particles,
+            skeleton: None,
+            partial: false,
+            height_m: None,
+            init: None,
+            stick: None,
+            seed,
+            threads,
+            rate_hz: None,
+            strict: false,
+            particles_csv: false,
+            pictures: false,
+            tuning,
+        }
     }
+}
 
+impl BodyTrackOptions {
     /// Checks what can be checked without files.
     ///
     /// # Errors
     /// Names the option and its range.
     pub fn check(&self) -> Result<()> {
-        ensure_option!(
-            (1..=MAX_BODY_PARTICLES).contains(&self.particles),
-            "--particles has to be from 1 to {MAX_BODY_PARTICLES}, not {}",
-            self.particles
-        );
-        if let Some(threads) = self.threads {
-            ensure_option!(
-                (1..=MAX_THREADS).contains(&threads),
-                "--threads has to be from 1 to {MAX_THREADS}, not {threads}; leave it out for all"
-            );
-        }
+        check_particles(self.particles)?;
+        check_threads(self.threads)?;
         if let Some(rate_hz) = self.rate_hz {
             check_rate("--rate", rate_hz)?;
         }
@@ -83,14 +89,4 @@ impl BodyTrackOptions {
         );
         Ok(())
     }
-}
-
-/// Checks a rate that `name` says.
-///
-/// # Errors
-/// If it is outside [`RATES_HZ`].
-pub fn check_rate(name: &str, rate_hz: f32) -> Result<()> {
-    let [low, high] = RATES_HZ;
-    ensure_option!((low..=high).contains(&rate_hz), "{name} has to be from {low} to {high} Hz, not {rate_hz}");
-    Ok(())
 }

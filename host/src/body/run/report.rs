@@ -63,6 +63,9 @@ pub struct BodyRunReport {
     pub degenerate_frames: usize,
     /// Mean share of effective particles.
     pub effective_share: f64,
+    /// CRC-32 of the tracker's saved state after the last frame: the same for the same options,
+    /// inputs and seed.
+    pub state_crc32: u32,
     /// Mean distance of the true markers from the skin of the estimate, PIK (34), from the second
     /// frame on, metres.
     pub error_m: Option<f64>,
@@ -101,6 +104,7 @@ impl BodyRunReport {
             seconds_per_step: 0.0,
             degenerate_frames: 0,
             effective_share: 0.0,
+            state_crc32: 0,
             error_m: None,
             joint_error_m: None,
             points: PointCounts::default(),

@@ -8,6 +8,7 @@ use super::answer::NO_ANSWER;
 use super::options::BodyTrackOptions;
 use super::report::{PointCounts, SkippedCloud};
 use super::track::{BodyTrackRun, read_cloud};
+use crate::body::tracking::StreamState;
 use crate::error::Result;
 use crate::resume::{Begun, Left, List, ResumeFile, file_crc32, from_text, identity, to_text};
 use serde::{Deserialize, Serialize};
@@ -24,7 +25,7 @@ pub(super) struct BodyState {
     /// Wall time of the steps, seconds.
     step_s: f64,
     /// The tracker.
-    tracker: String,
+    tracker: StreamState,
     /// The answer to each finished frame.
     answers: String,
 }
@@ -36,7 +37,7 @@ pub(super) fn left(run: &mut BodyTrackRun) -> Result<Left<BodyState>> {
         skipped: run.report.skipped.clone(),
         points: run.report.points,
         step_s: run.step_s,
-        tracker: run.filter.saved()?,
+        tracker: run.stream.state()?,
         answers: to_text(StateKind::Body, &mut answers)?,
     };
     run.answers = answers.entries;
@@ -103,9 +104,7 @@ impl BodyTrackRun {
             let wants = run.pictures.as_ref().is_some_and(|pictures| pictures.wants(index));
             let cloud = run.inputs.clouds.frames.get(index).filter(|_| wants);
             let points_m = match cloud {
-                Some(cloud) => {
-                    read_cloud(cloud, run.report.seed, None)?.map_or_else(|_| Vec::new(), |cloud| cloud.points_m)
-                }
+                Some(cloud) => read_cloud(cloud, &run.stream)?.map_or_else(|_| Vec::new(), |cloud| cloud.seen.points_m),
                 None => Vec::new(),
             };
             run.take(index, answer, &points_m);
@@ -113,7 +112,7 @@ impl BodyTrackRun {
         if let Some(last) = run.last_cloud() {
             left.check_last(&cloud_name(last), file_crc32(last).ok())?;
         }
-        run.filter.restore(&left.state.tracker)?;
+        run.stream.set_state(&left.state.tracker)?;
         run.last_cloud_crc32 = left.last_crc32;
         run.seconds = left.seconds;
         run.step_s = left.state.step_s;

@@ -7,22 +7,16 @@ use super::pictures::BodyPictures;
 use super::report::{BodyRunReport, SkippedCloud};
 use super::resume;
 use super::score::{BodyScore, RunningMean};
-use super::start::pose_from_points;
 use super::{particles, table};
-use crate::body::tracking::BodyFilter;
-use crate::body::tracking::filter::WholeBodyEstimate;
-use crate::cloud::{self, CloudError, CloudFrame, MAX_POINTS, blocks_of};
+use crate::body::tracking::{BodyStream, BodyStreamOptions, FrameTime, SeenPoints};
+use crate::cloud::{self, CloudError, CloudFrame};
 use crate::error::{Context, Result, WriteContext, bail};
 use crate::output::{OutputDir, OutputLock, PendingFile};
 use crate::reading_again::read_again;
 use crate::resume::{Begun, Checkpoints, PARTICLE_TABLE, TRACK_TABLE};
 use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use sinew_core::math::Vec3;
-use sinew_core::observation::point_cloud::PointBlock;
-use sinew_core::observation::range_smoothing::RangeSmoothing;
 use sinew_core::pik::processes::stick::StickSight;
-use sinew_core::skeleton::full_body::BODY_ANGLES;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -54,10 +48,7 @@ pub(super) type TableOpener<'a> = &'a dyn Fn(&str, &OutputDir, Vec<String>) -> R
 /// A cloud ready for the tracker.
 #[derive(Debug)]
 pub(super) struct ReadCloud {
-    pub points_m: Vec<Vec3>,
-    blocks: Vec<PointBlock>,
-    skipped: usize,
-    before_cap: usize,
+    pub seen: SeenPoints,
     /// CRC-32 of its file.
     crc32: u32,
 }
@@ -66,8 +57,7 @@ pub(super) struct ReadCloud {
 #[derive(Debug)]
 pub struct BodyTrackRun {
     pub(super) inputs: BodyInputs,
-    pub(super) filter: BodyFilter,
-    threads: ThreadPool,
+    pub(super) stream: BodyStream,
     pub(super) out: OutputDir,
     _lock: OutputLock,
     checkpoints: Checkpoints,
@@ -104,26 +94,16 @@ impl BodyTrackRun {
         options.check()?;
         let mut inputs = BodyInputs::read(&options)?;
         check_readable(&inputs)?;
-        let first_rad = match inputs.first_rad {
-            Some(pose) => pose,
-            None => found_start(&mut inputs, &options)?,
-        };
-        let (model, tuning) = (options.model, options.tuning);
-        let (part, who) = (inputs.part, (&inputs.measures, first_rad));
-        let mut filter = BodyFilter::of_part(part, model, tuning, who, options.particles, options.seed)?;
-        if let Some(floor_y_m) = inputs.floor_y_m {
-            filter = filter.above_floor(floor_y_m);
+        let mut stream = BodyStream::new(stream_options(&options, &inputs), inputs.measures, inputs.first_rad)?;
+        if inputs.first_rad.is_none() {
+            find_start(&mut inputs, &mut stream)?;
         }
-        let threads = ThreadPoolBuilder::new()
-            .num_threads(options.threads.unwrap_or(0))
-            .build()
-            .context("the threads cannot be started; give --threads a smaller number")?;
+        let part = inputs.part;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
         let lock = OutputLock::of_folder(out.path(), resume::COMMAND)?;
         Ok(Self {
-            filter,
-            threads,
+            stream,
             table: table(TRACK_TABLE, &out, table::header(part))?,
             particles: if options.particles_csv {
                 Some(table(PARTICLE_TABLE, &out, particles::header(part))?)
@@ -169,12 +149,11 @@ impl BodyTrackRun {
     /// Whether the last cloud was reached.
     pub(super) fn track_all(&mut self, stop: &AtomicBool, notify: Notify<'_>) -> Result<bool> {
         self.save_if_due()?;
-        let (begin, seed) = (self.report.frames_finished, self.report.seed);
-        let frames = self.inputs.clouds.frames[begin..].to_vec();
+        let frames = self.inputs.clouds.frames[self.report.frames_finished..].to_vec();
         for chunk in frames.chunks(CHUNK) {
-            let smoothing = self.filter.smoothing();
+            let stream = &self.stream;
             let clouds: Vec<Result<Result<ReadCloud, SkippedCloud>>> =
-                self.threads.install(|| chunk.par_iter().map(|frame| read_cloud(frame, seed, smoothing)).collect());
+                stream.install(|| chunk.par_iter().map(|frame| read_cloud(frame, stream)).collect());
             for (frame, cloud) in chunk.iter().zip(clouds) {
                 if stop.load(Ordering::Relaxed) {
                     return Ok(false);
@@ -212,15 +191,15 @@ impl BodyTrackRun {
                 return Ok(None);
             }
         };
-        let points = &mut self.report.points;
-        points.used += cloud.points_m.len() as u64;
-        points.skipped += cloud.skipped as u64;
-        points.frames_without_points += usize::from(cloud.points_m.is_empty());
-        if cloud.before_cap > cloud.points_m.len() {
+        let (points, seen) = (&mut self.report.points, &cloud.seen);
+        points.used += seen.points_m.len() as u64;
+        points.skipped += seen.skipped as u64;
+        points.frames_without_points += usize::from(seen.points_m.is_empty());
+        if seen.over_cap > 0 {
             if points.frames_over_cap == 0 {
-                notify(BodyEvent::OverCap(cloud.before_cap));
+                notify(BodyEvent::OverCap(seen.points_m.len() + seen.over_cap));
             }
-            points.over_cap += (cloud.before_cap - cloud.points_m.len()) as u64;
+            points.over_cap += seen.over_cap as u64;
             points.frames_over_cap += 1;
         }
         Ok(Some(cloud))
@@ -228,24 +207,19 @@ impl BodyTrackRun {
 
     /// One frame from points to its row.
     fn track_frame(&mut self, frame: u64, cloud: Option<&ReadCloud>) -> Result<()> {
-        let before = self.answers.last().map(|answer| answer.frame);
-        let frames_gone = before.map_or(1, |before| frame - before);
-        let dt_s = (frames_gone as f64 / f64::from(self.inputs.rate_hz)) as f32;
-        let blocks = cloud.map_or(&[][..], |cloud| &cloud.blocks);
+        let nothing = SeenPoints::default();
+        let seen = cloud.map_or(&nothing, |cloud| &cloud.seen);
         let stick = self.inputs.stick.get(&frame).copied().unwrap_or(StickSight::Unseen);
         let start = Instant::now();
-        let (threads, filter) = (&self.threads, &mut self.filter);
-        let estimate = threads.install(|| match before {
-            None => first_look(filter, blocks, stick),
-            Some(_) => filter.step(blocks, dt_s, stick),
-        });
+        let estimate = self.stream.step(seen, FrameTime::Number(frame), stick)?;
         self.step_s += start.elapsed().as_secs_f64();
-        let points_m = cloud.map_or(&[][..], |cloud| &cloud.points_m);
+        let estimate = estimate.context("the tracker has no first pose")?;
+        let points_m = &seen.points_m;
         self.table
             .write_record(table::cells(self.inputs.part, frame, &estimate, points_m.len()))
             .writing(|| "`track.csv` cannot be written")?;
         if let Some(particles) = &mut self.particles {
-            for row in particles::rows(self.inputs.part, frame, &self.filter) {
+            for row in particles::rows(self.inputs.part, frame, self.stream.filter()) {
                 particles.write_record(row).writing(|| "`particles.csv` cannot be written")?;
             }
         }
@@ -258,10 +232,10 @@ impl BodyTrackRun {
         let Answer { frame, estimate } = &answer;
         let truth = self.inputs.truth.get(frame).filter(|_| index > 0);
         let joint_error_m =
-            truth.and_then(|truth| self.score.add(&self.filter, estimate, &truth.joints_m, &truth.markers_m));
+            truth.and_then(|truth| self.score.add(self.stream.filter(), estimate, &truth.joints_m, &truth.markers_m));
         if let Some(pictures) = &mut self.pictures {
             let time_s = *frame as f64 / f64::from(self.inputs.rate_hz);
-            pictures.add((index, *frame, time_s), points_m, (&self.filter, estimate), joint_error_m);
+            pictures.add((index, *frame, time_s), points_m, (self.stream.filter(), estimate), joint_error_m);
         }
         self.report.frames_finished += 1;
         self.report.degenerate_frames += usize::from(estimate.is_degenerate);
@@ -270,41 +244,35 @@ impl BodyTrackRun {
     }
 }
 
-/// The first frame: the first pose is its pose, and one step from there shows which bones its
-/// points observe.
-fn first_look(filter: &BodyFilter, blocks: &[PointBlock], stick: StickSight) -> WholeBodyEstimate {
-    let mut estimate = filter.clone().step(blocks, 0.0, stick);
-    if let Some(first) = filter.particles().0.first() {
-        (estimate.angles_rad, estimate.ends_m) = (first.angles_rad, first.ends_m);
+/// What of the run's options and inputs decides the steps.
+fn stream_options(options: &BodyTrackOptions, inputs: &BodyInputs) -> BodyStreamOptions {
+    BodyStreamOptions {
+        part: inputs.part,
+        model: options.model,
+        particles: options.particles,
+        seed: options.seed,
+        rate_hz: inputs.rate_hz,
+        floor_y_m: inputs.floor_y_m,
+        threads: options.threads,
+        tuning: options.tuning,
     }
-    estimate
 }
 
-/// Reads one cloud, at most [`MAX_POINTS`] of it, as it is and in the blocks in which it is
-/// weighed. Where it is no cloud, the answer says why.
+/// Reads one cloud for `stream`. Where it is no cloud, the answer says why.
 ///
 /// # Errors
 /// The operating system refuses the file.
-pub(super) fn read_cloud(
-    frame: &CloudFrame,
-    seed: u64,
-    smoothing: Option<&RangeSmoothing>,
-) -> Result<Result<ReadCloud, SkippedCloud>> {
+pub(super) fn read_cloud(frame: &CloudFrame, stream: &BodyStream) -> Result<Result<ReadCloud, SkippedCloud>> {
     let mut crc32 = 0;
     let read = || cloud::read_noting(&frame.path, |bytes| crc32 = crc32fast::hash(bytes));
-    let mut read = match read_again(read, CloudError::is_io)? {
-        Ok(read) => read,
-        Err(error) => {
-            return Ok(Err(SkippedCloud {
-                frame: frame.frame,
-                file: frame.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-                reason: error.to_string(),
-            }));
-        }
-    };
-    let before_cap = read.limit(MAX_POINTS, seed, frame.frame);
-    let blocks = blocks_of(&mut read.points_m.clone(), smoothing);
-    Ok(Ok(ReadCloud { points_m: read.points_m, blocks, skipped: read.skipped, before_cap, crc32 }))
+    match read_again(read, CloudError::is_io)? {
+        Ok(cloud) => Ok(Ok(ReadCloud { seen: stream.seen(cloud, frame.frame), crc32 })),
+        Err(error) => Ok(Err(SkippedCloud {
+            frame: frame.frame,
+            file: frame.path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            reason: error.to_string(),
+        })),
+    }
 }
 
 /// Refuses a folder of which no cloud can be read.
@@ -323,22 +291,19 @@ fn check_readable(inputs: &BodyInputs) -> Result<()> {
     )
 }
 
-/// A start from the first cloud that has points, and a note of it.
-fn found_start(inputs: &mut BodyInputs, options: &BodyTrackOptions) -> Result<[f32; BODY_ANGLES]> {
+/// Starts from the first cloud that has points, and notes it.
+fn find_start(inputs: &mut BodyInputs, stream: &mut BodyStream) -> Result<()> {
     let clouds = inputs.clouds.frames.iter().take(START_CLOUDS);
-    let smoothing = options.tuning.range_smoothing()?;
-    let mut readable =
-        clouds.filter_map(|frame| Some((frame.frame, read_cloud(frame, options.seed, smoothing.as_ref()).ok()?.ok()?)));
-    let found = readable.find(|(_, cloud)| !cloud.points_m.is_empty());
-    let (points_m, blocks) = found.as_ref().map_or((&[][..], &[][..]), |(_, cloud)| (&cloud.points_m, &cloud.blocks));
-    let pose = pose_from_points(inputs.part, &inputs.measures, &options.tuning.guided_points, points_m, blocks)?;
+    let mut readable = clouds.filter_map(|frame| Some((frame.frame, read_cloud(frame, stream).ok()?.ok()?.seen)));
+    let found = readable.find(|(_, seen)| !seen.points_m.is_empty());
+    stream.begin_from(found.as_ref().map_or(&[], |(_, seen)| &seen.points_m))?;
     inputs.notes.push(match &found {
         Some((frame, _)) => format!(
             "no first pose is given; someone upright who faces the camera is fitted to the points of frame {frame} (--init)"
         ),
         None => "no first pose is given and the first clouds have no points; someone upright 3 m before the camera (--init)".to_owned(),
     });
-    Ok(pose)
+    Ok(())
 }
 
 /// The report would replace that of the scene, and tables among the clouds would be read as clouds.

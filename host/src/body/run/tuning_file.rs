@@ -47,7 +47,43 @@ pub fn load(path: &Path) -> Result<BodyTuning> {
 /// # Errors
 /// As [`load`].
 pub fn parse(text: &str) -> Result<BodyTuning> {
-    let given: Table = toml::from_str(text).context("it is not valid TOML")?;
+    over_defaults(toml::from_str(text).context("it is not valid TOML")?)
+}
+
+/// Reads the same numbers as a JSON text; messages call it `name`.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse_json(text: &str, name: &str) -> Result<BodyTuning> {
+    let inner = || -> Result<BodyTuning> {
+        let given = serde_json::from_str(text)?;
+        match toml_value("", &given)? {
+            Value::Table(given) => over_defaults(given),
+            _ => bail!("it has to hold keys and values"),
+        }
+    };
+    inner().with_context(|| format!("`{name}` cannot be used"))
+}
+
+/// A value of JSON; `key` is where it stands.
+fn toml_value(key: &str, json: &serde_json::Value) -> Result<Value> {
+    use serde_json::Value as Json;
+    Ok(match json {
+        Json::Bool(flag) => Value::Boolean(*flag),
+        Json::String(text) => Value::String(text.clone()),
+        Json::Number(number) => match (number.as_i64(), number.as_f64()) {
+            (Some(whole), _) => Value::Integer(whole),
+            (None, Some(real)) => Value::Float(real),
+            (None, None) => bail!("`{key}` has to be a number, not {number}"),
+        },
+        Json::Object(fields) => Value::Table(
+            fields.iter().map(|(key, value)| Ok((key.clone(), toml_value(key, value)?))).collect::<Result<_>>()?,
+        ),
+        Json::Null | Json::Array(_) => bail!("`{key}` has to be a number, not {json}"),
+    })
+}
+
+fn over_defaults(given: Table) -> Result<BodyTuning> {
     let mut all = Table::try_from(BodyTuning::default()).map_err(Error::invalid)?;
     let known = keys("", &all);
     overlay("", &mut all, given, &known)?;
@@ -170,6 +206,11 @@ mod tests {
         (wanted.pulling_blocks, wanted.guided.reach_std_m, wanted.guided.joint_std.elbow) = (12, 1.0, 3.5);
         assert_eq!(found, wanted);
         assert_eq!(parse("").unwrap(), BodyTuning::default());
+        let json = r#"{"pulling_blocks": 12, "guided": {"reach_std_m": 1, "joint_std": {"elbow": 3.5}}}"#;
+        assert_eq!(parse_json(json, "config").unwrap(), wanted);
+        for wrong in ["[]", r#"{"guided": {"reach_std_m": null}}"#, r#"{"guided": {"reach_std_m": [1]}}"#, "x"] {
+            assert!(format!("{:#}", parse_json(wrong, "config").unwrap_err()).contains("`config` cannot"), "{wrong}");
+        }
     }
 
     #[test]

@@ -1,13 +1,22 @@
-//! Tracking a body from point clouds: which motion model, its numbers, and the core's step over
-//! many threads.
+//! Tracking a body from point clouds: which motion model, its numbers, the core's step over many
+//! threads, and a stream of frames.
 
 pub mod end_effectors;
 pub mod filter;
+pub mod frame_time;
 pub mod model_kind;
+pub mod seen_points;
 mod sized;
+pub mod start;
+pub mod stream;
+pub mod stream_options;
 pub mod tuning;
 
 pub use end_effectors::MAX_BODY_PARTICLES;
 pub use filter::BodyFilter;
+pub use frame_time::FrameTime;
 pub use model_kind::BodyModelKind;
+pub use seen_points::SeenPoints;
+pub use stream::{BodyStream, StreamState, StreamedFrame};
+pub use stream_options::BodyStreamOptions;
 pub use tuning::BodyTuning;

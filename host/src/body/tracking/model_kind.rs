@@ -1,15 +1,17 @@
 //! The motion models that the command knows by name.
 
 use serde::{Deserialize, Serialize};
+use std::str::FromStr;
 
 /// How particles move from frame to frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "command", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum BodyModelKind {
     /// Goals of head, hands and feet go on linearly; poses by probabilistic inverse kinematics.
     EndEffector,
     /// As end-effector, with the points pulling at each pose before it is drawn: for few particles.
+    #[default]
     Guided,
     /// Each angle goes on by itself: the baseline of the PIK paper.
     Angular,
@@ -24,6 +26,23 @@ pub enum BodyModelKind {
 }
 
 impl BodyModelKind {
+    /// All models, in the order of texts.
+    pub const ALL: [Self; 7] = [
+        Self::EndEffector,
+        Self::Guided,
+        Self::Angular,
+        Self::Stick,
+        Self::PelvicLift,
+        Self::EndEffectorPaper,
+        Self::AngularPaper,
+    ];
+
+    /// Default number of particles.
+    #[must_use]
+    pub fn default_particles(self) -> usize {
+        if self == Self::Guided { 50 } else { 500 }
+    }
+
     /// Whether it is a model with the settings that the paper prints, which sees the points as they
     /// are.
     #[must_use]
@@ -43,5 +62,30 @@ impl BodyModelKind {
             Self::EndEffectorPaper => "end-effector-paper",
             Self::AngularPaper => "angular-paper",
         }
+    }
+}
+
+impl FromStr for BodyModelKind {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let named = Self::ALL.into_iter().find(|kind| kind.name() == text);
+        named.ok_or_else(|| format!("has to be one of {}, not `{text}`", Self::ALL.map(Self::name).join(", ")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_files_and_of_the_command() {
+        for kind in BodyModelKind::ALL {
+            assert_eq!(kind.name().parse(), Ok(kind));
+            assert_eq!(serde_json::to_value(kind).unwrap(), kind.name());
+            #[cfg(feature = "command")]
+            assert_eq!(clap::ValueEnum::to_possible_value(&kind).unwrap().get_name(), kind.name());
+        }
+        assert!("guidde".parse::<BodyModelKind>().unwrap_err().contains("guided, angular"));
     }
 }

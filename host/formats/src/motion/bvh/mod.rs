@@ -61,6 +61,7 @@ pub fn parse_with(text: &str, path: &Path, options: &ReadOptions<'_>) -> Result<
     let mut motion = Motion {
         frames_per_second: 1.0 / header.frame_time_s,
         joints: joints.iter().map(|joint| joint.name.clone()).collect(),
+        parents: joints.iter().map(|joint| joint.parent).collect(),
         positions_m: Vec::with_capacity(joints.len() * rows.len()),
         shortfall,
     };

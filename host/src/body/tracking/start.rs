@@ -1,8 +1,8 @@
 //! The first pose where only points are known: upright, facing the camera, then fitted to the
 //! points.
 
+use super::tuning::PointTuning;
 use crate::body::BodyPart;
-use crate::body::tracking::tuning::PointTuning;
 use crate::error::Result;
 use sinew_core::kinematics::inverse::{PoseDensity, Solve};
 use sinew_core::math::Vec3;

@@ -1,0 +1,195 @@
+//! A body tracked frame by frame.
+
+use crate::arrays::points_array;
+use crate::errors::{exception, wrong};
+use numpy::{IntoPyArray, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use sinew::body::pose_file::{inside_limits, pose_from_json, read_pose};
+use sinew::body::run::measures_source::{measures_from_json, measures_of_height, read_measures};
+use sinew::body::run::tuning_file;
+use sinew::body::tracking::filter::WholeBodyEstimate;
+use sinew::body::tracking::stream::stick_at;
+use sinew::body::tracking::{BodyModelKind, BodyStream, BodyStreamOptions, BodyTuning, FrameTime, StreamedFrame};
+use sinew::body::{BodyFile, BodyPart};
+use sinew::error::Result;
+use sinew::stereo::stick_wave::StickEnds;
+use sinew_core::math::Vec3;
+use sinew_core::pik::processes::stick::StickSight;
+use std::path::{Path, PathBuf};
+
+/// A file, or what would stand in it as JSON, which Python gives as bytes.
+#[derive(Debug, FromPyObject)]
+pub enum Given {
+    Json(Vec<u8>),
+    File(PathBuf),
+}
+
+impl Given {
+    /// What `file` reads or `json` parses.
+    fn read<T>(&self, file: impl FnOnce(&Path) -> Result<T>, json: impl FnOnce(&str) -> Result<T>) -> Result<T> {
+        match self {
+            Self::Json(bytes) => json(&String::from_utf8_lossy(bytes)),
+            Self::File(path) => file(path),
+        }
+    }
+}
+
+/// A tracker that answers each frame from those before it.
+#[pyclass(module = "sinew._sinew")]
+#[derive(Debug)]
+pub struct Body {
+    stream: BodyStream,
+    #[pyo3(get)]
+    notes: Vec<String>,
+}
+
+#[pymethods]
+impl Body {
+    #[new]
+    #[expect(clippy::too_many_arguments, reason = "the options of `sinew track body`")]
+    fn new(
+        height_m: Option<f32>,
+        measures: Option<Given>,
+        part: &str,
+        model: &str,
+        particles: Option<usize>,
+        seed: u64,
+        rate_hz: f32,
+        first_pose: Option<Given>,
+        floor_y_m: Option<f32>,
+        threads: Option<usize>,
+        config: Option<Given>,
+    ) -> PyResult<Self> {
+        let part: BodyPart = part.parse().map_err(|rule: String| wrong("part", &rule))?;
+        let model: BodyModelKind = model.parse().map_err(|rule: String| wrong("model", &rule))?;
+        let particles = particles.unwrap_or_else(|| model.default_particles());
+        let mut notes = Vec::new();
+        let mut make = || {
+            let tuning = config.as_ref().map_or_else(
+                || Ok(BodyTuning::default()),
+                |given| given.read(tuning_file::load, |text| tuning_file::parse_json(text, "config")),
+            )?;
+            let options = BodyStreamOptions { part, model, particles, seed, rate_hz, floor_y_m, threads, tuning };
+            options.check()?;
+            let measures = match &measures {
+                None => measures_of_height(height_m, &mut notes)?,
+                Some(Given::File(path)) => read_measures(path, false, &mut notes)?,
+                Some(given) => given.read(BodyFile::read, |text| measures_from_json(text, "measures"))?,
+            };
+            let first = first_pose.as_ref().map(|given| {
+                let pose = given.read(read_pose, |text| pose_from_json(text, "first_pose"))?;
+                inside_limits(pose, &measures, "first_pose", &mut notes)
+            });
+            BodyStream::new(options, measures, first.transpose()?)
+        };
+        let stream = make().map_err(|error| exception(&error))?;
+        Ok(Self { stream, notes })
+    }
+
+    /// The estimate as a dictionary; `None` in the place of what is not known yet.
+    fn update<'py>(
+        &mut self,
+        py: Python<'py>,
+        points: Option<PyReadonlyArray2<'py, f32>>,
+        time_s: Option<f64>,
+        stick: Option<[[f32; 3]; 2]>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let numbers = points.as_ref().map_or(Ok(&[][..]), PyReadonlyArray2::as_slice)?;
+        let (points, _) = numbers.as_chunks::<3>();
+        let when = time_s.map_or(FrameTime::Next, FrameTime::Seconds);
+        let ends: Option<StickEnds> = stick.map(|ends| ends.map(Vec3::from));
+        let stick = ends.and_then(stick_at).unwrap_or(StickSight::Unseen);
+        let stream = &mut self.stream;
+        let answer = py.detach(|| stream.update(points.iter().copied().map(Vec3::from), when, stick));
+        self.answer(py, &answer.map_err(|error| exception(&error))?)
+    }
+
+    #[getter]
+    fn frame(&self) -> Option<u64> {
+        self.stream.frame()
+    }
+
+    #[getter]
+    fn part(&self) -> &'static str {
+        self.stream.options().part.name()
+    }
+
+    #[getter]
+    fn model(&self) -> &'static str {
+        self.stream.options().model.name()
+    }
+
+    #[getter]
+    fn particles(&self) -> usize {
+        self.stream.options().particles
+    }
+
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.stream.options().seed
+    }
+
+    #[getter]
+    fn rate_hz(&self) -> f64 {
+        f64::from(self.stream.options().rate_hz)
+    }
+
+    #[getter]
+    fn measures_json(&self) -> PyResult<String> {
+        json_of_measures(&BodyFile::from(self.stream.measures()))
+    }
+
+    #[getter]
+    fn state_crc32(&mut self) -> PyResult<u32> {
+        self.stream.state_crc32().map_err(|error| exception(&error))
+    }
+
+    /// The tracker as text, which `restored` takes.
+    fn saved(&mut self) -> PyResult<String> {
+        self.stream.saved().map_err(|error| exception(&error))
+    }
+
+    #[staticmethod]
+    fn restored(py: Python<'_>, saved: &str, notes: Vec<String>) -> PyResult<Self> {
+        let stream = py.detach(|| BodyStream::restored(saved)).map_err(|error| exception(&error))?;
+        Ok(Self { stream, notes })
+    }
+}
+
+impl Body {
+    fn answer<'py>(&self, py: Python<'py>, answer: &StreamedFrame) -> PyResult<Bound<'py, PyDict>> {
+        let named = PyDict::new(py);
+        named.set_item("frame", answer.frame)?;
+        named.set_item("time_s", answer.time_s)?;
+        named.set_item("points", answer.points)?;
+        named.set_item("skipped_points", answer.skipped)?;
+        named.set_item("points_over_cap", answer.over_cap)?;
+        if let Some(estimate) = &answer.estimate {
+            self.add_estimate(py, &named, estimate)?;
+        }
+        Ok(named)
+    }
+
+    fn add_estimate<'py>(
+        &self,
+        py: Python<'py>,
+        named: &Bound<'py, PyDict>,
+        estimate: &WholeBodyEstimate,
+    ) -> PyResult<()> {
+        let bones = self.stream.options().part.bones();
+        named.set_item("pose", estimate.angles_rad.to_vec().into_pyarray(py))?;
+        named.set_item("joints_m", points_array(py, &estimate.ends_m[..bones]))?;
+        named.set_item("spread_m", estimate.spread_m[..bones].to_vec().into_pyarray(py))?;
+        named.set_item("observed", estimate.observed[..bones].to_vec().into_pyarray(py))?;
+        named.set_item("effective_sample_size", estimate.effective_sample_size)?;
+        named.set_item("log_evidence", estimate.log_evidence)?;
+        named.set_item("tempering", estimate.tempering)?;
+        named.set_item("is_degenerate", estimate.is_degenerate)
+    }
+}
+
+/// Measures as `body.json` has them.
+pub fn json_of_measures(file: &BodyFile) -> PyResult<String> {
+    serde_json::to_string(file).map_err(|error| exception(&error.into()))
+}
