@@ -6,11 +6,16 @@
 #![expect(clippy::needless_pass_by_value, reason = "functions for Python own what their arguments are turned into")]
 
 mod angles;
+mod arm;
+mod arm_estimate;
+mod arm_options;
 mod arrays;
 mod errors;
 mod model;
 mod online;
+mod pictures;
 mod simulate;
+mod simulate_arm;
 mod track;
 
 use pyo3::prelude::*;
@@ -21,19 +26,26 @@ mod _sinew {
     #[pymodule_export]
     use crate::angles::{Angles, angles_of_array, angles_of_file, layouts};
     #[pymodule_export]
+    use crate::arm::ArmTracker;
+    #[pymodule_export]
     use crate::errors::SinewError;
     #[pymodule_export]
     use crate::model::{Model, models};
     #[pymodule_export]
     use crate::online::Tracker;
     #[pymodule_export]
+    use crate::pictures::{find_blobs, read_image, segment_skin};
+    #[pymodule_export]
     use crate::simulate::simulate_keypoints;
+    #[pymodule_export]
+    use crate::simulate_arm::simulate_arm;
     #[pymodule_export]
     use crate::track::{track_angles, track_array, track_file};
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("BLOB_COLUMNS", crate::pictures::blob_columns().to_vec())?;
         module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
         module.add("FLEXIONS", sinew::cyclic::anatomy::ANATOMICAL_ANGLES.to_vec())?;
         let columns = sinew::cyclic::angle_table::angle_columns().take(sinew::cyclic::angle_table::ANGLES);

@@ -184,6 +184,12 @@ impl ArmStream {
         }
     }
 
+    /// Width and height of the images, pixels.
+    #[must_use]
+    pub fn size_px(&self) -> (u32, u32) {
+        self.size_px
+    }
+
     /// The camera of whole images.
     #[must_use]
     pub fn camera(&self) -> &Camera {

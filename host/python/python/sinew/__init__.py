@@ -13,9 +13,13 @@ Angles are radians unless a name ends in ``_deg``. Missing numbers are NaN.
 """
 
 from ._angles import Angles, angles, layouts
+from ._arm import ArmTracker
+from ._arm_estimate import ArmEstimate, ArmPair, ArmParticles
+from ._images import find_blobs, read_image, segment_skin
 from ._model import Model, models
 from ._online import CyclicEstimate, CyclicTracker
 from ._simulate import SimulatedKeypoints, simulate_keypoints
+from ._simulate_arm import SimulatedArm, simulate_arm
 from ._sinew import ANGLES as ANGLE_NAMES
 from ._sinew import FLEXIONS as FLEXION_NAMES
 from ._sinew import VERSION as __version__
@@ -27,16 +31,25 @@ __all__ = [
     "ANGLE_NAMES",
     "FLEXION_NAMES",
     "Angles",
+    "ArmEstimate",
+    "ArmPair",
+    "ArmParticles",
+    "ArmTracker",
     "CyclicEstimate",
     "CyclicTrack",
     "CyclicTracker",
     "Model",
+    "SimulatedArm",
     "SimulatedKeypoints",
     "SinewError",
     "__version__",
     "angles",
+    "find_blobs",
     "layouts",
     "models",
+    "read_image",
+    "segment_skin",
+    "simulate_arm",
     "simulate_keypoints",
     "track_cyclic",
 ]
