@@ -1,5 +1,6 @@
 //! Pictures as a camera of at most 320 x 240 pixels would send them: lines of RGB565.
 
+use crate::pixels::{Picture, Pixels};
 use image::{Rgb, RgbImage};
 use sinew_record::LINE_PIXELS;
 
@@ -15,7 +16,7 @@ pub fn block_of((width, height): (u32, u32)) -> u32 {
 /// Means of blocks of `block` x `block` pixels; what is left at the right and at the bottom is cut
 /// off.
 #[must_use]
-pub fn of_blocks(image: &RgbImage, block: u32) -> RgbImage {
+pub fn of_blocks(image: &Picture<impl Pixels>, block: u32) -> RgbImage {
     RgbImage::from_fn(image.width() / block, image.height() / block, |u, v| {
         let mut sum = [0_u32; 3];
         for dv in 0..block {

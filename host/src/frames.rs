@@ -2,7 +2,8 @@
 //! frames.
 
 use crate::error::Result;
-use image::{GrayImage, Luma, RgbImage};
+use crate::pixels::{Picture, Pixels};
+use image::{GrayImage, Luma};
 use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION, LikelyBlob};
 use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::edges::{EdgeDetector, EdgeList, EdgePixel};
@@ -104,7 +105,7 @@ impl FrameReader {
     ///
     /// # Errors
     /// Images with a side above the core's limit.
-    pub fn read(&mut self, image: &RgbImage, skin: &impl SkinClassifier) -> Result<FrameView> {
+    pub fn read(&mut self, image: &Picture<impl Pixels>, skin: &impl SkinClassifier) -> Result<FrameView> {
         let size = (image.width() as usize, image.height() as usize);
         if size != self.size {
             self.buffers.fit(size);
@@ -134,6 +135,15 @@ impl FrameReader {
         }
     }
 
+    /// Brightness of the last frame: what the next one is compared with. None before the first
+    /// frame and where the last one was forgotten.
+    pub fn last_luminance(&mut self) -> Option<GrayImage> {
+        let (width, height) = self.size;
+        let buffers = self.buffers.borrow();
+        let levels = self.analyser.last_luminance(&buffers);
+        if levels.is_empty() { None } else { GrayImage::from_raw(width as u32, height as u32, levels.to_vec()) }
+    }
+
     /// The last frame's mask after morphology, 255 = skin.
     #[must_use]
     pub fn mask(&mut self) -> GrayImage {
@@ -150,6 +160,7 @@ impl FrameReader {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use image::RgbImage;
     use sinew_core::vision::skin::GaussianSkin;
 
     fn skin() -> GaussianSkin {

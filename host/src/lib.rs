@@ -1,5 +1,6 @@
 //! Host side of Sinew: image folders, skin models, scenes, plots and reports around [`sinew_core`].
 
+pub mod blob_rows;
 pub mod body;
 pub mod camera_lines;
 #[cfg(feature = "command")]
@@ -18,6 +19,7 @@ pub mod keypoints;
 pub mod model_text;
 pub mod output;
 pub mod person;
+pub mod pixels;
 mod reading_again;
 pub mod record;
 #[cfg(feature = "report")]

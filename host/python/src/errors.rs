@@ -18,7 +18,7 @@ create_exception!(
 );
 
 /// The command's options in messages, and what Python calls them. Longer ones are first.
-const NAMES: [(&str, &str); 27] = [
+const NAMES: [(&str, &str); 29] = [
     ("`sinew angles --min-confidence`", "`min_confidence` of `sinew.angles`"),
     ("`sinew angles --input-rate HZ`", "`fps` of `sinew.angles`"),
     ("`sinew angles` with --input-rate HZ", "`sinew.angles` with fps=HZ"),
@@ -37,6 +37,11 @@ const NAMES: [(&str, &str); 27] = [
     ("`--person`", "`person`"),
     ("--person", "person"),
     ("--online", "online=True"),
+    ("`--skin ", "`skin="),
+    (
+        "what the run left is not whole; leave --resume out to begin anew",
+        "the saved state is of another tracker, or cut",
+    ),
     ("`sigma` ", "`sigma_deg` "),
     ("`rate` ", "`rate_hz` "),
     ("`height-px` ", "`height_px` "),
@@ -73,6 +78,7 @@ fn refused(error: &Error) -> Option<io::ErrorKind> {
         | Error::Keypoints(KeypointError::Unreadable { reason, .. })
         | Error::Cloud(CloudError::Unreadable { reason, .. })
         | Error::Motion(MotionError::Unreadable { reason, .. }) => Some(reason.kind()),
+        Error::ImageFile(error) => error.io,
         _ => None,
     }
 }

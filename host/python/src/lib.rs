@@ -6,6 +6,9 @@
 #![expect(clippy::needless_pass_by_value, reason = "functions for Python own what their arguments are turned into")]
 
 mod angles;
+mod arm;
+mod arm_estimate;
+mod arm_options;
 mod arrays;
 mod body;
 mod errors;
@@ -13,7 +16,9 @@ mod model;
 mod motion;
 mod names_of_body;
 mod online;
+mod pictures;
 mod simulate;
+mod simulate_arm;
 mod stereo;
 mod track;
 mod train;
@@ -26,6 +31,8 @@ mod _sinew {
     #[pymodule_export]
     use crate::angles::{Angles, angles_of_array, angles_of_file, layouts};
     #[pymodule_export]
+    use crate::arm::ArmTracker;
+    #[pymodule_export]
     use crate::body::Body;
     #[pymodule_export]
     use crate::errors::SinewError;
@@ -36,7 +43,11 @@ mod _sinew {
     #[pymodule_export]
     use crate::online::Tracker;
     #[pymodule_export]
+    use crate::pictures::{find_blobs, read_image, segment_skin};
+    #[pymodule_export]
     use crate::simulate::simulate_keypoints;
+    #[pymodule_export]
+    use crate::simulate_arm::simulate_arm;
     #[pymodule_export]
     use crate::stereo::simulate_stereo;
     #[pymodule_export]
@@ -50,6 +61,7 @@ mod _sinew {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("BLOB_COLUMNS", crate::pictures::blob_columns().to_vec())?;
         module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
         module.add("FLEXIONS", sinew::cyclic::anatomy::ANATOMICAL_ANGLES.to_vec())?;
         module.add("BODY_JOINTS", full_body::BODY_JOINT_NAMES.to_vec())?;

@@ -8,8 +8,7 @@ use crate::motion::{ArmSide, reach};
 use crate::output::OutputDir;
 use crate::scene::{Scene, SceneOptions, Sides};
 use crate::skin::confusion::median;
-use crate::skin::model::DEFAULT_SKIN;
-use crate::track::{FrontEnd, RunOutcome, SideChoice, TrackOptions, TrackRun};
+use crate::track::{RunOutcome, TrackOptions, TrackRun};
 use anyhow::{Result, bail};
 use clap::Args;
 use serde::Serialize;
@@ -105,19 +104,12 @@ fn track_options(out: &OutputDir, seed: u64) -> Result<TrackOptions> {
     let scene = out.join("scene");
     Ok(TrackOptions {
         folder: scene.join("frames"),
-        side: SideChoice::Right,
         rate_hz: f64::from(RATE_HZ),
         seed,
-        skin: DEFAULT_SKIN.to_owned(),
-        calibrate: None,
-        front_end: FrontEnd::Pictures,
-        hands: None,
-        head: None,
-        face: true,
         overlay: true,
-        particles_csv: false,
         strict: true,
         config: Config::load(&scene.join("camera.toml"))?,
+        ..TrackOptions::default()
     })
 }
 

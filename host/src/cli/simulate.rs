@@ -5,18 +5,15 @@ use super::scene_args::{clear_frames, pair};
 use super::simulate_cyclic::{self, SimulateCyclicArgs};
 use super::simulate_keypoints::{self, SimulateKeypointsArgs};
 use super::simulate_stereo::{self, SimulateStereoArgs};
-use crate::motion::{self, ArmMotion, ArmSide, ReadOptions, Shortfall, reach};
+use crate::motion;
 use crate::output::OutputDir;
 use crate::registry::{Kind, choice};
-use crate::scene::{Scene, SceneOptions, Sides};
+use crate::scene::{MotionSource, Scene, SceneOptions};
 use crate::track::SideChoice;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
 use serde_json::json;
-use std::path::{Path, PathBuf};
-
-/// Frames of the built-in motion where `--frames` is not given.
-const BUILTIN_FRAMES: usize = 250;
+use std::path::PathBuf;
 
 /// What to simulate.
 #[derive(Debug, Args)]
@@ -42,16 +39,6 @@ pub enum SimulateSubject {
     Cyclic(SimulateCyclicArgs),
     /// The same person filmed from the side: keypoints as a pose detector writes them.
     Keypoints(SimulateKeypointsArgs),
-}
-
-impl From<SideChoice> for Sides {
-    fn from(choice: SideChoice) -> Self {
-        match choice {
-            SideChoice::Left => Self::One(ArmSide::Left),
-            SideChoice::Right => Self::One(ArmSide::Right),
-            SideChoice::Both => Self::Both,
-        }
-    }
 }
 
 /// Arguments of `sinew simulate arm`.
@@ -130,7 +117,15 @@ pub fn run(args: &SimulateArgs, console: &Console) -> Result<()> {
 }
 
 fn run_arm(args: &SimulateArmArgs, console: &Console) -> Result<()> {
-    let (motion, shortfall) = arm_motion(args)?;
+    let source = MotionSource {
+        skeleton: args.skeleton.as_deref(),
+        rate_hz: args.motion_rate,
+        between: args.between,
+        partial: args.partial,
+        mirror: args.mirror,
+        ..MotionSource::of(&args.motion)
+    };
+    let (motion, shortfall) = source.motion(args.seed, args.rate, args.frames)?;
     let notes: Vec<String> = shortfall.iter().map(ToString::to_string).collect();
     notes.iter().for_each(|note| console.note(note));
     let options = SceneOptions {
@@ -152,34 +147,12 @@ fn run_arm(args: &SimulateArmArgs, console: &Console) -> Result<()> {
     console.answer(&text, &json!({ "frames": scene.len(), "notes": notes, "out": args.out }))
 }
 
-/// The motion at the camera's rate, and whether its recording ends early.
-fn arm_motion(args: &SimulateArmArgs) -> Result<(ArmMotion, Option<Shortfall>)> {
-    if args.motion == Path::new("builtin") {
-        let motion = reach::random_reaches(args.seed, args.rate, args.frames.unwrap_or(BUILTIN_FRAMES))?;
-        return Ok((motion, None));
-    }
-    let options = ReadOptions {
-        skeleton: args.skeleton.as_deref(),
-        frames_per_second: Some(args.motion_rate),
-        partial: args.partial,
-        ..ReadOptions::default()
-    };
-    let recorded = motion::read(&args.motion, &options)?;
-    let motion = ArmMotion::from_motion(&recorded, &args.motion)?;
-    let motion = if args.mirror { motion.mirrored() } else { motion };
-    let motion = match args.between {
-        Some((start, end)) if start >= 0.0 && start < end => motion.between(start, end),
-        Some(_) => bail!("--between START,END needs 0 <= START < END, in seconds"),
-        None => motion,
-    };
-    Ok((motion.resampled(args.rate)?, recorded.shortfall))
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{ArmSide, Scene, SceneOptions, reach};
+    use super::{Scene, SceneOptions};
     use crate::cli::{Cli, run};
     use crate::config::Config;
+    use crate::motion::{ArmSide, reach};
     use clap::Parser;
     use std::fs;
     use std::path::Path;

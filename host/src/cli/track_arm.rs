@@ -9,15 +9,14 @@ use super::viewer_args::ViewerArgs;
 use crate::config::{Config, DEFAULT_FILE, MAX_PARTICLES};
 use crate::images::{VideoFacts, is_video};
 use crate::registry::{Kind, extensions};
-use crate::track::{Event, FrontEnd, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun};
+use crate::track::{
+    DEFAULT_RATE_HZ, DEFAULT_SEED, Event, FrontEnd, RATES_HZ, RunOutcome, SideChoice, TrackOptions, TrackRun,
+};
 use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::json;
 use sinew_core::tracker::arm::Variant;
 use std::path::PathBuf;
-
-/// Rate of a folder of frames that does not say, Hz.
-const DEFAULT_RATE_HZ: f64 = 15.0;
 
 /// Options of `sinew track arm`.
 #[derive(Debug, Args)]
@@ -44,7 +43,7 @@ pub struct TrackArmArgs {
     #[arg(long)]
     pub print_config: bool,
     /// Which arms; left is the person's left.
-    #[arg(long, value_enum, default_value_t = SideChoice::Right)]
+    #[arg(long, value_enum, default_value_t = SideChoice::default())]
     pub side: SideChoice,
     /// Which tracker [default: pik].
     #[arg(long, value_parser = variant_parser())]
@@ -53,7 +52,7 @@ pub struct TrackArmArgs {
     #[arg(long, value_name = "N", value_parser = particle_count, allow_negative_numbers = true)]
     pub particles: Option<usize>,
     /// Seed of all that is random; the same seed gives the same result.
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_SEED)]
     pub seed: u64,
     /// Skin model and calibration.
     #[command(flatten)]
@@ -79,7 +78,7 @@ pub struct TrackArmArgs {
     pub resume: bool,
     /// What reads the pictures: `pictures` as they are, or `lines` of at most 320 x 240 pixels,
     /// exactly as firmware reads those of its camera.
-    #[arg(long, value_enum, default_value_t = FrontEnd::Pictures)]
+    #[arg(long, value_enum, default_value_t = FrontEnd::default())]
     pub front_end: FrontEnd,
     /// Table of hands that any detector found, in place of skin: frame (from 0), u_px, v_px,
     /// size_px (diameter), probability, and side (left or right) where it is known.

@@ -11,9 +11,10 @@ pub use camera::CameraConfig;
 pub use likelihood::{EdgeConfig, LikelihoodConfig};
 pub use tracker::{MAX_PARTICLES, options_for};
 
-use crate::error::{Context, Result, bail};
+use crate::error::{Context, Error, Result, bail};
 use crate::file::read_text;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
+use sinew_core::error::ParameterError;
 use sinew_core::tracker::arm::ArmOptions;
 use std::path::Path;
 
@@ -54,18 +55,42 @@ impl Config {
     /// # Errors
     /// As [`Config::load`].
     pub fn parse(text: &str) -> Result<Self> {
+        Self::read(toml::Deserializer::parse(text).context("it is not valid TOML")?)
+    }
+
+    /// Reads JSON text with the same sections: what `run.json` has as `options.config`.
+    ///
+    /// # Errors
+    /// As [`Config::load`].
+    pub fn parse_json(text: &str) -> Result<Self> {
+        // By way of a value, whose numbers are parsed exactly.
+        Self::read(serde_json::from_str::<serde_json::Value>(text).context("it is not valid JSON")?)
+    }
+
+    fn read<'de, D: Deserializer<'de>>(text: D) -> Result<Self>
+    where
+        Error: From<D::Error>,
+    {
         let mut unknown = Vec::new();
-        let value = toml::Deserializer::parse(text).context("it is not valid TOML")?;
-        let config: Self = serde_ignored::deserialize(value, |path| unknown.push(path.to_string()))?;
+        let config: Self = serde_ignored::deserialize(text, |path| unknown.push(path.to_string()))?;
         if let Some(key) = unknown.first() {
             bail!("{}", known_keys::unknown_key_message(key));
         }
-        config.camera.check()?;
-        config.body.check()?;
-        tracker::check(&config.tracker)?;
-        config.likelihood.build()?;
-        config.edges.build()?;
+        config.check()?;
         Ok(config)
+    }
+
+    /// Refuses values out of range, by name.
+    ///
+    /// # Errors
+    /// The first one.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        self.camera.check()?;
+        self.body.check()?;
+        tracker::check(&self.tracker)?;
+        self.likelihood.build()?;
+        self.edges.build()?;
+        Ok(())
     }
 }
 
@@ -76,6 +101,26 @@ mod tests {
     #[test]
     fn the_printed_file_holds_exactly_the_defaults() {
         assert_eq!(Config::parse(DEFAULT_FILE).unwrap(), Config::default());
+    }
+
+    #[test]
+    fn json_holds_what_toml_does() {
+        let config = Config::parse(
+            "[body]\nupper_arm_m = 0.29\n[camera]\nwidth_px = 640\ndistortion = [0.1, -0.3, 0, 0, 1e-7]\n\
+             [tracker]\ngate = false\nvariant = \"bootstrap\"\n",
+        );
+        let config = config.unwrap();
+        for config in [Config::default(), config] {
+            assert_eq!(Config::parse_json(&serde_json::to_string(&config).unwrap()).unwrap(), config);
+        }
+        let refused = |text: &str, part: &str| {
+            let message = format!("{:#}", Config::parse_json(text).unwrap_err());
+            assert!(message.contains(part), "{message}");
+        };
+        refused("{\"body\": {\"heigth_m\": 1.8}}", "body.height_m");
+        refused("{\"tracker\": {\"particles\": 0}}", "particles");
+        refused("[1]", "config");
+        refused("{", "JSON");
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! Neurocomputing 221, 2017.
 
 use crate::error::Result;
-use image::RgbImage;
+use crate::pixels::{Picture, Pixels};
 use rustface::{ImageData, Model};
 use sinew_core::vision::objects::head::HeadBox;
 use sinew_core::vision::objects::person_colour::PersonColour;
@@ -35,7 +35,7 @@ pub struct FoundFace {
 impl FoundFace {
     /// A face in a box of a picture.
     #[must_use]
-    pub fn at(image: &RgbImage, head: HeadBox) -> Self {
+    pub fn at(image: &Picture<impl Pixels>, head: HeadBox) -> Self {
         Self { head, colour: PersonColour::of_face(&skin_pixels(image, &head)) }
     }
 }
@@ -63,7 +63,7 @@ impl FaceDetector {
 
     /// The likeliest face of a picture.
     #[must_use]
-    pub fn find(&self, image: &RgbImage) -> Option<FoundFace> {
+    pub fn find(&self, image: &Picture<impl Pixels>) -> Option<FoundFace> {
         let (width, height) = image.dimensions();
         let step = width.max(height).div_ceil(SEARCHED_PX).max(1);
         let (columns, rows) = (width / step, height / step);
@@ -89,7 +89,7 @@ impl FaceDetector {
 }
 
 /// Means of `step` x `step` pixels, grey.
-fn shrunk(image: &RgbImage, step: u32) -> Vec<u8> {
+fn shrunk(image: &Picture<impl Pixels>, step: u32) -> Vec<u8> {
     let (width, height) = image.dimensions();
     let mut grey = Vec::with_capacity((width / step * (height / step)) as usize);
     for row in 0..height / step {
@@ -108,7 +108,7 @@ fn shrunk(image: &RgbImage, step: u32) -> Vec<u8> {
 }
 
 /// Pixels of the face's middle, in a grid.
-fn skin_pixels(image: &RgbImage, head: &HeadBox) -> Vec<[u8; 3]> {
+fn skin_pixels(image: &Picture<impl Pixels>, head: &HeadBox) -> Vec<[u8; 3]> {
     let at = |[low, high]: [f32; 2], index: u32, centre_px: f32, end: u32| {
         let share = low + (high - low) * (index as f32 + 0.5) / SAMPLES as f32;
         ((centre_px + (share - 0.5) * head.width_px).max(0.0) as u32).min(end - 1)
@@ -125,7 +125,7 @@ fn skin_pixels(image: &RgbImage, head: &HeadBox) -> Vec<[u8; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::Rgb;
+    use image::{Rgb, RgbImage};
 
     #[test]
     fn a_picture_without_a_face_has_none() {

@@ -3,6 +3,7 @@
 use super::face::{FaceDetector, FoundFace};
 use super::given::FaceTable;
 use crate::error::Result;
+use crate::pixels::{Picture, Pixels};
 use crate::resume::optional;
 use image::RgbImage;
 use sinew_core::saved_state::{SavedState, StateVisitor};
@@ -62,19 +63,25 @@ impl FaceLooks {
         Ok(Self { faces, interval: rate_hz.round().clamp(1.0, MAX_INTERVAL) as usize, block, look: None })
     }
 
-    /// The face that counts from this frame on, if there is one, and begins the next look.
-    pub fn look(&mut self, frame: usize, image: &RgbImage) -> Option<FoundFace> {
+    /// The face that counts from this frame on, if there is one, and begins the next look. A `head`
+    /// is taken in place of whatever is found.
+    pub fn look(&mut self, frame: usize, image: &Picture<impl Pixels>, head: Option<HeadBox>) -> Option<FoundFace> {
+        let given = |head| FoundFace::at(image, of_blocks(head, self.block));
+        if let Some(head) = head {
+            self.look = None;
+            return Some(given(head));
+        }
         let mut found = None;
         if self.look.as_ref().is_some_and(|look| look.due <= frame) {
             found = self.look.take().and_then(|look| look.answer.wait());
         }
         let is_time = self.look.is_none() && frame.is_multiple_of(self.interval);
         match &self.faces {
-            Faces::Given(faces) => faces.at(frame).map(|head| FoundFace::at(image, of_blocks(head, self.block))),
+            Faces::Given(faces) => faces.at(frame).map(given),
             Faces::Detector(detector) if is_time && frame == 0 => detector.find(image),
             Faces::Detector(detector) => {
                 if is_time {
-                    let (detector, image) = (detector.clone(), image.clone());
+                    let (detector, image) = (detector.clone(), owned(image));
                     let answer = Answer::Awaited(std::thread::spawn(move || detector.find(&image)));
                     self.look = Some(Look { due: frame + LATENCY, answer });
                 }
@@ -82,6 +89,12 @@ impl FaceLooks {
             }
         }
     }
+}
+
+/// The same image for another thread.
+fn owned(image: &Picture<impl Pixels>) -> RgbImage {
+    // As many bytes as the image has.
+    RgbImage::from_raw(image.width(), image.height(), image.as_raw().to_vec()).unwrap_or_default()
 }
 
 /// A box in the picture whose pixels are blocks.
@@ -128,9 +141,9 @@ mod tests {
         let mut looks = FaceLooks::new(15.0, 1, None).unwrap();
         looks.look = Some(Look { due: 10, answer: Answer::Known(Some(face)) });
         let image = RgbImage::new(64, 48);
-        assert_eq!(looks.look(9, &image), None);
-        assert_eq!(looks.look(10, &image), Some(face));
-        assert_eq!(looks.look(11, &image), None);
+        assert_eq!(looks.look(9, &image, None), None);
+        assert_eq!(looks.look(10, &image, None), Some(face));
+        assert_eq!(looks.look(11, &image, None), None);
     }
 
     #[test]
@@ -140,9 +153,11 @@ mod tests {
         std::fs::write(&path, "frame,u_px,v_px,size_px\n2,222,213,26\n").unwrap();
         let mut looks = FaceLooks::new(15.0, 2, Some(FaceTable::read(&path).unwrap())).unwrap();
         let image = RgbImage::from_pixel(320, 240, image::Rgb([200, 150, 125]));
-        assert_eq!(looks.look(1, &image), None);
-        let found = looks.look(2, &image).unwrap();
+        assert_eq!(looks.look(1, &image, None), None);
+        let found = looks.look(2, &image, None).unwrap();
         assert_eq!(found.head, HeadBox { centre_px: [110.75, 106.25], width_px: 13.0 });
         assert!(found.colour.is_some_and(|colour| colour.is_skin([200, 150, 125])));
+        let head = HeadBox { centre_px: [222.0, 213.0], width_px: 26.0 };
+        assert_eq!(looks.look(3, &image, Some(head)), Some(found), "one that comes with the frame");
     }
 }

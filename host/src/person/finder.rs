@@ -5,14 +5,15 @@ use super::faces::FaceLooks;
 use super::skin::PersonSkin;
 use crate::error::Result;
 use crate::frames::FrameReader;
+use crate::pixels::{Picture, Pixels};
 use crate::resume::{from_text, optional, to_text};
-use image::RgbImage;
 use sinew_core::camera::Camera;
 use sinew_core::math::Vec3;
 use sinew_core::saved_state::{SavedState, StateKind, StateVisitor};
 use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::objects::grid::CellGrid;
 use sinew_core::vision::objects::hands::HandFinder;
+use sinew_core::vision::objects::head::HeadBox;
 use sinew_core::vision::objects::person_colour::PersonColour;
 
 /// Most columns of cells. Chosen: a hand of a person two metres away is a few cells wide.
@@ -53,9 +54,10 @@ impl PersonFinder {
         self.skin.as_ref()
     }
 
-    /// Takes a face that counts from this frame on; to be called before the frame is read.
-    pub fn look(&mut self, frame: usize, image: &RgbImage) {
-        let face = self.faces.look(frame, image);
+    /// Takes a face that counts from this frame on, that of `head` if it is given; to be called
+    /// before the frame is read.
+    pub fn look(&mut self, frame: usize, image: &Picture<impl Pixels>, head: Option<HeadBox>) {
+        let face = self.faces.look(frame, image, head);
         self.take(face);
     }
 
@@ -127,11 +129,10 @@ impl SavedState for PersonFinder {
 mod tests {
     use super::*;
     use crate::resume::to_text;
-    use image::Rgb;
+    use image::{Rgb, RgbImage};
     use sinew_core::camera::Pixel;
     use sinew_core::vision::edges::EdgeDetector;
     use sinew_core::vision::hand_likelihood::HandLikelihood;
-    use sinew_core::vision::objects::head::HeadBox;
 
     const SKIN: [u8; 3] = [200, 150, 125];
 
@@ -154,7 +155,7 @@ mod tests {
 
     fn shown(finder: &mut PersonFinder, reader: &mut FrameReader, frame: usize) -> Option<PersonView> {
         let image = picture(frame);
-        finder.look(frame, &image);
+        finder.look(frame, &image, None);
         let skin = finder.skin().cloned().unwrap();
         reader.read(&image, &skin).unwrap();
         finder.see(reader)

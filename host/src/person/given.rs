@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use sinew_core::camera::Pixel;
 use sinew_core::ranges::is_pixel;
+use sinew_core::skeleton::Side;
 use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::objects::head::HeadBox;
 use std::collections::BTreeMap;
@@ -44,21 +45,77 @@ struct FaceRow {
     size_px: f32,
 }
 
+/// A hand that another program found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GivenHand {
+    /// Middle of the hand, pixels.
+    pub centre: Pixel,
+    /// Its diameter, pixels.
+    pub size_px: f32,
+    /// That it is a hand, 0..=1.
+    pub probability: f32,
+    /// Whose it is, where that is known.
+    pub side: Option<Side>,
+}
+
+impl GivenHand {
+    /// The candidate that a tracker takes in place of a blob.
+    ///
+    /// # Errors
+    /// The rule that it breaks, after what `name` says.
+    pub fn candidate(&self, name: &dyn Fn() -> String) -> Result<HandCandidate> {
+        let Self { centre, size_px, probability, .. } = *self;
+        check(centre, size_px, name)?;
+        ensure!(
+            (0.0..=1.0).contains(&probability),
+            "{}: `probability` has to lie from 0 to 1, not {probability}",
+            name()
+        );
+        let variance_px2 = size_px * size_px / 16.0;
+        let area_px = 0.25 * PI * size_px * size_px;
+        Ok(HandCandidate { centre, moments_px2: [variance_px2, 0.0, variance_px2], area_px, likelihood: probability })
+    }
+}
+
 /// Hands of one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub enum GivenHands {
-    /// The table has sides: candidates of the left and of the right hand. A hand without a side is
-    /// a candidate of both.
+    /// Their sides may be known: candidates of the left and of the right hand. A hand without a
+    /// side is a candidate of both.
     OfSides([Vec<HandCandidate>; 2]),
-    /// The table has none.
+    /// No side is.
     OfPerson(Vec<HandCandidate>),
+}
+
+impl GivenHands {
+    /// The hands of a frame, each with its side.
+    #[must_use]
+    pub fn of_frame(hands: &[(Option<Side>, HandCandidate)], has_sides: bool) -> Self {
+        let of = |wanted: Side| {
+            let own = hands.iter().filter(|(side, _)| side.is_none_or(|side| side == wanted));
+            own.map(|(_, candidate)| *candidate).collect()
+        };
+        match has_sides {
+            true => Self::OfSides([of(Side::Left), of(Side::Right)]),
+            false => Self::OfPerson(hands.iter().map(|(_, candidate)| *candidate).collect()),
+        }
+    }
+}
+
+/// A face that another program found: its middle and the width of its box, pixels.
+///
+/// # Errors
+/// The rule that it breaks, after what `name` says.
+pub fn given_head(centre: Pixel, width_px: f32, name: &dyn Fn() -> String) -> Result<HeadBox> {
+    check(centre, width_px, name)?;
+    Ok(HeadBox { centre_px: [centre.u_px, centre.v_px], width_px })
 }
 
 /// A table of hands, the candidates of a tracker in place of blobs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HandTable {
     has_sides: bool,
-    frames: BTreeMap<usize, Vec<(Option<usize>, HandCandidate)>>,
+    frames: BTreeMap<usize, Vec<(Option<Side>, HandCandidate)>>,
 }
 
 impl HandTable {
@@ -72,22 +129,10 @@ impl HandTable {
         let mut table = Self { has_sides: false, frames: BTreeMap::new() };
         for row in rows::<HandRow>(path, "hands", HAND_COLUMNS)? {
             let name = || format!("hands `{}`, frame {}", path.display(), row.frame);
-            check(row.u_px, row.v_px, row.size_px, &name)?;
-            ensure!(
-                (0.0..=1.0).contains(&row.probability),
-                "{}: `probability` has to lie from 0 to 1, not {}",
-                name(),
-                row.probability
-            );
-            let variance_px2 = row.size_px * row.size_px / 16.0;
-            let candidate = HandCandidate {
-                centre: Pixel::new(row.u_px, row.v_px),
-                moments_px2: [variance_px2, 0.0, variance_px2],
-                area_px: 0.25 * PI * row.size_px * row.size_px,
-                likelihood: row.probability,
-            };
-            table.has_sides |= row.side.is_some();
-            let side = row.side.map(|side| usize::from(side == GivenSide::Right));
+            let side = row.side.map(|side| if side == GivenSide::Left { Side::Left } else { Side::Right });
+            let (centre, size_px, probability) = (Pixel::new(row.u_px, row.v_px), row.size_px, row.probability);
+            let candidate = GivenHand { centre, size_px, probability, side }.candidate(&name)?;
+            table.has_sides |= side.is_some();
             table.frames.entry(row.frame).or_default().push((side, candidate));
         }
         Ok(table)
@@ -97,19 +142,12 @@ impl HandTable {
     #[must_use]
     pub fn at(&self, frame: usize) -> GivenHands {
         let hands = self.frames.get(&frame).map_or(&[][..], Vec::as_slice);
-        let of = |wanted: usize| {
-            let own = hands.iter().filter(|(side, _)| side.is_none_or(|side| side == wanted));
-            own.map(|(_, candidate)| *candidate).collect()
-        };
-        match self.has_sides {
-            true => GivenHands::OfSides([of(0), of(1)]),
-            false => GivenHands::OfPerson(hands.iter().map(|(_, candidate)| *candidate).collect()),
-        }
+        GivenHands::of_frame(hands, self.has_sides)
     }
 }
 
-/// A table of faces.
-#[derive(Debug, Clone, PartialEq)]
+/// A table of faces; without a row by default.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct FaceTable(BTreeMap<usize, HeadBox>);
 
 impl FaceTable {
@@ -120,8 +158,8 @@ impl FaceTable {
     /// Names the file, the row and the rule that it broke.
     pub fn read(path: &Path) -> Result<Self> {
         let faces = rows::<FaceRow>(path, "head", FACE_COLUMNS)?.into_iter().map(|row| {
-            check(row.u_px, row.v_px, row.size_px, &|| format!("head `{}`, frame {}", path.display(), row.frame))?;
-            Ok((row.frame, HeadBox { centre_px: [row.u_px, row.v_px], width_px: row.size_px }))
+            let name = || format!("head `{}`, frame {}", path.display(), row.frame);
+            Ok((row.frame, given_head(Pixel::new(row.u_px, row.v_px), row.size_px, &name)?))
         });
         Ok(Self(faces.collect::<Result<_>>()?))
     }
@@ -144,7 +182,8 @@ fn rows<R: DeserializeOwned>(path: &Path, what: &str, columns: &str) -> Result<V
     Ok(rows)
 }
 
-fn check(u_px: f32, v_px: f32, size_px: f32, name: &dyn Fn() -> String) -> Result<()> {
+fn check(centre: Pixel, size_px: f32, name: &dyn Fn() -> String) -> Result<()> {
+    let (u_px, v_px) = (centre.u_px, centre.v_px);
     ensure!(is_pixel(u_px) && is_pixel(v_px), "{}: ({u_px}, {v_px}) is no place near a picture", name());
     ensure!(is_pixel(size_px) && size_px > 0.0, "{}: `size_px` has to be above zero, not {size_px}", name());
     Ok(())

@@ -5,6 +5,7 @@ use super::faces::FaceLooks;
 use crate::camera_lines::{block_of, lines, of_blocks};
 use crate::error::Result;
 use crate::frames::FrameView;
+use crate::pixels::{Picture, Pixels};
 use crate::resume::{from_text, to_text};
 use image::RgbImage;
 use sinew_core::camera::Camera;
@@ -12,6 +13,7 @@ use sinew_core::math::Vec3;
 use sinew_core::saved_state::{SavedState, StateKind, StateVisitor};
 use sinew_core::vision::front_end::PersonLines;
 use sinew_core::vision::front_end::pixel_format::Rgb565;
+use sinew_core::vision::objects::head::HeadBox;
 use sinew_core::vision::skin::SkinClassifier;
 
 /// Firmware's chain for pictures of any size.
@@ -23,6 +25,8 @@ pub struct LinesFinder {
     block: u32,
     /// The camera of the pixels that are blocks.
     camera: Camera,
+    /// What the camera saw last, if the next frame is compared with it.
+    last: Option<RgbImage>,
 }
 
 impl LinesFinder {
@@ -40,21 +44,35 @@ impl LinesFinder {
         let block = block_of(size_px);
         let mut lines = Box::new(PersonLines::empty());
         lines.begin(((size_px.0 / block) as usize, (size_px.1 / block) as usize), skin)?;
-        Ok(Self { lines, faces, block, camera: camera.of_blocks(block) })
+        Ok(Self { lines, faces, block, camera: camera.of_blocks(block), last: None })
     }
 
     /// The picture that the camera sees.
     #[must_use]
-    pub fn seen(&self, image: &RgbImage) -> RgbImage {
+    pub fn seen(&self, image: &Picture<impl Pixels>) -> RgbImage {
         of_blocks(image, self.block)
     }
 
-    /// Answers a frame. Pixels are those that the camera sees.
-    pub fn see(&mut self, frame: usize, image: &RgbImage) -> (FrameView, Option<PersonView>) {
+    /// Answers a frame, whose face is at `head` if that is given. Pixels of the answer are those
+    /// that the camera sees.
+    pub fn see(
+        &mut self,
+        frame: usize,
+        image: &Picture<impl Pixels>,
+        head: Option<HeadBox>,
+    ) -> (FrameView, Option<PersonView>) {
         let image = self.seen(image);
-        let face = self.faces.as_mut().and_then(|faces| faces.look(frame, &image));
+        let face = self.faces.as_mut().and_then(|faces| faces.look(frame, &image, head));
         face.into_iter().for_each(|face| self.lines.add_face(face.head));
-        self.read(&image)
+        let answer = self.read(&image);
+        self.last = Some(image);
+        answer
+    }
+
+    /// What the camera saw last; none if the next frame is not compared with it.
+    #[must_use]
+    pub fn last(&self) -> Option<&RgbImage> {
+        self.last.as_ref()
     }
 
     fn read(&mut self, image: &RgbImage) -> (FrameView, Option<PersonView>) {
@@ -81,6 +99,7 @@ impl LinesFinder {
     /// Forgets the last frame: the next one has no temporal edges, as after a missing image.
     pub fn forget_last_frame(&mut self) {
         self.lines.forget_last_frame();
+        self.last = None;
     }
 
     /// The state after the last frame as text, which [`LinesFinder::restore`] takes. Waits for a
@@ -92,13 +111,15 @@ impl LinesFinder {
         to_text(StateKind::Hands, self)
     }
 
-    /// Goes on from a state that was saved with the same size and rate; `last` is the frame before.
+    /// Goes on from a state that was saved with the same size and rate; `last` is what the camera
+    /// [saw](Self::seen) before.
     ///
     /// # Errors
     /// The state is not whole, or of another run.
-    pub fn restore(&mut self, last: Option<&RgbImage>, saved: &str) -> Result<()> {
+    pub fn restore(&mut self, last: Option<RgbImage>, saved: &str) -> Result<()> {
         // The edges of the last frame are in no state.
-        last.into_iter().for_each(|image| drop(self.read(&of_blocks(image, self.block))));
+        last.iter().for_each(|image| drop(self.read(image)));
+        self.last = last;
         from_text(StateKind::Hands, saved, self)
     }
 

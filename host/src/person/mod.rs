@@ -10,6 +10,6 @@ mod skin;
 pub use face::{FaceDetector, FoundFace};
 pub use faces::FaceLooks;
 pub use finder::{PersonFinder, PersonView};
-pub use given::{FaceTable, GivenHands, HandTable};
+pub use given::{FaceTable, GivenHand, GivenHands, HandTable, given_head};
 pub use lines_finder::LinesFinder;
 pub use skin::PersonSkin;

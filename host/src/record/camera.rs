@@ -20,7 +20,7 @@ pub(super) fn camera_stream(run: &mut ArmRun) -> Result<(Vec<u8>, usize)> {
     let frames = run.each_frame(|frame, timestamp_us, image| {
         if let Some(image) = &image {
             let seen = of_blocks(image, block);
-            if let Some(face) = faces.as_mut().and_then(|faces| faces.look(frame, &seen)) {
+            if let Some(face) = faces.as_mut().and_then(|faces| faces.look(frame, &seen, None)) {
                 stream.push(&CameraFace { head: face.head })?;
             }
             for (row, pixels) in lines(&seen).enumerate() {

@@ -1,6 +1,7 @@
 //! Writes a scene as a folder: frames, camera and truth.
 
 use super::{Scene, truth};
+use crate::config::Config;
 use crate::error::Result;
 use crate::motion::ArmSide;
 use crate::output::OutputDir;
@@ -30,6 +31,24 @@ impl Scene {
             point(ArmSide::Right),
             focal = camera.focal_px(),
         )
+    }
+
+    /// The same as it is read.
+    ///
+    /// # Errors
+    /// None in practice: the scene was checked.
+    pub fn config(&self) -> Result<Config> {
+        Config::parse(&self.config_toml())
+    }
+
+    /// All frames, one after the other: lines from the top of RGB pixels.
+    #[must_use]
+    pub fn pixels(&self) -> Vec<u8> {
+        let frame_bytes = 3 * self.options().width_px as usize * self.options().height_px as usize;
+        let mut pixels = vec![0; frame_bytes * self.len()];
+        let frames = pixels.par_chunks_mut(frame_bytes).enumerate();
+        frames.for_each(|(frame, pixels)| pixels.copy_from_slice(self.render(frame).as_raw()));
+        pixels
     }
 
     /// The truth of all frames as CSV, one line per frame and moving arm.

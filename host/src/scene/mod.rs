@@ -10,12 +10,14 @@ pub mod canvas;
 pub mod export;
 pub mod framing;
 pub mod hand;
+pub mod motion_source;
 pub mod options;
 pub mod palette;
 pub mod schedule;
 pub mod shape;
 pub mod truth;
 
+pub use motion_source::MotionSource;
 pub use options::{BackgroundStyle, SceneOptions, Sides};
 pub use truth::{FrameTruth, SideTruth};
 

@@ -1,6 +1,7 @@
 //! What a scene looks like, for the caller to choose.
 
 use crate::motion::ArmSide;
+use crate::track::SideChoice;
 use sinew_core::error::{ParameterError, Rule, within};
 use std::ops::Range;
 
@@ -33,6 +34,16 @@ impl Sides {
         match self {
             Self::One(side) => vec![side],
             Self::Both => vec![ArmSide::Left, ArmSide::Right],
+        }
+    }
+}
+
+impl From<SideChoice> for Sides {
+    fn from(choice: SideChoice) -> Self {
+        match choice {
+            SideChoice::Left => Self::One(ArmSide::Left),
+            SideChoice::Right => Self::One(ArmSide::Right),
+            SideChoice::Both => Self::Both,
         }
     }
 }

@@ -5,7 +5,7 @@ use super::gaussian::{GaussianModel, Moments, chromaticity};
 use super::histogram::{HistogramModel, SMOOTHING_STD_CELLS};
 use super::model::{ModelNumbers, SkinModel};
 use crate::error::{Result, bail, ensure};
-use image::RgbImage;
+use crate::pixels::{Picture, Pixels};
 use serde::Serialize;
 use sinew_core::vision::white_balance::Gains;
 use std::str::FromStr;
@@ -57,7 +57,7 @@ impl Rectangle {
     ///
     /// # Errors
     /// It does not lie wholly in the image.
-    fn colours(&self, image: &RgbImage) -> Result<Vec<[u8; 3]>> {
+    fn colours(&self, image: &Picture<impl Pixels>) -> Result<Vec<[u8; 3]>> {
         let fits = |from: u32, length: u32, side: u32| from.checked_add(length).is_some_and(|end| end <= side);
         ensure!(
             fits(self.x_px, self.width_px, image.width()) && fits(self.y_px, self.height_px, image.height()),
@@ -80,7 +80,7 @@ impl SkinModel {
     ///
     /// # Errors
     /// The rectangle does not lie inside of the image, or holds only black.
-    pub fn calibrated(&self, image: &RgbImage, rectangle: Rectangle) -> Result<Self> {
+    pub fn calibrated(&self, image: &Picture<impl Pixels>, rectangle: Rectangle) -> Result<Self> {
         let colours = rectangle.colours(image)?;
         let numbers = match self.numbers() {
             ModelNumbers::Gaussian(gaussian) => {
@@ -175,7 +175,7 @@ fn adapt_histogram(trained: &HistogramModel, colours: &[[u8; 3]]) -> Result<Hist
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::Rgb;
+    use image::{Rgb, RgbImage};
 
     /// Bluish light: neither shipped model takes it for skin.
     const LIT_SKIN: [u8; 3] = [120, 105, 140];

@@ -6,7 +6,7 @@ use super::gaussian::GaussianModel;
 use super::histogram::HistogramModel;
 use super::white_balance::WhiteBalance;
 use crate::error::Result;
-use image::RgbImage;
+use crate::pixels::{Picture, Pixels};
 use serde::{Deserialize, Serialize};
 use sinew_core::vision::frame::segment;
 use sinew_core::vision::skin::{CUBE_WORDS, GaussianSkin, HistogramSkin, SkinClassifier};
@@ -106,7 +106,7 @@ impl SkinModel {
     ///
     /// # Errors
     /// None in practice: a small change of tint keeps all numbers usable.
-    pub fn for_image(&self, image: &RgbImage) -> Result<Cow<'_, Self>> {
+    pub fn for_image(&self, image: &Picture<impl Pixels>) -> Result<Cow<'_, Self>> {
         match &self.numbers {
             ModelNumbers::Gaussian(gaussian) if gaussian.white_balance == WhiteBalance::QuarterGreyWorld => {
                 let raw = gaussian.before_balance(&gaussian.white_balance.gains(image));
@@ -121,7 +121,7 @@ impl SkinModel {
     ///
     /// # Errors
     /// The image has no pixels or is larger than a mask can be.
-    pub fn classify(&self, image: &RgbImage) -> Result<BitImage> {
+    pub fn classify(&self, image: &Picture<impl Pixels>) -> Result<BitImage> {
         let model = self.for_image(image)?;
         let mut bits = BitImage::new(image.width() as usize, image.height() as usize)?;
         segment(image.as_raw(), model.as_ref(), &mut bits.view_mut()?);
@@ -141,7 +141,7 @@ impl SkinClassifier for SkinModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::Rgb;
+    use image::{Rgb, RgbImage};
 
     #[test]
     fn both_shipped_models_separate_skin_from_sky() {

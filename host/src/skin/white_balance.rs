@@ -1,7 +1,7 @@
 //! How a skin model follows the tint of an image; the correction is
 //! [`sinew_core::vision::white_balance`].
 
-use image::RgbImage;
+use crate::pixels::{Picture, Pixels};
 use serde::{Deserialize, Serialize};
 use sinew_core::vision::white_balance::Gains;
 
@@ -18,7 +18,7 @@ pub enum WhiteBalance {
 impl WhiteBalance {
     /// The gains that balance `image`.
     #[must_use]
-    pub fn gains(self, image: &RgbImage) -> Gains {
+    pub fn gains(self, image: &Picture<impl Pixels>) -> Gains {
         match self {
             Self::None => Gains::NEUTRAL,
             Self::QuarterGreyWorld => Gains::of_picture(image.as_raw(), image.width() as usize),
@@ -30,7 +30,7 @@ impl WhiteBalance {
 mod tests {
     use super::super::gaussian::{GaussianModel, chromaticity};
     use super::*;
-    use image::Rgb;
+    use image::{Rgb, RgbImage};
 
     fn model() -> GaussianModel {
         let white_balance = WhiteBalance::QuarterGreyWorld;

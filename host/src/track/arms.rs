@@ -14,6 +14,7 @@ use sinew_core::tracker::arm::{
 };
 use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::edges::EdgePixel;
+use std::str::FromStr;
 
 /// Which arms are tracked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -27,6 +28,30 @@ pub enum SideChoice {
     Right,
     /// Both.
     Both,
+}
+
+impl SideChoice {
+    /// All, in the order of the documentation.
+    pub const ALL: [Self; 3] = [Self::Left, Self::Right, Self::Both];
+
+    /// Name on the command line and in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Both => "both",
+        }
+    }
+}
+
+impl FromStr for SideChoice {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|side| side.name() == name);
+        found.ok_or_else(|| format!("has to be `left`, `right` or `both`, not `{name}`"))
+    }
 }
 
 /// The trackers of a run: one arm, or two that share their blobs. The capacity is the particle
@@ -180,6 +205,16 @@ impl ArmSet {
         }
     }
 
+    /// Particles with their weights after the last step, in the order of the views.
+    #[must_use]
+    pub fn particles(&self) -> Vec<Vec<(Particle, f32)>> {
+        match &self.trackers {
+            Sized::Small(trackers) => trackers.particles(),
+            Sized::Middle(trackers) => trackers.particles(),
+            Sized::Large(trackers) => trackers.particles(),
+        }
+    }
+
     /// Images of shoulder, elbow and hand; `None` where one lies behind the camera.
     #[must_use]
     pub fn joints_px(&self, joints_m: [Vec3; 3]) -> Option<[Pixel; 3]> {
@@ -239,6 +274,13 @@ impl<const CAPACITY: usize> Trackers<CAPACITY> {
         }
     }
 
+    fn particles(&self) -> Vec<Vec<(Particle, f32)>> {
+        match self {
+            Self::One(tracker) => vec![weighted(tracker)],
+            Self::Two(pair) => pair.trackers().iter().map(weighted).collect(),
+        }
+    }
+
     #[inline(never)]
     fn step_each(&mut self, models: &[ArmModel], frames: &[ArmFrame<'_>]) -> Vec<ArmView> {
         match (self, models, frames) {
@@ -286,6 +328,9 @@ fn view<const CAPACITY: usize>(
     image: Option<ArmImage<'_>>,
 ) -> ArmView {
     let carrier = estimate.candidate.and_then(|index| image?.candidates.get(index)).map(|candidate| candidate.centre);
-    let particles = tracker.particles().iter().copied().zip(tracker.weights().iter().copied()).collect();
-    ArmView { estimate, carrier, particles }
+    ArmView { estimate, carrier, particles: weighted(tracker) }
+}
+
+fn weighted<const CAPACITY: usize>(tracker: &ArmTracker<CAPACITY>) -> Vec<(Particle, f32)> {
+    tracker.particles().iter().copied().zip(tracker.weights().iter().copied()).collect()
 }

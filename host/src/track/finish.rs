@@ -42,6 +42,7 @@ impl TrackRun {
         let seconds = self.seconds + self.started.elapsed().as_secs_f64();
         self.report.frames_per_second = finished as f64 / seconds.max(1.0e-9);
         self.report.complete = matches!(tracked, Ok(true));
+        self.report.state_crc32 = self.stream.state_crc32()?;
         self.report.warn();
         let interrupted = Interrupted { finished, all: Some(frames), unit: "frames", out };
         // Overlays of the last frames may not be there, and a resumed run has to find them.

@@ -55,6 +55,9 @@ pub struct RunReport {
     pub image_size_px: (u32, u32),
     /// Finished frames over the run's time, with reading and drawing.
     pub frames_per_second: f64,
+    /// CRC-32 of the trackers' saved state after the last finished frame: runs with the same number
+    /// have the same bits.
+    pub state_crc32: u32,
     /// Counts of each tracked side.
     pub status_counts: BTreeMap<&'static str, StatusCounts>,
     /// What the frames showed.
@@ -83,6 +86,7 @@ impl RunReport {
             frames_finished: 0,
             image_size_px,
             frames_per_second: 0.0,
+            state_crc32: 0,
             status_counts: BTreeMap::new(),
             seen: SeenCounts::default(),
             warnings: Vec::new(),

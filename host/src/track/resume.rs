@@ -34,10 +34,11 @@ pub(super) struct ArmState {
 /// What `run` leaves if it ends now.
 pub(super) fn left(run: &mut TrackRun) -> Result<Left<ArmState>> {
     let mut samples = List::new(std::mem::take(&mut run.samples), NO_SAMPLE);
+    let (trackers, vision) = run.stream.saved_parts()?;
     let state = ArmState {
         skipped: run.report.skipped.clone(),
-        trackers: run.arms.saved()?,
-        vision: run.vision.saved()?,
+        trackers,
+        vision,
         samples: to_text(StateKind::Arm, &mut samples)?,
         seen: run.report.seen,
     };
@@ -60,7 +61,7 @@ fn begun(options: &TrackOptions) -> Result<Begun> {
 
 /// The same with what `run` reads.
 fn read_by(begun: Begun, run: &TrackRun) -> Result<Begun> {
-    let skin = text_crc32(&model_file::to_json(&run.skin)?);
+    let skin = text_crc32(&model_file::to_json(run.stream.skin())?);
     let mut begun = begun.with_frames(run.frames.identity()).reading("the skin model", skin);
     let options = &run.report.options;
     for table in [&options.hands, &options.head].into_iter().flatten() {
@@ -96,7 +97,6 @@ impl TrackRun {
         left.begun.check_inputs(&read_by(now, &run)?)?;
         run.begun = Some(left.begun.clone());
         run.report.frames_finished = left.finished;
-        run.arms.restore(&left.state.trackers)?;
         run.look_again(&left)?;
         let mut samples = List::new(Vec::new(), NO_SAMPLE);
         from_text(StateKind::Arm, &left.state.samples, &mut samples)?;
@@ -115,8 +115,8 @@ impl TrackRun {
         Ok(run)
     }
 
-    /// Shows the front end the last finished frame, so that the next one has the edges that it
-    /// would have had. Then puts the front end into its state.
+    /// Goes on from the states of trackers and front end. That one sees the last finished frame
+    /// first, so that the next one has the edges that it would have had.
     fn look_again(&mut self, left: &Left<ArmState>) -> Result<()> {
         let mut image = None;
         if let Some(last) = left.finished.checked_sub(1) {
@@ -124,9 +124,8 @@ impl TrackRun {
             self.last_image_crc32 = image.as_ref().map(|image| crc32fast::hash(image.as_raw()));
             left.check_last(&self.frames.name(last), self.last_image_crc32)?;
         }
-        self.vision.restore(image.as_ref(), left.state.vision.as_deref())?;
-        self.vision.shoulders_m().into_iter().for_each(|shoulders_m| self.arms.place_shoulders(&shoulders_m));
-        Ok(())
+        let seen = image.map(|image| self.stream.seen(image));
+        self.stream.restore(&left.state.trackers, seen, left.state.vision.as_deref())
     }
 }
 

@@ -1,25 +1,23 @@
 //! One run over an image folder or a video: load, read, step, record, frame by frame.
 
-use super::arms::{ArmSet, ArmView};
 use super::input::SkippedImage;
-use super::options::{FrontEnd, RATES_HZ, TrackOptions};
+use super::options::{FrontEnd, TrackOptions, check_rate};
 use super::particles::{PARTICLE_HEADER, particle_rows};
 use super::pictures::{Pictures, Shot};
 use super::report::RunReport;
 use super::resume;
 use super::sample::HandSample;
 use super::source::FrameSource;
+use super::stream::{ArmStream, StreamAnswer, StreamFrame};
 use super::table::{HEADER, TrackRow};
-use super::vision::RunVision;
 use crate::error::{Result, WriteContext, bail};
 use crate::frames::FrameView;
 use crate::output::{OutputDir, OutputLock, PendingFile};
-use crate::person::{GivenHands, HandTable};
+use crate::person::HandTable;
 use crate::resume::{Begun, Checkpoints, PARTICLE_TABLE, TRACK_TABLE};
 use crate::skin::SkinModel;
 use image::RgbImage;
 use sinew_core::camera::Camera;
-use sinew_core::math::Vec3;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -28,16 +26,6 @@ use std::time::{Duration, Instant};
 const MAX_CHUNK: usize = 32;
 /// Memory that frames which are read ahead may take, bytes.
 const CHUNK_BYTES: usize = 64 << 20;
-
-/// What a frame showed.
-#[derive(Debug)]
-struct Seen {
-    view: FrameView,
-    /// Hands that take the place of the view's candidates.
-    hands: Option<GivenHands>,
-    /// By the face.
-    shoulders_m: Option<[Vec3; 2]>,
-}
 
 /// What a run reports while it goes on.
 #[derive(Debug, Clone, Copy)]
@@ -55,9 +43,7 @@ pub(super) type TableOpener<'a> = &'a dyn Fn(&str, &OutputDir, &[&str]) -> Resul
 #[derive(Debug)]
 pub struct TrackRun {
     pub(super) frames: FrameSource,
-    pub(super) skin: SkinModel,
-    pub(super) vision: RunVision,
-    pub(super) arms: ArmSet,
+    pub(super) stream: ArmStream,
     hands: Option<HandTable>,
     camera: Camera,
     pub(super) out: OutputDir,
@@ -88,28 +74,21 @@ impl TrackRun {
 
     /// The same with tables that `table` opens.
     pub(super) fn set_up(options: TrackOptions, out: &Path, table: TableOpener<'_>) -> Result<Self> {
-        if !(RATES_HZ[0]..=RATES_HZ[1]).contains(&options.rate_hz) {
-            bail!("`rate` must lie from {} to {} Hz, not {}", RATES_HZ[0], RATES_HZ[1], options.rate_hz);
-        }
+        check_rate(options.rate_hz)?;
         if options.front_end == FrontEnd::Lines && options.hands.is_some() {
             bail!("--hands takes the place of what is seen, and --front-end lines is a way to see: leave one out");
         }
         let trained = SkinModel::from_option(&options.skin)?;
         let frames = FrameSource::open(&options.folder, options.strict, options.rate_hz)?;
-        let skin = match (options.calibrate, frames.first()) {
-            (None, _) => trained,
-            (Some(rectangle), (0, first)) => trained.calibrated(first, rectangle)?,
-            (Some(_), _) => bail!(
+        if let (Some(_), (1.., _)) = (options.calibrate, frames.first()) {
+            bail!(
                 "`{}` cannot be read, and --calibrate needs the first image; take it out",
                 frames.files()[0].display()
-            ),
-        };
-        let (width, height) = frames.size_px();
-        let camera = options.config.camera.build(width, height)?;
-        let block = RunVision::block(&options, frames.size_px());
-        let (seen_by, seen_px) = (camera.of_blocks(block), (width / block, height / block));
-        let arms = ArmSet::of_camera(&options.config, (seen_by, seen_px), options.side, options.seed)?;
-        let vision = RunVision::new(&options, (frames.size_px(), frames.first().1), camera, &skin)?;
+            );
+        }
+        let mut stream = ArmStream::new(options.stream()?, trained, frames.size_px())?;
+        stream.begin(frames.first().1)?;
+        let camera = *stream.camera();
         let hands = options.hands.as_deref().map(HandTable::read).transpose()?;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
@@ -128,9 +107,7 @@ impl TrackRun {
         let report = RunReport { frames: frames.count(), ..RunReport::new(options, names, frames.size_px()) };
         Ok(Self {
             frames,
-            skin,
-            vision,
-            arms,
+            stream,
             hands,
             camera,
             out,
@@ -190,7 +167,7 @@ impl TrackRun {
             }
             if let Some(pictures) = &mut self.pictures {
                 // A resumed run has to find them.
-                pictures.draw(&shots, &self.arms)?;
+                pictures.draw(&shots, self.stream.arms())?;
                 self.save_if_due()?;
             }
             begin += read;
@@ -221,9 +198,16 @@ impl TrackRun {
     ) -> Result<Option<Shot>> {
         let image = image.map_err(|skipped| self.skip(skipped, notify)).ok();
         self.last_image_crc32 = image.as_ref().map(|image| crc32fast::hash(image.as_raw()));
-        let seen = image.as_ref().map(|image| self.see(frame, image)).transpose()?;
-        let arms = self.step(frame, seen.as_ref());
-        let view = seen.map(|seen| seen.view);
+        let StreamAnswer { arms, view, knows_face } = self.stream.step(StreamFrame {
+            number: frame,
+            timestamp_us: self.timestamp_us(frame),
+            image: image.as_ref(),
+            hands: self.hands.as_ref().filter(|_| image.is_some()).map(|hands| hands.at(frame)),
+            head: None,
+        })?;
+        if let Some(view) = &view {
+            self.report.seen.count(view, knows_face, self.stream.arms());
+        }
         for arm in &arms {
             let row = TrackRow {
                 frame,
@@ -239,45 +223,13 @@ impl TrackRun {
         let name = self.frames.name(frame);
         let shot = |(image, view): (RgbImage, FrameView)| Shot { frame, name, image, view, arms };
         let drawn = image.zip(view).filter(|_| self.pictures.is_some());
-        Ok(drawn.map(|(image, view)| shot((self.vision.seen(image), view))))
+        Ok(drawn.map(|(image, view)| shot((self.stream.seen(image), view))))
     }
 
-    /// Moves the trackers on to a frame.
-    fn step(&mut self, frame: usize, seen: Option<&Seen>) -> Vec<ArmView> {
-        let timestamp_us = self.timestamp_us(frame);
-        let Some(Seen { view, hands, shoulders_m }) = seen else { return self.arms.step(timestamp_us, None) };
-        if let Some(shoulders_m) = shoulders_m {
-            self.arms.place_shoulders(shoulders_m);
-        }
-        self.report.seen.count(view, shoulders_m.is_some(), &self.arms);
-        match hands {
-            Some(GivenHands::OfPerson(hands)) => self.arms.step_hands(timestamp_us, &view.edges, hands),
-            Some(GivenHands::OfSides(hands)) => self.arms.step_each(timestamp_us, &view.edges, hands),
-            None => self.arms.step(timestamp_us, Some(view)),
-        }
-    }
-
-    /// What an image shows. Hands that are given take the place of blobs, and of the person's.
-    fn see(&mut self, frame: usize, image: &RgbImage) -> Result<Seen> {
-        let (mut view, person) = self.vision.see(frame, image)?;
-        let shoulders_m = person.as_ref().map(|person| person.shoulders_m);
-        let given = self.hands.as_ref().map(|hands| hands.at(frame));
-        if let Some(hands) = &given {
-            view.blobs.clear();
-            view.candidates = match hands {
-                GivenHands::OfPerson(hands) => hands.clone(),
-                GivenHands::OfSides(hands) => hands.concat(),
-            };
-        }
-        let hands = given.or_else(|| Some(GivenHands::OfSides(person?.hands)));
-        Ok(Seen { view, hands, shoulders_m })
-    }
-
-    /// Notes a missing image; the next one has no frame before it.
+    /// Notes a missing image.
     fn skip(&mut self, skipped: SkippedImage, notify: &mut dyn FnMut(Event<'_>)) {
         notify(Event::Skipped(&skipped));
         self.report.skipped.push(skipped);
-        self.vision.forget_last_frame();
     }
 
     fn record(&mut self, row: &TrackRow) -> Result<()> {

@@ -1,14 +1,17 @@
 //! What reads the pictures of a run: whole pictures on a computer, or lines as firmware does.
 
-use super::options::{FrontEnd, TrackOptions};
+use super::last_picture::LastPicture;
+use super::options::{FrontEnd, StreamOptions};
 use crate::camera_lines::block_of;
 use crate::error::{Error, Result};
 use crate::frames::{FrameReader, FrameView};
-use crate::person::{FaceLooks, FaceTable, LinesFinder, PersonFinder, PersonView};
+use crate::person::{LinesFinder, PersonFinder, PersonView};
+use crate::pixels::{Picture, Pixels};
 use crate::skin::SkinModel;
 use image::RgbImage;
 use sinew_core::camera::Camera;
 use sinew_core::math::Vec3;
+use sinew_core::vision::objects::head::HeadBox;
 
 /// Reads pictures, and finds the person in them.
 #[derive(Debug)]
@@ -26,21 +29,11 @@ pub(super) struct PictureVision {
 }
 
 impl RunVision {
-    /// For pictures of a size that `camera` took, the `first` of them readable or not.
-    pub fn new(
-        options: &TrackOptions,
-        (size_px, first): ((u32, u32), &RgbImage),
-        camera: Camera,
-        skin: &SkinModel,
-    ) -> Result<Self> {
-        let block = Self::block(options, size_px);
-        let given = options.head.as_deref().map(FaceTable::read).transpose()?;
-        let faces = options.face.then(|| FaceLooks::new(options.rate_hz, block, given)).transpose()?;
+    /// For pictures of a size that `camera` took, and in whose light skin is as in `skin`.
+    pub fn new(options: &StreamOptions, size_px: (u32, u32), camera: Camera, skin: &SkinModel) -> Result<Self> {
+        let faces = options.face.looks(options.rate_hz, Self::block(options.front_end, size_px))?;
         Ok(match options.front_end {
-            FrontEnd::Lines => {
-                let finder = LinesFinder::new(size_px, camera, &*skin.for_image(first)?, faces)?;
-                Self::Lines(Box::new(finder))
-            }
+            FrontEnd::Lines => Self::Lines(Box::new(LinesFinder::new(size_px, camera, skin, faces)?)),
             FrontEnd::Pictures => Self::Pictures(Box::new(PictureVision {
                 reader: FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?,
                 skin: skin.clone(),
@@ -50,15 +43,21 @@ impl RunVision {
     }
 
     /// Side of the blocks that are its pixels.
-    pub fn block(options: &TrackOptions, size_px: (u32, u32)) -> u32 {
-        if options.front_end == FrontEnd::Lines { block_of(size_px) } else { 1 }
+    pub fn block(front_end: FrontEnd, size_px: (u32, u32)) -> u32 {
+        if front_end == FrontEnd::Lines { block_of(size_px) } else { 1 }
     }
 
-    /// What an image shows, by the person's own skin once a face is known, and the person.
-    pub fn see(&mut self, frame: usize, image: &RgbImage) -> Result<(FrameView, Option<PersonView>)> {
+    /// What an image shows, by the person's own skin once a face is known, and the person, whose
+    /// face is at `head` if that is given.
+    pub fn see(
+        &mut self,
+        frame: usize,
+        image: &Picture<impl Pixels>,
+        head: Option<HeadBox>,
+    ) -> Result<(FrameView, Option<PersonView>)> {
         match self {
-            Self::Pictures(vision) => vision.see(frame, image),
-            Self::Lines(finder) => Ok(finder.see(frame, image)),
+            Self::Pictures(vision) => vision.see(frame, image, head),
+            Self::Lines(finder) => Ok(finder.see(frame, image, head)),
         }
     }
 
@@ -78,6 +77,14 @@ impl RunVision {
         }
     }
 
+    /// What the next frame is compared with.
+    pub fn last(&mut self) -> Option<LastPicture> {
+        match self {
+            Self::Pictures(vision) => vision.reader.last_luminance().as_ref().map(LastPicture::grey),
+            Self::Lines(finder) => finder.last().map(LastPicture::coloured),
+        }
+    }
+
     /// The state after the last frame as text, which [`RunVision::restore`] takes.
     pub fn saved(&mut self) -> Result<Option<String>> {
         match self {
@@ -86,10 +93,10 @@ impl RunVision {
         }
     }
 
-    /// Goes on after the frame that shows `last`, from what was saved then.
-    pub fn restore(&mut self, last: Option<&RgbImage>, saved: Option<&str>) -> Result<()> {
+    /// Goes on from what was saved after a frame which it saw as `last`.
+    pub fn restore(&mut self, last: Option<RgbImage>, saved: Option<&str>) -> Result<()> {
         match (self, saved) {
-            (Self::Pictures(vision), saved) => vision.restore(last, saved),
+            (Self::Pictures(vision), saved) => vision.restore(last.as_ref(), saved),
             (Self::Lines(finder), Some(saved)) => finder.restore(last, saved),
             (Self::Lines(_), None) => Err(Error::Invalid("the state of the front end is missing".to_owned())),
         }
@@ -105,9 +112,14 @@ impl RunVision {
 }
 
 impl PictureVision {
-    fn see(&mut self, frame: usize, image: &RgbImage) -> Result<(FrameView, Option<PersonView>)> {
+    fn see(
+        &mut self,
+        frame: usize,
+        image: &Picture<impl Pixels>,
+        head: Option<HeadBox>,
+    ) -> Result<(FrameView, Option<PersonView>)> {
         if let Some(person) = &mut self.person {
-            person.look(frame, image);
+            person.look(frame, image, head);
         }
         let view = match self.person.as_ref().and_then(PersonFinder::skin) {
             Some(skin) => self.reader.read(image, skin)?,

@@ -105,7 +105,7 @@ fn add(clip: &Path, places: &mut Places) {
     let reference = rows(&clip.with_file_name(format!("{name}_points.csv")));
     for (frame, row) in reference.iter().enumerate() {
         let Some(Ok(image)) = frames.load(frame, 1).unwrap().pop() else { break };
-        finder.look(frame, &image);
+        finder.look(frame, &image, None);
         let view = match finder.skin().cloned() {
             Some(skin) => reader.read(&image, &skin).unwrap(),
             None => reader.read(&image, &anyone).unwrap(),

@@ -13,13 +13,17 @@ Angles are radians unless a name ends in ``_deg``. Missing numbers are NaN.
 """
 
 from ._angles import Angles, angles, layouts
+from ._arm import ArmTracker
+from ._arm_estimate import ArmEstimate, ArmPair, ArmParticles
 from ._body import BodyTracker
 from ._body_estimate import BodyEstimate
+from ._images import find_blobs, read_image, segment_skin
 from ._model import Model, models
 from ._motion import Motion, read_motion
 from ._online import CyclicEstimate, CyclicTracker
 from ._points import read_cloud
 from ._simulate import SimulatedKeypoints, simulate_keypoints
+from ._simulate_arm import SimulatedArm, simulate_arm
 from ._sinew import ANGLES as ANGLE_NAMES
 from ._sinew import BODY_COORDINATES as BODY_COORDINATE_NAMES
 from ._sinew import BODY_JOINTS as BODY_JOINT_NAMES
@@ -39,6 +43,10 @@ __all__ = [
     "BODY_PARENTS",
     "FLEXION_NAMES",
     "Angles",
+    "ArmEstimate",
+    "ArmPair",
+    "ArmParticles",
+    "ArmTracker",
     "BodyEstimate",
     "BodyTracker",
     "CyclicEstimate",
@@ -46,15 +54,20 @@ __all__ = [
     "CyclicTracker",
     "Model",
     "Motion",
+    "SimulatedArm",
     "SimulatedKeypoints",
     "SimulatedStereo",
     "SinewError",
     "__version__",
     "angles",
+    "find_blobs",
     "layouts",
     "models",
     "read_cloud",
+    "read_image",
     "read_motion",
+    "segment_skin",
+    "simulate_arm",
     "simulate_keypoints",
     "simulate_stereo",
     "track_cyclic",

@@ -83,6 +83,6 @@ def whole(value: Any, name: str, low: int, high: int) -> int:
     ValueError
         It is none.
     """
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)) or not low <= value <= high:
         raise ValueError(f"`{name}` has to be a whole number from {low} to {high}, not {value!r}")
     return int(value)

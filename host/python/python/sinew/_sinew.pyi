@@ -12,9 +12,12 @@ _Size = tuple[float, float]
 _Points = npt.NDArray[np.float32]
 _Path = str | os.PathLike[str]
 _Given = str | bytes | None
+_Image = npt.NDArray[np.uint8]
+_Rectangle = tuple[int, int, int, int]
 
 VERSION: str
 ANGLES: list[str]
+BLOB_COLUMNS: list[str]
 FLEXIONS: list[str]
 BODY_JOINTS: list[str]
 BODY_COORDINATES: list[str]
@@ -106,6 +109,47 @@ class Body:
     @staticmethod
     def restored(saved: str, notes: list[str]) -> Body: ...
 
+class ArmTracker:
+    def __init__(
+        self,
+        side: str,
+        variant: str | None,
+        particles: int | None,
+        seed: int,
+        rate_hz: float,
+        skin: str,
+        calibrate: _Rectangle | None,
+        front_end: str,
+        face: str,
+        config_file: str | None,
+        config_json: str | None,
+        size_px: tuple[int, int] | None,
+    ) -> None: ...
+    def update(
+        self,
+        image: _Image | None,
+        hands: _Floats | None,
+        has_sides: bool,
+        head: tuple[float, float, float] | None,
+        time_s: float | None,
+    ) -> list[dict[str, Any]]: ...
+    def particles(self) -> list[dict[str, Any]]: ...
+    @property
+    def state_crc32(self) -> int | None: ...
+    @property
+    def frame(self) -> int | None: ...
+    @property
+    def side(self) -> str: ...
+    @property
+    def rate_hz(self) -> float: ...
+    @property
+    def size_px(self) -> tuple[int, int] | None: ...
+    @property
+    def config_json(self) -> str: ...
+    def saved(self) -> str: ...
+    @staticmethod
+    def restored(saved: str) -> ArmTracker: ...
+
 class Tracker:
     def __init__(self, model: Model, rate_hz: float, sigma_deg: float | None) -> None: ...
     def update(self, angles_rad: _Floats, dt_frames: int) -> dict[str, Any] | None: ...
@@ -130,6 +174,20 @@ def angles_of_file(
     facing: str | None,
     person: str,
 ) -> Angles: ...
+def find_blobs(image: _Image, skin: str, calibrate: _Rectangle | None) -> tuple[_Floats, int]: ...
+def read_image(path: str | os.PathLike[str]) -> _Image: ...
+def segment_skin(image: _Image, skin: str, calibrate: _Rectangle | None, raw: bool) -> npt.NDArray[np.bool_]: ...
+def simulate_arm(
+    motion: str | os.PathLike[str],
+    frames: int | None,
+    rate_hz: float,
+    side: str,
+    seed: int,
+    false_blob: float,
+    hidden: float,
+    away: tuple[int, int] | None,
+    noise_std: float,
+) -> tuple[_Image, _Floats, str, list[str]]: ...
 def simulate_keypoints(
     model: Model,
     seconds: float,
