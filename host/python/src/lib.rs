@@ -7,6 +7,7 @@
 
 mod angles;
 mod arrays;
+mod batch;
 mod errors;
 mod model;
 mod online;
@@ -20,6 +21,8 @@ use pyo3::prelude::*;
 mod _sinew {
     #[pymodule_export]
     use crate::angles::{Angles, angles_of_array, angles_of_file, layouts};
+    #[pymodule_export]
+    use crate::batch::{BatchPart, WholeBatch, batch_rows, raise_error, run_command};
     #[pymodule_export]
     use crate::errors::SinewError;
     #[pymodule_export]

@@ -13,6 +13,7 @@ Angles are radians unless a name ends in ``_deg``. Missing numbers are NaN.
 """
 
 from ._angles import Angles, angles, layouts
+from ._batch import BatchResult, batch
 from ._model import Model, models
 from ._online import CyclicEstimate, CyclicTracker
 from ._simulate import SimulatedKeypoints, simulate_keypoints
@@ -27,6 +28,7 @@ __all__ = [
     "ANGLE_NAMES",
     "FLEXION_NAMES",
     "Angles",
+    "BatchResult",
     "CyclicEstimate",
     "CyclicTrack",
     "CyclicTracker",
@@ -35,6 +37,7 @@ __all__ = [
     "SinewError",
     "__version__",
     "angles",
+    "batch",
     "layouts",
     "models",
     "simulate_keypoints",
