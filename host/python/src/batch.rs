@@ -122,10 +122,10 @@ impl WholeBatch {
         self.whole()?.add(&rows, lines).map_err(|error| of_command(&error))
     }
 
-    /// Writes the tables.
-    fn end(&mut self, py: Python<'_>) -> PyResult<()> {
+    /// Writes the tables, and removes what killed parts left if none can be at work any more.
+    fn end(&mut self, py: Python<'_>, all_parts_ended: bool) -> PyResult<()> {
         let whole = self.whole()?;
-        py.detach(|| whole.end()).map_err(|error| of_command(&error))
+        py.detach(|| whole.end(all_parts_ended)).map_err(|error| of_command(&error))
     }
 
     /// Lets other batches into the folder.

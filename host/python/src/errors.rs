@@ -1,8 +1,6 @@
 //! Errors of the library as exceptions of Python.
 
-use pyo3::exceptions::{
-    PyBlockingIOError, PyFileNotFoundError, PyKeyboardInterrupt, PyOSError, PyPermissionError, PyValueError,
-};
+use pyo3::exceptions::{PyBlockingIOError, PyFileNotFoundError, PyKeyboardInterrupt, PyOSError, PyValueError};
 use pyo3::{PyErr, create_exception};
 use sinew::cyclic::CyclicError;
 use sinew::error::{Error, ErrorKind};
@@ -84,8 +82,7 @@ pub fn of_kind(kind: &str, message: String) -> PyErr {
     match kind {
         "usage" => PyValueError::new_err(message),
         "no-input" => PyFileNotFoundError::new_err(message),
-        "cannot-create" => PyPermissionError::new_err(message),
-        "io" => PyOSError::new_err(message),
+        "cannot-create" | "io" => PyOSError::new_err(message),
         "try-again" => PyBlockingIOError::new_err(message),
         "interrupted" => PyKeyboardInterrupt::new_err(message),
         _ => SinewError::new_err(message),

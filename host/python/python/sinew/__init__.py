@@ -14,6 +14,7 @@ Angles are radians unless a name ends in ``_deg``. Missing numbers are NaN.
 
 from ._angles import Angles, angles, layouts
 from ._batch import BatchResult, batch
+from ._batch.sweep import SweepResult, sweep
 from ._model import Model, models
 from ._online import CyclicEstimate, CyclicTracker
 from ._simulate import SimulatedKeypoints, simulate_keypoints
@@ -35,11 +36,13 @@ __all__ = [
     "Model",
     "SimulatedKeypoints",
     "SinewError",
+    "SweepResult",
     "__version__",
     "angles",
     "batch",
     "layouts",
     "models",
     "simulate_keypoints",
+    "sweep",
     "track_cyclic",
 ]

@@ -96,13 +96,15 @@ impl Whole {
         Ok(())
     }
 
-    /// Writes both tables, and removes what killed parts left.
+    /// Writes both tables, and removes what killed parts left if no part can be at work any more.
     ///
     /// # Errors
     /// A table that cannot be written.
-    pub fn end(&self) -> Result<()> {
+    pub fn end(&self, all_parts_ended: bool) -> Result<()> {
         write(&self.lines, &self.out.join("status.csv"), &self.out.join("summary.csv"))?;
-        Store::sweep(&self.out, PREFIX);
+        if all_parts_ended {
+            Store::sweep(&self.out, PREFIX);
+        }
         Ok(())
     }
 }

@@ -6,6 +6,10 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// Parts of a run's record that say what was asked for, not what was found, and times, which differ
+/// from run to run.
+const NOT_SHOWN: [&str; 7] = ["body", "options", "inputs", "version", "seed", "frames_per_second", "seconds_per_step"];
+
 /// All lists of names so far.
 static NAMES: Mutex<BTreeSet<Arc<[String]>>> = Mutex::new(BTreeSet::new());
 
@@ -19,8 +23,8 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Those of an answer at its top, in `summary`, and of each joint in `symmetries`; `doubts` by
-    /// their number.
+    /// Those of an answer at its top, in `summary`, of each joint in `symmetries`, and in `run`;
+    /// `doubts` by their number.
     #[must_use]
     pub fn of(answer: &Value) -> Self {
         let mut found = Vec::new();
@@ -36,6 +40,7 @@ impl Numbers {
         for joint in answer["symmetries"].as_array().into_iter().flatten() {
             add(&format!("{}_", joint["angle"].as_str().unwrap_or_default()), joint);
         }
+        add_all("", &answer["run"], &mut found);
         if let Some(doubts) = answer["doubts"].as_array() {
             found.push(("doubts".to_owned(), doubts.len().to_string()));
         }
@@ -51,6 +56,19 @@ impl Numbers {
     /// Values in the order of their names.
     pub fn values(&self) -> impl Iterator<Item = &str> {
         self.values.lines()
+    }
+}
+
+/// Adds the numbers of a record and of those inside it.
+fn add_all(prefix: &str, record: &Value, found: &mut Vec<(String, String)>) {
+    for (name, value) in
+        record.as_object().into_iter().flatten().filter(|(name, _)| !NOT_SHOWN.contains(&name.as_str()))
+    {
+        match value {
+            Value::Number(_) | Value::Bool(_) => found.push((format!("{prefix}{name}"), value.to_string())),
+            Value::Object(_) => add_all(&format!("{prefix}{name}_"), value, found),
+            _ => (),
+        }
     }
 }
 
@@ -88,6 +106,8 @@ mod tests {
         let text = serde_json::to_string(&one).unwrap();
         assert_eq!(text, r#"[["cadence","1.5"],["doubts","1"]]"#);
         assert_eq!(serde_json::from_str::<Numbers>(&text).unwrap(), one);
+        let run = json!({ "run": { "frames": 3, "seed": 1, "options": { "x": 1 }, "seen": { "hands": 2 } } });
+        assert_eq!(Vec::from(Numbers::of(&run)), [("frames".into(), "3".into()), ("seen_hands".into(), "2".into())]);
         assert_eq!(Numbers::of(&Value::Null).values().count(), 0);
     }
 }

@@ -43,17 +43,23 @@ def run(plan: Plan, progress: Progress) -> list[Row]:
         stack.callback(whole.close)
         where = Where((folder, os.getcwd()), out, plan.out if remote else None, plan.retry_failed)
         driver = _Driver(ray, plan, rows, where, whole, progress)
-        try:
-            with _cluster(ray, plan) as workers:
+        with _cluster(ray, plan) as workers:
+            is_done = False
+            try:
                 driver.run(workers)
-        finally:
-            progress.end()
-            whole.end()
-            if remote is not None:
-                for name in ("summary.csv", "status.csv"):
-                    with open(os.path.join(out, name), "rb") as table:
-                        remote.put(name, table.read())
+                is_done = True
+            finally:
+                progress.end()
+                whole.end(is_done)
+                if remote is not None:
+                    _bring_tables(remote, out)
     return driver.rows
+
+
+def _bring_tables(remote: Remote, out: str) -> None:
+    for name in ("summary.csv", "status.csv"):
+        with open(os.path.join(out, name), "rb") as table:
+            remote.put(name, table.read())
 
 
 class _Driver:

@@ -110,7 +110,9 @@ class BatchResult:
             raise ImportError("`to_parquet` and `parquet=True` need pyarrow: pip install pyarrow") from error
         status = pyarrow.Table.from_pylist(self.rows, schema=_schema()).drop_columns(["from_before"])
         for path, table in ((self.status, status), (self.summary, self._summary_arrow())):
-            _write_parquet(path.removesuffix(".csv") + ".parquet", table)
+            file = io.BytesIO()
+            pyarrow.parquet.write_table(table, file)
+            self._save(os.path.basename(path).removesuffix(".csv") + ".parquet", file.getvalue())
 
     def _summary_rows(self) -> list[int | None]:
         """The row of the summary for each recording."""
@@ -128,6 +130,16 @@ class BatchResult:
             return Remote(self.out).get(os.path.basename(self.summary)) or b""
         with open(self.summary, "rb") as file:
             return file.read()
+
+    def _save(self, name: str, content: bytes) -> None:
+        """Write a table beside the others, all of it or nothing."""
+        if is_url(self.out):
+            from .remote import Remote
+
+            return Remote(self.out).put(name, content)
+        with open(self.path(name + ".partial"), "wb") as file:
+            file.write(content)
+        os.replace(self.path(name + ".partial"), self.path(name))
 
     def _summary_arrow(self) -> pyarrow.Table:
         import pyarrow
@@ -167,18 +179,3 @@ def _schema() -> pyarrow.Schema:
     texts = [(name, pyarrow.string()) for name in ("id", "key", "status", "class", "message")]
     numbers = [("seconds", pyarrow.float64()), ("attempts", pyarrow.int64())]
     return pyarrow.schema([*texts, *numbers, ("from_before", pyarrow.bool_())])
-
-
-def _write_parquet(path: str, table: pyarrow.Table) -> None:
-    import pyarrow.parquet
-
-    if is_url(path):
-        from .remote import Remote
-
-        folder, name = path.rsplit("/", 1)
-        with io.BytesIO() as file:
-            pyarrow.parquet.write_table(table, file)
-            Remote(folder).put(name, file.getvalue())
-        return
-    pyarrow.parquet.write_table(table, path + ".partial")
-    os.replace(path + ".partial", path)
