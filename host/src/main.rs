@@ -1,12 +1,7 @@
 //! The command `sinew`.
 
-use clap::Parser;
-use sinew::cli::{Cli, exit_code, exit_code_of_usage, run};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match Cli::try_parse() {
-        Ok(cli) => exit_code(run(&cli), &cli.console),
-        Err(error) => exit_code_of_usage(&error),
-    }
+    ExitCode::from(sinew::cli::run_words(std::env::args_os()))
 }

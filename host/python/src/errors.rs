@@ -1,7 +1,7 @@
 //! Errors of the library as exceptions of Python.
 
 use crate::names_of_body::OF_BODY;
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::{PyBlockingIOError, PyFileNotFoundError, PyKeyboardInterrupt, PyOSError, PyValueError};
 use pyo3::{PyErr, create_exception};
 use sinew::cloud::CloudError;
 use sinew::cyclic::CyclicError;
@@ -53,6 +53,14 @@ const NAMES: [(&str, &str); 29] = [
     ("give a .csv table with the points' names", "give another `layout`"),
 ];
 
+/// The same of `sinew batch`.
+const BATCH_NAMES: [(&str, &str); 4] = [
+    ("standard input:", "manifest:"),
+    ("choose another --out", "choose another `out`"),
+    ("--retry-failed", "retry_failed=True"),
+    ("give the same command again", "call it again"),
+];
+
 /// A message of the library with the names of Python's parameters.
 pub fn in_python(message: &str) -> String {
     NAMES.iter().chain(&OF_BODY).fold(message.to_owned(), |text, (command, python)| text.replace(command, python))
@@ -66,6 +74,24 @@ pub fn exception(error: &Error) -> PyErr {
         (Some(kind), _) => io::Error::new(kind, message).into(),
         (None, ErrorKind::NoInput | ErrorKind::CannotCreate | ErrorKind::Io) => PyOSError::new_err(message),
         (None, ErrorKind::Usage) => PyValueError::new_err(message),
+        _ => SinewError::new_err(message),
+    }
+}
+
+/// The exception for an error of the command line.
+pub fn of_command(error: &anyhow::Error) -> PyErr {
+    of_kind(sinew::cli::kind_of(error).name(), format!("{error:#}"))
+}
+
+/// The exception for what the command calls an error of this kind.
+pub fn of_kind(kind: &str, message: String) -> PyErr {
+    let message = BATCH_NAMES.iter().fold(message, |text, (command, python)| text.replace(command, python));
+    match kind {
+        "usage" => PyValueError::new_err(message),
+        "no-input" => PyFileNotFoundError::new_err(message),
+        "cannot-create" | "io" => PyOSError::new_err(message),
+        "try-again" => PyBlockingIOError::new_err(message),
+        "interrupted" => PyKeyboardInterrupt::new_err(message),
         _ => SinewError::new_err(message),
     }
 }

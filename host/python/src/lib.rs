@@ -10,6 +10,7 @@ mod arm;
 mod arm_estimate;
 mod arm_options;
 mod arrays;
+mod batch;
 mod body;
 mod errors;
 mod model;
@@ -32,6 +33,8 @@ mod _sinew {
     use crate::angles::{Angles, angles_of_array, angles_of_file, layouts};
     #[pymodule_export]
     use crate::arm::ArmTracker;
+    #[pymodule_export]
+    use crate::batch::{BatchPart, WholeBatch, batch_rows, raise_error, run_command};
     #[pymodule_export]
     use crate::body::Body;
     #[pymodule_export]

@@ -43,7 +43,8 @@ use crate::resume::Interrupted;
 use clap::{Parser, Subcommand};
 use console::{Console, printable};
 use serde_json::json;
-use std::process::ExitCode;
+use std::ffi::OsString;
+use std::io::Write;
 
 /// Estimates how a human body moves, from a camera.
 #[derive(Debug, Parser)]
@@ -108,6 +109,18 @@ pub enum Command {
     Man(completions::ManArgs),
 }
 
+/// Runs the command line `words`, of which the first is the program's name, and returns the exit
+/// status.
+pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let status = match Cli::try_parse_from(words) {
+        Ok(cli) => exit_status(run(&cli), &cli.console),
+        Err(error) => exit_status_of_usage(&error),
+    };
+    // A process that is no Rust program does not do it at its end.
+    let _ = std::io::stdout().flush();
+    status
+}
+
 /// Runs one parsed command line.
 ///
 /// # Errors
@@ -140,10 +153,10 @@ pub fn interrupted(error: &anyhow::Error) -> Option<&Interrupted> {
     error.downcast_ref::<Interrupted>().or_else(|| error.downcast_ref::<LibraryError>()?.interrupted())
 }
 
-/// How the program ends: an error is printed on standard error, and with `--json` as one line of
-/// JSON.
-pub fn exit_code(ended: anyhow::Result<()>, console: &Console) -> ExitCode {
-    let Err(error) = ended else { return ExitCode::SUCCESS };
+/// The exit status of what has ended: an error is printed on standard error, and with `--json` as
+/// one line of JSON.
+pub fn exit_status(ended: anyhow::Result<()>, console: &Console) -> u8 {
+    let Err(error) = ended else { return 0 };
     let kind = kind_of(&error);
     let status = if kind == ErrorKind::Interrupted { signals::interrupted_status() } else { kind.exit_status() };
     let text = format!("{error:#}");
@@ -155,7 +168,7 @@ pub fn exit_code(ended: anyhow::Result<()>, console: &Console) -> ExitCode {
     } else {
         eprintln!("error: {}", printable(&text));
     }
-    ExitCode::from(status)
+    status
 }
 
 /// An error about an input: the texts of `anyhow` count as errors about an option.
@@ -164,18 +177,18 @@ pub fn data_error(text: impl Into<String>) -> anyhow::Error {
 }
 
 /// What went wrong. The command's own checks are of its options.
-fn kind_of(error: &anyhow::Error) -> ErrorKind {
+pub fn kind_of(error: &anyhow::Error) -> ErrorKind {
     if interrupted(error).is_some() {
         return ErrorKind::Interrupted;
     }
     error.chain().find_map(ErrorKind::of).unwrap_or(ErrorKind::Usage)
 }
 
-/// How the program ends on a command line that cannot be parsed; `--help` and `--version` are none.
-pub fn exit_code_of_usage(error: &clap::Error) -> ExitCode {
+/// The exit status of a command line that cannot be parsed; `--help` and `--version` are none.
+pub fn exit_status_of_usage(error: &clap::Error) -> u8 {
     // A closed standard output is no reason to fail.
     let _ = error.print();
-    if error.use_stderr() { ExitCode::from(ErrorKind::Usage.exit_status()) } else { ExitCode::SUCCESS }
+    if error.use_stderr() { ErrorKind::Usage.exit_status() } else { 0 }
 }
 
 #[cfg(test)]

@@ -12,8 +12,8 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  sinew demo --out run\n  sinew report run --out run.html")]
 pub struct ReportArgs {
-    /// Folders that `sinew demo`, `sinew track` or `sinew evaluate` wrote; several stand side by
-    /// side. Of `sinew track cyclic` it is the folder of --report.
+    /// Folders that `sinew demo`, `sinew track`, `sinew batch` or `sinew evaluate` wrote; several
+    /// stand side by side. Of `sinew track cyclic` it is the folder of --report.
     #[arg(value_name = "RUN_DIR", required = true)]
     pub runs: Vec<PathBuf>,
     /// The page: one file that loads nothing, for any browser.

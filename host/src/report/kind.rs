@@ -20,6 +20,8 @@ pub enum Kind {
     EvaluateBody,
     /// `sinew evaluate cyclic`.
     EvaluateCyclic,
+    /// `sinew batch`, `sinew.sweep` of Python.
+    Batch,
     /// Something with tables, records or pictures.
     Other,
 }
@@ -52,6 +54,9 @@ impl Kind {
         if track.has("hand_u_px") || !run["options"]["config"].is_null() || has(&["overlay", "scene/demo.json"]) {
             return Some(Self::Arm);
         }
+        if heading(&path.join("status.csv")).is_some_and(|table| table.has("key") && table.has("attempts")) {
+            return Some(Self::Batch);
+        }
         let shown = |name: &String| [".csv", ".json", ".png", ".jpg"].iter().any(|end| name.ends_with(end));
         names_in(path).iter().any(shown).then_some(Self::Other)
     }
@@ -74,7 +79,7 @@ mod tests {
 
     #[test]
     fn a_run_is_known_by_what_is_left_of_it() {
-        let cases: [(&str, &str, Option<Kind>); 12] = [
+        let cases: [(&str, &str, Option<Kind>); 13] = [
             ("arm.json", "{", Some(Kind::EvaluateArm)),
             ("cyclic.csv", "", Some(Kind::EvaluateCyclic)),
             ("summary.json", "{}", Some(Kind::Cyclic)),
@@ -85,6 +90,7 @@ mod tests {
             ("track.csv", "frame,image,hand_u_px\n", Some(Kind::Arm)),
             ("run.json", "{\"options\": {\"config\": {}}}", Some(Kind::Arm)),
             ("run.json", "{\"rate_hz\": 15}", Some(Kind::Other)),
+            ("status.csv", "id,key,status,class,message,seconds,attempts\n", Some(Kind::Batch)),
             ("scores.json", "{}", Some(Kind::Other)),
             ("notes.txt", "", None),
         ];

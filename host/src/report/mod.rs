@@ -6,6 +6,7 @@
 
 pub mod arm;
 pub mod arm_plots;
+pub mod batch;
 pub mod body;
 pub mod body_plots;
 pub mod cyclic;
@@ -70,7 +71,7 @@ impl Page {
 }
 
 fn read_run(path: &Path, pictures: &mut Pictures) -> Result<Run> {
-    const REMEDY: &str = "give a folder that `sinew demo`, `sinew track` or `sinew evaluate` wrote";
+    const REMEDY: &str = "give a folder that `sinew demo`, `sinew track`, `sinew batch` or `sinew evaluate` wrote";
     ensure!(path.is_dir(), "`{}` is no folder; {REMEDY}", path.display());
     let folder = RunFolder::new(path);
     match Kind::of(&folder) {
@@ -80,6 +81,7 @@ fn read_run(path: &Path, pictures: &mut Pictures) -> Result<Run> {
         Some(Kind::EvaluateArm) => Ok(evaluate::evaluate_arm_run(folder)),
         Some(Kind::EvaluateBody) => Ok(evaluate::evaluate_body_run(folder)),
         Some(Kind::EvaluateCyclic) => Ok(evaluate::evaluate_cyclic_run(folder)),
+        Some(Kind::Batch) => Ok(batch::batch_run(folder)),
         Some(Kind::Other) => Ok(other::other_run(folder, pictures)),
         None => bail!("`{}` holds nothing of a run; {REMEDY}", path.display()),
     }

@@ -15,6 +15,8 @@ Angles are radians unless a name ends in ``_deg``. Missing numbers are NaN.
 from ._angles import Angles, angles, layouts
 from ._arm import ArmTracker
 from ._arm_estimate import ArmEstimate, ArmPair, ArmParticles
+from ._batch import BatchResult, batch
+from ._batch.sweep import SweepResult, sweep
 from ._body import BodyTracker
 from ._body_estimate import BodyEstimate
 from ._images import find_blobs, read_image, segment_skin
@@ -47,6 +49,7 @@ __all__ = [
     "ArmPair",
     "ArmParticles",
     "ArmTracker",
+    "BatchResult",
     "BodyEstimate",
     "BodyTracker",
     "CyclicEstimate",
@@ -58,8 +61,10 @@ __all__ = [
     "SimulatedKeypoints",
     "SimulatedStereo",
     "SinewError",
+    "SweepResult",
     "__version__",
     "angles",
+    "batch",
     "find_blobs",
     "layouts",
     "models",
@@ -70,6 +75,7 @@ __all__ = [
     "simulate_arm",
     "simulate_keypoints",
     "simulate_stereo",
+    "sweep",
     "track_cyclic",
     "train_cyclic",
 ]

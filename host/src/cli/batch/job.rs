@@ -58,8 +58,8 @@ impl Job {
             check_option(kind, name)?;
             hash.update(format!("{name}\0{value}\0"));
             // Beside the list, or as `--set` names it.
-            let named = [row.folder.join(&value), PathBuf::from(&value)];
-            if let Some(file) = named.into_iter().find(|file| file.is_file()) {
+            let mut named = row.folders.iter().map(|folder| folder.join(&value));
+            if let Some(file) = named.find(|file| file.is_file()) {
                 hash.update(content::of(&file)?);
                 *value = file.to_string_lossy().into_owned();
             }
@@ -144,7 +144,7 @@ mod tests {
         let input = folder.join("walk.csv");
         std::fs::write(&input, "l_knee_x,l_knee_y\n1,2\n").unwrap();
         let options = options.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
-        Row { line: 2, id: "a".into(), input, folder: folder.to_path_buf(), kind: None, options }
+        Row { line: 2, id: "a".into(), input, folders: [folder.to_path_buf(), PathBuf::new()], kind: None, options }
     }
 
     #[test]

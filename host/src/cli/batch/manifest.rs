@@ -1,10 +1,10 @@
-//! The list of recordings: a CSV table or JSON lines.
+//! The list of recordings: a CSV table, JSON lines or, with the feature `parquet`, a Parquet file.
 
 use super::content::{cannot_read, names_in};
 use crate::cli::data_error;
 use crate::csv_text::headed_reader;
-use crate::file::{FileError, read_lines};
-use serde_json::Value;
+use crate::file::{FileError, STANDARD_INPUT, read_lines};
+use serde_json::{Map, Value};
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
@@ -22,34 +22,72 @@ pub struct Row {
     pub id: String,
     /// The file or folder.
     pub input: PathBuf,
-    /// Where files lie that options name.
-    pub folder: PathBuf,
+    /// Where files lie that options name; the later folder counts where the first has none.
+    pub folders: [PathBuf; 2],
     /// What is done with it; found by the input where none is given.
     pub kind: Option<String>,
     /// Values of options by the names of their flags.
     pub options: BTreeMap<String, String>,
 }
 
-/// The recordings of a manifest, whose inputs are relative to its folder, or everything in a
-/// folder.
+impl Row {
+    /// The row as a line that [`of_lines`] reads.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        let own = [("id", Some(self.id.clone())), ("kind", self.kind.clone())];
+        let own = own.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
+        let input = ("input".to_owned(), self.input.to_string_lossy().into_owned());
+        let cells = own.chain([input]).chain(self.options.clone());
+        Value::Object(cells.map(|(name, value)| (name, Value::String(value))).collect::<Map<_, _>>()).to_string()
+    }
+
+    /// Gives it each of `options` that it has not.
+    pub fn set(&mut self, options: &[(String, String)]) {
+        for (name, value) in options {
+            self.options.entry(name.clone()).or_insert_with(|| value.clone());
+        }
+    }
+}
+
+/// The recordings of a manifest, or everything in a folder. Inputs are relative to `folder`, else
+/// to the manifest's own.
 ///
 /// # Errors
 /// The line and the rule that it broke: a column `id` or `input` that is missing or empty, an id
 /// that comes twice; a folder with nothing in it.
-pub fn read(path: &Path) -> anyhow::Result<Vec<Row>> {
-    if path.is_dir() {
+pub fn read(path: &Path, folder: Option<&Path>) -> anyhow::Result<Vec<Row>> {
+    let is_standard = path.as_os_str() == STANDARD_INPUT;
+    if path.is_dir() && !is_standard {
         return everything_in(path);
+    }
+    let name = if is_standard { "standard input".to_owned() } else { path.display().to_string() };
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    let own = path.parent().unwrap_or(Path::new(""));
+    let folders = [folder.unwrap_or(own).to_path_buf(), PathBuf::new()];
+    if extension == Some("parquet") {
+        return rows_of(super::parquet::cells(path)?, &name, &folders);
     }
     let text = read_lines(path).map_err(|error| match error {
         FileError::Io(reason) => anyhow::Error::new(reason).context(cannot_read(path)),
-        other => data_error(format!("{}:{}: {other}", path.display(), other.line())),
+        other => data_error(format!("{name}:{}: {other}", other.line())),
     })?;
-    let cells = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("jsonl" | "ndjson") => json_lines(&text),
-        _ => table(&text),
+    let is_json = match extension {
+        Some(extension) => matches!(extension, "jsonl" | "ndjson"),
+        None => is_standard && text.trim_start().starts_with('{'),
     };
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let broken = |line: usize, rule: &str| data_error(format!("{}:{line}: {rule}", path.display()));
+    if is_json { of_lines(&text, &name, &folders) } else { rows_of(table(&text), &name, &folders) }
+}
+
+/// The recordings of JSON lines; `name` is what messages call the text.
+///
+/// # Errors
+/// As [`read`].
+pub fn of_lines(text: &str, name: &str, folders: &[PathBuf; 2]) -> anyhow::Result<Vec<Row>> {
+    rows_of(json_lines(text), name, folders)
+}
+
+fn rows_of(cells: Cells, name: &str, folders: &[PathBuf; 2]) -> anyhow::Result<Vec<Row>> {
+    let broken = |line: usize, rule: &str| data_error(format!("{name}:{line}: {rule}"));
     let mut lines: HashMap<String, usize> = HashMap::new();
     let mut rows = Vec::new();
     for (line, cells) in cells.map_err(|(line, rule)| broken(line, &rule))? {
@@ -60,7 +98,7 @@ pub fn read(path: &Path) -> anyhow::Result<Vec<Row>> {
         if let Some(before) = lines.insert(id.clone(), line) {
             return Err(broken(line, &format!("has the id `{id}` of line {before}; ids have to differ")));
         }
-        rows.push(Row { line, id, input: folder.join(input), folder: folder.to_path_buf(), kind, options });
+        rows.push(Row { line, id, input: folders[0].join(input), folders: folders.clone(), kind, options });
     }
     if rows.is_empty() {
         return Err(broken(1, "names no recording; give a table with the columns `id` and `input`, a recording a row"));
@@ -74,8 +112,8 @@ fn everything_in(folder: &Path) -> anyhow::Result<Vec<Row>> {
     names.retain(|name| !name.starts_with('.') && !name.ends_with(ABOUT));
     let row = |(index, name): (usize, String)| {
         let id = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem).to_owned();
-        let input = folder.join(name);
-        Row { line: index + 1, id, input, folder: folder.to_path_buf(), kind: None, options: BTreeMap::new() }
+        let folders = [folder.to_path_buf(), PathBuf::new()];
+        Row { line: index + 1, id, input: folder.join(name), folders, kind: None, options: BTreeMap::new() }
     };
     let mut rows: Vec<Row> = names.into_iter().enumerate().map(row).collect();
     if rows.is_empty() {
@@ -90,7 +128,7 @@ fn everything_in(folder: &Path) -> anyhow::Result<Vec<Row>> {
 }
 
 /// Each line with its number and its cells by name, or the line that is broken with its rule.
-type Cells = Result<Vec<(usize, Vec<(String, String)>)>, (usize, String)>;
+pub type Cells = Result<Vec<(usize, Vec<(String, String)>)>, (usize, String)>;
 
 fn table(text: &str) -> Cells {
     let mut reader = headed_reader(text);
@@ -109,7 +147,7 @@ fn json_lines(text: &str) -> Cells {
     let mut found = Vec::new();
     for (index, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let broken = |rule: String| (index + 1, rule);
-        let object: serde_json::Map<String, Value> =
+        let object: Map<String, Value> =
             serde_json::from_str(line).map_err(|error| broken(format!("is no JSON object ({error})")))?;
         let cell = |(name, value): (String, Value)| match value {
             Value::Null => Ok((name, String::new())),
@@ -131,8 +169,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
         fs::write(&path, text).unwrap();
-        let rows = read(&path).map_err(|error| error.to_string())?;
-        let short = |row: Row| Row { input: row.input.file_name().unwrap().into(), folder: PathBuf::new(), ..row };
+        let rows = read(&path, None).map_err(|error| error.to_string())?;
+        let short = |row: Row| Row { input: row.input.file_name().unwrap().into(), folders: Default::default(), ..row };
         Ok(rows.into_iter().map(short).collect())
     }
 
@@ -154,10 +192,10 @@ mod tests {
         for name in ["b.csv", "b.json", "a.trc", ".hidden", "a.about.json"] {
             fs::write(folder.path().join(name), "1").unwrap();
         }
-        let ids: Vec<String> = read(folder.path()).unwrap().into_iter().map(|row| row.id).collect();
+        let ids: Vec<String> = read(folder.path(), None).unwrap().into_iter().map(|row| row.id).collect();
         assert_eq!(ids, ["a", "b.csv", "b.json"]);
         let empty = tempfile::tempdir().unwrap();
-        assert!(read(empty.path()).unwrap_err().to_string().contains("is empty"));
+        assert!(read(empty.path(), None).unwrap_err().to_string().contains("is empty"));
     }
 
     #[test]

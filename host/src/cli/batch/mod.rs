@@ -1,8 +1,14 @@
 //! `sinew batch`: a list of recordings, each tracked once, in one process.
 
+pub mod chunk;
 mod content;
 mod job;
-mod manifest;
+pub mod manifest;
+mod numbers;
+#[cfg_attr(feature = "parquet", path = "parquet.rs")]
+#[cfg_attr(not(feature = "parquet"), path = "no_parquet.rs")]
+mod parquet;
+mod progress;
 mod store;
 mod tables;
 mod work;
@@ -10,15 +16,16 @@ mod work;
 use super::console::Console;
 use super::data_error;
 use super::signals::stop_flag;
-use crate::output::{OutputLock, write_atomically};
+use crate::output::OutputLock;
 use crate::resume::Interrupted;
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, ensure};
 use clap::Args;
+use progress::Progress;
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use store::Store;
-use tables::{Line, status_csv, summary_csv};
+use tables::Counts;
 
 /// Options of `sinew batch`.
 #[derive(Debug, Args)]
@@ -28,12 +35,15 @@ use tables::{Line, status_csv, summary_csv};
 pub struct BatchArgs {
     /// Recordings: a folder, or a list with a row each, as CSV or JSON lines (.jsonl), with id,
     /// input (relative to the list), kind (recording, cyclic, angles, arm, body) and options named
-    /// like the flags.
+    /// like the flags; `-` reads the list from standard input.
     #[arg(value_name = "MANIFEST|FOLDER")]
     pub manifest: PathBuf,
     /// Folder of all results: results/KEY, status.csv, summary.csv.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Folder that relative paths of the list start from [default: the list's folder].
+    #[arg(long, value_name = "DIR")]
+    pub folder: Option<PathBuf>,
     /// Recordings that are worked on at once [default: the number of processors].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
@@ -47,6 +57,17 @@ pub struct BatchArgs {
     /// Try those again that failed before.
     #[arg(long)]
     pub retry_failed: bool,
+    /// Also write what becomes of each recording as JSON, a line each.
+    #[arg(long, value_name = "FILE.jsonl")]
+    pub rows: Option<PathBuf>,
+    /// Print how many recordings are done as lines on standard error, with --json as JSON. The
+    /// batch ends when these cannot be written.
+    #[arg(long)]
+    pub progress: bool,
+    /// Also write both tables as Parquet.
+    #[cfg(feature = "parquet")]
+    #[arg(long)]
+    pub parquet: bool,
 }
 
 fn shard(text: &str) -> Result<(usize, usize), String> {
@@ -90,57 +111,56 @@ pub fn run(args: &BatchArgs, console: &Console) -> Result<()> {
 /// # Errors
 /// As [`run`].
 pub fn run_until(args: &BatchArgs, console: &Console, stop: &AtomicBool) -> Result<()> {
-    let all = manifest::read(&args.manifest)?.into_iter().enumerate();
+    let all = manifest::read(&args.manifest, args.folder.as_deref())?.into_iter().enumerate();
     let mut rows: Vec<_> = all.filter(|(index, _)| args.is_mine(*index)).map(|(_, row)| row).collect();
-    for row in &mut rows {
-        for (name, value) in &args.set {
-            row.options.entry(name.clone()).or_insert_with(|| value.clone());
-        }
-    }
+    rows.iter_mut().for_each(|row| row.set(&args.set));
     ensure!(!rows.is_empty(), "--shard: the manifest has fewer recordings than shards; nothing is left for this one");
-    std::fs::create_dir_all(&args.out)
-        .or_else(|error| bail!("`{}` cannot be made ({error}); choose another --out", args.out.display()))?;
+    chunk::make_folder(&args.out)?;
     let status = args.out.join(args.named("status") + ".csv");
     let _lock = OutputLock::of_table(&status, "batch")?;
     let store = Store::open(&args.out, &args.named("status"))?;
     let jobs = args.jobs.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
-    let done = work::all(&rows, &store, work::Plan { jobs, retry_failed: args.retry_failed }, console, stop)?;
+    let progress = Progress::new(rows.len(), console, args.progress)?;
+    let lines = work::all(&rows, &store, work::Plan { jobs, retry_failed: args.retry_failed }, &progress, stop)?;
+    progress.end();
     store.close();
     let summary = args.out.join(args.named("summary") + ".csv");
-    let tables = [(&status, status_csv(&done.lines)?), (&summary, summary_csv(&done.lines)?)];
-    for (path, text) in tables {
-        write_atomically(path, |file| Ok(file.write_all(text.as_bytes())?))?;
+    tables::write(&lines, &status, &summary)?;
+    if let Some(path) = &args.rows {
+        tables::write_json_lines(&lines, path)?;
     }
-    let count = |is: fn(&Line) -> bool| done.lines.iter().filter(|line| is(line)).count();
-    let failed = count(|line| line.ended.as_ref().is_some_and(|ended| ended.failure.is_some()));
-    let open = count(|line| line.ended.is_none());
-    let good = done.lines.len() - failed - open;
+    #[cfg(feature = "parquet")]
+    if args.parquet {
+        parquet::write(&lines, &status.with_extension("parquet"), &summary.with_extension("parquet"))?;
+    }
+    let Counts { recordings, good, from_before, failed, open } = Counts::of(&lines);
     let text = format!(
-        "{} recordings: {good} with a result, {} of these from before; {failed} failed, {open} open\nwrote {} and {}\n",
-        done.lines.len(),
-        done.from_before,
+        "{recordings} recordings: {good} with a result, {from_before} of these from before; {failed} failed, {open} open\n\
+         wrote {} and {}\n",
         status.display(),
         summary.display()
     );
     let json = json!({
-        "recordings": done.lines.len(),
+        "recordings": recordings,
         "good": good,
-        "from_before": done.from_before,
+        "from_before": from_before,
         "failed": failed,
         "open": open,
         "status": status,
         "summary": summary,
     });
     console.answer(&text, &json)?;
-    let finished = done.lines.len() - open;
-    let interrupted =
-        || Interrupted { finished, all: Some(done.lines.len()), unit: "recordings", out: args.out.clone() };
+    let interrupted = || Interrupted {
+        finished: recordings - open,
+        all: Some(recordings),
+        unit: "recordings",
+        out: args.out.clone(),
+    };
     ensure!(!stop.load(Ordering::Relaxed) || open == 0, interrupted());
     if failed > 0 {
         return Err(data_error(format!(
-            "{failed} of {} recordings have no result; `{}` says why; put them right, and give the same command again (--retry-failed \
-             for those whose files stay as they are)",
-            done.lines.len(),
+            "{failed} of {recordings} recordings have no result; `{}` says why; put them right, and give the same \
+             command again (--retry-failed for those whose files stay as they are)",
             status.display()
         )));
     }

@@ -1,5 +1,6 @@
 //! What is kept of each recording, under its key.
 
+use super::content::names_in;
 use crate::error::{Context, Result};
 use crate::file::read_bytes;
 use crate::output::write_atomically;
@@ -122,6 +123,15 @@ impl Store {
         let _ = fs::remove_dir_all(&self.unfinished);
         // Stays while another shard works.
         let _ = fs::remove_dir(self.root.join("unfinished"));
+    }
+
+    /// Removes the unfinished work in `root` of those whose names begin with `prefix`.
+    pub fn sweep(root: &Path, prefix: &str) {
+        let folder = root.join("unfinished");
+        for name in names_in(&folder).unwrap_or_default().iter().filter(|name| name.starts_with(prefix)) {
+            let _ = fs::remove_dir_all(folder.join(name));
+        }
+        let _ = fs::remove_dir(folder);
     }
 }
 

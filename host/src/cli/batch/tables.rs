@@ -1,19 +1,121 @@
 //! The tables over all recordings.
 
-use super::store::Ended;
+use super::numbers::Numbers;
+use super::store::{Ended, Failure};
 use crate::csv_text::name_cell;
-use crate::error::{Error, Result};
-use serde_json::Value;
+use crate::error::Result;
+use crate::output::write_atomically;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::io::Write;
+use std::path::Path;
 
 /// One recording as the tables show it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     /// Its name.
     pub id: String,
     /// Under which its result is.
     pub key: String,
     /// How it ended; nothing if it did not.
-    pub ended: Option<Ended>,
+    pub ended: Option<Outcome>,
+}
+
+/// How a recording ended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// Seconds of the last attempt.
+    pub seconds: f64,
+    /// How often it was tried.
+    pub attempts: u32,
+    /// What failed; nothing if there is a result.
+    pub failure: Option<Failure>,
+    /// Whether an earlier run did it.
+    pub from_before: bool,
+    /// What the summary shows of it.
+    pub numbers: Numbers,
+}
+
+impl Outcome {
+    /// What the tables show of `ended`.
+    #[must_use]
+    pub fn of(ended: Ended, from_before: bool) -> Self {
+        let Ended { seconds, attempts, failure, answer } = ended;
+        Self { seconds, attempts, failure, from_before, numbers: Numbers::of(&answer) }
+    }
+}
+
+/// How many recordings ended how.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// All of them.
+    pub recordings: usize,
+    /// Those with a result.
+    pub good: usize,
+    /// Those of them that an earlier run did.
+    pub from_before: usize,
+    /// Those with an error.
+    pub failed: usize,
+    /// Those that did not end.
+    pub open: usize,
+}
+
+impl Counts {
+    /// Of `lines`.
+    #[must_use]
+    pub fn of(lines: &[Line]) -> Self {
+        let mut counts = Self { recordings: lines.len(), ..Self::default() };
+        for line in lines {
+            match &line.ended {
+                None => counts.open += 1,
+                Some(Outcome { failure: Some(_), .. }) => counts.failed += 1,
+                Some(outcome) => {
+                    counts.good += 1;
+                    counts.from_before += usize::from(outcome.from_before);
+                }
+            }
+        }
+        counts
+    }
+}
+
+/// Writes both tables.
+///
+/// # Errors
+/// A table that cannot be written.
+pub fn write(lines: &[Line], status: &Path, summary: &Path) -> Result<()> {
+    write_atomically(status, |file| csv(lines, self::status, file))?;
+    write_atomically(summary, |file| csv(lines, self::summary, file))
+}
+
+/// Writes `lines` as JSON, a line each.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_json_lines(lines: &[Line], path: &Path) -> Result<()> {
+    write_atomically(path, |file| Ok(file.write_all(json_lines(lines)?.as_bytes())?))
+}
+
+/// `lines` as JSON, a line each.
+///
+/// # Errors
+/// None in practice.
+pub fn json_lines(lines: &[Line]) -> Result<String> {
+    let each = lines.iter().map(|line| Ok(serde_json::to_string(line)? + "\n"));
+    each.collect()
+}
+
+/// What takes the rows of a table, of which the first names the columns.
+pub type Sink<'a> = &'a mut dyn FnMut(&[Cow<'_, str>]) -> Result<()>;
+
+/// A table by its rows.
+pub type Table = fn(&[Line], Sink) -> Result<()>;
+
+fn csv(lines: &[Line], table: Table, file: &mut dyn Write) -> Result<()> {
+    let mut writer = csv::Writer::from_writer(file);
+    table(lines, &mut |cells| Ok(writer.write_record(cells.iter().map(|cell| cell.as_bytes()))?))?;
+    Ok(writer.flush()?)
 }
 
 /// The columns of the status table.
@@ -22,10 +124,9 @@ const STATUS: [&str; 7] = ["id", "key", "status", "class", "message", "seconds",
 /// How each recording ended: `ok`, `error`, or `open`.
 ///
 /// # Errors
-/// None in practice.
-pub fn status_csv(lines: &[Line]) -> Result<String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(STATUS)?;
+/// Those of `sink`.
+pub fn status(lines: &[Line], sink: Sink) -> Result<()> {
+    sink(&STATUS.map(Cow::from))?;
     for line in lines {
         let failure = line.ended.as_ref().and_then(|ended| ended.failure.as_ref());
         let status = match (&line.ended, failure) {
@@ -34,76 +135,68 @@ pub fn status_csv(lines: &[Line]) -> Result<String> {
             (Some(_), None) => "ok",
         };
         let (class, message) = failure.map_or(("", ""), |failure| (&failure.class, &failure.message));
-        let number = |value: Option<String>| value.unwrap_or_default();
-        writer.write_record([
-            &*name_cell(&line.id),
-            &line.key,
-            status,
-            class,
-            &*name_cell(message),
-            &number(line.ended.as_ref().map(|ended| format!("{:.3}", ended.seconds))),
-            &number(line.ended.as_ref().map(|ended| ended.attempts.to_string())),
+        let number = |value: fn(&Outcome) -> String| line.ended.as_ref().map_or_else(String::new, value).into();
+        sink(&[
+            name_cell(&line.id),
+            line.key.as_str().into(),
+            status.into(),
+            class.into(),
+            name_cell(message),
+            number(|ended| format!("{:.3}", ended.seconds)),
+            number(|ended| ended.attempts.to_string()),
         ])?;
     }
-    String::from_utf8(writer.into_inner().map_err(Error::invalid)?).map_err(Error::invalid)
+    Ok(())
 }
 
 /// The numbers of each recording that has a result, a row each; a column is there if any has it.
 ///
 /// # Errors
-/// None in practice.
-pub fn summary_csv(lines: &[Line]) -> Result<String> {
-    let rows: Vec<(&str, Vec<(String, String)>)> = lines
-        .iter()
-        .filter_map(|line| Some((line.id.as_str(), line.ended.as_ref().filter(|ended| ended.failure.is_none())?)))
-        .map(|(id, ended)| (id, cells(&ended.answer)))
-        .collect();
-    let mut names: Vec<&str> = Vec::new();
-    for (name, _) in rows.iter().flat_map(|(_, cells)| cells) {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
+/// Those of `sink`.
+pub fn summary(lines: &[Line], sink: Sink) -> Result<()> {
+    let is_good = |line: &&Line| line.ended.as_ref().is_some_and(|ended| ended.failure.is_none());
+    let good = || lines.iter().filter(is_good).filter_map(|line| Some((&line.id, &line.ended.as_ref()?.numbers)));
+    let mut header = vec!["id".to_owned()];
+    // The columns of each list of names.
+    let mut columns: HashMap<*const String, Vec<usize>> = HashMap::new();
+    for (_, numbers) in good() {
+        columns.entry(numbers.names().as_ptr()).or_insert_with(|| {
+            let known =
+                |name: &String, header: &[String]| 1 + header[1..].iter().take_while(|other| *other != name).count();
+            let column = |name: &String| {
+                let column = known(name, &header);
+                if column == header.len() {
+                    header.push(name.clone());
+                }
+                column
+            };
+            numbers.names().iter().map(column).collect()
+        });
     }
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(std::iter::once("id").chain(names.iter().copied()))?;
-    for (id, cells) in &rows {
-        let cell = |name: &&str| cells.iter().find(|(known, _)| known == name).map_or("", |(_, value)| value);
-        writer.write_record(std::iter::once(&*name_cell(id)).chain(names.iter().map(cell)))?;
-    }
-    String::from_utf8(writer.into_inner().map_err(Error::invalid)?).map_err(Error::invalid)
-}
-
-/// The numbers of an answer: those at its top, in `summary`, and of each joint in `symmetries`;
-/// `doubts` by their number.
-fn cells(answer: &Value) -> Vec<(String, String)> {
-    let mut found = Vec::new();
-    let mut add = |prefix: &str, value: &Value| {
-        for (name, value) in value.as_object().into_iter().flatten() {
-            if value.is_number() || value.is_boolean() {
-                found.push((format!("{prefix}{name}"), value.to_string()));
+    sink(&header.iter().map(Cow::from).collect::<Vec<_>>())?;
+    for (id, numbers) in good() {
+        let mut cells = vec![Cow::from(""); header.len()];
+        for (column, value) in columns[&numbers.names().as_ptr()].iter().zip(numbers.values()) {
+            // Of a name that stands twice the first value counts.
+            if cells[*column].is_empty() {
+                cells[*column] = value.into();
             }
         }
-    };
-    add("", answer);
-    add("", &answer["summary"]);
-    for joint in answer["symmetries"].as_array().into_iter().flatten() {
-        add(&format!("{}_", joint["angle"].as_str().unwrap_or_default()), joint);
+        cells[0] = name_cell(id);
+        sink(&cells)?;
     }
-    if let Some(doubts) = answer["doubts"].as_array() {
-        found.push(("doubts".to_owned(), doubts.len().to_string()));
-    }
-    found
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::store::Failure;
     use super::*;
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     fn lines() -> Vec<Line> {
-        let ended =
-            |answer: Value, failure: Option<Failure>| Some(Ended { seconds: 0.5, attempts: 1, failure, answer });
+        let ended = |answer: Value, failure: Option<Failure>| {
+            Some(Outcome::of(Ended { seconds: 0.5, attempts: 1, failure, answer }, false))
+        };
         let answer = json!({
             "summary": { "cadence_per_min": 55.5, "whole_cycles_s": null },
             "symmetries": [{ "angle": "knee_flexion", "left_range_deg": 60.0 }],
@@ -114,16 +207,32 @@ mod tests {
             Line { id: "a".into(), key: "k".into(), ended: ended(answer, None) },
             Line { id: "b".into(), key: "l".into(), ended: ended(Value::Null, Some(failure)) },
             Line { id: "c".into(), key: String::new(), ended: None },
+            Line { id: "d".into(), key: "m".into(), ended: ended(json!({"frames": 3, "doubts": []}), None) },
         ]
+    }
+
+    fn text(table: Table) -> String {
+        let mut bytes = Vec::new();
+        csv(&lines(), table, &mut bytes).unwrap();
+        String::from_utf8(bytes).unwrap()
     }
 
     #[test]
     fn tables_hold_a_row_each() {
-        let status = status_csv(&lines()).unwrap();
+        let status = text(status);
         let wanted = "id,key,status,class,message,seconds,attempts\na,k,ok,,,0.500,1\n";
-        assert!(status.starts_with(wanted) && status.ends_with("c,,open,,,,\n"), "{status}");
+        assert!(status.starts_with(wanted) && status.contains("c,,open,,,,\n"), "{status}");
         assert!(status.contains("b,l,error,data,\"'=broken, row 2\""), "{status}");
-        let summary = summary_csv(&lines()).unwrap();
-        assert_eq!(summary, "id,cadence_per_min,knee_flexion_left_range_deg,doubts\na,55.5,60.0,1\n");
+        let wanted = "id,cadence_per_min,knee_flexion_left_range_deg,doubts,frames\na,55.5,60.0,1,\nd,,,0,3\n";
+        assert_eq!(text(summary), wanted);
+        let counts = Counts { recordings: 4, good: 2, from_before: 0, failed: 1, open: 1 };
+        assert_eq!(Counts::of(&lines()), counts);
+    }
+
+    #[test]
+    fn lines_come_back_from_json() {
+        let text = json_lines(&lines()).unwrap();
+        let back: Vec<Line> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!(back, lines());
     }
 }

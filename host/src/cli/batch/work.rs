@@ -2,8 +2,9 @@
 
 use super::job::Job;
 use super::manifest::Row;
+use super::progress::Progress;
 use super::store::{Ended, Failure, Store};
-use super::tables::Line;
+use super::tables::{Line, Outcome};
 use crate::cli::console::Console;
 use crate::cli::stdout::captured;
 use crate::cli::{Cli, interrupted, kind_of, run};
@@ -31,15 +32,6 @@ pub struct Plan {
     pub retry_failed: bool,
 }
 
-/// What came of all recordings.
-#[derive(Debug)]
-pub struct Done {
-    /// One a row of the manifest, in its order.
-    pub lines: Vec<Line>,
-    /// Results that were there.
-    pub from_before: usize,
-}
-
 /// What the threads share.
 struct Work<'a> {
     rows: &'a [Row],
@@ -52,17 +44,15 @@ struct Work<'a> {
     first_of: Mutex<HashMap<String, usize>>,
     /// Rows that ask for the same as another, with that one.
     twins: Mutex<Vec<(usize, usize)>>,
-    from_before: AtomicUsize,
     /// What ended the work as a whole.
     broken: Mutex<Option<anyhow::Error>>,
 }
 
-/// Does what is not done yet. Rows that ask for the same are done once.
+/// Does what is not done yet, and returns a line a row. Rows that ask for the same are done once.
 ///
 /// # Errors
 /// The store cannot be written.
-pub fn all(rows: &[Row], store: &Store, plan: Plan, console: &Console, stop: &AtomicBool) -> Result<Done> {
-    let bar = console.bar(rows.len() as u64, "{wide_bar} {pos} of {len}, {eta} left")?;
+pub fn all(rows: &[Row], store: &Store, plan: Plan, progress: &Progress, stop: &AtomicBool) -> Result<Vec<Line>> {
     let work = Work {
         rows,
         store,
@@ -72,15 +62,13 @@ pub fn all(rows: &[Row], store: &Store, plan: Plan, console: &Console, stop: &At
         lines: Mutex::new(vec![None; rows.len()]),
         first_of: Mutex::default(),
         twins: Mutex::default(),
-        from_before: AtomicUsize::new(0),
         broken: Mutex::default(),
     };
     std::thread::scope(|scope| {
         for _ in 0..plan.jobs.min(rows.len()) {
-            scope.spawn(|| work.many(&|| bar.inc(1)));
+            scope.spawn(|| work.many(&|| progress.add_one(stop)));
         }
     });
-    bar.finish_and_clear();
     work.done()
 }
 
@@ -107,7 +95,7 @@ impl Work<'_> {
         let job = match Job::of(row) {
             Ok(job) => job,
             Err(error) => {
-                put("", Some(failed(&error.into(), Instant::now(), 1)));
+                put("", Some(Outcome::of(failed(&error.into(), Instant::now(), 1), false)));
                 return Ok(());
             }
         };
@@ -118,18 +106,15 @@ impl Work<'_> {
         }
         let before = self.store.ended(&job.key);
         let ended = match before.filter(|ended| ended.failure.is_none() || !self.plan.retry_failed) {
-            Some(ended) => {
-                self.from_before.fetch_add(usize::from(ended.failure.is_none()), Ordering::Relaxed);
-                Some(ended)
-            }
-            None => tried(&job, self.store, self.stop)?,
+            Some(ended) => Some(Outcome::of(ended, true)),
+            None => tried(&job, self.store, self.stop)?.map(|ended| Outcome::of(ended, false)),
         };
         put(&job.key, ended);
         Ok(())
     }
 
-    fn done(self) -> Result<Done> {
-        let Self { rows, lines, twins, from_before, broken, .. } = self;
+    fn done(self) -> Result<Vec<Line>> {
+        let Self { rows, lines, twins, broken, .. } = self;
         if let Some(error) = inner(broken) {
             return Err(error);
         }
@@ -139,7 +124,7 @@ impl Work<'_> {
         for (twin, first) in inner(twins) {
             lines[twin] = Line { id: rows[twin].id.clone(), ..lines[first].clone() };
         }
-        Ok(Done { lines, from_before: from_before.into_inner() })
+        Ok(lines)
     }
 }
 
