@@ -1,10 +1,13 @@
-//! The contents of inputs, as texts that go into a key.
+//! The contents of inputs, and the cells of a manifest.
 
 use crate::error::{Context, Result};
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};
 use std::io;
 use std::path::Path;
+
+/// Each line with its number and its cells by name, or the line that is broken with its rule.
+pub type Cells = Result<Vec<(usize, Vec<(String, String)>)>, (usize, String)>;
 
 /// SHA-256 of a file, or names and contents of what is in a folder.
 ///

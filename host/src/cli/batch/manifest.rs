@@ -1,6 +1,6 @@
 //! The list of recordings: a CSV table, JSON lines or, with the feature `parquet`, a Parquet file.
 
-use super::content::{cannot_read, names_in};
+use super::content::{Cells, cannot_read, names_in};
 use crate::cli::data_error;
 use crate::csv_text::headed_reader;
 use crate::file::{FileError, STANDARD_INPUT, read_lines};
@@ -126,9 +126,6 @@ fn everything_in(folder: &Path) -> anyhow::Result<Vec<Row>> {
     }
     Ok(rows)
 }
-
-/// Each line with its number and its cells by name, or the line that is broken with its rule.
-pub type Cells = Result<Vec<(usize, Vec<(String, String)>)>, (usize, String)>;
 
 fn table(text: &str) -> Cells {
     let mut reader = headed_reader(text);

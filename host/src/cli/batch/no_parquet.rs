@@ -1,6 +1,6 @@
 //! Parquet files, which the feature `parquet` reads and writes.
 
-use super::manifest::Cells;
+use super::content::Cells;
 use crate::cli::data_error;
 use std::path::Path;
 

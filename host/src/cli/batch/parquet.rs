@@ -1,7 +1,6 @@
 //! Lists and tables of a batch as Parquet.
 
-use super::content::cannot_read;
-use super::manifest::Cells;
+use super::content::{Cells, cannot_read};
 use super::tables::{Line, Table, status, summary};
 use crate::cli::data_error;
 use crate::error::{Error, Result};
