@@ -137,6 +137,7 @@ def test_parameters_that_are_wrong_are_named(recordings, tmp_path):
     for parameter, options in (
         ("engine", {"engine": "dask"}),
         ("jobs", {"jobs": 0}),
+        ("jobs", {"jobs": 2000}),
         ("chunk", {"chunk": 1.5}),
         ("max_retries", {"max_retries": -1}),
         ("shard", {"shard": "3/2"}),

@@ -93,6 +93,30 @@ fn a_list_has_options_and_errors_of_its_own() {
     assert!(status["w001"]["message"].contains("the nearest is `model`"), "{status:?}");
 }
 
+/// What another program gives and takes: a list by standard input, rows and progress as JSON.
+#[test]
+fn a_list_from_standard_input_is_answered_as_json() {
+    let folder = walks(2);
+    let root = folder.path();
+    let list = "{\"id\":\"a\",\"input\":\"w001.csv\"}\n{\"id\":\"b\",\"input\":\"gone.csv\"}\n";
+    let words = "batch - --folder in --out runs --rows rows.jsonl --progress --json";
+    let done =
+        sinew(root, words).write_stdin(list).assert().code(65).stderr(contains("\"done\":2,\"left_s\":0.0,\"of\":2"));
+    let answer: serde_json::Value = serde_json::from_slice(&done.get_output().stdout).unwrap();
+    assert_eq!((answer["good"].as_u64(), answer["failed"].as_u64()), (Some(1), Some(1)));
+    let text = fs::read_to_string(root.join("rows.jsonl")).unwrap();
+    let lines: Vec<serde_json::Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(lines[0]["key"].as_str(), Some(rows(&root.join("runs/status.csv"))["a"]["key"].as_str()));
+    assert_eq!(lines[1]["ended"]["failure"]["class"], "no-input");
+    sinew(root, "batch - --folder in --out runs").write_stdin("id,input\na,w001.csv\n").assert().success();
+    sinew(root, "batch - --out runs")
+        .write_stdin("id\na\n")
+        .assert()
+        .code(65)
+        .stderr(contains("standard input:2: needs an `input`"));
+    sinew(root, "batch list.parquet --out runs").assert().code(65).stderr(contains("reads no Parquet"));
+}
+
 #[test]
 fn shards_make_together_what_one_run_makes() {
     let folder = walks(5);

@@ -8,6 +8,9 @@ from typing import Any
 
 from .manifest import Manifest
 
+# Recordings at once; the command has the same limit.
+MAX_JOBS = 1024
+
 
 @dataclass(frozen=True)
 class Plan:
@@ -37,6 +40,8 @@ class Plan:
             value = parts[name]
             if (value is not None or name != "jobs") and not is_whole(value, least):
                 raise ValueError(f"`{name}` has to be a whole number from {least}, not {value!r}")
+        if parts["jobs"] is not None and parts["jobs"] > MAX_JOBS:
+            raise ValueError(f"`jobs` has to be at most {MAX_JOBS}, not {parts['jobs']}")
         if not isinstance(out, (str, os.PathLike)):
             raise ValueError(f"`out` has to be a path or URL, not {type(out).__name__}")
         out = os.fspath(out)
