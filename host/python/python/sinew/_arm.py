@@ -121,7 +121,8 @@ class ArmTracker:
         ----------
         image : array_like of uint8, shape (height, width, 3), optional
             Red, green and blue; a missing frame where not given. One that is contiguous is not
-            copied, and must not be changed meanwhile.
+            copied, and must not be changed meanwhile. Of OpenCV's order,
+            ``cv2.cvtColor(image, cv2.COLOR_BGR2RGB)`` makes it faster than ``image[..., ::-1]``.
         hands : array_like or list of dict, optional
             Hands that any detector found, in place of blobs: a structured array or dictionaries
             with ``u_px``, ``v_px`` (middle), ``size_px`` (diameter), ``probability`` and where it
