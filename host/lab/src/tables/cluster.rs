@@ -21,15 +21,16 @@ struct Kind {
     name: &'static str,
     /// Processor time of a frame, milliseconds: measured as `docs/cluster.md` says.
     frame_ms: f64,
-    /// Bytes of a row as CSV and as Parquet: measured as `docs/cluster.md` says.
-    row_bytes: [f64; 2],
+    /// Bytes of a frame's rows as CSV and as Parquet: measured as `docs/cluster.md` says.
+    frame_bytes: [f64; 2],
 }
 
-/// Measured on one core of a shared two-core x86-64 virtual machine.
-const KINDS: [Kind; 3] = [
-    Kind { name: "cyclic, from keypoints", frame_ms: 0.014, row_bytes: [295.0, 94.0] },
-    Kind { name: "arms, both sides, 640x480", frame_ms: 8.0, row_bytes: [295.0, 94.0] },
-    Kind { name: "bodies, 2000 points", frame_ms: 17.0, row_bytes: [295.0, 94.0] },
+/// Measured on a shared two-core x86-64 virtual machine.
+const KINDS: [Kind; 4] = [
+    Kind { name: "cyclic, finished recording", frame_ms: 0.088, frame_bytes: [307.0, 121.0] },
+    Kind { name: "cyclic, online", frame_ms: 0.025, frame_bytes: [307.0, 121.0] },
+    Kind { name: "arms, both sides, 640x480", frame_ms: 5.5, frame_bytes: [429.0, 351.0] },
+    Kind { name: "bodies, 2000 points", frame_ms: 34.0, frame_bytes: [1004.0, 592.0] },
 ];
 
 impl Kind {
@@ -47,7 +48,7 @@ impl Kind {
 pub fn work(_recordings: &Path) -> Result<Rows> {
     let mut rows = vec![line(["kind", "a recording, s", "core-hours", "hours on 512 cores", "CSV, TB", "Parquet, TB"])];
     for kind in &KINDS {
-        let terabytes = kind.row_bytes.map(|bytes| bytes * (RECORDINGS * FRAMES) as f64 / 1.0e12);
+        let terabytes = kind.frame_bytes.map(|bytes| bytes * (RECORDINGS * FRAMES) as f64 / 1.0e12);
         let numbers = [kind.recording_s(), kind.core_hours(), kind.core_hours() / WORKERS as f64];
         let [recording, hours, on_all] = numbers.map(three_digits);
         rows.push(named(
