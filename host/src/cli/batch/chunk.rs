@@ -35,7 +35,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// Works on the rows, and returns [`Line`]s as JSON in their order.
+    /// Works on the rows, and returns lines as JSON in their order.
     ///
     /// # Errors
     /// Rows that are none, a folder that cannot be written.
