@@ -2,11 +2,16 @@
 
 import json
 import os
+import signal
 import subprocess
 
 import pytest
 
 import sinew
+
+# A shell's job in the background ignores Ctrl-C, and so would the programs that tests start.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")

@@ -119,7 +119,7 @@ mod tests {
         };
         refused("{\"body\": {\"heigth_m\": 1.8}}", "body.height_m");
         refused("{\"tracker\": {\"particles\": 0}}", "particles");
-        refused("[1]", "config");
+        refused("[1]", "CameraConfig");
         refused("{", "JSON");
     }
 
