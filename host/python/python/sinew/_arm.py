@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _sinew
 from ._arm_estimate import ArmEstimate, ArmPair, ArmParticles
-from ._arrays import is_path, positive, whole
+from ._arrays import is_path, number, positive, whole
 from ._hands import hand_rows, head_box
 from ._images import MAX_SIDE_PX, rectangle, rgb, skin_name
 
@@ -147,12 +147,8 @@ class ArmTracker:
         pixels = None if image is None else rgb(image)
         rows, has_sides = (None, False) if hands is None else hand_rows(hands)
         box = None if head is None else head_box(head)
-        if time_s is not None:
-            try:
-                time_s = float(time_s)
-            except (TypeError, ValueError):
-                raise ValueError(f"`time_s` has to be a number, not {time_s!r}") from None
-        answers = [ArmEstimate(**arm) for arm in self._native.update(pixels, rows, has_sides, box, time_s)]
+        time = None if time_s is None else number(time_s, "time_s")
+        answers = [ArmEstimate(**arm) for arm in self._native.update(pixels, rows, has_sides, box, time)]
         return ArmPair(*answers) if len(answers) == 2 else answers[0]
 
     def particles(self) -> list[ArmParticles]:
