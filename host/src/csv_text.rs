@@ -46,21 +46,26 @@ pub(crate) enum RecordError {
 pub(crate) struct RecordReader<R> {
     reader: csv::Reader<Metered<R>>,
     since_record: Rc<Cell<usize>>,
+    /// Bytes and cells of the last record: the next one seldom needs more.
+    usual: (usize, usize),
 }
 
 impl<R: Read> RecordReader<R> {
     pub(crate) fn new(input: R) -> Self {
         let since_record = Rc::default();
         let metered = Metered { input, since_record: Rc::clone(&since_record) };
-        Self { reader: reader(metered), since_record }
+        Self { reader: reader(metered), since_record, usual: (0, 0) }
     }
 
     /// The next record, the header being the first.
     pub(crate) fn next(&mut self) -> Result<Option<csv::StringRecord>, RecordError> {
-        let mut record = csv::ByteRecord::new();
+        let mut record = csv::ByteRecord::with_capacity(self.usual.0, self.usual.1);
         self.since_record.set(0);
         match self.reader.read_byte_record(&mut record) {
-            Ok(true) => Ok(Some(csv::StringRecord::from_byte_record_lossy(record))),
+            Ok(true) => {
+                self.usual = (record.as_slice().len(), record.len());
+                Ok(Some(csv::StringRecord::from_byte_record_lossy(record)))
+            }
             Ok(false) => Ok(None),
             Err(error) => Err(self.refusal(error)),
         }

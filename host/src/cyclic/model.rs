@@ -84,6 +84,35 @@ impl ModelNumbers {
     }
 }
 
+impl ModelNumbers {
+    /// CRC-32 of all numbers, which stands for them where a run goes on.
+    #[must_use]
+    pub fn crc32(&self) -> u32 {
+        let mut hasher = crc32fast::Hasher::new();
+        let mut add = |values: &[f32]| {
+            hasher.update(&values.len().to_le_bytes());
+            values.iter().for_each(|value| hasher.update(&value.to_le_bytes()));
+        };
+        add(&[self.mean_duration_frames, self.rate_hz]);
+        let turns: Vec<f32> = self.turns_per_cycle.iter().map(|turns| f32::from(*turns)).collect();
+        [&turns, &self.mean_pose_rad, &self.mean_velocity, &self.mean_acceleration, &self.acceleration_covariance]
+            .into_iter()
+            .for_each(|values| add(values));
+        if let Some(deviation) = &self.deviation {
+            add(&[deviation.inflation, deviation.shrinkage]);
+            [
+                &deviation.offset_std_rad,
+                &deviation.swing_std_rad,
+                &deviation.rest_std_rad,
+                &deviation.rest_rate_per_cycle,
+            ]
+            .into_iter()
+            .for_each(|values| add(values));
+        }
+        hasher.finalize()
+    }
+}
+
 /// A checked model with its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CyclicModel {

@@ -5,6 +5,7 @@ use super::model::{CyclicModel, DeviationNumbers, ModelNumbers, TrainedOn};
 use crate::error::{Context, Result, bail, ensure};
 use crate::model_text::{self, ModelFileKind};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use serde_json::value::RawValue;
 use sinew_core::numeric::semi_definite::packed_len;
 use std::path::Path;
@@ -28,6 +29,13 @@ const SHIPPED: [(&str, &str); 3] = [
 pub const MODEL_VALUE: &str = "MODEL.json|walking|running|arm-circles";
 
 type Rows<T> = Vec<Vec<T>>;
+
+/// What says whether the rest can be read.
+#[derive(Debug, Deserialize)]
+struct Head {
+    format: Option<Value>,
+    version: Option<Value>,
+}
 
 /// The file: one row a position in every table.
 #[derive(Debug, Serialize, Deserialize)]
@@ -130,15 +138,15 @@ pub fn read(path: &Path) -> Result<CyclicModel> {
 /// # Errors
 /// Says which field is missing or has a value that cannot be used.
 pub fn parse(text: &str) -> Result<CyclicModel> {
-    let value: serde_json::Value = serde_json::from_str(text).context("it is not JSON")?;
-    let format = value.get("format").and_then(serde_json::Value::as_str).unwrap_or("missing");
+    let head: Head = serde_json::from_str(text).context("it is not JSON, or not a model")?;
+    let format = head.format.as_ref().and_then(Value::as_str).unwrap_or("missing");
     ensure!(format == FORMAT, "its field `format` is `{format}`, but has to be {FORMAT}");
-    let version = value.get("version").map_or_else(|| "missing".to_owned(), ToString::to_string);
+    let version = head.version.map_or_else(|| "missing".to_owned(), |version| version.to_string());
     ensure!(
         version == VERSION.to_string(),
         "its field `version` is {version}, but this program reads version {VERSION}"
     );
-    let file: ModelFile<Rows<f32>> = serde_json::from_value(value)?;
+    let file: ModelFile<Rows<f32>> = serde_json::from_str(text)?;
     let n = if file.angles.len() > ANGLES { 2 * ANGLES } else { ANGLES };
     let wanted = angle_names(n);
     ensure!(file.angles == wanted, "its field `angles` has to be {}", wanted.join(", "));
@@ -187,8 +195,8 @@ mod tests {
         message
     }
 
-    fn changed(change: impl FnOnce(&mut serde_json::Value)) -> String {
-        let mut value: serde_json::Value = serde_json::from_str(&walking_json()).unwrap();
+    fn changed(change: impl FnOnce(&mut Value)) -> String {
+        let mut value: Value = serde_json::from_str(&walking_json()).unwrap();
         change(&mut value);
         refusal(&value.to_string())
     }

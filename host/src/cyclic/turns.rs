@@ -12,13 +12,21 @@ pub fn wrapped(angle_rad: f64) -> f64 {
 /// The angle in [-pi, pi] that differs from `angle_rad` by whole turns.
 #[must_use]
 pub fn least_angle(angle_rad: f64) -> f64 {
-    angle_rad - TAU * (angle_rad / TAU).round()
+    angle_rad - TAU * nearest_integer(angle_rad / TAU)
+}
+
+/// The integer nearest to `number`. The sum has no place for a fraction: the plainest x86-64 has no
+/// instruction that rounds, and a call for each angle takes longer than all else that is done to it.
+fn nearest_integer(number: f64) -> f64 {
+    /// 1.5 times 2^52.
+    const NO_FRACTION: f64 = 6_755_399_441_055_744.0;
+    (number + NO_FRACTION) - NO_FRACTION
 }
 
 /// The angle equal to `angle_rad` up to whole turns that is nearest to `reference_rad`.
 #[must_use]
 pub fn nearest_turn(angle_rad: f64, reference_rad: f64) -> f64 {
-    angle_rad - ((angle_rad - reference_rad) / TAU).round() * TAU
+    angle_rad - nearest_integer((angle_rad - reference_rad) / TAU) * TAU
 }
 
 /// Adds whole turns so that each angle is nearest to the one before it that is there.

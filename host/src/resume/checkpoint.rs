@@ -19,6 +19,12 @@ impl Checkpoints {
         Self { every, last: None }
     }
 
+    /// One after each such time: for work of which less is soon done again.
+    #[must_use]
+    pub fn after_each(every: Duration) -> Self {
+        Self { every, last: Some(Instant::now()) }
+    }
+
     /// Whether one is due, which then counts as made.
     pub fn is_due(&mut self) -> bool {
         let is_due = self.last.is_none_or(|last| last.elapsed() >= self.every);
@@ -43,6 +49,7 @@ mod tests {
     fn the_first_is_due_at_once_and_the_next_one_later() {
         let mut hourly = Checkpoints::every(Duration::from_secs(3600));
         assert_eq!([hourly.is_due(), hourly.is_due()], [true, false]);
+        assert!(!Checkpoints::after_each(Duration::from_secs(3600)).is_due());
         let mut always = Checkpoints::every(Duration::ZERO);
         assert_eq!([always.is_due(), always.is_due()], [true, true]);
     }

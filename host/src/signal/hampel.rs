@@ -36,13 +36,15 @@ pub fn reject(series: &mut [Option<f64>]) -> Vec<bool> {
 fn deviation_and_scale(series: &[Option<f64>], sample: usize) -> Option<[f64; 2]> {
     let value = series[sample]?;
     let window = &series[sample.saturating_sub(HALF_WINDOW)..(sample + HALF_WINDOW + 1).min(series.len())];
-    let mut values: Vec<f64> = window.iter().flatten().copied().collect();
-    if values.len() < MIN_VALUES {
+    let mut places = [0.0; 2 * HALF_WINDOW + 1];
+    let count = places.iter_mut().zip(window.iter().flatten()).map(|(place, value)| *place = *value).count();
+    if count < MIN_VALUES {
         return None;
     }
-    let middle = median(&mut values)?;
+    let values = &mut places[..count];
+    let middle = median(values)?;
     values.iter_mut().for_each(|value| *value = (*value - middle).abs());
-    Some([(value - middle).abs(), STD_PER_MEDIAN * median(&mut values)?])
+    Some([(value - middle).abs(), STD_PER_MEDIAN * median(values)?])
 }
 
 #[cfg(test)]

@@ -44,7 +44,7 @@ pub struct BatchArgs {
     /// Folder that relative paths of the list start from [default: the list's folder].
     #[arg(long, value_name = "DIR")]
     pub folder: Option<PathBuf>,
-    /// Recordings that are worked on at once [default: the number of processors].
+    /// Recordings that are worked on at once [default: one more than there are processors].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: Option<u16>,
     /// Only every N-th recording, beginning with the I-th, 1 to N: for arrays of a scheduler. The
@@ -106,6 +106,11 @@ pub fn run(args: &BatchArgs, console: &Console) -> Result<()> {
     run_until(args, console, stop_flag()?)
 }
 
+/// One more than there are processors: a recording that is done waits for the disk.
+fn default_jobs() -> usize {
+    1 + std::thread::available_parallelism().map_or(1, usize::from)
+}
+
 /// As [`run`], ended by `stop` in the place of a signal.
 ///
 /// # Errors
@@ -119,7 +124,7 @@ pub fn run_until(args: &BatchArgs, console: &Console, stop: &AtomicBool) -> Resu
     let status = args.out.join(args.named("status") + ".csv");
     let _lock = OutputLock::of_table(&status, "batch")?;
     let store = Store::open(&args.out, &args.named("status"))?;
-    let jobs = args.jobs.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
+    let jobs = args.jobs.map_or_else(default_jobs, usize::from);
     let progress = Progress::new(rows.len(), console, args.progress)?;
     let lines = work::all(&rows, &store, work::Plan { jobs, retry_failed: args.retry_failed }, &progress, stop)?;
     progress.end();

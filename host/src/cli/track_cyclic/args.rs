@@ -9,7 +9,7 @@ use crate::cyclic::rate;
 use crate::cyclic::tracking::{FilterName, ScalingName, StartName, TrackingOptions, Updates};
 use crate::file::STANDARD_INPUT;
 use crate::output::check_writable_file;
-use crate::resume::{Begun, file_crc32, text_crc32};
+use crate::resume::{Begun, file_crc32};
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde_json::json;
@@ -114,6 +114,9 @@ pub struct TrackCyclicArgs {
 /// Rows beyond which a table is not kept whole: an hour at 25 frames a second takes 60 MB.
 const MAX_WHOLE_ROWS: usize = 100_000;
 
+/// Least bytes of a row: the frame's digit, a comma before each angle, the end of the line.
+const MIN_ROW_BYTES: usize = 15;
+
 /// The subcommand, in what it leaves.
 pub(super) const COMMAND: &str = "track cyclic";
 
@@ -137,7 +140,12 @@ impl TrackCyclicArgs {
         if self.needs_all_rows() {
             return Ok(false);
         }
-        Ok(self.online || self.is_read_once() || AngleRows::open(&self.table)?.has_more_than(MAX_WHOLE_ROWS)?)
+        if self.online || self.is_read_once() {
+            return Ok(true);
+        }
+        let bytes = std::fs::metadata(&self.table).map_or(u64::MAX, |facts| facts.len());
+        let may_be_long = bytes > (MAX_WHOLE_ROWS * MIN_ROW_BYTES) as u64;
+        Ok(may_be_long && AngleRows::open(&self.table)?.has_more_than(MAX_WHOLE_ROWS)?)
     }
 
     /// Whether the estimates are those of a finished recording.
@@ -205,9 +213,8 @@ impl TrackCyclicArgs {
             begun = begun.on(&self.table)?.reading(format!("`{}`", self.table.display()), file_crc32(&self.table)?);
         }
         let named = self.model.iter().zip(models);
-        Ok(named.fold(begun, |begun, (name, model)| {
-            begun.reading(format!("the model `{name}`"), text_crc32(&format!("{:?}", model.numbers())))
-        }))
+        Ok(named
+            .fold(begun, |begun, (name, model)| begun.reading(format!("the model `{name}`"), model.numbers().crc32())))
     }
 
     /// The tracker's options, as far as they do not hang on the table.

@@ -83,7 +83,7 @@ fn follow(
     bar.set_position(run.finished() as u64);
     bar.reset_eta();
     let is_stopped = || stop.load(Ordering::Relaxed);
-    let checkpoints = RefCell::new(Checkpoints::every(args.checkpoint.interval()));
+    let checkpoints = RefCell::new(Checkpoints::after_each(args.checkpoint.interval()));
     let mut all = || -> crate::Result<bool> {
         loop {
             let pause = || is_stopped() || checkpoints.borrow_mut().is_due();

@@ -99,7 +99,7 @@ impl AnatomicalSeries {
     #[must_use]
     pub fn at(&self, angle: usize, frame: f64) -> Option<f64> {
         let below = frame.floor();
-        let index = self.frames.binary_search(&(below as u64)).ok().filter(|_| below >= 0.0)?;
+        let index = self.index_of(below as u64).filter(|_| below >= 0.0)?;
         let here = self.angles_deg[index][angle]?;
         let share = frame - below;
         if share < 1.0e-9 {
@@ -107,6 +107,12 @@ impl AnatomicalSeries {
         }
         let next = (*self.frames.get(index + 1)? == below as u64 + 1).then(|| self.angles_deg[index + 1][angle])??;
         Some(here + share * (next - here))
+    }
+
+    fn index_of(&self, frame: u64) -> Option<usize> {
+        // Where no frame is left out, a frame's place is its number.
+        let even = usize::try_from(frame.checked_sub(*self.frames.first()?)?).ok()?;
+        if self.frames.get(even) == Some(&frame) { Some(even) } else { self.frames.binary_search(&frame).ok() }
     }
 }
 

@@ -30,7 +30,12 @@ impl CycleCurves {
     /// from the turn in which the cycle starts.
     #[must_use]
     pub fn new(series: &AnatomicalSeries, cycles: &[[f64; 2]]) -> Self {
-        let curve = |angle: usize| (0..POINTS).map(|percent| point(series, cycles, angle, percent)).collect();
+        let curve = |angle: usize| {
+            let turns_deg = |&[start, end]: &[f64; 2]| Some(whole_turns_deg(first_in(series, angle, start, end)?));
+            let turned = cycles.iter().filter_map(|cycle| Some((*cycle, turns_deg(cycle)?)));
+            let turned: Vec<([f64; 2], f64)> = turned.collect();
+            (0..POINTS).map(|percent| point(series, &turned, angle, percent)).collect()
+        };
         Self { curves: (0..COUNT).map(curve).collect() }
     }
 
@@ -61,15 +66,13 @@ impl CycleCurves {
     }
 }
 
-fn point(series: &AnatomicalSeries, cycles: &[[f64; 2]], angle: usize, percent: usize) -> CyclePointStatistics {
+/// A point of a curve over cycles, each with the whole turns that it starts with.
+fn point(series: &AnatomicalSeries, cycles: &[([f64; 2], f64)], angle: usize, percent: usize) -> CyclePointStatistics {
     let share = percent as f64 / (POINTS - 1) as f64;
-    let values: Vec<f64> = cycles
-        .iter()
-        .filter_map(|&[start, end]| {
-            let value = series.at(angle, start + share * (end - start))?;
-            Some(value - whole_turns_deg(first_in(series, angle, start, end)?))
-        })
-        .collect();
+    let value = |&([start, end], turns_deg): &([f64; 2], f64)| {
+        Some(series.at(angle, start + share * (end - start))? - turns_deg)
+    };
+    let values: Vec<f64> = cycles.iter().filter_map(value).collect();
     let count = values.len();
     if count == 0 {
         return CyclePointStatistics::default();

@@ -12,7 +12,7 @@ const FADE_CYCLES: f64 = 0.25;
 /// frames beside the gap differ from it, on a straight line between them.
 #[must_use]
 pub fn filled<const N: usize>(phased: &Phased<N>, angle: usize, measured: &[Option<f64>]) -> Vec<f64> {
-    let own: Vec<f64> = phased.phases.iter().map(|phase| phased.shape.at(*phase).0[angle]).collect();
+    let own: Vec<f64> = phased.expected.iter().map(|(pose, _)| pose[angle]).collect();
     let off = |frame: usize| measured[frame].map(|angle_rad| angle_rad - own[frame]);
     // The last and the next frame with the angle.
     let mut last = vec![None; own.len()];

@@ -47,6 +47,10 @@ pub fn of_angle<const N: usize>(seen: &Seen<N>, angle: usize) -> Option<f64> {
         Some((frames[0]? - 4.0 * frames[1]? + 6.0 * frames[2]? - 4.0 * frames[3]? + frames[4]?).abs())
     };
     let mut sizes: Vec<f64> = series.windows(5).filter_map(difference).collect();
-    sizes.sort_by(f64::total_cmp);
-    (sizes.len() >= MIN_DIFFERENCES).then(|| STD_PER_MEDIAN * sizes[sizes.len() / 2] / DIFFERENCE_STD)
+    if sizes.len() < MIN_DIFFERENCES {
+        return None;
+    }
+    let middle = sizes.len() / 2;
+    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
+    Some(STD_PER_MEDIAN * *median / DIFFERENCE_STD)
 }

@@ -5,6 +5,7 @@
 use super::seen::Seen;
 use super::shape::Shape;
 use crate::cyclic::turns::least_angle;
+use std::f64::consts::TAU;
 
 /// Even phases of a cycle: one is half of what a walker passes in a frame at 60 frames a second.
 const STATES: usize = 100;
@@ -22,24 +23,25 @@ const SMOOTH_CYCLES: f64 = 0.15;
 const MAX_OFF: f64 = 3.0;
 
 /// Phases, in cycles, of every frame, given the shape of the cycle. Also given are how far the
-/// angles lie about it (radians), and the mean velocity, cycles per frame.
+/// angles lie about it (radians), and the mean velocity, cycles per frame. With AVX2 wherever it
+/// is: the bits are the same.
 #[must_use]
+#[multiversion::multiversion(targets("x86_64+avx2"))]
 pub fn likeliest<const N: usize>(seen: &Seen<N>, shape: &Shape<N>, std_rad: &[f64; N], velocity: f64) -> Vec<f64> {
     let count = seen.angles_rad.len();
     let stride = ((STEP_STATES / STATES as f64 / velocity).round() as usize).clamp(1, count.max(1));
-    let poses: Vec<[f64; N]> = (0..STATES).map(|state| shape.at(state as f64 / STATES as f64).0).collect();
+    let costs = PoseCosts::new(shape, std_rad);
     let frames: Vec<usize> = (0..count).step_by(stride).collect();
     let steps = step_costs(velocity * stride as f64 * STATES as f64);
-    let mut costs = vec![0.0; STATES];
+    let mut total = [0.0; STATES];
     // How many states were passed to come to each state of each step.
     let mut passed: Vec<[u8; STATES]> = Vec::with_capacity(frames.len());
     for (index, frame) in frames.iter().enumerate() {
-        let (came, before) = if index == 0 { ([0; STATES], costs) } else { best_steps(&costs, &steps) };
-        let off = |state: usize| off(&seen.angles_rad[*frame], &poses[state], std_rad);
-        costs = before.iter().enumerate().map(|(state, cost)| cost + off(state)).collect();
+        let came = if index == 0 { [0; STATES] } else { take_best_steps(&mut total, &steps) };
+        costs.add(&seen.angles_rad[*frame], &mut total);
         passed.push(came);
     }
-    let mut state = (0..STATES).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
+    let mut state = (0..STATES).min_by(|a, b| total[*a].total_cmp(&total[*b])).unwrap_or(0);
     let mut ways: Vec<usize> = Vec::with_capacity(passed.len());
     for came in passed.iter().rev() {
         ways.push(usize::from(came[state]));
@@ -74,24 +76,58 @@ fn step_costs(mean: f64) -> Vec<f64> {
     (0..=longest).map(|way| ((way as f64 - mean) / (STEP_SPREAD * mean)).powi(2) / 2.0).collect()
 }
 
-/// The cheapest step to each state, and its cost with what was before.
-fn best_steps(costs: &[f64], steps: &[f64]) -> ([u8; STATES], Vec<f64>) {
-    let mut came = [0_u8; STATES];
-    let cost = |state: usize, way: usize| costs[(state + STATES - way) % STATES] + steps[way];
-    let best = (0..STATES)
-        .map(|state| {
-            let way = (0..steps.len()).min_by(|a, b| cost(state, *a).total_cmp(&cost(state, *b))).unwrap_or(0);
-            came[state] = way as u8;
-            cost(state, way)
-        })
-        .collect();
-    (came, best)
+/// Adds the cheapest step that ends in each state to what was before it; the states that it passes.
+#[inline(always)]
+fn take_best_steps(total: &mut [f64; STATES], steps: &[f64]) -> [u8; STATES] {
+    // Twice, so that no step crosses the seam of the cycle.
+    let mut before = [0.0; 2 * STATES];
+    before[..STATES].copy_from_slice(total);
+    before[STATES..].copy_from_slice(total);
+    // As wide as the costs, so that both are chosen in vectors.
+    let mut came = [0.0; STATES];
+    *total = [f64::INFINITY; STATES];
+    for (way, step) in steps.iter().enumerate() {
+        let from = &before[STATES - way..2 * STATES - way];
+        for state in 0..STATES {
+            let cost = from[state] + step;
+            let is_less = cost < total[state];
+            total[state] = if is_less { cost } else { total[state] };
+            came[state] = if is_less { way as f64 } else { came[state] };
+        }
+    }
+    came.map(|way| way as u8)
 }
 
-/// How badly a frame fits a pose.
-fn off<const N: usize>(frame: &[Option<f64>; N], pose: &[f64; N], std_rad: &[f64; N]) -> f64 {
-    let seen = (0..N).filter_map(|angle| Some(least_angle(frame[angle]? - pose[angle]) / std_rad[angle]));
-    seen.map(|off| off.abs().min(MAX_OFF).powi(2) / 2.0).sum()
+/// How badly a frame fits each state's pose.
+struct PoseCosts<const N: usize> {
+    /// Poses, angle by angle, radians within a turn.
+    angles_rad: [[f64; STATES]; N],
+    /// One over each angle's standard deviation.
+    inverse_std: [f64; N],
+}
+
+impl<const N: usize> PoseCosts<N> {
+    fn new(shape: &Shape<N>, std_rad: &[f64; N]) -> Self {
+        let mut angles_rad = [[0.0; STATES]; N];
+        for state in 0..STATES {
+            let (pose, _) = shape.at(state as f64 / STATES as f64);
+            (0..N).for_each(|angle| angles_rad[angle][state] = least_angle(pose[angle]));
+        }
+        Self { angles_rad, inverse_std: std_rad.map(|std_rad| 1.0 / std_rad) }
+    }
+
+    /// Adds the cost of what was seen in a frame; what was not seen costs nothing.
+    #[inline(always)]
+    fn add(&self, frame: &[Option<f64>; N], total: &mut [f64; STATES]) {
+        for angle in 0..N {
+            let Some(seen_rad) = frame[angle].map(least_angle) else { continue };
+            for (cost, pose_rad) in total.iter_mut().zip(&self.angles_rad[angle]) {
+                let one_way = (seen_rad - pose_rad).abs();
+                let off = (one_way.min(TAU - one_way) * self.inverse_std[angle]).min(MAX_OFF);
+                *cost += 0.5 * off * off;
+            }
+        }
+    }
 }
 
 /// The line through the corners, which goes on at the mean velocity.

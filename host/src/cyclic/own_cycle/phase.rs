@@ -16,13 +16,13 @@ const REACH_CYCLES: f64 = 0.3;
 /// Largest step of a phase in a round, cycles: what is linear about a walker's knee.
 const MAX_STEP_CYCLES: f64 = 0.05;
 
-/// Phases, in cycles, and the shape that they were fitted to.
+/// Phases, in cycles, and the cycle that they were fitted to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Phased<const N: usize> {
     /// Phase of each frame; its whole part counts cycles.
     pub phases: Vec<f64>,
-    /// The person's own cycle.
-    pub shape: Shape<N>,
+    /// Angles and slopes of that cycle in each frame.
+    pub expected: Expected<N>,
     /// Standard deviation of what was seen from the shape, radians.
     pub std_rad: [f64; N],
 }
@@ -31,19 +31,21 @@ pub struct Phased<const N: usize> {
 #[must_use]
 pub fn fitted<const N: usize>(seen: &Seen<N>, mut phases: Vec<f64>, prior: &Shape<N>) -> Phased<N> {
     let mut shape = prior.fitted(seen, &phases);
-    let mut std_rad = spread(seen, &phases, &shape);
+    let mut std_rad = spread(seen, &along(&shape, &phases));
     phases = path::likeliest(seen, &shape, &std_rad, median_step(&phases));
+    let mut expected = along(&shape, &phases);
     for _ in 0..ROUNDS {
-        let steps = steps(seen, &phases, &shape, &std_rad);
+        let steps = steps(seen, &phases, &expected, &std_rad);
         // The shape moves with the phases: their mean stays that of the filter.
         let mean = steps.iter().sum::<f64>() / steps.len() as f64;
         for (phase, step) in phases.iter_mut().zip(&steps) {
             *phase += step - mean;
         }
         shape = prior.fitted(seen, &phases);
-        std_rad = spread(seen, &phases, &shape);
+        expected = along(&shape, &phases);
+        std_rad = spread(seen, &expected);
     }
-    Phased { phases, shape, std_rad }
+    Phased { phases, expected, std_rad }
 }
 
 /// Median of the cycles passed from frame to frame.
@@ -55,14 +57,20 @@ fn median_step(phases: &[f64]) -> f64 {
     steps.get(steps.len() / 2).map_or(MIN_VELOCITY, |step| step.max(MIN_VELOCITY))
 }
 
+/// Angles of each frame by the person's own cycle, and their slopes: [`Shape::at`].
+pub type Expected<const N: usize> = Vec<([f64; N], [f64; N])>;
+
+fn along<const N: usize>(shape: &Shape<N>, phases: &[f64]) -> Expected<N> {
+    phases.iter().map(|phase| shape.at(*phase)).collect()
+}
+
 /// Standard deviation of each angle from the shape, by the median of its size. A few wrong
 /// measurements do not move the median. It is at least the least noise of a measurement.
-fn spread<const N: usize>(seen: &Seen<N>, phases: &[f64], shape: &Shape<N>) -> [f64; N] {
-    let poses: Vec<[f64; N]> = phases.iter().map(|phase| shape.at(*phase).0).collect();
+fn spread<const N: usize>(seen: &Seen<N>, expected: &Expected<N>) -> [f64; N] {
     std::array::from_fn(|angle| {
-        let frames = seen.angles_rad.iter().zip(&poses);
+        let frames = seen.angles_rad.iter().zip(expected);
         let mut sizes: Vec<f64> =
-            frames.filter_map(|(frame, pose)| Some(least_angle(frame[angle]? - pose[angle]).abs())).collect();
+            frames.filter_map(|(frame, (pose, _))| Some(least_angle(frame[angle]? - pose[angle]).abs())).collect();
         if sizes.is_empty() {
             return f64::INFINITY;
         }
@@ -73,22 +81,22 @@ fn spread<const N: usize>(seen: &Seen<N>, phases: &[f64], shape: &Shape<N>) -> [
 }
 
 /// One Gauss-Newton step of each phase, over the frames around it.
-fn steps<const N: usize>(seen: &Seen<N>, phases: &[f64], shape: &Shape<N>, std_rad: &[f64; N]) -> Vec<f64> {
-    let normal = |frame: &[Option<f64>; N], phase: f64| {
-        let (pose, slope) = shape.at(phase);
+fn steps<const N: usize>(seen: &Seen<N>, phases: &[f64], expected: &Expected<N>, std_rad: &[f64; N]) -> Vec<f64> {
+    let weights = std_rad.map(|std_rad| std_rad.powi(-2));
+    let normal = |frame: &[Option<f64>; N], (pose, slope): &([f64; N], [f64; N])| {
         let mut sums = [0.0; 2];
         for angle in 0..N {
             let Some(angle_rad) = frame[angle] else { continue };
-            let (off, weight) = (least_angle(angle_rad - pose[angle]), std_rad[angle].powi(-2));
+            let off = least_angle(angle_rad - pose[angle]);
             // What is far off says no more than what is three deviations off (Huber's weight).
             let trust = (3.0 * std_rad[angle] / off.abs().max(1.0e-9)).min(1.0);
-            sums[0] += trust * weight * slope[angle] * off;
-            sums[1] += trust * weight * slope[angle] * slope[angle];
+            sums[0] += trust * weights[angle] * slope[angle] * off;
+            sums[1] += trust * weights[angle] * slope[angle] * slope[angle];
         }
         sums
     };
     let mut sums: Vec<[f64; 2]> =
-        seen.angles_rad.iter().zip(phases).map(|(frame, phase)| normal(frame, *phase)).collect();
+        seen.angles_rad.iter().zip(expected).map(|(frame, expected)| normal(frame, expected)).collect();
     spread_over(&mut sums, phases);
     let step = |[right, gram]: [f64; 2]| if gram > 0.0 { right / gram } else { 0.0 };
     sums.into_iter().map(|sums| step(sums).clamp(-MAX_STEP_CYCLES, MAX_STEP_CYCLES)).collect()

@@ -60,12 +60,16 @@ impl<const N: usize> Shape<N> {
     }
 
     fn new(turns: [f64; N], terms: Vec<[f64; TERMS]>) -> Self {
-        let entry = |(value, slope): &([f64; TERMS], [f64; TERMS])| {
-            let sum =
-                |basis: &[f64; TERMS], angle: usize| basis.iter().zip(&terms[angle]).map(|(b, t)| b * t).sum::<f64>();
-            let slopes = std::array::from_fn(|angle| sum(slope, angle) + TAU * turns[angle]);
-            (std::array::from_fn(|angle| sum(value, angle)), slopes)
+        // All angles beside each other, term by term.
+        let by_term: [[f64; N]; TERMS] = std::array::from_fn(|term| std::array::from_fn(|angle| terms[angle][term]));
+        let sums = |basis: &[f64; TERMS], mut sums: [f64; N]| {
+            for (factor, terms) in basis.iter().zip(&by_term) {
+                sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += factor * term);
+            }
+            sums
         };
+        let winding = turns.map(|turns| TAU * turns);
+        let entry = |(value, slope): &([f64; TERMS], [f64; TERMS])| (sums(value, [0.0; N]), sums(slope, winding));
         let entries = EVEN_BASES.iter().map(entry).collect();
         Self { turns, terms, entries }
     }
@@ -74,7 +78,7 @@ impl<const N: usize> Shape<N> {
     #[must_use]
     pub fn at(&self, phase: f64) -> ([f64; N], [f64; N]) {
         let place = phase.rem_euclid(1.0) * ENTRIES as f64;
-        let index = (place.floor() as usize).min(ENTRIES - 1);
+        let index = (place as usize).min(ENTRIES - 1);
         let share = place - index as f64;
         let [(a, a_slope), (b, b_slope)] = [&self.entries[index], &self.entries[index + 1]];
         let between = |a: f64, b: f64| a + share * (b - a);
@@ -90,13 +94,13 @@ impl<const N: usize> Shape<N> {
     pub fn fitted(&self, seen: &Seen<N>, phases: &[f64]) -> Self {
         let cycles = (phases[phases.len() - 1] - phases[0]).abs().max(1.0);
         let poses: Vec<[f64; N]> = phases.iter().map(|phase| self.at(*phase).0).collect();
+        let parts: Vec<f64> = phases.iter().map(|phase| phase.rem_euclid(1.0)).collect();
         // Angles that were seen in the same frames share a fit.
         let mut shared: Option<(Vec<(f64, f64)>, Fit)> = None;
         let terms = (0..N).map(|angle| {
             let mut bins = [(0.0, 0.0, 0.0); BINS];
-            for ((frame, phase), pose) in seen.angles_rad.iter().zip(phases).zip(&poses) {
+            for ((frame, part), pose) in seen.angles_rad.iter().zip(&parts).zip(&poses) {
                 let Some(angle_rad) = frame[angle] else { continue };
-                let part = phase.rem_euclid(1.0);
                 let bin = &mut bins[((part * BINS as f64) as usize).min(BINS - 1)];
                 *bin = (bin.0 + 1.0, bin.1 + part, bin.2 + least_angle(angle_rad - pose[angle]));
             }

@@ -5,12 +5,11 @@ use crate::cyclic::AngleTable;
 use crate::cyclic::about::About;
 use crate::cyclic::anatomy::repetition::{Repetition, repetitions};
 use crate::cyclic::anatomy::symmetry::{Symmetry, symmetries};
-use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, AnatomicalSeries, CycleCurves, MeasuredAngles};
+use crate::cyclic::anatomy::{AnatomicalSeries, CycleCurves};
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::gait::{self, Gait, Scale};
 use crate::cyclic::tracking::table::MotionCells;
 use crate::cyclic::tracking::{Summary, Tracked, TrackingOptions};
-use crate::signal::FilterOptions;
 use serde::Serialize;
 
 /// Pictures of the person's own frames with the figure on them.
@@ -63,12 +62,8 @@ pub struct Report {
     pub curves: CycleCurves,
     /// Left against right.
     pub symmetries: Vec<Symmetry>,
-    /// Flexion angles of what was measured, filtered, without a model of the motion.
-    pub measured: Option<MeasuredAngles>,
     /// Foot strikes, toe-offs and strides, if the person walks or runs.
     pub gait: Option<Gait>,
-    /// Curves from foot strike to foot strike, of each side by its own foot.
-    pub gait_curves: Option<CycleCurves>,
 }
 
 impl Report {
@@ -84,24 +79,7 @@ impl Report {
         let repetitions = repetitions(&series, &cycles);
         let curves = CycleCurves::new(&series, &cycles);
         let symmetries = symmetries(&repetitions, &curves);
-        let (filter, _) = FilterOptions::default().lowered_for(tracked.rate_hz);
-        let measured = MeasuredAngles::of_table(table, tracked.rate_hz, &filter).ok();
         let gait = gait::of_table(table, tracked.rate_hz, Scale { height_m });
-        let gait_curves = gait.as_ref().map(|gait| curves_from_strikes(&series, gait));
-        Self { summary, measured_shares, series, cycles, repetitions, curves, symmetries, measured, gait, gait_curves }
-    }
-}
-
-/// Curves of each side from strike to strike of its own foot; those of the trunk from the left
-/// one's.
-fn curves_from_strikes(series: &AnatomicalSeries, gait: &Gait) -> CycleCurves {
-    let of_foot = |strikes: &[f64]| {
-        let pairs: Vec<[f64; 2]> = strikes.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-        CycleCurves::new(series, &pairs)
-    };
-    let (left, right) = (of_foot(&gait.events.left.strikes), of_foot(&gait.events.right.strikes));
-    let curves = ANATOMICAL_ANGLES.iter().zip(left.curves).zip(right.curves);
-    CycleCurves {
-        curves: curves.map(|((name, left), right)| if name.starts_with("r_") { right } else { left }).collect(),
+        Self { summary, measured_shares, series, cycles, repetitions, curves, symmetries, gait }
     }
 }

@@ -5,11 +5,13 @@ use super::contents::{Origin, Report};
 use super::plots;
 use super::{body, document, joints, measured};
 use crate::cyclic::AngleTable;
-use crate::cyclic::anatomy::{repetition, symmetry};
+use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, AnatomicalSeries, CycleCurves, MeasuredAngles, repetition, symmetry};
 use crate::cyclic::export::{mot, series::to_csv, trc};
+use crate::cyclic::gait::Gait;
 use crate::cyclic::tracking::{Tracked, table};
 use crate::error::Result;
 use crate::output::OutputDir;
+use crate::signal::FilterOptions;
 #[cfg(feature = "plots")]
 use rayon::prelude::*;
 
@@ -31,13 +33,15 @@ impl Report {
         text("anatomical.csv", to_csv(&self.series))?;
         text("repetitions.csv", repetition::to_csv(&self.repetitions))?;
         text("curves.csv", self.curves.to_csv())?;
-        if let Some(measured) = &self.measured {
+        // Flexion angles without a model of the motion.
+        let (filter, _) = FilterOptions::default().lowered_for(tracked.rate_hz);
+        if let Ok(measured) = MeasuredAngles::of_table(table, tracked.rate_hz, &filter) {
             text("measured_anatomical.csv", measured.to_csv())?;
         }
-        if let (Some(gait), Some(curves)) = (&self.gait, &self.gait_curves) {
+        if let Some(gait) = &self.gait {
             text("events.csv", gait.events.to_csv(tracked.rate_hz))?;
             text("strides.csv", gait.strides_to_csv(tracked.rate_hz))?;
-            text("gait_curves.csv", curves.to_csv())?;
+            text("gait_curves.csv", curves_from_strikes(&self.series, gait).to_csv())?;
         }
         text("symmetry.csv", symmetry::to_csv(&self.symmetries))?;
         text("angles.mot", mot::to_mot(&self.series, origin.table))?;
@@ -53,5 +57,19 @@ impl Report {
             .try_for_each(|(name, picture)| output.write_png(name, picture))?;
         let document = document::Document::new(self, origin, tracked);
         output.write("summary.json", |writer| Ok(serde_json::to_writer_pretty(writer, &document)?))
+    }
+}
+
+/// Curves of each side from strike to strike of its own foot; those of the trunk from the left
+/// one's.
+fn curves_from_strikes(series: &AnatomicalSeries, gait: &Gait) -> CycleCurves {
+    let of_foot = |strikes: &[f64]| {
+        let pairs: Vec<[f64; 2]> = strikes.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+        CycleCurves::new(series, &pairs)
+    };
+    let (left, right) = (of_foot(&gait.events.left.strikes), of_foot(&gait.events.right.strikes));
+    let curves = ANATOMICAL_ANGLES.iter().zip(left.curves).zip(right.curves);
+    CycleCurves {
+        curves: curves.map(|((name, left), right)| if name.starts_with("r_") { right } else { left }).collect(),
     }
 }

@@ -5,6 +5,7 @@ use super::run::{Tracked, TrackedFrame};
 use crate::cyclic::angle_table::{ANGLES, COLUMNS, SPACE_ANGLES, TIME_COLUMN, angle_columns, time_cell};
 use crate::error::{Error, Result};
 use crate::output::write_atomically;
+use std::fmt::{Arguments, Write as _};
 use std::io::Write;
 use std::path::Path;
 
@@ -40,6 +41,8 @@ pub struct EstimateTable<W: Write> {
     writer: csv::Writer<W>,
     rate_hz: f64,
     step_frames: f64,
+    /// The text of one cell.
+    cell: String,
 }
 
 impl<W: Write> EstimateTable<W> {
@@ -64,7 +67,7 @@ impl<W: Write> EstimateTable<W> {
     /// Goes on with a table that was begun.
     #[must_use]
     pub const fn go_on(writer: csv::Writer<W>, (rate_hz, step_frames): (f64, f64)) -> Self {
-        Self { writer, rate_hz, step_frames }
+        Self { writer, rate_hz, step_frames, cell: String::new() }
     }
 
     /// Adds a row, with name and probability of its motion where several are told apart.
@@ -72,35 +75,51 @@ impl<W: Write> EstimateTable<W> {
     /// # Errors
     /// It cannot be written.
     pub fn add(&mut self, frame: &TrackedFrame, motion: Option<&(String, f64)>) -> Result<()> {
-        let estimate = &frame.estimate;
-        let velocity = f64::from(estimate.cycle_velocity_per_frame) * self.step_frames;
-        let per_min = 60.0 * self.rate_hz;
-        let velocity_std = f64::from(estimate.cycle_velocity_variance.max(0.0).sqrt()) * self.step_frames;
-        let derived = [
-            position_cell(f64::from(estimate.cycle_position)),
-            format!("{velocity:.8}"),
-            format!("{:.4}", velocity * per_min),
-            format!("{:.4}", estimate.log_likelihood),
-            u8::from(estimate.outlier).to_string(),
-            format!("{:.4}", velocity_std * per_min),
-            format!("{:.5}", frame.cycles),
-            u8::from(estimate.misfit).to_string(),
-        ];
+        self.put(format_args!("{}", frame.frame))?;
         let side = frame.side.as_ref();
         let side_angles = side.iter().flat_map(|side| side.angles_rad);
-        let angles = frame.angles_rad.into_iter().chain(side_angles).map(|angle| format!("{angle:.6}"));
+        for angle_rad in frame.angles_rad.into_iter().chain(side_angles) {
+            self.put_known(frame, format_args!("{angle_rad:.6}"))?;
+        }
+        self.put_derived(frame)?;
+        self.put(format_args!("{}", time_cell(frame.frame as f64 / self.rate_hz)))?;
         let side_variances = side.iter().flat_map(|side| &side.angle_variance_rad2);
-        let stds = estimate
-            .angle_variance_rad2
-            .iter()
-            .chain(side_variances)
-            .map(|variance| format!("{:.6}", variance.max(0.0).sqrt()));
-        let motion = motion.into_iter().flat_map(|(name, probability)| [name.clone(), format!("{probability:.6}")]);
-        let known = |cell: String| if frame.is_known { cell } else { String::new() };
-        let estimate = angles.chain(derived).map(known);
-        let time = time_cell(frame.frame as f64 / self.rate_hz);
-        let first = std::iter::once(frame.frame.to_string());
-        Ok(self.writer.write_record(first.chain(estimate).chain([time]).chain(stds.map(known)).chain(motion))?)
+        for variance_rad2 in frame.estimate.angle_variance_rad2.iter().chain(side_variances) {
+            self.put_known(frame, format_args!("{:.6}", variance_rad2.max(0.0).sqrt()))?;
+        }
+        if let Some((name, probability)) = motion {
+            self.put(format_args!("{name}"))?;
+            self.put(format_args!("{probability:.6}"))?;
+        }
+        Ok(self.writer.write_record(None::<&[u8]>)?)
+    }
+
+    /// The cells of [`ESTIMATE_COLUMNS`] before the time.
+    fn put_derived(&mut self, frame: &TrackedFrame) -> Result<()> {
+        let estimate = &frame.estimate;
+        let velocity = f64::from(estimate.cycle_velocity_per_frame) * self.step_frames;
+        let velocity_std = f64::from(estimate.cycle_velocity_variance.max(0.0).sqrt()) * self.step_frames;
+        let per_min = 60.0 * self.rate_hz;
+        self.put_known(frame, format_args!("{:.6}", position_in_text(f64::from(estimate.cycle_position))))?;
+        self.put_known(frame, format_args!("{velocity:.8}"))?;
+        self.put_known(frame, format_args!("{:.4}", velocity * per_min))?;
+        self.put_known(frame, format_args!("{:.4}", estimate.log_likelihood))?;
+        self.put_known(frame, format_args!("{}", u8::from(estimate.outlier)))?;
+        self.put_known(frame, format_args!("{:.4}", velocity_std * per_min))?;
+        self.put_known(frame, format_args!("{:.5}", frame.cycles))?;
+        self.put_known(frame, format_args!("{}", u8::from(estimate.misfit)))
+    }
+
+    /// A cell that is empty where nothing is known of the frame.
+    fn put_known(&mut self, frame: &TrackedFrame, cell: Arguments<'_>) -> Result<()> {
+        if frame.is_known { self.put(cell) } else { Ok(self.writer.write_field("")?) }
+    }
+
+    fn put(&mut self, cell: Arguments<'_>) -> Result<()> {
+        self.cell.clear();
+        // Writing to a string cannot fail.
+        let _ = self.cell.write_fmt(cell);
+        Ok(self.writer.write_field(&self.cell)?)
     }
 
     /// The writer beneath.
@@ -142,9 +161,9 @@ fn write_to(tracked: &Tracked, motions: Option<&MotionCells>, writer: &mut dyn W
     Ok(table.into_writer().flush()?)
 }
 
-/// Six decimals in [0, 1): what would round up to one is the start of the next cycle.
-fn position_cell(position: f64) -> String {
-    format!("{:.6}", if position < 0.999_999_5 { position } else { 0.0 })
+/// What six decimals leave in [0, 1): what would round up to one is the start of the next cycle.
+fn position_in_text(position: f64) -> f64 {
+    if position < 0.999_999_5 { position } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -154,7 +173,7 @@ mod tests {
     #[test]
     fn a_position_stays_below_one_in_text() {
         assert_eq!(
-            [0.0, 0.25, 0.999_999_4, 0.999_999_9].map(position_cell),
+            [0.0, 0.25, 0.999_999_4, 0.999_999_9].map(|position| format!("{:.6}", position_in_text(position))),
             ["0.000000", "0.250000", "0.999999", "0.000000"]
         );
     }

@@ -49,7 +49,8 @@ def batch(
     engine : {"local", "ray"}
         One process on this machine, or a Ray cluster (``pip install 'sinew[ray]'``).
     jobs : int, optional
-        Recordings at once; by default as many as there are processors.
+        Recordings at once; by default one more than there are processors, with
+        ``engine="ray"`` as many.
     shard : (int, int) or str, optional
         ``(I, N)`` or ``"I/N"``: only every N-th recording, beginning with the I-th, from 1. For
         ``engine="local"``.
