@@ -4,7 +4,7 @@
 //! the rest. A person or a joint placement may have offsets beyond the spread of the training.
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::error::ParameterError;
 use crate::math::{max, min, sqrt, wrap_angle};
 
@@ -40,7 +40,7 @@ impl<const N: usize> InitialMeasurement<N> {
     /// # Errors
     /// Those of [`AngleMeasurement::with_std`].
     pub(super) fn of(
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         first: &AngleMeasurement<N>,
         position: f32,
     ) -> Result<Self, ParameterError> {

@@ -13,7 +13,7 @@ use crate::cyclic::coupled::watch::agreement::Watch;
 use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::phase::wrap_position;
 use crate::cyclic::recognition::explained_variance::ExplainedVariance;
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::error::{ParameterError, Rule, finite, within};
 use crate::math::{max, round};
 use core::f32::consts::TAU;
@@ -31,7 +31,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// At most `N` angles, a model with a deviation, a finite position, a velocity within +-0.5
     /// cycles a frame.
     pub fn new(
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         first: &AngleMeasurement<N>,
         position: Option<f32>,
         velocity: Option<f32>,
@@ -47,7 +47,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// Those of [`Self::new`]; the filter is as before then.
     pub fn begin(
         &mut self,
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         first: &AngleMeasurement<N>,
         position: Option<f32>,
         velocity: Option<f32>,
@@ -75,7 +75,7 @@ impl<const N: usize> CoupledFilter<N> {
     ///
     /// # Errors
     /// At most `N` angles, a model with a deviation.
-    pub fn anywhere(model: &MotionModel<'_>, first: &AngleMeasurement<N>) -> Result<Self, ParameterError> {
+    pub fn anywhere(model: &CoupledModel<'_>, first: &AngleMeasurement<N>) -> Result<Self, ParameterError> {
         let mut filter = Self::empty();
         filter.forget(model)?;
         filter.watch.searching = true;
@@ -85,7 +85,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     /// Resets to position 0, the model's mean speed and an unknown person.
-    fn forget(&mut self, model: &MotionModel<'_>) -> Result<(), ParameterError> {
+    fn forget(&mut self, model: &CoupledModel<'_>) -> Result<(), ParameterError> {
         if model.angle_count() > N {
             return Err(ParameterError::new("angles of the model", Rule::Capacity { capacity: N }));
         }
@@ -117,7 +117,7 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Starts all counts. Whole turns of the first row (of the mean pose for a missing angle) are
     /// kept, so that no angle jumps after it.
-    fn start_counting(&mut self, model: &MotionModel<'_>, first: &AngleMeasurement<N>) {
+    fn start_counting(&mut self, model: &CoupledModel<'_>, first: &AngleMeasurement<N>) {
         let pose = model.mean_pose_rad::<N>(model.point(self.position));
         self.turns = core::array::from_fn(|i| {
             let first = first.angle_rad(i).unwrap_or(pose[i]);

@@ -1,6 +1,6 @@
 //! The phase grid as the filter stores it between two updates: weights in bfloat16.
 
-use crate::cyclic::MotionModel;
+use crate::cyclic::CoupledModel;
 use crate::cyclic::coupled::phase_grid::{POSITIONS, PhaseGrid, PhaseMode, SPEEDS};
 use crate::cyclic::phase::POSITIONS_IN_CYCLE;
 use crate::numeric::bf16::Bf16;
@@ -55,7 +55,7 @@ impl StoredGrid {
 
     /// The mode with the largest weight; the grid is loaded in a frame of its own.
     #[inline(never)]
-    pub(super) fn mode(&self, model: &MotionModel<'_>) -> PhaseMode {
+    pub(super) fn mode(&self, model: &CoupledModel<'_>) -> PhaseMode {
         self.load().mode(model)
     }
 
