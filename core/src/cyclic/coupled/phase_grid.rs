@@ -7,6 +7,7 @@
 use crate::cyclic::phase::{position_difference, wrap_position};
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::{abs, exp, exp_small, least_angle, max, min, round};
+use crate::numeric::rolled::rolled;
 
 /// Positions of the grid. Chosen: a cell is about a fifth of [`MODE_REACH`].
 pub const POSITIONS: usize = 32;
@@ -99,6 +100,7 @@ const _: () = assert!(MODE_REACH * (POSITIONS as f32) < 5.0 && TABLE == 2 * POSI
 
 impl PhaseGrid {
     /// All positions and speeds alike.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     #[must_use]
     pub const fn uniform() -> Self {
         let weight = 1.0 / (POSITIONS * SPEEDS) as f32;
@@ -191,10 +193,11 @@ impl PhaseGrid {
     /// Calls `take` with speed, weight and distance from `position` of each cell within
     /// [`MODE_REACH`].
     #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn each_near(&self, position: f32, mut take: impl FnMut(usize, f32, f32)) {
         for (speed, (weights, &travelled)) in self.weights.iter().zip(&self.travelled).enumerate() {
             let (below, rest) = cells_and_rest(wrap_position(position - travelled), POSITIONS);
-            for ahead in 0..NEAR_CELLS {
+            for ahead in 0..rolled(NEAR_CELLS) {
                 // From five cells before the position to six behind it: no other can be near
                 // enough.
                 let way = (ahead as f32 - 5.0 - rest) / POSITIONS as f32;

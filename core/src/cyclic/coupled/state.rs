@@ -85,7 +85,7 @@ impl<const N: usize> CoupledFilter<N> {
             velocity: 0.0,
             pair: CyclePair { cc: 0.0, cv: 0.0, vv: 0.0 },
             cycles: 0,
-            grid: StoredGrid::uniform(),
+            grid: StoredGrid::empty(),
             watch: Watch::new(),
             noise: MeasurementNoise::new(),
             spread_scale: SpreadScale::new(),

@@ -239,6 +239,7 @@ impl<'a> AsRef<CoupledModel<'a>> for CoupledModel<'a> {
 }
 
 /// Checks that `values` are `rows` rows of `columns` numbers of which each passes `check`.
+#[inline(never)]
 pub(super) fn check_rows(
     parameter: &'static str,
     values: &[f32],

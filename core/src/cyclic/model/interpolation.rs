@@ -32,7 +32,8 @@ pub struct CyclePoint {
 
 impl CoupledModel<'_> {
     /// Where cycle position `position` (any real number, wrapped) lies between the stored ones.
-    #[inline]
+    #[cfg_attr(target_arch = "x86_64", inline)]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     #[must_use]
     pub fn point(&self, position: f32) -> CyclePoint {
         let count = self.position_count();

@@ -9,9 +9,8 @@
 
 use super::agreement::MIN_MODE_WEIGHT;
 use crate::cyclic::coupled::ablation::{Part, is_on};
-use crate::cyclic::coupled::block::AngleBlock;
 use crate::cyclic::coupled::phase_grid::{PhaseGrid, PhaseMode};
-use crate::cyclic::coupled::state::{CoupledFilter, LOST_STD, spread};
+use crate::cyclic::coupled::state::{CoupledFilter, LOST_STD};
 use crate::cyclic::recognition::explained_variance::cycle_variances_rad2;
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::clamp;
@@ -89,9 +88,7 @@ impl<const N: usize> CoupledFilter<N> {
             && is_on(Part::Relock)
         {
             // What was learned of the person since the last lock was learned at a wrong phase.
-            for (i, block) in self.blocks.iter_mut().enumerate() {
-                *block = AngleBlock::unknown(&spread(model, i));
-            }
+            self.forget_person(model);
             let position = mode.position - self.watch.mean_phase_offset;
             self.relock_to(&PhaseMode { position, ..mode });
             self.learn_offsets_here(model, measurement);
