@@ -671,8 +671,10 @@ size_t sinew_cyclic_align(void);
  * free.
  *
  * `model` is a motion model in bytes (the command `sinew export` makes one), aligned to four,
- * which has to stay where it is as long as the tracker is used. Null and zero bytes stand for the
- * walking model that the library was built with. All numbers of the model are checked once, here.
+ * which has to stay where it is as long as the tracker is used. The form for the coupled filter
+ * suffices (`--form coupled-c`, 5.4 KB); of the form for all filters the rest is not read. Null and
+ * zero bytes stand for the walking model that the library was built with. All numbers that the
+ * tracker reads are checked once, here.
  *
  * Returns SINEW_STATUS_BAD_MODEL for bytes that are no model of at most `SINEW_MAX_ANGLES` angles,
  * SINEW_STATUS_NO_MODEL if the library was built without the walking model. `tracker` is written

@@ -229,6 +229,7 @@ impl Camera {
 
     /// Image of a `point` in metres; `None` where it lies in or behind the camera's plane.
     #[must_use]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn project(&self, point: &Vec3) -> Option<Pixel> {
         if !(point.z > 1.0e-6) {
             return None;

@@ -64,6 +64,7 @@ impl Crc32 {
     }
 
     /// With four more bytes, the lowest first.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     #[must_use]
     pub const fn and_word(self, word: u32) -> Self {
         let [a, b, c, d] = word.to_le_bytes();

@@ -138,6 +138,7 @@ impl core::error::Error for ParameterError {}
 ///
 /// # Errors
 /// [`Rule::Finite`] otherwise.
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 pub fn finite(parameter: &'static str, value: f32) -> Result<f32, ParameterError> {
     if value.is_finite() { Ok(value) } else { Err(ParameterError::new(parameter, Rule::Finite)) }
 }
@@ -154,6 +155,7 @@ pub fn finite(parameter: &'static str, value: f32) -> Result<f32, ParameterError
 ///
 /// # Errors
 /// [`Rule::Finite`], [`Rule::Positive`] or [`Rule::Within`] otherwise.
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 pub fn positive(parameter: &'static str, value: f32) -> Result<f32, ParameterError> {
     if finite(parameter, value)? <= 0.0 {
         return Err(ParameterError::new(parameter, Rule::Positive));
@@ -178,6 +180,7 @@ pub fn positive(parameter: &'static str, value: f32) -> Result<f32, ParameterErr
 ///
 /// # Errors
 /// [`Rule::Finite`], [`Rule::NotNegative`] or [`Rule::Within`] otherwise.
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 pub fn not_negative(parameter: &'static str, value: f32) -> Result<f32, ParameterError> {
     if finite(parameter, value)? < 0.0 {
         return Err(ParameterError::new(parameter, Rule::NotNegative));
@@ -197,6 +200,7 @@ pub fn not_negative(parameter: &'static str, value: f32) -> Result<f32, Paramete
 ///
 /// # Errors
 /// [`Rule::Finite`] or [`Rule::Within`] otherwise.
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 pub fn within(parameter: &'static str, value: f32, low: f32, high: f32) -> Result<f32, ParameterError> {
     if finite(parameter, value)? >= low && value <= high {
         Ok(value)

@@ -4,8 +4,8 @@
 use crate::log::debug;
 use crate::player::{Answers, Application, Refusal, play};
 use crate::port::{Part, Port, counted};
-use sinew_core::cyclic::MotionModel;
-use sinew_core::cyclic::model::walking::WALKING;
+use sinew_core::cyclic::CoupledModel;
+use sinew_core::cyclic::model::walking::WALKING_COUPLED;
 use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
 use sinew_core::slot::Slot;
 use sinew_core::tracker::cyclic::{CoupledTracker, FirstPhase};
@@ -15,7 +15,7 @@ use static_cell::ConstStaticCell;
 /// The tracker with what it needs between records.
 #[derive(Debug)]
 pub struct CyclicApp {
-    model: Slot<MotionModel<'static>>,
+    model: Slot<CoupledModel<'static>>,
     /// A setup that came, until its first frame begins the tracker.
     first: Slot<FirstPhase>,
     tracker: Slot<CoupledTracker<HUMAN_ANGLES>>,
@@ -46,7 +46,7 @@ impl CyclicApp {
     // not at once.
     #[inline(never)]
     fn begin(&mut self, setup: &CyclicSetup) -> Result<(), Refusal> {
-        let model = WALKING.model()?;
+        let model = WALKING_COUPLED.model()?;
         if setup.model_checksum != model_checksum(&model) {
             return Err(Refusal::OtherModel);
         }

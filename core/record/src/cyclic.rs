@@ -4,8 +4,7 @@ use crate::error::RecordError;
 use crate::fields::{FieldReader, FieldWriter};
 use crate::kind::Kind;
 use crate::payload::Payload;
-use sinew_core::checksum::Crc32;
-use sinew_core::cyclic::{AngleMeasurement, MotionModel};
+use sinew_core::cyclic::{AngleMeasurement, CoupledModel};
 use sinew_core::skeleton::stick_figure::HUMAN_ANGLES;
 use sinew_core::tracker::cyclic::FirstPhase;
 
@@ -30,8 +29,8 @@ pub struct CyclicSetup {
     pub first: FirstPhase,
 }
 
-/// Checksum of a model's numbers: firmware finds by it whether it holds the model of a
-/// recording.
+/// Checksum of the numbers that the phase-coupled filter reads of a model: firmware finds by it
+/// whether it holds the model of a recording, in either form.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -41,18 +40,14 @@ pub struct CyclicSetup {
 ///
 /// // Another rate, another model.
 /// let model = WALKING.model()?;
-/// let slower = MotionModel::new(ModelParts { rate_hz: 30.0, ..*model.parts() })?;
+/// let slower = MotionModel::new(ModelParts { rate_hz: 30.0, ..model.parts() })?;
 /// assert_ne!(model_checksum(&slower), model_checksum(&model));
 /// # }
 /// # Ok::<(), sinew_core::cyclic::ModelError>(())
 /// ```
 #[must_use]
-pub fn model_checksum(model: &MotionModel<'_>) -> u32 {
-    let parts = model.parts();
-    let scale = [parts.mean_duration_frames, parts.rate_hz];
-    let numbers = parts.tables().into_iter().flatten().chain(&scale);
-    let sum = numbers.fold(Crc32::new(), |sum, value| sum.and_word(value.to_bits()));
-    parts.turns_per_cycle.iter().fold(sum, |sum, turns| sum.and(turns.cast_unsigned())).value()
+pub fn model_checksum(model: &CoupledModel<'_>) -> u32 {
+    model.checksum()
 }
 
 impl Payload for CyclicSetup {

@@ -56,6 +56,7 @@ impl<'a> FieldWriter<'a> {
     }
 
     /// Four bytes.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn u32(&mut self, value: u32) {
         self.put(value.to_le_bytes());
     }
@@ -66,11 +67,13 @@ impl<'a> FieldWriter<'a> {
     }
 
     /// Four bytes; every NaN becomes the same one.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn f32(&mut self, value: f32) {
         self.u32(if value.is_nan() { NAN_BITS } else { value.to_bits() });
     }
 
     /// Numbers, four bytes each.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn f32s(&mut self, values: &[f32]) {
         values.iter().for_each(|&value| self.f32(value));
     }
@@ -150,6 +153,7 @@ impl<'a> FieldReader<'a> {
     ///
     /// # Errors
     /// See [`Self::u8`].
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn u32(&mut self) -> Result<u32, RecordError> {
         self.take().map(u32::from_le_bytes)
     }
@@ -166,6 +170,7 @@ impl<'a> FieldReader<'a> {
     ///
     /// # Errors
     /// See [`Self::u8`].
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn f32(&mut self) -> Result<f32, RecordError> {
         self.take().map(f32::from_le_bytes)
     }
@@ -176,10 +181,17 @@ impl<'a> FieldReader<'a> {
     /// See [`Self::u8`].
     pub fn f32s<const N: usize>(&mut self) -> Result<[f32; N], RecordError> {
         let mut values = [0.0; N];
-        for value in &mut values {
+        self.fill(&mut values)?;
+        Ok(values)
+    }
+
+    /// One function for all lengths.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
+    fn fill(&mut self, values: &mut [f32]) -> Result<(), RecordError> {
+        for value in values {
             *value = self.f32()?;
         }
-        Ok(values)
+        Ok(())
     }
 
     /// A number that may be absent.

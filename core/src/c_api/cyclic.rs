@@ -1,13 +1,13 @@
 //! The cyclic tracker: angles of a walking person in, pose, position in the cycle and cadence out.
 
 use super::cyclic_frame::{SINEW_MAX_ANGLES, SinewCyclicFrame, SinewCyclicResult};
-use super::model::{fingerprint, read_model};
+use super::model::read_model;
 use super::object::{Handle, Object, given, object, place, room};
 use super::stateful::{Stateful, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
 use crate::cyclic::measurement::MAX_STEP_FRAMES;
 use crate::cyclic::phase::wrap_position;
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::min;
 use crate::saved_state::{SavedState, StateKind, StateVisitor};
 use crate::tracker::cyclic::CoupledTracker;
@@ -36,7 +36,7 @@ pub struct SinewCyclic(Object<Cyclic>);
 #[derive(Debug)]
 pub(super) struct Cyclic {
     fingerprint: u32,
-    model: MotionModel<'static>,
+    model: CoupledModel<'static>,
     memory: Memory,
 }
 
@@ -61,8 +61,10 @@ size_functions!(SinewCyclic, sinew_cyclic_size, sinew_cyclic_align);
 /// free.
 ///
 /// `model` is a motion model in bytes (the command `sinew export` makes one), aligned to four,
-/// which has to stay where it is as long as the tracker is used. Null and zero bytes stand for the
-/// walking model that the library was built with. All numbers of the model are checked once, here.
+/// which has to stay where it is as long as the tracker is used. The form for the coupled filter
+/// suffices (`--form coupled-c`, 5.4 KB); of the form for all filters the rest is not read. Null and
+/// zero bytes stand for the walking model that the library was built with. All numbers that the
+/// tracker reads are checked once, here.
 ///
 /// Returns SINEW_STATUS_BAD_MODEL for bytes that are no model of at most `SINEW_MAX_ANGLES` angles,
 /// SINEW_STATUS_NO_MODEL if the library was built without the walking model. `tracker` is written
@@ -88,7 +90,7 @@ pub unsafe extern "C" fn sinew_cyclic_init(
             let model = read_model(model, model_bytes)?;
             // Zeros are a memory that did not begin.
             let cyclic = place.clear();
-            (&raw mut (*cyclic).fingerprint).write(fingerprint(&model));
+            (&raw mut (*cyclic).fingerprint).write(model.checksum());
             (&raw mut (*cyclic).model).write(model);
             place.install(handle, Stateful::begin)
         })()
@@ -196,7 +198,7 @@ impl Cyclic {
 impl Memory {
     /// Out of the way of the steps that follow, whose stack it would share.
     #[inline(never)]
-    fn begin(&mut self, model: &MotionModel<'_>, first: &AngleMeasurement<SINEW_MAX_ANGLES>) -> Answer {
+    fn begin(&mut self, model: &CoupledModel<'_>, first: &AngleMeasurement<SINEW_MAX_ANGLES>) -> Answer {
         if first.is_empty(model.angle_count()) {
             return Err(SinewStatus::Waiting);
         }

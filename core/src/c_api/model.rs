@@ -3,15 +3,14 @@
 use super::cyclic_frame::SINEW_MAX_ANGLES;
 use super::object::list;
 use super::status::SinewStatus;
-use crate::checksum::Crc32;
-use crate::cyclic::MotionModel;
+use crate::cyclic::CoupledModel;
 use crate::cyclic::model::bytes::{HEADER_BYTES, ModelHeader};
 use core::ffi::c_void;
 
 #[cfg(target_endian = "big")]
 compile_error!("motion models are read in place, as little-endian numbers");
 
-/// The model in the bytes given; the walking model for null and zero bytes.
+/// The model in the bytes given, of either form; the walking model for null and zero bytes.
 ///
 /// # Errors
 /// A misaligned pointer; bytes that are no model of at most [`SINEW_MAX_ANGLES`] angles; a library
@@ -19,7 +18,7 @@ compile_error!("motion models are read in place, as little-endian numbers");
 ///
 /// # Safety
 /// `model` points at `bytes` bytes that never change.
-pub(super) unsafe fn read_model(model: *const c_void, bytes: usize) -> Result<MotionModel<'static>, SinewStatus> {
+pub(super) unsafe fn read_model(model: *const c_void, bytes: usize) -> Result<CoupledModel<'static>, SinewStatus> {
     if model.is_null() && bytes == 0 {
         return walking();
     }
@@ -38,31 +37,15 @@ pub(super) unsafe fn read_model(model: *const c_void, bytes: usize) -> Result<Mo
     // SAFETY: any bits make an f32 or an i8, which live as long as the bytes; the numbers begin at
     // a multiple of four.
     let (numbers, turns) = unsafe { (numbers.align_to::<f32>().1, turns.align_to::<i8>().1) };
-    Ok(header.lend(numbers, turns)?)
+    Ok(header.lend_coupled(numbers, turns)?)
 }
 
 #[cfg(feature = "walking-model")]
-fn walking() -> Result<MotionModel<'static>, SinewStatus> {
-    Ok(crate::cyclic::model::walking::WALKING.model()?)
+fn walking() -> Result<CoupledModel<'static>, SinewStatus> {
+    Ok(crate::cyclic::model::walking::WALKING_COUPLED.model()?)
 }
 
 #[cfg(not(feature = "walking-model"))]
-fn walking() -> Result<MotionModel<'static>, SinewStatus> {
+fn walking() -> Result<CoupledModel<'static>, SinewStatus> {
     Err(SinewStatus::NoModel)
-}
-
-/// A checksum of all that the coupled filter takes from a model: states belong to it.
-pub(super) fn fingerprint(model: &MotionModel<'_>) -> u32 {
-    let parts = model.parts();
-    let deviation = &parts.deviation;
-    let numbers = [
-        &[parts.mean_duration_frames, parts.rate_hz],
-        parts.mean_pose_rad,
-        deviation.offset_std_rad,
-        deviation.swing_std_rad,
-        deviation.rest_std_rad,
-        deviation.rest_rate_per_cycle,
-    ];
-    let numbers = numbers.into_iter().flatten().fold(Crc32::new(), |sum, number| sum.and_word(number.to_bits()));
-    parts.turns_per_cycle.iter().fold(numbers, |sum, turns| sum.and(turns.to_le_bytes()[0])).value()
 }

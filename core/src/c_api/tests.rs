@@ -26,7 +26,7 @@ use super::vision::{
 use super::vision_frame::{SinewBox, SinewVisionConfig, SinewVisionResult, sinew_vision_default_config};
 use crate::camera::Pixel;
 use crate::cyclic::example::{swing_pose_rad, swing_table};
-use crate::cyclic::model::bytes::write;
+use crate::cyclic::model::bytes::{COUPLED_MAGIC, write, write_coupled};
 use crate::vision::candidate::HandCandidate;
 use crate::vision::edges::EdgePixel;
 use core::ffi::c_void;
@@ -162,6 +162,33 @@ fn models_for_c_are_checked() {
     assert_eq!(init(start, bytes - 4), SinewStatus::BadModel);
     assert_eq!(init(start, 3), SinewStatus::BadModel);
     assert_eq!(init(null(), bytes), SinewStatus::NullPointer);
+    // Numbers of the form for all filters are too many for the one of the coupled filter.
+    let mut other_form = model.clone();
+    other_form[0] = COUPLED_MAGIC;
+    assert_eq!(init(other_form.as_ptr().cast(), bytes), SinewStatus::BadModel);
+    let mut other_version = model;
+    other_version[1] += 1;
+    assert_eq!(init(other_version.as_ptr().cast(), bytes), SinewStatus::BadModel);
+}
+
+#[test]
+fn the_coupled_form_of_a_model_suffices() {
+    let table = swing_table();
+    let mut words = [0_u32; 256];
+    let mut bytes = [0; 1024];
+    let count = write_coupled(&table.model().unwrap(), &mut bytes).unwrap();
+    for (word, bytes) in words.iter_mut().zip(bytes.as_chunks::<4>().0) {
+        *word = u32::from_ne_bytes(*bytes);
+    }
+    let mut memory = Memory::new(sinew_cyclic_size());
+    // SAFETY: memory and model have the sizes that are said.
+    let tracker = written(|handle| unsafe {
+        sinew_cyclic_init(memory.start(), memory.bytes(), words.as_ptr().cast(), count, handle)
+    });
+    let mut pose_rad = [f32::NAN; 2];
+    // SAFETY: the tracker was initialised, and there is room for two angles.
+    let status = unsafe { sinew_cyclic_mean_pose(tracker, 0.25, pose_rad.as_mut_ptr(), 2) };
+    assert_eq!((status, pose_rad), (SinewStatus::Ok, swing_pose_rad(0.25)));
 }
 
 /// A hand below the left shoulder and some edges.

@@ -50,6 +50,7 @@ pub fn free_share(best_likelihood: f32) -> f32 {
 /// // No blob, no followers.
 /// assert_eq!(allot(50, &[], &mut counts), 50);
 /// ```
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 pub fn allot(total: usize, likelihoods: &[f32], counts: &mut [u16]) -> usize {
     counts.fill(0);
     let usable = |i: usize| likelihoods.get(i).copied().filter(|p| *p > 0.0 && p.is_finite());

@@ -11,6 +11,7 @@
 //! ```
 
 use crate::error::{ParameterError, positive};
+use crate::numeric::rolled::rolled;
 use crate::ranges::{angle_std, is_angle};
 
 /// Longest step, frames at the model's rate. Chosen: ten seconds at 60 Hz, after which the pose is
@@ -61,7 +62,7 @@ impl<const N: usize> AngleMeasurement<N> {
     /// # Errors
     /// Each `std_rad` has to lie within [`ANGLE_STD_RAD`](crate::ranges::ANGLE_STD_RAD).
     pub fn with_std(angles_rad: &[Option<f32>; N], std_rad: &[f32; N]) -> Result<Self, ParameterError> {
-        for &std in std_rad {
+        for &std in std_rad.iter().take(rolled(N)) {
             angle_std("std_rad", std)?;
         }
         Ok(Self::checked(angles_rad, std_rad))
@@ -69,8 +70,11 @@ impl<const N: usize> AngleMeasurement<N> {
 
     #[inline]
     fn checked(angles_rad: &[Option<f32>; N], std_rad: &[f32; N]) -> Self {
-        let angles_rad = angles_rad.map(|angle| angle.filter(|angle| is_angle(*angle)));
-        Self { angles_rad, std_rad: *std_rad, step_frames: 1.0 }
+        let mut checked = *angles_rad;
+        for angle in checked.iter_mut().take(rolled(N)) {
+            *angle = angle.filter(|angle| is_angle(*angle));
+        }
+        Self { angles_rad: checked, std_rad: *std_rad, step_frames: 1.0 }
     }
 
     /// The same, `step_frames` after the last measurement (frames at the model's rate).

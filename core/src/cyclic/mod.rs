@@ -78,6 +78,7 @@ pub use figure::{FigurePlace, PlaceOptions};
 pub use filter::{CyclicFilter, FilterChoice};
 pub use kalman::{CovarianceScaling, GainReach, KalmanFilter, KalmanOptions};
 pub use measurement::AngleMeasurement;
+pub use model::{CoupledModel, CoupledParts, CoupledTable, HumanCoupledTable};
 pub use model::{CyclePoint, Deviation, HumanModelTable, ModelError, ModelParts, ModelTable, MotionModel};
 pub use particle::ParticleTracker;
 pub use start::CycleStart;

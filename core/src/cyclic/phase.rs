@@ -22,7 +22,8 @@ pub(crate) const POSITIONS_IN_CYCLE: core::ops::RangeInclusive<f32> = 0.0..=1.0_
 /// assert!((wrap_position(0.95 + 0.1) - 0.05).abs() < 1e-6);
 /// assert_eq!(wrap_position(-0.25), 0.75);
 /// ```
-#[inline]
+#[cfg_attr(target_arch = "x86_64", inline)]
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 #[must_use]
 pub fn wrap_position(position: f32) -> f32 {
     let wrapped = position - floor(position);

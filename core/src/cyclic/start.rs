@@ -3,7 +3,7 @@
 
 use crate::angle::{angle_difference, split_turns};
 use crate::cyclic::phase::wrap_position;
-use crate::cyclic::{CyclicEstimate, MotionModel};
+use crate::cyclic::{CoupledModel, CyclicEstimate, MotionModel};
 use crate::error::{ParameterError, finite};
 
 /// First variance of a missing angle in a model without deviation, rad^2. Chosen: a standard
@@ -141,7 +141,7 @@ impl<const N: usize> CycleStart<N> {
 /// # Ok::<(), sinew_core::cyclic::ModelError>(())
 /// ```
 #[must_use]
-pub fn best_position<const N: usize>(model: &MotionModel<'_>, angles_rad: &[Option<f32>; N]) -> f32 {
+pub fn best_position<const N: usize>(model: &CoupledModel<'_>, angles_rad: &[Option<f32>; N]) -> f32 {
     let count = model.position_count();
     let mut best = (f32::INFINITY, 0.0);
     for index in 0..count {

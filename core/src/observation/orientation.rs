@@ -19,6 +19,7 @@
 
 use crate::error::{ParameterError, Rule};
 use crate::math::{clamp, floor, ln, sqrt, wrap_orientation};
+use crate::numeric::rolled::rolled;
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::PI;
 
@@ -63,10 +64,9 @@ impl SavedState for OrientationDensity {
 }
 
 impl OrientationDensity {
-    /// The uniform density over [`MAX_BINS`] bins.
-    #[must_use]
-    pub const fn flat() -> Self {
-        Self { bins: [1.0; MAX_BINS], len: MAX_BINS }
+    /// A density before [`Self::begin`]: zeros, which take less flash than ones.
+    pub(crate) const fn empty() -> Self {
+        Self { bins: [0.0; MAX_BINS], len: 0 }
     }
 
     /// Makes it uniform over its bins.
@@ -147,9 +147,10 @@ impl OrientationDensity {
     }
 
     /// Moves the density towards uniform: `keep` of 1 leaves it, 0 forgets it.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn fade(&mut self, keep: f32) {
         let keep = clamp(keep, 0.0, 1.0);
-        for bin in &mut self.bins {
+        for bin in self.bins.iter_mut().take(rolled(MAX_BINS)) {
             *bin = 1.0 + keep * (*bin - 1.0);
         }
     }

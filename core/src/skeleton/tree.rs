@@ -269,6 +269,7 @@ impl<const BONES: usize, const ANGLES: usize> Skeleton<BONES, ANGLES> {
 
     /// The legal pose nearest to `angles_rad`, angle by angle.
     #[must_use]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn clamp(&self, mut angles_rad: [f32; ANGLES]) -> [f32; ANGLES] {
         for (angle, limit) in angles_rad.iter_mut().zip(&self.limits) {
             *angle = limit.clamp(*angle);

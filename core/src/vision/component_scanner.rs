@@ -3,6 +3,7 @@
 use super::components::{Component, overlaps};
 use super::mask::Mask;
 use super::runs::{LineRun, NO_SLOT, RunPool, find_runs};
+use crate::numeric::rolled::rolled;
 
 /// A place of the table of components that are still growing; all zeros are one that is free.
 #[derive(Debug, Clone, Copy)]
@@ -212,9 +213,10 @@ impl<const RUNS: usize, const OPEN: usize> ComponentScanner<RUNS, OPEN> {
     }
 
     /// The root of a slot. Chains end, since each merge points from one root to another.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn root(&self, slot: u16) -> u16 {
         let mut at = slot;
-        for _ in 0..OPEN {
+        for _ in 0..rolled(OPEN) {
             match self.slots.get(usize::from(at)) {
                 Some(Slot::Merged { into }) => at = *into,
                 _ => break,

@@ -103,6 +103,7 @@ impl Component {
     /// above, see [`overlaps`].
     ///
     /// Lines must not go backwards.
+    #[inline(always)]
     pub(super) fn add_run(&mut self, start: u16, end: u16, row: u16, pairs: [u32; 3]) {
         // No product of two factors exceeds 32 bits: sides are at most 8192 pixels. A run of n
         // pixels has the middle m = s / 2. Its sums are n m and n m^2 + n (n^2 - 1) / 12. Twice the
@@ -147,6 +148,7 @@ impl Component {
     }
 
     /// Keeps a run of this component in the pool, if there is room.
+    #[inline(always)]
     pub(super) fn record(&mut self, start: u16, end: u16, row: u16, pool: &mut RunPool<'_>) {
         if pool.append(&mut self.runs, start, end, row) {
             self.unrecorded_px -= u32::from(end - start);

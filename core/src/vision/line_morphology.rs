@@ -183,6 +183,7 @@ impl<const WORDS: usize> LineMorphology<WORDS> {
         }
     }
 
+    #[inline(always)]
     fn close(&mut self, opened: &mut Line<WORDS>, width: usize, mut sink: impl FnMut(&[u32; WORDS])) {
         if self.second_dilation.push(opened, width) && self.second_erosion.push(opened, width) {
             sink(&opened.bits);

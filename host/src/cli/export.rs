@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// Options of `sinew export`.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  sinew export walking --form c --out walking_model.c")]
+#[command(after_help = "Examples:\n  sinew export walking --form coupled-c --out walking_model.c")]
 pub struct ExportArgs {
     /// The motion model.
     #[arg(value_name = MODEL_VALUE)]
@@ -35,6 +35,23 @@ pub enum ModelForm {
     Bytes,
     /// A C source with an array of words that is named as the file.
     C,
+    /// The bytes that the coupled filter reads: a ninth.
+    CoupledBytes,
+    /// Those as a C source.
+    CoupledC,
+}
+
+impl ModelForm {
+    const fn is_source(self) -> bool {
+        matches!(self, Self::C | Self::CoupledC)
+    }
+
+    fn bytes_of(self, model: &CyclicModel) -> Option<Vec<u8>> {
+        match self {
+            Self::Bytes | Self::C => model.to_bytes(),
+            Self::CoupledBytes | Self::CoupledC => model.to_coupled_bytes(),
+        }
+    }
 }
 
 /// Writes the model.
@@ -51,13 +68,12 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<()> {
             args.model
         )));
     }
-    let bytes = model
-        .to_bytes()
+    let bytes = args
+        .form
+        .bytes_of(&model)
         .ok_or_else(|| data_error(format!("`{}` says nothing of how people differ; train it anew", args.model)))?;
-    let text = match args.form {
-        ModelForm::Bytes => None,
-        ModelForm::C => Some(c_source(&array_name(&args.out)?, &bytes)),
-    };
+    let text =
+        args.form.is_source().then(|| Ok::<_, anyhow::Error>(c_source(&array_name(&args.out)?, &bytes))).transpose()?;
     let written = text.as_ref().map_or(bytes.as_slice(), |text| text.as_bytes());
     write_atomically(&args.out, |writer| Ok(writer.write_all(written)?))?;
     let report = format!(

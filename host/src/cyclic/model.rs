@@ -139,19 +139,22 @@ impl CyclicModel {
         self.numbers.view().expect("the numbers were checked when the model was made")
     }
 
-    /// The model as firmware reads it ([`sinew_core::cyclic::model::bytes`]); `None` where it says
-    /// nothing of how people differ.
+    /// The model as firmware reads it ([`sinew_core::cyclic::model::bytes`]), for all filters;
+    /// `None` where it says nothing of how people differ.
     #[must_use]
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
         let view = self.view();
-        let header = ModelHeader {
-            angle_count: view.angle_count(),
-            position_count: view.position_count(),
-            mean_duration_frames: view.parts().mean_duration_frames,
-            rate_hz: view.rate_hz(),
-        };
-        let mut bytes = vec![0; header.byte_count()];
+        let mut bytes = vec![0; ModelHeader::of(&view).byte_count()];
         bytes::write(&view, &mut bytes)?;
+        Some(bytes)
+    }
+
+    /// As [`Self::to_bytes`], for the phase-coupled filter alone.
+    #[must_use]
+    pub fn to_coupled_bytes(&self) -> Option<Vec<u8>> {
+        let view = self.view();
+        let mut bytes = vec![0; ModelHeader::of_coupled(&view).byte_count()];
+        bytes::write_coupled(&view, &mut bytes)?;
         Some(bytes)
     }
 

@@ -4,8 +4,9 @@ use assert_cmd::Command;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use sinew::cyclic::CyclicModel;
-use sinew_core::cyclic::model::bytes::{HEADER_BYTES, ModelHeader};
-use sinew_core::cyclic::model::walking::WALKING;
+use sinew_core::cyclic::model::bytes::{HEADER_BYTES, ModelBytesError, ModelHeader};
+use sinew_core::cyclic::model::walking::{WALKING, WALKING_COUPLED};
+use sinew_core::cyclic::{HumanCoupledTable, HumanModelTable};
 use sinew_record::model_checksum;
 use sinew_tests::sinew_command;
 use std::fs;
@@ -45,6 +46,20 @@ fn the_source_in_c_holds_the_same_words() {
     let words = source.split("= {").nth(1).unwrap().split(|c: char| !c.is_ascii_alphanumeric());
     let words = words.filter_map(|word| u32::from_str_radix(word.strip_prefix("0x")?, 16).ok());
     assert_eq!(words.flat_map(u32::to_le_bytes).collect::<Vec<u8>>(), bytes);
+}
+
+#[test]
+fn the_coupled_forms_hold_what_the_coupled_filter_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    export(folder.path(), &["walking", "--form", "coupled-bytes", "--out", "model.bin"])
+        .success()
+        .stdout(contains("100 positions and 13 angles: 5452 bytes of flash"));
+    let bytes = fs::read(folder.path().join("model.bin")).unwrap();
+    assert_eq!(HumanCoupledTable::from_bytes(&bytes).unwrap(), WALKING_COUPLED);
+    assert_eq!(HumanModelTable::from_bytes(&bytes), Err(ModelBytesError::CoupledOnly));
+    export(folder.path(), &["walking", "--form", "coupled-c", "--out", "walking_model.c"]).success();
+    let source = fs::read_to_string(folder.path().join("walking_model.c")).unwrap();
+    assert!(source.contains("const uint32_t walking_model[1363] = {"));
 }
 
 #[test]

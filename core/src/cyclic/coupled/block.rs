@@ -172,6 +172,7 @@ fn is_plausible(packed: &[f32; PACKED]) -> bool {
 impl AngleBlock {
     /// The prior: the spread between people.
     #[must_use]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub(super) fn unknown(spread: &Spread) -> Self {
         let mut covariance = [0.0; PACKED];
         for (i, variance) in spread.diagonal().into_iter().enumerate() {

@@ -5,7 +5,7 @@ use crate::cyclic::coupled::block::{AnglePrediction, Basis};
 use crate::cyclic::coupled::evidence::{FrameInnovation, PhaseEvidence};
 use crate::cyclic::coupled::spread_scale::FrameProducts;
 use crate::cyclic::coupled::state::CoupledFilter;
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::{clamp, max, sqrt, wrap_angle};
 
 /// Gate of a single angle, standard deviations. An angle beyond it does not inform the phase, and
@@ -18,7 +18,7 @@ impl<const N: usize> CoupledFilter<N> {
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub(super) fn correct_phase(
         &mut self,
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         measurement: &AngleMeasurement<N>,
     ) -> FrameInnovation {
         let point = model.point(self.position);
@@ -81,14 +81,14 @@ impl<const N: usize> CoupledFilter<N> {
     /// deviation of c to either side (statistical linearisation). A tangent would hold the position
     /// at a jump.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn pose_slope(&self, model: &MotionModel<'_>) -> [f32; N] {
+    pub(super) fn pose_slope(&self, model: &CoupledModel<'_>) -> [f32; N] {
         let half_width = if is_on(Part::Secant) { sqrt(self.pair.cc) } else { 0.0 };
         model.mean_pose_secant(self.position, half_width)
     }
 
     /// Angles from the state.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    fn update_angles(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
+    fn update_angles(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) {
         let pose = model.mean_pose_rad::<N>(model.point(self.position));
         let basis = Basis::at(self.position);
         self.winding.count_cycles(self.cycles);

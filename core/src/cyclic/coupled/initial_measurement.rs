@@ -4,9 +4,10 @@
 //! the rest. A person or a joint placement may have offsets beyond the spread of the training.
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::error::ParameterError;
 use crate::math::{max, min, sqrt, wrap_angle};
+use crate::numeric::rolled::rolled;
 
 /// Smallest standard deviation of an angle of the first row, rad. Chosen: the root of the Kalman
 /// filter's first variance (`KalmanOptions::angle_variance`, 1e-4 rad^2).
@@ -40,7 +41,7 @@ impl<const N: usize> InitialMeasurement<N> {
     /// # Errors
     /// Those of [`AngleMeasurement::with_std`].
     pub(super) fn of(
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         first: &AngleMeasurement<N>,
         position: f32,
     ) -> Result<Self, ParameterError> {
@@ -49,7 +50,7 @@ impl<const N: usize> InitialMeasurement<N> {
         let count = model.angle_count().min(N);
         let mut unusual_offset_rad2 = [0.0; N];
         let mut excess: heapless::Vec<f32, N> = heapless::Vec::new();
-        for i in 0..count {
+        for i in 0..rolled(count) {
             if let Some(angle) = first.angle_rad(i) {
                 let off = wrap_angle(angle - pose[i]);
                 unusual_offset_rad2[i] = off * off;
@@ -57,10 +58,12 @@ impl<const N: usize> InitialMeasurement<N> {
             }
         }
         let row_std_rad = if is_on(Part::FirstRowNoise) { sqrt(median(&excess)) } else { f32::MAX };
-        let std_rad =
-            first.std_rad().map(|std| max(min(std, row_std_rad), max(min(0.5 * std, SMALL_STD_RAD), MIN_STD_RAD)));
+        let mut std_rad = *first.std_rad();
+        for std in std_rad.iter_mut().take(rolled(N)) {
+            *std = max(min(*std, row_std_rad), max(min(0.5 * *std, SMALL_STD_RAD), MIN_STD_RAD));
+        }
         let within = MIN_UNUSUAL_SIGMAS * MIN_UNUSUAL_SIGMAS;
-        for ((square, spread), std) in unusual_offset_rad2.iter_mut().zip(spread).zip(std_rad) {
+        for ((square, spread), std) in unusual_offset_rad2.iter_mut().zip(spread).zip(std_rad).take(rolled(N)) {
             if *square <= within * (spread * spread + std * std) || !is_on(Part::UnusualOffset) {
                 *square = 0.0;
             }

@@ -6,7 +6,7 @@ use crate::cyclic::coupled::correct::GATE_SIGMAS;
 use crate::cyclic::coupled::cycle_pair::CyclePair;
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::cycle_state::CycleState;
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::{sqrt, wrap_angle};
 
 /// How one angle's parts move on: parts <- map parts + noise.
@@ -93,7 +93,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// diagonal. Angles are tied to each other by the cycle alone: each has its own deviation.
     /// `None` while the phase is unknown. Those beyond the model's angles are zero.
     #[must_use]
-    pub fn angle_covariance_rad2(&self, model: &MotionModel<'_>) -> Option<[[f32; N]; N]> {
+    pub fn angle_covariance_rad2(&self, model: &CoupledModel<'_>) -> Option<[[f32; N]; N]> {
         if self.is_searching() {
             return None;
         }
@@ -117,7 +117,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// The linear step of [`Self::predict`] from here, by its effect on unit vectors and on zero
     /// covariance.
     #[must_use]
-    pub fn transition(&self, model: &MotionModel<'_>, step_frames: f32) -> CoupledTransition<N> {
+    pub fn transition(&self, model: &CoupledModel<'_>, step_frames: f32) -> CoupledTransition<N> {
         let mut still = *self;
         still.pair = CyclePair { cc: 0.0, cv: 0.0, vv: 0.0 };
         for block in &mut still.blocks {
@@ -147,7 +147,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// Variance by which [`Self::correct`] inflates the offset of each angle beyond the gate,
     /// rad^2; 0 for the others. To be called before it, on the predicted filter.
     #[must_use]
-    pub fn gated_variance_rad2(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> [f32; N] {
+    pub fn gated_variance_rad2(&self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> [f32; N] {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
         let basis = Basis::at(self.position);
@@ -173,7 +173,7 @@ mod tests {
 
     const N: usize = 13;
 
-    fn started(model: &MotionModel<'_>) -> CoupledFilter<N> {
+    fn started(model: &CoupledModel<'_>) -> CoupledFilter<N> {
         let first = core::array::from_fn(|i| Some(mean_angle(i, 0.2) + 0.05));
         let first = AngleMeasurement::new(&first, 0.01).unwrap();
         let mut filter = CoupledFilter::<N>::new(model, &first, Some(0.2), None).unwrap();

@@ -5,8 +5,9 @@
 //! Probabilistic Robotics (2005), section 4.1.
 
 use crate::cyclic::phase::{position_difference, wrap_position};
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::{abs, exp, exp_small, least_angle, max, min, round};
+use crate::numeric::rolled::rolled;
 
 /// Positions of the grid. Chosen: a cell is about a fifth of [`MODE_REACH`].
 pub const POSITIONS: usize = 32;
@@ -99,6 +100,7 @@ const _: () = assert!(MODE_REACH * (POSITIONS as f32) < 5.0 && TABLE == 2 * POSI
 
 impl PhaseGrid {
     /// All positions and speeds alike.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     #[must_use]
     pub const fn uniform() -> Self {
         let weight = 1.0 / (POSITIONS * SPEEDS) as f32;
@@ -134,7 +136,7 @@ impl PhaseGrid {
     /// Moves on by `step_frames`; speeds may change to the next slower or faster one.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    pub fn advance(&mut self, model: &MotionModel<'_>, step_frames: f32) {
+    pub fn advance(&mut self, model: &CoupledModel<'_>, step_frames: f32) {
         for (travelled, ratio) in self.travelled.iter_mut().zip(SPEED_RATIOS) {
             *travelled = wrap_position(*travelled + ratio * model.mean_cycle_velocity() * step_frames);
         }
@@ -164,7 +166,7 @@ impl PhaseGrid {
     /// Updates by a measurement of an unknown person.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    pub fn weigh<const N: usize>(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
+    pub fn weigh<const N: usize>(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) {
         let likelihood = likelihood_table(model, measurement);
         // Of the table's positions a speed's cells lie behind all even or all odd ones.
         let every_second = |first: usize| core::array::from_fn(|i| likelihood[(2 * i + first) % TABLE]);
@@ -191,10 +193,11 @@ impl PhaseGrid {
     /// Calls `take` with speed, weight and distance from `position` of each cell within
     /// [`MODE_REACH`].
     #[cfg_attr(target_arch = "x86_64", inline(always))]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn each_near(&self, position: f32, mut take: impl FnMut(usize, f32, f32)) {
         for (speed, (weights, &travelled)) in self.weights.iter().zip(&self.travelled).enumerate() {
             let (below, rest) = cells_and_rest(wrap_position(position - travelled), POSITIONS);
-            for ahead in 0..NEAR_CELLS {
+            for ahead in 0..rolled(NEAR_CELLS) {
                 // From five cells before the position to six behind it: no other can be near
                 // enough.
                 let way = (ahead as f32 - 5.0 - rest) / POSITIONS as f32;
@@ -230,7 +233,7 @@ impl PhaseGrid {
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    pub fn mode(&self, model: &MotionModel<'_>) -> PhaseMode {
+    pub fn mode(&self, model: &CoupledModel<'_>) -> PhaseMode {
         let sums = self.by_position();
         let mut best = (0, 0.0);
         for (cell, weight) in sums_around(&sums).into_iter().enumerate() {
@@ -289,7 +292,7 @@ fn sums_around(cells: &[f32; POSITIONS]) -> [f32; POSITIONS] {
 /// Likelihood of a measurement at each position of the table, the greatest being one.
 #[cfg_attr(target_arch = "x86_64", inline(always))]
 #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-fn likelihood_table<const N: usize>(model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> [f32; TABLE] {
+fn likelihood_table<const N: usize>(model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> [f32; TABLE] {
     let spread = model.deviation_std_rad::<N>();
     let count = model.angle_count().min(N);
     let tempering = max(TEMPERING * measurement.present(count) as f32 / TEMPERED_ANGLES, TEMPERING);
@@ -324,7 +327,7 @@ fn likelihood_table<const N: usize>(model: &MotionModel<'_>, measurement: &Angle
 
 /// Mean poses at [`LANES`] positions of the table, by angle.
 #[inline(always)]
-fn lanes_of_poses<const N: usize>(model: &MotionModel<'_>, block: usize) -> [[f32; LANES]; N] {
+fn lanes_of_poses<const N: usize>(model: &CoupledModel<'_>, block: usize) -> [[f32; LANES]; N] {
     let mut poses_rad = [[0.0; LANES]; N];
     for lane in 0..LANES {
         let pose_rad: [f32; N] = model.pose_at(model.point_among(LANES * block + lane, TABLE));

@@ -1,6 +1,6 @@
 //! Prediction of the phase-coupled filter over a step of any length.
 
-use crate::cyclic::MotionModel;
+use crate::cyclic::CoupledModel;
 use crate::cyclic::coupled::block::PARTS;
 use crate::cyclic::coupled::state::{CoupledFilter, LOST_STD, spread};
 use crate::cyclic::substeps::Substeps;
@@ -17,7 +17,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// Moves on by `step_frames`, in substeps of one frame, longer ones where that would be more
     /// than [`MAX_SUBSTEPS`].
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub fn predict(&mut self, model: &MotionModel<'_>, step_frames: f32) {
+    pub fn predict(&mut self, model: &CoupledModel<'_>, step_frames: f32) {
         for step in Substeps::few(step_frames, MAX_SUBSTEPS) {
             self.advance(model, step);
         }
@@ -25,7 +25,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    fn advance(&mut self, model: &MotionModel<'_>, step: f32) {
+    fn advance(&mut self, model: &CoupledModel<'_>, step: f32) {
         let (map, rest) = self.pair.advance(step);
         let phase = step * max(abs(self.velocity), 0.1 * model.mean_cycle_velocity());
         let memory = exp(-FORGETTING * phase);

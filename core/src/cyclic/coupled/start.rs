@@ -8,14 +8,14 @@ use crate::cyclic::coupled::measurement_noise::MeasurementNoise;
 use crate::cyclic::coupled::phase_grid::PhaseGrid;
 use crate::cyclic::coupled::spread_scale::SpreadScale;
 use crate::cyclic::coupled::state::{CoupledFilter, spread};
-use crate::cyclic::coupled::stored_grid::StoredGrid;
 use crate::cyclic::coupled::watch::agreement::Watch;
 use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::phase::wrap_position;
 use crate::cyclic::recognition::explained_variance::ExplainedVariance;
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::error::{ParameterError, Rule, finite, within};
 use crate::math::{max, round};
+use crate::numeric::rolled::rolled;
 use core::f32::consts::TAU;
 
 /// Standard deviation of a person's speed, relative to the model's mean. Chosen: a tenth, as people
@@ -31,7 +31,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// At most `N` angles, a model with a deviation, a finite position, a velocity within +-0.5
     /// cycles a frame.
     pub fn new(
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         first: &AngleMeasurement<N>,
         position: Option<f32>,
         velocity: Option<f32>,
@@ -47,7 +47,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// Those of [`Self::new`]; the filter is as before then.
     pub fn begin(
         &mut self,
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         first: &AngleMeasurement<N>,
         position: Option<f32>,
         velocity: Option<f32>,
@@ -62,7 +62,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.position = position;
         self.velocity = velocity;
         self.grid.store(&PhaseGrid::near(position));
-        for (block, unusual_offset_rad2) in self.blocks.iter_mut().zip(row.unusual_offset_rad2) {
+        for (block, unusual_offset_rad2) in self.blocks.iter_mut().zip(row.unusual_offset_rad2).take(rolled(N)) {
             block.inflate_offset_prior(unusual_offset_rad2);
         }
         self.correct_phase(model, &row.measurement);
@@ -75,7 +75,7 @@ impl<const N: usize> CoupledFilter<N> {
     ///
     /// # Errors
     /// At most `N` angles, a model with a deviation.
-    pub fn anywhere(model: &MotionModel<'_>, first: &AngleMeasurement<N>) -> Result<Self, ParameterError> {
+    pub fn anywhere(model: &CoupledModel<'_>, first: &AngleMeasurement<N>) -> Result<Self, ParameterError> {
         let mut filter = Self::empty();
         filter.forget(model)?;
         filter.watch.searching = true;
@@ -85,7 +85,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     /// Resets to position 0, the model's mean speed and an unknown person.
-    fn forget(&mut self, model: &MotionModel<'_>) -> Result<(), ParameterError> {
+    fn forget(&mut self, model: &CoupledModel<'_>) -> Result<(), ParameterError> {
         if model.angle_count() > N {
             return Err(ParameterError::new("angles of the model", Rule::Capacity { capacity: N }));
         }
@@ -93,9 +93,7 @@ impl<const N: usize> CoupledFilter<N> {
             return Err(ParameterError::new("deviation of the model", Rule::NotEmpty));
         }
         let velocity = model.mean_cycle_velocity();
-        for (i, block) in self.blocks.iter_mut().enumerate() {
-            *block = AngleBlock::unknown(&spread(model, i));
-        }
+        self.forget_person(model);
         self.angles_rad = [0.0; N];
         self.turns = [0; N];
         self.position = 0.0;
@@ -103,7 +101,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.pair =
             CyclePair { cc: 1.0e-5, cv: 0.0, vv: max(1.0e-6, SPEED_SPREAD * SPEED_SPREAD * velocity * velocity) };
         self.cycles = 0;
-        self.grid = StoredGrid::uniform();
+        self.grid.forget();
         self.watch = Watch::new();
         self.noise = MeasurementNoise::new();
         self.spread_scale = SpreadScale::new();
@@ -115,14 +113,23 @@ impl<const N: usize> CoupledFilter<N> {
         Ok(())
     }
 
+    /// Resets what was learned of each angle.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
+    pub(super) fn forget_person(&mut self, model: &CoupledModel<'_>) {
+        for (i, block) in self.blocks.iter_mut().enumerate().take(rolled(N)) {
+            *block = AngleBlock::unknown(&spread(model, i));
+        }
+    }
+
     /// Starts all counts. Whole turns of the first row (of the mean pose for a missing angle) are
     /// kept, so that no angle jumps after it.
-    fn start_counting(&mut self, model: &MotionModel<'_>, first: &AngleMeasurement<N>) {
+    fn start_counting(&mut self, model: &CoupledModel<'_>, first: &AngleMeasurement<N>) {
         let pose = model.mean_pose_rad::<N>(model.point(self.position));
-        self.turns = core::array::from_fn(|i| {
-            let first = first.angle_rad(i).unwrap_or(pose[i]);
-            round((first - self.angles_rad[i]) / TAU) as i32
-        });
+        let angles = self.turns.iter_mut().zip(&self.angles_rad).zip(&pose).enumerate().take(rolled(N));
+        for (i, ((turns, angle_rad), &mean_rad)) in angles {
+            let first_rad = first.angle_rad(i).unwrap_or(mean_rad);
+            *turns = round((first_rad - angle_rad) / TAU) as i32;
+        }
         self.cycles = 0;
         self.relocks = 0;
         self.winding = Winding::new();

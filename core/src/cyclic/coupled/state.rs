@@ -6,7 +6,7 @@
 //! together inform (c, v), and (c, v) informs each.
 
 use crate::angle::split_turns;
-use crate::cyclic::MotionModel;
+use crate::cyclic::CoupledModel;
 use crate::cyclic::coupled::block::{AngleBlock, Spread};
 use crate::cyclic::coupled::cycle_pair::CyclePair;
 use crate::cyclic::coupled::measured_path::MeasuredPath;
@@ -85,7 +85,7 @@ impl<const N: usize> CoupledFilter<N> {
             velocity: 0.0,
             pair: CyclePair { cc: 0.0, cv: 0.0, vv: 0.0 },
             cycles: 0,
-            grid: StoredGrid::uniform(),
+            grid: StoredGrid::empty(),
             watch: Watch::new(),
             noise: MeasurementNoise::new(),
             spread_scale: SpreadScale::new(),
@@ -128,7 +128,7 @@ impl<const N: usize> CoupledFilter<N> {
 
 /// Stationary spread of an angle's parts.
 #[cfg_attr(target_arch = "x86_64", inline(always))]
-pub(super) fn spread(model: &MotionModel<'_>, index: usize) -> Spread {
+pub(super) fn spread(model: &CoupledModel<'_>, index: usize) -> Spread {
     let deviation = &model.parts().deviation;
     let at = |values: &[f32]| values.get(index).copied().unwrap_or(1.0);
     let square = |std: f32| std * std;

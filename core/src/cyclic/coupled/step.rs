@@ -2,14 +2,14 @@
 
 use crate::cyclic::coupled::block::Basis;
 use crate::cyclic::coupled::state::CoupledFilter;
-use crate::cyclic::{AngleMeasurement, CyclicEstimate, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel, CyclicEstimate};
 
 impl<const N: usize> CoupledFilter<N> {
     /// One frame: predict over the measurement's step, then correct by the angles seen. On x86-64
     /// what every frame needs is inlined, so that a caller compiled for wider vectors than the
     /// crate has them. Elsewhere it would cost flash.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub fn step(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
+    pub fn step(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
         self.predict(model, measurement.step_frames());
         self.correct(model, measurement)
     }
@@ -17,7 +17,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// Corrects by the measured angles, after the grid was updated and the filter relocked where
     /// needed.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub fn correct(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
+    pub fn correct(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
         let mode = if measurement.is_empty(model.angle_count()) { None } else { self.watch(model, measurement) };
         if self.watch.searching {
             return self.estimate_of_all_places(model, measurement, mode);
@@ -30,7 +30,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// The estimate after the last correction, by `measurement`, without its likelihood.
     pub fn current_estimate(
         &mut self,
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         measurement: &AngleMeasurement<N>,
     ) -> CyclicEstimate<N> {
         if self.watch.searching {
@@ -40,7 +40,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    fn estimate(&self, model: &MotionModel<'_>, log_likelihood: f32, outlier: bool) -> CyclicEstimate<N> {
+    fn estimate(&self, model: &CoupledModel<'_>, log_likelihood: f32, outlier: bool) -> CyclicEstimate<N> {
         let slope = self.pose_slope(model);
         let basis = Basis::at(self.position);
         let mut angle_variance_rad2 = [0.0; N];

@@ -1,6 +1,6 @@
 //! The phase grid as the filter stores it between two updates: weights in bfloat16.
 
-use crate::cyclic::MotionModel;
+use crate::cyclic::CoupledModel;
 use crate::cyclic::coupled::phase_grid::{POSITIONS, PhaseGrid, PhaseMode, SPEEDS};
 use crate::cyclic::phase::POSITIONS_IN_CYCLE;
 use crate::numeric::bf16::Bf16;
@@ -30,10 +30,16 @@ impl SavedState for StoredGrid {
 }
 
 impl StoredGrid {
-    /// As [`PhaseGrid::uniform`].
-    pub(super) const fn uniform() -> Self {
-        let weight = Bf16::new(1.0 / (POSITIONS * SPEEDS) as f32);
-        Self { weights: [[weight; POSITIONS]; SPEEDS], travelled: [0.0; SPEEDS] }
+    /// A grid before its first frame: zeros, which take less flash than weights.
+    pub(super) const fn empty() -> Self {
+        Self { weights: [[Bf16::new(0.0); POSITIONS]; SPEEDS], travelled: [0.0; SPEEDS] }
+    }
+
+    /// Becomes [`PhaseGrid::uniform`], in place.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
+    pub(super) fn forget(&mut self) {
+        self.weights.as_flattened_mut().fill(Bf16::new(1.0 / (POSITIONS * SPEEDS) as f32));
+        self.travelled = [0.0; SPEEDS];
     }
 
     /// The grid with weights in `f32`.
@@ -55,7 +61,7 @@ impl StoredGrid {
 
     /// The mode with the largest weight; the grid is loaded in a frame of its own.
     #[inline(never)]
-    pub(super) fn mode(&self, model: &MotionModel<'_>) -> PhaseMode {
+    pub(super) fn mode(&self, model: &CoupledModel<'_>) -> PhaseMode {
         self.load().mode(model)
     }
 
@@ -83,7 +89,7 @@ mod tests {
 
     #[test]
     fn a_stored_grid_keeps_its_weights() {
-        let mut stored = StoredGrid::uniform();
+        let mut stored = StoredGrid::empty();
         let grid = PhaseGrid::near(0.3);
         assert!(stored.load().weight_near(0.3) < 0.4);
         stored.store(&grid);

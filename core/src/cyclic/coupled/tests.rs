@@ -2,7 +2,7 @@
 
 use crate::cyclic::phase::{position_difference, wrap_position};
 use crate::cyclic::synthetic::{mean_angle, table};
-use crate::cyclic::{AngleMeasurement, CoupledFilter, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledFilter, CoupledModel};
 use crate::math::wrap_angle;
 use crate::random::Stream;
 use core::f32::consts::TAU;
@@ -126,7 +126,7 @@ fn a_lost_phase_is_found_again() {
 
 /// Way from the person's position to the filter's after each of `positions` was shown with noise of
 /// 0.1 rad.
-fn ways(filter: &mut CoupledFilter<N>, model: &MotionModel<'_>, seed: u64, positions: &[f32]) -> Vec<f32> {
+fn ways(filter: &mut CoupledFilter<N>, model: &CoupledModel<'_>, seed: u64, positions: &[f32]) -> Vec<f32> {
     let mut stream = Stream::new(seed, 0, 0);
     let mut way = |&position: &f32| {
         let seen = core::array::from_fn(|i| Some(person(i, position) + 0.1 * stream.normal()));
@@ -167,7 +167,7 @@ fn it_follows_a_person_who_speeds_up_slows_down_or_stops_and_goes_on() {
 
 /// Share of the 90 % bands that hold `person`, with true noise of 0.1 rad and stated noise of
 /// `stated` rad.
-fn inside_the_band(model: &MotionModel<'_>, person: impl Fn(usize, f32) -> f32, stated: f32) -> f64 {
+fn inside_the_band(model: &CoupledModel<'_>, person: impl Fn(usize, f32) -> f32, stated: f32) -> f64 {
     let first = core::array::from_fn(|i| Some(person(i, 0.0)));
     let mut filter = CoupledFilter::<N>::new(model, &exact(&first), Some(0.0), None).unwrap();
     let mut stream = Stream::new(7, 0, 0);

@@ -5,7 +5,7 @@
 //!
 //! | words | what |
 //! |---|---|
-//! | 0 | [`MAGIC`] |
+//! | 0 | [`MAGIC`], or [`COUPLED_MAGIC`] |
 //! | 1 | version, [`VERSION`] |
 //! | 2, 3 | number n of angles, number l of positions |
 //! | 4, 5 | mean duration, frames; frames per second |
@@ -13,16 +13,24 @@
 //! | then | mean acceleration (l n), covariance (l n (n + 1) / 2), mean pose (l n), mean velocity (l n) |
 //! | then | spread of offset, swing and rest, rate of the rest (n each) |
 //! | last | turns per cycle, a signed byte each, filled with zeros to a whole word |
+//!
+//! A model for the phase-coupled filter alone begins with [`COUPLED_MAGIC`]. It has neither
+//! accelerations nor covariances nor velocities.
 
 use crate::checksum::Crc32;
+use crate::cyclic::model::coupled_model::{CoupledModel, CoupledParts, MAX_ANGLES, ModelError};
+use crate::cyclic::model::coupled_table::CoupledTable;
 use crate::cyclic::model::deviation::Deviation;
-use crate::cyclic::model::motion_model::{MAX_ANGLES, ModelError, ModelParts, MotionModel};
+use crate::cyclic::model::motion_model::{ModelParts, MotionModel};
 use crate::cyclic::model::table::ModelTable;
+use crate::error::{ParameterError, Rule};
 use crate::numeric::semi_definite::packed_len;
 use core::fmt;
 
-/// First word of a model: `SNWM`.
+/// First word of a model for all filters: `SNWM`.
 pub const MAGIC: u32 = u32::from_le_bytes(*b"SNWM");
+/// First word of a model for the phase-coupled filter alone: `SNWC`.
+pub const COUPLED_MAGIC: u32 = u32::from_le_bytes(*b"SNWC");
 /// Version of the layout.
 pub const VERSION: u32 = 1;
 /// Bytes before the numbers.
@@ -47,6 +55,8 @@ pub enum ModelBytesError {
     NoModel,
     /// A version that this program does not know.
     Version,
+    /// A model for the phase-coupled filter alone, where one for all filters is needed.
+    CoupledOnly,
     /// Numbers of angles or positions out of range.
     Shape,
     /// Fewer or more bytes than the shape asks for.
@@ -60,6 +70,9 @@ impl fmt::Display for ModelBytesError {
         formatter.write_str(match self {
             Self::NoModel => "the bytes do not begin as a motion model; make them again with this version",
             Self::Version => "the motion model's version is unknown; make it again with this version",
+            Self::CoupledOnly => {
+                "the motion model is one for the coupled filter alone; export it with `--form bytes` for the others"
+            }
             Self::Shape => "the motion model has too many or too few angles or positions",
             Self::Length => "the motion model has another length than its header says",
             Self::Checksum => "the motion model's checksum is wrong; its bytes were changed",
@@ -69,11 +82,30 @@ impl fmt::Display for ModelBytesError {
 
 impl core::error::Error for ModelBytesError {}
 
+/// Which filters a model in bytes is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum ModelForm {
+    /// All filters: [`MAGIC`].
+    Full,
+    /// The phase-coupled filter: [`COUPLED_MAGIC`].
+    Coupled,
+}
+
+impl ModelForm {
+    const fn magic(self) -> u32 {
+        match self {
+            Self::Full => MAGIC,
+            Self::Coupled => COUPLED_MAGIC,
+        }
+    }
+}
+
 /// Header of a model.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
-/// use sinew_core::cyclic::model::bytes::{ModelBytesError, ModelHeader, write};
+/// use sinew_core::cyclic::model::bytes::{ModelBytesError, ModelForm, ModelHeader, write};
 /// # use sinew_core::cyclic::model::walking::WALKING;
 ///
 /// # let mut memory = [0; 64 * 1024];
@@ -81,7 +113,7 @@ impl core::error::Error for ModelBytesError {}
 /// # let flash = &mut memory[..length];
 /// // Which model is in flash, before a filter is made for it.
 /// let header = ModelHeader::read(flash)?;
-/// assert_eq!((header.angle_count, header.position_count), (13, 100));
+/// assert_eq!((header.form, header.angle_count, header.position_count), (ModelForm::Full, 13, 100));
 /// assert_eq!(header.byte_count(), flash.len());
 /// flash[1000] ^= 1;
 /// assert_eq!(ModelHeader::read(flash), Err(ModelBytesError::Checksum));
@@ -90,6 +122,8 @@ impl core::error::Error for ModelBytesError {}
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModelHeader {
+    /// Which filters it is for.
+    pub form: ModelForm,
     /// Number n of angles.
     pub angle_count: usize,
     /// Number l of positions.
@@ -130,14 +164,42 @@ const fn checksum(bytes: &[u8]) -> u32 {
 }
 
 impl ModelHeader {
+    /// The header of `model` for all filters.
+    #[must_use]
+    pub const fn of(model: &MotionModel<'_>) -> Self {
+        Self::of_parts(ModelForm::Full, &model.parts().coupled())
+    }
+
+    /// The header of `model` for the phase-coupled filter alone.
+    #[must_use]
+    pub const fn of_coupled(model: &CoupledModel<'_>) -> Self {
+        Self::of_parts(ModelForm::Coupled, model.parts())
+    }
+
+    const fn of_parts(form: ModelForm, parts: &CoupledParts<'_>) -> Self {
+        Self {
+            form,
+            angle_count: parts.angle_count,
+            // A checked model has at least one angle.
+            position_count: match parts.mean_pose_rad.len().checked_div(parts.angle_count) {
+                Some(count) => count,
+                None => 0,
+            },
+            mean_duration_frames: parts.mean_duration_frames,
+            rate_hz: parts.rate_hz,
+        }
+    }
+
     /// Reads the header and checks length and checksum.
     ///
     /// # Errors
     /// See [`ModelBytesError`].
     pub const fn read(bytes: &[u8]) -> Result<Self, ModelBytesError> {
-        if word(bytes, 0) != MAGIC {
-            return Err(ModelBytesError::NoModel);
-        }
+        let form = match word(bytes, 0) {
+            MAGIC => ModelForm::Full,
+            COUPLED_MAGIC => ModelForm::Coupled,
+            _ => return Err(ModelBytesError::NoModel),
+        };
         if word(bytes, 1) != VERSION {
             return Err(ModelBytesError::Version);
         }
@@ -146,6 +208,7 @@ impl ModelHeader {
             return Err(ModelBytesError::Shape);
         }
         let header = Self {
+            form,
             angle_count,
             position_count,
             mean_duration_frames: f32::from_bits(word(bytes, 4)),
@@ -160,8 +223,25 @@ impl ModelHeader {
     /// Numbers between header and turns.
     #[must_use]
     pub const fn number_count(&self) -> usize {
+        let (n, l) = (self.angle_count, self.position_count);
+        self.first_pose() + l * n + self.velocity_count() + 4 * n
+    }
+
+    /// Numbers before the mean pose.
+    const fn first_pose(&self) -> usize {
         let n = self.angle_count;
-        self.position_count * (3 * n + packed_len(n)) + 4 * n
+        match self.form {
+            ModelForm::Full => self.position_count * (n + packed_len(n)),
+            ModelForm::Coupled => 0,
+        }
+    }
+
+    /// Numbers between the mean pose and the deviation.
+    const fn velocity_count(&self) -> usize {
+        match self.form {
+            ModelForm::Full => self.position_count * self.angle_count,
+            ModelForm::Coupled => 0,
+        }
     }
 
     /// Bytes of the whole model.
@@ -170,35 +250,70 @@ impl ModelHeader {
         HEADER_BYTES + 4 * self.number_count() + self.angle_count.next_multiple_of(4)
     }
 
-    /// Lends the numbers that follow the header, and the turns after them, as a model.
+    /// Lends the numbers that follow the header, and the turns after them, as a model for all
+    /// filters.
     ///
     /// # Errors
-    /// Those of [`MotionModel::new`]; lengths other than the header's among them.
+    /// Those of [`MotionModel::new`]; lengths other than the header's among them, and a model for
+    /// the phase-coupled filter alone.
     pub fn lend<'a>(&self, numbers: &'a [f32], turns_per_cycle: &'a [i8]) -> Result<MotionModel<'a>, ModelError> {
+        let coupled = self.coupled_parts(numbers, turns_per_cycle);
         let (n, l) = (self.angle_count, self.position_count);
-        let mut rest = numbers;
-        let mut next = |count: usize| {
-            let (part, others) = rest.split_at_checked(count).unwrap_or((&[], &[]));
-            rest = others;
-            part
-        };
+        let (mean_acceleration, rest) = part(numbers, l * n);
+        let (acceleration_covariance, _) = part(rest, l * packed_len(n));
+        let (_, rest) = part(numbers, self.first_pose() + l * n);
+        if self.form == ModelForm::Coupled {
+            return Err(ModelError::of_all(ParameterError::new("mean_acceleration", Rule::NotEmpty)));
+        }
         MotionModel::new(ModelParts {
             angle_count: n,
-            mean_acceleration: next(l * n),
-            acceleration_covariance: next(l * packed_len(n)),
-            mean_pose_rad: next(l * n),
-            mean_velocity: next(l * n),
-            deviation: Deviation {
-                offset_std_rad: next(n),
-                swing_std_rad: next(n),
-                rest_std_rad: next(n),
-                rest_rate_per_cycle: next(n),
-            },
+            mean_acceleration,
+            acceleration_covariance,
+            mean_pose_rad: coupled.mean_pose_rad,
+            mean_velocity: part(rest, l * n).0,
+            deviation: coupled.deviation,
             turns_per_cycle,
             mean_duration_frames: self.mean_duration_frames,
             rate_hz: self.rate_hz,
         })
     }
+
+    /// Lends them as a model for the phase-coupled filter, in either form; of the other numbers none
+    /// is read.
+    ///
+    /// # Errors
+    /// Those of [`CoupledModel::new`]; lengths other than the header's among them.
+    pub fn lend_coupled<'a>(
+        &self,
+        numbers: &'a [f32],
+        turns_per_cycle: &'a [i8],
+    ) -> Result<CoupledModel<'a>, ModelError> {
+        CoupledModel::new(self.coupled_parts(numbers, turns_per_cycle))
+    }
+
+    fn coupled_parts<'a>(&self, numbers: &'a [f32], turns_per_cycle: &'a [i8]) -> CoupledParts<'a> {
+        let n = self.angle_count;
+        let (_, rest) = part(numbers, self.first_pose());
+        let (mean_pose_rad, rest) = part(rest, self.position_count * n);
+        let (_, rest) = part(rest, self.velocity_count());
+        let (offset_std_rad, rest) = part(rest, n);
+        let (swing_std_rad, rest) = part(rest, n);
+        let (rest_std_rad, rest) = part(rest, n);
+        let (rest_rate_per_cycle, _) = part(rest, n);
+        CoupledParts {
+            angle_count: n,
+            mean_pose_rad,
+            deviation: Deviation { offset_std_rad, swing_std_rad, rest_std_rad, rest_rate_per_cycle },
+            turns_per_cycle,
+            mean_duration_frames: self.mean_duration_frames,
+            rate_hz: self.rate_hz,
+        }
+    }
+}
+
+/// The first `count` numbers and those after them; none where there are fewer.
+fn part(numbers: &[f32], count: usize) -> (&[f32], &[f32]) {
+    numbers.split_at_checked(count).unwrap_or((&[], &[]))
 }
 
 /// Writes `model` into `bytes` and gives the number of bytes written; `None` where they are too few
@@ -219,17 +334,39 @@ impl ModelHeader {
 /// # Ok::<(), sinew_core::cyclic::model::bytes::ModelBytesError>(())
 /// ```
 pub fn write(model: &MotionModel<'_>, bytes: &mut [u8]) -> Option<usize> {
+    write_numbers(&ModelHeader::of(model), &model.parts().tables(), model, bytes)
+}
+
+/// Writes the part of `model` that the phase-coupled filter reads, as [`write`] writes a whole one.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::model::bytes::{ModelBytesError, write_coupled};
+/// use sinew_core::cyclic::model::walking::{WALKING, WALKING_COUPLED};
+/// use sinew_core::cyclic::{HumanCoupledTable, HumanModelTable};
+///
+/// let model = WALKING.model().expect("the shipped model is sound");
+/// let mut bytes = [0; 6000];
+/// let length = write_coupled(&model, &mut bytes).expect("they suffice");
+/// assert_eq!(HumanCoupledTable::from_bytes(&bytes[..length])?, WALKING_COUPLED);
+/// // The Kalman filter and the particle filter cannot take it.
+/// assert_eq!(HumanModelTable::from_bytes(&bytes[..length]), Err(ModelBytesError::CoupledOnly));
+/// # }
+/// # Ok::<(), sinew_core::cyclic::model::bytes::ModelBytesError>(())
+/// ```
+pub fn write_coupled(model: &CoupledModel<'_>, bytes: &mut [u8]) -> Option<usize> {
     let parts = model.parts();
-    let header = ModelHeader {
-        angle_count: model.angle_count(),
-        position_count: model.position_count(),
-        mean_duration_frames: parts.mean_duration_frames,
-        rate_hz: parts.rate_hz,
-    };
+    let Deviation { offset_std_rad, swing_std_rad, rest_std_rad, rest_rate_per_cycle } = parts.deviation;
+    let tables = [parts.mean_pose_rad, offset_std_rad, swing_std_rad, rest_std_rad, rest_rate_per_cycle];
+    write_numbers(&ModelHeader::of_coupled(model), &tables, model, bytes)
+}
+
+fn write_numbers(header: &ModelHeader, tables: &[&[f32]], model: &CoupledModel<'_>, bytes: &mut [u8]) -> Option<usize> {
+    let parts = model.parts();
     let bytes = bytes.get_mut(..header.byte_count()).filter(|_| !parts.deviation.is_absent())?;
     bytes.fill(0);
     let first = [
-        MAGIC,
+        header.form.magic(),
         VERSION,
         header.angle_count as u32,
         header.position_count as u32,
@@ -237,7 +374,7 @@ pub fn write(model: &MotionModel<'_>, bytes: &mut [u8]) -> Option<usize> {
         header.rate_hz.to_bits(),
         0,
     ];
-    let words = first.into_iter().chain(parts.tables().into_iter().flatten().map(|number| number.to_bits()));
+    let words = first.into_iter().chain(tables.iter().copied().flatten().map(|number| number.to_bits()));
     for (slot, word) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(words) {
         *slot = word.to_le_bytes();
     }
@@ -261,25 +398,29 @@ const fn rows<const COLUMNS: usize, const ROWS: usize>(bytes: &[u8], first: usiz
     table
 }
 
-impl<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> ModelTable<POSITIONS, ANGLES, PACKED> {
-    /// The table of a model in bytes; for a `static`, so that it is read when the program is built.
+/// The header of a model of `ANGLES` angles and `POSITIONS` positions in bytes.
+const fn header_of<const POSITIONS: usize, const ANGLES: usize>(bytes: &[u8]) -> Result<ModelHeader, ModelBytesError> {
+    match ModelHeader::read(bytes) {
+        Ok(header) if header.angle_count == ANGLES && header.position_count == POSITIONS => Ok(header),
+        Ok(_) => Err(ModelBytesError::Shape),
+        Err(error) => Err(error),
+    }
+}
+
+impl<const POSITIONS: usize, const ANGLES: usize> CoupledTable<POSITIONS, ANGLES> {
+    /// The table of a model in bytes, of either form; for a `static`, so that it is read when the
+    /// program is built, and of a model for all filters only this part is linked.
     ///
     /// # Errors
     /// See [`ModelBytesError`]; [`ModelBytesError::Shape`] for a model of another shape than the
     /// table's.
     pub const fn from_bytes(bytes: &[u8]) -> Result<Self, ModelBytesError> {
-        let header = match ModelHeader::read(bytes) {
+        let header = match header_of::<POSITIONS, ANGLES>(bytes) {
             Ok(header) => header,
             Err(error) => return Err(error),
         };
-        if header.angle_count != ANGLES || header.position_count != POSITIONS || PACKED != packed_len(ANGLES) {
-            return Err(ModelBytesError::Shape);
-        }
-        let numbers = HEADER_BYTES / 4;
-        let covariance = numbers + POSITIONS * ANGLES;
-        let pose = covariance + POSITIONS * PACKED;
-        let velocity = pose + POSITIONS * ANGLES;
-        let deviation = velocity + POSITIONS * ANGLES;
+        let pose = HEADER_BYTES / 4 + header.first_pose();
+        let deviation = pose + POSITIONS * ANGLES + header.velocity_count();
         let mut turns_per_cycle = [0; ANGLES];
         let [offset_std_rad, swing_std_rad, rest_std_rad, rest_rate_per_cycle] = rows::<ANGLES, 4>(bytes, deviation);
         let mut angle = 0;
@@ -289,10 +430,7 @@ impl<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> ModelTabl
             angle += 1;
         }
         Ok(Self {
-            mean_acceleration: rows(bytes, numbers),
-            acceleration_covariance: rows(bytes, covariance),
             mean_pose_rad: rows(bytes, pose),
-            mean_velocity: rows(bytes, velocity),
             offset_std_rad,
             swing_std_rad,
             rest_std_rad,
@@ -304,9 +442,49 @@ impl<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> ModelTabl
     }
 }
 
+impl<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> ModelTable<POSITIONS, ANGLES, PACKED> {
+    /// The table of a model in bytes; for a `static`, so that it is read when the program is built.
+    ///
+    /// # Errors
+    /// See [`ModelBytesError`]; [`ModelBytesError::Shape`] for a model of another shape than the
+    /// table's, [`ModelBytesError::CoupledOnly`] for one of the phase-coupled filter alone.
+    pub const fn from_bytes(bytes: &[u8]) -> Result<Self, ModelBytesError> {
+        let header = match header_of::<POSITIONS, ANGLES>(bytes) {
+            Ok(header) => header,
+            Err(error) => return Err(error),
+        };
+        if PACKED != packed_len(ANGLES) {
+            return Err(ModelBytesError::Shape);
+        }
+        if let ModelForm::Coupled = header.form {
+            return Err(ModelBytesError::CoupledOnly);
+        }
+        let coupled = match CoupledTable::<POSITIONS, ANGLES>::from_bytes(bytes) {
+            Ok(coupled) => coupled,
+            Err(error) => return Err(error),
+        };
+        let covariance = HEADER_BYTES / 4 + POSITIONS * ANGLES;
+        let velocity = covariance + POSITIONS * (PACKED + ANGLES);
+        Ok(Self {
+            mean_acceleration: rows(bytes, HEADER_BYTES / 4),
+            acceleration_covariance: rows(bytes, covariance),
+            mean_pose_rad: coupled.mean_pose_rad,
+            mean_velocity: rows(bytes, velocity),
+            offset_std_rad: coupled.offset_std_rad,
+            swing_std_rad: coupled.swing_std_rad,
+            rest_std_rad: coupled.rest_std_rad,
+            rest_rate_per_cycle: coupled.rest_rate_per_cycle,
+            turns_per_cycle: coupled.turns_per_cycle,
+            mean_duration_frames: header.mean_duration_frames,
+            rate_hz: header.rate_hz,
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cyclic::model::coupled_table::HumanCoupledTable;
     use crate::cyclic::model::table::HumanModelTable;
     use crate::cyclic::synthetic;
 
@@ -330,6 +508,35 @@ mod tests {
         let model = header.lend(&numbers[..header.number_count()], &table.turns_per_cycle).unwrap();
         assert_eq!(model, table.model().unwrap());
         assert_eq!(write(&model, &mut vec![0; bytes.len() - 1]), None);
+    }
+
+    #[test]
+    fn the_coupled_form_holds_what_the_coupled_filter_reads() {
+        let mut table = synthetic::table(4.0e-3, 9);
+        table.turns_per_cycle[3] = -1;
+        let (whole, model) = (bytes_of(&table), table.model().unwrap());
+        let mut bytes = vec![0xAA; 8192];
+        let count = write_coupled(&model, &mut bytes).unwrap();
+        bytes.truncate(count);
+        assert_eq!(count, ModelHeader::of_coupled(&model).byte_count());
+        assert_eq!(write_coupled(&model, &mut vec![0; count - 1]), None);
+        let from = |bytes: &[u8]| HumanCoupledTable::from_bytes(bytes).unwrap();
+        assert_eq!(from(&bytes), from(&whole));
+        assert_eq!(from(&bytes).model().unwrap(), *model);
+        assert_eq!(HumanModelTable::from_bytes(&bytes), Err(ModelBytesError::CoupledOnly));
+        for bytes in [&bytes, &whole] {
+            let header = ModelHeader::read(bytes).unwrap();
+            let numbers: Vec<f32> =
+                bytes[HEADER_BYTES..].as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b)).collect();
+            let numbers = &numbers[..header.number_count()];
+            assert_eq!(header.lend_coupled(numbers, &table.turns_per_cycle).unwrap(), *model);
+            assert_eq!(header.lend(numbers, &table.turns_per_cycle).is_ok(), header.form == ModelForm::Full);
+            assert!(header.lend_coupled(&numbers[..numbers.len() - 1], &table.turns_per_cycle).is_err());
+        }
+        // A whole model's numbers under the other first word are too many.
+        let mut swapped = whole;
+        swapped[..4].copy_from_slice(&COUPLED_MAGIC.to_le_bytes());
+        assert_eq!(ModelHeader::read(&swapped), Err(ModelBytesError::Length));
     }
 
     #[test]

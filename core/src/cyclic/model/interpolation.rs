@@ -1,7 +1,7 @@
 //! The model between its stored positions: linear along the cycle, which closes on itself.
 
-use crate::cyclic::MotionModel;
 use crate::cyclic::phase::wrap_position;
+use crate::cyclic::{CoupledModel, MotionModel};
 use crate::math::{floor, max, min, sqrt};
 use crate::numeric::semi_definite::packed_len;
 use core::f32::consts::TAU;
@@ -30,9 +30,10 @@ pub struct CyclePoint {
     pub fraction: f32,
 }
 
-impl MotionModel<'_> {
+impl CoupledModel<'_> {
     /// Where cycle position `position` (any real number, wrapped) lies between the stored ones.
-    #[inline]
+    #[cfg_attr(target_arch = "x86_64", inline)]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     #[must_use]
     pub fn point(&self, position: f32) -> CyclePoint {
         let count = self.position_count();
@@ -50,20 +51,6 @@ impl MotionModel<'_> {
         let (before, rest) = (index * stored / count, index * stored % count);
         let fraction = rest as f32 / count as f32;
         CyclePoint { before, after: if before + 1 == stored { 0 } else { before + 1 }, fraction }
-    }
-
-    /// Mean acceleration, rad per reference frame^2; entries beyond the model's angles are zero.
-    #[inline(always)]
-    #[must_use]
-    pub fn mean_acceleration<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
-        self.row(self.parts().mean_acceleration, point)
-    }
-
-    /// Mean velocity, rad per reference frame; entries beyond the model's angles are zero.
-    #[inline]
-    #[must_use]
-    pub fn mean_velocity<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
-        self.row(self.parts().mean_velocity, point)
     }
 
     /// Mean pose, radians, unwrapped along the cycle (not in (-pi, pi]); entries beyond the model's
@@ -165,6 +152,38 @@ impl MotionModel<'_> {
         slope.map(|way| inverse * way)
     }
 
+    /// The rows of `table` on both sides of a point, interpolated; zero beyond the model's angles.
+    #[inline(always)]
+    fn row<const N: usize>(&self, table: &[f32], point: CyclePoint) -> [f32; N] {
+        let between = |a: f32, b: f32| a + point.fraction * (b - a);
+        let columns = self.angle_count();
+        let (before, after) = (row_of(table, point.before, columns), row_of(table, point.after, columns));
+        if let (Ok(before), Ok(after)) = (<&[f32; N]>::try_from(before), <&[f32; N]>::try_from(after)) {
+            return core::array::from_fn(|i| between(before[i], after[i]));
+        }
+        let mut values = [0.0; N];
+        for (value, (&a, &b)) in values.iter_mut().zip(before.iter().zip(after)) {
+            *value = between(a, b);
+        }
+        values
+    }
+}
+
+impl MotionModel<'_> {
+    /// Mean acceleration, rad per reference frame^2; entries beyond the model's angles are zero.
+    #[inline(always)]
+    #[must_use]
+    pub fn mean_acceleration<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
+        self.row(self.parts().mean_acceleration, point)
+    }
+
+    /// Mean velocity, rad per reference frame; entries beyond the model's angles are zero.
+    #[inline]
+    #[must_use]
+    pub fn mean_velocity<const N: usize>(&self, point: CyclePoint) -> [f32; N] {
+        self.row(self.parts().mean_velocity, point)
+    }
+
     /// Writes the covariance of the acceleration, rad^2 per reference frame^4, as a packed lower
     /// triangle.
     #[inline]
@@ -182,22 +201,6 @@ impl MotionModel<'_> {
         let packed = packed_len(self.angle_count());
         let all = self.parts().acceleration_covariance;
         (row_of(all, point.before, packed), row_of(all, point.after, packed))
-    }
-
-    /// The rows of `table` on both sides of a point, interpolated; zero beyond the model's angles.
-    #[inline(always)]
-    fn row<const N: usize>(&self, table: &[f32], point: CyclePoint) -> [f32; N] {
-        let between = |a: f32, b: f32| a + point.fraction * (b - a);
-        let columns = self.angle_count();
-        let (before, after) = (row_of(table, point.before, columns), row_of(table, point.after, columns));
-        if let (Ok(before), Ok(after)) = (<&[f32; N]>::try_from(before), <&[f32; N]>::try_from(after)) {
-            return core::array::from_fn(|i| between(before[i], after[i]));
-        }
-        let mut values = [0.0; N];
-        for (value, (&a, &b)) in values.iter_mut().zip(before.iter().zip(after)) {
-            *value = between(a, b);
-        }
-        values
     }
 }
 

@@ -6,59 +6,11 @@
 //! cycle, in which the cycle takes l frames. A person who goes through the cycle k = v l times as
 //! fast has k times the velocity and k^2 times the acceleration.
 
+use crate::cyclic::model::coupled_model::{CoupledModel, CoupledParts, ModelError, check_rows};
 use crate::cyclic::model::deviation::Deviation;
-use crate::error::{ParameterError, Rule, finite, positive};
-use crate::numeric::semi_definite::{MAX_ROWS, is_positive_semi_definite, packed_len};
-use core::fmt;
-
-/// Most angles of a model.
-pub const MAX_ANGLES: usize = MAX_ROWS;
-
-/// A part of a motion model that cannot be used, why, and where.
-///
-/// ```
-/// # #[cfg(feature = "walking-model")] {
-/// use sinew_core::cyclic::model::walking::WALKING;
-///
-/// // The error names the place of the invalid number.
-/// let mut table = WALKING.clone();
-/// table.mean_pose_rad[17][3] = f32::NAN;
-/// let refused = table.model().unwrap_err();
-/// assert_eq!(refused.error.parameter, "mean_pose_rad");
-/// assert_eq!((refused.position, refused.angle), (Some(17), Some(3)));
-/// # }
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ModelError {
-    /// The part and the rule that it broke.
-    pub error: ParameterError,
-    /// Index of the cycle position, where the fault belongs to one.
-    pub position: Option<usize>,
-    /// Index of the angle, where the fault belongs to one.
-    pub angle: Option<usize>,
-}
-
-impl ModelError {
-    const fn of_all(error: ParameterError) -> Self {
-        Self { error, position: None, angle: None }
-    }
-}
-
-impl fmt::Display for ModelError {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "`{}`", self.error.parameter)?;
-        if let Some(position) = self.position {
-            write!(formatter, " at cycle position {position}")?;
-        }
-        if let Some(angle) = self.angle {
-            write!(formatter, ", angle {angle}")?;
-        }
-        write!(formatter, " {}", self.error.rule)
-    }
-}
-
-impl core::error::Error for ModelError {}
+use crate::error::{ParameterError, Rule, finite};
+use crate::numeric::semi_definite::{is_positive_semi_definite, packed_len};
+use core::ops::Deref;
 
 /// The numbers of a motion model with n angles and l positions, not yet checked.
 ///
@@ -107,6 +59,19 @@ pub struct ModelParts<'a> {
 }
 
 impl<'a> ModelParts<'a> {
+    /// What the phase-coupled filter reads of them.
+    #[must_use]
+    pub const fn coupled(&self) -> CoupledParts<'a> {
+        CoupledParts {
+            angle_count: self.angle_count,
+            mean_pose_rad: self.mean_pose_rad,
+            turns_per_cycle: self.turns_per_cycle,
+            mean_duration_frames: self.mean_duration_frames,
+            rate_hz: self.rate_hz,
+            deviation: self.deviation,
+        }
+    }
+
     /// All tables of real numbers, those of the cycle first; the order is that of
     /// [`crate::cyclic::model::bytes`].
     #[must_use]
@@ -147,125 +112,69 @@ impl<'a> ModelParts<'a> {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionModel<'a> {
-    parts: ModelParts<'a>,
-    position_count: usize,
+    coupled: CoupledModel<'a>,
+    mean_acceleration: &'a [f32],
+    acceleration_covariance: &'a [f32],
+    mean_velocity: &'a [f32],
 }
 
 impl<'a> MotionModel<'a> {
     /// Checks the numbers.
     ///
     /// # Errors
-    /// A model has 1 to [`MAX_ANGLES`] angles and at least 4 positions. Its lengths agree and its
-    /// numbers are finite. Duration, rate, and spreads and rates of the deviation are positive. No
-    /// covariance has a negative eigenvalue.
+    /// Those of [`CoupledModel::new`]. Accelerations, covariances and velocities have as many rows
+    /// as poses, and finite numbers. No covariance has a negative eigenvalue.
     pub fn new(parts: ModelParts<'a>) -> Result<Self, ModelError> {
-        let n = parts.angle_count;
-        let fail = |parameter, rule| Err(ModelError::of_all(ParameterError::new(parameter, rule)));
-        if n == 0 {
-            return fail("angle_count", Rule::NotEmpty);
-        }
-        if n > MAX_ANGLES {
-            return fail("angle_count", Rule::Capacity { capacity: MAX_ANGLES });
-        }
-        let l = parts.mean_acceleration.len() / n;
-        if l < 4 {
-            return fail("positions", Rule::Within { low: 4.0, high: 1.0e6 });
-        }
-        positive("mean_duration_frames", parts.mean_duration_frames).map_err(ModelError::of_all)?;
-        positive("rate_hz", parts.rate_hz).map_err(ModelError::of_all)?;
-        if parts.turns_per_cycle.len() != n {
-            return fail("turns_per_cycle", Rule::SameLength { expected: n });
-        }
+        let coupled = CoupledModel::new(parts.coupled())?;
+        let (l, n) = (coupled.position_count(), coupled.angle_count());
         check_rows("mean_acceleration", parts.mean_acceleration, l, n, finite)?;
-        check_rows("mean_pose_rad", parts.mean_pose_rad, l, n, finite)?;
         check_rows("mean_velocity", parts.mean_velocity, l, n, finite)?;
-        if !parts.deviation.is_absent() {
-            let deviation = &parts.deviation;
-            check_rows("deviation.offset_std_rad", deviation.offset_std_rad, 1, n, positive)?;
-            check_rows("deviation.swing_std_rad", deviation.swing_std_rad, 1, n, positive)?;
-            check_rows("deviation.rest_std_rad", deviation.rest_std_rad, 1, n, positive)?;
-            check_rows("deviation.rest_rate_per_cycle", deviation.rest_rate_per_cycle, 1, n, positive)?;
-        }
         check_covariances(parts.acceleration_covariance, l, n)?;
-        Ok(Self { parts, position_count: l })
+        let ModelParts { mean_acceleration, acceleration_covariance, mean_velocity, .. } = parts;
+        Ok(Self { coupled, mean_acceleration, acceleration_covariance, mean_velocity })
     }
 
-    /// Number n of angles.
+    /// The part that the phase-coupled filter reads.
     #[inline]
     #[must_use]
-    pub const fn angle_count(&self) -> usize {
-        self.parts.angle_count
-    }
-
-    /// Number l of positions of the reference cycle.
-    #[inline]
-    #[must_use]
-    pub const fn position_count(&self) -> usize {
-        self.position_count
-    }
-
-    /// Reference velocity 1 / l, cycles per frame.
-    #[inline]
-    #[must_use]
-    pub fn reference_velocity(&self) -> f32 {
-        1.0 / self.position_count as f32
-    }
-
-    /// How much faster than the reference cycle a cycle velocity is: k = v / `v_ref`.
-    #[inline]
-    #[must_use]
-    pub fn speed_ratio(&self, velocity_per_frame: f32) -> f32 {
-        velocity_per_frame * self.position_count as f32
-    }
-
-    /// Mean velocity of the training cycles, cycles per frame: 1 / mean duration.
-    #[inline]
-    #[must_use]
-    pub fn mean_cycle_velocity(&self) -> f32 {
-        1.0 / self.parts.mean_duration_frames
-    }
-
-    /// Whether an angle goes round in a cycle.
-    #[inline]
-    pub(in crate::cyclic) fn winds(&self) -> bool {
-        self.parts.turns_per_cycle.iter().any(|&turns| turns != 0)
-    }
-
-    /// Frames per second of the training cycles: the frame that velocities of the filters refer to.
-    #[inline]
-    #[must_use]
-    pub const fn rate_hz(&self) -> f32 {
-        self.parts.rate_hz
+    pub const fn coupled(&self) -> &CoupledModel<'a> {
+        &self.coupled
     }
 
     /// The numbers themselves.
     #[inline]
     #[must_use]
-    pub const fn parts(&self) -> &ModelParts<'a> {
-        &self.parts
+    pub const fn parts(&self) -> ModelParts<'a> {
+        let CoupledParts { angle_count, mean_pose_rad, turns_per_cycle, mean_duration_frames, rate_hz, deviation } =
+            *self.coupled.parts();
+        ModelParts {
+            angle_count,
+            mean_acceleration: self.mean_acceleration,
+            acceleration_covariance: self.acceleration_covariance,
+            mean_pose_rad,
+            mean_velocity: self.mean_velocity,
+            turns_per_cycle,
+            mean_duration_frames,
+            rate_hz,
+            deviation,
+        }
     }
 }
 
-/// Checks that `values` are `rows` rows of `columns` numbers of which each passes `check`.
-fn check_rows(
-    parameter: &'static str,
-    values: &[f32],
-    rows: usize,
-    columns: usize,
-    check: fn(&'static str, f32) -> Result<f32, ParameterError>,
-) -> Result<(), ModelError> {
-    let expected = rows * columns;
-    if values.len() != expected {
-        return Err(ModelError::of_all(ParameterError::new(parameter, Rule::SameLength { expected })));
+/// The part that the phase-coupled filter reads.
+impl<'a> Deref for MotionModel<'a> {
+    type Target = CoupledModel<'a>;
+
+    #[inline]
+    fn deref(&self) -> &CoupledModel<'a> {
+        &self.coupled
     }
-    for (index, &value) in values.iter().enumerate() {
-        check(parameter, value).map_err(|error| ModelError {
-            error,
-            position: (rows > 1).then_some(index / columns),
-            angle: Some(index % columns),
-        })?;
+}
+
+impl<'a> AsRef<CoupledModel<'a>> for MotionModel<'a> {
+    fn as_ref(&self) -> &CoupledModel<'a> {
+        &self.coupled
     }
-    Ok(())
 }
 
 fn check_covariances(covariances: &[f32], positions: usize, angles: usize) -> Result<(), ModelError> {

@@ -1,7 +1,8 @@
 //! The numbers of a motion model as arrays of fixed size, to be placed in flash.
 
+use crate::cyclic::model::coupled_model::ModelError;
 use crate::cyclic::model::deviation::Deviation;
-use crate::cyclic::model::motion_model::{ModelError, ModelParts, MotionModel};
+use crate::cyclic::model::motion_model::{ModelParts, MotionModel};
 use crate::numeric::semi_definite::packed_len;
 use crate::skeleton::stick_figure::HUMAN_ANGLES;
 

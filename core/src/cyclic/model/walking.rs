@@ -1,12 +1,17 @@
 //! The walking model: 53 cycles of eight people, each also with its sides exchanged. The same
 //! numbers as the host's shipped model of that name.
 
+use crate::cyclic::model::coupled_table::HumanCoupledTable;
 use crate::cyclic::model::table::HumanModelTable;
 
 /// The model in the form of [`crate::cyclic::model::bytes`].
 static BYTES: &[u8] = include_bytes!("walking.sinewmodel");
 
-/// The walking model.
+/// What to do where the bytes are of another version.
+const REMEDY: &str =
+    "walking.sinewmodel has to be made again: SINEW_REGENERATE=1 cargo test -p sinew --test library walking_model";
+
+/// The walking model for all filters, 52 KB.
 ///
 /// ```
 /// use sinew_core::cyclic::model::walking::WALKING;
@@ -19,9 +24,20 @@ static BYTES: &[u8] = include_bytes!("walking.sinewmodel");
 /// ```
 pub static WALKING: HumanModelTable = match HumanModelTable::from_bytes(BYTES) {
     Ok(table) => table,
-    Err(_) => {
-        panic!(
-            "walking.sinewmodel has to be made again: SINEW_REGENERATE=1 cargo test -p sinew --test library walking_model"
-        )
-    }
+    Err(_) => panic!("{}", REMEDY),
+};
+
+/// The walking model for the phase-coupled filter, 5.4 KB.
+///
+/// ```
+/// use sinew_core::cyclic::model::walking::{WALKING, WALKING_COUPLED};
+///
+/// // The same numbers, of which the other filters' part is left out.
+/// assert_eq!(WALKING_COUPLED.model()?, *WALKING.model()?);
+/// assert!(size_of_val(&WALKING_COUPLED) * 9 < size_of_val(&WALKING));
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
+pub static WALKING_COUPLED: HumanCoupledTable = match HumanCoupledTable::from_bytes(BYTES) {
+    Ok(table) => table,
+    Err(_) => panic!("{}", REMEDY),
 };

@@ -1,7 +1,7 @@
 //! Angles in blocks of eight: loops over a block's numbers become vector instructions on any target
 //! that has them.
 
-use crate::cyclic::model::motion_model::MAX_ANGLES;
+use crate::cyclic::model::coupled_model::MAX_ANGLES;
 
 /// Angles of a block.
 pub(super) const BLOCK: usize = 8;

@@ -7,7 +7,7 @@
 //! squares, each by columns.
 
 use crate::cyclic::MotionModel;
-use crate::cyclic::model::motion_model::MAX_ANGLES;
+use crate::cyclic::model::coupled_model::MAX_ANGLES;
 use crate::cyclic::particle::angle_blocks::{AngleBlocks, BLOCK};
 use crate::numeric::semi_definite::{packed_index, packed_len, semi_cholesky};
 
@@ -36,7 +36,7 @@ const fn len_of_position(angles: usize) -> usize {
 /// ```
 #[must_use]
 pub const fn factors_len(model: &MotionModel<'_>) -> usize {
-    len_of_position(model.angle_count()) * model.position_count()
+    len_of_position(model.coupled().angle_count()) * model.coupled().position_count()
 }
 
 /// Writes mean accelerations and the Cholesky factors of the covariances at all positions, computed

@@ -20,7 +20,7 @@ use core::f32::consts::PI;
 pub use crate::cyclic::particle::factors::{factors_len, fill_factors};
 
 /// Most angles of a particle.
-const MAX_ANGLES: usize = crate::cyclic::model::motion_model::MAX_ANGLES;
+const MAX_ANGLES: usize = crate::cyclic::model::coupled_model::MAX_ANGLES;
 
 /// One hypothesis: the paper's state vector.
 ///
@@ -350,7 +350,7 @@ mod tests {
     fn first_velocities_spread_as_far_as_the_models_people_differ() {
         const COUNT: u32 = 4096;
         let table = synthetic::table(4.0e-3, 9);
-        let of = |deviation| MotionModel::new(ModelParts { deviation, ..*table.model().unwrap().parts() }).unwrap();
+        let of = |deviation| MotionModel::new(ModelParts { deviation, ..table.model().unwrap().parts() }).unwrap();
         let unknown = of(Deviation::default());
         let known = of(Deviation {
             offset_std_rad: &[0.1; 13],

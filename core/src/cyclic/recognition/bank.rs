@@ -24,7 +24,7 @@
 //! ```
 
 use crate::cyclic::recognition::explained_variance::{ExplainedVariance, STANDARD_ERRORS, cycle_variances_rad2};
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::{exp, max, min, wrap_angle};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 
@@ -57,7 +57,7 @@ struct MotionEvidence<const N: usize> {
 }
 
 impl<const N: usize> MotionEvidence<N> {
-    fn new(model: &MotionModel<'_>) -> Self {
+    fn new(model: &CoupledModel<'_>) -> Self {
         let cycle_rad2 = cycle_variances_rad2(model, CYCLE_POSITIONS);
         Self { swing: ExplainedVariance::new(), cycle_rad2, unexplained_share: None }
     }
@@ -125,12 +125,13 @@ pub struct MotionBank<const MOTIONS: usize, const N: usize> {
 }
 
 impl<const MOTIONS: usize, const N: usize> MotionBank<MOTIONS, N> {
-    /// A bank without evidence, for the first `MOTIONS` of the `models`.
+    /// A bank without evidence, for the first `MOTIONS` of the `models`, each a
+    /// [`MotionModel`](crate::cyclic::MotionModel) or a [`CoupledModel`].
     #[must_use]
-    pub fn new(models: &[MotionModel<'_>]) -> Self {
-        let velocities = models.iter().take(MOTIONS).map(MotionModel::mean_cycle_velocity);
+    pub fn new<'m>(models: &[impl AsRef<CoupledModel<'m>>]) -> Self {
+        let velocities = models.iter().take(MOTIONS).map(|model| model.as_ref().mean_cycle_velocity());
         Self {
-            motions: core::array::from_fn(|motion| models.get(motion).map(MotionEvidence::new)),
+            motions: core::array::from_fn(|motion| models.get(motion).map(|model| MotionEvidence::new(model.as_ref()))),
             distances: [0.0; MOTIONS],
             min_velocity: velocities.fold(1.0, min),
         }
@@ -138,10 +139,16 @@ impl<const MOTIONS: usize, const N: usize> MotionBank<MOTIONS, N> {
 
     /// Adds a frame with the cycle position by the filter of each of the `models`, those of
     /// [`MotionBank::new`].
-    pub fn add(&mut self, models: &[MotionModel<'_>], measurement: &AngleMeasurement<N>, cycle_positions: &[f32]) {
+    pub fn add<'m>(
+        &mut self,
+        models: &[impl AsRef<CoupledModel<'m>>],
+        measurement: &AngleMeasurement<N>,
+        cycle_positions: &[f32],
+    ) {
         let keep = exp(-measurement.step_frames() * self.min_velocity);
         let filters = models.iter().zip(cycle_positions);
         for ((motion, distance), (model, &position)) in self.motions.iter_mut().zip(&mut self.distances).zip(filters) {
+            let model = model.as_ref();
             let pose_rad = model.mean_pose_rad::<N>(model.point(position));
             *distance = keep * *distance + pose_distance(measurement, &pose_rad[..model.angle_count().min(N)]);
             if let Some(motion) = motion {
@@ -274,6 +281,7 @@ mod tests {
         assert_eq!(bank.likeliest(), Some(1));
         let probabilities = bank.probabilities();
         assert!(probabilities[1] < before[1] && probabilities[0] > before[0], "less is known: {probabilities:?}");
-        assert_eq!(MotionBank::<3, 13>::new(&[]).probabilities(), [0.0; 3]);
+        let no_models: [CoupledModel<'_>; 0] = [];
+        assert_eq!(MotionBank::<3, 13>::new(&no_models).probabilities(), [0.0; 3]);
     }
 }

@@ -5,7 +5,7 @@
 //! are circular, since angles wind: -2 ln of the mean unit vector's length (Mardia and Jupp,
 //! *Directional Statistics*, section 2.3).
 
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::{clamp, exp, ln, max, min, sin_cos, sqrt};
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::PI;
@@ -109,7 +109,7 @@ fn noise_length2(std_rad: f32) -> f32 {
 ///
 /// It weights the angles: one that hardly moves in the cycle, like a short link, has little
 /// evidence.
-pub(in crate::cyclic) fn cycle_variances_rad2<const N: usize>(model: &MotionModel<'_>, positions: u8) -> [f32; N] {
+pub(in crate::cyclic) fn cycle_variances_rad2<const N: usize>(model: &CoupledModel<'_>, positions: u8) -> [f32; N] {
     let mut cycle = [SwingSums::nothing(); N];
     for position in 0..positions {
         let pose = model.mean_pose_rad::<N>(model.point(f32::from(position) / f32::from(positions)));

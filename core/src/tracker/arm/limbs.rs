@@ -42,9 +42,9 @@ impl LimbHypotheses {
 }
 
 impl LimbDensities {
-    /// Nothing known.
-    pub const fn flat() -> Self {
-        Self { upper: OrientationDensity::flat(), fore: OrientationDensity::flat() }
+    /// Before [`OrientationDensity::begin`].
+    pub const fn empty() -> Self {
+        Self { upper: OrientationDensity::empty(), fore: OrientationDensity::empty() }
     }
 }
 
@@ -59,7 +59,7 @@ pub(super) struct LimbRoom {
 impl LimbRoom {
     pub const fn empty() -> Self {
         Self {
-            hypotheses: LimbHypotheses { estimate: LimbDensities::flat(), blobs: Vec::new() },
+            hypotheses: LimbHypotheses { estimate: LimbDensities::empty(), blobs: Vec::new() },
             pixels: LimbPixels::none(),
         }
     }

@@ -59,6 +59,7 @@ impl BlobMemory {
     }
 
     /// Remembers this frame's blobs. `masses` are the shares of the particles' weights at each.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn learn(
         &mut self,
         candidates: &[HandCandidate],

@@ -133,6 +133,7 @@ impl ArmModel {
     /// Distance from a blob's centre within which a hand lies at that blob, pixels. It is the
     /// radius of the disc of its area, and at least [`Self::least_cluster_radius_px`].
     #[must_use]
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn cluster_radius_px(&self, blob: &HandCandidate) -> f32 {
         max(self.least_cluster_radius_px(), sqrt(blob.area_px / core::f32::consts::PI))
     }

@@ -96,7 +96,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             generations: [Vec::new(), Vec::new()],
             current: 0,
             weights: Weights::none(),
-            limbs: LimbDensities::flat(),
+            limbs: LimbDensities::empty(),
             limb_room: LimbRoom::empty(),
             memory: BlobMemory::empty(),
             estimate: nowhere,

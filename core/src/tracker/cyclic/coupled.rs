@@ -7,7 +7,7 @@
 use super::estimate::CyclicFrame;
 use super::options::FirstPhase;
 use crate::cyclic::events::{CycleCounter, CycleStep};
-use crate::cyclic::{AngleMeasurement, CoupledFilter, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledFilter, CoupledModel};
 use crate::error::ParameterError;
 use crate::saved_state::{SavedState, StateVisitor};
 
@@ -45,7 +45,7 @@ impl<const N: usize> CoupledTracker<N> {
     /// # Errors
     /// Those of [`CoupledFilter::new`].
     pub fn new(
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         first: &AngleMeasurement<N>,
         phase: FirstPhase,
     ) -> Result<Self, ParameterError> {
@@ -67,7 +67,7 @@ impl<const N: usize> CoupledTracker<N> {
     /// Those of [`CoupledFilter::new`]; the tracker is as before then.
     pub fn begin(
         &mut self,
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         first: &AngleMeasurement<N>,
         phase: FirstPhase,
     ) -> Result<(), ParameterError> {
@@ -77,14 +77,14 @@ impl<const N: usize> CoupledTracker<N> {
     }
 
     /// The estimate after the first frame.
-    pub fn first_frame(&mut self, model: &MotionModel<'_>, first: &AngleMeasurement<N>) -> CyclicFrame<N> {
+    pub fn first_frame(&mut self, model: &CoupledModel<'_>, first: &AngleMeasurement<N>) -> CyclicFrame<N> {
         let estimate = self.filter.current_estimate(model, first);
         let from = estimate.cycle_position;
         CyclicFrame::new(model, estimate, &self.counter, CycleStep::none(from))
     }
 
     /// One frame: predict and correct, count.
-    pub fn step(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicFrame<N> {
+    pub fn step(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicFrame<N> {
         let estimate = self.filter.step(model, measurement);
         let (position, velocity) = (estimate.cycle_position, estimate.cycle_velocity_per_frame);
         let cycle_step = self.counter.advance(position, velocity, measurement.step_frames());

@@ -1,7 +1,7 @@
 //! Estimate of the cyclic tracker for a frame.
 
 use crate::cyclic::events::{CycleCounter, CycleStep};
-use crate::cyclic::{CyclicEstimate, MotionModel};
+use crate::cyclic::{CoupledModel, CyclicEstimate};
 
 /// Estimate, cycles and cadence after a frame.
 ///
@@ -45,7 +45,7 @@ pub struct CyclicFrame<const N: usize> {
 impl<const N: usize> CyclicFrame<N> {
     /// From the filter's estimate and the counter after it.
     pub(super) fn new(
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         estimate: CyclicEstimate<N>,
         counter: &CycleCounter,
         cycle_step: CycleStep,

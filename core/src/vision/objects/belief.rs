@@ -7,6 +7,7 @@
 use super::evidence::Evidence;
 use super::place::HandPlace;
 use crate::math::{exp, min};
+use crate::numeric::rolled::rolled;
 use crate::skeleton::Side;
 use heapless::Vec;
 
@@ -114,13 +115,14 @@ impl HandsBelief {
     #[must_use]
     #[inline(never)]
     pub fn hand(&self, side: Side) -> Vec<HandBelief, MAX_PLACES> {
-        let marginal: [f32; STATES] = match side {
-            Side::Left => core::array::from_fn(|state| self.pairs[state].iter().sum()),
-            Side::Right => core::array::from_fn(|state| self.pairs.iter().map(|row| row[state]).sum()),
-        };
-        let is_near = |a: usize, b: usize| distance2(self.positions[a], self.positions[b]) < ONE_HAND * ONE_HAND;
-        let near = |place: usize| (0..self.count).filter(move |other| is_near(place, *other));
-        let mass = |place: usize| near(place).map(|other| marginal[other]).sum::<f32>();
+        let mut marginal = [0.0; STATES];
+        for (state, sum) in marginal.iter_mut().enumerate().take(rolled(STATES)) {
+            *sum = match side {
+                Side::Left => self.pairs[state].iter().sum(),
+                Side::Right => self.pairs.iter().map(|row| row[state]).sum(),
+            };
+        }
+        let mass = |place: usize| self.mass_near(self.positions[place], &marginal);
         let mut taken = [false; MAX_PLACES];
         let mut hands = Vec::new();
         while let Some(best) = (0..self.count).filter(|place| !taken[*place]).reduce(|best, place| {
@@ -128,19 +130,37 @@ impl HandsBelief {
             let is_better = here > there || (here == there && marginal[place] > marginal[best]);
             if is_better { place } else { best }
         }) {
-            let likeliest =
-                near(best).fold(best, |old, other| if marginal[other] > marginal[old] { other } else { old });
-            near(best).for_each(|place| taken[place] = true);
+            let is_near = self.is_near(self.positions[best]);
+            let near = || (0..self.count).filter(|place| is_near[*place]);
+            let likeliest = near().fold(best, |old, other| if marginal[other] > marginal[old] { other } else { old });
+            near().for_each(|place| taken[place] = true);
             let probability = mass(best);
             let position = core::array::from_fn(|axis| {
                 let there = self.positions[likeliest][axis];
-                let sum: f32 = near(best).map(|place| marginal[place] * self.positions[place][axis]).sum();
+                let sum: f32 = near().map(|place| marginal[place] * self.positions[place][axis]).sum();
                 if probability > 0.0 { 0.5 * (there + sum / probability) } else { there }
             });
             // One for each place at most.
             let _ = hands.push(HandBelief { position, place: likeliest, probability: min(probability, 1.0) });
         }
         hands
+    }
+
+    /// Sum of the probabilities of all places within [`ONE_HAND`] of one.
+    #[inline(never)]
+    fn mass_near(&self, place: [f32; 2], marginal: &[f32; STATES]) -> f32 {
+        let places = self.is_near(place).into_iter().zip(marginal);
+        places.filter(|(is_near, _)| *is_near).map(|(_, probability)| *probability).sum()
+    }
+
+    /// Which places are within [`ONE_HAND`] of one.
+    #[inline(never)]
+    fn is_near(&self, place: [f32; 2]) -> [bool; MAX_PLACES] {
+        let mut is_near = [false; MAX_PLACES];
+        for (is_near, position) in is_near.iter_mut().zip(&self.positions).take(self.count) {
+            *is_near = distance2(place, *position) < ONE_HAND * ONE_HAND;
+        }
+        is_near
     }
 }
 

@@ -114,10 +114,12 @@ struct Around {
 
 impl<const COLUMNS: usize, const ROWS: usize> View<'_, COLUMNS, ROWS> {
     /// A place in cells, relative to the head.
+    #[inline(always)]
     fn relative(&self, place: [f32; 2]) -> [f32; 2] {
         self.head.relative(place.map(|at| at * self.grid.cell_px() as f32))
     }
 
+    #[inline(always)]
     fn of_cell(&self, cell: usize) -> [f32; 2] {
         let (column, row) = self.grid.size().place(cell);
         self.relative([column as f32 + 0.5, row as f32 + 0.5])

@@ -206,6 +206,7 @@ impl<const COLUMNS: usize, const ROWS: usize> CellGrid<COLUMNS, ROWS> {
     }
 
     /// Begins a line; whether it lies in a row of cells.
+    #[inline(always)]
     fn is_within(&mut self, v: usize, step_px: usize) -> bool {
         let row = v.checked_div(self.cell_px).unwrap_or(0);
         if row != self.row {

@@ -54,6 +54,7 @@ const CR_OF_RGB: [f32; 3] = [0.713 * 0.701, -0.713 * 0.587, -0.713 * 0.114];
 const CB_OF_RGB: [f32; 3] = [-0.564 * 0.299, -0.564 * 0.587, 0.564 * 0.886];
 
 /// Y, Cr and Cb of a colour (Rec. 601, full range).
+#[inline(always)]
 fn ycc(rgb: [u8; 3]) -> [f32; 3] {
     let [r, g, b] = rgb.map(f32::from);
     let y = 0.299 * r + 0.587 * g + 0.114 * b;
@@ -178,6 +179,7 @@ fn inverse(&[a, b, c, d, e, f]: &[f32; 6]) -> Option<[f32; 6]> {
 impl PersonColour {
     /// Least and greatest projection of the chrominance of colours from `low` to `high` on a
     /// direction of Cr, Cb, relative to the mean.
+    #[inline(always)]
     fn projections(&self, [along_cr, along_cb]: [f32; 2], low: [u8; 3], high: [u8; 3]) -> [f32; 2] {
         let (cr, cb) = (CR_OF_RGB.map(|part| along_cr * part), CB_OF_RGB.map(|part| along_cb * part));
         let middle = along_cr * (128.0 - self.mean[1]) + along_cb * (128.0 - self.mean[2]);
@@ -192,6 +194,7 @@ impl PersonColour {
 
 impl SkinClassifier for PersonColour {
     /// By the directions of colour and of hue alone.
+    #[inline(always)]
     fn is_none_skin(&self, low: [u8; 3], high: [u8; 3]) -> bool {
         let ([along_cr, along_cb], [colour, hue]) = (self.colourful, self.limits);
         let [least, most] = self.projections([along_cr, along_cb], low, high);

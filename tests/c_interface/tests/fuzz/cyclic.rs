@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use sinew_core::c_api::cyclic::*;
 use sinew_core::c_api::cyclic_frame::{SINEW_MAX_ANGLES, SinewCyclicFrame, SinewCyclicResult};
 use sinew_core::c_api::status::SinewStatus;
+use sinew_core::cyclic::model::bytes::{write, write_coupled};
 use std::mem::MaybeUninit;
 use std::ptr::{null, null_mut};
 
@@ -185,9 +186,16 @@ proptest! {
 
 #[test]
 fn a_model_in_bytes_gives_the_same_results_as_the_one_built_in() {
-    let table = &sinew_core::cyclic::model::walking::WALKING;
-    let mut words = vec![0_u8; 64 * 1024];
-    let count = sinew_core::cyclic::model::bytes::write(&table.model().unwrap(), &mut words).unwrap();
+    let whole = sinew_core::cyclic::model::walking::WALKING.model().unwrap();
+    let mut bytes = vec![0_u8; 64 * 1024];
+    let count = write(&whole, &mut bytes).unwrap();
+    same_results(&bytes[..count]);
+    let count = write_coupled(&whole, &mut bytes).unwrap();
+    same_results(&bytes[..count]);
+}
+
+fn same_results(words: &[u8]) {
+    let count = words.len();
     let mut model = Memory::new(count);
     for (word, bytes) in model.0.iter_mut().zip(words.as_chunks::<8>().0) {
         *word = u64::from_le_bytes(*bytes);

@@ -5,14 +5,14 @@ use crate::file::file;
 use sinew::cyclic::{CyclicModel, model_file as cyclic_file};
 use sinew::skin::{SkinModel, model_file as skin_file};
 use sinew_core::cyclic::example::swing_table;
-use sinew_core::cyclic::model::bytes::{HEADER_BYTES, ModelHeader, write};
+use sinew_core::cyclic::model::bytes::{HEADER_BYTES, ModelHeader, write, write_coupled};
 use sinew_core::numeric::semi_definite::packed_len;
 use std::sync::OnceLock;
 
 /// Models of cyclic motion as JSON and as bytes, and models of skin.
 pub const TARGETS: &[Target] = &[
     Target { name: "cyclic_model", run: cyclic, seeds: || vec![small_cyclic()] },
-    Target { name: "cyclic_model_bytes", run: bytes, seeds: || vec![swing_bytes()] },
+    Target { name: "cyclic_model_bytes", run: bytes, seeds: || vec![swing_bytes(), swing_coupled_bytes()] },
     Target { name: "skin_model", run: skin, seeds: || vec![small_skin()] },
 ];
 
@@ -42,6 +42,14 @@ fn swing_bytes() -> Vec<u8> {
     let table = swing_table();
     let mut bytes = vec![0; 1 << 16];
     let length = write(&table.model().expect("it is built in"), &mut bytes).expect("there is room");
+    bytes.truncate(length);
+    bytes
+}
+
+fn swing_coupled_bytes() -> Vec<u8> {
+    let table = swing_table();
+    let mut bytes = vec![0; 1 << 16];
+    let length = write_coupled(&table.model().expect("it is built in"), &mut bytes).expect("there is room");
     bytes.truncate(length);
     bytes
 }
@@ -81,7 +89,9 @@ fn lend(bytes: &[u8]) {
     let numbers: Vec<f32> = words.map(|word| f32::from_le_bytes(word.try_into().unwrap_or_default())).collect();
     let turns = bytes[HEADER_BYTES + 4 * header.number_count()..].iter().take(header.angle_count);
     let turns: Vec<i8> = turns.map(|byte| byte.cast_signed()).collect();
+    let coupled = header.lend_coupled(&numbers, &turns);
     let Ok(model) = header.lend(&numbers, &turns) else { return };
+    assert_eq!(coupled.as_ref(), Ok(model.coupled()), "the part of a sound model is sound");
     let mut covariance = vec![0.0; packed_len(model.angle_count())];
     for position in [0.0, 0.31, 0.999, -0.2] {
         model.acceleration_covariance(model.point(position), &mut covariance);

@@ -5,7 +5,7 @@ use crate::cyclic::coupled::measured_path::MeasuredPath;
 use crate::cyclic::coupled::phase_grid::{POSITIONS, PhaseMode};
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::phase::position_difference;
-use crate::cyclic::{AngleMeasurement, CyclicEstimate, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel, CyclicEstimate};
 use crate::math::{max, wrap_angle};
 use crate::numeric::chi_square::{DEFAULT_GATE_SIGMAS, is_outlier};
 use crate::numeric::log_product::LogProduct;
@@ -17,7 +17,7 @@ impl<const N: usize> CoupledFilter<N> {
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub(in crate::cyclic::coupled) fn estimate_of_all_places(
         &mut self,
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         measurement: &AngleMeasurement<N>,
         mode: Option<PhaseMode>,
     ) -> CyclicEstimate<N> {
@@ -60,7 +60,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// Mean and variance of each angle over the grid's positions, with the person's learned
     /// deviation.
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    fn pose_of_all_places(&self, model: &MotionModel<'_>) -> ([f32; N], [f32; N]) {
+    fn pose_of_all_places(&self, model: &CoupledModel<'_>) -> ([f32; N], [f32; N]) {
         let reference = model.mean_pose_rad::<N>(model.point(self.position));
         let (mut mean, mut square) = ([0.0; N], [0.0; N]);
         for (cell, weight) in self.grid.by_position().into_iter().enumerate() {

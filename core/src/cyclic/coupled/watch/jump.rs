@@ -9,11 +9,10 @@
 
 use super::agreement::MIN_MODE_WEIGHT;
 use crate::cyclic::coupled::ablation::{Part, is_on};
-use crate::cyclic::coupled::block::AngleBlock;
 use crate::cyclic::coupled::phase_grid::{PhaseGrid, PhaseMode};
-use crate::cyclic::coupled::state::{CoupledFilter, LOST_STD, spread};
+use crate::cyclic::coupled::state::{CoupledFilter, LOST_STD};
 use crate::cyclic::recognition::explained_variance::cycle_variances_rad2;
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::clamp;
 
 /// Frames between two updates of the grid while the filter is locked.
@@ -58,7 +57,7 @@ impl<const N: usize> CoupledFilter<N> {
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(in crate::cyclic::coupled) fn watch(
         &mut self,
-        model: &MotionModel<'_>,
+        model: &CoupledModel<'_>,
         measurement: &AngleMeasurement<N>,
     ) -> Option<PhaseMode> {
         let frames = self.watch.unwatched_frames;
@@ -89,9 +88,7 @@ impl<const N: usize> CoupledFilter<N> {
             && is_on(Part::Relock)
         {
             // What was learned of the person since the last lock was learned at a wrong phase.
-            for (i, block) in self.blocks.iter_mut().enumerate() {
-                *block = AngleBlock::unknown(&spread(model, i));
-            }
+            self.forget_person(model);
             let position = mode.position - self.watch.mean_phase_offset;
             self.relock_to(&PhaseMode { position, ..mode });
             self.learn_offsets_here(model, measurement);
@@ -104,7 +101,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// Moves the grid on by `frames`, updates it by the measurement, and returns its mode.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    fn update_grid(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) -> PhaseMode {
+    fn update_grid(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) -> PhaseMode {
         let mut grid = PhaseGrid::uniform();
         self.grid.load_into(&mut grid);
         grid.advance(model, frames);
@@ -115,14 +112,14 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Adds how much of the measurement the mean cycle explains at the filter's phase.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    fn update_explained_variance(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) {
+    fn update_explained_variance(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>, frames: f32) {
         let expected_rad = model.mean_pose_rad::<N>(model.point(self.position));
         self.swing.add(frames * model.mean_cycle_velocity(), measurement, &expected_rad);
     }
 
     /// Whether the filter has learned the person and predicts well by it. The grid knows the mean
     /// person only.
-    fn overrules_grid(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
+    fn overrules_grid(&self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
         is_on(Part::OverrulesGrid)
             && !self.spread_scale.is_misfit()
             && self.watch.nis.is_good(LEARNING_CYCLES / model.mean_cycle_velocity())
@@ -132,7 +129,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// Whether the person swings and the mean cycle, at the filter's phase, explains nothing of it.
     /// A good NIS is then due to deviations that follow any motion.
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    fn is_spurious_lock(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
+    fn is_spurious_lock(&self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> bool {
         if self.swing.filled_share() < MIN_FILLED_SHARE || !is_on(Part::SpuriousLock) {
             return false;
         }
@@ -143,7 +140,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     /// Whether the filter relocked less than [`FUSION_CYCLES`] ago.
-    fn was_relocked_lately(&self, model: &MotionModel<'_>) -> bool {
+    fn was_relocked_lately(&self, model: &CoupledModel<'_>) -> bool {
         is_on(Part::Fusion) && self.relocks > 0 && self.watch.nis.is_new(FUSION_CYCLES / model.mean_cycle_velocity())
     }
 }

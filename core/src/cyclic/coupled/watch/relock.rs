@@ -8,7 +8,7 @@ use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::phase::position_difference;
 use crate::cyclic::recognition::explained_variance::ExplainedVariance;
-use crate::cyclic::{AngleMeasurement, MotionModel};
+use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::clamp;
 
 /// Inflation of the grid's variances when its phase is fused.
@@ -35,7 +35,7 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// Learns from one measurement how the person differs from the mean cycle at the present phase.
     /// The phase does not move.
-    pub(super) fn learn_offsets_here(&mut self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>) {
+    pub(super) fn learn_offsets_here(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) {
         let (velocity, pair) = (self.velocity, self.pair);
         self.pair = CyclePair { cc: 1.0e-8, cv: 0.0, vv: 1.0e-12 };
         self.correct_phase(model, measurement);
