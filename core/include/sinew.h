@@ -34,7 +34,7 @@
 #define SINEW_ALIGN 8
 
 /**
- * Particles of an arm tracker.
+ * Most particles of an arm tracker.
  */
 #define SINEW_ARM_PARTICLES 50
 
@@ -77,6 +77,31 @@
  * A blob of this frame carries the estimate that is less likely a hand.
  */
 #define SINEW_ARM_UNCERTAIN 3
+
+/**
+ * Blobs drive goals, inverse kinematics turns goals into poses; weights are not corrected.
+ */
+#define SINEW_ARM_PIK 0
+
+/**
+ * As `SINEW_ARM_PIK`, with a blob likelihood and exact importance weights.
+ */
+#define SINEW_ARM_PIK_WEIGHTED 1
+
+/**
+ * Goals from the motion model only, blobs in the likelihood.
+ */
+#define SINEW_ARM_BOOTSTRAP 2
+
+/**
+ * The arm paper: blobs correct hands, the elbow goes to the nearest point of its circle.
+ */
+#define SINEW_ARM_CORRECTED 3
+
+/**
+ * The arm paper's baseline: sequential Monte Carlo without blobs.
+ */
+#define SINEW_ARM_STANDARD 4
 
 /**
  * Bytes that always suffice for an arm tracker, on every target.
@@ -170,7 +195,8 @@ enum SinewStatus
    */
   SINEW_STATUS_OVER_CAPACITY = -7,
   /**
-   * A timestamp does not lie after that of the frame before.
+   * A timestamp does not lie after that of the frame before. A counter of 32 bits wraps:
+   * `sinew_clock_us` extends it.
    */
   SINEW_STATUS_OUT_OF_ORDER = -8,
   /**
@@ -213,6 +239,11 @@ enum SinewStatus
    * A structure or buffer lies within the object's own memory.
    */
   SINEW_STATUS_OVERLAP = -18,
+  /**
+   * A configuration has not the size that this library knows: it was not filled by its default
+   * function, or the program was compiled with the header of another version.
+   */
+  SINEW_STATUS_STRUCT_SIZE = -19,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -247,11 +278,55 @@ typedef struct SinewCyclic SinewCyclic;
 typedef struct SinewVision SinewVision;
 
 /**
+ * A time of 64 bits that follows a counter of 32 bits; one of zeros begins with the counter's
+ * value. One clock serves all objects.
+ */
+typedef struct SinewClock {
+  /**
+   * The latest time, microseconds. After a restart that of the last frame before it, so that
+   * time goes on: a restored state refuses frames that lie before its own.
+   */
+  uint64_t time_us;
+  /**
+   * The counter at that time.
+   */
+  uint32_t counter_us;
+  /**
+   * 1 if both are set; 0 begins anew with the next counter.
+   */
+  uint32_t has_begun;
+} SinewClock;
+
+/**
+ * Options of a cyclic tracker; see `sinew_cyclic_default_config`.
+ */
+typedef struct SinewCyclicConfig {
+  /**
+   * Bytes of this structure, as the function that fills it writes them; any other number is
+   * refused.
+   */
+  uint32_t struct_bytes;
+  /**
+   * 1 where `first_position` is known; 0: the one that fits the first frame.
+   */
+  uint32_t has_first_position;
+  /**
+   * Position in the cycle at the first frame, from 0 to 1, as a switch on a treadmill knows it.
+   */
+  float first_position;
+  /**
+   * Cadence at the first frame, cycles per minute; 0: the model's mean.
+   */
+  float first_cadence_per_min;
+} SinewCyclicConfig;
+
+/**
  * The angles of one frame.
  */
 typedef struct SinewCyclicFrame {
   /**
    * When the frame was taken, microseconds since any start. Dropped frames are simply not given.
+   * A counter of 32 bits goes through `sinew_clock_us`.
    */
   uint64_t timestamp_us;
   /**
@@ -333,9 +408,18 @@ typedef struct SinewCyclicResult {
 } SinewCyclicResult;
 
 /**
- * Camera, body and seed of an arm tracker; see `sinew_arm_default_config`.
+ * Camera, body, seed and options of an arm tracker; see `sinew_arm_default_config`.
  */
 typedef struct SinewArmConfig {
+  /**
+   * Bytes of this structure, as the function that fills it writes them; any other number is
+   * refused.
+   */
+  uint32_t struct_bytes;
+  /**
+   * Particles, 1 to `SINEW_ARM_PARTICLES`. The time of a step grows with them.
+   */
+  uint32_t particles;
   /**
    * All random numbers follow from it: the same seed and frames give the same bits.
    */
@@ -369,6 +453,64 @@ typedef struct SinewArmConfig {
    * the line of sight. A tracker of one arm looks at its own side only.
    */
   float shoulders_m[2][3];
+  /**
+   * Which tracker: `SINEW_ARM_PIK` or another one.
+   */
+  uint32_t variant;
+  /**
+   * Most pairs of edge pixels of a limb whose orientation is looked at, 10 to 65535.
+   */
+  uint32_t max_pairs;
+  /**
+   * Steps of the pose solver, 1 to 100.
+   */
+  uint32_t solver_steps;
+  /**
+   * 1 where the shoulders are guessed and not measured; else 0.
+   */
+  uint32_t has_guessed_shoulders;
+  /**
+   * Spread of the hand's goal after one second, metres along each axis, 0.001 to 10.
+   */
+  float hand_std_m_per_sqrt_s;
+  /**
+   * Spread along the ray of a hand that a blob corrected, after one second, metres, 0.001 to 10.
+   */
+  float ray_std_m_per_sqrt_s;
+  /**
+   * Spread of each angle after one second, radians, 0.001 to 10.
+   */
+  float angle_std_rad_per_sqrt_s;
+  /**
+   * Area of the image of a hand seen from the side of its forearm, times squared depth over
+   * squared focal length, square metres, 0.0001 to 1.
+   */
+  float hand_area_m2;
+  /**
+   * Standard deviation of the logarithm of that area, 0.01 to 10: how little it says of the
+   * distance.
+   */
+  float area_log_std;
+  /**
+   * How far a hand may be from where it is expected, metres (standard deviation), 0.01 to 10.
+   */
+  float gate_std_m;
+  /**
+   * Growth of that with the time since the hand was last seen, metres per second, 0 to 100.
+   */
+  float gate_growth_m_per_s;
+  /**
+   * What a jump of any length keeps of its weight, 1e-9 to 1.
+   */
+  float gate_floor;
+  /**
+   * Without a blob for longer than this the arm counts as lost, seconds, 0.01 to 3600.
+   */
+  float lost_after_s;
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
 } SinewArmConfig;
 
 /**
@@ -428,6 +570,7 @@ typedef struct SinewEdgePixel {
 typedef struct SinewArmFrame {
   /**
    * When the frame was taken, microseconds since any start. Dropped frames are simply not given.
+   * A counter of 32 bits goes through `sinew_clock_us`.
    */
   uint64_t timestamp_us;
   /**
@@ -555,6 +698,11 @@ typedef struct SinewSkin {
  */
 typedef struct SinewVisionConfig {
   /**
+   * Bytes of this structure, as the function that fills it writes them; any other number is
+   * refused.
+   */
+  uint32_t struct_bytes;
+  /**
    * Width of a frame, 1 to 320 pixels.
    */
   uint32_t width_px;
@@ -570,6 +718,18 @@ typedef struct SinewVisionConfig {
    * Which colours count as skin.
    */
   struct SinewSkin skin;
+  /**
+   * Least step of a new edge, grey levels, 5 to 255.
+   */
+  float new_step;
+  /**
+   * Least step of an edge of the last frame, grey levels, from 5 to `new_step`.
+   */
+  float known_step;
+  /**
+   * Least area of a blob, as a share of the image, 0 to 1.
+   */
+  float min_area_share;
 } SinewVisionConfig;
 
 /**
@@ -657,6 +817,29 @@ const char *sinew_error_text(int32_t status);
 uint32_t sinew_version(void);
 
 /**
+ * Writes the time of 64 bits for a counter of microseconds that wraps after 2^32, 71.6 minutes.
+ *
+ * Call it at least every half hour, also while no frames come: wraps that it does not see are
+ * lost. A counter that lies before the latest one, as that of a frame that was taken before
+ * another call, gives its own time and does not turn the clock back.
+ *
+ * Caller's duty:
+ * No other task uses `clock` at the same time.
+ */
+SinewStatus sinew_clock_us(struct SinewClock *clock, uint32_t counter_us, uint64_t *timestamp_us);
+
+/**
+ * Writes options: position and cadence are found.
+ *
+ * `config_bytes` is `sizeof *config`: SINEW_STATUS_STRUCT_SIZE says that the program was compiled
+ * with the header of another version.
+ *
+ * Caller's duty:
+ * `config` points at room of the size that is said.
+ */
+SinewStatus sinew_cyclic_default_config(struct SinewCyclicConfig *config, size_t config_bytes);
+
+/**
  * Bytes that this object takes on this target; the constant MAX_BYTES of its kind at most.
  */
 size_t sinew_cyclic_size(void);
@@ -675,6 +858,7 @@ size_t sinew_cyclic_align(void);
  * suffices (`--form coupled-c`, 5.4 KB); of the form for all filters the rest is not read. Null and
  * zero bytes stand for the walking model that the library was built with. All numbers that the
  * tracker reads are checked once, here.
+ * `config` is copied; null stands for what `sinew_cyclic_default_config` writes.
  *
  * Returns SINEW_STATUS_BAD_MODEL for bytes that are no model of at most `SINEW_MAX_ANGLES` angles,
  * SINEW_STATUS_NO_MODEL if the library was built without the walking model. `tracker` is written
@@ -687,6 +871,7 @@ SinewStatus sinew_cyclic_init(void *memory,
                               size_t memory_bytes,
                               const void *model,
                               size_t model_bytes,
+                              const struct SinewCyclicConfig *config,
                               struct SinewCyclic **tracker);
 
 /**
@@ -752,17 +937,20 @@ SinewStatus sinew_cyclic_restore(struct SinewCyclic *tracker, const uint8_t *sta
 
 /**
  * Writes a configuration: a camera with square pixels, an adult who faces it at 1.25 metres, seed
- * 1.
+ * 1, `SINEW_ARM_PARTICLES` particles, and the options that the host's command has.
  *
- * Returns SINEW_STATUS_OUT_OF_RANGE for a field of view that does not lie between 0 and pi.
+ * `config_bytes` is `sizeof *config`: SINEW_STATUS_STRUCT_SIZE says that the program was compiled
+ * with the header of another version. Returns SINEW_STATUS_OUT_OF_RANGE for a field of view that
+ * does not lie between 0 and pi.
  *
  * Caller's duty:
- * `config` points at room for one.
+ * `config` points at room of the size that is said.
  */
 SinewStatus sinew_arm_default_config(uint32_t image_width_px,
                                      uint32_t image_height_px,
                                      float horizontal_field_of_view_rad,
-                                     struct SinewArmConfig *config);
+                                     struct SinewArmConfig *config,
+                                     size_t config_bytes);
 
 /**
  * Bytes that this object takes on this target; the constant MAX_BYTES of its kind at most.
@@ -910,10 +1098,13 @@ SinewStatus sinew_arm_pair_restore(struct SinewArmPair *tracker, const uint8_t *
 /**
  * Writes a configuration: 320 x 240 pixels of RGB565, skin of many people under many lights.
  *
+ * `config_bytes` is `sizeof *config`: SINEW_STATUS_STRUCT_SIZE says that the program was compiled
+ * with the header of another version.
+ *
  * Caller's duty:
- * `config` points at room for one.
+ * `config` points at room of the size that is said.
  */
-SinewStatus sinew_vision_default_config(struct SinewVisionConfig *config);
+SinewStatus sinew_vision_default_config(struct SinewVisionConfig *config, size_t config_bytes);
 
 /**
  * Bytes that this object takes on this target; the constant MAX_BYTES of its kind at most.

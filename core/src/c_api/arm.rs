@@ -1,10 +1,11 @@
 //! The arm tracker: blobs of skin and moving edges in, the pose of one arm out.
 
+use super::arm_config::SinewArmConfig;
 use super::arm_frame::{
-    ArmMemory, SINEW_ARM_PARTICLES, SINEW_SIDE_LEFT, SINEW_SIDE_RIGHT, SinewArmConfig, SinewArmFrame, SinewArmResult,
+    ArmMemory, SINEW_ARM_PARTICLES, SINEW_SIDE_LEFT, SINEW_SIDE_RIGHT, SinewArmFrame, SinewArmResult,
 };
 use super::cyclic::SINEW_ALIGN;
-use super::object::{Handle, Object, given, object, place, room};
+use super::object::{Handle, Object, given, given_config, object, place, room};
 use super::stateful::{Stateful, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
 use crate::saved_state::StateKind;
@@ -64,7 +65,7 @@ pub unsafe extern "C" fn sinew_arm_init(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (handle, config) = (room(tracker)?, given(config)?);
+            let (handle, config) = (room(tracker)?, given_config(config)?);
             let mut place = place::<SinewArm>(memory, memory_bytes)?;
             place.is_apart(tracker, 1)?;
             place.is_apart(config, 1)?;

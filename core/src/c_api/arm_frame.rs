@@ -2,19 +2,16 @@
 
 use super::object::list;
 use super::status::{Answer, SinewStatus};
-use crate::camera::{Camera, Pixel};
-use crate::checksum::Crc32;
 use crate::error::{finite, positive, within};
 use crate::math::Vec3;
 use crate::ranges::MAX_PX;
 use crate::saved_state::{SavedState, StateVisitor};
-use crate::skeleton::{ArmGeometry, Side};
-use crate::tracker::arm::{ArmEstimate, ArmImage, ArmModel, ArmOptions, Status};
+use crate::skeleton::Side;
+use crate::tracker::arm::{ArmEstimate, ArmImage, ArmModel, Status};
 use crate::vision::candidate::HandCandidate;
 use crate::vision::edges::EdgePixel;
-use core::mem::MaybeUninit;
 
-/// Particles of an arm tracker.
+/// Most particles of an arm tracker.
 pub const SINEW_ARM_PARTICLES: usize = 50;
 /// Most hand candidates of a frame; the eight most likely of them are considered.
 pub const SINEW_MAX_CANDIDATES: usize = 32;
@@ -33,34 +30,12 @@ pub const SINEW_ARM_TRACKING: u32 = 2;
 /// A blob of this frame carries the estimate that is less likely a hand.
 pub const SINEW_ARM_UNCERTAIN: u32 = 3;
 
-/// Camera, body and seed of an arm tracker; see `sinew_arm_default_config`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[repr(C)]
-pub struct SinewArmConfig {
-    /// All random numbers follow from it: the same seed and frames give the same bits.
-    pub seed: u64,
-    /// Width of the image, pixels.
-    pub image_width_px: u32,
-    /// Height of the image, pixels.
-    pub image_height_px: u32,
-    /// Focal lengths along columns and rows, pixels.
-    pub focal_px: [f32; 2],
-    /// Column and row of the principal point, pixels.
-    pub principal_point_px: [f32; 2],
-    /// From shoulder to elbow, metres.
-    pub upper_arm_m: f32,
-    /// From elbow to the middle of the hand, metres.
-    pub forearm_m: f32,
-    /// Left and right shoulder, metres in camera axes: x to the right of the image, y down, z along
-    /// the line of sight. A tracker of one arm looks at its own side only.
-    pub shoulders_m: [[f32; 3]; 2],
-}
-
 /// What a frame showed.
 #[derive(Debug, Clone, Copy)]
 #[repr(C)]
 pub struct SinewArmFrame {
     /// When the frame was taken, microseconds since any start. Dropped frames are simply not given.
+    /// A counter of 32 bits goes through `sinew_clock_us`.
     pub timestamp_us: u64,
     /// Blobs that may be a hand, as `sinew_vision_end_frame` gives them; not looked at if
     /// `candidate_count` is zero.
@@ -147,58 +122,13 @@ impl<T: SavedState> SavedState for ArmMemory<T> {
     }
 }
 
-fn shoulder(shoulders_m: &[[f32; 3]; 2], side: Side) -> Result<Vec3, SinewStatus> {
+pub(super) fn shoulder(shoulders_m: &[[f32; 3]; 2], side: Side) -> Result<Vec3, SinewStatus> {
     let [left, right] = *shoulders_m;
     let place = match side {
         Side::Left => left,
         Side::Right => right,
     };
     Ok(crate::ranges::place("shoulders_m", &Vec3::from(place))?)
-}
-
-impl SinewArmConfig {
-    /// Writes camera, arm of one side and options where they stay, or only checks them.
-    #[inline(never)]
-    pub(super) fn write_model(&self, side: Side, place: Option<&mut MaybeUninit<ArmModel>>) -> Answer {
-        let [focal_u, focal_v] = self.focal_px;
-        let [u_px, v_px] = self.principal_point_px;
-        for length_px in [focal_u, focal_v] {
-            within("focal_px", length_px, 1.0, 16.0 * MAX_PX)?;
-        }
-        for coordinate in [u_px, v_px] {
-            within("principal_point_px", coordinate, -MAX_PX, MAX_PX)?;
-        }
-        for length_m in [self.upper_arm_m, self.forearm_m] {
-            within("length of a limb", length_m, 0.01, 2.0)?;
-        }
-        let camera = Camera::new(focal_u, focal_v, Pixel::new(u_px, v_px))?;
-        for side_px in [self.image_width_px, self.image_height_px] {
-            within("image size", side_px as f32, 1.0, MAX_PX)?;
-        }
-        let geometry = ArmGeometry::new(side, self.upper_arm_m, self.forearm_m)?;
-        let options = ArmOptions { particles: SINEW_ARM_PARTICLES, ..ArmOptions::default() };
-        ArmModel::write_into(place, camera, (self.image_width_px, self.image_height_px), &geometry, &options)?;
-        Ok(())
-    }
-
-    /// Whether a tracker can begin with it, before anything is written.
-    pub(super) fn check(&self) -> Answer {
-        self.write_model(Side::Left, None)?;
-        self.write_model(Side::Right, None)
-    }
-
-    /// Where the shoulder of `side` is to begin with.
-    pub(super) fn shoulder(&self, side: Side) -> Result<Vec3, SinewStatus> {
-        shoulder(&self.shoulders_m, side)
-    }
-
-    /// A checksum of what a saved state belongs to.
-    pub(super) fn fingerprint(&self, kind: u32) -> u32 {
-        let reals = [self.focal_px, self.principal_point_px, [self.upper_arm_m, self.forearm_m]];
-        let words = [kind, SINEW_ARM_PARTICLES as u32, self.image_width_px, self.image_height_px];
-        let words = words.into_iter().chain(reals.into_iter().flatten().map(f32::to_bits));
-        words.fold(Crc32::new(), Crc32::and_word).value()
-    }
 }
 
 impl SinewArmFrame {
@@ -267,38 +197,4 @@ impl SinewArmResult {
             reserved: 0,
         }
     }
-}
-
-/// Writes a configuration: a camera with square pixels, an adult who faces it at 1.25 metres, seed
-/// 1.
-///
-/// Returns SINEW_STATUS_OUT_OF_RANGE for a field of view that does not lie between 0 and pi.
-///
-/// # Safety
-/// `config` points at room for one.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn sinew_arm_default_config(
-    image_width_px: u32,
-    image_height_px: u32,
-    horizontal_field_of_view_rad: f32,
-    config: *mut SinewArmConfig,
-) -> SinewStatus {
-    let camera = Camera::from_field_of_view(image_width_px, image_height_px, horizontal_field_of_view_rad);
-    // SAFETY: the caller's duty.
-    let room = unsafe { super::object::room(config) };
-    super::status::status((|| {
-        let (camera, room) = (camera?, room?);
-        let middle = |side_px: u32| 0.5 * (side_px as f32 - 1.0);
-        room.write(SinewArmConfig {
-            seed: 1,
-            image_width_px,
-            image_height_px,
-            focal_px: [camera.focal_px(); 2],
-            principal_point_px: [middle(image_width_px), middle(image_height_px)],
-            upper_arm_m: 0.30,
-            forearm_m: 0.33,
-            shoulders_m: [[0.19, -0.05, 1.25], [-0.19, -0.05, 1.25]],
-        });
-        Ok(())
-    })())
 }

@@ -1,8 +1,9 @@
 //! The trackers of both arms of a person, which share one list of blobs.
 
-use super::arm_frame::{ArmMemory, SINEW_ARM_PARTICLES, SinewArmConfig, SinewArmFrame, SinewArmResult};
+use super::arm_config::SinewArmConfig;
+use super::arm_frame::{ArmMemory, SINEW_ARM_PARTICLES, SinewArmFrame, SinewArmResult};
 use super::cyclic::SINEW_ALIGN;
-use super::object::{Handle, Object, given, object, place, room};
+use super::object::{Handle, Object, given, given_config, object, place, room};
 use super::stateful::{Stateful, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
 use crate::saved_state::StateKind;
@@ -62,7 +63,7 @@ pub unsafe extern "C" fn sinew_arm_pair_init(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (handle, config) = (room(tracker)?, given(config)?);
+            let (handle, config) = (room(tracker)?, given_config(config)?);
             let mut place = place::<SinewArmPair>(memory, memory_bytes)?;
             place.is_apart(tracker, 1)?;
             place.is_apart(config, 1)?;

@@ -1,8 +1,9 @@
 //! The cyclic tracker: angles of a walking person in, pose, position in the cycle and cadence out.
 
+use super::cyclic_config::SinewCyclicConfig;
 use super::cyclic_frame::{SINEW_MAX_ANGLES, SinewCyclicFrame, SinewCyclicResult};
 use super::model::read_model;
-use super::object::{Handle, Object, given, object, place, room};
+use super::object::{Handle, Object, given, given_config, object, place, room};
 use super::stateful::{Stateful, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
 use crate::cyclic::measurement::MAX_STEP_FRAMES;
@@ -37,6 +38,7 @@ pub struct SinewCyclic(Object<Cyclic>);
 pub(super) struct Cyclic {
     fingerprint: u32,
     model: CoupledModel<'static>,
+    first: FirstPhase,
     memory: Memory,
 }
 
@@ -65,6 +67,7 @@ size_functions!(SinewCyclic, sinew_cyclic_size, sinew_cyclic_align);
 /// suffices (`--form coupled-c`, 5.4 KB); of the form for all filters the rest is not read. Null and
 /// zero bytes stand for the walking model that the library was built with. All numbers that the
 /// tracker reads are checked once, here.
+/// `config` is copied; null stands for what `sinew_cyclic_default_config` writes.
 ///
 /// Returns SINEW_STATUS_BAD_MODEL for bytes that are no model of at most `SINEW_MAX_ANGLES` angles,
 /// SINEW_STATUS_NO_MODEL if the library was built without the walking model. `tracker` is written
@@ -78,6 +81,7 @@ pub unsafe extern "C" fn sinew_cyclic_init(
     memory_bytes: usize,
     model: *const c_void,
     model_bytes: usize,
+    config: *const SinewCyclicConfig,
     tracker: *mut *mut SinewCyclic,
 ) -> SinewStatus {
     // SAFETY: the caller's duty.
@@ -87,11 +91,15 @@ pub unsafe extern "C" fn sinew_cyclic_init(
             let mut place = place::<SinewCyclic>(memory, memory_bytes)?;
             place.is_apart(tracker, 1)?;
             place.is_apart(model.cast::<u8>(), model_bytes)?;
+            place.is_apart(config, 1)?;
             let model = read_model(model, model_bytes)?;
+            let first =
+                if config.is_null() { FirstPhase::default() } else { given_config(config)?.first_phase(&model)? };
             // Zeros are a memory that did not begin.
             let cyclic = place.clear();
             (&raw mut (*cyclic).fingerprint).write(model.checksum());
             (&raw mut (*cyclic).model).write(model);
+            (&raw mut (*cyclic).first).write(first);
             place.install(handle, Stateful::begin)
         })()
     })
@@ -182,7 +190,7 @@ impl Cyclic {
     fn step(&mut self, frame: &SinewCyclicFrame) -> Result<CyclicFrame<SINEW_MAX_ANGLES>, SinewStatus> {
         let measurement = frame.measurement(self.model.angle_count())?;
         if !self.memory.has_begun {
-            self.memory.begin(&self.model, &measurement)?;
+            self.memory.begin(&self.model, &measurement, self.first)?;
             self.memory.timestamp_us = frame.timestamp_us;
             return Ok(self.memory.tracker.first_frame(&self.model, &measurement));
         }
@@ -198,11 +206,16 @@ impl Cyclic {
 impl Memory {
     /// Out of the way of the steps that follow, whose stack it would share.
     #[inline(never)]
-    fn begin(&mut self, model: &CoupledModel<'_>, first: &AngleMeasurement<SINEW_MAX_ANGLES>) -> Answer {
+    fn begin(
+        &mut self,
+        model: &CoupledModel<'_>,
+        first: &AngleMeasurement<SINEW_MAX_ANGLES>,
+        phase: FirstPhase,
+    ) -> Answer {
         if first.is_empty(model.angle_count()) {
             return Err(SinewStatus::Waiting);
         }
-        self.tracker.begin(model, first, FirstPhase::default())?;
+        self.tracker.begin(model, first, phase)?;
         self.has_begun = true;
         Ok(())
     }

@@ -15,6 +15,7 @@ const _: () = assert!(SINEW_MAX_ANGLES == crate::skeleton::stick_figure::HUMAN_A
 #[repr(C)]
 pub struct SinewCyclicFrame {
     /// When the frame was taken, microseconds since any start. Dropped frames are simply not given.
+    /// A counter of 32 bits goes through `sinew_clock_us`.
     pub timestamp_us: u64,
     /// Bit i is set if angle i was seen; the others' values are not looked at.
     pub seen: u32,

@@ -1,7 +1,8 @@
 //! What a program may do wrong, and how it is answered.
 
 use super::arm::{SinewArm, sinew_arm_init, sinew_arm_reset, sinew_arm_size, sinew_arm_step};
-use super::arm_frame::{SINEW_SIDE_LEFT, SinewArmConfig, SinewArmResult};
+use super::arm_config::SinewArmConfig;
+use super::arm_frame::{SINEW_SIDE_LEFT, SinewArmResult};
 use super::cyclic::{
     SinewCyclic, sinew_cyclic_init, sinew_cyclic_reset, sinew_cyclic_restore, sinew_cyclic_save, sinew_cyclic_size,
     sinew_cyclic_step,
@@ -13,7 +14,7 @@ use super::tests::{Memory, arm_config, dark, model, swing, written};
 use crate::checksum::crc32;
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
-use core::ptr::null_mut;
+use core::ptr::{null, null_mut};
 
 /// A cyclic tracker in memory of exactly its size.
 struct Walker {
@@ -28,7 +29,7 @@ impl Walker {
         let (model, bytes) = model();
         // SAFETY: memory and model have the sizes that are said.
         let tracker = written(|handle| unsafe {
-            sinew_cyclic_init(memory.start(), memory.bytes(), model.as_ptr().cast(), bytes, handle)
+            sinew_cyclic_init(memory.start(), memory.bytes(), model.as_ptr().cast(), bytes, null(), handle)
         });
         Self { memory, model, tracker }
     }
@@ -137,8 +138,16 @@ fn structures_inside_of_the_object_are_refused() {
         assert_eq!(sinew_cyclic_save(walker.tracker, inside.cast(), 64, &mut 0), SinewStatus::Overlap);
         assert_eq!(sinew_cyclic_restore(walker.tracker, inside.cast(), 64), SinewStatus::Overlap);
         let model = walker.model.as_ptr().cast();
-        assert_eq!(sinew_cyclic_init(start, bytes, model, model_bytes, inside.cast()), SinewStatus::Overlap);
-        assert_eq!(sinew_cyclic_init(start, bytes, inside.cast(), model_bytes, &mut null_mut()), SinewStatus::Overlap);
+        assert_eq!(sinew_cyclic_init(start, bytes, model, model_bytes, null(), inside.cast()), SinewStatus::Overlap);
+        let mut handle = null_mut();
+        assert_eq!(
+            sinew_cyclic_init(start, bytes, inside.cast(), model_bytes, null(), &raw mut handle),
+            SinewStatus::Overlap
+        );
+        assert_eq!(
+            sinew_cyclic_init(start, bytes, model, model_bytes, inside.cast(), &raw mut handle),
+            SinewStatus::Overlap
+        );
         // A list without elements lies nowhere.
         assert_eq!(sinew_cyclic_restore(walker.tracker, inside.cast(), 0), SinewStatus::BadState);
         let mut pair = [MaybeUninit::<SinewCyclicResult>::uninit(); 1];

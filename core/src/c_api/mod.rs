@@ -18,9 +18,14 @@
 #![allow(unsafe_code)]
 
 pub mod arm;
+pub mod arm_config;
 pub mod arm_frame;
 pub mod arm_pair;
+pub mod clock;
+#[cfg(test)]
+mod configured;
 pub mod cyclic;
+pub mod cyclic_config;
 pub mod cyclic_frame;
 #[cfg(test)]
 mod misuse;

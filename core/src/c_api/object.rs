@@ -143,6 +143,40 @@ pub(super) unsafe fn room<'a, T>(pointer: *mut T) -> Result<&'a mut MaybeUninit<
     Ok(unsafe { &mut *pointer.cast() })
 }
 
+/// A configuration that is read from the caller's memory: its first word says its size.
+///
+/// # Errors
+/// A pointer that is null or misaligned; another size than that of a `T`.
+///
+/// # Safety
+/// If not refused, `pointer` points at a `T` that no code changes for `'a`; any bits make a `T`.
+pub(super) unsafe fn given_config<'a, T>(pointer: *const T) -> Result<&'a T, SinewStatus> {
+    check(pointer)?;
+    // SAFETY: checked above; every configuration begins with this word, however long it is.
+    let stated = unsafe { pointer.cast::<u32>().read() };
+    if stated as usize != size_of::<T>() {
+        return Err(SinewStatus::StructSize);
+    }
+    // SAFETY: checked above, and the caller's duty.
+    Ok(unsafe { &*pointer })
+}
+
+/// Room for a configuration, of which the caller says the size.
+///
+/// # Errors
+/// A pointer that is null or misaligned; another size than that of a `T`.
+///
+/// # Safety
+/// If not refused, `pointer` points at room for a `T` that no other code uses for `'a`.
+pub(super) unsafe fn config_room<'a, T>(pointer: *mut T, bytes: usize) -> Result<&'a mut MaybeUninit<T>, SinewStatus> {
+    check(pointer)?;
+    if bytes != size_of::<T>() {
+        return Err(SinewStatus::StructSize);
+    }
+    // SAFETY: as the caller says.
+    unsafe { room(pointer) }
+}
+
 /// A list; of zero elements, `pointer` may be anything.
 ///
 /// # Errors

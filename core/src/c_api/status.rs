@@ -28,7 +28,8 @@ pub enum SinewStatus {
     OutOfRange = -6,
     /// A list is longer than its capacity.
     OverCapacity = -7,
-    /// A timestamp does not lie after that of the frame before.
+    /// A timestamp does not lie after that of the frame before. A counter of 32 bits wraps:
+    /// `sinew_clock_us` extends it.
     OutOfOrder = -8,
     /// The bytes are no motion model that this library reads.
     BadModel = -9,
@@ -50,6 +51,9 @@ pub enum SinewStatus {
     Moved = -17,
     /// A structure or buffer lies within the object's own memory.
     Overlap = -18,
+    /// A configuration has not the size that this library knows: it was not filled by its default
+    /// function, or the program was compiled with the header of another version.
+    StructSize = -19,
 }
 
 /// A short English text for a status, for people; `status` may be any number.
@@ -57,7 +61,7 @@ pub enum SinewStatus {
 /// The text is constant and ends with a zero byte.
 #[unsafe(no_mangle)]
 pub extern "C" fn sinew_error_text(status: i32) -> *const c_char {
-    const TEXTS: [&core::ffi::CStr; 19] = [
+    const TEXTS: [&core::ffi::CStr; 20] = [
         c"done",
         c"a pointer is null",
         c"a pointer is not aligned as its type asks for",
@@ -66,7 +70,7 @@ pub extern "C" fn sinew_error_text(status: i32) -> *const c_char {
         c"a number is NaN or infinite",
         c"a number is out of its range",
         c"a list is longer than its capacity",
-        c"the timestamp does not lie after that of the frame before",
+        c"the timestamp does not lie after that of the frame before; sinew_clock_us extends 32 bits",
         c"the bytes are no motion model that this library reads",
         c"the library was built without this model",
         c"the saved state is cut, was changed, or belongs to another kind of object",
@@ -77,6 +81,7 @@ pub extern "C" fn sinew_error_text(status: i32) -> *const c_char {
         c"another call uses the object",
         c"the object was copied or moved",
         c"a structure or buffer lies within the object's memory",
+        c"a configuration was not filled by its default function, or is of another version's header",
     ];
     let text = match status {
         1 => Some(&c"no frame so far showed enough to begin with"),
@@ -156,7 +161,7 @@ mod tests {
 
     #[test]
     fn each_status_has_its_own_text() {
-        let texts: Vec<_> = (-18..=1).map(text).collect();
+        let texts: Vec<_> = (-19..=1).map(text).collect();
         for (index, text) in texts.iter().enumerate() {
             assert_ne!(text, "an unknown status", "{index}");
             assert!(!texts[..index].contains(text), "{text}");
@@ -165,7 +170,7 @@ mod tests {
             text(SinewStatus::NoFrame as i32).contains("frame")
                 && text(SinewStatus::NullPointer as i32).contains("null")
         );
-        for unknown in [2, -19, i32::MIN, i32::MAX] {
+        for unknown in [2, -20, i32::MIN, i32::MAX] {
             assert_eq!(text(unknown), "an unknown status");
         }
     }

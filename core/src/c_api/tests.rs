@@ -5,9 +5,8 @@
 
 use super::arm::sinew_arm_step;
 use super::arm::{SinewArm, sinew_arm_init, sinew_arm_reset, sinew_arm_restore, sinew_arm_save, sinew_arm_size};
-use super::arm_frame::{
-    SINEW_ARM_UNCERTAIN, SINEW_SIDE_LEFT, SinewArmConfig, SinewArmFrame, SinewArmResult, sinew_arm_default_config,
-};
+use super::arm_config::{SinewArmConfig, sinew_arm_default_config};
+use super::arm_frame::{SINEW_ARM_UNCERTAIN, SINEW_SIDE_LEFT, SinewArmFrame, SinewArmResult};
 use super::arm_pair::{
     SinewArmPair, sinew_arm_pair_init, sinew_arm_pair_reset, sinew_arm_pair_restore, sinew_arm_pair_save,
     sinew_arm_pair_size, sinew_arm_pair_step,
@@ -122,7 +121,7 @@ fn a_cyclic_tracker_goes_on_from_its_state() {
     let init = |memory: &mut Memory| {
         // SAFETY: memory and model have the sizes that are said.
         written(|handle| unsafe {
-            sinew_cyclic_init(memory.start(), memory.bytes(), model.as_ptr().cast(), bytes, handle)
+            sinew_cyclic_init(memory.start(), memory.bytes(), model.as_ptr().cast(), bytes, null(), handle)
         })
     };
     let step = |tracker: *mut SinewCyclic, frame: &SinewCyclicFrame| {
@@ -154,7 +153,8 @@ fn models_for_c_are_checked() {
     let mut init = |model: *const c_void, bytes: usize| {
         let mut handle: *mut SinewCyclic = null_mut();
         // SAFETY: memory and model have the sizes that are said, or are null or misaligned.
-        let status = unsafe { sinew_cyclic_init(memory.start(), memory.bytes(), model, bytes, &raw mut handle) };
+        let status =
+            unsafe { sinew_cyclic_init(memory.start(), memory.bytes(), model, bytes, null(), &raw mut handle) };
         assert!(handle.is_null());
         status
     };
@@ -183,7 +183,7 @@ fn the_coupled_form_of_a_model_suffices() {
     let mut memory = Memory::new(sinew_cyclic_size());
     // SAFETY: memory and model have the sizes that are said.
     let tracker = written(|handle| unsafe {
-        sinew_cyclic_init(memory.start(), memory.bytes(), words.as_ptr().cast(), count, handle)
+        sinew_cyclic_init(memory.start(), memory.bytes(), words.as_ptr().cast(), count, null(), handle)
     });
     let mut pose_rad = [f32::NAN; 2];
     // SAFETY: the tracker was initialised, and there is room for two angles.
@@ -192,7 +192,7 @@ fn the_coupled_form_of_a_model_suffices() {
 }
 
 /// A hand below the left shoulder and some edges.
-fn arm_lists() -> ([HandCandidate; 2], [EdgePixel; 3]) {
+pub(super) fn arm_lists() -> ([HandCandidate; 2], [EdgePixel; 3]) {
     let hand = |u_px: f32| HandCandidate {
         centre: Pixel::new(u_px, 190.0),
         moments_px2: [100.0, 0.0, 100.0],
@@ -205,7 +205,10 @@ fn arm_lists() -> ([HandCandidate; 2], [EdgePixel; 3]) {
     )
 }
 
-fn arm_frame(timestamp_us: u64, (candidates, edges): &([HandCandidate; 2], [EdgePixel; 3])) -> SinewArmFrame {
+pub(super) fn arm_frame(
+    timestamp_us: u64,
+    (candidates, edges): &([HandCandidate; 2], [EdgePixel; 3]),
+) -> SinewArmFrame {
     SinewArmFrame {
         timestamp_us,
         candidates: candidates.as_ptr(),
@@ -219,7 +222,7 @@ fn arm_frame(timestamp_us: u64, (candidates, edges): &([HandCandidate; 2], [Edge
 
 pub(super) fn arm_config() -> SinewArmConfig {
     // SAFETY: there is room for one.
-    written(|config| unsafe { sinew_arm_default_config(320, 240, 1.0, config) })
+    written(|config| unsafe { sinew_arm_default_config(320, 240, 1.0, config, size_of::<SinewArmConfig>()) })
 }
 
 /// Miri takes minutes for a step of an arm tracker, seconds to begin one. There a frame that is
@@ -312,7 +315,7 @@ const WIDTH_PX: u32 = 48;
 const HEIGHT_PX: u32 = 24;
 
 /// Reads a frame with a hand whose left edge lies at `left_px`; numbers of candidates and edges.
-fn see(vision: *mut SinewVision, left_px: usize) -> (usize, usize) {
+pub(super) fn see(vision: *mut SinewVision, left_px: usize) -> (usize, usize) {
     // SAFETY: the front end was initialised, and the lists of its result are there until the next
     // frame.
     unsafe {
@@ -341,7 +344,7 @@ fn a_front_end_goes_on_from_its_state() {
     let functions =
         StateFunctions { save: sinew_vision_save, restore: sinew_vision_restore, reset: sinew_vision_reset };
     // SAFETY: there is room for one.
-    let config = written(|config| unsafe { sinew_vision_default_config(config) });
+    let config = written(|config| unsafe { sinew_vision_default_config(config, size_of::<SinewVisionConfig>()) });
     let config = SinewVisionConfig { width_px: WIDTH_PX, height_px: HEIGHT_PX, ..config };
     let init = |memory: &mut Memory| {
         // SAFETY: the memory has the size that is said.

@@ -2,7 +2,7 @@
 //! frame buffer.
 
 use super::cyclic::SINEW_ALIGN;
-use super::object::{Handle, Object, given, list, object, place, room};
+use super::object::{Handle, Object, given, given_config, list, object, place, room};
 use super::stateful::{Stateful, size_functions, state_functions};
 use super::status::{Answer, SinewStatus, status};
 use super::vision_frame::{
@@ -13,7 +13,6 @@ use crate::saved_state::{SavedState, StateKind, StateVisitor};
 use crate::slot::Slot;
 use crate::vision::front_end::QvgaFrontEnd;
 use crate::vision::front_end::calibration::SkinSample;
-use crate::vision::front_end::edge_lines::EdgeSteps;
 use crate::vision::front_end::pixel_format::{PixelFormat, Rgb565, SwappedRgb565, Yuyv};
 use crate::vision::front_end::skin_table::{SkinTable, TABLE_WORDS};
 use crate::vision::hand_likelihood::HandLikelihood;
@@ -136,7 +135,7 @@ pub unsafe extern "C" fn sinew_vision_init(
     // SAFETY: the caller's duty.
     status(unsafe {
         (|| {
-            let (handle, config) = (room(vision)?, *given(config)?);
+            let (handle, config) = (room(vision)?, *given_config(config)?);
             let mut place = place::<SinewVision>(memory, memory_bytes)?;
             place.is_apart(vision, 1)?;
             let trained = config.skin.model()?;
@@ -144,6 +143,8 @@ pub unsafe extern "C" fn sinew_vision_init(
                 return Err(SinewStatus::OutOfRange);
             }
             QvgaFrontEnd::check_size(config.size())?;
+            config.steps()?;
+            config.min_area_share()?;
             // Zeros are a front end that did not begin, an empty table and no sample.
             let vision = place.clear();
             (&raw mut (*vision).config).write(config);
@@ -315,7 +316,8 @@ impl Stateful for Vision {
     }
 
     fn begin(&mut self) -> Answer {
-        self.front_end.begin(self.config.size(), HandLikelihood::default(), EdgeSteps::default())?;
+        self.front_end.begin(self.config.size(), HandLikelihood::default(), self.config.steps()?)?;
+        self.front_end.set_min_area_fraction(self.config.min_area_share()?);
         self.is_in_frame = false;
         self.skin.learn(&self.config.skin.model()?);
         Ok(())

@@ -1,10 +1,13 @@
 //! The configuration of the front end, and its result for a frame.
 
 use super::status::SinewStatus;
+use crate::error::within;
+use crate::vision::blobs::DEFAULT_MIN_AREA_FRACTION;
 use crate::vision::candidate::HandCandidate;
 use crate::vision::components::BoundingBox;
 use crate::vision::edges::EdgePixel;
 use crate::vision::front_end::FrameLines;
+use crate::vision::front_end::edge_lines::{DEFAULT_KNOWN_STEP, DEFAULT_NEW_STEP, EdgeSteps};
 use crate::vision::skin::GaussianSkin;
 
 /// 5 bits of red (the highest), 6 of green, 5 of blue.
@@ -47,6 +50,9 @@ pub struct SinewBox {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub struct SinewVisionConfig {
+    /// Bytes of this structure, as the function that fills it writes them; any other number is
+    /// refused.
+    pub struct_bytes: u32,
     /// Width of a frame, 1 to 320 pixels.
     pub width_px: u32,
     /// Height of a frame, 1 to 240 pixels.
@@ -55,6 +61,12 @@ pub struct SinewVisionConfig {
     pub pixel_format: u32,
     /// Which colours count as skin.
     pub skin: SinewSkin,
+    /// Least step of a new edge, grey levels, 5 to 255.
+    pub new_step: f32,
+    /// Least step of an edge of the last frame, grey levels, from 5 to `new_step`.
+    pub known_step: f32,
+    /// Least area of a blob, as a share of the image, 0 to 1.
+    pub min_area_share: f32,
 }
 
 /// What a frame showed; all losses zero means that it is exact.
@@ -105,6 +117,16 @@ impl SinewVisionConfig {
     pub(super) const fn size(&self) -> (usize, usize) {
         (self.width_px as usize, self.height_px as usize)
     }
+
+    /// The thresholds of edges.
+    pub(super) fn steps(&self) -> Result<EdgeSteps, SinewStatus> {
+        Ok(EdgeSteps::new(self.new_step, self.known_step)?)
+    }
+
+    /// The least area of a blob.
+    pub(super) fn min_area_share(&self) -> Result<f32, SinewStatus> {
+        Ok(within("min_area_share", self.min_area_share, 0.0, 1.0)?)
+    }
 }
 
 impl SinewBox {
@@ -144,12 +166,18 @@ impl SinewVisionResult {
 
 /// Writes a configuration: 320 x 240 pixels of RGB565, skin of many people under many lights.
 ///
+/// `config_bytes` is `sizeof *config`: SINEW_STATUS_STRUCT_SIZE says that the program was compiled
+/// with the header of another version.
+///
 /// # Safety
-/// `config` points at room for one.
+/// `config` points at room of the size that is said.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn sinew_vision_default_config(config: *mut SinewVisionConfig) -> SinewStatus {
+pub unsafe extern "C" fn sinew_vision_default_config(
+    config: *mut SinewVisionConfig,
+    config_bytes: usize,
+) -> SinewStatus {
     // SAFETY: the caller's duty.
-    let room = unsafe { super::object::room(config) };
+    let room = unsafe { super::object::config_room(config, config_bytes) };
     super::status::status(room.map(|room| {
         // The host's shipped Gaussian model, rounded.
         let skin = SinewSkin {
@@ -158,6 +186,15 @@ pub unsafe extern "C" fn sinew_vision_default_config(config: *mut SinewVisionCon
             threshold: 2.25,
             min_sum: 215,
         };
-        room.write(SinewVisionConfig { width_px: 320, height_px: 240, pixel_format: SINEW_PIXEL_RGB565, skin });
+        room.write(SinewVisionConfig {
+            struct_bytes: size_of::<SinewVisionConfig>() as u32,
+            width_px: 320,
+            height_px: 240,
+            pixel_format: SINEW_PIXEL_RGB565,
+            skin,
+            new_step: DEFAULT_NEW_STEP,
+            known_step: DEFAULT_KNOWN_STEP,
+            min_area_share: DEFAULT_MIN_AREA_FRACTION,
+        });
     }))
 }

@@ -67,7 +67,7 @@ int main(void) {
     static const char *const STATES[] = {"lost", "predicted", "tracking", "uncertain"};
     SinewVision *vision = NULL;
     SinewVisionConfig vision_config;
-    SinewStatus status = sinew_vision_default_config(&vision_config);
+    SinewStatus status = sinew_vision_default_config(&vision_config, sizeof vision_config);
     if (status == SINEW_STATUS_OK) {
         status = sinew_vision_init(vision_memory, sizeof vision_memory, &vision_config, &vision);
     }
@@ -76,7 +76,7 @@ int main(void) {
     }
     SinewArm *arm = NULL;
     SinewArmConfig arm_config;
-    status = sinew_arm_default_config(WIDTH, HEIGHT, 1.0471976F, &arm_config);
+    status = sinew_arm_default_config(WIDTH, HEIGHT, 1.0471976F, &arm_config, sizeof arm_config);
     if (status == SINEW_STATUS_OK) {
         status = sinew_arm_init(arm_memory, sizeof arm_memory, &arm_config, SINEW_SIDE_LEFT, &arm);
     }

@@ -61,7 +61,7 @@ static float degrees(float radians) { return radians * 57.29578F; }
 
 int main(void) {
     SinewCyclic *tracker = NULL;
-    SinewStatus status = sinew_cyclic_init(memory, sizeof memory, NULL, 0, &tracker);
+    SinewStatus status = sinew_cyclic_init(memory, sizeof memory, NULL, 0, NULL, &tracker);
     if (status != SINEW_STATUS_OK) {
         return failed("sinew_cyclic_init", status);
     }
@@ -84,7 +84,7 @@ int main(void) {
             if (sinew_cyclic_step(tracker, &measured, &result) != SINEW_STATUS_NOT_INITIALISED) {
                 return failed("a step before initialisation", status);
             }
-            status = sinew_cyclic_init(memory, sizeof memory, NULL, 0, &tracker);
+            status = sinew_cyclic_init(memory, sizeof memory, NULL, 0, NULL, &tracker);
             if (status == SINEW_STATUS_OK) {
                 status = sinew_cyclic_restore(tracker, saved, saved_bytes);
             }

@@ -38,12 +38,16 @@ static void expect(const char *what, SinewStatus expected, SinewStatus status) {
 
 static void cyclic(const void *motion, size_t bytes) {
     SinewCyclic *tracker = NULL;
-    DONE(sinew_cyclic_init, memory, sizeof memory, motion, bytes, &tracker);
+    SinewCyclicConfig config;
+    SinewClock clock = {0};
+    DONE(sinew_cyclic_default_config, &config, sizeof config);
+    DONE(sinew_cyclic_init, memory, sizeof memory, motion, bytes, &config, &tracker);
     for (int frame = 0; frame < 600; frame++) {
         SinewCyclicFrame measured = {0};
         SinewCyclicResult result;
         DONE(sinew_cyclic_mean_pose, tracker, 0.015F * (float)frame, measured.angles_rad, SINEW_MAX_ANGLES);
         walk(frame, &measured);
+        DONE(sinew_clock_us, &clock, (uint32_t)measured.timestamp_us, &measured.timestamp_us);
         SinewStatus status = CALL(sinew_cyclic_step, tracker, &measured, &result);
         expect("sinew_cyclic_step", frame == 0 ? SINEW_STATUS_WAITING : SINEW_STATUS_OK, status);
     }
@@ -54,7 +58,7 @@ static void vision(uint32_t pixel_format, void (*use)(const SinewVisionResult *,
     SinewVision *vision = NULL;
     SinewVisionConfig config;
     SinewSkin skin;
-    DONE(sinew_vision_default_config, &config);
+    DONE(sinew_vision_default_config, &config, sizeof config);
     config.pixel_format = pixel_format;
     DONE(sinew_vision_init, vision_memory, sizeof vision_memory, &config, &vision);
     for (int frame = 0; frame < 12; frame++) {
@@ -126,7 +130,7 @@ static void scatter(void) {
 
 static void arms(void) {
     SinewArmConfig config;
-    DONE(sinew_arm_default_config, PICTURE_WIDTH, PICTURE_HEIGHT, 1.0471976F, &config);
+    DONE(sinew_arm_default_config, PICTURE_WIDTH, PICTURE_HEIGHT, 1.0471976F, &config, sizeof config);
     DONE(sinew_arm_init, memory, sizeof memory, &config, SINEW_SIDE_LEFT, &arm);
     vision(SINEW_PIXEL_RGB565, use_by_arms);
     scatter();

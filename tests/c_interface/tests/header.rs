@@ -5,11 +5,14 @@ use std::fs;
 use std::process::Command;
 
 /// Sources of the interface, and of the structures that it shares with the trackers.
-const SOURCES: [&str; 13] = [
+const SOURCES: [&str; 16] = [
     "c_api/status.rs",
+    "c_api/clock.rs",
     "c_api/cyclic_frame.rs",
+    "c_api/cyclic_config.rs",
     "c_api/cyclic.rs",
     "c_api/arm_frame.rs",
+    "c_api/arm_config.rs",
     "c_api/arm.rs",
     "c_api/arm_pair.rs",
     "c_api/vision_frame.rs",

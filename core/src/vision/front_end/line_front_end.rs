@@ -177,6 +177,13 @@ impl<
         Self { min_area_fraction, ..self }
     }
 
+    /// Drops components below this fraction of the image's area, as
+    /// [`Self::with_min_area_fraction`].
+    #[cfg(feature = "c-api")]
+    pub(crate) const fn set_min_area_fraction(&mut self, min_area_fraction: f32) {
+        self.min_area_fraction = min_area_fraction;
+    }
+
     /// Forgets the last frame: the next one has no temporal edges, as after a missing image.
     pub fn forget_last_frame(&mut self) {
         self.edge_lines.forget_last_frame();

@@ -4,6 +4,7 @@ use super::saved::{Damage, damage};
 use super::{Memory, cases, is_finite, is_refusal, mostly, real};
 use proptest::prelude::*;
 use sinew_core::c_api::arm::*;
+use sinew_core::c_api::arm_config::*;
 use sinew_core::c_api::arm_frame::*;
 use sinew_core::c_api::arm_pair::*;
 use sinew_core::c_api::status::SinewStatus;
@@ -54,9 +55,46 @@ fn config() -> SinewArmConfig {
     let mut config = MaybeUninit::uninit();
     // SAFETY: there is room for one, and it is written.
     unsafe {
-        assert_eq!(sinew_arm_default_config(320, 240, 1.0, config.as_mut_ptr()), SinewStatus::Ok);
+        assert_eq!(
+            sinew_arm_default_config(320, 240, 1.0, config.as_mut_ptr(), size_of::<SinewArmConfig>()),
+            SinewStatus::Ok
+        );
         config.assume_init()
     }
+}
+
+/// Options of any kind, most of them legal.
+fn options() -> impl Strategy<Value = SinewArmConfig> {
+    let counts = (1_u32..=50, 0_u32..=4, 10_u32..2000, 1_u32..8, 0_u32..=1);
+    let stds = (mostly(0.001..10.0), mostly(0.001..10.0), mostly(0.001..10.0));
+    let area_and_gate = (mostly(0.0001..1.0), mostly(0.01..10.0), mostly(0.01..10.0), mostly(0.0..100.0));
+    (counts, stds, area_and_gate, mostly(1.0e-9..1.0), mostly(0.01..3600.0)).prop_map(
+        |(
+            (particles, variant, max_pairs, solver_steps, has_guessed_shoulders),
+            stds,
+            area_and_gate,
+            gate_floor,
+            lost_after_s,
+        )| {
+            SinewArmConfig {
+                particles,
+                variant,
+                max_pairs,
+                solver_steps,
+                has_guessed_shoulders,
+                hand_std_m_per_sqrt_s: stds.0,
+                ray_std_m_per_sqrt_s: stds.1,
+                angle_std_rad_per_sqrt_s: stds.2,
+                hand_area_m2: area_and_gate.0,
+                area_log_std: area_and_gate.1,
+                gate_std_m: area_and_gate.2,
+                gate_growth_m_per_s: area_and_gate.3,
+                gate_floor,
+                lost_after_s,
+                ..config()
+            }
+        },
+    )
 }
 
 /// One arm or both, and the memory that they lie in.
@@ -184,10 +222,14 @@ proptest! {
 
     #[test]
     fn any_calls_leave_a_tracker_that_can_be_used(
+        config in prop_oneof![Just(config()), options()],
         calls in prop::collection::vec(call(), 1..12), side in prop_oneof![Just(None), (0_u32..2).prop_map(Some)],
     ) {
-        let (status, mut tracker) = init(&config(), side);
-        prop_assert_eq!(status, SinewStatus::Ok);
+        let (status, mut tracker) = init(&config, side);
+        if status != SinewStatus::Ok {
+            prop_assert!(is_refusal(status), "{:?}", status);
+            return Ok(());
+        }
         let fresh = tracker.saved();
         for call in &calls {
             tracker.call(call);
@@ -211,6 +253,7 @@ proptest! {
             upper_arm_m: at(4),
             forearm_m: at(5),
             shoulders_m: [[at(6), at(7), at(8)], [at(9), at(10), at(11)]],
+            ..config()
         };
         let (status, tracker) = init(&config, Some(side));
         prop_assert!(status == SinewStatus::Ok || is_refusal(status), "{:?}", status);

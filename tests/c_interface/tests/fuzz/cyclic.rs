@@ -47,7 +47,8 @@ impl Tracker {
         let mut memory = Memory::new(SINEW_CYCLIC_MAX_BYTES);
         let mut handle = null_mut();
         // SAFETY: the memory is as large as is said.
-        let status = unsafe { sinew_cyclic_init(memory.start(), SINEW_CYCLIC_MAX_BYTES, null(), 0, &raw mut handle) };
+        let status =
+            unsafe { sinew_cyclic_init(memory.start(), SINEW_CYCLIC_MAX_BYTES, null(), 0, null(), &raw mut handle) };
         assert_eq!(status, SinewStatus::Ok);
         Self { handle, now_us: 0, is_forged: false, _memory: memory }
     }
@@ -177,7 +178,7 @@ proptest! {
         let model = bytes.as_ptr().cast();
         // SAFETY: memory and model are as large as is said.
         let status = unsafe {
-            sinew_cyclic_init(memory.start(), SINEW_CYCLIC_MAX_BYTES, model, 4 * bytes.len(), &raw mut handle)
+            sinew_cyclic_init(memory.start(), SINEW_CYCLIC_MAX_BYTES, model, 4 * bytes.len(), null(), &raw mut handle)
         };
         prop_assert_eq!(status, SinewStatus::BadModel);
         prop_assert!(handle.is_null());
@@ -204,7 +205,7 @@ fn same_results(words: &[u8]) {
     let mut handle = null_mut();
     let mut init = |model: *const core::ffi::c_void, bytes: usize| {
         // SAFETY: memory and model are as large as is said.
-        unsafe { sinew_cyclic_init(memory.start(), SINEW_CYCLIC_MAX_BYTES, model, bytes, &raw mut handle) }
+        unsafe { sinew_cyclic_init(memory.start(), SINEW_CYCLIC_MAX_BYTES, model, bytes, null(), &raw mut handle) }
     };
     let start = model.start();
     assert_eq!(init(start.wrapping_byte_add(1), count), SinewStatus::Misaligned);
@@ -227,13 +228,13 @@ fn pointers_and_memory_are_checked() {
     // SAFETY: each pointer is null, misaligned, or points at what is said.
     unsafe {
         let size = sinew_cyclic_size();
-        assert_eq!(sinew_cyclic_init(null_mut(), size, null(), 0, &raw mut handle), SinewStatus::NullPointer);
-        assert_eq!(sinew_cyclic_init(start, size, null(), 0, null_mut()), SinewStatus::NullPointer);
-        assert_eq!(sinew_cyclic_init(start, size - 1, null(), 0, &raw mut handle), SinewStatus::TooSmall);
+        assert_eq!(sinew_cyclic_init(null_mut(), size, null(), 0, null(), &raw mut handle), SinewStatus::NullPointer);
+        assert_eq!(sinew_cyclic_init(start, size, null(), 0, null(), null_mut()), SinewStatus::NullPointer);
+        assert_eq!(sinew_cyclic_init(start, size - 1, null(), 0, null(), &raw mut handle), SinewStatus::TooSmall);
         let odd = start.wrapping_byte_add(1);
-        assert_eq!(sinew_cyclic_init(odd, size, null(), 0, &raw mut handle), SinewStatus::Misaligned);
+        assert_eq!(sinew_cyclic_init(odd, size, null(), 0, null(), &raw mut handle), SinewStatus::Misaligned);
         assert_eq!(sinew_cyclic_reset(start.cast()), SinewStatus::NotInitialised, "memory of zeros");
-        assert_eq!(sinew_cyclic_init(start, size, null(), 0, &raw mut handle), SinewStatus::Ok);
+        assert_eq!(sinew_cyclic_init(start, size, null(), 0, null(), &raw mut handle), SinewStatus::Ok);
         assert_eq!(sinew_cyclic_step(handle, null(), null_mut()), SinewStatus::NullPointer);
         assert_eq!(sinew_cyclic_step(null_mut(), null(), null_mut()), SinewStatus::NullPointer);
         let mut written = 0;

@@ -55,7 +55,7 @@ fn config(width_px: u32, height_px: u32, pixel_format: u32) -> SinewVisionConfig
     let mut config = MaybeUninit::uninit();
     // SAFETY: there is room for one, and it is written.
     let config = unsafe {
-        assert_eq!(sinew_vision_default_config(config.as_mut_ptr()), SinewStatus::Ok);
+        assert_eq!(sinew_vision_default_config(config.as_mut_ptr(), size_of::<SinewVisionConfig>()), SinewStatus::Ok);
         config.assume_init()
     };
     SinewVisionConfig { width_px, height_px, pixel_format, ..config }

@@ -1,0 +1,14 @@
+//! Puts memory.x where the linker looks for it.
+
+use std::env;
+use std::fs;
+use std::path::Path;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=memory.x");
+    let out = env::var("OUT_DIR")?;
+    fs::copy("memory.x", Path::new(&out).join("memory.x"))?;
+    println!("cargo:rustc-link-search={out}");
+    Ok(())
+}
