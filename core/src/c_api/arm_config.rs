@@ -143,8 +143,8 @@ impl SinewArmConfig {
         Ok(options.for_shoulder(self.has_guessed_shoulders == 0))
     }
 
-    /// Options and their ranges. Chosen: wide about the defaults; with any of them every number of a
-    /// tracker stays finite (`tests/c_interface/tests/fuzz/arm.rs`).
+    /// Options and their ranges. Chosen: wide about the defaults; with any of them every number of
+    /// a tracker stays finite (`tests/c_interface/tests/fuzz/arm.rs`).
     const fn ranges(&self) -> [(&'static str, f32, (f32, f32)); 8] {
         [
             ("hand_std_m_per_sqrt_s", self.hand_std_m_per_sqrt_s, (0.001, 10.0)),

@@ -15,8 +15,8 @@ pub fn least_angle(angle_rad: f64) -> f64 {
     angle_rad - TAU * nearest_integer(angle_rad / TAU)
 }
 
-/// The integer nearest to `number`. The sum has no place for a fraction: the plainest x86-64 has no
-/// instruction that rounds, and a call for each angle takes longer than all else that is done to it.
+/// The integer nearest to `number`: the sum has no place for a fraction. The plainest x86-64 has no
+/// instruction that rounds, and a call for each angle takes longer than all else.
 fn nearest_integer(number: f64) -> f64 {
     /// 1.5 times 2^52.
     const NO_FRACTION: f64 = 6_755_399_441_055_744.0;

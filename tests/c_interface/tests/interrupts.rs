@@ -32,7 +32,7 @@ fn an_interrupt_finds_a_tracker_busy_and_a_small_stack_suffices() {
     expect_success(command.arg("-o").arg(&program));
     let mut emulator = Command::new("timeout");
     emulator.args(["120", "qemu-system-arm", "-machine", "mps2-an386", "-nographic", "-monitor", "none"]);
-    // The same time passes for each instruction, so that interrupts come at the same places in each run.
+    // The same time passes for each instruction, so that interrupts come at the same places.
     emulator.args(["-icount", "shift=6,align=off,sleep=off", "-serial", "none"]);
     emulator.args(["-semihosting-config", "enable=on,target=native", "-kernel"]).arg(&program);
     let output = expect_success(&mut emulator);

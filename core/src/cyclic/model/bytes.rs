@@ -83,6 +83,22 @@ impl fmt::Display for ModelBytesError {
 impl core::error::Error for ModelBytesError {}
 
 /// Which filters a model in bytes is for.
+///
+/// ```
+/// use sinew_core::cyclic::model::bytes::{ModelForm, ModelHeader};
+///
+/// let form = |flash: &[u8]| ModelHeader::read(flash).ok().map(|header| header.form);
+/// assert_eq!(form(b"no model"), None);
+/// # #[cfg(feature = "walking-model")] {
+/// # use sinew_core::cyclic::model::{bytes::write_coupled, walking::WALKING_COUPLED};
+/// # let mut memory = [0; 8 * 1024];
+/// # let model = WALKING_COUPLED.model().expect("the shipped model is sound");
+/// # let length = write_coupled(&model, &mut memory).expect("it fits");
+/// # let flash = &memory[..length];
+/// // What `sinew export walking --form coupled-bytes` writes.
+/// assert_eq!(form(flash), Some(ModelForm::Coupled));
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ModelForm {
@@ -278,8 +294,8 @@ impl ModelHeader {
         })
     }
 
-    /// Lends them as a model for the phase-coupled filter, in either form; of the other numbers none
-    /// is read.
+    /// Lends them as a model for the phase-coupled filter, in either form; of the other numbers
+    /// none is read.
     ///
     /// # Errors
     /// Those of [`CoupledModel::new`]; lengths other than the header's among them.

@@ -1,7 +1,8 @@
 //! The part of a motion model that the phase-coupled filter reads: the mean cycle, and how people
 //! deviate from it.
 //!
-//! A ninth of the whole model's numbers. Firmware with that filter alone has no other part in flash.
+//! A ninth of the whole model's numbers. Firmware with that filter alone has no other part in
+//! flash.
 
 use crate::checksum::Crc32;
 use crate::cyclic::model::deviation::Deviation;

@@ -47,6 +47,17 @@ pub struct CoupledTable<const POSITIONS: usize, const ANGLES: usize> {
 }
 
 /// The table of the paper's figure and reference cycle.
+///
+/// ```
+/// # #[cfg(feature = "walking-model")] {
+/// use sinew_core::cyclic::model::coupled_table::HumanCoupledTable;
+/// use sinew_core::cyclic::model::walking::WALKING_COUPLED;
+///
+/// static MODEL: &HumanCoupledTable = &WALKING_COUPLED;
+/// assert_eq!(MODEL.model()?.angle_count(), 13);
+/// # }
+/// # Ok::<(), sinew_core::cyclic::ModelError>(())
+/// ```
 pub type HumanCoupledTable = CoupledTable<PAPER_POSITIONS, HUMAN_ANGLES>;
 
 const _: () = assert!(size_of::<HumanCoupledTable>() <= 5632, "the coupled filter's model has to fit 5.5 KiB of flash");
