@@ -111,7 +111,7 @@ pub struct ParticleOptions {
     /// angle without deviation in the model.
     pub start_std: f32,
     /// First standard deviation of each other velocity, as a share of
-    /// [`MotionModel::deviation_velocity_std`].
+    /// `deviation_velocity_std` of the model.
     pub deviation_velocity_share: f32,
     /// First standard deviation of the cycle position, cycles.
     pub position_std: f32,

@@ -10,8 +10,8 @@ use sinew::cyclic::angle_table::COLUMNS;
 use sinew::cyclic::tracking::{FilterName, StartName, TrackingOptions, track};
 use sinew::draw::plot::{Curve, bars_plot, curves_plot};
 
-/// Angles of the left foot and the left hand.
-const SHOWN: [(&str, usize); 2] = [("left foot", 10), ("left hand", 3)];
+/// Angles of the left foot and the left hand: those that end at ankle and wrist.
+const SHOWN: [(&str, &str); 2] = [("left foot", "l_ankle_rad"), ("left hand", "l_wrist_rad")];
 /// Measurement noise of figure 3, degrees.
 const FIGURE_3_SIGMA_DEG: f64 = 6.0;
 
@@ -21,7 +21,8 @@ const FIGURE_3_SIGMA_DEG: f64 = 6.0;
 /// A run that fails, or nothing to plot.
 pub fn figures(setting: &Setting<'_>, report: &CyclicReport) -> Result<Vec<(String, RgbImage)>> {
     let mut all = Vec::new();
-    for (name, angle) in SHOWN {
+    for (name, column) in SHOWN {
+        let angle = COLUMNS[1..].iter().position(|other| *other == column).unwrap_or_default();
         let title = format!("Figure 3: {name}, sigma 6 degrees, two cycles");
         let curves = trajectories(setting, angle)?;
         all.push((
