@@ -11,8 +11,9 @@ enum { FRAMES = 300, LINES = 240, COLUMNS = 320, EXCEPTIONS = 16, SYSTICK = 15 }
 /* SysTick's control, reload and value, and the place of the vector table. */
 static volatile uint32_t *const SYST = (volatile uint32_t *)0xE000E010U;
 static volatile uint32_t *const VTOR = (volatile uint32_t *)0xE000ED08U;
-/* Ticks of 40 ns between interrupts: 3750 instructions of 64 ns, so that a step is broken into about twelve times. A
- * refused call takes nearly half of that; where it took more, the program would never run. */
+/* Ticks of 40 ns between interrupts: 3750 instructions of 64 ns, so that a step is broken into
+ * about twelve times. A refused call takes nearly half of that; where it took more, the program
+ * would never run. */
 enum { RELOAD = 6000 };
 
 static uint64_t memory[2][SINEW_CYCLIC_MAX_BYTES / sizeof(uint64_t)];

@@ -353,7 +353,8 @@ pub fn write(model: &MotionModel<'_>, bytes: &mut [u8]) -> Option<usize> {
     write_numbers(&ModelHeader::of(model), &model.parts().tables(), model, bytes)
 }
 
-/// Writes the part of `model` that the phase-coupled filter reads, as [`write()`] writes a whole one.
+/// Writes the part of `model` that the phase-coupled filter reads, as [`write()`] writes a whole
+/// one.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
