@@ -60,6 +60,13 @@ pub fn of_pose(angles_rad: &[Option<f64>; ANGLES]) -> [Option<f64>; COUNT] {
     found
 }
 
+/// A moment: the index of the frame before it, and the share of the way to the next one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Place {
+    index: usize,
+    share: f64,
+}
+
 /// Anatomical angles over time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AnatomicalSeries {
@@ -98,15 +105,27 @@ impl AnatomicalSeries {
     /// beside it; `None` where one of these is not there or lacks the angle.
     #[must_use]
     pub fn at(&self, angle: usize, frame: f64) -> Option<f64> {
+        self.between(angle, self.place(frame)?)
+    }
+
+    /// Where a moment lies, for all angles; `None` where a frame beside it is not there.
+    pub(super) fn place(&self, frame: f64) -> Option<Place> {
         let below = frame.floor();
         let index = self.index_of(below as u64).filter(|_| below >= 0.0)?;
-        let here = self.angles_deg[index][angle]?;
         let share = frame - below;
         if share < 1.0e-9 {
+            return Some(Place { index, share: 0.0 });
+        }
+        (*self.frames.get(index + 1)? == below as u64 + 1).then_some(Place { index, share })
+    }
+
+    /// As [`Self::at`], of a place.
+    pub(super) fn between(&self, angle: usize, Place { index, share }: Place) -> Option<f64> {
+        let here = self.angles_deg[index][angle]?;
+        if share == 0.0 {
             return Some(here);
         }
-        let next = (*self.frames.get(index + 1)? == below as u64 + 1).then(|| self.angles_deg[index + 1][angle])??;
-        Some(here + share * (next - here))
+        Some(here + share * (self.angles_deg[index + 1][angle]? - here))
     }
 
     fn index_of(&self, frame: u64) -> Option<usize> {

@@ -1,6 +1,6 @@
 //! Curves over the cycle, 0 to 100 %: mean and spread over all cycles.
 
-use super::angles::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT};
+use super::angles::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT, Place};
 use serde::Serialize;
 
 /// Points of a curve: each whole percent, both ends included.
@@ -30,11 +30,16 @@ impl CycleCurves {
     /// from the turn in which the cycle starts.
     #[must_use]
     pub fn new(series: &AnatomicalSeries, cycles: &[[f64; 2]]) -> Self {
+        let places: Vec<Vec<Option<Place>>> = (0..POINTS)
+            .map(|percent| {
+                let share = percent as f64 / (POINTS - 1) as f64;
+                cycles.iter().map(|&[start, end]| series.place(start + share * (end - start))).collect()
+            })
+            .collect();
         let curve = |angle: usize| {
             let turns_deg = |&[start, end]: &[f64; 2]| Some(whole_turns_deg(first_in(series, angle, start, end)?));
-            let turned = cycles.iter().filter_map(|cycle| Some((*cycle, turns_deg(cycle)?)));
-            let turned: Vec<([f64; 2], f64)> = turned.collect();
-            (0..POINTS).map(|percent| point(series, &turned, angle, percent)).collect()
+            let turns_deg: Vec<Option<f64>> = cycles.iter().map(turns_deg).collect();
+            places.iter().map(|places| point(series, angle, places, &turns_deg)).collect()
         };
         Self { curves: (0..COUNT).map(curve).collect() }
     }
@@ -66,13 +71,16 @@ impl CycleCurves {
     }
 }
 
-/// A point of a curve over cycles, each with the whole turns that it starts with.
-fn point(series: &AnatomicalSeries, cycles: &[([f64; 2], f64)], angle: usize, percent: usize) -> CyclePointStatistics {
-    let share = percent as f64 / (POINTS - 1) as f64;
-    let value = |&([start, end], turns_deg): &([f64; 2], f64)| {
-        Some(series.at(angle, start + share * (end - start))? - turns_deg)
-    };
-    let values: Vec<f64> = cycles.iter().filter_map(value).collect();
+/// A point of a curve: its place in each cycle, and the whole turns that each cycle starts with.
+fn point(
+    series: &AnatomicalSeries,
+    angle: usize,
+    places: &[Option<Place>],
+    turns_deg: &[Option<f64>],
+) -> CyclePointStatistics {
+    let value =
+        |(place, turns_deg): (&Option<Place>, &Option<f64>)| Some(series.between(angle, (*place)?)? - (*turns_deg)?);
+    let values: Vec<f64> = places.iter().zip(turns_deg).filter_map(value).collect();
     let count = values.len();
     if count == 0 {
         return CyclePointStatistics::default();
