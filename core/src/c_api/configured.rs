@@ -223,11 +223,11 @@ fn the_first_position_and_cadence_can_be_given() {
         assert_eq!(Walker::new(wrong).err(), Some(SinewStatus::OutOfRange));
     }
     assert_eq!(Walker::new(|config| config.struct_bytes -= 1).err(), Some(SinewStatus::StructSize));
-    let told = Walker::new(|config| {
+    let given = Walker::new(|config| {
         (config.has_first_position, config.first_position, config.first_cadence_per_min) = (1, 0.25, 42.0);
     })
     .unwrap();
-    let first = told.step(0, 0);
+    let first = given.step(0, 0);
     assert!((first.cycle_position - 0.25).abs() < 0.05, "{first:?}");
     assert!((first.cadence_per_min - 42.0).abs() < 3.0, "{first:?}");
 }
