@@ -30,7 +30,9 @@ pub fn array<'py, const N: usize>(
     rows: impl ExactSizeIterator<Item = [f64; N]>,
 ) -> Bound<'py, PyArray2<f64>> {
     let count = rows.len();
-    let values: Vec<f64> = rows.flatten().collect();
+    // Room for all at once: `flatten` does not say how many come.
+    let mut values = Vec::with_capacity(count * N);
+    rows.for_each(|row| values.extend_from_slice(&row));
     // As many numbers as `count` rows of N have.
     Array2::from_shape_vec((count, N), values).unwrap_or_default().into_pyarray(py)
 }

@@ -161,10 +161,8 @@ fn answer<'py>(py: Python<'py>, found: &Found) -> PyResult<Bound<'py, PyDict>> {
     answer.set_item("flexion_deg", array_of_options(py, flexions(found).into_iter()))?;
     answer.set_item("sigma_deg", options.sigma_rad.to_degrees())?;
     answer.set_item("doubts", doubts)?;
-    let texts = serde_json::json!({
-        "summary": report.summary, "symmetries": report.symmetries, "gait": report.gait,
-    });
-    answer.set_item("json", texts.to_string())?;
+    let said = serde_json::to_string(&(&report.summary, &report.symmetries, &report.gait));
+    answer.set_item("json", said.map_err(|error| exception(&error.into()))?)?;
     Ok(answer)
 }
 

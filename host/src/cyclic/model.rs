@@ -1,5 +1,6 @@
 //! A motion model that owns its numbers, and lends them to the core's filters.
 
+use self_cell::self_cell;
 use serde::{Deserialize, Serialize};
 use sinew_core::cyclic::model::bytes::{self, ModelHeader};
 use sinew_core::cyclic::{Deviation, ModelError, ModelParts, MotionModel};
@@ -113,11 +114,29 @@ impl ModelNumbers {
     }
 }
 
+self_cell! {
+    /// Numbers that were checked, with what the core's filters borrow of them.
+    struct Checked {
+        owner: ModelNumbers,
+        #[covariant]
+        dependent: MotionModel,
+    }
+
+    impl { Debug, PartialEq }
+}
+
 /// A checked model with its origin.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct CyclicModel {
-    numbers: ModelNumbers,
+    checked: Checked,
     trained_on: TrainedOn,
+}
+
+impl Clone for CyclicModel {
+    fn clone(&self) -> Self {
+        let copy = Self::new(self.numbers().clone(), self.trained_on.clone());
+        copy.expect("the numbers were checked when this model was made")
+    }
 }
 
 impl CyclicModel {
@@ -126,17 +145,13 @@ impl CyclicModel {
     /// # Errors
     /// Those of [`MotionModel::new`].
     pub fn new(numbers: ModelNumbers, trained_on: TrainedOn) -> Result<Self, ModelError> {
-        numbers.view()?;
-        Ok(Self { numbers, trained_on })
+        Ok(Self { checked: Checked::try_new(numbers, ModelNumbers::view)?, trained_on })
     }
 
     /// The model as the core's filters read it.
-    ///
-    /// # Panics
-    /// Never: the numbers were checked when the model was made.
     #[must_use]
     pub fn view(&self) -> MotionModel<'_> {
-        self.numbers.view().expect("the numbers were checked when the model was made")
+        *self.checked.borrow_dependent()
     }
 
     /// The model as firmware reads it ([`sinew_core::cyclic::model::bytes`]), for all filters;
@@ -161,7 +176,7 @@ impl CyclicModel {
     /// The numbers.
     #[must_use]
     pub fn numbers(&self) -> &ModelNumbers {
-        &self.numbers
+        self.checked.borrow_owner()
     }
 
     /// What it was trained on.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,7 +31,7 @@ class CyclicTrack:
     def __init__(
         self, found: dict[str, Any], time_s: FloatArray | None = None, notes: list[str] | None = None
     ) -> None:
-        said = json.loads(found["json"])
+        self._json: str = found["json"]
         self.rate_hz: float = found["rate_hz"]
         """Frames per second."""
         self.frame: npt.NDArray[np.int64] = found["frame"]
@@ -57,18 +58,36 @@ class CyclicTrack:
         """Cycles since the first row, (n,)."""
         self.flexion_deg: dict[str, FloatArray] = dict(zip(FLEXIONS, found["flexion_deg"].T.copy()))
         """Anatomical angles by name, each (n,) degrees; NaN where the joint was never measured."""
-        self.summary: dict[str, Any] = said["summary"]
-        """Cycles, cadence, outliers: ``summary`` of the command's ``--json``."""
-        self.symmetries: list[dict[str, Any]] = said["symmetries"]
-        """Left against right, one entry a joint."""
-        self.gait: dict[str, Any] | None = said["gait"]
-        """Foot strikes, toe-offs, strides and means; None where the feet do not walk or run."""
         self.notes: list[str] = list(notes or [])
         """What a user should know of the recording, one sentence each."""
         self.doubts: list[str] = found["doubts"]
         """What speaks against the recording or the result, one sentence each."""
         self.sigma_deg: float = found["sigma_deg"]
         """Standard deviation of a measured angle that was used, degrees."""
+
+    @cached_property
+    def _said(self) -> list[Any]:
+        """Summary, symmetries and gait: read when one of them is asked for."""
+        said: list[Any] = json.loads(self._json)
+        return said
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """Cycles, cadence, outliers: ``summary`` of the command's ``--json``."""
+        summary: dict[str, Any] = self._said[0]
+        return summary
+
+    @property
+    def symmetries(self) -> list[dict[str, Any]]:
+        """Left against right, one entry a joint."""
+        symmetries: list[dict[str, Any]] = self._said[1]
+        return symmetries
+
+    @property
+    def gait(self) -> dict[str, Any] | None:
+        """Foot strikes, toe-offs, strides and means; None where the feet do not walk or run."""
+        gait: dict[str, Any] | None = self._said[2]
+        return gait
 
     @property
     def cadence_per_min(self) -> float | None:
