@@ -26,9 +26,10 @@ static WALKER: ConstStaticCell<Walker> = ConstStaticCell::new(Walker::empty());
 static CAMERA: ConstStaticCell<Camera> = ConstStaticCell::new(Camera::empty());
 static URGENT: InterruptExecutor = InterruptExecutor::new();
 
-/// Frames of the walker a second. Chosen: the worst step, 3.05 million instructions, ends before
-/// the next frame, and the mean one, 1.72 million, leaves half of the processor to the arm.
-const WALKER_HZ: u64 = 30;
+/// Frames of the walker a second. Chosen: the worst step, 3.07 million instructions of 1.5 cycles,
+/// ends before the next frame, and the mean one, 1.73 million, leaves half of the processor to the
+/// arm.
+const WALKER_HZ: u64 = 25;
 /// Particles of the arm, and most pairs of edge pixels; `docs/firmware_boards.md` has the frames a
 /// second of others.
 const PARTICLES: usize = 10;
