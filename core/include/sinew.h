@@ -730,6 +730,11 @@ typedef struct SinewVisionConfig {
    * Least area of a blob, as a share of the image, 0 to 1.
    */
   float min_area_share;
+  /**
+   * Colours that are judged at the beginning of a frame while another skin is learned; 0 learns
+   * it at once, in the call that gives it.
+   */
+  uint32_t skin_colours_per_frame;
 } SinewVisionConfig;
 
 /**
@@ -1134,7 +1139,8 @@ SinewStatus sinew_vision_init(void *memory,
                               struct SinewVision **vision);
 
 /**
- * Takes over another skin model, from the next line on.
+ * Takes over another skin model, from the next line on, or over some frames where the
+ * configuration has `skin_colours_per_frame`.
  *
  * Caller's duty:
  * `vision` comes from `sinew_vision_init`.
@@ -1156,7 +1162,7 @@ SinewStatus sinew_vision_begin_calibration(struct SinewVision *vision, const str
 
 /**
  * Ends a calibration: adapts the skin of the configuration, or the last one of
- * `sinew_vision_learn_skin`, to what the box showed, takes it over from the next line on, and
+ * `sinew_vision_learn_skin`, to what the box showed, takes it over as that function does, and
  * writes it into `skin`, which may be null.
  *
  * Returns SINEW_STATUS_NO_SAMPLE where no calibration was begun or no line of the box came since,

@@ -9,8 +9,11 @@ use super::cyclic_config::{SinewCyclicConfig, sinew_cyclic_default_config};
 use super::cyclic_frame::SinewCyclicResult;
 use super::status::SinewStatus;
 use super::tests::{Memory, arm_config, arm_frame, arm_lists, model, see, swing, written};
-use super::vision::{SinewVision, sinew_vision_init, sinew_vision_size};
-use super::vision_frame::{SinewVisionConfig, sinew_vision_default_config};
+use super::vision::{
+    SINEW_VISION_STATE_MAX_BYTES, SinewVision, sinew_vision_init, sinew_vision_learn_skin, sinew_vision_restore,
+    sinew_vision_save, sinew_vision_size,
+};
+use super::vision_frame::{SinewSkin, SinewVisionConfig, sinew_vision_default_config};
 use core::ptr::null_mut;
 
 struct Arm {
@@ -181,6 +184,53 @@ fn options_of_the_front_end_are_checked_and_count() {
     assert!(see(vision, 14).1 > 0);
     let (_memory, blind) = front_end(|config| (config.min_area_share, config.new_step) = (0.9, 255.0)).unwrap();
     assert_eq!([see(blind, 10), see(blind, 14)], [(0, 0); 2]);
+}
+
+/// The saved state of a front end.
+fn saved(vision: *mut SinewVision) -> Vec<u8> {
+    let (mut bytes, mut written) = (vec![0; SINEW_VISION_STATE_MAX_BYTES], 0);
+    // SAFETY: the front end was initialised, the buffer is as large as is said.
+    let status = unsafe { sinew_vision_save(vision, bytes.as_mut_ptr(), bytes.len(), &raw mut written) };
+    assert_eq!(status, SinewStatus::Ok);
+    bytes.truncate(written);
+    bytes
+}
+
+#[test]
+#[cfg_attr(miri, ignore = "a whole table takes a minute")]
+fn another_skin_is_learned_at_once_or_frame_by_frame() {
+    // Green skin: the hand of `see` is none.
+    let green = SinewSkin { mean: [0.2, 0.6], covariance: [1e-3, 0.0, 1e-3], threshold: 2.0, min_sum: 100 };
+    let learn = |per_frame| {
+        let (memory, vision) = front_end(|config| config.skin_colours_per_frame = per_frame).unwrap();
+        assert_eq!(see(vision, 10).0, 1);
+        // SAFETY: the front end was initialised, the skin is there.
+        assert_eq!(unsafe { sinew_vision_learn_skin(vision, &raw const green) }, SinewStatus::Ok);
+        (memory, vision)
+    };
+    let frames_with_hand = |vision| (0..100).take_while(|_| see(vision, 10).0 == 1).count();
+    let (_memory, at_once) = learn(0);
+    assert_eq!(frames_with_hand(at_once), 0);
+    // 64 frames judge all 65536 colours, in the order of their numbers; the hand's is a late one.
+    let (_memory, vision) = learn(1024);
+    let frames = frames_with_hand(vision);
+    assert!((32..64).contains(&frames), "{frames}");
+    let state = saved(vision);
+    assert!(state == saved(at_once), "both learned the same");
+    // A state that is saved before the end is that of the end.
+    let (_memory, vision) = learn(1024);
+    assert_eq!(see(vision, 10).0, 1);
+    assert!(saved(vision) == state);
+    assert_eq!(see(vision, 10).0, 0);
+    // A state that is restored ends what was being learned.
+    let (_memory, other) = front_end(|config| config.skin_colours_per_frame = 1024).unwrap();
+    let before = saved(other);
+    // SAFETY: the front end was initialised, skin and state are there.
+    unsafe {
+        assert_eq!(sinew_vision_learn_skin(other, &raw const green), SinewStatus::Ok);
+        assert_eq!(sinew_vision_restore(other, before.as_ptr(), before.len()), SinewStatus::Ok);
+    }
+    assert_eq!(frames_with_hand(other), 100);
 }
 
 struct Walker {

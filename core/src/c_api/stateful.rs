@@ -25,6 +25,9 @@ pub(super) trait Stateful {
         self.reset()
     }
 
+    /// Brings the memory into a state that can be saved.
+    fn before_save(&mut self) {}
+
     /// Adapts the rest of the object to a memory that was restored.
     fn after_restore(&mut self) {}
 }
@@ -56,6 +59,7 @@ pub(super) unsafe fn save_object<T: Handle<Content: Stateful>>(
             object.is_apart(written, 1)?;
             let (buffer, written) = (bytes_mut(buffer, buffer_bytes)?, room(written)?);
             let fingerprint = object.fingerprint();
+            object.before_save();
             written.write(saved_bytes(object.memory()));
             save(T::Content::KIND, fingerprint, object.memory(), buffer)?;
             Ok(())

@@ -41,8 +41,17 @@ pub(super) struct Vision {
     /// The last model that the caller gave.
     trained: GaussianSkin,
     is_in_frame: bool,
+    learning: Slot<Learning>,
     skin: Skin,
     front_end: QvgaFrontEnd,
+}
+
+/// A model that the table learns frame by frame.
+#[derive(Debug, Clone, Copy)]
+struct Learning {
+    model: GaussianSkin,
+    /// The word of the table to go on with.
+    next: usize,
 }
 
 /// Skin of one of the formats, whose number is the first word.
@@ -77,17 +86,17 @@ impl<F: PixelFormat> SkinOf<F> {
         front_end.line(row, line, &self.table);
     }
 
-    /// `trained` adapted to the sample, which the table learns then.
+    /// `trained` adapted to the sample.
     fn adapt(&mut self, trained: &GaussianSkin) -> Result<GaussianSkin, SinewStatus> {
         let sample = self.sample.get().filter(|sample| !sample.is_empty()).ok_or(SinewStatus::NoSample)?;
         let adapted = sample.adapted(trained)?;
-        self.learn(&adapted);
         self.sample = Slot::Empty;
         Ok(adapted)
     }
 
-    fn learn(&mut self, skin: &GaussianSkin) {
-        self.table.learn_words(skin, LEARNED_WORDS);
+    /// Learns until `max_colours` were judged. Returns the word to go on with.
+    fn learn(&mut self, learning: &Learning, max_colours: usize) -> usize {
+        self.table.learn_some(&learning.model, learning.next..LEARNED_WORDS.end, max_colours)
     }
 }
 
@@ -103,8 +112,8 @@ macro_rules! of_any_format {
 }
 
 impl Skin {
-    fn learn(&mut self, skin: &GaussianSkin) {
-        of_any_format!(self, of => of.learn(skin));
+    fn learn(&mut self, learning: &Learning, max_colours: usize) -> usize {
+        of_any_format!(self, of => of.learn(learning, max_colours))
     }
 }
 
@@ -155,7 +164,8 @@ pub unsafe extern "C" fn sinew_vision_init(
     })
 }
 
-/// Takes over another skin model, from the next line on.
+/// Takes over another skin model, from the next line on, or over some frames where the
+/// configuration has `skin_colours_per_frame`.
 ///
 /// # Safety
 /// `vision` comes from `sinew_vision_init`.
@@ -168,7 +178,7 @@ pub unsafe extern "C" fn sinew_vision_learn_skin(vision: *mut SinewVision, skin:
             vision.is_apart(skin, 1)?;
             let trained = given(skin)?.model()?;
             vision.trained = trained;
-            vision.skin.learn(&trained);
+            vision.take_over(&trained);
             Ok(())
         })()
     })
@@ -202,7 +212,7 @@ pub unsafe extern "C" fn sinew_vision_begin_calibration(
 }
 
 /// Ends a calibration: adapts the skin of the configuration, or the last one of
-/// `sinew_vision_learn_skin`, to what the box showed, takes it over from the next line on, and
+/// `sinew_vision_learn_skin`, to what the box showed, takes it over as that function does, and
 /// writes it into `skin`, which may be null.
 ///
 /// Returns SINEW_STATUS_NO_SAMPLE where no calibration was begun or no line of the box came since,
@@ -220,6 +230,7 @@ pub unsafe extern "C" fn sinew_vision_end_calibration(vision: *mut SinewVision, 
             let answer = if skin.is_null() { None } else { Some(room(skin)?) };
             let trained = vision.trained;
             let adapted = of_any_format!(&mut vision.skin, of => of.adapt(&trained))?;
+            vision.take_over(&adapted);
             if let Some(answer) = answer {
                 answer.write(SinewSkin::of(&adapted));
             }
@@ -236,6 +247,8 @@ pub unsafe extern "C" fn sinew_vision_end_calibration(vision: *mut SinewVision, 
 pub unsafe extern "C" fn sinew_vision_begin_frame(vision: *mut SinewVision) -> SinewStatus {
     // SAFETY: the caller's duty.
     status(unsafe { object(vision) }.map(|mut vision| {
+        let max_colours = vision.config.skin_colours_per_frame as usize;
+        vision.learn_some(max_colours);
         vision.front_end.begin_frame();
         vision.is_in_frame = true;
     }))
@@ -319,16 +332,39 @@ impl Stateful for Vision {
         self.front_end.begin(self.config.size(), HandLikelihood::default(), self.config.steps()?)?;
         self.front_end.set_min_area_fraction(self.config.min_area_share()?);
         self.is_in_frame = false;
-        self.skin.learn(&self.config.skin.model()?);
+        self.take_over(&self.config.skin.model()?);
+        self.learn_some(usize::MAX);
         Ok(())
     }
 
+    fn before_save(&mut self) {
+        self.learn_some(usize::MAX);
+    }
+
     fn after_restore(&mut self) {
+        self.learning = Slot::Empty;
         self.forget_frames();
     }
 }
 
 impl Vision {
+    /// Learns `model`: at once, or frame by frame from now on.
+    fn take_over(&mut self, model: &GaussianSkin) {
+        self.learning = Slot::Full(Learning { model: *model, next: LEARNED_WORDS.start });
+        if self.config.skin_colours_per_frame == 0 {
+            self.learn_some(usize::MAX);
+        }
+    }
+
+    /// Goes on with what is learned, until so many colours were judged.
+    fn learn_some(&mut self, max_colours: usize) {
+        let Slot::Full(learning) = &mut self.learning else { return };
+        learning.next = self.skin.learn(learning, max_colours);
+        if learning.next >= LEARNED_WORDS.end {
+            self.learning = Slot::Empty;
+        }
+    }
+
     fn line(&mut self, row: u32, line: &[u16]) -> Answer {
         if !self.is_in_frame {
             return Err(SinewStatus::NoFrame);

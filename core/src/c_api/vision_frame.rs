@@ -67,6 +67,9 @@ pub struct SinewVisionConfig {
     pub known_step: f32,
     /// Least area of a blob, as a share of the image, 0 to 1.
     pub min_area_share: f32,
+    /// Colours that are judged at the beginning of a frame while another skin is learned; 0 learns
+    /// it at once, in the call that gives it.
+    pub skin_colours_per_frame: u32,
 }
 
 /// What a frame showed; all losses zero means that it is exact.
@@ -195,6 +198,7 @@ pub unsafe extern "C" fn sinew_vision_default_config(
             new_step: DEFAULT_NEW_STEP,
             known_step: DEFAULT_KNOWN_STEP,
             min_area_share: DEFAULT_MIN_AREA_FRACTION,
+            skin_colours_per_frame: 0,
         });
     }))
 }

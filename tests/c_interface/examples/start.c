@@ -1,4 +1,5 @@
-/* Starts a program on an emulated Cortex-M4F (QEMU's mps2-an386), and ends the emulator with the program's exit code.
+/* Starts a program on an emulated Cortex-M4F or M33 (QEMU's mps2-an386, mps2-an505), and ends the emulator with the
+ * program's exit code.
  *
  * Standard output and standard error go through semihosting. At the end the most stack that was used is written to standard
  * error. A real part needs its own start-up code instead. */

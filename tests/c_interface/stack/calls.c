@@ -60,6 +60,7 @@ static void vision(uint32_t pixel_format, void (*use)(const SinewVisionResult *,
     SinewSkin skin;
     DONE(sinew_vision_default_config, &config, sizeof config);
     config.pixel_format = pixel_format;
+    config.skin_colours_per_frame = pixel_format == SINEW_PIXEL_RGB565 ? 0 : 1024;
     DONE(sinew_vision_init, vision_memory, sizeof vision_memory, &config, &vision);
     for (int frame = 0; frame < 12; frame++) {
         const SinewBox box = {190, 155, 10, 10};

@@ -13,12 +13,16 @@ use std::sync::LazyLock;
 /// Those that are always packed: for this computer, and for a Cortex-M4F with each way of passing
 /// floats that the emulator then runs; one that the component for ESP-IDF takes.
 const SHORT: [&str; 3] = ["x86_64", "thumbv7em-softfp", "riscv32imc"];
-/// What the emulated Cortex-M4F runs, and the flags that ask for it.
-const EMULATED: [(&str, &str); 4] = [
+/// What the emulated Cortex-M4F runs, or for `thumbv8m.main` the Cortex-M33, and the flags that ask
+/// for it.
+const EMULATED: [(&str, &str); 7] = [
     ("thumbv7em-softfp", "-mcpu=cortex-m4 -mthumb -mfloat-abi=softfp -mfpu=fpv4-sp-d16"),
     ("thumbv7em-hard", "-mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16"),
     ("thumbv7em-soft", "-mcpu=cortex-m4 -mthumb -mfloat-abi=soft"),
     ("thumbv6m", "-mcpu=cortex-m0 -mthumb -mfloat-abi=soft"),
+    ("thumbv8m.main-soft", "-mcpu=cortex-m33 -mthumb -mfloat-abi=soft"),
+    ("thumbv8m.main-softfp", "-mcpu=cortex-m33 -mthumb -mfloat-abi=softfp -mfpu=fpv5-sp-d16"),
+    ("thumbv8m.main-hard", "-mcpu=cortex-m33 -mthumb -mfloat-abi=hard -mfpu=fpv5-sp-d16"),
 ];
 
 /// Name and Rust target of each library of `packaging/libraries.txt`.
@@ -108,9 +112,9 @@ fn expect_walk(output: &[u8]) {
     assert_eq!(String::from_utf8_lossy(output).replace("\r\n", "\n"), expected);
 }
 
-fn emulate(program: &Path) {
+fn emulate(program: &Path, machine: &str) {
     let mut emulator = Command::new("timeout");
-    emulator.args(["120", "qemu-system-arm", "-machine", "mps2-an386", "-nographic", "-monitor", "none"]);
+    emulator.args(["120", "qemu-system-arm", "-machine", machine, "-nographic", "-monitor", "none"]);
     emulator.args(["-serial", "none", "-semihosting-config", "enable=on,target=native", "-kernel"]).arg(program);
     expect_walk(&expect_success(&mut emulator).stdout);
 }
@@ -155,13 +159,15 @@ fn each_float_abi_links_and_runs_in_the_emulator() {
     let mut count = 0;
     for (name, flags) in EMULATED.into_iter().filter(|(name, _)| ARCHIVE.has(name)) {
         let folder = tempfile::tempdir().unwrap();
+        let is_secure = name.starts_with("thumbv8m");
         let definitions = [
             format!("-DSinew_ROOT={}", ARCHIVE.root().display()),
             format!("-DCMAKE_C_FLAGS={flags}"),
             "-DEMULATED=ON".into(),
+            format!("-DSECURE={}", if is_secure { "ON" } else { "OFF" }),
         ];
         let out = build("consumer", folder.path(), Some("arm-none-eabi-gcc"), &definitions);
-        emulate(&out.join("program"));
+        emulate(&out.join("program"), if is_secure { "mps2-an505" } else { "mps2-an386" });
         eprintln!("linked and run: {name}");
         count += 1;
     }
@@ -206,7 +212,10 @@ fn the_module_for_zephyr_links_by_a_stand_in_for_its_build() {
     let flags = format!("-DCMAKE_C_FLAGS={}", EMULATED[0].1);
     let folder = tempfile::tempdir().unwrap();
     let definitions = [format!("-DMODULE={}", ARCHIVE.root().display()), flags];
-    emulate(&build("zephyr_stub", folder.path(), Some("arm-none-eabi-gcc"), &definitions).join("program"));
+    emulate(
+        &build("zephyr_stub", folder.path(), Some("arm-none-eabi-gcc"), &definitions).join("program"),
+        "mps2-an386",
+    );
 }
 
 #[test]

@@ -50,10 +50,10 @@ fn has_target(target: &str) -> bool {
     output.status.success() && Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir()
 }
 
-/// An example's file for `target`: the one that the environment `variable` names, or `file` built
+/// An example's file for `target`: the one that the environment's `variable` names, or `file` built
 /// now in release; `None` without a compiler for it.
-fn example(example: &str, target: &str, variable: &str, file: &str) -> Option<PathBuf> {
-    if let Some(path) = env::var_os(variable) {
+fn example(example: &str, target: &str, variable: Option<&str>, file: &str) -> Option<PathBuf> {
+    if let Some(path) = variable.and_then(env::var_os) {
         return Some(path.into());
     }
     if !has_target(target) {
@@ -94,7 +94,7 @@ fn web_assembly_gives_the_expected_digests() {
     if !found("node") {
         return leave_out("node is missing; install it to run WebAssembly");
     }
-    let Some(module) = example("digest_module", WASM, "SINEW_DIGEST_MODULE", "digest_module.wasm") else {
+    let Some(module) = example("digest_module", WASM, Some("SINEW_DIGEST_MODULE"), "digest_module.wasm") else {
         return leave_out("the compiler lacks wasm32-unknown-unknown: `rustup target add wasm32-unknown-unknown`");
     };
     let counts = [FRAMES, Subject::ALL.len() as u32].map(|number| number.to_string());
@@ -104,19 +104,45 @@ fn web_assembly_gives_the_expected_digests() {
     assert_eq!(text(|_| numbers.next().unwrap()), expected());
 }
 
-#[test]
-fn an_emulated_cortex_m4f_gives_the_expected_digests() {
+/// What an emulated `machine` prints of the program for `target`.
+fn emulated(machine: &str, target: &str, variable: Option<&str>) -> Option<String> {
     if !found("qemu-system-arm") {
-        return leave_out("qemu-system-arm is missing; install it to run firmware");
+        leave_out("qemu-system-arm is missing; install it to run firmware");
+        return None;
     }
-    let Some(image) = example("bare", CORTEX_M4F, "SINEW_DIGEST_IMAGE", "bare") else {
-        return leave_out("the compiler lacks thumbv7em-none-eabihf: `rustup target add thumbv7em-none-eabihf`");
+    let Some(image) = example("bare", target, variable, "bare") else {
+        leave_out(&format!("the compiler lacks {target}: `rustup target add {target}`"));
+        return None;
     };
     // A fault locks the processor up, which ends the emulator with a failure.
     let mut emulator = Command::new("qemu-system-arm");
-    emulator.args(["-machine", "mps2-an386", "-nographic", "-monitor", "none", "-serial", "null"]);
+    emulator.args(["-machine", machine, "-nographic", "-monitor", "none", "-serial", "null"]);
     emulator.args(["-semihosting-config", "enable=on,target=native", "-kernel"]).arg(image);
-    assert_eq!(printed(&mut emulator), expected());
+    Some(printed(&mut emulator))
+}
+
+#[test]
+fn an_emulated_cortex_m4f_gives_the_expected_digests() {
+    let Some(digests) = emulated("mps2-an386", CORTEX_M4F, Some("SINEW_DIGEST_IMAGE")) else { return };
+    assert_eq!(digests, expected());
+}
+
+/// A Cortex-M33 with an FPU, one without, and code for a Cortex-M0, which has neither FPU nor a
+/// division.
+#[test]
+fn other_emulated_processors_give_the_expected_digests() {
+    if env::var_os("SINEW_ALL_TARGETS").is_none() {
+        eprintln!("left out: other processors, some minutes: SINEW_ALL_TARGETS=1 runs them");
+        return;
+    }
+    for (machine, target) in [
+        ("mps2-an505", "thumbv8m.main-none-eabihf"),
+        ("mps2-an386", "thumbv7em-none-eabi"),
+        ("mps2-an385", "thumbv6m-none-eabi"),
+    ] {
+        let Some(digests) = emulated(machine, target, None) else { continue };
+        assert_eq!(digests, expected(), "{target}");
+    }
 }
 
 #[test]

@@ -159,8 +159,9 @@ proptest! {
     #[test]
     fn any_calls_leave_a_front_end_that_can_be_used(
         calls in prop::collection::vec(call(), 1..30), format in 0_u32..3, width in 1_u32..=320, height in 1_u32..=240,
+        skin_colours_per_frame in prop_oneof![Just(0_u32), 1_u32..30_000],
     ) {
-        let (status, camera) = init(&config(width, height, format));
+        let (status, camera) = init(&SinewVisionConfig { skin_colours_per_frame, ..config(width, height, format) });
         prop_assert_eq!(status, SinewStatus::Ok);
         for call in &calls {
             camera.call(call);
