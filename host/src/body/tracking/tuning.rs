@@ -218,6 +218,10 @@ pub struct SmoothingTuning {
     /// Where distances scatter by this much, metres, points go half of the way to their mean.
     pub skin_std_m: f32,
 }
+    /// Standard deviation of a point along its line of sight beyond that across, as a share of the
+    /// measured scatter of neighbours' distances; zero takes both as the same. Guided and modes.
+    pub along_share: f32,
+}
 
 /// The deadband of the reported pose at rest, in all models but the printed ones. With both zero
 /// each frame's mean is reported.
@@ -334,8 +338,9 @@ impl BodyTuning {
     /// # Errors
     /// Names the number that broke a rule.
     pub fn range_smoothing(&self) -> Result<Option<RangeSmoothing>, ParameterError> {
-        let SmoothingTuning { radius_m, skin_std_m } = self.smoothing;
-        (radius_m > 0.0).then(|| RangeSmoothing::new(radius_m, skin_std_m)).transpose()
+        let SmoothingTuning { radius_m, skin_std_m, along_share } = self.smoothing;
+        let smoothing = || RangeSmoothing::new(radius_m, skin_std_m)?.keeping(along_share);
+        (radius_m > 0.0).then(smoothing).transpose()
     }
 }
 
@@ -401,7 +406,7 @@ impl Default for BodyTuning {
                 max_scale_unseen: 2.5,
             },
             deadband: DeadbandTuning { jitter_std_errors: 3.0, jitter_std_m: 0.0075 },
-            smoothing: SmoothingTuning { radius_m: 0.04, skin_std_m: 0.015 },
+            smoothing: SmoothingTuning { radius_m: 0.04, skin_std_m: 0.015, along_share: 0.0 },
             points,
             guided_points: PointTuning {
                 least_effective_share: 0.3,
