@@ -6,7 +6,8 @@ use sinew_core::observation::point_cloud::{BLOCK_POINTS, PointBlock, PointCloud}
 use sinew_core::observation::range_smoothing::{RangeSmoothing, SightLine};
 
 /// Sorts the points in place and returns the blocks in which the core weighs them. With
-/// `smoothing`, distances are averaged first, and blocks have the scatter that it says. Points beyond [`MAX_POINTS`] are left out.
+/// `smoothing`, distances are averaged first, and blocks have the scatter that it says. Points
+/// beyond [`MAX_POINTS`] are left out.
 #[must_use]
 pub fn blocks_of(points_m: &mut [Vec3], smoothing: Option<&RangeSmoothing>) -> Vec<PointBlock> {
     let mut along_std_m = 0.0;

@@ -1,4 +1,5 @@
-//! One tracker on one motion: the PIK paper's measures, PIK (34) and PIK (35), and errors at the joints.
+//! One tracker on one motion: the PIK paper's measures, PIK (34) and PIK (35), and errors at the
+//! joints.
 
 use anyhow::Result;
 use rayon::prelude::*;

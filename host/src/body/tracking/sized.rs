@@ -164,25 +164,11 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         match self.kind {
             BodyModelKind::EndEffector => self.advance(&with_goals(&tuning, goal_std, &goals, root), &frame),
             BodyModelKind::Guided => {
-                let motion = GuidedMotion {
-                    process: &goals,
-                    root: tuning.root.guided_process(),
-                    angle_std_rad_per_sqrt_s: self.angle_std(&tuning.guided.joint_std),
-                    angle_persistence: tuning.guided.angle_persistence,
-                    solver_steps: tuning.guided.solver_steps,
-                    pulling_blocks: tuning.pulling_blocks,
-                };
+                let motion = self.guided(&goals, tuning.guided.solver_steps, tuning.pulling_blocks);
                 self.advance(&motion, &frame)
             }
             BodyModelKind::Modes => {
-                let motion = GuidedMotion {
-                    process: &goals,
-                    root: tuning.root.guided_process(),
-                    angle_std_rad_per_sqrt_s: self.angle_std(&tuning.guided.joint_std),
-                    angle_persistence: tuning.guided.angle_persistence,
-                    solver_steps: tuning.modes.solver_steps,
-                    pulling_blocks: usize::MAX,
-                };
+                let motion = self.guided(&goals, tuning.modes.solver_steps, usize::MAX);
                 self.climb(&motion, &frame)
             }
             BodyModelKind::Angular => {
@@ -226,6 +212,23 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
                 let motion = AngularMotion { root, persistence: 1.0, angle_std_rad_per_sqrt_s, own_velocity: true };
                 self.advance(&motion, &frame)
             }
+        }
+    }
+
+    /// The guided model with so many steps of the solver and blocks that pull.
+    fn guided<'a>(
+        &self,
+        goals: &'a LinearGoals,
+        solver_steps: usize,
+        pulling_blocks: usize,
+    ) -> GuidedMotion<'a, LinearGoals, ANGLES> {
+        GuidedMotion {
+            process: goals,
+            root: self.tuning.root.guided_process(),
+            angle_std_rad_per_sqrt_s: self.angle_std(&self.tuning.guided.joint_std),
+            angle_persistence: self.tuning.guided.angle_persistence,
+            solver_steps,
+            pulling_blocks,
         }
     }
 
