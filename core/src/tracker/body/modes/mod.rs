@@ -15,6 +15,6 @@ mod step;
 #[cfg(test)]
 mod tests;
 
-pub use options::{DEFAULT_MODE_OPTIONS, ModeOptions};
-pub use state::{BodyMode, MAX_MODES, ModeTracker};
+pub use options::{DEFAULT_MODE_OPTIONS, MAX_MODES, ModeOptions};
+pub use state::{BodyMode, ModeTracker};
 pub use step::ModeAdvance;

@@ -1,9 +1,11 @@
 //! Options of the tracker by modes.
 
 use super::super::pace::SpeedScaledNoise;
-use super::state::MAX_MODES;
 use crate::error::{ParameterError, Rule, positive};
 
+/// Explanations that are followed beside each other at most, the leading one included.
+/// Chosen: the leading one, and one for each way in which limbs or the pelvis are mistaken.
+pub const MAX_MODES: usize = 8;
 /// Draws of a limb in a frame at most. Chosen: three gain as much as one.
 pub(super) const MAX_DRAWS: usize = 3;
 

@@ -1,7 +1,8 @@
 //! A tracker by modes as its state is saved.
 
 use super::super::saved::{NUMBER, places};
-use super::state::{BodyMode, MAX_MODES, ModeTracker};
+use super::options::MAX_MODES;
+use super::state::{BodyMode, ModeTracker};
 use crate::saved_state::{SavedState, StateVisitor};
 
 impl<const BONES: usize, const ANGLES: usize> SavedState for BodyMode<BONES, ANGLES> {

@@ -1,7 +1,7 @@
 //! Which modes stay: alike ones are merged, unlikely ones pruned, and the heaviest leads.
 
-use super::options::ModeOptions;
-use super::state::{BodyMode, MAX_MODES};
+use super::options::{MAX_MODES, ModeOptions};
+use super::state::BodyMode;
 use crate::math::{Vec3, max, min};
 use heapless::Vec;
 

@@ -3,15 +3,11 @@
 use super::super::deadband::Deadband;
 use super::super::pace::LimbNoise;
 use super::super::velocity::EstimateVelocity;
-use super::options::ModeOptions;
+use super::options::{MAX_MODES, ModeOptions};
 use crate::error::ParameterError;
 use crate::math::Vec3;
 use crate::pik::motion::BodyParticle;
 use heapless::Vec;
-
-/// Explanations that are followed beside each other at most, the leading one included.
-/// Chosen: the leading one, and one for each way in which limbs or the pelvis are mistaken.
-pub const MAX_MODES: usize = 8;
 
 /// One explanation of a body: the mode of its density, and how it moves.
 ///

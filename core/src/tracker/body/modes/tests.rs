@@ -1,5 +1,7 @@
 //! The tracker by modes on a constructed walk.
 
+use super::super::estimate::BodyEstimate;
+use super::super::frame::BodyFrame;
 use super::options::{DEFAULT_MODE_OPTIONS, ModeOptions};
 use super::select::select;
 use super::state::{BodyMode, ModeTracker};
@@ -15,7 +17,6 @@ use crate::random::Stream;
 use crate::saved_state::{StateKind, restore, save, saved_bytes};
 use crate::skeleton::BodyMeasures;
 use crate::skeleton::full_body::{BODY_ANGLES, BODY_BONES, FOREARMS, SHANKS, body_radii_m, full_body};
-use crate::tracker::body::{BodyEstimate, BodyFrame};
 
 const DT_S: f32 = 1.0 / 15.0;
 
