@@ -49,6 +49,9 @@ pub struct PointBlock {
     pub centre_m: Vec3,
     /// Radius of that sphere, metres.
     pub radius_m: f32,
+    /// Standard deviation of the points along their lines of sight, beyond what they have across
+    /// them, metres; zero where both are the same.
+    pub along_std_m: f32,
 }
 
 impl PointBlock {
@@ -70,6 +73,7 @@ impl PointBlock {
             && coordinates_m.all(|coordinate_m| abs(*coordinate_m) <= 2.0 * MAX_M)
             && is_place(&(self.centre_m * 0.5))
             && (0.0..=4.0 * MAX_M).contains(&self.radius_m)
+            && (0.0..=MAX_M).contains(&self.along_std_m)
     }
 
     fn of(points_m: &[Vec3]) -> Self {
@@ -80,6 +84,7 @@ impl PointBlock {
             count: points_m.len() as u8,
             centre_m: Vec3::zeros(),
             radius_m: 0.0,
+            along_std_m: 0.0,
         };
         let mut last = Vec3::zeros();
         for i in 0..BLOCK_POINTS {
@@ -189,6 +194,24 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
             let _ = self.blocks.push(PointBlock::of(chunk));
         }
         left_out
+    }
+
+    /// All points scatter by `along_std_m` metres along their lines of sight, beyond what they do
+    /// across them.
+    ///
+    /// ```
+    /// use sinew_core::math::Vec3;
+    /// use sinew_core::observation::point_cloud::PointCloud;
+    ///
+    /// let mut cloud = PointCloud::<1>::new();
+    /// let _ = cloud.set(&mut [Vec3::new(0.0, 0.0, 7.0)], &Vec3::zeros());
+    /// cloud.scatter_by(0.16);
+    /// assert_eq!(cloud.blocks()[0].along_std_m, 0.16);
+    /// ```
+    pub fn scatter_by(&mut self, along_std_m: f32) {
+        for block in &mut self.blocks {
+            block.along_std_m = crate::math::clamp(along_std_m, 0.0, MAX_M);
+        }
     }
 
     /// The blocks, in Morton order.

@@ -2,7 +2,7 @@
 
 use super::body_surface::{BodySurface, SeenCapsule};
 use super::point_cloud::{BLOCK_POINTS, PointBlock};
-use crate::math::{max, min, sqrt_branch_free};
+use crate::math::{Vec3, max, min, sqrt_branch_free};
 
 /// The robust metric and its scale.
 ///
@@ -52,11 +52,12 @@ impl PointLikelihood {
         let mut sum = 0.0;
         let mut near = NearCapsules::new();
         for block in blocks {
-            near.find(surface, block, self.outlier_m);
+            let stretch = self.stretch(block);
+            near.find(surface, block, self.outlier_m, stretch);
             let mut least = [tau; BLOCK_POINTS];
             for &index in near.indices() {
                 if let Some(seen) = surface.capsules.get(usize::from(index)) {
-                    lower_to(&mut least, seen, surface, block);
+                    lower_to_stretched(&mut least, seen, surface, block, stretch);
                 }
             }
             for (i, squared) in least.into_iter().enumerate() {
@@ -64,6 +65,67 @@ impl PointLikelihood {
             }
         }
         -sum / (2.0 * self.std_m * self.std_m)
+    }
+}
+
+impl PointLikelihood {
+    /// How many times the variance of a block's points along their lines of sight exceeds that
+    /// across them, less one; zero where both are the same.
+    #[inline]
+    pub(super) fn stretch(&self, block: &PointBlock) -> f32 {
+        let ratio = block.along_std_m / self.std_m;
+        ratio * ratio
+    }
+
+    /// sigma^2 of a residual along the unit vector `normal` of a point that is seen along
+    /// `sight`, over that across the line of sight.
+    #[inline]
+    pub(super) fn variance_ratio(stretch: f32, normal: &Vec3, sight: &Vec3) -> f32 {
+        let along = normal.dot(sight);
+        1.0 + stretch * along * along / max(sight.dot(sight), f32::MIN_POSITIVE)
+    }
+}
+
+/// As [`lower_to`], of points whose variance along their lines of sight is 1 + `stretch` times
+/// that across them. A residual d that has a part a along the line of sight has the variance
+/// sigma^2 (1 + stretch a^2 / d^2), that of its own direction. The distance is in units of the
+/// sigma across.
+#[inline(always)]
+fn lower_to_stretched<const BONES: usize>(
+    least: &mut [f32; BLOCK_POINTS],
+    seen: &SeenCapsule,
+    surface: &BodySurface<BONES>,
+    block: &PointBlock,
+    stretch: f32,
+) {
+    if !(stretch > 0.0) {
+        lower_to(least, seen, surface, block);
+        return;
+    }
+    let v = &seen.across;
+    let line_has_side = v.x != 0.0 || v.y != 0.0 || v.z != 0.0;
+    let radius_m = seen.capsule.radius_m;
+    for i in 0..BLOCK_POINTS {
+        let at = NearAxis::of(seen, surface, block, i);
+        let per_sight = if at.t > 0.5 { seen.per_squared_sight[1] } else { seen.per_squared_sight[0] };
+        let along = at.towards * at.towards * per_sight;
+        let side = at.off[0] * v.x + at.off[1] * v.y + at.off[2] * v.z;
+        let beside = max(at.squared - along, 0.0);
+        let inner = (at.t > 0.0) & (at.t < 1.0) & line_has_side;
+        let is_seen = at.towards >= 0.0;
+        let rho = if is_seen {
+            at.squared
+        } else if inner {
+            side * side
+        } else {
+            beside
+        };
+        let distance = at.squared_to_skin(radius_m, rho);
+        // Of a seen point the residual has the direction of x - p; of a hidden one all of the way
+        // along the line of sight is part of it.
+        let part = if is_seen { along * distance / max(at.squared, f32::MIN_POSITIVE) } else { min(along, distance) };
+        let stretched = distance * distance / max(distance + stretch * part, f32::MIN_POSITIVE);
+        least[i] = min(least[i], stretched);
     }
 }
 
@@ -164,13 +226,24 @@ impl NearestSkin {
     /// The nearest skin of `surface` within `outlier_m` of each point of `block`.
     #[must_use]
     pub fn find<const BONES: usize>(surface: &BodySurface<BONES>, block: &PointBlock, outlier_m: f32) -> Self {
+        Self::find_stretched(surface, block, outlier_m, 0.0)
+    }
+
+    /// As [`Self::find`], in units of the sigma across the line of sight
+    /// ([`PointLikelihood::stretch`]).
+    pub(super) fn find_stretched<const BONES: usize>(
+        surface: &BodySurface<BONES>,
+        block: &PointBlock,
+        outlier_m: f32,
+        stretch: f32,
+    ) -> Self {
         let mut near = NearCapsules::new();
-        near.find(surface, block, outlier_m);
+        near.find(surface, block, outlier_m, stretch);
         let mut nearest = Self { squared_m: [outlier_m * outlier_m; BLOCK_POINTS], capsule: [u8::MAX; BLOCK_POINTS] };
         for &index in near.indices() {
             let Some(seen) = surface.capsules.get(usize::from(index)) else { continue };
             let before = nearest.squared_m;
-            lower_to(&mut nearest.squared_m, seen, surface, block);
+            lower_to_stretched(&mut nearest.squared_m, seen, surface, block, stretch);
             for i in 0..BLOCK_POINTS {
                 if nearest.squared_m[i] < before[i] {
                     nearest.capsule[i] = index;
@@ -200,8 +273,25 @@ impl NearCapsules {
     }
 
     /// Finds the capsules that can lie nearest to a point of `block` and nearer than `outlier_m`.
-    fn find<const BONES: usize>(&mut self, surface: &BodySurface<BONES>, block: &PointBlock, outlier_m: f32) {
-        self.find_or_within(surface, block, outlier_m, |_| 0.0);
+    /// A distance counts `1 + stretch` times less at most.
+    fn find<const BONES: usize>(
+        &mut self,
+        surface: &BodySurface<BONES>,
+        block: &PointBlock,
+        outlier_m: f32,
+        stretch: f32,
+    ) {
+        if stretch > 0.0 {
+            let bounds = surface.distance_bounds(&block.centre_m, block.radius_m);
+            let mut bound = outlier_m * outlier_m;
+            for &most in bounds.max_squared_m2.iter().take(surface.capsules.len()) {
+                bound = min(bound, most);
+            }
+            let bound = sqrt_branch_free(bound * (1.0 + stretch));
+            self.find_or_within(surface, block, outlier_m, |_| bound);
+        } else {
+            self.find_or_within(surface, block, outlier_m, |_| 0.0);
+        }
     }
 
     /// As [`Self::find`], and those that can come nearer to a point than `reach_m` of their bone,
@@ -289,6 +379,43 @@ mod tests {
             prop_assert_eq!(blocks.set(&mut cloud, &Vec3::zeros()).over_capacity, 0);
             let found = f64::from(LIKELIHOOD.log_likelihood(&surface, blocks.blocks()));
             prop_assert!((found / exact - 1.0).abs() < 1.0e-3, "{} instead of {}", found, exact);
+        }
+    }
+
+    /// A forearm across the line of sight, 2 m away. A point 12 cm before it has the scatter along
+    /// the line of sight, one 6 cm beside it has none.
+    #[test]
+    fn scatter_along_the_line_of_sight_widens_what_lies_on_it_alone() {
+        let skeleton = crate::skeleton::ArmGeometry::new(crate::skeleton::Side::Left, 0.3, 0.35).unwrap();
+        let there = posture(&skeleton.skeleton().unwrap(), &Vec3::new(0.0, 0.0, 2.0), &[0.0; 4]);
+        let surface = BodySurface::new(&there, &[0.05, 0.04], Vec3::zeros());
+        let elbow = surface.capsules[1].capsule;
+        let middle = (elbow.start_m + elbow.end_m) * 0.5;
+        let sight = middle / middle.norm();
+        let across = sight.cross(&(elbow.end_m - elbow.start_m)).normalize();
+        let likelihood = PointLikelihood { std_m: 0.05, outlier_m: 0.2 };
+        let cost = |point_m: Vec3, along_std_m: f32| {
+            let mut cloud = PointCloud::<1>::new();
+            let _ = cloud.set(&mut [point_m], &Vec3::zeros());
+            cloud.scatter_by(along_std_m);
+            -likelihood.log_likelihood(&surface, cloud.blocks())
+        };
+        let (before, beside) = (middle - sight * 0.16, middle + across * 0.1);
+        let wanted = |off_m: f32, variance: f32| off_m * off_m / (2.0 * variance);
+        // The forearm leans against the line of sight.
+        let cosine = across.cross(&(elbow.end_m - elbow.start_m)).normalize().dot(&sight).abs();
+        let off_m = 0.16 * cosine - 0.04;
+        let near = |found: f32, wanted: f32| (found - wanted).abs() < 0.05 * wanted;
+        assert!(near(cost(before, 0.0), wanted(off_m, 0.0025)), "{}", cost(before, 0.0));
+        assert!(near(cost(before, 0.1), wanted(off_m, 0.0025 + 0.01 * cosine * cosine)), "{}", cost(before, 0.1));
+        assert!(near(cost(beside, 0.0), wanted(0.06, 0.0025)), "{}", cost(beside, 0.0));
+        assert!(near(cost(beside, 0.1), wanted(0.06, 0.0025)), "{}", cost(beside, 0.1));
+        // Behind it: the edge of the visible skin is the nearest, and most of the way is along.
+        let behind = middle + sight * 0.15;
+        assert!(cost(behind, 0.1) < 0.4 * cost(behind, 0.0), "{} {}", cost(behind, 0.1), cost(behind, 0.0));
+        // Hardly any scatter is as none.
+        for place in [before, beside, behind, middle + Vec3::new(0.05, 0.1, 0.07)] {
+            assert!((cost(place, 1.0e-4) - cost(place, 0.0)).abs() < 1.0e-3 * cost(place, 0.0));
         }
     }
 

@@ -24,7 +24,8 @@ pub fn add_pull<'b, const BONES: usize>(
 ) {
     let weight = share / (likelihood.std_m * likelihood.std_m);
     for block in blocks {
-        let nearest = NearestSkin::find(surface, block, likelihood.outlier_m);
+        let stretch = likelihood.stretch(block);
+        let nearest = NearestSkin::find_stretched(surface, block, likelihood.outlier_m, stretch);
         for i in 0..usize::from(block.count) {
             let Some(seen) = surface.capsules.get(usize::from(nearest.capsule[i])) else { continue };
             let point_m = block.point_m(i);
@@ -34,6 +35,11 @@ pub fn add_pull<'b, const BONES: usize>(
             let way = point_m - skin_m;
             let apart = unit(way).filter(|_| nearest.squared_m[i] > TOUCHING_M * TOUCHING_M);
             let normal = apart.or_else(|| unit(skin_m - axis_m)).unwrap_or_else(Vec3::z);
+            let weight = if stretch > 0.0 {
+                weight / PointLikelihood::variance_ratio(stretch, &normal, &(point_m - surface.camera_m))
+            } else {
+                weight
+            };
             information.add(seen.bone, &skin_m, &normal, way.dot(&normal), weight);
         }
     }
@@ -50,6 +56,18 @@ mod tests {
 
     #[test]
     fn the_pull_is_the_slope_of_the_likelihood() {
+        the_pull_is_the_slope(0.0, 0.0);
+    }
+
+    /// The pull leaves out how the angle between skin and line of sight changes. That adds up where
+    /// points lie to both sides of the skin alike, and is little where they are all before it.
+    #[test]
+    fn so_it_is_of_points_that_scatter_along_their_lines_of_sight() {
+        the_pull_is_the_slope(0.15, 0.06);
+    }
+
+    /// Points are off the skin by `off_m` on the mean and scatter by `along_std_m`, metres.
+    fn the_pull_is_the_slope(along_std_m: f32, off_m: f32) {
         let measures = BodyMeasures::of_height(1.75).unwrap();
         let (skeleton, radii) = (full_body(&measures).unwrap(), body_radii_m(&measures));
         let likelihood = PointLikelihood { std_m: 0.1, outlier_m: 0.3 };
@@ -65,11 +83,12 @@ mod tests {
                 let seen = &surface.capsules[i % surface.capsules.len()];
                 let axis = seen.capsule.start_m + seen.along_m * (0.2 + 0.6 * stream.uniform());
                 // On the side of the camera, off the skin by a few centimetres.
-                axis - unit(axis).unwrap() * (seen.capsule.radius_m + 0.03 * stream.normal())
+                axis - unit(axis).unwrap() * (seen.capsule.radius_m + off_m + 0.03 * stream.normal())
             })
             .collect();
         let mut cloud = PointCloud::<64>::new();
         let _ = cloud.set(&mut points, &Vec3::zeros());
+        cloud.scatter_by(along_std_m);
         let mut information = BodyInformation::none(&there);
         add_pull(&likelihood, &surface, cloud.blocks().iter(), 1.0, &mut information);
         let (mut gradient, mut hessian) = ([0.0; BODY_ANGLES], [[0.0; BODY_ANGLES]; BODY_ANGLES]);

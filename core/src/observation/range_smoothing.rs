@@ -6,8 +6,8 @@
 //! neighbours. The larger the noise, the further it moves. The noise is estimated from the
 //! neighbours; the camera's model is not needed.
 
-use crate::error::{ParameterError, positive};
-use crate::math::{Vec3, abs, clamp, floor, length, max, min, unit};
+use crate::error::{ParameterError, Rule, positive};
+use crate::math::{Vec3, abs, clamp, floor, length, max, min, sqrt, unit};
 use core::cmp::Ordering;
 use heapless::Vec;
 
@@ -89,6 +89,7 @@ pub struct SightLine {
 pub struct RangeSmoothing {
     radius_m: f32,
     skin_std_m: f32,
+    along_share: f32,
 }
 
 /// Where the cloud lies as the camera sees it.
@@ -113,7 +114,22 @@ impl RangeSmoothing {
         Ok(Self {
             radius_m: positive("smoothing radius_m", radius_m)?,
             skin_std_m: positive("smoothing skin_std_m", skin_std_m)?,
+            along_share: 0.0,
         })
+    }
+
+    /// Points keep this share of the measured scatter of their neighbours' distances, less the
+    /// skin's own, as a standard deviation along their lines of sight. Means over neighbours have
+    /// less scatter, but share it with them.
+    ///
+    /// # Errors
+    /// A share that is below zero or not finite.
+    pub fn keeping(mut self, along_share: f32) -> Result<Self, ParameterError> {
+        if !(along_share >= 0.0 && along_share.is_finite()) {
+            return Err(ParameterError::new("smoothing along_share", Rule::NotNegative));
+        }
+        self.along_share = along_share;
+        Ok(self)
     }
 
     /// Moves `points_m`, metres, along their lines of sight from the camera at `camera_m`.
@@ -121,8 +137,11 @@ impl RangeSmoothing {
     /// `lines` is working memory; points beyond its length stay. So do points that are not finite,
     /// at the camera, or more than a right angle off the cloud's middle. The result does not depend
     /// on the order of the points.
-    pub fn smooth(&self, points_m: &mut [Vec3], camera_m: &Vec3, lines: &mut [SightLine]) {
-        let Some(view) = self.view(points_m, camera_m) else { return };
+    ///
+    /// Gives the standard deviation of a point along its line of sight, beyond that across, metres
+    /// ([`Self::keeping`]).
+    pub fn smooth(&self, points_m: &mut [Vec3], camera_m: &Vec3, lines: &mut [SightLine]) -> f32 {
+        let Some(view) = self.view(points_m, camera_m) else { return 0.0 };
         let mut count = 0;
         for (index, point_m) in points_m.iter().enumerate() {
             if let (Some(line), Some(slot)) = (view.line(index, point_m), lines.get_mut(count)) {
@@ -135,7 +154,7 @@ impl RangeSmoothing {
         let noise_m = noise_m(lines, view.reach);
         let share = noise_m * noise_m / (noise_m * noise_m + self.skin_std_m * self.skin_std_m);
         if !(share > 0.0) {
-            return;
+            return 0.0;
         }
         let gate_m = GATE_SIGMAS * core::f32::consts::SQRT_2 * noise_m;
         let mut first_in_reach = [0; 3];
@@ -146,6 +165,7 @@ impl RangeSmoothing {
                 *point_m = view.camera_m + (*point_m - view.camera_m) * moved;
             }
         }
+        self.along_share * sqrt(max(noise_m * noise_m - self.skin_std_m * self.skin_std_m, 0.0))
     }
 
     fn view(&self, points_m: &[Vec3], camera_m: &Vec3) -> Option<View> {
@@ -251,12 +271,12 @@ mod tests {
     use crate::random::Stream;
     use proptest::prelude::*;
 
-    const SMOOTHING: RangeSmoothing = RangeSmoothing { radius_m: 0.04, skin_std_m: 0.015 };
+    const SMOOTHING: RangeSmoothing = RangeSmoothing { radius_m: 0.04, skin_std_m: 0.015, along_share: 0.0 };
 
     fn smoothed(points_m: &[Vec3], camera_m: &Vec3) -> std::vec::Vec<Vec3> {
         let mut points_m = points_m.to_vec();
         let mut lines = std::vec![SightLine::default(); points_m.len()];
-        SMOOTHING.smooth(&mut points_m, camera_m, &mut lines);
+        let _ = SMOOTHING.smooth(&mut points_m, camera_m, &mut lines);
         points_m
     }
 
@@ -309,7 +329,7 @@ mod tests {
         assert!(after_m[..500] != points_m[..500], "and the others are smoothed all the same");
         // Room for fewer lines than there are points: the first ones are smoothed.
         let mut short_m = points_m.clone();
-        SMOOTHING.smooth(&mut short_m, &Vec3::zeros(), &mut [SightLine::default(); 400]);
+        let _ = SMOOTHING.smooth(&mut short_m, &Vec3::zeros(), &mut [SightLine::default(); 400]);
         assert!(short_m[400..500] == points_m[400..500] && short_m[..400] != points_m[..400]);
     }
 

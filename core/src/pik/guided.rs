@@ -187,10 +187,57 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
     }
 }
 
+/// Where a guided model takes an ancestor before any point is seen: PIK (12) with the goals' means
+/// and their whole spread.
+#[derive(Debug, Clone)]
+pub(crate) struct GuidedPrior<const ANGLES: usize> {
+    goals: Goals,
+    /// The expected pose.
+    pub(crate) expected_rad: [f32; ANGLES],
+    stiffness: [f32; ANGLES],
+}
+
+impl<const ANGLES: usize> GuidedPrior<ANGLES> {
+    /// The density of poses of `skeleton`.
+    pub(crate) fn density<'a, const BONES: usize>(
+        &'a self,
+        skeleton: &'a Skeleton<BONES, ANGLES>,
+    ) -> PoseDensity<'a, BONES, ANGLES> {
+        let (goals, previous_rad, stiffness) = (&self.goals, self.expected_rad, self.stiffness);
+        PoseDensity { skeleton, root_m: Vec3::zeros(), goals, previous_rad, stiffness, held: 0 }
+    }
+}
+
 impl<P, const ANGLES: usize> GuidedMotion<'_, P, ANGLES> {
+    /// What is expected of `ancestor` in this frame.
+    pub(crate) fn prior<const BONES: usize>(
+        &self,
+        past: &FramePast<'_, BONES, ANGLES>,
+        ancestor: &BodyParticle<BONES, ANGLES>,
+        memory: &mut GoalMemory,
+        stream: &mut Stream,
+    ) -> GuidedPrior<ANGLES>
+    where
+        P: GoalProcess<BONES>,
+    {
+        let skeleton = &past.scene.skeleton;
+        let mut goals = Goals::new();
+        self.process.expect(&past.goals_of(ancestor), memory, stream, &mut goals);
+        let mut expected_rad = ancestor.angles_rad;
+        for (i, angle) in expected_rad.iter_mut().enumerate() {
+            *angle += past.change(i, self.angle_persistence);
+        }
+        let mut stiffness = stiffness(&past.angle_std_rad(&self.angle_std_rad_per_sqrt_s));
+        for i in 0..skeleton.root_coordinates() {
+            let std = self.root.std(i, past.dt_s);
+            stiffness[i] = if std > 0.0 { 1.0 / (std * std) } else { HELD_STIFFNESS };
+        }
+        GuidedPrior { goals, expected_rad: skeleton.clamp(expected_rad), stiffness }
+    }
+
     /// Whether the limb of an end-effector is fast or unseen, so that it may be farther from where
     /// it is expected than points reach.
-    fn is_any_loose<const BONES: usize>(&self, past: &FramePast<'_, BONES, ANGLES>) -> bool
+    pub(crate) fn is_any_loose<const BONES: usize>(&self, past: &FramePast<'_, BONES, ANGLES>) -> bool
     where
         P: GoalProcess<BONES>,
     {
@@ -214,19 +261,8 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         stream: &mut Stream,
     ) -> Proposed<BONES, ANGLES> {
         let skeleton = &past.scene.skeleton;
-        let mut goals = Goals::new();
-        self.process.expect(&past.goals_of(ancestor), memory, stream, &mut goals);
-        let mut previous_rad = ancestor.angles_rad;
-        for (i, angle) in previous_rad.iter_mut().enumerate() {
-            *angle += past.change(i, self.angle_persistence);
-        }
-        let previous_rad = skeleton.clamp(previous_rad);
-        let mut stiffness = stiffness(&past.angle_std_rad(&self.angle_std_rad_per_sqrt_s));
-        for i in 0..skeleton.root_coordinates() {
-            let std = self.root.std(i, past.dt_s);
-            stiffness[i] = if std > 0.0 { 1.0 / (std * std) } else { HELD_STIFFNESS };
-        }
-        let prior = PoseDensity { skeleton, root_m: Vec3::zeros(), goals: &goals, previous_rad, stiffness, held: 0 };
+        let prior = self.prior(past, ancestor, memory, stream);
+        let prior = prior.density(skeleton);
         let stride = past.blocks.len().div_ceil(self.pulling_blocks.max(1)).max(1);
         let first = stream.below(stride as u32) as usize;
         let pulling = past.blocks.get(first..).unwrap_or_default();

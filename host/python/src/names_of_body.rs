@@ -24,6 +24,7 @@ pub const OF_BODY: [(&str, &str); 21] = [
     ("rate_hz has to be", "`rate_hz` has to be"),
     ("--body whole", "part=\"whole\""),
     ("--body upper", "part=\"upper\""),
+    ("--model modes", "model=\"modes\""),
     ("--model pelvic-lift", "model=\"pelvic-lift\""),
     (" (--init)", " (`first_pose`)"),
     ("another --out", "another folder"),

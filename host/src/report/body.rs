@@ -94,6 +94,8 @@ fn tell_what_was_run(run: &mut Run, report: &Value) {
     let centimetres = |field: &str| Some(format!("{:.2} cm", 100.0 * report[field].as_f64()?));
     run.highlights.extend(centimetres("error_m").map(|value| Fact::new("Error on the skin", value)));
     run.highlights.extend(centimetres("joint_error_m").map(|value| Fact::new("Error at the joints", value)));
+    let lost = report["lost_joint_share"].as_f64().map(|share| format!("{:.1} %", 100.0 * share));
+    run.highlights.extend(lost.map(|value| Fact::new("Frames with a joint over 10 cm off", value)));
     let step = report["seconds_per_step"].as_f64().map(|seconds| format!("{:.1} ms", 1000.0 * seconds));
     run.highlights.extend(step.map(|value| Fact::new("One step", value)));
     let share = report["effective_share"].as_f64().map(|share| format!("{:.0} %", 100.0 * share));

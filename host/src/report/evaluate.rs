@@ -79,7 +79,7 @@ struct Measure {
     reading: &'static str,
 }
 
-const MEASURES: [Measure; 4] = [
+const MEASURES: [Measure; 5] = [
     Measure {
         column: "error_m",
         title: "Error on the skin",
@@ -93,6 +93,13 @@ const MEASURES: [Measure; 4] = [
         y_label: "error, m",
         half: None,
         reading: "Mean distance of the joints from the true ones.",
+    },
+    Measure {
+        column: "lost_joint_share",
+        title: "Lost joints",
+        y_label: "share of frames",
+        half: None,
+        reading: "Share of the frames that have a joint more than 10 cm off.",
     },
     Measure {
         column: "smoothness_m",

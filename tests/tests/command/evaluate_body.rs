@@ -30,6 +30,8 @@ fn one_command_writes_report_table_and_figures() {
             assert!(mean > 0.0 && mean < 1.0, "{measured}: {mean}");
             assert!(cell[measured]["std"].is_number() && cell[measured]["ci95"].is_number());
         }
+        let lost = cell["lost_joint_share"]["mean"].as_f64().unwrap();
+        assert!((0.0..=1.0).contains(&lost), "{lost}");
         assert!(cell["truth_smoothness_m"].as_f64().unwrap() > 0.0);
         assert!(cell["seconds_per_frame"].as_f64().unwrap() > 0.0);
     }

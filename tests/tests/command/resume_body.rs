@@ -154,6 +154,7 @@ fn every_model_goes_on() {
     ] {
         scene.resumes(&scene.options(model, false), &[&[5]]);
     }
+    scene.resumes(&BodyTrackOptions { particles: 8, ..scene.options(BodyModelKind::Modes, false) }, &[&[5]]);
 }
 
 #[test]

@@ -145,6 +145,11 @@ fn assert_sound(path: &Path) {
 }
 
 #[test]
+fn more_modes_than_there_are_is_refused() {
+    Scene::new("stick-wave").refuses(&["--model", "modes"], &["--particles has to be from 1 to 8 with --model modes"]);
+}
+
+#[test]
 fn every_model_writes_all_its_files() {
     let scene = Scene::new("stick-wave");
     for model in ["guided", "end-effector", "angular", "stick", "pelvic-lift", "end-effector-paper", "angular-paper"] {

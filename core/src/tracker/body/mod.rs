@@ -75,6 +75,7 @@ mod estimate;
 mod expect;
 mod frame;
 mod mean_rotation;
+pub mod modes;
 mod observed;
 mod options;
 mod pace;

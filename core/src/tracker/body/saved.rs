@@ -9,9 +9,9 @@ use core::ops::RangeInclusive;
 
 /// Any number of a state. Chosen: refuses a corrupt state, never a tracked one, and squares of such
 /// numbers are far from the greatest `f32`.
-const NUMBER: RangeInclusive<f32> = -1.0e9..=1.0e9;
+pub(super) const NUMBER: RangeInclusive<f32> = -1.0e9..=1.0e9;
 
-fn places(values: &mut [Vec3], visitor: &mut impl StateVisitor) {
+pub(super) fn places(values: &mut [Vec3], visitor: &mut impl StateVisitor) {
     for value in values {
         visitor.reals(value.as_mut_slice(), &NUMBER);
     }

@@ -22,6 +22,11 @@ const MIN_DT_S: f32 = 1.0e-4;
 /// Longest time between two frames, seconds. Chosen: the pose is unknown after it.
 const MAX_DT_S: f32 = 10.0;
 
+/// Time since the frame before within its bounds, seconds.
+pub(super) fn frame_time_s(frame: &BodyFrame<'_>) -> f32 {
+    if frame.dt_s.is_finite() { clamp(frame.dt_s, MIN_DT_S, MAX_DT_S) } else { MIN_DT_S }
+}
+
 impl<const BONES: usize, const ANGLES: usize, const N: usize, S> BodyTracker<BONES, ANGLES, N, S>
 where
     S: AsRef<[BodyParticle<BONES, ANGLES>]> + AsMut<[BodyParticle<BONES, ANGLES>]>,
@@ -53,7 +58,7 @@ where
         self.frame += 1;
         let offset = Stream::new(self.seed, self.frame, RESAMPLING_STREAM).uniform();
         systematic(self.weights.normalised(), offset, &mut self.ancestors);
-        let dt_s = if frame.dt_s.is_finite() { clamp(frame.dt_s, MIN_DT_S, MAX_DT_S) } else { MIN_DT_S };
+        let dt_s = frame_time_s(frame);
         let is_usable = frame.blocks.iter().all(PointBlock::is_usable);
         let frame = &BodyFrame { dt_s, blocks: if is_usable { frame.blocks } else { &[] } };
         let limbs = Limbs::of(&scene.skeleton);

@@ -54,6 +54,8 @@ pub struct BodyResult {
     pub recorded_floor_m: Option<f64>,
     /// Joints from the true ones, metres.
     pub joint_error_m: Measured,
+    /// Share of frames that have a joint more than 10 cm off.
+    pub lost_joint_share: Measured,
     /// Eq. (35), metres a frame.
     pub smoothness_m: Measured,
     /// Eq. (35) of the truth, metres a frame.
@@ -100,9 +102,14 @@ impl BodyReport {
     /// Mean error over all motions of a model and count, metres; `None` where it was not measured.
     #[must_use]
     pub fn mean_error_m(&self, model: BodyModelKind, particles: usize) -> Option<f64> {
-        let of_it = |cell: &&BodyResult| cell.model == model && cell.particles == particles;
-        let errors: Vec<f64> = self.results.iter().filter(of_it).map(|cell| cell.error_m.mean).collect();
-        (!errors.is_empty()).then(|| errors.iter().sum::<f64>() / errors.len() as f64)
+        self.mean_of((model, particles), |cell| cell.error_m.mean)
+    }
+
+    /// Mean over all motions of what `value` reads of a model and count.
+    fn mean_of(&self, of: (BodyModelKind, usize), value: fn(&BodyResult) -> f64) -> Option<f64> {
+        let of_it = |cell: &&BodyResult| (cell.model, cell.particles) == of;
+        let values: Vec<f64> = self.results.iter().filter(of_it).map(value).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
     /// Counts that were measured with `model`, ascending.
@@ -132,13 +139,13 @@ impl BodyReport {
     #[must_use]
     pub fn to_csv(&self) -> String {
         let mut text = String::from(
-            "motion,model,particles,error_m,error_std_m,error_ci95_m,joint_error_m,smoothness_m,truth_smoothness_m,seconds_per_frame\n",
+            "motion,model,particles,error_m,error_std_m,error_ci95_m,joint_error_m,lost_joint_share,smoothness_m,truth_smoothness_m,seconds_per_frame\n",
         );
         for cell in &self.results {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
-                "{},{},{},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5}",
+                "{},{},{},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5}",
                 cell.motion,
                 cell.model.name(),
                 cell.particles,
@@ -146,6 +153,7 @@ impl BodyReport {
                 cell.error_m.std,
                 cell.error_m.ci95,
                 cell.joint_error_m.mean,
+                cell.lost_joint_share.mean,
                 cell.smoothness_m.mean,
                 cell.truth_smoothness_m,
                 cell.seconds_per_frame
@@ -154,31 +162,52 @@ impl BodyReport {
         text
     }
 
-    /// Mean error over the motions in centimetres, a row a model, a column a count.
+    /// Tables of the means over the motions, a row a model, a column a count: errors on the skin
+    /// and at the joints, lost joints, smoothness.
     #[must_use]
     pub fn to_text(&self) -> String {
+        let mut text = String::new();
+        self.add_means(&mut text, "mean error over the motions, cm, PIK (34)", |cell| 100.0 * cell.error_m.mean);
+        self.add_means(&mut text, "mean error at the joints, cm", |cell| 100.0 * cell.joint_error_m.mean);
+        self.add_means(&mut text, "frames with a joint more than 10 cm off, %", |cell| {
+            100.0 * cell.lost_joint_share.mean
+        });
+        self.add_means(&mut text, "smoothness over the truth's, PIK (35)", |cell| {
+            cell.smoothness_m.mean / cell.truth_smoothness_m
+        });
+        self.add_notes(&mut text);
+        text
+    }
+
+    /// The table of one measure.
+    fn add_means(&self, text: &mut String, title: &str, value: fn(&BodyResult) -> f64) {
         let mut models: Vec<BodyModelKind> = self.results.iter().map(|cell| cell.model).collect();
         models.sort_unstable();
         models.dedup();
         let mut counts: Vec<usize> = self.results.iter().map(|cell| cell.particles).collect();
         counts.sort_unstable();
         counts.dedup();
-        let mut text = String::from("mean error over the motions, cm, PIK (34)\nparticles         ");
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{title}\nparticles         ");
         for count in &counts {
             let _ = write!(text, "{count:>8}");
         }
         for model in models {
             let _ = write!(text, "\n{:18}", model.name());
             for &count in &counts {
-                match self.mean_error_m(model, count) {
-                    Some(error_m) => {
-                        let _ = write!(text, "{:8.2}", 100.0 * error_m);
+                match self.mean_of((model, count), value) {
+                    Some(mean) => {
+                        let _ = write!(text, "{mean:8.2}");
                     }
                     None => text.push_str("       -"),
                 }
             }
         }
         text.push('\n');
+    }
+
+    /// What is no table: recorded markers, hidden arms, notes.
+    fn add_notes(&self, text: &mut String) {
         for cell in &self.results {
             if let (Some(error_m), Some(floor_m)) = (cell.recorded_error_m, cell.recorded_floor_m) {
                 let (model, error_cm, floor_cm) = (cell.model.name(), 100.0 * error_m.mean, 100.0 * floor_m);
@@ -192,11 +221,10 @@ impl BodyReport {
         if let Some(count) = self.angular_equals_end_effector_250 {
             let _ = writeln!(text, "angular needs {count:.0} particles for the error of end-effector with 250");
         }
-        text += &hidden_arm::to_text(&self.hidden_arm_summaries);
+        *text += &hidden_arm::to_text(&self.hidden_arm_summaries);
         for note in &self.notes {
             let _ = writeln!(text, "note: {note}");
         }
-        text
     }
 }
 
@@ -221,7 +249,8 @@ mod tests {
             error_m: Measured::of(&[error]),
             recorded_error_m: None,
             recorded_floor_m: None,
-            joint_error_m: Measured::of(&[error]),
+            joint_error_m: Measured::of(&[2.0 * error]),
+            lost_joint_share: Measured::of(&[0.25]),
             smoothness_m: Measured::of(&[0.01]),
             truth_smoothness_m: 0.01,
             seconds_per_frame: 0.01,
@@ -244,6 +273,12 @@ mod tests {
         let found = report.particles_for(BodyModelKind::Angular, 0.06).unwrap();
         assert!((found - 1000.0).abs() < 1.0e-6, "{found}");
         assert_eq!(report.particles_for(BodyModelKind::Angular, 0.03), None);
-        assert!(report.to_text().contains("8.00"));
+        let text = report.to_text();
+        for (title, wanted) in
+            [("PIK (34)", "8.00"), ("at the joints", "16.00"), ("10 cm off", "25.00"), ("(35)", "1.00")]
+        {
+            let table = text.split_once(title).unwrap().1;
+            assert!(table.lines().nth(2).unwrap().contains(wanted), "{title}: {text}");
+        }
     }
 }

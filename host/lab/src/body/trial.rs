@@ -1,4 +1,5 @@
-//! One tracker on one motion: the PIK paper's measures (PIK (34) and PIK (35)).
+//! One tracker on one motion: the PIK paper's measures, PIK (34) and PIK (35), and errors at the
+//! joints.
 
 use anyhow::Result;
 use rayon::prelude::*;
@@ -15,7 +16,7 @@ use sinew_core::kinematics::forward::posture;
 use sinew_core::math::Vec3;
 use sinew_core::observation::body_surface::BodySurface;
 use sinew_core::pik::processes::stick::StickSight;
-use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BODY_PARENTS, body_radii_m, full_body};
+use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BODY_PARENTS, PELVIS, body_radii_m, full_body};
 use std::time::Instant;
 
 /// A motion as one camera saw it, ready for any number of trials.
@@ -100,6 +101,21 @@ impl SeenMotion {
     }
 }
 
+/// A person nearer than this is near, metres.
+///
+/// Chosen: from here on the simulated camera's distances scatter by less than a limb's thickness
+/// after smoothing.
+pub const NEAR_M: f32 = 6.0;
+
+/// Errors at the joints of a person who is near.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct NearErrors {
+    /// Mean distance of the joints from the true ones, metres.
+    pub joint_error_m: f64,
+    /// Share of frames that have a joint more than 10 cm off.
+    pub lost_joint_share: f64,
+}
+
 /// What a trial measured.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TrialResult {
@@ -109,6 +125,10 @@ pub struct TrialResult {
     pub recorded_error_m: Option<f64>,
     /// Mean distance of the joints from the true ones, metres.
     pub joint_error_m: f64,
+    /// Share of frames that have a joint more than 10 cm off.
+    pub lost_joint_share: f64,
+    /// Both of the frames in which the true pelvis is nearer than [`NEAR_M`]; absent where none is.
+    pub near: Option<NearErrors>,
     /// Mean length that the start of a bone goes in a frame, PIK (35), metres.
     pub smoothness_m: f64,
     /// Wall time of the tracker's step with what is done to the points before it, seconds a frame.
@@ -142,9 +162,12 @@ pub fn trial(
         seconds += start.elapsed().as_secs_f64();
     }
     let frames = estimates.len().max(1) as f64;
-    let mut score = BodyScore::default();
+    let (mut score, mut near) = (BodyScore::default(), BodyScore::default());
     for (estimate, (joints, markers)) in estimates.iter().zip(motion.joints_m.iter().zip(&motion.markers_m).skip(1)) {
         let _ = score.add(&filter, estimate, joints, markers);
+        if joints[PELVIS].is_some_and(|pelvis_m| pelvis_m.norm() < NEAR_M) {
+            let _ = near.add(&filter, estimate, joints, &[]);
+        }
     }
     let mut recorded = BodyScore::default();
     for (estimate, markers) in estimates.iter().zip(motion.recorded_markers_m.iter().skip(1)) {
@@ -154,12 +177,18 @@ pub fn trial(
         error_m: score.marker_m.mean().unwrap_or(0.0),
         recorded_error_m: recorded.marker_m.mean(),
         joint_error_m: score.joint_m.mean().unwrap_or(0.0),
+        lost_joint_share: score.lost.mean().unwrap_or(0.0),
+        near: near_errors(&near),
         smoothness_m: smoothness_m(motion.part, estimates.iter().map(|estimate| estimate.ends_m.map(Some))),
         seconds_per_frame: seconds / frames,
         effective_share: estimates.iter().map(|e| f64::from(e.effective_sample_size)).sum::<f64>()
             / (frames * particles as f64),
     };
     Ok((result, estimates))
+}
+
+fn near_errors(near: &BodyScore) -> Option<NearErrors> {
+    Some(NearErrors { joint_error_m: near.joint_m.mean()?, lost_joint_share: near.lost.mean()? })
 }
 
 /// Eq. (35) from the second frame on: the mean over bones of how far a_l, the bone's start, goes in

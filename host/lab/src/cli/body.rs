@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use serde_json::json;
 use sinew::body::BodyPart;
 use sinew::body::run::tuning_file;
-use sinew::body::tracking::stream_options::check_part;
+use sinew::body::tracking::stream_options::{check_modes, check_part};
 use sinew::body::tracking::{BodyModelKind, BodyTuning, MAX_BODY_PARTICLES};
 use sinew::cli::console::Console;
 use sinew::output::OutputDir;
@@ -116,6 +116,9 @@ fn check(args: &EvaluateBodyArgs) -> Result<()> {
     }
     for &model in &args.models {
         check_part(args.body, model)?;
+        for &count in &args.particles {
+            check_modes(model, count)?;
+        }
     }
     ensure!(args.heading.is_finite(), "--heading has to be finite");
     ensure!(args.hide_arms != Some(0), "--hide-arms must be greater than zero");
@@ -222,6 +225,7 @@ fn cell(
         recorded_error_m: recorded.map(|errors| Measured::of(&errors)),
         recorded_floor_m: seen.first().map(SeenMotion::recorded_floor_m).transpose()?.flatten(),
         joint_error_m: of(|trial| trial.joint_error_m),
+        lost_joint_share: of(|trial| trial.lost_joint_share),
         smoothness_m: of(|trial| trial.smoothness_m),
         truth_smoothness_m: *truth_smoothness_m,
         seconds_per_frame: of(|trial| trial.seconds_per_frame).mean,

@@ -7,6 +7,7 @@ mod cyclic;
 mod hands;
 pub mod markdown;
 pub mod page;
+mod runners;
 mod skin;
 
 use anyhow::Result;
@@ -50,7 +51,7 @@ pub struct Table {
 }
 
 /// All tables that have a maker.
-pub const TABLES: [Table; 15] = [
+pub const TABLES: [Table; 16] = [
     Table {
         name: "arm-hands",
         page: "measurements_arm.md",
@@ -103,6 +104,13 @@ pub const TABLES: [Table; 15] = [
         cost: Cost::Long,
         recordings: Some("mocap"),
         rows: body::hidden,
+    },
+    Table {
+        name: "body-runners",
+        page: "measurements_body.md",
+        cost: Cost::Long,
+        recordings: Some("mocap"),
+        rows: runners::runners,
     },
     Table {
         name: "cyclic-errors",

@@ -34,10 +34,11 @@ class BodyTracker:
     part : {"whole", "upper"}
         How much of the body is tracked; ``"upper"`` for a camera that sees no legs.
     model : str
-        How particles move: ``"guided"``, ``"end-effector"``, ``"angular"``, ``"stick"``,
-        ``"pelvic-lift"``, ``"end-effector-paper"`` or ``"angular-paper"``.
+        How particles move: ``"guided"``, ``"modes"``, ``"end-effector"``, ``"angular"``,
+        ``"stick"``, ``"pelvic-lift"``, ``"end-effector-paper"`` or ``"angular-paper"``.
     particles : int, optional
-        Number of particles; 50 of guided and 500 of the others where not given.
+        Number of particles; 50 of guided, 8 of modes (the most that are followed) and
+        500 of the others where not given.
     seed : int
         Seed of all that is random.
     rate_hz : float

@@ -49,6 +49,7 @@ impl BodyTrackRun {
         self.report.seconds_per_step = self.step_s / self.report.frames_finished.max(1) as f64;
         self.report.effective_share = self.effective_share.mean().unwrap_or(0.0);
         (self.report.error_m, self.report.joint_error_m) = (self.score.marker_m.mean(), self.score.joint_m.mean());
+        self.report.lost_joint_share = self.score.lost.mean();
         self.report.state_crc32 = self.stream.state_crc32()?;
         let mut files = self.motion_files()?;
         files.push(finished_table(self.table)?);

@@ -1,7 +1,7 @@
 //! What decides the result of a run.
 
 use crate::body::BodyPart;
-use crate::body::tracking::stream_options::{check_particles, check_rate, check_threads};
+use crate::body::tracking::stream_options::{check_modes, check_particles, check_rate, check_threads};
 use crate::body::tracking::{BodyModelKind, BodyStreamOptions, BodyTuning};
 use crate::error::{Result, ensure_option};
 use serde::Serialize;
@@ -78,6 +78,7 @@ impl BodyTrackOptions {
     /// Names the option and its range.
     pub fn check(&self) -> Result<()> {
         check_particles(self.particles)?;
+        check_modes(self.model, self.particles)?;
         check_threads(self.threads)?;
         if let Some(rate_hz) = self.rate_hz {
             check_rate("--rate", rate_hz)?;

@@ -71,6 +71,8 @@ pub struct BodyRunReport {
     pub error_m: Option<f64>,
     /// Mean distance of the joints from the true ones, from the second frame on, metres.
     pub joint_error_m: Option<f64>,
+    /// Share of those frames that have a joint more than 10 cm off.
+    pub lost_joint_share: Option<f64>,
     /// How many points there were.
     pub points: PointCounts,
     /// Clouds that could not be read; their rows are predictions.
@@ -107,6 +109,7 @@ impl BodyRunReport {
             state_crc32: 0,
             error_m: None,
             joint_error_m: None,
+            lost_joint_share: None,
             points: PointCounts::default(),
             skipped: Vec::new(),
             notes: inputs.notes.clone(),
@@ -147,6 +150,9 @@ impl BodyRunReport {
                 text,
                 "  error against the truth: {error_cm:.2} cm on the skin, {joint_error_cm:.2} cm at joints"
             );
+        }
+        if let Some(share) = self.lost_joint_share {
+            let _ = writeln!(text, "  frames with a joint more than 10 cm off: {:.1} %", 100.0 * share);
         }
         text
     }

@@ -1,4 +1,4 @@
-//! How far a track is from the truth by PIK (34).
+//! How far a track is from the truth: on the skin by PIK (34), at the joints, and lost joints.
 
 use crate::body::BodyJoints;
 use crate::body::tracking::BodyFilter;
@@ -26,6 +26,12 @@ impl RunningMean {
     }
 }
 
+/// A joint farther than this from its true place is lost, metres.
+///
+/// Chosen: the width of a shank; PIK (34) takes the nearest skin of any bone, so that exchanged
+/// legs cost nothing there.
+pub const LOST_JOINT_M: f64 = 0.10;
+
 /// Errors of the frames so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BodyScore {
@@ -33,6 +39,8 @@ pub struct BodyScore {
     pub marker_m: RunningMean,
     /// Distance of the joints from the true ones, metres.
     pub joint_m: RunningMean,
+    /// One for a frame with a lost joint ([`LOST_JOINT_M`]), zero for one without.
+    pub lost: RunningMean,
 }
 
 impl BodyScore {
@@ -49,13 +57,17 @@ impl BodyScore {
         for marker_m in markers_m.iter().flatten() {
             self.marker_m.add(f64::from(surface.skin_distance_m(marker_m)));
         }
-        let mut frame = RunningMean::default();
+        let (mut frame, mut farthest_m) = (RunningMean::default(), None);
         for (found_m, true_m) in estimate.ends_m.iter().zip(joints_m).take(filter.part().bones()) {
             if let Some(true_m) = true_m {
                 let distance_m = f64::from((found_m - true_m).norm());
                 self.joint_m.add(distance_m);
                 frame.add(distance_m);
+                farthest_m = Some(distance_m.max(farthest_m.unwrap_or(0.0)));
             }
+        }
+        if let Some(farthest_m) = farthest_m {
+            self.lost.add(f64::from(u8::from(farthest_m > LOST_JOINT_M)));
         }
         frame.mean()
     }

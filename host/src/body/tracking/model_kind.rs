@@ -1,6 +1,7 @@
 //! The motion models that the command knows by name.
 
 use serde::{Deserialize, Serialize};
+use sinew_core::tracker::body::modes::MAX_MODES;
 use std::str::FromStr;
 
 /// How particles move from frame to frame.
@@ -13,6 +14,9 @@ pub enum BodyModelKind {
     /// As end-effector, with the points pulling at each pose before it is drawn: for few particles.
     #[default]
     Guided,
+    /// A few hypotheses, each a mode of the guided model's density: the leading one, and limbs
+    /// exchanged or the pelvis turned.
+    Modes,
     /// Each angle goes on by itself: the baseline of the PIK paper.
     Angular,
     /// As end-effector, with both hands on a stick whose ends are known.
@@ -27,9 +31,10 @@ pub enum BodyModelKind {
 
 impl BodyModelKind {
     /// All models, in the order of texts.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::EndEffector,
         Self::Guided,
+        Self::Modes,
         Self::Angular,
         Self::Stick,
         Self::PelvicLift,
@@ -37,10 +42,14 @@ impl BodyModelKind {
         Self::AngularPaper,
     ];
 
-    /// Default number of particles.
+    /// Default number of particles, or of modes.
     #[must_use]
     pub fn default_particles(self) -> usize {
-        if self == Self::Guided { 50 } else { 500 }
+        match self {
+            Self::Guided => 50,
+            Self::Modes => MAX_MODES,
+            _ => 500,
+        }
     }
 
     /// Whether it is a model with the settings that the paper prints, which sees the points as they
@@ -56,6 +65,7 @@ impl BodyModelKind {
         match self {
             Self::EndEffector => "end-effector",
             Self::Guided => "guided",
+            Self::Modes => "modes",
             Self::Angular => "angular",
             Self::Stick => "stick",
             Self::PelvicLift => "pelvic-lift",

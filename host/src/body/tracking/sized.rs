@@ -20,8 +20,10 @@ use sinew_core::pik::processes::paper_extrapolation::PaperGoals;
 use sinew_core::pik::processes::pelvic_lift::FixedGoals;
 use sinew_core::pik::processes::stick::{StickGoals, StickSight};
 use sinew_core::pik::root::RootProcess;
+use sinew_core::saved_state::{SavedState, StateVisitor};
 use sinew_core::skeleton::Skeleton;
 use sinew_core::skeleton::full_body::{FOREARMS, HEAD};
+use sinew_core::tracker::body::modes::ModeTracker;
 use sinew_core::tracker::body::{BodyEstimate, BodyFrame, BodyTracker};
 
 /// End-effectors of the PIK paper (section 7.1.2): head and hands.
@@ -52,6 +54,22 @@ pub(super) struct SeenFrame<'a> {
     pub floor_y_m: f32,
 }
 
+/// The core's tracker by particles, or by modes.
+#[derive(Debug, Clone)]
+pub(super) enum AnyTracker<const BONES: usize, const ANGLES: usize> {
+    Particles(Box<Tracker<BONES, ANGLES>>),
+    Modes(Box<ModeTracker<BONES, ANGLES>>),
+}
+
+impl<const BONES: usize, const ANGLES: usize> SavedState for AnyTracker<BONES, ANGLES> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        match self {
+            Self::Particles(tracker) => tracker.visit(visitor),
+            Self::Modes(tracker) => tracker.visit(visitor),
+        }
+    }
+}
+
 /// A body of one size, tracked.
 #[derive(Debug, Clone)]
 pub(super) struct SizedFilter<const BONES: usize, const ANGLES: usize> {
@@ -61,7 +79,9 @@ pub(super) struct SizedFilter<const BONES: usize, const ANGLES: usize> {
     coordinates: [usize; ANGLES],
     goals: LinearGoals,
     fit_trunk: bool,
-    tracker: Tracker<BONES, ANGLES>,
+    tracker: AnyTracker<BONES, ANGLES>,
+    /// The poses of the modes and their weights; not read of a tracker by particles.
+    modes: (Vec<Particle<BONES, ANGLES>>, Vec<f32>),
 }
 
 impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
@@ -96,22 +116,43 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         let options = tuning.options(kind);
         let fit_trunk = options.alignment.is_some_and(|alignment| alignment.fit_trunk);
         let set = vec![first; particles];
-        let tracker = Tracker::new(&first, (set.clone(), set), options, seed)?;
-        Ok(Self { kind, tuning, scene, coordinates: body.coordinates, goals, fit_trunk, tracker })
+        let tracker = match kind {
+            BodyModelKind::Modes => {
+                AnyTracker::Modes(Box::new(ModeTracker::new(&first, tuning.mode_options(particles), seed)?))
+            }
+            _ => AnyTracker::Particles(Box::new(Tracker::new(&first, (set.clone(), set.clone()), options, seed)?)),
+        };
+        let weights = vec![1.0 / particles as f32; particles];
+        Ok(Self {
+            kind,
+            tuning,
+            scene,
+            coordinates: body.coordinates,
+            goals,
+            fit_trunk,
+            tracker,
+            modes: (set, weights),
+        })
     }
 
     /// The particles after the last step.
     pub fn particles(&self) -> &[Particle<BONES, ANGLES>] {
-        self.tracker.particles()
+        match &self.tracker {
+            AnyTracker::Particles(tracker) => tracker.particles(),
+            AnyTracker::Modes(_) => &self.modes.0,
+        }
     }
 
     /// Their weights.
     pub fn weights(&self) -> &[f32] {
-        self.tracker.weights()
+        match &self.tracker {
+            AnyTracker::Particles(tracker) => tracker.weights(),
+            AnyTracker::Modes(_) => &self.modes.1,
+        }
     }
 
     /// The core's tracker, whose state is saved.
-    pub fn tracker_mut(&mut self) -> &mut Tracker<BONES, ANGLES> {
+    pub fn tracker_mut(&mut self) -> &mut AnyTracker<BONES, ANGLES> {
         &mut self.tracker
     }
 
@@ -123,15 +164,12 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         match self.kind {
             BodyModelKind::EndEffector => self.advance(&with_goals(&tuning, goal_std, &goals, root), &frame),
             BodyModelKind::Guided => {
-                let motion = GuidedMotion {
-                    process: &goals,
-                    root: tuning.root.guided_process(),
-                    angle_std_rad_per_sqrt_s: self.angle_std(&tuning.guided.joint_std),
-                    angle_persistence: tuning.guided.angle_persistence,
-                    solver_steps: tuning.guided.solver_steps,
-                    pulling_blocks: tuning.pulling_blocks,
-                };
+                let motion = self.guided(&goals, tuning.guided.solver_steps, tuning.pulling_blocks);
                 self.advance(&motion, &frame)
+            }
+            BodyModelKind::Modes => {
+                let motion = self.guided(&goals, tuning.modes.solver_steps, usize::MAX);
+                self.climb(&motion, &frame)
             }
             BodyModelKind::Angular => {
                 let angle_std_rad_per_sqrt_s = self.angle_std(&tuning.angular.joint_std);
@@ -177,6 +215,23 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         }
     }
 
+    /// The guided model with so many steps of the solver and blocks that pull.
+    fn guided<'a>(
+        &self,
+        goals: &'a LinearGoals,
+        solver_steps: usize,
+        pulling_blocks: usize,
+    ) -> GuidedMotion<'a, LinearGoals, ANGLES> {
+        GuidedMotion {
+            process: goals,
+            root: self.tuning.root.guided_process(),
+            angle_std_rad_per_sqrt_s: self.angle_std(&self.tuning.guided.joint_std),
+            angle_persistence: self.tuning.guided.angle_persistence,
+            solver_steps,
+            pulling_blocks,
+        }
+    }
+
     /// The noise of each coordinate; the trunk's own where it is fitted to the points.
     fn angle_std(&self, joints: &JointStd) -> [f32; ANGLES] {
         let trunk = if self.fit_trunk { self.tuning.root.trunk_std_rad } else { joints.trunk };
@@ -190,10 +245,36 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         motion: &M,
         frame: &BodyFrame<'_>,
     ) -> BodyEstimate<BONES, ANGLES> {
-        self.tracker.step_with(&self.scene, motion, frame, |advance, particles| {
+        let AnyTracker::Particles(tracker) = &mut self.tracker else {
+            unreachable!("models but the modes have particles")
+        };
+        tracker.step_with(&self.scene, motion, frame, |advance, particles| {
             particles.par_iter_mut().enumerate().for_each(|(index, slot)| advance.particle(index, slot));
         })
     }
+
+    /// The core's step by modes, its starts shared out over the threads of the current pool.
+    fn climb(
+        &mut self,
+        motion: &GuidedMotion<'_, LinearGoals, ANGLES>,
+        frame: &BodyFrame<'_>,
+    ) -> BodyEstimate<BONES, ANGLES> {
+        let AnyTracker::Modes(tracker) = &mut self.tracker else { unreachable!("modes have a tracker of their own") };
+        let estimate = tracker.step_with(&self.scene, motion, frame, |advance, starts| {
+            starts.par_iter_mut().for_each(|start| advance.climb(start));
+        });
+        self.modes = poses_and_weights(tracker);
+        estimate
+    }
+}
+
+/// The poses of the modes, and weights that sum to one.
+fn poses_and_weights<const BONES: usize, const ANGLES: usize>(
+    tracker: &ModeTracker<BONES, ANGLES>,
+) -> (Vec<Particle<BONES, ANGLES>>, Vec<f32>) {
+    let weights: Vec<f32> = tracker.modes().iter().map(|mode| sinew_core::math::exp(mode.log_weight)).collect();
+    let sum: f32 = weights.iter().sum();
+    (tracker.modes().iter().map(|mode| mode.pose).collect(), weights.iter().map(|weight| weight / sum).collect())
 }
 
 /// The end-effectors of a body of `bones` bones.

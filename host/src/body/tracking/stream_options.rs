@@ -7,6 +7,7 @@ use crate::body::BodyPart;
 use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::error::{Result, ensure, ensure_option};
 use serde::{Deserialize, Serialize};
+use sinew_core::tracker::body::modes::MAX_MODES;
 
 /// Slowest and fastest rate of frames, Hz.
 pub const RATES_HZ: [f32; 2] = [0.1, 1000.0];
@@ -60,6 +61,7 @@ impl BodyStreamOptions {
         check_threads(self.threads)?;
         check_rate("--rate", self.rate_hz)?;
         check_part(self.part, self.model)?;
+        check_modes(self.model, self.particles)?;
         let is_finite = self.floor_y_m.is_none_or(f32::is_finite);
         ensure_option!(is_finite, "`floor_y_m` has to be finite");
         Ok(())
@@ -74,6 +76,18 @@ pub fn check_particles(particles: usize) -> Result<()> {
     ensure_option!(
         (1..=MAX_BODY_PARTICLES).contains(&particles),
         "--particles has to be from 1 to {MAX_BODY_PARTICLES}, not {particles}"
+    );
+    Ok(())
+}
+
+/// Checks a number of modes, where `model` has them.
+///
+/// # Errors
+/// Names the option and its range.
+pub fn check_modes(model: BodyModelKind, particles: usize) -> Result<()> {
+    ensure_option!(
+        model != BodyModelKind::Modes || particles <= MAX_MODES,
+        "--particles has to be from 1 to {MAX_MODES} with --model modes, not {particles}"
     );
     Ok(())
 }

@@ -9,6 +9,7 @@ use sinew_core::observation::range_smoothing::RangeSmoothing;
 use sinew_core::pik::goal::LinearExtrapolation;
 use sinew_core::pik::root::{NO_PLANES, RootProcess};
 use sinew_core::skeleton::full_body::BODY_ANGLES;
+use sinew_core::tracker::body::modes::{DEFAULT_MODE_OPTIONS, ModeOptions};
 use sinew_core::tracker::body::{BodyOptions, RootAlignment, SpeedScaledNoise};
 
 /// Standard deviations of angles after one second, by the joint they belong to; radians by root
@@ -217,6 +218,25 @@ pub struct SmoothingTuning {
     pub radius_m: f32,
     /// Where distances scatter by this much, metres, points go half of the way to their mean.
     pub skin_std_m: f32,
+    /// Standard deviation of a point along its line of sight beyond that across, as a share of the
+    /// measured scatter of neighbours' distances; zero takes both as the same. Guided and modes.
+    pub along_share: f32,
+}
+
+/// Numbers of the tracker by modes; its density is the guided model's.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModesTuning {
+    /// Maximum number of steps of the solver.
+    pub solver_steps: usize,
+    /// Share of a frame's log evidence that counts.
+    pub evidence_share: f32,
+    /// Log evidence that a rival has to gain before it leads.
+    pub switch_cost: f32,
+    /// How far the pelvis of some rivals is turned, radians.
+    pub turn_rad: f32,
+    /// How often in a frame each limb is begun anew from a drawn pose.
+    pub draws: usize,
 }
 
 /// The deadband of the reported pose at rest, in all models but the printed ones. With both zero
@@ -242,6 +262,8 @@ pub struct BodyTuning {
     pub draw: DrawTuning,
     /// Guided.
     pub guided: GoalTuning,
+    /// Modes.
+    pub modes: ModesTuning,
     /// Blocks of points that pull in the guided model.
     pub pulling_blocks: usize,
     /// Angular.
@@ -303,7 +325,7 @@ impl BodyTuning {
     /// How the model `kind` weighs its points, and how its goals move.
     pub(super) const fn points_and_goals(&self, kind: BodyModelKind) -> (PointTuning, GoalTuning) {
         match kind {
-            BodyModelKind::Guided => (self.guided_points, self.guided),
+            BodyModelKind::Guided | BodyModelKind::Modes => (self.guided_points, self.guided),
             _ => (self.points, self.end_effector),
         }
     }
@@ -317,7 +339,7 @@ impl BodyTuning {
             BodyModelKind::Angular | BodyModelKind::AngularPaper => self.angular.acceleration_share,
             _ => goals.acceleration_share,
         };
-        let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::PelvicLift);
+        let is_aligned = !matches!(kind, BodyModelKind::Guided | BodyModelKind::Modes | BodyModelKind::PelvicLift);
         BodyOptions {
             least_effective_share: points.least_effective_share,
             limb_by_limb: points.limb_by_limb,
@@ -329,13 +351,22 @@ impl BodyTuning {
         }
     }
 
+    /// The core's options of the tracker that follows at most `max_modes` modes.
+    #[must_use]
+    pub fn mode_options(&self, max_modes: usize) -> ModeOptions {
+        let ModesTuning { evidence_share, switch_cost, turn_rad, draws, .. } = self.modes;
+        let (jitter_std_m, pace) = (self.deadband.jitter_std_m, Some(self.pace));
+        ModeOptions { max_modes, evidence_share, switch_cost, turn_rad, draws, jitter_std_m, pace }
+    }
+
     /// How points are smoothed; `None` where they are taken as they are.
     ///
     /// # Errors
     /// Names the number that broke a rule.
     pub fn range_smoothing(&self) -> Result<Option<RangeSmoothing>, ParameterError> {
-        let SmoothingTuning { radius_m, skin_std_m } = self.smoothing;
-        (radius_m > 0.0).then(|| RangeSmoothing::new(radius_m, skin_std_m)).transpose()
+        let SmoothingTuning { radius_m, skin_std_m, along_share } = self.smoothing;
+        let smoothing = || RangeSmoothing::new(radius_m, skin_std_m)?.keeping(along_share);
+        (radius_m > 0.0).then(smoothing).transpose()
     }
 }
 
@@ -371,6 +402,15 @@ const GUIDED_GOALS: GoalTuning = GoalTuning {
     solver_steps: 3,
 };
 
+/// The tracker by modes, chosen on the runners that docs/body_modes.md names.
+const MODES: ModesTuning = ModesTuning {
+    solver_steps: 4,
+    evidence_share: DEFAULT_MODE_OPTIONS.evidence_share,
+    switch_cost: DEFAULT_MODE_OPTIONS.switch_cost,
+    turn_rad: DEFAULT_MODE_OPTIONS.turn_rad,
+    draws: DEFAULT_MODE_OPTIONS.draws,
+};
+
 impl Default for BodyTuning {
     fn default() -> Self {
         let points = PointTuning { std_m: 0.07, outlier_m: 0.10, least_effective_share: 0.06, limb_by_limb: true };
@@ -390,6 +430,7 @@ impl Default for BodyTuning {
             end_effector: GOALS,
             draw: DrawTuning { corrects_weight: false, share: 0.62 },
             guided: GUIDED_GOALS,
+            modes: MODES,
             pulling_blocks: 64,
             angular: AngularTuning { persistence: 0.55, acceleration_share: 0.35, joint_std: ANGULAR_JOINTS },
             pace: SpeedScaledNoise {
@@ -401,7 +442,7 @@ impl Default for BodyTuning {
                 max_scale_unseen: 2.5,
             },
             deadband: DeadbandTuning { jitter_std_errors: 3.0, jitter_std_m: 0.0075 },
-            smoothing: SmoothingTuning { radius_m: 0.04, skin_std_m: 0.015 },
+            smoothing: SmoothingTuning { radius_m: 0.04, skin_std_m: 0.015, along_share: 0.0 },
             points,
             guided_points: PointTuning {
                 least_effective_share: 0.3,

@@ -1,0 +1,48 @@
+//! Runners before the simulated camera, by several seeds of the tracker and clouds of the camera.
+//!
+//! A runner's clip begins 8 to 11 m away, where distances scatter by more than a limb's thickness.
+//! One seed or one cloud proves nothing there: joint errors of one clip differ by a factor of
+//! three.
+
+use super::motions::ReadMotion;
+use super::trial::{SeenMotion, TrialResult, trial};
+use anyhow::Result;
+use rayon::prelude::*;
+use sinew::body::BodyPart;
+use sinew::body::tracking::{BodyModelKind, BodyTuning};
+
+/// Runners that numbers may be chosen on, in the folder of motions.
+pub const TUNING: [&str; 3] =
+    ["bandai/dataset-2_run_active_001.bvh", "cmu-expmap/train_running_1.txt", "cmu-expmap/train_running_2.txt"];
+/// Runners that are reported on; nothing is chosen on them.
+pub const REPORT: [&str; 3] =
+    ["bandai/dataset-2_run_active_002.bvh", "bandai/dataset-2_run_exhausted_001.bvh", "cmu-expmap/train_running_3.txt"];
+
+/// Seeds of the camera and of the tracker, from 1 on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Seeds {
+    /// Clouds of the camera.
+    pub clouds: u64,
+    /// Trackers on each cloud.
+    pub trackers: u64,
+}
+
+/// The trials of one motion and model, cloud by cloud, in parallel; and PIK (35) of the truth,
+/// metres a frame.
+///
+/// # Errors
+/// A motion that makes no scene; a parameter of the tracker that broke a rule.
+pub fn runs(
+    motion: &ReadMotion,
+    (model, particles): (BodyModelKind, usize),
+    tuning: &BodyTuning,
+    seeds: Seeds,
+) -> Result<(Vec<TrialResult>, f64)> {
+    let seen: Vec<SeenMotion> =
+        (1..=seeds.clouds).into_par_iter().map(|cloud| motion.seen(BodyPart::Whole, cloud)).collect::<Result<_>>()?;
+    let pairs: Vec<(&SeenMotion, u64)> =
+        seen.iter().flat_map(|seen| (1..=seeds.trackers).map(move |seed| (seen, seed))).collect();
+    let one = |&(seen, seed): &(&SeenMotion, u64)| Ok(trial(seen, model, tuning, particles, seed)?.0);
+    let trials = pairs.par_iter().map(one).collect::<Result<_>>()?;
+    Ok((trials, seen.first().map_or(0.0, SeenMotion::smoothness_m)))
+}

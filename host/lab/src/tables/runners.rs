@@ -1,0 +1,64 @@
+//! Runners before the simulated stereo camera.
+
+use super::markdown::{Rows, line};
+use crate::body::MotionChoice;
+use crate::body::runners::{REPORT, Seeds, runs};
+use crate::body::trial::TrialResult;
+use anyhow::{Context, Result, anyhow};
+use sinew::body::tracking::{BodyModelKind, BodyTuning};
+use std::path::Path;
+
+/// Seeds of a cell. Chosen: the table takes ten minutes.
+const SEEDS: Seeds = Seeds { clouds: 3, trackers: 2 };
+/// Particles of the guided model.
+const PARTICLES: usize = 50;
+/// Shares of the scatter along lines of sight, and the model's name with each.
+const SHARES: [(f32, &str); 2] = [(0.0, "guided, 50"), (0.5, "the same, `along_share = 0.5`")];
+
+pub fn runners(recordings: &Path) -> Result<Rows> {
+    let mocap = recordings.join("mocap");
+    let mut rows = vec![line([
+        "clip",
+        "model",
+        "joints, cm (runs)",
+        "lost, %",
+        "nearer than 6 m: joints, cm",
+        "lost, %",
+        "(34), cm",
+        "(35) over the truth's",
+    ])];
+    for file in REPORT {
+        let path = mocap.join(file);
+        let text = path.to_str().context("the folder's name is no text")?;
+        let choice: MotionChoice = text.parse().map_err(|error: String| anyhow!("{text}: {error}"))?;
+        let read = choice.read(None)?;
+        for (along_share, name) in SHARES {
+            let mut tuning = BodyTuning::default();
+            tuning.smoothing.along_share = along_share;
+            let (trials, truth_m) = runs(&read, (BodyModelKind::Guided, PARTICLES), &tuning, SEEDS)?;
+            rows.push(row(&choice.name(), name, &trials, truth_m));
+        }
+    }
+    Ok(rows)
+}
+
+/// Means over the runs of one clip and model, with the least and the greatest joint error.
+fn row(clip: &str, model: &str, trials: &[TrialResult], truth_m: f64) -> Vec<String> {
+    let mean = |value: &dyn Fn(&TrialResult) -> Option<f64>| {
+        let values: Vec<f64> = trials.iter().filter_map(value).collect();
+        values.iter().sum::<f64>() / values.len().max(1) as f64
+    };
+    let least = trials.iter().map(|trial| trial.joint_error_m).fold(f64::INFINITY, f64::min);
+    let most = trials.iter().map(|trial| trial.joint_error_m).fold(0.0, f64::max);
+    let joints_cm = 100.0 * mean(&|trial| Some(trial.joint_error_m));
+    line([
+        format!("`{clip}`"),
+        model.to_owned(),
+        format!("{joints_cm:.1} ({:.1} to {:.1})", 100.0 * least, 100.0 * most),
+        format!("{:.0}", 100.0 * mean(&|trial| Some(trial.lost_joint_share))),
+        format!("{:.1}", 100.0 * mean(&|trial| Some(trial.near?.joint_error_m))),
+        format!("{:.0}", 100.0 * mean(&|trial| Some(trial.near?.lost_joint_share))),
+        format!("{:.2}", 100.0 * mean(&|trial| Some(trial.error_m))),
+        format!("{:.2}", mean(&|trial| Some(trial.smoothness_m)) / truth_m),
+    ])
+}
