@@ -34,6 +34,15 @@ impl Measured {
     }
 }
 
+/// By how much a ratio lies below one, percent, with its 95 % interval; `log_ratio` is measured in
+/// natural logarithms.
+#[must_use]
+pub fn percent_lower(log_ratio: &Measured) -> (f64, f64, f64) {
+    let percent = |log: f64| 100.0 * (1.0 - log.exp());
+    let Measured { mean, ci95, .. } = *log_ratio;
+    (percent(mean), percent(mean + ci95), percent(mean - ci95))
+}
+
 /// One cell: a model with a number of particles on a motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BodyResult {
@@ -54,6 +63,8 @@ pub struct BodyResult {
     pub recorded_floor_m: Option<f64>,
     /// Joints from the true ones, metres.
     pub joint_error_m: Measured,
+    /// Share of frames with a joint more than 10 cm off.
+    pub far_share: f64,
     /// Eq. (35), metres a frame.
     pub smoothness_m: Measured,
     /// Eq. (35) of the truth, metres a frame.
@@ -222,6 +233,7 @@ mod tests {
             recorded_error_m: None,
             recorded_floor_m: None,
             joint_error_m: Measured::of(&[error]),
+            far_share: 0.0,
             smoothness_m: Measured::of(&[0.01]),
             truth_smoothness_m: 0.01,
             seconds_per_frame: 0.01,

@@ -109,6 +109,8 @@ pub struct TrialResult {
     pub recorded_error_m: Option<f64>,
     /// Mean distance of the joints from the true ones, metres.
     pub joint_error_m: f64,
+    /// Share of frames with a joint more than 10 cm off.
+    pub far_share: f64,
     /// Mean length that the start of a bone goes in a frame, PIK (35), metres.
     pub smoothness_m: f64,
     /// Wall time of the tracker's step with what is done to the points before it, seconds a frame.
@@ -154,6 +156,7 @@ pub fn trial(
         error_m: score.marker_m.mean().unwrap_or(0.0),
         recorded_error_m: recorded.marker_m.mean(),
         joint_error_m: score.joint_m.mean().unwrap_or(0.0),
+        far_share: score.far_share.mean().unwrap_or(0.0),
         smoothness_m: smoothness_m(motion.part, estimates.iter().map(|estimate| estimate.ends_m.map(Some))),
         seconds_per_frame: seconds / frames,
         effective_share: estimates.iter().map(|e| f64::from(e.effective_sample_size)).sum::<f64>()

@@ -225,6 +225,7 @@ fn cell(
         smoothness_m: of(|trial| trial.smoothness_m),
         truth_smoothness_m: *truth_smoothness_m,
         seconds_per_frame: of(|trial| trial.seconds_per_frame).mean,
+        far_share: of(|trial| trial.far_share).mean,
         effective_share: of(|trial| trial.effective_share).mean,
     })
 }

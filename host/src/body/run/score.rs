@@ -33,7 +33,13 @@ pub struct BodyScore {
     pub marker_m: RunningMean,
     /// Distance of the joints from the true ones, metres.
     pub joint_m: RunningMean,
+    /// Share of frames with a joint farther than [`FAR_JOINT_M`] from the true one.
+    pub far_share: RunningMean,
 }
+
+/// A joint farther off counts as lost, metres.
+/// Chosen: twice the 5 cm of accuracy aimed at.
+pub const FAR_JOINT_M: f64 = 0.1;
 
 impl BodyScore {
     /// Compares one frame with its true joints and markers, metres; returns the mean distance of
@@ -49,14 +55,17 @@ impl BodyScore {
         for marker_m in markers_m.iter().flatten() {
             self.marker_m.add(f64::from(surface.skin_distance_m(marker_m)));
         }
-        let mut frame = RunningMean::default();
+        let (mut frame, mut farthest_m) = (RunningMean::default(), 0.0_f64);
         for (found_m, true_m) in estimate.ends_m.iter().zip(joints_m).take(filter.part().bones()) {
             if let Some(true_m) = true_m {
                 let distance_m = f64::from((found_m - true_m).norm());
                 self.joint_m.add(distance_m);
                 frame.add(distance_m);
+                farthest_m = farthest_m.max(distance_m);
             }
         }
-        frame.mean()
+        let mean_m = frame.mean()?;
+        self.far_share.add(f64::from(u8::from(farthest_m > FAR_JOINT_M)));
+        Some(mean_m)
     }
 }
