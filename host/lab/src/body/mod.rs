@@ -5,6 +5,7 @@ pub mod hidden_arm;
 pub mod motions;
 pub mod prediction;
 pub mod report;
+pub mod search;
 pub mod trial;
 
 pub use motions::MotionChoice;
