@@ -20,8 +20,8 @@ const FRAMES: usize = 250;
 /// Numbers of particles.
 const PARTICLES: [usize; 7] = [10, 25, 50, 100, 250, 1000, 5000];
 
-/// Rows that `measure` makes of all scenes, observed with `base`, on threads with room for thousands
-/// of particles.
+/// Rows that `measure` makes of all scenes, observed with `base`, on threads with room for
+/// thousands of particles.
 fn on_scenes(recordings: &Path, base: &Config, measure: fn(&[ObservedScene]) -> Result<Rows>) -> Result<Rows> {
     let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build()?;
     pool.install(|| {
