@@ -13,8 +13,10 @@ use sinew::config::Config;
 use sinew::resume::Cells;
 use sinew::scene::SceneOptions;
 use sinew::skin::SkinModel;
+use sinew_core::observation::hough::HoughSettings;
 use sinew_core::tracker::arm::options::{AreaCue, DEFAULT_AREA_CUE, EstimateRule, LimbCombination};
 use sinew_core::tracker::arm::{ArmOptions, Variant};
+use sinew_core::vision::hand_likelihood::LikelihoodForm;
 
 /// Stack of a worker thread: the trackers with thousands of particles are built there.
 pub const STACK_BYTES: usize = 32 << 20;
@@ -68,8 +70,20 @@ pub fn variants(
     .collect()
 }
 
-/// A tracker as the arm paper prints it: mean of both limbs, no gate, no area cue, no memory, mean
-/// of all particles.
+/// How blobs are ranked as the arm paper prints it: (6) to (9) of the plain blob.
+#[must_use]
+pub fn printed_base() -> Config {
+    let mut base = Config::default();
+    base.likelihood.form = LikelihoodForm::Paper;
+    base
+}
+
+/// The paper keeps no orientation of a limb at rest. The option has to be positive, seconds.
+const NO_ORIENTATION_MEMORY_S: f32 = 1.0e-3;
+
+/// A tracker as the arm paper prints it: mean of both limbs, no gate, no area cue, no memory of
+/// blobs or orientations, every pair of pixels votes in full, mean of all particles. Its blobs are
+/// ranked by [`printed_base`].
 #[must_use]
 pub fn as_printed(variant: Variant, particles: usize) -> ArmOptions {
     ArmOptions {
@@ -81,11 +95,14 @@ pub fn as_printed(variant: Variant, particles: usize) -> ArmOptions {
         depth_from_area: false,
         blob_memory: None,
         estimate: EstimateRule::Mean,
+        orientation_memory_s: NO_ORIENTATION_MEMORY_S,
+        // Two pixels make a line; the distance has to be positive.
+        hough: HoughSettings { min_separation_px: 0.5, min_pixels: 2, doubt_pixels: 0.0, ..HoughSettings::default() },
         ..ArmOptions::default()
     }
 }
 
-/// Three of these trackers on all scenes.
+/// Three of these trackers on all scenes, which [`printed_base`] observed.
 ///
 /// # Errors
 /// As [`row`].

@@ -6,6 +6,7 @@ pub mod motions;
 pub mod prediction;
 pub mod report;
 pub mod runners;
+pub mod search;
 pub mod trial;
 
 pub use motions::MotionChoice;

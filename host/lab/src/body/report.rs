@@ -34,6 +34,15 @@ impl Measured {
     }
 }
 
+/// By how much a ratio lies below one, percent, with its 95 % interval; `log_ratio` is measured in
+/// natural logarithms.
+#[must_use]
+pub fn percent_lower(log_ratio: &Measured) -> (f64, f64, f64) {
+    let percent = |log: f64| 100.0 * (1.0 - log.exp());
+    let Measured { mean, ci95, .. } = *log_ratio;
+    (percent(mean), percent(mean + ci95), percent(mean - ci95))
+}
+
 /// One cell: a model with a number of particles on a motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BodyResult {

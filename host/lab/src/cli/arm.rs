@@ -133,6 +133,9 @@ fn measure(args: &EvaluateArmArgs, skin: &SkinModel, cells: &Cells<'_>) -> Resul
     let base = Config::default();
     let options = SceneOptions { frames: args.frames, ..SceneOptions::default() };
     let scenes: Vec<ObservedScene> = observe_all(&clips, &seeds, &options, &base, skin, cells)?;
+    let as_seen = observe_all(&clips, &seeds, &options, &experiments::printed_base(), skin, cells)?;
+    let as_printed = experiments::printed(&as_seen, cells)?;
+    drop(as_seen);
     let mut effects = experiments::options(&scenes, Variant::Pik, cells)?;
     effects.extend(experiments::options(&scenes, Variant::Corrected, cells)?);
     Ok(Report {
@@ -143,7 +146,7 @@ fn measure(args: &EvaluateArmArgs, skin: &SkinModel, cells: &Cells<'_>) -> Resul
         scenes: scenes.iter().map(|scene| (scene.clip.clone(), scene.seed)).collect(),
         variants: experiments::variants(&scenes, &args.variants, &args.particles, cells)?,
         options: effects,
-        as_printed: experiments::printed(&scenes, cells)?,
+        as_printed,
         recovery: experiments::recovery(&clips, &seeds, &base, skin, cells)?,
     })
 }

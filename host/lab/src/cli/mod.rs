@@ -6,14 +6,17 @@ pub mod arm;
 pub mod body;
 pub mod cyclic;
 pub mod hands;
+pub mod reproduce;
 pub mod skin;
 pub mod tables;
+pub mod tune_pik;
 
 use arm::EvaluateArmArgs;
 use body::EvaluateBodyArgs;
 use clap::{Parser, Subcommand};
 use cyclic::EvaluateCyclicArgs;
 use hands::EvaluateHandsArgs;
+use reproduce::ReproduceArgs;
 use sinew::cli::console::Console;
 use sinew::cli::signals::stop_flag;
 use sinew::output::OutputDir;
@@ -21,6 +24,7 @@ use sinew::resume::{Begun, Cells, Stop};
 use skin::EvaluateSkinArgs;
 use std::sync::atomic::Ordering;
 use tables::TablesArgs;
+use tune_pik::TunePikArgs;
 
 /// What `sinew evaluate ARGS...` starts, as `sinew-lab evaluate ARGS...`: its help names the
 /// former.
@@ -52,6 +56,12 @@ pub enum Command {
     /// Write or check the tables of the book.
     #[command(override_usage = "sinew-lab tables [OPTIONS] [NAME]...")]
     Tables(TablesArgs),
+    /// Make every table and figure of a paper, theirs beside ours.
+    #[command(override_usage = "sinew-lab reproduce <PAPER> --data <DIR> --out <DIR> [--quick]")]
+    Reproduce(ReproduceArgs),
+    /// Search the numbers that the PIK paper leaves open, in the same way for goals and angles.
+    #[command(override_usage = "sinew-lab tune-pik [OPTIONS]")]
+    TunePik(TunePikArgs),
 }
 
 /// What can be evaluated.
@@ -85,6 +95,8 @@ pub fn run(cli: &Cli) -> anyhow::Result<()> {
         #[cfg(feature = "ablation")]
         Command::Ablation(args) => ablation::run(args, console),
         Command::Tables(args) => tables::run(args, console),
+        Command::Reproduce(args) => reproduce::run(args, console),
+        Command::TunePik(args) => tune_pik::run(args, console),
     }
 }
 

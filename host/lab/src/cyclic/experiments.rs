@@ -1,13 +1,15 @@
 //! The experiments of the cyclic paper's section 4: its two tables and what its figures show.
 
-use super::protocol::{Errors, LONG_ANGLES, Protocol, TestCycle, pooled};
+use super::protocol::{CycleRun, Errors, LONG_ANGLES, Protocol, TestCycle, runs, sum};
+use crate::body::Measured;
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use sinew::cyclic::CyclicModel;
 use sinew::cyclic::angle_table::ANGLES;
-use sinew::cyclic::tracking::{FilterName, StartName, TrackingOptions, Updates};
+use sinew::cyclic::tracking::{FilterName, ScalingName, StartName, TrackingOptions, Updates};
 use sinew::resume::{Cells, crc32_of};
+use std::collections::BTreeSet;
 
 /// Measurement noises of the paper's table 1, degrees.
 pub const SIGMAS_DEG: [f64; 6] = [1.0, 3.0, 6.0, 29.0, 57.0, 115.0];
@@ -43,6 +45,14 @@ pub struct Cell {
     pub late_error_deg: f64,
     /// Mean absolute error of each angle, degrees.
     pub each_deg: [f64; ANGLES],
+    /// Standard deviation of the error over cycles, degrees.
+    pub cycle_std_deg: f64,
+    /// The same of each angle.
+    pub each_cycle_std_deg: [f64; ANGLES],
+    /// Standard deviation of the error over seeds, degrees; zero where nothing is drawn.
+    pub seed_std_deg: f64,
+    /// The same from the fifth frame after the start on.
+    pub late_seed_std_deg: f64,
     /// Share of the truth inside the 90 % band.
     pub inside_90: f64,
     /// Share of the truth inside the 90 % band, for each angle.
@@ -73,6 +83,17 @@ pub enum Density {
     TwoInACycle,
 }
 
+/// The sums of runs that `key` puts together.
+fn groups(runs: &[CycleRun], key: impl Fn(&CycleRun) -> u64) -> Vec<Errors> {
+    let keys: BTreeSet<u64> = runs.iter().map(&key).collect();
+    keys.into_iter().map(|wanted| sum(runs.iter().filter(|run| key(run) == wanted))).collect()
+}
+
+/// Standard deviation of a number over groups; zero of one group.
+fn std_of(groups: &[Errors], value: impl Fn(&Errors) -> f64) -> f64 {
+    Measured::of(&groups.iter().map(value).collect::<Vec<_>>()).std
+}
+
 impl Setting<'_> {
     fn options(&self, filter: FilterName, sigma_deg: f64) -> TrackingOptions {
         TrackingOptions {
@@ -91,23 +112,26 @@ impl Setting<'_> {
     }
 
     fn measured(&self, protocol: Protocol, options: &TrackingOptions, density: Density) -> Result<Cell> {
-        let errors = match density {
+        let runs = match density {
             Density::Every(every) => {
                 let options = TrackingOptions { updates: Updates::Every(every), ..options.clone() };
-                pooled(self.cycles, self.model, protocol, &options, self.seeds)?
+                runs(self.cycles, self.model, protocol, &options, self.seeds)?
             }
             Density::TwoInACycle => {
-                let mut sum = Errors::default();
-                for cycle in self.cycles {
+                let mut all = Vec::new();
+                for (index, cycle) in self.cycles.iter().enumerate() {
                     let (first, end) = (cycle.truth.first_frame(), cycle.truth.end_frame());
                     let at = [1, 3].map(|quarter| first + quarter * (end - first) / 4);
                     let options = TrackingOptions { updates: Updates::At(at.to_vec()), ..options.clone() };
-                    let one = std::slice::from_ref(cycle);
-                    sum.merge(&pooled(one, self.model, protocol, &options, self.seeds)?);
+                    let one = runs(std::slice::from_ref(cycle), self.model, protocol, &options, self.seeds)?;
+                    all.extend(one.into_iter().map(|run| CycleRun { cycle: index, ..run }));
                 }
-                sum
+                all
             }
         };
+        let errors = sum(&runs);
+        let by_cycle: Vec<Errors> = groups(&runs, |run| run.cycle as u64);
+        let by_seed: Vec<Errors> = groups(&runs, |run| run.seed);
         let (inside_90, each_inside_90) = errors.inside_90();
         Ok(Cell {
             protocol,
@@ -123,6 +147,10 @@ impl Setting<'_> {
             long_error_deg: errors.mean_deg(&LONG_ANGLES),
             late_error_deg: errors.from_frame_deg(LATE_FRAME),
             each_deg: errors.each_deg(),
+            cycle_std_deg: std_of(&by_cycle, Errors::all_deg),
+            each_cycle_std_deg: std::array::from_fn(|angle| std_of(&by_cycle, |errors| errors.mean_deg(&[angle]))),
+            seed_std_deg: std_of(&by_seed, Errors::all_deg),
+            late_seed_std_deg: std_of(&by_seed, |errors| errors.from_frame_deg(LATE_FRAME)),
             inside_90,
             each_inside_90,
         })
@@ -131,7 +159,7 @@ impl Setting<'_> {
     /// Table 1: every filter with every sigma, under both protocols.
     ///
     /// # Errors
-    /// As [`pooled`] and [`Cells::cell`].
+    /// As [`runs`] and [`Cells::cell`].
     pub fn noise_table(&self) -> Result<Vec<Cell>> {
         let mut cells = Vec::new();
         for protocol in PROTOCOLS {
@@ -144,10 +172,20 @@ impl Setting<'_> {
         Ok(cells)
     }
 
+    /// Beside table 1: `paper` with the covariance scaled by k^2, as the paper words it.
+    ///
+    /// # Errors
+    /// As [`runs`] and [`Cells::cell`].
+    pub fn worded(&self, protocol: Protocol) -> Result<Vec<Cell>> {
+        let covariance_scaling = ScalingName::Square;
+        let options = |sigma| TrackingOptions { covariance_scaling, ..self.options(FilterName::Paper, sigma) };
+        SIGMAS_DEG.map(|sigma| self.measure(protocol, &options(sigma), Density::Every(1))).into_iter().collect()
+    }
+
     /// Beside table 1: `coupled` with the whole recording known (`--smooth`).
     ///
     /// # Errors
-    /// As [`pooled`] and [`Cells::cell`].
+    /// As [`runs`] and [`Cells::cell`].
     pub fn smoothed(&self) -> Result<Vec<Cell>> {
         let jobs = PROTOCOLS.into_iter().flat_map(|protocol| SIGMAS_DEG.map(|sigma| (protocol, sigma)));
         jobs.map(|(protocol, sigma)| {
@@ -160,7 +198,7 @@ impl Setting<'_> {
     /// Table 2: the particle filter at sigma 29 degrees with more and more particles.
     ///
     /// # Errors
-    /// As [`pooled`] and [`Cells::cell`].
+    /// As [`runs`] and [`Cells::cell`].
     pub fn particle_table(&self, particles: &[usize]) -> Result<Vec<Cell>> {
         particles.iter().map(|&particles| self.particles(particles, StartName::Standard, 1)).collect()
     }
@@ -177,7 +215,7 @@ impl Setting<'_> {
     /// the Kalman filters.
     ///
     /// # Errors
-    /// As [`pooled`] and [`Cells::cell`].
+    /// As [`runs`] and [`Cells::cell`].
     pub fn sparse_measurements(&self) -> Result<Vec<Cell>> {
         let mut cells = Vec::new();
         for filter in FILTERS {
@@ -194,7 +232,7 @@ impl Setting<'_> {
     /// Figure 5a: fewer and fewer measurements with particles.
     ///
     /// # Errors
-    /// As [`pooled`] and [`Cells::cell`].
+    /// As [`runs`] and [`Cells::cell`].
     pub fn sparse_particles(&self, particles: &[usize]) -> Result<Vec<Cell>> {
         let jobs = particles.iter().flat_map(|&count| SKIPS.map(|skip| (count, skip)));
         jobs.map(|(count, skip)| self.particles(count, StartName::Standard, skip)).collect()
@@ -203,7 +241,7 @@ impl Setting<'_> {
     /// Figure 5b: the three ways to start, with more and more particles.
     ///
     /// # Errors
-    /// As [`pooled`] and [`Cells::cell`].
+    /// As [`runs`] and [`Cells::cell`].
     pub fn starts(&self, particles: &[usize]) -> Result<Vec<Cell>> {
         let starts = [StartName::Standard, StartName::Uniform, StartName::Random];
         let jobs = starts.into_iter().flat_map(|start| particles.iter().map(move |&count| (start, count)));

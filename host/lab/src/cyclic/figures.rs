@@ -68,7 +68,10 @@ pub fn figures(setting: &Setting<'_>, report: &CyclicReport) -> Result<Vec<(Stri
 }
 
 /// True and estimated angle of the first two cycles, one after the other, with the 90 % band.
-fn trajectories(setting: &Setting<'_>, angle: usize) -> Result<Vec<Curve>> {
+///
+/// # Errors
+/// A run that fails.
+pub fn trajectories(setting: &Setting<'_>, angle: usize) -> Result<Vec<Curve>> {
     let mut truth = Curve { name: "truth".into(), ..Curve::default() };
     let mut curves: Vec<Curve> = Vec::new();
     for (place, filter) in [FilterName::Paper, FilterName::Coupled].into_iter().enumerate() {

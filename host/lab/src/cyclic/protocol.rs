@@ -193,8 +193,50 @@ pub fn run(cycle: &TestCycle, model: &CyclicModel, protocol: Protocol, options: 
     Ok(Errors::of(&track(&measured, model, options)?, &cycle.truth))
 }
 
-/// All cycles with all seeds, pooled; a cycle starts at position 0 of the model. The same on any
-/// number of threads.
+/// Errors of one cycle with one seed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CycleRun {
+    /// Which of the cycles.
+    pub cycle: usize,
+    /// The seed.
+    pub seed: u64,
+    /// The errors.
+    pub errors: Errors,
+}
+
+/// All cycles with all seeds; a cycle starts at position 0 of the model. The same on any number of
+/// threads.
+///
+/// # Errors
+/// As [`run`].
+pub fn runs(
+    cycles: &[TestCycle],
+    model: &CyclicModel,
+    protocol: Protocol,
+    options: &TrackingOptions,
+    seeds: u64,
+) -> Result<Vec<CycleRun>> {
+    // Without noise and particles every seed gives the same.
+    let seeds = if protocol == Protocol::ExactMean && !options.filter.is_random() { 1 } else { seeds };
+    let jobs: Vec<(usize, u64)> =
+        (0..cycles.len()).flat_map(|cycle| (1..=seeds).map(move |seed| (cycle, seed))).collect();
+    jobs.into_par_iter()
+        .map(|(cycle, seed)| {
+            let options = TrackingOptions { seed: seed * 1000 + cycle as u64, ..options.clone() };
+            Ok(CycleRun { cycle, seed, errors: run(&cycles[cycle], model, protocol, &options)? })
+        })
+        .collect()
+}
+
+/// The sums of `runs`.
+#[must_use]
+pub fn sum<'a>(runs: impl IntoIterator<Item = &'a CycleRun>) -> Errors {
+    let mut sum = Errors::default();
+    runs.into_iter().for_each(|run| sum.merge(&run.errors));
+    sum
+}
+
+/// [`runs`], pooled.
 ///
 /// # Errors
 /// As [`run`].
@@ -205,20 +247,7 @@ pub fn pooled(
     options: &TrackingOptions,
     seeds: u64,
 ) -> Result<Errors> {
-    // Without noise and particles every seed gives the same.
-    let seeds = if protocol == Protocol::ExactMean && !options.filter.is_random() { 1 } else { seeds };
-    let jobs: Vec<(usize, u64)> =
-        (0..cycles.len()).flat_map(|cycle| (1..=seeds).map(move |seed| (cycle, seed))).collect();
-    let all = jobs
-        .into_par_iter()
-        .map(|(index, seed)| {
-            let seed = seed * 1000 + index as u64;
-            run(&cycles[index], model, protocol, &TrackingOptions { seed, ..options.clone() })
-        })
-        .collect::<Result<Vec<_>>>()?;
-    let mut sum = Errors::default();
-    all.iter().for_each(|errors| sum.merge(errors));
-    Ok(sum)
+    Ok(sum(&runs(cycles, model, protocol, options, seeds)?))
 }
 
 #[cfg(test)]

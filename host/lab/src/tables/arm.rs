@@ -20,8 +20,9 @@ const FRAMES: usize = 250;
 /// Numbers of particles.
 const PARTICLES: [usize; 7] = [10, 25, 50, 100, 250, 1000, 5000];
 
-/// Rows that `measure` makes of all scenes, on threads with room for thousands of particles.
-fn on_scenes(recordings: &Path, measure: fn(&[ObservedScene]) -> Result<Rows>) -> Result<Rows> {
+/// Rows that `measure` makes of all scenes, observed with `base`, on threads with room for
+/// thousands of particles.
+fn on_scenes(recordings: &Path, base: &Config, measure: fn(&[ObservedScene]) -> Result<Rows>) -> Result<Rows> {
     let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build()?;
     pool.install(|| {
         let mut clips: Vec<Clip> = recorded(&recordings.join("mocap"))?;
@@ -29,12 +30,12 @@ fn on_scenes(recordings: &Path, measure: fn(&[ObservedScene]) -> Result<Rows>) -
         let seeds: Vec<u64> = (1..=SEEDS).collect();
         let options = SceneOptions { frames: FRAMES, ..SceneOptions::default() };
         let skin = SkinModel::from_option(DEFAULT_SKIN)?;
-        measure(&observe_all(&clips, &seeds, &options, &Config::default(), &skin, &Cells::not_kept())?)
+        measure(&observe_all(&clips, &seeds, &options, base, &skin, &Cells::not_kept())?)
     })
 }
 
 pub fn variants(recordings: &Path) -> Result<Rows> {
-    on_scenes(recordings, |scenes| {
+    on_scenes(recordings, &Config::default(), |scenes| {
         let measured = experiments::variants(scenes, &Variant::ALL, &PARTICLES, &Cells::not_kept())?;
         let mut rows = vec![named("", PARTICLES.map(|count| count.to_string()))];
         let error = |row: &Row| format!("{:.3} m, {:.1} px", row.error_m.median, row.error_px.median);
@@ -46,21 +47,25 @@ pub fn variants(recordings: &Path) -> Result<Rows> {
 }
 
 pub fn options(recordings: &Path) -> Result<Rows> {
-    on_scenes(recordings, |scenes| {
+    let mut rows = on_scenes(recordings, &Config::default(), |scenes| {
         let cells = &Cells::not_kept();
-        let row = |name: String, row: &Row| {
-            let (m, px) = (&row.error_m, &row.error_px);
-            let metres = format!("{:.3} ({:.3}-{:.3})", m.median, m.lower, m.upper);
-            line([name, metres, format!("{:.1} ({:.1}-{:.1})", px.median, px.lower, px.upper)])
-        };
         let mut rows = vec![line(["", "3D error, m (quartiles)", "2D error, px (quartiles)"])];
         for variant in [Variant::Pik, Variant::Corrected] {
             let effects = experiments::options(scenes, variant, cells)?;
-            rows.extend(effects.iter().map(|effect| row(effect.name.clone(), effect)));
-        }
-        for printed in experiments::printed(scenes, cells)? {
-            rows.push(row(format!("{}, {} particles", printed.name, printed.particles), &printed));
+            rows.extend(effects.iter().map(|effect| spread(effect.name.clone(), effect)));
         }
         Ok(rows)
-    })
+    })?;
+    rows.extend(on_scenes(recordings, &experiments::printed_base(), |scenes| {
+        let printed = experiments::printed(scenes, &Cells::not_kept())?;
+        Ok(printed.iter().map(|row| spread(format!("{}, {} particles", row.name, row.particles), row)).collect())
+    })?);
+    Ok(rows)
+}
+
+/// A line of medians with quartiles.
+fn spread(name: String, row: &Row) -> Vec<String> {
+    let (m, px) = (&row.error_m, &row.error_px);
+    let metres = format!("{:.3} ({:.3}-{:.3})", m.median, m.lower, m.upper);
+    line([name, metres, format!("{:.1} ({:.1}-{:.1})", px.median, px.lower, px.upper)])
 }

@@ -5,8 +5,8 @@
 use crate::shared_data;
 
 use sinew::body::run::score::RunningMean;
+use sinew::body::tracking::JointStd;
 use sinew::body::tracking::end_effectors::{CARRIED, END_EFFECTORS};
-use sinew::body::tracking::tuning::JointStd;
 use sinew::body::tracking::{BodyModelKind, BodyTuning};
 use sinew::body::{BodyJoints, fit_pose};
 use sinew::cloud::blocks_of;

@@ -23,9 +23,9 @@ pub enum BodyModelKind {
     Stick,
     /// Hands, feet and head stay; the pelvis goes up and down over the floor.
     PelvicLift,
-    /// The end-effector model with the settings that the paper prints.
+    /// End-effector with the PIK paper's structure; `[paper]` has the numbers that it leaves open.
     EndEffectorPaper,
-    /// The angular model with the settings that the paper prints.
+    /// Angular with the PIK paper's structure; `[paper]` has the numbers that it leaves open.
     AngularPaper,
 }
 
@@ -52,8 +52,7 @@ impl BodyModelKind {
         }
     }
 
-    /// Whether it is a model with the settings that the paper prints, which sees the points as they
-    /// are.
+    /// Whether it is a model with the PIK paper's structure, which sees the points as they are.
     #[must_use]
     pub fn is_printed(self) -> bool {
         matches!(self, Self::EndEffectorPaper | Self::AngularPaper)

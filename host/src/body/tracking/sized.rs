@@ -4,8 +4,10 @@
 //! depend on the threads.
 
 use super::end_effectors::{CARRIED, END_EFFECTORS, JOINTS, MAX_BODY_PARTICLES};
+use super::joint_std::JointStd;
 use super::model_kind::BodyModelKind;
-use super::tuning::{BodyTuning, JointStd};
+use super::paper_tuning::PaperTuning;
+use super::tuning::BodyTuning;
 use rayon::prelude::*;
 use sinew_core::error::ParameterError;
 use sinew_core::math::Vec3;
@@ -13,6 +15,7 @@ use sinew_core::observation::point_likelihood::PointLikelihood;
 use sinew_core::observation::self_penetration::SelfPenetration;
 use sinew_core::pik::angular::AngularMotion;
 use sinew_core::pik::end_effector::EndEffectorMotion;
+use sinew_core::pik::goal::LinearExtrapolation;
 use sinew_core::pik::guided::GuidedMotion;
 use sinew_core::pik::motion::{BodyMotion, BodyParticle, BodyScene};
 use sinew_core::pik::processes::extrapolation::LinearGoals;
@@ -22,16 +25,9 @@ use sinew_core::pik::processes::stick::{StickGoals, StickSight};
 use sinew_core::pik::root::RootProcess;
 use sinew_core::saved_state::{SavedState, StateVisitor};
 use sinew_core::skeleton::Skeleton;
-use sinew_core::skeleton::full_body::{FOREARMS, HEAD};
+use sinew_core::skeleton::full_body::FOREARMS;
 use sinew_core::tracker::body::modes::ModeTracker;
 use sinew_core::tracker::body::{BodyEstimate, BodyFrame, BodyTracker};
-
-/// End-effectors of the PIK paper (section 7.1.2): head and hands.
-const PAPER_END_EFFECTORS: [usize; 3] = [HEAD, FOREARMS[0], FOREARMS[1]];
-/// Standard deviation of every angle a frame for kappa = 500, radians (PIK paper, fig. 2).
-const PAPER_ANGLE_STD_RAD: f32 = 0.044_721_36;
-/// sigma of PIK (33), metres a frame: the paper does not print it.
-const PAPER_GOAL_STD_M: f32 = 0.05;
 
 type Particle<const BONES: usize, const ANGLES: usize> = BodyParticle<BONES, ANGLES>;
 pub(super) type Tracker<const BONES: usize, const ANGLES: usize> =
@@ -196,22 +192,8 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
                 let root = RootProcess::pelvic_lift(tuning.lift_std_m, tuning.lift_turn_std_rad, seen.floor_y_m);
                 self.advance(&with_goals(&tuning, goal_std, &process, root), &frame)
             }
-            BodyModelKind::EndEffectorPaper => {
-                let reach_std_m = tuning.end_effector.reach_std_m;
-                let process = PaperGoals { end_effectors: &PAPER_END_EFFECTORS, std_m: PAPER_GOAL_STD_M, reach_std_m };
-                let angle_std = paper_angle_std(frame.dt_s);
-                let motion = EndEffectorMotion {
-                    corrects_weight: true,
-                    angle_persistence: 0.0,
-                    ..with_goals(&tuning, angle_std, &process, root)
-                };
-                self.advance(&motion, &frame)
-            }
-            BodyModelKind::AngularPaper => {
-                let angle_std_rad_per_sqrt_s = paper_angle_std(frame.dt_s);
-                let motion = AngularMotion { root, persistence: 1.0, angle_std_rad_per_sqrt_s, own_velocity: true };
-                self.advance(&motion, &frame)
-            }
+            BodyModelKind::EndEffectorPaper => self.step_to_paper_goals(&frame),
+            BodyModelKind::AngularPaper => self.step_by_paper_angles(&frame),
         }
     }
 
@@ -230,6 +212,33 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             solver_steps,
             pulling_blocks,
         }
+    }
+
+    /// A frame of the end-effector model with the PIK paper's structure.
+    fn step_to_paper_goals(&mut self, frame: &BodyFrame<'_>) -> BodyEstimate<BONES, ANGLES> {
+        let PaperTuning { lambda, reach_std_m, goal_std_m, solver_steps, own_velocity, .. } = self.tuning.paper;
+        let bones = end_effectors(BONES);
+        let own = PaperGoals { end_effectors: bones, std_m: goal_std_m, reach_std_m };
+        let std_m_per_sqrt_s = goal_std_m / frame.dt_s.max(MIN_DT_S).sqrt();
+        let full = LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s };
+        let reached = LinearGoals::new(bones, BONES, full, reach_std_m);
+        let angle_std = by_root_second(&[1.0 / lambda.sqrt(); ANGLES], frame.dt_s);
+        let printed = PaperStructure { angle_std, solver_steps, root: self.tuning.root.process() };
+        match reached {
+            Ok(reached) if !own_velocity => self.advance(&printed.motion(&reached), frame),
+            _ => self.advance(&printed.motion(&own), frame),
+        }
+    }
+
+    /// A frame of the angular model with the PIK paper's structure.
+    fn step_by_paper_angles(&mut self, frame: &BodyFrame<'_>) -> BodyEstimate<BONES, ANGLES> {
+        let PaperTuning { kappa, own_velocity, .. } = self.tuning.paper;
+        let per_angle = kappa.std_rad().per_angle();
+        let per_frame = self.coordinates.map(|index| per_angle[index]);
+        let angle_std_rad_per_sqrt_s = by_root_second(&per_frame, frame.dt_s);
+        let root = self.tuning.root.process();
+        let motion = AngularMotion { root, persistence: 1.0, angle_std_rad_per_sqrt_s, own_velocity };
+        self.advance(&motion, frame)
     }
 
     /// The noise of each coordinate; the trunk's own where it is fitted to the points.
@@ -283,9 +292,33 @@ fn end_effectors(bones: usize) -> &'static [usize] {
     &END_EFFECTORS[..count]
 }
 
-/// kappa = 500 in every frame, as noise by root second.
-fn paper_angle_std<const ANGLES: usize>(dt_s: f32) -> [f32; ANGLES] {
-    [PAPER_ANGLE_STD_RAD / dt_s.max(1.0e-4).sqrt(); ANGLES]
+/// Shortest time of a frame, seconds: that of the core's step.
+const MIN_DT_S: f32 = 1.0e-4;
+
+/// Noise of every frame as noise by root second.
+fn by_root_second<const ANGLES: usize>(std_rad: &[f32; ANGLES], dt_s: f32) -> [f32; ANGLES] {
+    std_rad.map(|std| std / dt_s.max(MIN_DT_S).sqrt())
+}
+
+/// What a model with goals has beside them with the PIK paper's structure.
+struct PaperStructure<const ANGLES: usize> {
+    angle_std: [f32; ANGLES],
+    solver_steps: usize,
+    root: RootProcess,
+}
+
+impl<const ANGLES: usize> PaperStructure<ANGLES> {
+    fn motion<'a, P>(&self, process: &'a P) -> EndEffectorMotion<'a, P, ANGLES> {
+        EndEffectorMotion {
+            process,
+            root: self.root,
+            angle_std_rad_per_sqrt_s: self.angle_std,
+            angle_persistence: 0.0,
+            solver_steps: self.solver_steps,
+            corrects_weight: true,
+            draw_share: 1.0,
+        }
+    }
 }
 
 /// A model with goals, by the numbers of the end-effector model.

@@ -1,0 +1,49 @@
+//! The tables and figures of the three papers, theirs beside ours: `sinew-lab reproduce`.
+
+pub mod arm;
+pub mod arm_figures;
+pub mod cyclic;
+pub mod goals_against_angles;
+pub mod open_numbers;
+pub mod page;
+pub mod pik;
+pub mod plot;
+pub mod printed;
+
+use page::Page;
+use plot::Plot;
+use std::path::Path;
+
+/// What a reproduction is made with.
+#[derive(Debug, Clone, Copy)]
+pub struct Material<'a> {
+    /// Folder of the recordings.
+    pub data: &'a Path,
+    /// Whether fewer seeds and particles are run.
+    pub is_quick: bool,
+}
+
+/// A page with the pictures that stand beside it.
+#[derive(Debug, Default)]
+pub struct Made {
+    /// The page.
+    pub page: Page,
+    /// SVG plots with their file names.
+    pub plots: Vec<(String, Plot)>,
+    /// Other SVG documents with their file names.
+    pub drawings: Vec<(String, String)>,
+    /// Drawn pictures with their file names.
+    pub pictures: Vec<(String, image::RgbImage)>,
+}
+
+/// The seeds 1 and on of a run.
+#[must_use]
+pub const fn seeds(is_quick: bool, all: u64) -> u64 {
+    if is_quick { 2 } else { all }
+}
+
+/// `value` with its difference from `paper`, both as they are written.
+fn compared(paper: f64, value: f64, decimals: usize) -> (String, String, String) {
+    let text = |number: f64| format!("{number:.decimals$}");
+    (text(paper), text(value), format!("{:+.decimals$}", value - paper))
+}

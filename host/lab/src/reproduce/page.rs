@@ -1,0 +1,139 @@
+//! One paper's page: what it prints, what was measured here, the difference, the reason.
+
+use super::plot::escaped;
+use std::fmt::Write;
+
+/// One comparison.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Row {
+    /// What is compared.
+    pub what: String,
+    /// The paper's number, or its trend in words.
+    pub paper: String,
+    /// What was measured here.
+    pub ours: String,
+    /// The difference.
+    pub difference: String,
+}
+
+/// A table or figure of the paper.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Section {
+    /// As the paper numbers it, and what it shows.
+    pub title: String,
+    /// What it was measured on.
+    pub material: String,
+    /// The comparisons.
+    pub rows: Vec<Row>,
+    /// Why ours differs.
+    pub reason: String,
+    /// File names of its pictures, SVG or PNG.
+    pub pictures: Vec<String>,
+    /// A table of numbers: the first row is its head.
+    pub table: Vec<Vec<String>>,
+}
+
+/// A paper's page.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Page {
+    /// The paper.
+    pub title: String,
+    /// Command, version and machine.
+    pub made_by: String,
+    /// What is left out of this run, and why.
+    pub left_out: Vec<String>,
+    /// Tables and figures in the paper's order.
+    pub sections: Vec<Section>,
+}
+
+const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#111}\
+table{border-collapse:collapse;margin:1em 0}th,td{border:1px solid #999;padding:.3em .6em;text-align:left;\
+vertical-align:top}figure{margin:1em 0}img{max-width:100%}";
+
+fn cells(tag: &str, texts: &[&str]) -> String {
+    let cells: String = texts.iter().map(|text| format!("<{tag}>{}</{tag}>", escaped(text))).collect();
+    format!("<tr>{cells}</tr>\n")
+}
+
+impl Page {
+    /// The page as HTML; pictures stand beside it.
+    #[must_use]
+    pub fn to_html(&self) -> String {
+        let title = escaped(&self.title);
+        let mut html = format!(
+            "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>{title}</title><style>{STYLE}</style>\n\
+             <h1>{title}</h1><p>{}</p>\n",
+            escaped(&self.made_by)
+        );
+        if !self.left_out.is_empty() {
+            html.push_str("<h2>Left out of this run</h2><ul>\n");
+            self.left_out.iter().for_each(|text| html.push_str(&format!("<li>{}</li>\n", escaped(text))));
+            html.push_str("</ul>\n");
+        }
+        self.sections.iter().for_each(|section| section.write(&mut html));
+        html.push_str("</html>\n");
+        html
+    }
+}
+
+impl Section {
+    fn write(&self, html: &mut String) {
+        let _ = writeln!(html, "<h2>{}</h2><p>{}</p>", escaped(&self.title), escaped(&self.material));
+        if !self.rows.is_empty() {
+            html.push_str("<table>\n");
+            html.push_str(&cells("th", &["", "paper", "ours", "difference"]));
+            for Row { what, paper, ours, difference } in &self.rows {
+                html.push_str(&cells("td", &[what, paper, ours, difference]));
+            }
+            html.push_str("</table>\n");
+        }
+        if !self.reason.is_empty() {
+            let _ = writeln!(html, "<p>Reason: {}</p>", escaped(&self.reason));
+        }
+        if let Some((head, rows)) = self.table.split_first() {
+            html.push_str("<table>\n");
+            for (tag, row) in std::iter::once(("th", head)).chain(rows.iter().map(|row| ("td", row))) {
+                html.push_str(&cells(tag, &row.iter().map(String::as_str).collect::<Vec<_>>()));
+            }
+            html.push_str("</table>\n");
+        }
+        for picture in &self.pictures {
+            let name = escaped(picture);
+            let _ = writeln!(html, "<figure><img src=\"{name}\" alt=\"{}: {name}\"></figure>", escaped(&self.title));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_holds_paper_ours_and_reason_and_says_what_is_left_out() {
+        let row = Row { what: "sigma 1".into(), paper: "2.81".into(), ours: "0.35".into(), difference: "-2.46".into() };
+        let section = Section {
+            title: "Table 1".into(),
+            rows: vec![row],
+            reason: "walks & not <swimmers>".into(),
+            pictures: vec!["table_1.svg".into()],
+            table: vec![vec!["a".into()], vec!["1".into()]],
+            ..Section::default()
+        };
+        let page = Page {
+            title: "cyclic".into(),
+            left_out: vec!["seeds 6 to 10".into()],
+            sections: vec![section],
+            ..Page::default()
+        };
+        let html = page.to_html();
+        for part in [
+            "<td>sigma 1</td><td>2.81</td><td>0.35</td><td>-2.46</td>",
+            "walks &amp; not &lt;swimmers&gt;",
+            "<img src=\"table_1.svg\"",
+            "<li>seeds 6 to 10</li>",
+            "<tr><th>a</th></tr>",
+        ] {
+            assert!(html.contains(part), "{part} is not in {html}");
+        }
+    }
+}
