@@ -41,7 +41,7 @@ pub struct BodyEstimate<const BONES: usize, const ANGLES: usize> {
     pub effective_sample_size: f32,
     /// ln of the mean weight of whole poses, a frame's part of the log evidence. Without points
     /// only what a proposal owes its motion model is left in it: zero for models that draw from
-    /// themselves.
+    /// themselves. Of a tracker by modes it is the log density at the leading mode.
     pub log_evidence: f32,
     /// Exponent that the weights of whole poses were flattened with; 1 where they were not.
     pub tempering: f32,

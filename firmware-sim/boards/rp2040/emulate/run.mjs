@@ -10,7 +10,7 @@ import { readFileSync } from 'node:fs';
 import { ConsoleLogger, GPIOPinState, LogLevel, Simulator } from 'rp2040js';
 
 const CLOCK_HZ = 133e6;
-// The first frame comes after the skin table was learned; then there are three a second.
+// The first frame comes after the skin table was learned; then there are four a second.
 const SECONDS = 6;
 const MIN_FRAMES = 6;
 // The person stands at 1.25 m, and the arm is 0.63 m long.

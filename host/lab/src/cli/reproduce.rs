@@ -6,6 +6,7 @@ use crate::reproduce::{Made, Material, arm, cyclic, pik};
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 use serde_json::json;
+use sinew::body::tracking::BodyTuning;
 use sinew::cli::console::Console;
 use sinew::output::OutputDir;
 use sinew::resume::{Begun, CELLS_FOLDER, Cells, Stop};
@@ -67,7 +68,11 @@ fn run_until(args: &ReproduceArgs, console: &Console, stop: Stop<'_>) -> Result<
     ensure!(args.data.is_dir(), "`{}` is no folder; give that of the recordings as --data", args.data.display());
     let name = args.paper.name();
     let output = OutputDir::create(&args.out.join(name))?;
-    let begun = Begun::new(&format!("reproduce {name}"), &json!({ "quick": args.quick }), &[])?;
+    let begun = Begun::new(
+        &format!("reproduce {name}"),
+        &json!({ "quick": args.quick, "data": args.data, "numbers": BodyTuning::default() }),
+        &[],
+    )?;
     // Kept after the end as well, so that a part that is done is not run again.
     let is_begun = output.join(CELLS_FOLDER).join("begun.json").is_file();
     let cells = Cells::keep(&output, &begun, is_begun, stop)?;

@@ -36,10 +36,15 @@ pub struct Made {
     pub pictures: Vec<(String, image::RgbImage)>,
 }
 
-/// The seeds 1 and on of a run.
+/// Number of seeds of a run, from 1 on.
 #[must_use]
 pub const fn seeds(is_quick: bool, all: u64) -> u64 {
     if is_quick { 2 } else { all }
+}
+
+/// What stands beside a trend without numbers, by whether it comes out here.
+fn of_trend(comes_out: bool) -> String {
+    if comes_out { "none in the trend" } else { "the trend does not come out" }.to_owned()
 }
 
 /// `value` with its difference from `paper`, both as they are written.

@@ -4,7 +4,8 @@ use super::goals_against_angles::{Comparison, PAIR, Pair, Value, compare, plots}
 use super::open_numbers::{self, Numbers};
 use super::page::{Row, Section};
 use super::plot::{Plot, Series};
-use super::{Made, Material, printed, seeds};
+use super::{Made, Material, of_trend, printed, seeds};
+use crate::body::prediction::lift::SampleSpread;
 use crate::body::prediction::{self, PredictionReport};
 use crate::body::trial::{SeenMotion, TrialResult, trial};
 use crate::body::{Measured, MotionChoice};
@@ -81,7 +82,8 @@ fn predictions(tuning: &BodyTuning, made: &mut Made) -> Result<()> {
         what: "trend".into(),
         paper: "the spread of limbs grows along the chains under noise of angles".into(),
         ours: format!("kappa {}; goals known to {} cm", chain_spread.kappa, cm(f64::from(chain_spread.reach_std_m))),
-        difference: "none in the trend".into(),
+        // Two joints of a chain follow each other.
+        difference: of_trend(chain_spread.joints.chunks(2).all(|two| two[0].angular_m <= two[two.len() - 1].angular_m)),
     };
     let joints = chain_spread.joints.iter();
     let rows = joints.map(|joint| vec![joint.joint.to_owned(), cm(joint.angular_m), cm(joint.end_effector_m)]);
@@ -92,7 +94,7 @@ fn predictions(tuning: &BodyTuning, made: &mut Made) -> Result<()> {
         what: "trend".into(),
         paper: "pelvis and spine spread up and down, knees in all directions, the rest little".into(),
         ours: format!("pelvis up and down {} cm; the others in the table", cm(pelvic_lift.pelvis_up_std_m)),
-        difference: "none in the trend".into(),
+        difference: of_trend(moves_without_goals(&pelvic_lift.joints)),
     };
     let rows = pelvic_lift.joints.iter().map(|joint| vec![joint.joint.to_owned(), cm(joint.spread_m)]);
     let table = with_head(&["joint", "spread of ten samples, cm"], rows);
@@ -102,12 +104,21 @@ fn predictions(tuning: &BodyTuning, made: &mut Made) -> Result<()> {
         what: "trend".into(),
         paper: "blocks of joints that share a goal".into(),
         ours: format!("mean entry inside a block {:.3}, between blocks {:.4}", precision.inside, precision.between),
-        difference: "none in the trend".into(),
+        difference: of_trend(precision.inside > precision.between),
     };
     let title = "Figure 20: precision of the importance distribution";
     made.page.sections.push(built_in(title, row, Vec::new(), "figure_20_precision.png"));
     made.pictures.extend(pictures);
     Ok(())
+}
+
+/// Whether pelvis and knees spread more than what is held: head, wrists and ankles.
+fn moves_without_goals(joints: &[SampleSpread]) -> bool {
+    let of = |names: &[&str]| -> Vec<f64> {
+        joints.iter().filter(|joint| names.contains(&joint.joint)).map(|joint| joint.spread_m).collect()
+    };
+    let held = of(&["head", "l_wrist", "r_wrist", "l_ankle", "r_ankle"]).into_iter().fold(0.0, f64::max);
+    of(&["pelvis", "l_knee", "r_knee"]).into_iter().all(|spread_m| spread_m > held)
 }
 
 /// Centimetres with one decimal.

@@ -95,6 +95,6 @@ mod tests {
             #[cfg(feature = "command")]
             assert_eq!(clap::ValueEnum::to_possible_value(&kind).unwrap().get_name(), kind.name());
         }
-        assert!("guidde".parse::<BodyModelKind>().unwrap_err().contains("guided, angular"));
+        assert!("guidde".parse::<BodyModelKind>().unwrap_err().contains("guided, modes"));
     }
 }

@@ -6,7 +6,8 @@ use super::state::{BodyMode, ModeTracker};
 use crate::saved_state::{SavedState, StateVisitor};
 
 impl<const BONES: usize, const ANGLES: usize> SavedState for BodyMode<BONES, ANGLES> {
-    /// A drawn limb is left out: no mode has one between frames.
+    /// A drawn limb is left out, since no mode has one between frames, and so is the density, which
+    /// each frame gives anew.
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         self.pose.visit(visitor);
         self.velocity.last.visit(visitor);

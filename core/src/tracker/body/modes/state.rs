@@ -33,6 +33,8 @@ pub struct BodyMode<const BONES: usize, const ANGLES: usize> {
     pub spread_m: [f32; BONES],
     /// Log evidence of all frames since it began, over that of the leading mode; zero of that one.
     pub log_weight: f32,
+    /// Log density of the last frame at the pose; zero before the first one.
+    pub(super) log_density: f32,
     pub(in super::super) velocity: EstimateVelocity<BONES, ANGLES>,
     /// Whether it explains the body in another way than the leading mode does.
     pub(super) is_rival: bool,
@@ -83,6 +85,7 @@ impl<const BONES: usize, const ANGLES: usize> ModeTracker<BONES, ANGLES> {
             pose: *first,
             spread_m: [0.0; BONES],
             log_weight: 0.0,
+            log_density: 0.0,
             velocity: EstimateVelocity::REST,
             is_rival: false,
             drawn: None,

@@ -95,8 +95,10 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance
         start.pose.angles_rad = mode.angles_rad;
         let posture = self.scene.posture(&mode.angles_rad);
         start.pose.ends_m = posture.ends;
-        start.spread_m = self.spread_m(&mode);
+        // A precision that cannot be inverted says nothing new: the spread stays.
+        start.spread_m = self.spread_m(&mode).unwrap_or(start.spread_m);
         start.velocity.follow(&ancestor, &start.pose, self.dt_s);
+        start.log_density = mode.log_density;
         start.log_weight += self.evidence_share * mode.log_density;
     }
 
@@ -120,10 +122,10 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance
 
     /// Standard deviations of the bones' ends, of the normal with the Hessian PIK (21) as
     /// precision: root of the trace of J H^-1 J'.
-    fn spread_m(&self, mode: &Mode<ANGLES>) -> [f32; BONES] {
-        let Some(factor) = Cholesky::new(&mode.hessian) else { return [0.0; BONES] };
+    fn spread_m(&self, mode: &Mode<ANGLES>) -> Option<[f32; BONES]> {
+        let factor = Cholesky::new(&mode.hessian)?;
         let (skeleton, posture) = (&self.scene.skeleton, self.scene.posture(&mode.angles_rad));
-        core::array::from_fn(|bone| {
+        Some(core::array::from_fn(|bone| {
             let columns: [Vec3; ANGLES] = core::array::from_fn(|angle| column(skeleton, &posture, bone, angle));
             let mut variance_m2 = 0.0;
             for axis in 0..3 {
@@ -134,7 +136,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance
                 }
             }
             sqrt(crate::math::max(variance_m2, 0.0))
-        })
+        }))
     }
 }
 
@@ -232,7 +234,7 @@ impl<const BONES: usize, const ANGLES: usize> ModeTracker<BONES, ANGLES> {
             spread_m: leader.spread_m,
             observed,
             effective_sample_size: sum * sum / squares,
-            log_evidence: 0.0,
+            log_evidence: leader.log_density,
             tempering: self.options.evidence_share,
             is_degenerate: false,
         }
