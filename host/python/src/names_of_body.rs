@@ -2,7 +2,7 @@
 //! them.
 
 /// Longer ones are first.
-pub const OF_BODY: [(&str, &str); 21] = [
+pub const OF_BODY: [(&str, &str); 22] = [
     ("`sinew track body --print-config` writes one", "docs/track_body.md says what it holds"),
     (" (`sinew track body --print-config` lists all keys)", ""),
     ("(`sinew track body --print-config` lists all)", "(docs/track_body.md)"),
