@@ -6,8 +6,7 @@ use super::state::{BodyMode, ModeTracker};
 use crate::saved_state::{SavedState, StateVisitor};
 
 impl<const BONES: usize, const ANGLES: usize> SavedState for BodyMode<BONES, ANGLES> {
-    /// A drawn limb is left out, since no mode has one between frames, and so is the density, which
-    /// each frame gives anew.
+    /// A drawn limb is left out: no mode has one between frames.
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         self.pose.visit(visitor);
         self.velocity.last.visit(visitor);
@@ -15,6 +14,7 @@ impl<const BONES: usize, const ANGLES: usize> SavedState for BodyMode<BONES, ANG
         visitor.flag(&mut self.velocity.is_known);
         visitor.reals(&mut self.spread_m, &NUMBER);
         visitor.reals(core::slice::from_mut(&mut self.log_weight), &NUMBER);
+        visitor.reals(core::slice::from_mut(&mut self.log_density), &NUMBER);
         visitor.flag(&mut self.is_rival);
     }
 }
