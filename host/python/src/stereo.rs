@@ -6,11 +6,11 @@ use crate::errors::{exception, wrong};
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sinew::body::{BodyFile, BodyPart, fit_pose};
+use sinew::body::{BodyFile, BodyPart};
 use sinew::error::Result;
-use sinew::stereo::{Hidden, StereoMotion, StereoOptions, StereoScene, StereoSource};
+use sinew::stereo::{Hidden, SceneErrors, StereoMotion, StereoOptions, StereoScene, StereoSource};
 use sinew_core::math::Vec3;
-use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, full_body};
+use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES};
 use std::path::PathBuf;
 
 /// What is made of a scene.
@@ -30,7 +30,7 @@ fn make(source: &StereoSource, options: StereoOptions) -> Result<Made> {
     let StereoMotion { recording, stick_m, floor_y_m, notes } = motion;
     let scene = StereoScene::new(recording, options)?;
     let clouds = scene.clouds_m();
-    let first_pose = fit_pose(&full_body(scene.measures())?, scene.joints_m(0), None).angles;
+    let first_pose = scene.first_pose()?.angles;
     Ok(Made { scene, clouds, first_pose, stick_m, floor_y_m, notes })
 }
 
@@ -52,6 +52,7 @@ pub fn simulate_stereo<'py>(
     outliers: f32,
     patches: u32,
     hide: Vec<String>,
+    hard: bool,
     seed: u64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let part: BodyPart = part.parse().map_err(|rule: String| wrong("part", &rule))?;
@@ -61,7 +62,8 @@ pub fn simulate_stereo<'py>(
         .collect::<PyResult<_>>()?;
     let source =
         StereoSource { motion, skeleton, motion_rate_hz, between_s, partial, distance_m, heading_deg, rate_hz, seed };
-    let options = StereoOptions { part, points, outliers, patches, hidden, seed, ..StereoOptions::default() };
+    let errors = if hard { SceneErrors::HARD } else { SceneErrors::default() };
+    let options = StereoOptions { part, points, outliers, patches, hidden, errors, seed, ..StereoOptions::default() };
     let made = py.detach(|| make(&source, options)).map_err(|error| exception(&error))?;
     answer(py, &made)
 }

@@ -31,7 +31,9 @@ pub struct FittedPose {
 }
 
 impl FittedPose {
-    fn new(skeleton: &BodySkeleton, joints: &BodyJoints, angles: [f32; BODY_ANGLES]) -> Self {
+    /// A pose beside recorded joints.
+    #[must_use]
+    pub fn of(skeleton: &BodySkeleton, joints: &BodyJoints, angles: [f32; BODY_ANGLES]) -> Self {
         let ends = posture(skeleton, &Vec3::zeros(), &angles).ends;
         Self { angles, residual_m: std::array::from_fn(|bone| Some((joints[bone]? - ends[bone]).norm())) }
     }
@@ -71,7 +73,7 @@ pub fn fit_pose(skeleton: &BodySkeleton, joints: &BodyJoints, start: Option<&[f3
             stiffness: [STIFFNESS; BODY_ANGLES],
             held: 0,
         };
-        FittedPose::new(skeleton, joints, density.mode(STEPS).angles_rad)
+        FittedPose::of(skeleton, joints, density.mode(STEPS).angles_rad)
     };
     let first = start.map(climb);
     if let Some(fit) = first
@@ -92,7 +94,7 @@ pub fn fit_pose(skeleton: &BodySkeleton, joints: &BodyJoints, start: Option<&[f3
             }
         }
     }
-    best.unwrap_or_else(|| FittedPose::new(skeleton, joints, standing(place)))
+    best.unwrap_or_else(|| FittedPose::of(skeleton, joints, standing(place)))
 }
 
 /// The fits of all frames, each from the one before.

@@ -20,6 +20,7 @@ pub mod image_run;
 pub mod record;
 pub mod report;
 mod scene_args;
+pub mod scene_error_args;
 pub mod segment;
 pub mod signals;
 pub mod simulate;

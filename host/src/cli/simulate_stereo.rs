@@ -2,6 +2,7 @@
 
 use super::console::Console;
 use super::scene_args::{clear_frames, pair};
+use super::scene_error_args::SceneErrorArgs;
 use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::{BodyPart, Placement};
 use crate::motion::{DEFAULT_FRAMES_PER_SECOND, endings_without_rate};
@@ -65,6 +66,9 @@ pub struct SimulateStereoArgs {
     /// included; may be repeated.
     #[arg(long, value_name = "LIMB:FIRST-LAST")]
     pub hide: Vec<Hidden>,
+    /// What else is wrong with the scene.
+    #[command(flatten)]
+    pub errors: SceneErrorArgs,
     /// Seed of all that is random.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -103,6 +107,7 @@ pub fn run(args: &SimulateStereoArgs, console: &Console) -> Result<()> {
         outliers: args.outliers,
         patches: args.patches,
         hidden: args.hide.clone(),
+        errors: args.errors.errors(),
         seed: args.seed,
         ..StereoOptions::default()
     };

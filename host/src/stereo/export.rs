@@ -4,17 +4,17 @@
 use super::camera::StereoCamera;
 use super::hidden::Hidden;
 use super::scene::StereoScene;
+use super::scene_errors::SceneErrors;
 use super::stick_file::stick_csv;
 use super::stick_wave::StickEnds;
 use super::truth::truth_csv;
 use crate::body::pose_file::pose_json;
-use crate::body::{BodyFile, BodyPart, fit_pose};
+use crate::body::{BodyFile, BodyPart};
 use crate::cloud::write_ply;
 use crate::error::Result;
 use crate::output::OutputDir;
 use rayon::prelude::*;
 use serde::Serialize;
-use sinew_core::skeleton::full_body::full_body;
 
 /// Version of `run.json`.
 const REPORT_VERSION: u32 = 1;
@@ -52,6 +52,8 @@ pub struct StereoReport<'a> {
     pub patches: u32,
     /// Limbs without points.
     pub hidden: &'a [Hidden],
+    /// What else is wrong with the scene.
+    pub errors: &'a SceneErrors,
     /// Distance of the first pose's joints from the true ones, the mean, metres.
     pub first_pose_residual_m: f32,
     /// What a user should know of the motion, one sentence each.
@@ -86,7 +88,7 @@ impl StereoScene {
         output.write("truth.csv", |writer| Ok(writer.write_all(truth_csv(self).as_bytes())?))?;
         let body = serde_json::to_string_pretty(&BodyFile::from(self.measures()))?;
         output.write("body.json", |writer| Ok(writer.write_all(body.as_bytes())?))?;
-        let first = fit_pose(&full_body(self.measures())?, self.joints_m(0), None);
+        let first = self.first_pose()?;
         output.write("first_pose.json", |writer| Ok(writer.write_all(pose_json(&first.angles).as_bytes())?))?;
         if let Some(stick_m) = stick_m {
             let text = stick_csv(&self.options().camera, stick_m);
@@ -109,6 +111,7 @@ impl StereoScene {
             outliers: options.outliers,
             patches: options.patches,
             hidden: &options.hidden,
+            errors: &options.errors,
             first_pose_residual_m: first.mean_m(),
             notes,
         };

@@ -251,5 +251,6 @@ def simulate_stereo(
     outliers: float,
     patches: int,
     hide: list[str],
+    hard: bool,
     seed: int,
 ) -> dict[str, Any]: ...

@@ -65,6 +65,7 @@ def simulate_stereo(
     outliers: float = 0.1,
     patches: int = 4,
     hide: Sequence[str] = (),
+    hard: bool = False,
     seed: int = 1,
 ) -> SimulatedStereo:
     """Points that a stereo camera measures on a moving body, as ``sinew simulate stereo`` does.
@@ -97,6 +98,9 @@ def simulate_stereo(
         Patches of the picture in which no point is found.
     hide : sequence of str
         Limbs without points from one frame to another, such as ``"l_arm:30-44"``.
+    hard : bool
+        Radii, lengths and first pose with errors, false matches, background, motion blur, as
+        ``--hard`` of the command.
     seed : int
         Seed of all that is random; the command makes the same points of it.
 
@@ -134,6 +138,7 @@ def simulate_stereo(
         number(outliers, "outliers"),
         whole(patches, "patches", 0, 2**32 - 1),
         [str(text) for text in hide],
+        bool(hard),
         whole(seed, "seed", 0, 2**64 - 1),
     )
     found["measures"] = json.loads(found.pop("measures_json"))
