@@ -5,6 +5,7 @@ use super::goal::{GoalMemory, GoalProcess, Goals};
 use super::motion::{BodyMotion, BodyParticle, FramePast, Proposed};
 use super::proposal::{LaplaceProposal, LimitMass};
 use super::root::RootProcess;
+use crate::kinematics::gradient_projection::mode_by_gradient;
 use crate::kinematics::inverse::{Mode, PoseDensity, PoseObjective, Solve};
 use crate::math::{Vec3, clamp};
 use crate::random::Stream;
@@ -42,6 +43,7 @@ const LIMIT_MASS_DRAWS: usize = 8;
 ///     angle_std_rad_per_sqrt_s: [2.0; 4],
 ///     angle_persistence: 0.0,
 ///     solver_steps: 5,
+///     by_gradient: false,
 ///     corrects_weight: false,
 ///     draw_share: 0.1,
 /// };
@@ -67,6 +69,9 @@ pub struct EndEffectorMotion<'a, P, const ANGLES: usize> {
     pub angle_persistence: f32,
     /// Most steps of the solver.
     pub solver_steps: usize,
+    /// Whether the steps are the paper's gradient projection (section 5.2.1), which needs many more
+    /// of them than Gauss-Newton.
+    pub by_gradient: bool,
     /// Whether the weight takes the importance ratio (18).
     pub corrects_weight: bool,
     /// Standard deviation of the draw relative to that of the Laplace expansion, in (0, 1]; 1 is
@@ -140,7 +145,11 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
             stiffness: stiffness(&past.angle_std_rad(&self.angle_std_rad_per_sqrt_s)),
             held: skeleton.root_coordinates(),
         };
-        let mut mode = density.mode(self.solver_steps);
+        let mut mode = if self.by_gradient {
+            mode_by_gradient(&density, self.solver_steps)
+        } else {
+            density.mode(self.solver_steps)
+        };
         if !self.corrects_weight {
             narrow(&mut mode, self.draw_share);
         }

@@ -148,6 +148,7 @@ fn end_effector(process: &Places) -> EndEffectorMotion<'_, Places, 2> {
         angle_std_rad_per_sqrt_s: [ANGLE_STD_RAD / DT_S.sqrt(); 2],
         angle_persistence: 0.0,
         solver_steps: 20,
+        by_gradient: false,
         corrects_weight: true,
         draw_share: 1.0,
     }

@@ -100,7 +100,31 @@ where
         self.particles.as_ref()
     }
 
-    /// Their weights, which sum to one; equal after a step limb by limb, which ends with the
+    /// The mean pose of the last step, PIK (30), before the deadband; at first the pose that the
+    /// tracker begins with.
+    ///
+    /// ```
+    /// use sinew_core::pik::example::{arm_points, arm_scene, bending_elbow, guided_arm, hand_goals};
+    /// use sinew_core::pik::motion::BodyParticle;
+    /// use sinew_core::tracker::body::{BodyFrame, BodyTracker, DEFAULT_BODY_OPTIONS};
+    ///
+    /// let (scene, goals) = (arm_scene()?, hand_goals()?);
+    /// let first = BodyParticle::at(&scene.skeleton, bending_elbow(0));
+    /// let sets = ([first; 30], [first; 30]);
+    /// let mut tracker = BodyTracker::<2, 4, 30, _>::new(&first, sets, DEFAULT_BODY_OPTIONS, 1)?;
+    /// let cloud = arm_points(&scene, &bending_elbow(1));
+    /// let frame = BodyFrame { dt_s: 1.0 / 15.0, blocks: cloud.blocks() };
+    /// let estimate = tracker.step(&scene, &guided_arm(&goals), &frame);
+    /// // The default options have no deadband.
+    /// assert_eq!(tracker.mean().angles_rad, estimate.angles_rad);
+    /// # Ok::<(), sinew_core::error::ParameterError>(())
+    /// ```
+    #[must_use]
+    pub fn mean(&self) -> &BodyParticle<BONES, ANGLES> {
+        &self.before
+    }
+
+    /// The particles' weights, which sum to one; equal after a step limb by limb, which ends with the
     /// resampling.
     #[must_use]
     pub fn weights(&self) -> &[f32] {

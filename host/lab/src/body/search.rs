@@ -4,7 +4,7 @@ use super::trial::{SeenMotion, trial};
 use anyhow::Result;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use sinew::body::tracking::{BodyModelKind, BodyTuning, JointKappa, PaperTuning};
+use sinew::body::tracking::{BodyModelKind, BodyTuning, ByJoint, PaperTuning};
 use sinew_core::random::Stream;
 
 /// Size of a step of the search, in natural logarithms.
@@ -21,8 +21,10 @@ pub enum Searched {
     Angles,
     /// As [`Self::Angles`], with a kappa for each joint.
     AnglesByJoint,
-    /// Goals and angles with the same sigma of PIK (25) and tau.
+    /// Goals and angles with the same sigma of PIK (25), tau and root.
     Both,
+    /// The root alone, of goals and angles.
+    Root,
 }
 
 impl Searched {
@@ -32,7 +34,7 @@ impl Searched {
         match self {
             Self::Goals => &[BodyModelKind::EndEffectorPaper],
             Self::Angles | Self::AnglesByJoint => &[BodyModelKind::AngularPaper],
-            Self::Both => &[BodyModelKind::EndEffectorPaper, BodyModelKind::AngularPaper],
+            Self::Both | Self::Root => &[BodyModelKind::EndEffectorPaper, BodyModelKind::AngularPaper],
         }
     }
 
@@ -40,19 +42,28 @@ impl Searched {
     fn neighbour(self, paper: &PaperTuning, stream: &mut Stream) -> PaperTuning {
         let mut next = *paper;
         let mut change = |number: &mut f32| *number *= (STEP * stream.normal()).exp();
-        change(&mut next.point_std_m);
-        change(&mut next.outlier_m);
+        if self != Self::Root {
+            change(&mut next.point_std_m);
+            change(&mut next.outlier_m);
+        }
         if matches!(self, Self::Goals | Self::Both) {
             [&mut next.lambda, &mut next.reach_std_m, &mut next.goal_std_m].into_iter().for_each(&mut change);
         }
         if matches!(self, Self::Angles | Self::Both) {
             let mut kappa = next.kappa.trunk;
             change(&mut kappa);
-            next.kappa = JointKappa::uniform(kappa);
+            next.kappa = ByJoint::uniform(kappa);
         }
         if self == Self::AnglesByJoint {
-            let JointKappa { trunk, head, shoulder, elbow, hip, knee, ankle } = &mut next.kappa;
-            [trunk, head, shoulder, elbow, hip, knee, ankle].into_iter().for_each(change);
+            let ByJoint { trunk, head, shoulder, elbow, hip, knee, ankle } = &mut next.kappa;
+            [trunk, head, shoulder, elbow, hip, knee, ankle].into_iter().for_each(&mut change);
+        }
+        if matches!(self, Self::Both | Self::Root) {
+            let root = &mut next.root;
+            let fit = [&mut root.aligned_shift_std_m, &mut root.aligned_turn_std_rad, &mut root.aligned_angle_std_rad];
+            fit.into_iter().for_each(&mut change);
+            [&mut root.persistence, &mut root.shift_std_m, &mut root.turn_std_rad].into_iter().for_each(change);
+            root.persistence = root.persistence.min(1.0);
         }
         next
     }

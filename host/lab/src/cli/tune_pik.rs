@@ -56,7 +56,7 @@ pub fn run(args: &TunePikArgs, console: &Console) -> Result<()> {
         seen.push(motion.read(Some(&skeleton))?.seen(args.body, 1)?);
     }
     let (mut all, mut text): (Vec<Found>, String) = (Vec::new(), String::new());
-    let all_searches = [Searched::Goals, Searched::Angles, Searched::AnglesByJoint, Searched::Both];
+    let all_searches = [Searched::Goals, Searched::Angles, Searched::AnglesByJoint, Searched::Both, Searched::Root];
     for searched in all_searches.into_iter().filter(|searched| args.only.is_none_or(|only| only == *searched)) {
         let bar = console.bar(args.tries as u64, "{msg} {pos}/{len} {wide_bar} {eta}")?;
         let tried = |_, error_m: f64| {

@@ -5,7 +5,7 @@
 use crate::shared_data;
 
 use sinew::body::run::score::RunningMean;
-use sinew::body::tracking::JointStd;
+use sinew::body::tracking::ByJoint;
 use sinew::body::tracking::end_effectors::{CARRIED, END_EFFECTORS};
 use sinew::body::tracking::{BodyModelKind, BodyTuning};
 use sinew::body::{BodyJoints, fit_pose};
@@ -183,7 +183,7 @@ impl Model {
         let goals = goals.spreading_by(&numbers.goal_std.per_end_effector().map(|std_m| NOISE_SHARE * std_m)).unwrap();
         let joints = if kind == BodyModelKind::Angular { tuning.angular.joint_std } else { numbers.joint_std };
         // The trunk, which is fitted to the points, keeps its own.
-        let joints = JointStd { trunk: tuning.root.trunk_std_rad, ..joints.scaled(NOISE_SHARE) };
+        let joints = ByJoint { trunk: tuning.root.trunk_std_rad, ..joints.map(|std| std * NOISE_SHARE) };
         Self { kind, tuning, scene, goals, angle_std_rad_per_sqrt_s: joints.per_angle() }
     }
 
@@ -212,6 +212,7 @@ impl Model {
             angle_std_rad_per_sqrt_s,
             angle_persistence: 0.0,
             solver_steps: self.tuning.end_effector.solver_steps,
+            by_gradient: false,
             corrects_weight: self.tuning.draw.corrects_weight,
             draw_share: self.tuning.draw.share,
         };

@@ -12,9 +12,11 @@ const MAX_SOLVER_STEPS: i64 = 100;
 /// Maximum number of blocks of points that a file may ask for.
 const MAX_PULLING_BLOCKS: i64 = 1_000_000;
 /// Numbers that may be zero; all others have to be greater.
-const MAY_BE_ZERO: [&str; 8] = [
+const MAY_BE_ZERO: [&str; 10] = [
     "root.shift_std_m",
     "root.turn_std_rad",
+    "paper.root.shift_std_m",
+    "paper.root.turn_std_rad",
     "self_penetration_std_m",
     "smoothing.radius_m",
     "smoothing.along_share",

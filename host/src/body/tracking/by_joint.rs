@@ -1,13 +1,12 @@
-//! Noise of a body's angles, one number a joint.
+//! One number for each joint of a body: noise of its angles, or their concentration.
 
 use serde::{Deserialize, Serialize};
 use sinew_core::skeleton::full_body::BODY_ANGLES;
 
-/// Standard deviations of angles after one second, by the joint they belong to; radians by root
-/// second.
+/// A value by the joint that an angle belongs to; left and right are alike.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct JointStd {
+pub struct ByJoint {
     /// Trunk against the pelvis.
     pub trunk: f32,
     /// Head against the trunk.
@@ -24,7 +23,13 @@ pub struct JointStd {
     pub ankle: f32,
 }
 
-impl JointStd {
+impl ByJoint {
+    /// The same for every joint.
+    #[must_use]
+    pub const fn uniform(value: f32) -> Self {
+        Self { trunk: value, head: value, shoulder: value, elbow: value, hip: value, knee: value, ankle: value }
+    }
+
     /// One value an angle, in the order of the skeleton; the root's own are not read.
     #[must_use]
     pub fn per_angle(&self) -> [f32; BODY_ANGLES] {
@@ -41,12 +46,11 @@ impl JointStd {
         result
     }
 
-    /// All values times `factor`.
+    /// `of` each value.
     #[must_use]
-    pub fn scaled(&self, factor: f32) -> Self {
+    pub fn map(&self, of: impl FnMut(f32) -> f32) -> Self {
         let Self { trunk, head, shoulder, elbow, hip, knee, ankle } = *self;
-        let [trunk, head, shoulder, elbow, hip, knee, ankle] =
-            [trunk, head, shoulder, elbow, hip, knee, ankle].map(|std| std * factor);
+        let [trunk, head, shoulder, elbow, hip, knee, ankle] = [trunk, head, shoulder, elbow, hip, knee, ankle].map(of);
         Self { trunk, head, shoulder, elbow, hip, knee, ankle }
     }
 }

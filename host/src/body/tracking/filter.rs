@@ -141,6 +141,16 @@ impl BodyFilter {
         }
     }
 
+    /// Coordinates and bones' ends (metres) of the last step's pose before the deadband; of an
+    /// upper body the legs hang.
+    #[must_use]
+    pub fn before_deadband(&self) -> ([f32; BODY_ANGLES], [Vec3; BODY_BONES]) {
+        match &self.tracked {
+            Sizes::Whole(filter) => (filter.mean().angles_rad, filter.mean().ends_m),
+            Sizes::Upper(filter) => whole_ends(&self.scene, &filter.mean().angles_rad, &filter.mean().ends_m),
+        }
+    }
+
     /// The state of the tracker after the last step as text, which [`Self::restore`] takes.
     ///
     /// # Errors
@@ -225,13 +235,22 @@ fn whole_pose(upper_rad: &[f32; UPPER_ANGLES]) -> [f32; BODY_ANGLES] {
     pose
 }
 
+fn whole_ends(
+    scene: &BodyScene<BODY_BONES, BODY_ANGLES>,
+    upper_rad: &[f32; UPPER_ANGLES],
+    upper_m: &[Vec3; UPPER_BONES],
+) -> ([f32; BODY_ANGLES], [Vec3; BODY_BONES]) {
+    let angles_rad = whole_pose(upper_rad);
+    let mut ends_m = scene.posture(&angles_rad).ends;
+    ends_m[..UPPER_BONES].copy_from_slice(upper_m);
+    (angles_rad, ends_m)
+}
+
 fn whole_estimate(
     scene: &BodyScene<BODY_BONES, BODY_ANGLES>,
     upper: &BodyEstimate<UPPER_BONES, UPPER_ANGLES>,
 ) -> WholeBodyEstimate {
-    let angles_rad = whole_pose(&upper.angles_rad);
-    let mut ends_m = scene.posture(&angles_rad).ends;
-    ends_m[..UPPER_BONES].copy_from_slice(&upper.ends_m);
+    let (angles_rad, ends_m) = whole_ends(scene, &upper.angles_rad, &upper.ends_m);
     let (mut spread_m, mut observed) = ([0.0; BODY_BONES], [false; BODY_BONES]);
     spread_m[..UPPER_BONES].copy_from_slice(&upper.spread_m);
     observed[..UPPER_BONES].copy_from_slice(&upper.observed);

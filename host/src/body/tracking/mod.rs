@@ -1,10 +1,10 @@
 //! Tracking a body from point clouds: which motion model, its numbers, the core's step over many
 //! threads, and a stream of frames.
 
+pub mod by_joint;
 pub mod end_effectors;
 pub mod filter;
 pub mod frame_time;
-pub mod joint_std;
 pub mod model_kind;
 pub mod paper_tuning;
 pub mod seen_points;
@@ -14,12 +14,12 @@ pub mod stream;
 pub mod stream_options;
 pub mod tuning;
 
+pub use by_joint::ByJoint;
 pub use end_effectors::MAX_BODY_PARTICLES;
 pub use filter::BodyFilter;
 pub use frame_time::FrameTime;
-pub use joint_std::JointStd;
 pub use model_kind::BodyModelKind;
-pub use paper_tuning::{JointKappa, PaperTuning};
+pub use paper_tuning::{PaperRoot, PaperTuning};
 pub use seen_points::SeenPoints;
 pub use stream::{BodyStream, StreamState, StreamedFrame};
 pub use stream_options::BodyStreamOptions;

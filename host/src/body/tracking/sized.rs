@@ -3,8 +3,8 @@
 //! Every particle draws from its own stream and results are stored by index, so the bits do not
 //! depend on the threads.
 
+use super::by_joint::ByJoint;
 use super::end_effectors::{CARRIED, END_EFFECTORS, JOINTS, MAX_BODY_PARTICLES};
-use super::joint_std::JointStd;
 use super::model_kind::BodyModelKind;
 use super::paper_tuning::PaperTuning;
 use super::tuning::BodyTuning;
@@ -139,7 +139,15 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         }
     }
 
-    /// Their weights.
+    /// The pose that is reported, before the deadband.
+    pub fn mean(&self) -> &Particle<BONES, ANGLES> {
+        match &self.tracker {
+            AnyTracker::Particles(tracker) => tracker.mean(),
+            AnyTracker::Modes(tracker) => &tracker.modes()[0].pose,
+        }
+    }
+
+    /// The particles' weights.
     pub fn weights(&self) -> &[f32] {
         match &self.tracker {
             AnyTracker::Particles(tracker) => tracker.weights(),
@@ -216,14 +224,15 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
 
     /// A frame of the end-effector model with the PIK paper's structure.
     fn step_to_paper_goals(&mut self, frame: &BodyFrame<'_>) -> BodyEstimate<BONES, ANGLES> {
-        let PaperTuning { lambda, reach_std_m, goal_std_m, solver_steps, own_velocity, .. } = self.tuning.paper;
+        let PaperTuning { lambda, reach_std_m, goal_std_m, own_velocity, .. } = self.tuning.paper;
+        let PaperTuning { solver_steps, gradient_projection: by_gradient, .. } = self.tuning.paper;
         let bones = end_effectors(BONES);
         let own = PaperGoals { end_effectors: bones, std_m: goal_std_m, reach_std_m };
         let std_m_per_sqrt_s = goal_std_m / frame.dt_s.max(MIN_DT_S).sqrt();
         let full = LinearExtrapolation { persistence: 1.0, std_m_per_sqrt_s };
         let reached = LinearGoals::new(bones, BONES, full, reach_std_m);
         let angle_std = by_root_second(&[1.0 / lambda.sqrt(); ANGLES], frame.dt_s);
-        let printed = PaperStructure { angle_std, solver_steps, root: self.tuning.root.process() };
+        let printed = PaperStructure { angle_std, solver_steps, by_gradient, root: self.tuning.root.process() };
         match reached {
             Ok(reached) if !own_velocity => self.advance(&printed.motion(&reached), frame),
             _ => self.advance(&printed.motion(&own), frame),
@@ -232,8 +241,8 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
 
     /// A frame of the angular model with the PIK paper's structure.
     fn step_by_paper_angles(&mut self, frame: &BodyFrame<'_>) -> BodyEstimate<BONES, ANGLES> {
-        let PaperTuning { kappa, own_velocity, .. } = self.tuning.paper;
-        let per_angle = kappa.std_rad().per_angle();
+        let PaperTuning { own_velocity, .. } = self.tuning.paper;
+        let per_angle = self.tuning.paper.angle_std_rad().per_angle();
         let per_frame = self.coordinates.map(|index| per_angle[index]);
         let angle_std_rad_per_sqrt_s = by_root_second(&per_frame, frame.dt_s);
         let root = self.tuning.root.process();
@@ -242,9 +251,9 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
     }
 
     /// The noise of each coordinate; the trunk's own where it is fitted to the points.
-    fn angle_std(&self, joints: &JointStd) -> [f32; ANGLES] {
+    fn angle_std(&self, joints: &ByJoint) -> [f32; ANGLES] {
         let trunk = if self.fit_trunk { self.tuning.root.trunk_std_rad } else { joints.trunk };
-        let per_angle = JointStd { trunk, ..*joints }.per_angle();
+        let per_angle = ByJoint { trunk, ..*joints }.per_angle();
         self.coordinates.map(|index| per_angle[index])
     }
 
@@ -304,6 +313,7 @@ fn by_root_second<const ANGLES: usize>(std_rad: &[f32; ANGLES], dt_s: f32) -> [f
 struct PaperStructure<const ANGLES: usize> {
     angle_std: [f32; ANGLES],
     solver_steps: usize,
+    by_gradient: bool,
     root: RootProcess,
 }
 
@@ -315,6 +325,7 @@ impl<const ANGLES: usize> PaperStructure<ANGLES> {
             angle_std_rad_per_sqrt_s: self.angle_std,
             angle_persistence: 0.0,
             solver_steps: self.solver_steps,
+            by_gradient: self.by_gradient,
             corrects_weight: true,
             draw_share: 1.0,
         }
@@ -334,6 +345,7 @@ fn with_goals<'a, P, const ANGLES: usize>(
         angle_std_rad_per_sqrt_s,
         angle_persistence: tuning.end_effector.angle_persistence,
         solver_steps: tuning.end_effector.solver_steps,
+        by_gradient: false,
         corrects_weight: tuning.draw.corrects_weight,
         draw_share: tuning.draw.share,
     }

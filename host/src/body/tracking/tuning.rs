@@ -1,10 +1,10 @@
 //! Numbers of the motion models, tuned on motions that no result is reported on
 //! (docs/body_tracker.md).
 
+use super::by_joint::ByJoint;
 use super::end_effectors::END_EFFECTORS;
-use super::joint_std::JointStd;
 use super::model_kind::BodyModelKind;
-use super::paper_tuning::{PAPER, PaperTuning};
+use super::paper_tuning::{PAPER, PaperRoot, PaperTuning};
 use serde::{Deserialize, Serialize};
 use sinew_core::error::ParameterError;
 use sinew_core::observation::range_smoothing::RangeSmoothing;
@@ -45,6 +45,21 @@ pub struct RootTuning {
 }
 
 impl RootTuning {
+    /// The root with these numbers, without the fits of trunk and far limbs.
+    fn with(&self, paper: &PaperRoot) -> Self {
+        Self {
+            persistence: paper.persistence,
+            shift_std_m: paper.shift_std_m,
+            turn_std_rad: paper.turn_std_rad,
+            aligned_shift_std_m: paper.aligned_shift_std_m,
+            aligned_turn_std_rad: paper.aligned_turn_std_rad,
+            aligned_angle_std_rad: paper.aligned_angle_std_rad,
+            aligned_trunk: false,
+            aligned_from_afar: false,
+            ..*self
+        }
+    }
+
     /// How the root is fitted to the points, and the trunk with it if asked for.
     #[must_use]
     pub fn alignment(&self) -> Option<RootAlignment> {
@@ -108,8 +123,8 @@ pub struct GoalTuning {
     pub reach_std_m: f32,
     /// Spread of the goals.
     pub goal_std: GoalStd,
-    /// Stiffness of the pose: standard deviations of the angles' changes.
-    pub joint_std: JointStd,
+    /// Stiffness of the pose: standard deviations of the angles' changes after one second, radians.
+    pub joint_std: ByJoint,
     /// Share of the angles' velocities that goes on in what the stiffness holds on to.
     pub angle_persistence: f32,
     /// Maximum number of steps of the solver.
@@ -144,8 +159,8 @@ pub struct AngularTuning {
     pub persistence: f32,
     /// Share of the velocities' last change that goes on.
     pub acceleration_share: f32,
-    /// Noise of the angles.
-    pub joint_std: JointStd,
+    /// Standard deviations of the angles' noise after one second, radians.
+    pub joint_std: ByJoint,
 }
 
 /// The points' likelihood.
@@ -263,7 +278,7 @@ impl BodyTuning {
             (self.end_effector.acceleration_share, self.angular.acceleration_share) = (0.0, 0.0);
             self.deadband = DeadbandTuning { jitter_std_errors: 0.0, jitter_std_m: 0.0 };
             self.self_penetration_std_m = 0.0;
-            (self.root.aligned_trunk, self.root.aligned_from_afar) = (false, false);
+            self.root = self.root.with(&self.paper.root);
             let (std_m, outlier_m) = (self.paper.point_std_m, self.paper.outlier_m);
             self.points = PointTuning { std_m, outlier_m, least_effective_share: 0.0, limb_by_limb: false };
         }
@@ -320,14 +335,14 @@ impl BodyTuning {
 
 /// Found by a random search for the least error (34) with 100 particles on 18 clips that no result
 /// is reported on (docs/body_tracker.md). So was [`ANGULAR_JOINTS`].
-const GOAL_JOINTS: JointStd =
-    JointStd { trunk: 0.268, head: 0.6, shoulder: 1.02, elbow: 1.31, hip: 0.65, knee: 1.2, ankle: 0.062 };
+const GOAL_JOINTS: ByJoint =
+    ByJoint { trunk: 0.268, head: 0.6, shoulder: 1.02, elbow: 1.31, hip: 0.65, knee: 1.2, ankle: 0.062 };
 /// The angular model's noise.
-const ANGULAR_JOINTS: JointStd =
-    JointStd { trunk: 0.255, head: 0.28, shoulder: 0.64, elbow: 0.89, hip: 0.3, knee: 0.66, ankle: 0.13 };
+const ANGULAR_JOINTS: ByJoint =
+    ByJoint { trunk: 0.255, head: 0.28, shoulder: 0.64, elbow: 0.89, hip: 0.3, knee: 0.66, ankle: 0.13 };
 /// The guided model draws where the points pull, so that its stiffness may be looser.
-const GUIDED_JOINTS: JointStd =
-    JointStd { trunk: 0.2, head: 0.6, shoulder: 2.0, elbow: 2.0, hip: 2.0, knee: 1.5, ankle: 1.0 };
+const GUIDED_JOINTS: ByJoint =
+    ByJoint { trunk: 0.2, head: 0.6, shoulder: 2.0, elbow: 2.0, hip: 2.0, knee: 1.5, ankle: 1.0 };
 
 /// The models with goals.
 const GOALS: GoalTuning = GoalTuning {

@@ -95,6 +95,7 @@ fn end_effector(process: &LinearGoals) -> EndEffectorMotion<'_, LinearGoals, BOD
         angle_std_rad_per_sqrt_s: ANGLE_STD,
         angle_persistence: 0.0,
         solver_steps: 2,
+        by_gradient: false,
         corrects_weight: false,
         draw_share: 1.0,
     }

@@ -89,6 +89,7 @@ pub fn draw(measures: &BodyMeasures, first_rad: [f32; BODY_ANGLES], seed: u64) -
         angle_std_rad_per_sqrt_s,
         angle_persistence: 0.0,
         solver_steps: SOLVER_STEPS,
+        by_gradient: false,
         corrects_weight: false,
         draw_share: 1.0,
     };
