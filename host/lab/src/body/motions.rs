@@ -141,6 +141,15 @@ impl ReadMotion {
     /// # Errors
     /// As [`Self::seen`]; a hidden frame that the motion does not have.
     pub fn seen_hiding(&self, part: BodyPart, seed: u64, hidden: &[Hidden]) -> Result<SeenMotion> {
+        self.seen_as(StereoOptions { seed, part, hidden: hidden.to_vec(), ..StereoOptions::default() })
+    }
+
+    /// The motion in the scene that `options` describe.
+    ///
+    /// # Errors
+    /// As [`Self::seen_hiding`].
+    pub fn seen_as(&self, options: StereoOptions) -> Result<SeenMotion> {
+        let StereoOptions { seed, part, .. } = options;
         let placement = Placement::default();
         let (height_m, distance_m) = (placement.camera_height_m, placement.mean_distance_m);
         let (recording, stick) = match &self.recording {
@@ -151,10 +160,9 @@ impl ReadMotion {
             }
         };
         let frames = recording.joints_m.len();
-        for last in hidden.iter().map(|hidden| *hidden.frames.end()) {
+        for last in options.hidden.iter().map(|hidden| *hidden.frames.end()) {
             ensure!(last < frames, "`{}` has no frame {last} to hide; the last one is {}", self.name, frames - 1);
         }
-        let options = StereoOptions { seed, part, hidden: hidden.to_vec(), ..StereoOptions::default() };
         let scene = StereoScene::new(recording, options).with_context(|| format!("`{}` makes no scene", self.name))?;
         // The count does not separate an upper body from the legs.
         let recorded_markers_m = if part == BodyPart::Whole { self.markers_m.clone() } else { Vec::new() };

@@ -67,6 +67,14 @@ pub struct BodyResult {
     pub lost_joint_share: Measured,
     /// Eq. (35), metres a frame.
     pub smoothness_m: Measured,
+    /// Eq. (34) before the deadband, metres.
+    pub error_before_deadband_m: Measured,
+    /// Joints before the deadband, metres.
+    pub joint_error_before_deadband_m: Measured,
+    /// Share of frames with a joint more than 10 cm off before the deadband.
+    pub lost_joint_share_before_deadband: Measured,
+    /// Eq. (35) before the deadband, metres a frame.
+    pub smoothness_before_deadband_m: Measured,
     /// Eq. (35) of the truth, metres a frame.
     pub truth_smoothness_m: f64,
     /// Wall time of the tracker's step, seconds a frame.
@@ -148,13 +156,13 @@ impl BodyReport {
     #[must_use]
     pub fn to_csv(&self) -> String {
         let mut text = String::from(
-            "motion,model,particles,error_m,error_std_m,error_ci95_m,joint_error_m,lost_joint_share,smoothness_m,truth_smoothness_m,seconds_per_frame\n",
+            "motion,model,particles,error_m,error_std_m,error_ci95_m,joint_error_m,lost_joint_share,smoothness_m,truth_smoothness_m,seconds_per_frame,error_before_deadband_m,joint_error_before_deadband_m,lost_joint_share_before_deadband,smoothness_before_deadband_m\n",
         );
         for cell in &self.results {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
-                "{},{},{},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5}",
+                "{},{},{},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5}",
                 cell.motion,
                 cell.model.name(),
                 cell.particles,
@@ -165,7 +173,11 @@ impl BodyReport {
                 cell.lost_joint_share.mean,
                 cell.smoothness_m.mean,
                 cell.truth_smoothness_m,
-                cell.seconds_per_frame
+                cell.seconds_per_frame,
+                cell.error_before_deadband_m.mean,
+                cell.joint_error_before_deadband_m.mean,
+                cell.lost_joint_share_before_deadband.mean,
+                cell.smoothness_before_deadband_m.mean
             );
         }
         text
@@ -184,6 +196,17 @@ impl BodyReport {
         self.add_means(&mut text, "smoothness over the truth's, PIK (35)", |cell| {
             cell.smoothness_m.mean / cell.truth_smoothness_m
         });
+        if self.results.iter().any(|cell| cell.smoothness_m != cell.smoothness_before_deadband_m) {
+            self.add_means(&mut text, "before the deadband: cm, PIK (34)", |cell| {
+                100.0 * cell.error_before_deadband_m.mean
+            });
+            self.add_means(&mut text, "before the deadband: cm at the joints", |cell| {
+                100.0 * cell.joint_error_before_deadband_m.mean
+            });
+            self.add_means(&mut text, "before the deadband: smoothness over the truth's, PIK (35)", |cell| {
+                cell.smoothness_before_deadband_m.mean / cell.truth_smoothness_m
+            });
+        }
         self.add_notes(&mut text);
         text
     }
@@ -261,6 +284,10 @@ mod tests {
             joint_error_m: Measured::of(&[2.0 * error]),
             lost_joint_share: Measured::of(&[0.25]),
             smoothness_m: Measured::of(&[0.01]),
+            error_before_deadband_m: Measured::of(&[error]),
+            joint_error_before_deadband_m: Measured::of(&[2.0 * error]),
+            lost_joint_share_before_deadband: Measured::of(&[0.25]),
+            smoothness_before_deadband_m: Measured::of(&[0.02]),
             truth_smoothness_m: 0.01,
             seconds_per_frame: 0.01,
             effective_share: 0.1,
@@ -283,9 +310,13 @@ mod tests {
         assert!((found - 1000.0).abs() < 1.0e-6, "{found}");
         assert_eq!(report.particles_for(BodyModelKind::Angular, 0.03), None);
         let text = report.to_text();
-        for (title, wanted) in
-            [("PIK (34)", "8.00"), ("at the joints", "16.00"), ("10 cm off", "25.00"), ("(35)", "1.00")]
-        {
+        for (title, wanted) in [
+            ("PIK (34)", "8.00"),
+            ("at the joints", "16.00"),
+            ("10 cm off", "25.00"),
+            ("(35)", "1.00"),
+            ("before the deadband: smoothness over the truth's, PIK (35)", "2.00"),
+        ] {
             let table = text.split_once(title).unwrap().1;
             assert!(table.lines().nth(2).unwrap().contains(wanted), "{title}: {text}");
         }

@@ -55,11 +55,10 @@ impl SeenMotion {
         let clouds_m = frames.par_iter().map(|&frame| scene.points_m(frame)).collect();
         let measures = *scene.measures();
         let joints_m: Vec<BodyJoints> = frames.iter().map(|&frame| *scene.joints_m(frame)).collect();
-        let first = joints_m.first().copied().unwrap_or([None; BODY_BONES]);
         Ok(Self {
             part: scene.options().part,
             rate_hz: scene.recording().rate_hz,
-            first_rad: fit_pose(&full_body(&measures)?, &first, None).angles,
+            first_rad: scene.first_pose()?.angles,
             markers_m: frames.iter().map(|&frame| scene.markers_m(frame)).collect(),
             recorded_markers_m: Vec::new(),
             joints_m,
@@ -116,6 +115,19 @@ pub struct NearErrors {
     pub lost_joint_share: f64,
 }
 
+/// Measures of a pose over the frames of a trial, always together.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PoseMeasures {
+    /// Mean distance of the markers from the skin, PIK (34), metres.
+    pub error_m: f64,
+    /// Mean distance of the joints from the true ones, metres.
+    pub joint_error_m: f64,
+    /// Share of frames that have a joint more than 10 cm off.
+    pub lost_joint_share: f64,
+    /// Mean length that the start of a bone goes in a frame, PIK (35), metres.
+    pub smoothness_m: f64,
+}
+
 /// What a trial measured.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TrialResult {
@@ -131,6 +143,8 @@ pub struct TrialResult {
     pub near: Option<NearErrors>,
     /// Mean length that the start of a bone goes in a frame, PIK (35), metres.
     pub smoothness_m: f64,
+    /// The same measures of the pose before the deadband: each frame's own mean, PIK (30).
+    pub before_deadband: PoseMeasures,
     /// Wall time of the tracker's step with what is done to the points before it, seconds a frame.
     pub seconds_per_frame: f64,
     /// Mean share of effective particles.
@@ -152,19 +166,24 @@ pub fn trial(
     let mut filter =
         BodyFilter::of_part(motion.part, kind, *tuning, who, particles, seed)?.above_floor(motion.floor_y_m);
     let mut estimates = Vec::with_capacity(motion.clouds_m.len());
+    let mut before_deadband: Vec<WholeBodyEstimate> = Vec::with_capacity(motion.clouds_m.len());
     let mut seconds = 0.0;
     for (frame, points_m) in motion.clouds_m.iter().enumerate().skip(1) {
         let stick = motion.stick.get(frame).copied().unwrap_or(StickSight::Unseen);
         let mut points_m = points_m.clone();
         let start = Instant::now();
         let blocks = filter.blocks(&mut points_m);
-        estimates.push(filter.step(&blocks, 1.0 / motion.rate_hz, stick));
+        let estimate = filter.step(&blocks, 1.0 / motion.rate_hz, stick);
         seconds += start.elapsed().as_secs_f64();
+        let (angles_rad, ends_m) = filter.before_deadband();
+        before_deadband.push(WholeBodyEstimate { angles_rad, ends_m, ..estimate });
+        estimates.push(estimate);
     }
     let frames = estimates.len().max(1) as f64;
-    let (mut score, mut near) = (BodyScore::default(), BodyScore::default());
-    for (estimate, (joints, markers)) in estimates.iter().zip(motion.joints_m.iter().zip(&motion.markers_m).skip(1)) {
-        let _ = score.add(&filter, estimate, joints, markers);
+    let (reported, before_deadband) =
+        (measures(motion, &filter, &estimates), measures(motion, &filter, &before_deadband));
+    let mut near = BodyScore::default();
+    for (estimate, joints) in estimates.iter().zip(motion.joints_m.iter().skip(1)) {
         if joints[PELVIS].is_some_and(|pelvis_m| pelvis_m.norm() < NEAR_M) {
             let _ = near.add(&filter, estimate, joints, &[]);
         }
@@ -174,17 +193,32 @@ pub fn trial(
         let _ = recorded.add(&filter, estimate, &[None; BODY_BONES], markers);
     }
     let result = TrialResult {
-        error_m: score.marker_m.mean().unwrap_or(0.0),
+        error_m: reported.error_m,
         recorded_error_m: recorded.marker_m.mean(),
-        joint_error_m: score.joint_m.mean().unwrap_or(0.0),
-        lost_joint_share: score.lost.mean().unwrap_or(0.0),
+        joint_error_m: reported.joint_error_m,
+        lost_joint_share: reported.lost_joint_share,
         near: near_errors(&near),
-        smoothness_m: smoothness_m(motion.part, estimates.iter().map(|estimate| estimate.ends_m.map(Some))),
+        smoothness_m: reported.smoothness_m,
+        before_deadband,
         seconds_per_frame: seconds / frames,
         effective_share: estimates.iter().map(|e| f64::from(e.effective_sample_size)).sum::<f64>()
             / (frames * particles as f64),
     };
     Ok((result, estimates))
+}
+
+/// The measures of poses whose first one is that of the second frame.
+fn measures(motion: &SeenMotion, filter: &BodyFilter, poses: &[WholeBodyEstimate]) -> PoseMeasures {
+    let mut score = BodyScore::default();
+    for (pose, (joints, markers)) in poses.iter().zip(motion.joints_m.iter().zip(&motion.markers_m).skip(1)) {
+        let _ = score.add(filter, pose, joints, markers);
+    }
+    PoseMeasures {
+        error_m: score.marker_m.mean().unwrap_or(0.0),
+        joint_error_m: score.joint_m.mean().unwrap_or(0.0),
+        lost_joint_share: score.lost.mean().unwrap_or(0.0),
+        smoothness_m: smoothness_m(motion.part, poses.iter().map(|pose| pose.ends_m.map(Some))),
+    }
 }
 
 fn near_errors(near: &BodyScore) -> Option<NearErrors> {

@@ -18,7 +18,7 @@ use sinew::cli::console::Console;
 use sinew::output::OutputDir;
 use sinew::registry::{MOTION, choice};
 use sinew::resume::{Begun, Cells, Stop};
-use sinew::stereo::Hidden;
+use sinew::stereo::{Hidden, SceneErrors, StereoOptions};
 use std::path::PathBuf;
 
 /// Options of `sinew evaluate body`.
@@ -59,6 +59,10 @@ pub struct EvaluateBodyArgs {
     /// included; may be repeated.
     #[arg(long, value_name = "LIMB:FIRST-LAST")]
     pub hide: Vec<Hidden>,
+    /// A hard scene: radii, lengths and first pose with errors, false matches, background, motion
+    /// blur, as `sinew simulate stereo --hard`.
+    #[arg(long)]
+    pub hard: bool,
     /// Also hide the points of the left and the right arm in turns, for this many frames at a time,
     /// and report how they are found again.
     #[arg(long, value_name = "FRAMES")]
@@ -105,6 +109,14 @@ pub fn run_until(args: &EvaluateBodyArgs, console: &Console, stop: Stop<'_>) -> 
     console.answer(&text, &json!({ "out": args.out, "report": report }))
 }
 
+impl EvaluateBodyArgs {
+    /// The scene of one seed, whose `hidden` limbs have no points.
+    fn scene(&self, seed: u64, hidden: Vec<Hidden>) -> StereoOptions {
+        let errors = if self.hard { SceneErrors::HARD } else { SceneErrors::default() };
+        StereoOptions { seed, part: self.body, hidden, errors, ..StereoOptions::default() }
+    }
+}
+
 /// Refuses numbers out of range by their option's name.
 fn check(args: &EvaluateBodyArgs) -> Result<()> {
     ensure!(args.trials > 0, "--trials must be greater than zero");
@@ -139,6 +151,7 @@ fn begun(args: &EvaluateBodyArgs, tuning: &BodyTuning) -> Result<Begun> {
         "partial": args.partial,
         "hide": args.hide,
         "hide_arms": args.hide_arms,
+        "hard": args.hard,
         "config": tuning,
     });
     Ok(Begun::new("evaluate body", &options, &[])?)
@@ -161,7 +174,10 @@ fn evaluate(
         let seeds = (1..=args.trials).into_par_iter();
         let seen: Vec<SeenMotion> = seeds
             .map(|seed| {
-                cells.go_on().map_err(anyhow::Error::from).and_then(|()| read.seen_hiding(args.body, seed, &args.hide))
+                cells
+                    .go_on()
+                    .map_err(anyhow::Error::from)
+                    .and_then(|()| read.seen_as(args.scene(seed, args.hide.clone())))
             })
             .collect::<Result<_>>()?;
         let of_truth: Vec<f64> = seen.iter().map(SeenMotion::smoothness_m).collect();
@@ -227,6 +243,10 @@ fn cell(
         joint_error_m: of(|trial| trial.joint_error_m),
         lost_joint_share: of(|trial| trial.lost_joint_share),
         smoothness_m: of(|trial| trial.smoothness_m),
+        error_before_deadband_m: of(|trial| trial.before_deadband.error_m),
+        joint_error_before_deadband_m: of(|trial| trial.before_deadband.joint_error_m),
+        lost_joint_share_before_deadband: of(|trial| trial.before_deadband.lost_joint_share),
+        smoothness_before_deadband_m: of(|trial| trial.before_deadband.smoothness_m),
         truth_smoothness_m: *truth_smoothness_m,
         seconds_per_frame: of(|trial| trial.seconds_per_frame).mean,
         effective_share: of(|trial| trial.effective_share).mean,
@@ -245,7 +265,7 @@ fn hide_arms(
     let frames = motion.seen(args.body, 1)?.clouds_m.len();
     for seed in 1..=args.trials {
         let windows = hidden_arm::windows(frames, length, seed);
-        let seen = motion.seen_hiding(args.body, seed, &windows)?;
+        let seen = motion.seen_as(args.scene(seed, windows.clone()))?;
         for &model in &args.models {
             for &particles in &args.particles {
                 arms.extend(hidden_arm::follow(name, (&seen, &windows), (model, particles), (tuning, cells), seed)?);

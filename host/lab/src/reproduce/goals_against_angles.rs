@@ -127,6 +127,7 @@ pub fn plots(pairs: &[Pair], part: BodyPart, truth_smoothness_m: f64) -> Vec<(St
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::trial::PoseMeasures;
 
     fn trials(errors_m: &[f64]) -> Vec<TrialResult> {
         let of = |&error_m: &f64| TrialResult {
@@ -136,6 +137,12 @@ mod tests {
             lost_joint_share: 0.0,
             near: None,
             smoothness_m: 0.01,
+            before_deadband: PoseMeasures {
+                error_m,
+                joint_error_m: error_m,
+                lost_joint_share: 0.0,
+                smoothness_m: 0.01,
+            },
             seconds_per_frame: 0.001,
             effective_share: 0.1,
         };

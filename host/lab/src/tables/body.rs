@@ -15,7 +15,7 @@ use sinew::stereo::Hidden;
 use std::path::Path;
 
 /// The report set: three kinds of motion, none of them a tuning clip.
-const REPORT_SET: [(&str, &str); 6] = [
+pub(super) const REPORT_SET: [(&str, &str); 6] = [
     ("directing traffic", "cmu-expmap/train_directing_traffic_1.txt@0-5"),
     ("waving", "bandai/dataset-2_wave-both-hands_normal_001.bvh@0-5"),
     ("walk 02_01", "cmu-walk/02/02_01.amc"),
@@ -33,11 +33,11 @@ const HIDING_SET: [&str; 6] = [
     "cmu-exercise/13_29.amc@31.7-36",
 ];
 /// Skeleton of the .amc files that have none beside them.
-const SKELETON: &str = "cmu-walk/35/35.asf";
+pub(super) const SKELETON: &str = "cmu-walk/35/35.asf";
 /// Frames for which an arm is hidden.
 const HIDDEN_FRAMES: usize = 15;
 
-fn choice(text: &str) -> Result<MotionChoice> {
+pub(super) fn choice(text: &str) -> Result<MotionChoice> {
     text.parse().map_err(|error: String| anyhow!("{text}: {error}"))
 }
 

@@ -2,6 +2,7 @@
 
 mod arm;
 mod body;
+mod body_scenes;
 mod cluster;
 mod cyclic;
 mod hands;
@@ -51,7 +52,7 @@ pub struct Table {
 }
 
 /// All tables that have a maker.
-pub const TABLES: [Table; 16] = [
+pub const TABLES: [Table; 18] = [
     Table {
         name: "arm-hands",
         page: "measurements_arm.md",
@@ -97,6 +98,20 @@ pub const TABLES: [Table; 16] = [
         cost: Cost::Long,
         recordings: Some("mocap"),
         rows: body::smoothness,
+    },
+    Table {
+        name: "body-hard",
+        page: "measurements_body.md",
+        cost: Cost::Long,
+        recordings: Some("mocap"),
+        rows: body_scenes::hard,
+    },
+    Table {
+        name: "body-deadband",
+        page: "measurements_body.md",
+        cost: Cost::Long,
+        recordings: Some("mocap"),
+        rows: body_scenes::deadband,
     },
     Table {
         name: "body-hidden",
