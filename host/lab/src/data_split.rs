@@ -101,6 +101,22 @@ mod tests {
     }
 
     #[test]
+    fn the_arms_clips_and_the_runners_are_in_the_table() {
+        let all = parse(TABLE).unwrap();
+        for clip in sinew::motion::clips::CLIPS {
+            let file = format!("mocap/{}", clip.file);
+            assert!(all.iter().any(|entry| entry.tracker == "arm" && entry.recording == file), "{file}");
+        }
+        let runners = entries(crate::body::runners::TRACKER, Role::Tuning).unwrap();
+        assert_eq!(runners.len(), 3, "the clips of the table");
+        let chosen = entries("modes", Role::Tuning).unwrap();
+        for runner in &runners {
+            assert!(chosen.iter().all(|entry| entry.recording != runner.recording), "{}", runner.recording);
+            assert!(chosen.iter().any(|entry| entry.subject == runner.subject), "{}", runner.subject);
+        }
+    }
+
+    #[test]
     fn a_subject_or_recording_in_two_roles_is_refused() {
         let read = |rows: &str| parse(&format!("{HEAD}{rows}")).map_err(|error| format!("{error:#}"));
         assert!(read("body,tuning,13,a.amc\nbody,tuning,13,b.amc\nbody,reporting,35,c.amc\n").is_ok());

@@ -1,10 +1,10 @@
 //! Runners before the simulated stereo camera.
 
 use super::markdown::{Rows, line};
-use crate::body::MotionChoice;
-use crate::body::runners::{REPORT, Seeds, runs};
+use crate::body::runners::{Seeds, TRACKER, runs};
 use crate::body::trial::TrialResult;
-use anyhow::{Context, Result, anyhow};
+use crate::data_split::{Role, motions};
+use anyhow::Result;
 use sinew::body::tracking::{BodyModelKind, BodyTuning};
 use std::path::Path;
 
@@ -16,7 +16,6 @@ const PARTICLES: usize = 50;
 const SHARES: [(f32, &str); 2] = [(0.0, "guided, 50"), (0.5, "the same, `along_share = 0.5`")];
 
 pub fn runners(recordings: &Path) -> Result<Rows> {
-    let mocap = recordings.join("mocap");
     let mut rows = vec![line([
         "clip",
         "model",
@@ -27,10 +26,7 @@ pub fn runners(recordings: &Path) -> Result<Rows> {
         "(34), cm",
         "(35) over the truth's",
     ])];
-    for file in REPORT {
-        let path = mocap.join(file);
-        let text = path.to_str().context("the folder's name is no text")?;
-        let choice: MotionChoice = text.parse().map_err(|error: String| anyhow!("{text}: {error}"))?;
+    for choice in motions(recordings, TRACKER, Role::Tuning)? {
         let read = choice.read(None)?;
         for (along_share, name) in SHARES {
             let mut tuning = BodyTuning::default();
