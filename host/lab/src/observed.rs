@@ -49,7 +49,31 @@ pub struct ObservedScene {
     pub truth: Vec<HandTruth>,
 }
 
+/// What a tracker needs of a scene or a film.
+#[derive(Debug, Clone, Copy)]
+pub struct Footage<'a> {
+    /// Camera and body, as a user would give them.
+    pub config: &'a Config,
+    /// Image size.
+    pub size_px: (u32, u32),
+    /// Tracked arm.
+    pub side: SideChoice,
+    /// Seed of the tracker.
+    pub seed: u64,
+    /// Time between frames, microseconds.
+    pub frame_us: u64,
+    /// What the front end found.
+    pub views: &'a [FrameView],
+}
+
 impl ObservedScene {
+    /// What a tracker needs of it.
+    #[must_use]
+    pub fn footage(&self) -> Footage<'_> {
+        let Self { config, size_px, side, seed, frame_us, views, .. } = self;
+        Footage { config, size_px: *size_px, side: *side, seed: *seed, frame_us: *frame_us, views }
+    }
+
     /// What distinguishes this scene from others that the same options and skin model make.
     #[must_use]
     pub fn key(&self) -> Value {

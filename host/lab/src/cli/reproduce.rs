@@ -2,15 +2,19 @@
 
 use super::until_signal;
 use crate::experiments::STACK_BYTES;
+use crate::reproduce::page::Page;
 use crate::reproduce::{Made, Material, arm, cyclic, pik};
-use anyhow::{Result, ensure};
+use crate::tables::{markdown, page};
+use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use sinew::body::tracking::BodyTuning;
 use sinew::cli::console::Console;
 use sinew::output::OutputDir;
 use sinew::resume::{Begun, CELLS_FOLDER, Cells, Stop};
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::Instant;
 
 /// The papers.
@@ -53,6 +57,13 @@ pub struct ReproduceArgs {
     /// Fewer seeds and particles; the page says what is left out.
     #[arg(long)]
     pub quick: bool,
+    /// PIK: leave out larger numbers of particles; a later run with more goes on from this one.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..))]
+    pub max_particles: Option<u32>,
+    /// Also renew the tables of this page that have a mark of the paper, such as
+    /// docs/reproduce.md.
+    #[arg(long, value_name = "FILE.md")]
+    pub page: Option<PathBuf>,
 }
 
 /// Makes the page of a paper, with its pictures and numbers.
@@ -67,6 +78,9 @@ pub fn run(args: &ReproduceArgs, console: &Console) -> Result<()> {
 fn run_until(args: &ReproduceArgs, console: &Console, stop: Stop<'_>) -> Result<()> {
     ensure!(args.data.is_dir(), "`{}` is no folder; give that of the recordings as --data", args.data.display());
     let name = args.paper.name();
+    if let Some(page) = &args.page {
+        fs::read_to_string(page).with_context(|| format!("the page `{}`", page.display()))?;
+    }
     let output = OutputDir::create(&args.out.join(name))?;
     let begun = Begun::new(
         &format!("reproduce {name}"),
@@ -77,7 +91,8 @@ fn run_until(args: &ReproduceArgs, console: &Console, stop: Stop<'_>) -> Result<
     let is_begun = output.join(CELLS_FOLDER).join("begun.json").is_file();
     let cells = Cells::keep(&output, &begun, is_begun, stop)?;
     let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build()?;
-    let material = Material { data: &args.data, is_quick: args.quick };
+    let max_particles = args.max_particles.map_or(usize::MAX, |most| most as usize);
+    let material = Material { data: &args.data, is_quick: args.quick, max_particles };
     let start = Instant::now();
     let make = || match args.paper {
         Paper::Cyclic => cyclic::make(material, &cells),
@@ -85,14 +100,7 @@ fn run_until(args: &ReproduceArgs, console: &Console, stop: Stop<'_>) -> Result<
         Paper::Arm => arm::make(material, &cells),
     };
     let Made { mut page, plots, drawings, pictures } = console.busy("tracking", || pool.install(make))?;
-    let quick = if args.quick { " --quick" } else { "" };
-    page.made_by = format!(
-        "Made by `sinew-lab reproduce {name}{quick}` of sinew {}, on {} with {} threads, in {:.0} s of this run.",
-        env!("CARGO_PKG_VERSION"),
-        std::env::consts::ARCH,
-        rayon::current_num_threads(),
-        start.elapsed().as_secs_f64()
-    );
+    page.made_by = made_by(args, start.elapsed().as_secs_f64());
     let plots = plots.into_iter().map(|(file, plot)| (file, plot.to_svg()));
     for (file, svg) in plots.chain(drawings) {
         output.write(&file, |writer| Ok(writer.write_all(svg.as_bytes())?))?;
@@ -101,6 +109,37 @@ fn run_until(args: &ReproduceArgs, console: &Console, stop: Stop<'_>) -> Result<
         output.write_png(file, picture)?;
     }
     output.write("index.html", |writer| Ok(writer.write_all(page.to_html().as_bytes())?))?;
+    if let Some(book) = &args.page {
+        renew(book, name, &page)?;
+    }
     let path = output.join("index.html");
     console.answer(&format!("page: {}\n", path.display()), &json!({ "page": path }))
+}
+
+/// Renews the tables of `book` that have a mark of the paper `name`.
+fn renew(book: &Path, name: &str, page: &Page) -> Result<()> {
+    let shown = book.display();
+    let mut text = fs::read_to_string(book).with_context(|| format!("the page `{shown}`"))?;
+    for (mark, rows) in page.tables(name) {
+        if page::names(&text).contains(&mark.as_str()) {
+            text = page::renewed(&text, &mark, &markdown::table(&rows)).with_context(|| shown.to_string())?;
+        }
+    }
+    fs::write(book, text).with_context(|| format!("the page `{shown}` cannot be written"))
+}
+
+/// Command, commit, machine and time of a run.
+fn made_by(args: &ReproduceArgs, seconds: f64) -> Vec<(&'static str, String)> {
+    let quick = if args.quick { " --quick" } else { "" };
+    let most = args.max_particles.map_or_else(String::new, |most| format!(" --max-particles {most}"));
+    let git = Command::new("git").args(["describe", "--always", "--dirty"]).output().ok();
+    let commit =
+        git.filter(|git| git.status.success()).map(|git| String::from_utf8_lossy(&git.stdout).trim().to_owned());
+    let (arch, threads) = (std::env::consts::ARCH, rayon::current_num_threads());
+    vec![
+        ("command", format!("`sinew-lab reproduce {}{quick}{most}`", args.paper.name())),
+        ("commit", commit.unwrap_or_else(|| format!("sinew {}", env!("CARGO_PKG_VERSION")))),
+        ("machine", format!("{arch}, {threads} threads")),
+        ("time of this run, s", format!("{seconds:.0}")),
+    ]
 }

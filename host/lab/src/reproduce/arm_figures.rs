@@ -2,13 +2,15 @@
 //! and how many particles are at the hand.
 
 use super::plot::escaped;
-use crate::observed::ObservedScene;
+use crate::observed::{Footage, ObservedScene};
 use crate::score::FIRST_SCORED_FRAME;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
+use sinew::frames::FrameView;
 use sinew::track::ArmSet;
 use sinew_core::camera::Pixel;
-use sinew_core::tracker::arm::ArmOptions;
+use sinew_core::math::Vec3;
+use sinew_core::tracker::arm::{ArmOptions, Particle};
 use std::fmt::Write;
 
 /// Width of a hand, metres.
@@ -37,52 +39,90 @@ pub struct AtHand {
     pub share: f64,
 }
 
-/// Tracks `scene`; what the particles show in `frame`, and how many are at the hand.
+/// Tracks `footage` and calls `each` with the frame, the trackers, and shoulder of the estimate.
+fn tracked(footage: &Footage<'_>, tracker: &ArmOptions, mut each: impl FnMut(usize, &ArmSet, Vec3)) -> Result<()> {
+    let mut config = footage.config.clone();
+    config.tracker = *tracker;
+    let mut arms = ArmSet::new(&config, footage.size_px, footage.side, footage.seed)?;
+    for (index, view) in footage.views.iter().enumerate() {
+        let estimate = arms.step(index as u64 * footage.frame_us, Some(view))[0].estimate;
+        each(index, &arms, estimate.joints.shoulder_m);
+    }
+    Ok(())
+}
+
+/// What the particles show in `frame`.
 ///
 /// # Errors
-/// Names the parameter that cannot be used; a scene without that frame.
-pub fn follow(scene: &ObservedScene, tracker: &ArmOptions, frame: usize) -> Result<(Shown, AtHand)> {
-    let mut config = scene.config.clone();
-    config.tracker = *tracker;
-    let mut arms = ArmSet::new(&config, scene.size_px, scene.side, scene.seed)?;
-    let camera = *arms.models()[0].camera();
-    let (mut shown, mut sum, mut count) = (None, 0.0, 0.0);
-    for (index, (view, truth)) in scene.views.iter().zip(&scene.truth).enumerate() {
-        let estimate = arms.step(index as u64 * scene.frame_us, Some(view))[0].estimate;
-        if index < FIRST_SCORED_FRAME {
-            continue;
+/// Names the parameter that cannot be used; footage without that frame.
+pub fn shown_in(footage: &Footage<'_>, tracker: &ArmOptions, frame: usize) -> Result<Shown> {
+    let mut shown = None;
+    tracked(footage, tracker, |index, arms, shoulder_m| {
+        if index != frame {
+            return;
         }
-        let particles = arms.particles().swap_remove(0);
-        let hands_px: Vec<Pixel> =
-            particles.iter().filter_map(|(particle, _)| camera.project(&particle.hand_m)).collect();
-        let across = camera.project(&(truth.hand_m + sinew_core::math::Vec3::x() * HAND_WIDTH_M));
+        let mut heaviest = arms.particles().swap_remove(0);
+        let hands_px = hands_px(arms, &heaviest);
+        heaviest.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let arm = |(particle, _): &(Particle, f32)| arms.joints_px([shoulder_m, particle.elbow_m, particle.hand_m]);
+        shown = Some(Shown { hands_px, best_px: heaviest.iter().take(BEST.len()).filter_map(arm).collect() });
+    })?;
+    shown.with_context(|| format!("the footage has no frame {frame}"))
+}
+
+fn hands_px(arms: &ArmSet, particles: &[(Particle, f32)]) -> Vec<Pixel> {
+    let camera = *arms.models()[0].camera();
+    particles.iter().filter_map(|(particle, _)| camera.project(&particle.hand_m)).collect()
+}
+
+/// How many particles are at the hand of `scene`, over the scored frames.
+///
+/// # Errors
+/// Names the parameter that cannot be used.
+pub fn at_hand(scene: &ObservedScene, tracker: &ArmOptions) -> Result<AtHand> {
+    let (mut sum, mut count) = (0.0, 0.0);
+    tracked(&scene.footage(), tracker, |index, arms, _| {
+        if index < FIRST_SCORED_FRAME {
+            return;
+        }
+        let (truth, particles) = (&scene.truth[index], arms.particles().swap_remove(0));
+        let across = arms.models()[0].camera().project(&(truth.hand_m + Vec3::x() * HAND_WIDTH_M));
         let width_px = across.map_or(0.0, |pixel| pixel.distance_px(truth.hand_px));
+        let hands_px = hands_px(arms, &particles);
         let near = hands_px.iter().filter(|pixel| pixel.distance_px(truth.hand_px) <= width_px).count();
         sum += near as f64 / particles.len().max(1) as f64;
         count += 1.0;
-        if index == frame {
-            let mut heaviest = particles;
-            heaviest.sort_by(|a, b| b.1.total_cmp(&a.1));
-            let shoulder_m = estimate.joints.shoulder_m;
-            let arm = |(particle, _): &(_, f32)| {
-                let particle: &sinew_core::tracker::arm::Particle = particle;
-                arms.joints_px([shoulder_m, particle.elbow_m, particle.hand_m])
-            };
-            shown = Some(Shown { hands_px, best_px: heaviest.iter().take(BEST.len()).filter_map(arm).collect() });
-        }
-    }
-    let shown = shown.with_context(|| format!("scene `{}` has no frame {frame}", scene.clip))?;
-    Ok((shown, AtHand { share: if count > 0.0 { sum / count } else { 0.0 } }))
+    })?;
+    Ok(AtHand { share: if count > 0.0 { sum / count } else { 0.0 } })
 }
 
-/// One panel in the image's pixels, y down: blobs as circles, the true hand as a cross, and marks.
-fn panel(scene: &ObservedScene, frame: usize, title: &str, marks: &str) -> String {
-    let (width, height) = scene.size_px;
+/// What is drawn of one frame.
+#[derive(Debug, Clone)]
+pub struct Panel<'a> {
+    /// Image size.
+    pub size_px: (u32, u32),
+    /// Blobs and edges.
+    pub view: &'a FrameView,
+    /// Where hands truly are.
+    pub hands_px: Vec<Pixel>,
+}
+
+impl<'a> Panel<'a> {
+    /// A frame of a rendered scene, with the hand that is tracked.
+    #[must_use]
+    pub fn of_scene(scene: &'a ObservedScene, frame: usize) -> Self {
+        Self { size_px: scene.size_px, view: &scene.views[frame], hands_px: vec![scene.truth[frame].hand_px] }
+    }
+}
+
+/// One panel in the image's pixels, y down: blobs as circles, true hands as crosses, and marks.
+fn panel(shown: &Panel<'_>, title: &str, marks: &str) -> String {
+    let (width, height) = shown.size_px;
     let mut svg = format!(
         "<rect width='{width}' height='{height}' fill='#f4f4f4' stroke='black'/><text x='8' y='22' font-size='18'>{}</text>\n",
         escaped(title)
     );
-    for blob in &scene.views[frame].candidates {
+    for blob in &shown.view.candidates {
         let radius = (blob.area_px / std::f32::consts::PI).sqrt();
         let _ = writeln!(
             svg,
@@ -91,19 +131,19 @@ fn panel(scene: &ObservedScene, frame: usize, title: &str, marks: &str) -> Strin
         );
     }
     svg.push_str(marks);
-    let hand = scene.truth[frame].hand_px;
-    let _ = writeln!(
-        svg,
-        "<path d='M{:.1} {:.1}h20m-10 -10v20' stroke='#d55e00' stroke-width='3'/>",
-        hand.u_px - 10.0,
-        hand.v_px
-    );
+    for hand in &shown.hands_px {
+        let _ = writeln!(
+            svg,
+            "<path d='M{:.1} {:.1}h20m-10 -10v20' stroke='#d55e00' stroke-width='3'/>",
+            hand.u_px - 10.0,
+            hand.v_px
+        );
+    }
     svg
 }
 
 /// Panels beside each other.
-fn sheet(scene: &ObservedScene, panels: &[String]) -> String {
-    let (width, height) = scene.size_px;
+fn sheet((width, height): (u32, u32), panels: &[String]) -> String {
     let total = panels.len() as u32 * (width + 10);
     let mut svg = format!(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {total} {height}' font-family='sans-serif'>\
@@ -118,16 +158,16 @@ fn sheet(scene: &ObservedScene, panels: &[String]) -> String {
 
 /// Figure 2 B: the temporal edge pixels.
 #[must_use]
-pub fn figure_2(scene: &ObservedScene, frame: usize) -> String {
-    let edges = &scene.views[frame].edges;
+pub fn figure_2(shown: &Panel<'_>) -> String {
+    let edges = &shown.view.edges;
     let dots: String =
         edges.iter().map(|edge| format!("<rect x='{}' y='{}' width='2' height='2'/>", edge.u, edge.v)).collect();
-    sheet(scene, &[panel(scene, frame, &format!("B: {} temporal edge pixels", edges.len()), &dots)])
+    sheet(shown.size_px, &[panel(shown, &format!("B: {} temporal edge pixels", edges.len()), &dots)])
 }
 
 /// Figure 3: particles (A, B) and the three best arms (C, D) of `standard` and `corrected`.
 #[must_use]
-pub fn figure_3(scene: &ObservedScene, frame: usize, standard: &Shown, corrected: &Shown) -> String {
+pub fn figure_3(frame: &Panel<'_>, standard: &Shown, corrected: &Shown) -> String {
     let dots = |shown: &Shown| -> String {
         let dot =
             |pixel: &Pixel| format!("<circle cx='{:.1}' cy='{:.1}' r='4' fill='#0072b2'/>", pixel.u_px, pixel.v_px);
@@ -142,12 +182,12 @@ pub fn figure_3(scene: &ObservedScene, frame: usize, standard: &Shown, corrected
         shown.best_px.iter().zip(&BEST).map(line).collect()
     };
     sheet(
-        scene,
+        frame.size_px,
         &[
-            panel(scene, frame, "A: standard, hands of all particles", &dots(standard)),
-            panel(scene, frame, "B: corrected, hands of all particles", &dots(corrected)),
-            panel(scene, frame, "C: standard, three best arms", &arms(standard)),
-            panel(scene, frame, "D: corrected, three best arms", &arms(corrected)),
+            panel(frame, "A: standard, hands of all particles", &dots(standard)),
+            panel(frame, "B: corrected, hands of all particles", &dots(corrected)),
+            panel(frame, "C: standard, three best arms", &arms(standard)),
+            panel(frame, "D: corrected, three best arms", &arms(corrected)),
         ],
     )
 }

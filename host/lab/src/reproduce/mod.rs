@@ -3,10 +3,12 @@
 pub mod arm;
 pub mod arm_figures;
 pub mod cyclic;
+pub mod film;
 pub mod goals_against_angles;
 pub mod open_numbers;
 pub mod page;
 pub mod pik;
+pub mod pik_geometry;
 pub mod plot;
 pub mod printed;
 
@@ -21,6 +23,8 @@ pub struct Material<'a> {
     pub data: &'a Path,
     /// Whether fewer seeds and particles are run.
     pub is_quick: bool,
+    /// Larger numbers of particles are left out.
+    pub max_particles: usize,
 }
 
 /// A page with the pictures that stand beside it.

@@ -1,6 +1,7 @@
 //! One paper's page: what it prints, what was measured here, the difference, the reason.
 
 use super::plot::escaped;
+use crate::tables::markdown::{Rows, line};
 use std::fmt::Write;
 
 /// One comparison.
@@ -19,6 +20,8 @@ pub struct Row {
 /// A table or figure of the paper.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Section {
+    /// Its name in the marks of the book's tables; empty where the book shows none of it.
+    pub id: &'static str,
     /// As the paper numbers it, and what it shows.
     pub title: String,
     /// What it was measured on.
@@ -38,8 +41,8 @@ pub struct Section {
 pub struct Page {
     /// The paper.
     pub title: String,
-    /// Command, version and machine.
-    pub made_by: String,
+    /// Command, commit, machine and time, each with its name.
+    pub made_by: Vec<(&'static str, String)>,
     /// What is left out of this run, and why.
     pub left_out: Vec<String>,
     /// Tables and figures in the paper's order.
@@ -62,9 +65,12 @@ impl Page {
         let title = escaped(&self.title);
         let mut html = format!(
             "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>{title}</title><style>{STYLE}</style>\n\
-             <h1>{title}</h1><p>{}</p>\n",
-            escaped(&self.made_by)
+             <h1>{title}</h1>\n<table>\n"
         );
+        for (name, value) in &self.made_by {
+            html.push_str(&cells("td", &[name, value]));
+        }
+        html.push_str("</table>\n");
         if !self.left_out.is_empty() {
             html.push_str("<h2>Left out of this run</h2><ul>\n");
             self.left_out.iter().for_each(|text| html.push_str(&format!("<li>{}</li>\n", escaped(text))));
@@ -73,6 +79,24 @@ impl Page {
         self.sections.iter().for_each(|section| section.write(&mut html));
         html.push_str("</html>\n");
         html
+    }
+}
+
+impl Page {
+    /// The tables of the book by the names of their marks, for the paper `name`: how the page was
+    /// made, and of each section with an id the comparisons and the numbers.
+    #[must_use]
+    pub fn tables(&self, name: &str) -> Vec<(String, Rows)> {
+        let mut made = vec![line(self.made_by.iter().map(|(name, _)| *name))];
+        made.push(line(self.made_by.iter().map(|(_, value)| value.clone())));
+        let mut all = vec![(format!("reproduce-{name}-made"), made)];
+        for section in self.sections.iter().filter(|section| !section.id.is_empty()) {
+            let mut rows = vec![line(["", "paper", "ours", "difference"])];
+            rows.extend(section.rows.iter().map(|row| line([&*row.what, &*row.paper, &*row.ours, &*row.difference])));
+            all.push((format!("reproduce-{name}-{}", section.id), rows));
+            all.push((format!("reproduce-{name}-{}-numbers", section.id), section.table.clone()));
+        }
+        all
     }
 }
 
@@ -112,6 +136,7 @@ mod tests {
     fn a_page_holds_paper_ours_and_reason_and_says_what_is_left_out() {
         let row = Row { what: "sigma 1".into(), paper: "2.81".into(), ours: "0.35".into(), difference: "-2.46".into() };
         let section = Section {
+            id: "table-1",
             title: "Table 1".into(),
             rows: vec![row],
             reason: "walks & not <swimmers>".into(),
@@ -122,8 +147,8 @@ mod tests {
         let page = Page {
             title: "cyclic".into(),
             left_out: vec!["seeds 6 to 10".into()],
+            made_by: vec![("command", "reproduce cyclic".into()), ("commit", "abc".into())],
             sections: vec![section],
-            ..Page::default()
         };
         let html = page.to_html();
         for part in [
@@ -132,8 +157,14 @@ mod tests {
             "<img src=\"table_1.svg\"",
             "<li>seeds 6 to 10</li>",
             "<tr><th>a</th></tr>",
+            "<td>commit</td><td>abc</td>",
         ] {
             assert!(html.contains(part), "{part} is not in {html}");
         }
+        let tables = page.tables("cyclic");
+        let names: Vec<&str> = tables.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["reproduce-cyclic-made", "reproduce-cyclic-table-1", "reproduce-cyclic-table-1-numbers"]);
+        assert_eq!(tables[0].1, [line(["command", "commit"]), line(["reproduce cyclic", "abc"])]);
+        assert_eq!(tables[1].1[1], line(["sigma 1", "2.81", "0.35", "-2.46"]));
     }
 }

@@ -3,6 +3,7 @@
 use super::goals_against_angles::{Comparison, PAIR, Pair, Value, compare, plots};
 use super::open_numbers::{self, Numbers};
 use super::page::{Row, Section};
+use super::pik_geometry::figure_7;
 use super::plot::{Plot, Series};
 use super::{Made, Material, of_trend, printed, seeds};
 use crate::body::prediction::lift::SampleSpread;
@@ -24,6 +25,8 @@ use sinew_core::skeleton::full_body::{BODY_ANGLES, body_radii_m, full_body};
 
 /// Rows in the data split of these numbers.
 pub const TRACKER: &str = "body-paper";
+/// Rows in the data split of the recordings with markers.
+const MARKERS_TRACKER: &str = "body-markers";
 /// Numbers of particles of figures 13 to 15.
 const PARTICLES: [usize; 6] = [50, 100, 250, 500, 1000, 2500];
 /// Those of a quick run.
@@ -40,7 +43,8 @@ const OTHER_DATA: &str = "The paper's stereo sequence is not public. Real motion
 /// Recordings that are missing; a run that fails.
 pub fn make(material: Material<'_>, cells: &Cells<'_>) -> Result<Made> {
     let seeds = seeds(material.is_quick, 5);
-    let particles = if material.is_quick { &QUICK_PARTICLES[..] } else { &PARTICLES[..] };
+    let all = if material.is_quick { &QUICK_PARTICLES[..] } else { &PARTICLES[..] };
+    let particles = &all[..all.partition_point(|&count| count <= material.max_particles)];
     let mut made = Made::default();
     made.page.title = "PIK paper: predicting articulated human motion from spatial processes".into();
     if material.is_quick {
@@ -50,12 +54,15 @@ pub fn make(material: Material<'_>, cells: &Cells<'_>) -> Result<Made> {
             "other sets of open numbers with 500 particles".into(),
         ];
     }
-    made.page.left_out.push("figure 7, a drawing of the geometry".into());
+    if particles.len() < all.len() {
+        made.page.left_out.push(format!("more than {} particles", material.max_particles));
+    }
     made.page.left_out.push("figures 8, 18 and 21: the paper's films are not public".into());
     let skeleton = material.data.join("mocap/cmu-walk/35/35.asf");
     let tuning = BodyTuning::default();
     let parts: &[BodyPart] = if material.is_quick { &[BodyPart::Upper] } else { &[BodyPart::Upper, BodyPart::Whole] };
     predictions(&tuning, &mut made)?;
+    geometry(&mut made);
     for &part in parts {
         let mut seen: Vec<(String, Vec<SeenMotion>)> = Vec::new();
         for motion in motions(material.data, TRACKER, Role::Reporting)? {
@@ -67,8 +74,10 @@ pub fn make(material: Material<'_>, cells: &Cells<'_>) -> Result<Made> {
         let comparison = Comparison { part, motions: &seen, particles, tunings: shared, models: PAIR };
         figures_13_to_15(&comparison, cells, &mut made)?;
         let counts = if material.is_quick { &MARGIN_PARTICLES[..1] } else { &MARGIN_PARTICLES[..] };
+        let counts = &counts[..counts.partition_point(|&count| count <= material.max_particles)];
         other_numbers(&Comparison { particles: counts, ..comparison }, cells, &mut made)?;
     }
+    recorded_markers(&material, (&tuning, seeds), cells, &mut made)?;
     stick(&tuning, (seeds, particles), cells, &mut made)?;
     Ok(made)
 }
@@ -109,6 +118,70 @@ fn predictions(tuning: &BodyTuning, made: &mut Made) -> Result<()> {
     let title = "Figure 20: precision of the importance distribution";
     made.page.sections.push(built_in(title, row, Vec::new(), "figure_20_precision.png"));
     made.pictures.extend(pictures);
+    Ok(())
+}
+
+/// Figure 7.
+fn geometry(made: &mut Made) {
+    made.drawings.push(("figure_7.svg".into(), figure_7()));
+    made.page.sections.push(Section {
+        title: "Figure 7: the visible surface of a bone, and the nearest visible skin of two points".into(),
+        material:
+            "Drawn by the functions of the likelihood. (a) A bone from a to b, seen from c: filled dots are skin \
+                   that c sees. (b) The same bone across: x before it has its nearest skin, x behind it the nearest \
+                   skin that c sees."
+                .into(),
+        pictures: vec!["figure_7.svg".into()],
+        ..Section::default()
+    });
+}
+
+/// PIK (34) over markers that were recorded on a person, which no model of ours made.
+fn recorded_markers(
+    material: &Material<'_>,
+    (tuning, seeds): (&BodyTuning, u64),
+    cells: &Cells<'_>,
+    made: &mut Made,
+) -> Result<()> {
+    let head = ["recording", "model", "recorded markers, PIK (34), cm", "virtual markers, cm", "joints, cm", "lost, %"];
+    let mut table = vec![head.map(String::from).to_vec()];
+    for motion in motions(material.data, MARKERS_TRACKER, Role::Reporting)? {
+        let read = motion.read(None)?;
+        let seen: Vec<SeenMotion> = (1..=seeds).map(|seed| read.seen(BodyPart::Whole, seed)).collect::<Result<_>>()?;
+        for (model, count) in [(PAIR[0], 500), (PAIR[1], 500), (BodyModelKind::Guided, 50)] {
+            let one = |(seed, motion): (u64, &SeenMotion)| -> Result<TrialResult> {
+                let key = json!(["recorded markers", motion.key(), model.name(), tuning.paper, count, seed]);
+                cells.cell(&key, || trial(motion, model, tuning, count, seed).map(|trial| trial.0))
+            };
+            let trials: Vec<TrialResult> = (1..).zip(&seen).map(one).collect::<Result<_>>()?;
+            let of = |value: Value| Measured::of(&trials.iter().map(value).collect::<Vec<_>>());
+            let cm = |value: Value| format!("{:.2} +- {:.2}", 100.0 * of(value).mean, 100.0 * of(value).std);
+            table.push(vec![
+                motion.name(),
+                format!("{}, {count}", model.name()),
+                cm(|t| t.recorded_error_m.unwrap_or(f64::NAN)),
+                cm(|t| t.error_m),
+                cm(|t| t.joint_error_m),
+                format!("{:.0}", 100.0 * of(|t| t.lost_joint_share).mean),
+            ]);
+        }
+        if let Some(floor_m) = seen.first().map(SeenMotion::recorded_floor_m).transpose()?.flatten() {
+            let none = String::new;
+            let floor = format!("{:.2}", 100.0 * floor_m);
+            table.push(vec![motion.name(), "nearest pose of this body".into(), floor, none(), none(), none()]);
+        }
+    }
+    made.page.sections.push(Section {
+        id: "recorded-markers",
+        title: "PIK (34) over recorded markers".into(),
+        material: format!(
+            "A take of HDM05 with the markers of its optical system; {seeds} seeds, +- is one standard deviation over \
+             them. The points are still those of the simulated camera. No tracker of this body gets below the nearest \
+             pose."
+        ),
+        table,
+        ..Section::default()
+    });
     Ok(())
 }
 
@@ -176,6 +249,7 @@ fn figures_13_to_15(comparison: &Comparison<'_>, cells: &Cells<'_>, made: &mut M
         difference: format!("{:+.2}", Measured::of(&times).mean - printed::PIK_TIME_RATIO),
     });
     made.page.sections.push(Section {
+        id: if part == BodyPart::Upper { "figures-13-upper" } else { "figures-13-whole" },
         title: format!("Figures 13 to 15: goals against angles, {} body", part.name()),
         material: format!(
             "{} motions, {} seeds each, none of them tuned on. Both models have the paper's structure, and the numbers \
@@ -273,6 +347,7 @@ fn last_pose_error_m(motion: &SeenMotion) -> f64 {
 fn other_numbers(comparison: &Comparison<'_>, cells: &Cells<'_>, made: &mut Made) -> Result<()> {
     let head = [
         "numbers",
+        "reach, cm",
         "particles",
         "PIK (34), cm: goals",
         "angles",
@@ -284,7 +359,8 @@ fn other_numbers(comparison: &Comparison<'_>, cells: &Cells<'_>, made: &mut Made
     let mut table = vec![head.map(String::from).to_vec()];
     for Numbers { name, tunings } in open_numbers::all() {
         for pair in compare(&Comparison { tunings, ..comparison.clone() }, cells)? {
-            let mut row = vec![name.to_owned(), pair.particles.to_string()];
+            let reach_cm = format!("{:.1}", 100.0 * tunings[0].paper.reach_std_m);
+            let mut row = vec![name.to_owned(), reach_cm, pair.particles.to_string()];
             let values: [Value; 2] = [|t| t.error_m, |t| t.joint_error_m];
             for value in values {
                 row.extend([0, 1].map(|model| format!("{:.2}", 100.0 * mean(&pair, model, value))));
@@ -294,11 +370,13 @@ fn other_numbers(comparison: &Comparison<'_>, cells: &Cells<'_>, made: &mut Made
         }
     }
     made.page.sections.push(Section {
+        id: if comparison.part == BodyPart::Upper { "open-numbers-upper" } else { "open-numbers-whole" },
         title: format!("Figure 13 with other open numbers, {} body", comparison.part.name()),
-        material: "The paper prints no lambda, W, sigma, tau or kappa. Each set was searched alike for goals and angles. \
-                   The last row reads (31) and (33) literally: of the particle's own last two angles and sampled goals. \
-                   There the search makes W so small that goals hardly pull."
-            .into(),
+        material:
+            "The paper prints no lambda, W, sigma, tau or kappa. Each set was searched alike for goals and angles. \
+                   Reach is 1 / root W: a goal that is known to metres does not pull. The last row reads (31) and (33) \
+                   literally: of the particle's own last two angles and sampled goals."
+                .into(),
         table,
         ..Section::default()
     });
@@ -309,6 +387,8 @@ fn other_numbers(comparison: &Comparison<'_>, cells: &Cells<'_>, made: &mut Made
 fn stick(tuning: &BodyTuning, (seeds, particles): (u64, &[usize]), cells: &Cells<'_>, made: &mut Made) -> Result<()> {
     let read = MotionChoice::StickWave.read(None)?;
     let seen: Vec<SeenMotion> = (1..=seeds).map(|seed| read.seen(BodyPart::Whole, seed)).collect::<Result<_>>()?;
+    let series = stick_series(tuning, (&seen, particles), cells)?;
+    let rows = stick_trends(&series);
     made.plots.push((
         "figure_17.svg".into(),
         Plot {
@@ -317,7 +397,7 @@ fn stick(tuning: &BodyTuning, (seeds, particles): (u64, &[usize]), cells: &Cells
             y_label: "distance of markers from the skin, cm".into(),
             log_x: true,
             bars: "one standard deviation over seeds, as in the paper".into(),
-            series: stick_series(tuning, (&seen, particles), cells)?,
+            series,
         },
     ));
     let largest = particles.last().copied().unwrap_or(500);
@@ -337,27 +417,47 @@ fn stick(tuning: &BodyTuning, (seeds, particles): (u64, &[usize]), cells: &Cells
             names.push(name.to_owned());
         }
     }
-    let trend = |what: &str, paper: &str| Row {
-        what: what.into(),
-        paper: paper.into(),
-        ours: "see the pictures: the estimate over the true pose".into(),
-        difference: "no number to compare".into(),
-    };
     made.page.sections.push(Section {
+        id: "figure-17",
         title: "Figures 6, 9 to 12, 16 and 17: a person who waves a stick".into(),
         material: format!(
             "The built-in motion stick-wave, {seeds} seeds. Figures 9 to 12 and 16 show the same three frames, from \
              the camera; figures 10 and 12 have {largest} particles. The stick's model is the shipped one."
         ),
-        rows: vec![
-            trend("figures 9 to 12", "goals track more accurately than angles"),
-            trend("figures 16 and 17", "the stick is better than all others, with fewer particles"),
-        ],
+        rows,
         reason: OTHER_DATA.into(),
         pictures: names,
         ..Section::default()
     });
     Ok(())
+}
+
+/// Whether goals are below angles, and the stick below both, at every number of particles.
+fn stick_trends(series: &[Series]) -> Vec<Row> {
+    let [angles, goals, stick] = series else { return Vec::new() };
+    let below = |low: &Series, high: &Series| low.points.iter().zip(&high.points).all(|(a, b)| a.1 < b.1);
+    let ends = |curve: &Series| {
+        let [Some(first), Some(last)] = [curve.points.first(), curve.points.last()] else { return String::new() };
+        format!("{} {:.2} to {:.2}", curve.name, first.1, last.1)
+    };
+    let row = |what: &str, paper: &str, curves: &[&Series], comes_out: bool| Row {
+        what: what.into(),
+        paper: paper.into(),
+        ours: format!(
+            "cm from the least to the most particles: {}",
+            curves.iter().map(|c| ends(c)).collect::<Vec<_>>().join(", ")
+        ),
+        difference: of_trend(comes_out),
+    };
+    vec![
+        row("figures 9 to 12", "goals track more accurately than angles", &[goals, angles], below(goals, angles)),
+        row(
+            "figures 16 and 17",
+            "the stick is better than all others, with fewer particles",
+            &[stick, goals, angles],
+            below(stick, goals) && below(stick, angles),
+        ),
+    ]
 }
 
 /// The curves of figure 17.

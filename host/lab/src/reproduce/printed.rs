@@ -18,5 +18,3 @@ pub const PIK_TIME_RATIO: f64 = 1.4;
 pub const PIK_FRAMES: [usize; 3] = [91, 159, 268];
 /// Arm paper, section 5: particles of both trackers.
 pub const ARM_PARTICLES: usize = 50;
-/// Arm paper, section 5: frames after which the particles are shown.
-pub const ARM_FRAME: usize = 100;
