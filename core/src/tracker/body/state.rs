@@ -124,7 +124,7 @@ where
         &self.before
     }
 
-    /// The particles' weights, which sum to one; equal after a step limb by limb, which ends with the
+    /// The particles' weights, which sum to one; equal after a step limb by limb, which ends with
     /// resampling.
     #[must_use]
     pub fn weights(&self) -> &[f32] {

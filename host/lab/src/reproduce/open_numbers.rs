@@ -1,10 +1,11 @@
 //! Sets of the numbers that the PIK paper leaves open, each found by `sinew-lab tune-pik` with 60
-//! tries on the clips of `data_split.csv`.
+//! tries on the clips of `data_split.csv`. All but the shipped ones were found with the root of the
+//! default numbers, and are run with that of `[paper.root]`.
 
 use sinew::body::tracking::{BodyTuning, ByJoint, PaperTuning};
 
 /// Steps of the gradient projection.
-/// Chosen: the paper has "a few iterations" of it; with more the error is the same.
+/// Chosen: with them the errors are those of Gauss-Newton steps (docs/reproduce.md).
 const GRADIENT_STEPS: usize = 20;
 
 /// Numbers of goals and of angles that are compared.

@@ -24,8 +24,8 @@ pub fn example() -> (Capsule, Vec3) {
     (capsule, Vec3::zeros())
 }
 
-/// Points of the cylinder round the bone at `share` of its length, and whether the camera sees each:
-/// whether PIK (27) finds the point itself.
+/// Points of the cylinder round the bone at `share` of its length, and whether the camera sees
+/// each: whether PIK (27) finds the point itself.
 #[must_use]
 pub fn skin((capsule, camera_m): (&Capsule, &Vec3), share: f32) -> Vec<(Vec3, bool)> {
     let along = capsule.end_m - capsule.start_m;
@@ -54,7 +54,7 @@ pub fn data_points(capsule: &Capsule) -> [Vec3; 2] {
 pub fn figure_7() -> String {
     let (capsule, camera_m) = example();
     format!(
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 1000 560' font-family='sans-serif' font-size='16'>\
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 1000 640' font-family='sans-serif' font-size='16'>\
          <rect width='100%' height='100%' fill='white'/>\n<g transform='translate(250 60)'>{}</g>\n\
          <g transform='translate(720 60)'>{}</g>\n</svg>\n",
         panel_a(&capsule, &camera_m),
@@ -72,9 +72,9 @@ fn panel_a(capsule: &Capsule, camera_m: &Vec3) -> String {
     let place = |point: &Vec3| (SCALE_PX * (point.x + 0.3 * point.y), SCALE_PX * (point.z + 0.35 * point.y));
     let mut svg = text(-200.0, -20.0, "(a) skin of a bone; filled where c sees it (PIK 26)");
     let (c, a, b) = (place(camera_m), place(&capsule.start_m), place(&capsule.end_m));
-    for (end, name) in [(a, "a"), (b, "b")] {
+    for (end, name, beside) in [(a, "a", -20.0), (b, "b", 10.0)] {
         let _ = writeln!(svg, "<path d='M{:.1} {:.1}L{:.1} {:.1}' stroke='#999'/>", c.0, c.1, end.0, end.1);
-        svg.push_str(&text(end.0 - 4.0, end.1 + 90.0, name));
+        svg.push_str(&text(end.0 + beside, end.1 + 5.0, name));
     }
     let _ = writeln!(svg, "<path d='M{:.1} {:.1}L{:.1} {:.1}' stroke='black' stroke-width='3'/>", a.0, a.1, b.0, b.1);
     svg.push_str(&text(c.0 + 8.0, c.1 + 4.0, "c"));

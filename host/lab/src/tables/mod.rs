@@ -101,14 +101,14 @@ pub const TABLES: [Table; 18] = [
     },
     Table {
         name: "body-hard",
-        page: "measurements_body.md",
+        page: "measurements_scenes.md",
         cost: Cost::Long,
         recordings: Some("mocap"),
         rows: body_scenes::hard,
     },
     Table {
         name: "body-deadband",
-        page: "measurements_body.md",
+        page: "measurements_scenes.md",
         cost: Cost::Long,
         recordings: Some("mocap"),
         rows: body_scenes::deadband,
