@@ -351,7 +351,7 @@ mod tests {
                 points_m.push(Vec3::new(x, y, z) * (1.0 + 0.1 / z * stream.normal()));
             }
             for (before, after) in points_m.iter().zip(smoothed(&points_m, &Vec3::zeros())) {
-                // The line of sight is that of the noisy point: its place on a plane that was drawn.
+                // The line of sight of the noisy point: its place on a plane that was drawn.
                 let at = |z: f32| is_fist(before.x / before.z * z, before.y / before.z * z);
                 if at(5.1) && at(5.5) {
                     all += 1.0;
