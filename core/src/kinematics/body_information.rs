@@ -58,7 +58,7 @@ impl<const BONES: usize> BodyInformation<BONES> {
     /// Adds the sums to the gradient of a log density and to minus its second derivative,
     /// coordinate by coordinate.
     pub fn add_to<const ANGLES: usize>(
-        mut self,
+        &mut self,
         skeleton: &Skeleton<BONES, ANGLES>,
         posture: &Posture<BONES, ANGLES>,
         gradient: &mut [f32; ANGLES],

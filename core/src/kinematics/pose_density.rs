@@ -171,6 +171,17 @@ pub trait PoseObjective<const BONES: usize, const ANGLES: usize> {
         posture: &Posture<BONES, ANGLES>,
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]);
 
+    /// As [`Self::derivatives`], written in place: a Hessian of many angles takes a kilobyte of stack
+    /// each time that it is handed on.
+    fn write_derivatives(
+        &self,
+        angles_rad: &[f32; ANGLES],
+        posture: &Posture<BONES, ANGLES>,
+        (gradient, hessian): (&mut [f32; ANGLES], &mut [[f32; ANGLES]; ANGLES]),
+    ) {
+        (*gradient, *hessian) = self.derivatives(angles_rad, posture);
+    }
+
     /// Distance of the worst end-effector from its goal, metres; zero without goals.
     fn residual_m(&self, posture: &Posture<BONES, ANGLES>) -> f32;
 
@@ -218,8 +229,18 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
         angles_rad: &[f32; ANGLES],
         posture: &Posture<BONES, ANGLES>,
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]) {
-        let mut gradient = [0.0; ANGLES];
-        let mut hessian = [[0.0; ANGLES]; ANGLES];
+        let (mut gradient, mut hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
+        self.write_derivatives(angles_rad, posture, (&mut gradient, &mut hessian));
+        (gradient, hessian)
+    }
+
+    fn write_derivatives(
+        &self,
+        angles_rad: &[f32; ANGLES],
+        posture: &Posture<BONES, ANGLES>,
+        (gradient, hessian): (&mut [f32; ANGLES], &mut [[f32; ANGLES]; ANGLES]),
+    ) {
+        (*gradient, *hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
         for i in 0..ANGLES {
             gradient[i] = -self.stiffness[i] * (angles_rad[i] - self.previous_rad[i]);
             hessian[i][i] = self.stiffness[i];
@@ -249,7 +270,6 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
                 hessian[i][j] = hessian[j][i];
             }
         }
-        (gradient, hessian)
     }
 
     /// Distance of the worst end-effector from its goal, metres.
