@@ -148,8 +148,13 @@ pub trait Solve<const BONES: usize, const ANGLES: usize>: PoseObjective<BONES, A
                 core::mem::swap(&mut here, &mut there);
             }
         }
-        let (mut gradient, mut hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
-        self.write_derivatives(&angles_rad, &here, (&mut gradient, &mut hessian));
+        let (mut gradient, mut hessian);
+        if ANGLES > FEW_ANGLES {
+            (gradient, hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
+            self.write_derivatives(&angles_rad, &here, (&mut gradient, &mut hessian));
+        } else {
+            (gradient, hessian) = self.derivatives(&angles_rad, &here);
+        }
         let mut stop = Stop::StepsUsed;
         for _ in 0..max_steps {
             let found = if ANGLES > FEW_ANGLES {
@@ -175,7 +180,11 @@ pub trait Solve<const BONES: usize, const ANGLES: usize>: PoseObjective<BONES, A
             }
             (angles_rad, log_density) = (next, log_next);
             core::mem::swap(&mut here, &mut there);
-            self.write_derivatives(&angles_rad, &here, (&mut gradient, &mut hessian));
+            if ANGLES > FEW_ANGLES {
+                self.write_derivatives(&angles_rad, &here, (&mut gradient, &mut hessian));
+            } else {
+                (gradient, hessian) = self.derivatives(&angles_rad, &here);
+            }
             if longest < STEP_TOLERANCE_RAD {
                 stop = Stop::ShortStep;
                 break;
@@ -227,7 +236,8 @@ fn free_direction<const BONES: usize, const ANGLES: usize>(
     }
     let held = objective.held();
     // By reference: a factor of many angles is a kilobyte.
-    let direction = Cholesky::from(&reduced, held).as_ref()?.solve_from(&right, held);
+    let factor = Cholesky::from(&reduced, held);
+    let direction = factor.as_ref()?.solve_from(&right, held);
     let mut gain = 0.0;
     for i in 0..ANGLES {
         gain += 0.5 * right[i] * direction[i];

@@ -229,8 +229,9 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
         angles_rad: &[f32; ANGLES],
         posture: &Posture<BONES, ANGLES>,
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]) {
-        let (mut gradient, mut hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
-        self.write_derivatives(angles_rad, posture, (&mut gradient, &mut hessian));
+        let mut gradient = [0.0; ANGLES];
+        let mut hessian = [[0.0; ANGLES]; ANGLES];
+        self.fill_derivatives(posture, angles_rad, &mut gradient, &mut hessian);
         (gradient, hessian)
     }
 
@@ -241,6 +242,31 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
         (gradient, hessian): (&mut [f32; ANGLES], &mut [[f32; ANGLES]; ANGLES]),
     ) {
         (*gradient, *hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
+        self.fill_derivatives(posture, angles_rad, gradient, hessian);
+    }
+
+    /// Distance of the worst end-effector from its goal, metres.
+    fn residual_m(&self, posture: &Posture<BONES, ANGLES>) -> f32 {
+        let mut worst = 0.0;
+        for goal in self.goals {
+            if let Some(end) = posture.ends.get(goal.bone) {
+                worst = max(worst, length(&(goal.position_m - end)));
+            }
+        }
+        worst
+    }
+}
+
+impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
+    /// Writes the derivatives over zeros.
+    #[inline(always)]
+    fn fill_derivatives(
+        &self,
+        posture: &Posture<BONES, ANGLES>,
+        angles_rad: &[f32; ANGLES],
+        gradient: &mut [f32; ANGLES],
+        hessian: &mut [[f32; ANGLES]; ANGLES],
+    ) {
         for i in 0..ANGLES {
             gradient[i] = -self.stiffness[i] * (angles_rad[i] - self.previous_rad[i]);
             hessian[i][i] = self.stiffness[i];
@@ -270,16 +296,5 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
                 hessian[i][j] = hessian[j][i];
             }
         }
-    }
-
-    /// Distance of the worst end-effector from its goal, metres.
-    fn residual_m(&self, posture: &Posture<BONES, ANGLES>) -> f32 {
-        let mut worst = 0.0;
-        for goal in self.goals {
-            if let Some(end) = posture.ends.get(goal.bone) {
-                worst = max(worst, length(&(goal.position_m - end)));
-            }
-        }
-        worst
     }
 }

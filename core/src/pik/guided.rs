@@ -171,7 +171,7 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
 
     fn log_density(&self, angles_rad: &[f32; ANGLES], posture: &Posture<BONES, ANGLES>) -> f32 {
         let surface = self.scene.surface(posture);
-        let points = self.likelihood().log_likelihood_of(&surface, self.blocks.iter().step_by(self.stride));
+        let points = self.likelihood().log_likelihood_of(&surface, self.blocks.iter().step_by(self.stride.max(1)));
         self.prior.log_density(angles_rad, posture) + points * self.stride as f32
     }
 
@@ -194,7 +194,7 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
         self.prior.write_derivatives(angles_rad, posture, (gradient, hessian));
         let surface = self.scene.surface(posture);
         let mut information = BodyInformation::none(posture);
-        let pulling = self.blocks.iter().step_by(self.stride);
+        let pulling = self.blocks.iter().step_by(self.stride.max(1));
         add_pull(&self.likelihood(), &surface, pulling, self.stride as f32, &mut information);
         information.add_to(self.prior.skeleton, posture, gradient, hessian);
     }

@@ -249,7 +249,10 @@ pub fn fill_positions<const N: usize>(model: &MotionModel<'_>, start: &CycleStar
     for (index, value) in positions.iter_mut().enumerate() {
         let pose = model.mean_pose_rad::<N>(model.point(index as f32 / count));
         let mut squared = 0.0;
-        for i in (0..N.min(model.angle_count())).filter(|&i| start.extra_variance_rad2[i] == 0.0 && spread[i] > 0.0) {
+        for i in 0..N {
+            if i >= model.angle_count() || start.extra_variance_rad2[i] != 0.0 || !(spread[i] > 0.0) {
+                continue;
+            }
             let scaled = angle_difference(start.angles_rad[i], pose[i]) / max(spread[i], MIN_SPREAD_RAD);
             squared += scaled * scaled;
         }
