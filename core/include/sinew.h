@@ -34,6 +34,22 @@
 #define SINEW_ALIGN 8
 
 /**
+ * Most particles of a cyclic particle filter. Chosen: a step of so many takes a Cortex-M4F of 168
+ * MHz about half of the time between two frames of 60 a second.
+ */
+#define SINEW_CYCLIC_PARTICLES 100
+
+/**
+ * Bytes that always suffice for a cyclic particle filter, on every target.
+ */
+#define SINEW_CYCLIC_PARTICLES_MAX_BYTES 33792
+
+/**
+ * Bytes that always suffice for the saved state of a cyclic particle filter.
+ */
+#define SINEW_CYCLIC_PARTICLES_STATE_MAX_BYTES 11776
+
+/**
  * Most particles of an arm tracker.
  */
 #define SINEW_ARM_PARTICLES 50
@@ -122,6 +138,44 @@
  * Bytes that always suffice for the saved state of a tracker of both arms.
  */
 #define SINEW_ARM_PAIR_STATE_MAX_BYTES 8192
+
+/**
+ * Bones of an upper body: pelvis, trunk, head, left collar, upper arm, forearm, then the right
+ * ones.
+ */
+#define SINEW_BODY_BONES 9
+
+/**
+ * Coordinates of an upper body: three shifts of the pelvis, its turn, tilt and pitch, three angles
+ * of the head, then elevation, deviation and axial rotation of the shoulder and flexion of the
+ * elbow, left and right.
+ */
+#define SINEW_BODY_COORDINATES 17
+
+/**
+ * Most points of a frame; others are left out.
+ */
+#define SINEW_BODY_POINTS 512
+
+/**
+ * The frame had no usable point: the pose is a prediction.
+ */
+#define SINEW_BODY_PREDICTED 0
+
+/**
+ * The frame had points.
+ */
+#define SINEW_BODY_TRACKING 1
+
+/**
+ * Bytes that always suffice for a body tracker, on every target.
+ */
+#define SINEW_BODY_MAX_BYTES 12288
+
+/**
+ * Bytes that always suffice for the saved state of a body tracker.
+ */
+#define SINEW_BODY_STATE_MAX_BYTES 2048
 
 /**
  * 5 bits of red (the highest), 6 of green, 5 of blue.
@@ -266,10 +320,23 @@ typedef struct SinewArm SinewArm;
 typedef struct SinewArmPair SinewArmPair;
 
 /**
+ * A body tracker; see `sinew_body_init`. Saved states fit the same configuration; the first pose
+ * may differ.
+ */
+typedef struct SinewBody SinewBody;
+
+/**
  * A cyclic tracker; see `sinew_cyclic_init`. Saved states fit the same model. After a reset the
  * next frame may have any timestamp.
  */
 typedef struct SinewCyclic SinewCyclic;
+
+/**
+ * A cyclic particle filter; see `sinew_cyclic_particles_init`. Saved states fit the same model,
+ * number of particles and `cycle_acceleration_std`. After a reset the next frame may have any
+ * timestamp.
+ */
+typedef struct SinewCyclicParticles SinewCyclicParticles;
 
 /**
  * A front end; see `sinew_vision_init`. Saved states hold the skin table, no frames, and fit the
@@ -406,6 +473,62 @@ typedef struct SinewCyclicResult {
    */
   uint32_t is_misfit;
 } SinewCyclicResult;
+
+/**
+ * Seed, spreads and start of a cyclic particle filter; see
+ * `sinew_cyclic_particles_default_config`.
+ */
+typedef struct SinewCyclicParticlesConfig {
+  /**
+   * Bytes of this structure, as the function that fills it writes them; any other number is
+   * refused.
+   */
+  uint32_t struct_bytes;
+  /**
+   * Particles, 1 to `SINEW_CYCLIC_PARTICLES`. The time of a step grows with them.
+   */
+  uint32_t particles;
+  /**
+   * All random numbers follow from it: the same seed and frames give the same bits.
+   */
+  uint64_t seed;
+  /**
+   * 1 where `first_position` is known. 0: particles begin at all positions that fit the first
+   * frame.
+   */
+  uint32_t has_first_position;
+  /**
+   * Position in the cycle at the first frame, from 0 to 1, as a switch on a treadmill knows it.
+   */
+  float first_position;
+  /**
+   * Cadence at the first frame, cycles per minute; 0: the model's mean.
+   */
+  float first_cadence_per_min;
+  /**
+   * First standard deviation of each angle, radians, 0 to 3.
+   */
+  float first_angle_std_rad;
+  /**
+   * First standard deviation of each angle's velocity, as a share of how far people differ from
+   * the model's mean velocity, 0 to 10.
+   */
+  float first_velocity_share;
+  /**
+   * First standard deviation of a known position, cycles, 0 to 1.
+   */
+  float first_position_std;
+  /**
+   * First standard deviation of the velocity through the cycle, cycles per frame of the model,
+   * 0 to 0.5.
+   */
+  float first_cycle_velocity_std;
+  /**
+   * Standard deviation of the acceleration through the cycle, cycles per squared frame of the
+   * model, 0 to 0.1.
+   */
+  float cycle_acceleration_std;
+} SinewCyclicParticlesConfig;
 
 /**
  * Camera, body, seed and options of an arm tracker; see `sinew_arm_default_config`.
@@ -670,6 +793,125 @@ typedef struct SinewArmResult {
    */
   uint32_t reserved;
 } SinewArmResult;
+
+/**
+ * Body, first pose and options of a body tracker; see `sinew_body_default_config`.
+ */
+typedef struct SinewBodyConfig {
+  /**
+   * Bytes of this structure, as the function that fills it writes them; any other number is
+   * refused.
+   */
+  uint32_t struct_bytes;
+  /**
+   * Most steps of the pose solver, 1 to 20. The time of a frame grows with them.
+   */
+  uint32_t solver_steps;
+  /**
+   * Height of the person, metres, 0.5 to 2.5; lengths and radii of all bones follow from it.
+   */
+  float height_m;
+  /**
+   * Standard deviation of a point's distance from the skin, metres, 0.001 to 1.
+   */
+  float point_std_m;
+  /**
+   * Points farther from the skin than this count as outliers, metres, 0.001 to 1.
+   */
+  float outlier_m;
+  /**
+   * How far the pelvis may get in a second, metres (standard deviation), 0.001 to 10.
+   */
+  float root_shift_std_m_per_sqrt_s;
+  /**
+   * How far it may turn in a second, radians (standard deviation), 0.001 to 10.
+   */
+  float root_turn_std_rad_per_sqrt_s;
+  /**
+   * Deadband of the reported pose at rest, metres, 0 to 1.
+   */
+  float jitter_std_m;
+  /**
+   * The pose to begin with: three shifts, metres, then angles, radians.
+   */
+  float first_coordinates[SINEW_BODY_COORDINATES];
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
+} SinewBodyConfig;
+
+/**
+ * The points of one frame.
+ */
+typedef struct SinewBodyFrame {
+  /**
+   * When the frame was taken, microseconds since any start. Dropped frames are simply not given.
+   * A counter of 32 bits goes through `sinew_clock_us`.
+   */
+  uint64_t timestamp_us;
+  /**
+   * Points in camera axes, metres: x to the right of the image, y down, z along the line of
+   * sight. They are brought into another order. A point at the camera, or with a NaN, is a
+   * hole. Not looked at if `point_count` is zero.
+   */
+  float (*points_m)[3];
+  /**
+   * Number of points, at most 65535; those beyond `SINEW_BODY_POINTS` usable ones are left out.
+   */
+  uint32_t point_count;
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
+} SinewBodyFrame;
+
+/**
+ * An upper body after a frame.
+ */
+typedef struct SinewBodyResult {
+  /**
+   * That of the frame.
+   */
+  uint64_t timestamp_us;
+  /**
+   * `SINEW_BODY_TRACKING` or `SINEW_BODY_PREDICTED`.
+   */
+  uint32_t state;
+  /**
+   * Bit i is set where the points show bone i.
+   */
+  uint32_t observed;
+  /**
+   * The end of each bone, metres in camera axes: pelvis, neck, head, left shoulder, elbow,
+   * wrist, right shoulder, elbow, wrist.
+   */
+  float joints_m[SINEW_BODY_BONES][3];
+  /**
+   * Standard deviation of each, metres (root of the summed variances).
+   */
+  float joint_std_m[SINEW_BODY_BONES];
+  /**
+   * Coordinates of the pose: shifts in metres, then angles in radians.
+   */
+  float coordinates[SINEW_BODY_COORDINATES];
+  /**
+   * Natural logarithm of the density of pose and points, up to a constant.
+   */
+  float log_density;
+  /**
+   * Points that were used, and those that were left out: holes, and those over capacity.
+   */
+  uint32_t used_points;
+  /**
+   * See `used_points`.
+   */
+  uint32_t left_out_points;
+  /**
+   * Zero.
+   */
+  uint32_t reserved;
+} SinewBodyResult;
 
 /**
  * Skin as a normal distribution of chromaticity r = R / (R + G + B), g = G / (R + G + B).
@@ -942,6 +1184,108 @@ SinewStatus sinew_cyclic_save(struct SinewCyclic *tracker, uint8_t *buffer, size
 SinewStatus sinew_cyclic_restore(struct SinewCyclic *tracker, const uint8_t *state, size_t state_bytes);
 
 /**
+ * Writes options: seed 1, `SINEW_CYCLIC_PARTICLES` particles at any position that fits the first
+ * frame, and the spreads that the host's command has.
+ *
+ * `config_bytes` is `sizeof *config`: SINEW_STATUS_STRUCT_SIZE says that the program was compiled
+ * with the header of another version.
+ *
+ * Caller's duty:
+ * `config` points at room of the size that is said.
+ */
+SinewStatus sinew_cyclic_particles_default_config(struct SinewCyclicParticlesConfig *config, size_t config_bytes);
+
+/**
+ * Bytes that this object takes on this target; the constant MAX_BYTES of its kind at most.
+ */
+size_t sinew_cyclic_particles_size(void);
+
+/**
+ * Alignment that the memory of this object needs; `SINEW_ALIGN` at most.
+ */
+size_t sinew_cyclic_particles_align(void);
+
+/**
+ * Makes a cyclic particle filter in `memory`, which it needs as long as it is used; there is
+ * nothing to free.
+ *
+ * `model` is a motion model in bytes for all filters (`sinew export WHICH --form c`, 52 KB),
+ * aligned to four, which has to stay where it is as long as the filter is used. Null and zero
+ * bytes stand for the walking model that the library was built with. All its numbers are checked
+ * once, here, which takes some time.
+ *
+ * `config` is copied; null stands for what `sinew_cyclic_particles_default_config` writes.
+ *
+ * Returns SINEW_STATUS_BAD_MODEL for bytes that are no model of at most `SINEW_MAX_ANGLES` angles,
+ * or one for the coupled filter alone; SINEW_STATUS_NO_MODEL if the library was built without the
+ * walking model. `tracker` is written only if the status is SINEW_STATUS_OK.
+ *
+ * Caller's duty:
+ * `memory` and `model` have the sizes that are said.
+ */
+SinewStatus sinew_cyclic_particles_init(void *memory,
+                                        size_t memory_bytes,
+                                        const void *model,
+                                        size_t model_bytes,
+                                        const struct SinewCyclicParticlesConfig *config,
+                                        struct SinewCyclicParticles **tracker);
+
+/**
+ * Takes in one frame, and writes what is known then. The result's `is_searching`, `is_outlier` and
+ * `is_misfit` are zero.
+ *
+ * A frame more than 600 frames of the model after the last counts as that much later. A frame n
+ * frames of the model after the last takes the time of n steps. Returns SINEW_STATUS_WAITING, and
+ * writes no result, until a first frame shows an angle. Every other status but SINEW_STATUS_OK
+ * leaves the filter as it was: a number that is NaN, infinite or out of range, more angles than
+ * the model has, a timestamp not after the last one.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_cyclic_particles_init`.
+ */
+SinewStatus sinew_cyclic_particles_step(struct SinewCyclicParticles *tracker,
+                                        const struct SinewCyclicFrame *frame,
+                                        struct SinewCyclicResult *result);
+
+/**
+ * Forgets all frames, as after the object's `init` with the same configuration. A front
+ * end keeps its skin table.
+ *
+ * Caller's duty:
+ * `tracker` comes from the object's `init`.
+ */
+SinewStatus sinew_cyclic_particles_reset(struct SinewCyclicParticles *tracker);
+
+/**
+ * Writes the state into `buffer`. An object of the same kind and configuration can go on
+ * from it, on this processor or another. The object's type says what is saved, and which
+ * of its configuration may differ.
+ *
+ * Writes into `written` how many bytes the state takes, also where the buffer is too
+ * small. The object is not changed.
+ *
+ * Caller's duty:
+ * `tracker` comes from the object's `init`, `buffer` has the size that is said.
+ */
+SinewStatus sinew_cyclic_particles_save(struct SinewCyclicParticles *tracker,
+                                        uint8_t *buffer,
+                                        size_t buffer_bytes,
+                                        size_t *written);
+
+/**
+ * Goes on from a state that was saved, all of `state_bytes`.
+ *
+ * A state that is not whole, of another version or configuration is refused, and the
+ * object is as before. A whole state may hold a number that cannot be
+ * (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the skin table of
+ * its configuration.
+ *
+ * Caller's duty:
+ * `tracker` comes from the object's `init`, `state` has the size that is said.
+ */
+SinewStatus sinew_cyclic_particles_restore(struct SinewCyclicParticles *tracker, const uint8_t *state, size_t state_bytes);
+
+/**
  * Writes a configuration: a camera with square pixels, an adult who faces it at 1.25 metres, seed
  * 1, `SINEW_ARM_PARTICLES` particles, and the options that the host's command has.
  *
@@ -1100,6 +1444,87 @@ SinewStatus sinew_arm_pair_save(struct SinewArmPair *tracker, uint8_t *buffer, s
  * `tracker` comes from the object's `init`, `state` has the size that is said.
  */
 SinewStatus sinew_arm_pair_restore(struct SinewArmPair *tracker, const uint8_t *state, size_t state_bytes);
+
+/**
+ * Writes a configuration: an adult of 1.75 metres who faces the camera with hanging arms, the
+ * pelvis `distance_m` before it and half a metre below its axis, and the options that the host's
+ * command has.
+ *
+ * `config_bytes` is `sizeof *config`: SINEW_STATUS_STRUCT_SIZE says that the program was compiled
+ * with the header of another version. Returns SINEW_STATUS_OUT_OF_RANGE for a distance that does
+ * not lie between 0.2 and 20.
+ *
+ * Caller's duty:
+ * `config` points at room of the size that is said.
+ */
+SinewStatus sinew_body_default_config(float distance_m, struct SinewBodyConfig *config, size_t config_bytes);
+
+/**
+ * Bytes that this object takes on this target; the constant MAX_BYTES of its kind at most.
+ */
+size_t sinew_body_size(void);
+
+/**
+ * Alignment that the memory of this object needs; `SINEW_ALIGN` at most.
+ */
+size_t sinew_body_align(void);
+
+/**
+ * Makes a tracker of an upper body in `memory`, which it needs as long as it is used; there is
+ * nothing to free. `config` is copied. `tracker` is written only if the status is SINEW_STATUS_OK.
+ *
+ * Caller's duty:
+ * `memory` has the size that is said.
+ */
+SinewStatus sinew_body_init(void *memory, size_t memory_bytes, const struct SinewBodyConfig *config, struct SinewBody **tracker);
+
+/**
+ * Takes in one frame, and writes where the upper body is then. The frame's points are brought into
+ * another order.
+ *
+ * Every status but SINEW_STATUS_OK leaves the tracker as it was: too many points, a timestamp not
+ * after the last one.
+ *
+ * Caller's duty:
+ * `tracker` comes from `sinew_body_init`; the frame has as many points as it says, which no other
+ * code uses.
+ */
+SinewStatus sinew_body_step(struct SinewBody *tracker, const struct SinewBodyFrame *frame, struct SinewBodyResult *result);
+
+/**
+ * Forgets all frames, as after the object's `init` with the same configuration. A front
+ * end keeps its skin table.
+ *
+ * Caller's duty:
+ * `tracker` comes from the object's `init`.
+ */
+SinewStatus sinew_body_reset(struct SinewBody *tracker);
+
+/**
+ * Writes the state into `buffer`. An object of the same kind and configuration can go on
+ * from it, on this processor or another. The object's type says what is saved, and which
+ * of its configuration may differ.
+ *
+ * Writes into `written` how many bytes the state takes, also where the buffer is too
+ * small. The object is not changed.
+ *
+ * Caller's duty:
+ * `tracker` comes from the object's `init`, `buffer` has the size that is said.
+ */
+SinewStatus sinew_body_save(struct SinewBody *tracker, uint8_t *buffer, size_t buffer_bytes, size_t *written);
+
+/**
+ * Goes on from a state that was saved, all of `state_bytes`.
+ *
+ * A state that is not whole, of another version or configuration is refused, and the
+ * object is as before. A whole state may hold a number that cannot be
+ * (SINEW_STATUS_BAD_STATE too). Its object begins anew, a front end with the skin table of
+ * its configuration.
+ *
+ * Caller's duty:
+ * `tracker` comes from the object's `init`, `state` has the size that is said.
+ */
+SinewStatus sinew_body_restore(struct SinewBody *tracker, const uint8_t *state, size_t state_bytes);
 
 /**
  * Writes a configuration: 320 x 240 pixels of RGB565, skin of many people under many lights.

@@ -47,13 +47,18 @@ pub enum Part {
     FrontEnd = 3,
     /// All of a frame's work, instructions.
     Frame = 4,
+    /// A step of the cyclic particle filter, instructions.
+    ParticleStep = 5,
+    /// A step of the body tracker with the sorting of its points, instructions.
+    BodyStep = 6,
     /// Most stack in use, bytes.
     Stack = 16,
 }
 
 impl Part {
     /// All parts.
-    pub const ALL: [Self; 5] = [Self::CyclicStep, Self::ArmStep, Self::FrontEnd, Self::Frame, Self::Stack];
+    pub const ALL: [Self; 7] =
+        [Self::CyclicStep, Self::ArmStep, Self::FrontEnd, Self::Frame, Self::ParticleStep, Self::BodyStep, Self::Stack];
 
     /// Its name in tables.
     #[must_use]
@@ -63,6 +68,8 @@ impl Part {
             Self::ArmStep => "arm step",
             Self::FrontEnd => "front end",
             Self::Frame => "frame",
+            Self::ParticleStep => "particle step",
+            Self::BodyStep => "body step",
             Self::Stack => "stack",
         }
     }

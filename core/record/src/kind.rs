@@ -44,6 +44,8 @@ pub enum Kind {
     ArmResult = 129,
     /// [`crate::VisionResult`].
     VisionResult = 130,
+    /// [`crate::BodyResult`].
+    BodyResult = 131,
     /// [`crate::Failure`].
     Failure = 144,
     /// [`crate::Cost`].
@@ -52,7 +54,7 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::End,
         Self::CyclicSetup,
         Self::CyclicInput,
@@ -66,6 +68,7 @@ impl Kind {
         Self::CyclicResult,
         Self::ArmResult,
         Self::VisionResult,
+        Self::BodyResult,
         Self::Failure,
         Self::Cost,
     ];

@@ -35,6 +35,7 @@
 //! ```
 
 mod arm;
+mod body;
 mod camera;
 mod cyclic;
 mod end;
@@ -51,6 +52,7 @@ mod stream;
 mod tests;
 
 pub use arm::{ArmInput, ArmSetup, CANDIDATES_A_RECORD, CandidateChunk, EDGES_A_RECORD, EdgeChunk};
+pub use body::BodyResult;
 pub use camera::{CameraFace, CameraLine, CameraSetup, LINE_PIXELS, VisionResult};
 pub use cyclic::{CyclicInput, CyclicSetup, model_checksum};
 pub use end::End;

@@ -7,6 +7,8 @@ use super::clock::{SinewClock, sinew_clock_us};
 use super::cyclic::{SinewCyclic, sinew_cyclic_init, sinew_cyclic_size, sinew_cyclic_step};
 use super::cyclic_config::{SinewCyclicConfig, sinew_cyclic_default_config};
 use super::cyclic_frame::SinewCyclicResult;
+use super::cyclic_particles::{sinew_cyclic_particles_init, sinew_cyclic_particles_size, sinew_cyclic_particles_step};
+use super::cyclic_particles_config::{SinewCyclicParticlesConfig, sinew_cyclic_particles_default_config};
 use super::status::SinewStatus;
 use super::tests::{Memory, arm_config, arm_frame, arm_lists, model, see, swing, written};
 use super::vision::{
@@ -299,4 +301,73 @@ fn a_walk_goes_on_where_the_counter_wraps() {
         assert_eq!(SinewCyclicResult { timestamp_us: expected.timestamp_us, ..result }, expected, "{frame}");
     }
     assert!(clock.counter_us < begun_us, "it wrapped");
+}
+
+/// A particle filter of a walk of a second and a half, or why it is refused.
+fn particles(change: impl Fn(&mut SinewCyclicParticlesConfig)) -> Result<SinewCyclicResult, SinewStatus> {
+    // SAFETY: there is room for one.
+    let mut config = written(|config| unsafe {
+        sinew_cyclic_particles_default_config(config, size_of::<SinewCyclicParticlesConfig>())
+    });
+    change(&mut config);
+    let ((model, bytes), mut memory) = (model(), Memory::new(sinew_cyclic_particles_size()));
+    let (start, size, mut tracker) = (memory.start(), memory.bytes(), null_mut());
+    // SAFETY: memory and model have the sizes that are said.
+    let status = unsafe {
+        let model = model.as_ptr().cast();
+        sinew_cyclic_particles_init(start, size, model, bytes, &raw const config, &raw mut tracker)
+    };
+    if status != SinewStatus::Ok {
+        return Err(status);
+    }
+    let mut last = None;
+    for frame in 0..if cfg!(miri) { 2 } else { 90 } {
+        // SAFETY: the tracker was initialised.
+        last = Some(written(|result| unsafe {
+            sinew_cyclic_particles_step(tracker, &swing(16_667 * frame, 0b11), result)
+        }));
+    }
+    Ok(last.unwrap())
+}
+
+#[test]
+fn options_of_the_cyclic_particle_filter_are_checked_and_count() {
+    type Change = fn(&mut SinewCyclicParticlesConfig);
+    let refused: [(Change, SinewStatus); 10] = [
+        (|config| config.struct_bytes += 4, SinewStatus::StructSize),
+        (|config| config.particles = 0, SinewStatus::OutOfRange),
+        (|config| config.particles = 101, SinewStatus::OverCapacity),
+        (|config| config.has_first_position = 2, SinewStatus::OutOfRange),
+        (|config| config.first_cadence_per_min = -1.0, SinewStatus::OutOfRange),
+        (|config| config.first_angle_std_rad = -0.1, SinewStatus::OutOfRange),
+        (|config| config.first_velocity_share = 11.0, SinewStatus::OutOfRange),
+        (|config| config.first_position_std = f32::NAN, SinewStatus::NotFinite),
+        (|config| config.first_cycle_velocity_std = 0.6, SinewStatus::OutOfRange),
+        (|config| config.cycle_acceleration_std = 0.2, SinewStatus::OutOfRange),
+    ];
+    for (change, status) in refused {
+        assert_eq!(particles(change).err(), Some(status));
+    }
+    if cfg!(miri) {
+        return;
+    }
+    let usual = particles(|_| ()).unwrap();
+    // The model's mean cadence is a cycle a second: half a cycle after the first.
+    assert_eq!(usual.cycles_completed, 1);
+    assert!((usual.cycle_position - 0.483).abs() < 0.05, "{usual:?}");
+    let changes: [Change; 8] = [
+        |config| config.particles = 60,
+        |config| config.seed = 2,
+        |config| config.has_first_position = 1,
+        |config| config.first_cadence_per_min = 66.0,
+        |config| config.first_angle_std_rad = 0.1,
+        |config| config.first_velocity_share = 2.0,
+        |config| config.first_cycle_velocity_std = 0.01,
+        |config| config.cycle_acceleration_std = 1.0e-4,
+    ];
+    for change in changes {
+        assert_ne!(particles(change).unwrap(), usual);
+    }
+    let known = |std| particles(|config| (config.has_first_position, config.first_position_std) = (1, std)).unwrap();
+    assert_ne!(known(0.1), known(0.03));
 }

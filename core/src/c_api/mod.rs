@@ -21,12 +21,17 @@ pub mod arm;
 pub mod arm_config;
 pub mod arm_frame;
 pub mod arm_pair;
+pub mod body;
+pub mod body_config;
+pub mod body_frame;
 pub mod clock;
 #[cfg(test)]
 mod configured;
 pub mod cyclic;
 pub mod cyclic_config;
 pub mod cyclic_frame;
+pub mod cyclic_particles;
+pub mod cyclic_particles_config;
 #[cfg(test)]
 mod misuse;
 mod model;

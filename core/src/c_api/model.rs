@@ -3,8 +3,8 @@
 use super::cyclic_frame::SINEW_MAX_ANGLES;
 use super::object::list;
 use super::status::SinewStatus;
-use crate::cyclic::CoupledModel;
 use crate::cyclic::model::bytes::{HEADER_BYTES, ModelHeader};
+use crate::cyclic::{CoupledModel, MotionModel};
 use core::ffi::c_void;
 
 #[cfg(target_endian = "big")]
@@ -22,6 +22,35 @@ pub(super) unsafe fn read_model(model: *const c_void, bytes: usize) -> Result<Co
     if model.is_null() && bytes == 0 {
         return walking();
     }
+    // SAFETY: the caller's duty.
+    let (header, numbers, turns) = unsafe { read_numbers(model, bytes)? };
+    Ok(header.lend_coupled(numbers, turns)?)
+}
+
+/// As [`read_model`], of the form for all filters.
+///
+/// # Errors
+/// Those of [`read_model`]; a model for the phase-coupled filter alone.
+///
+/// # Safety
+/// `model` points at `bytes` bytes that never change.
+pub(super) unsafe fn read_whole_model(model: *const c_void, bytes: usize) -> Result<MotionModel<'static>, SinewStatus> {
+    if model.is_null() && bytes == 0 {
+        return whole_walking();
+    }
+    // SAFETY: the caller's duty.
+    let (header, numbers, turns) = unsafe { read_numbers(model, bytes)? };
+    Ok(header.lend(numbers, turns)?)
+}
+
+/// Header, numbers and turns of a model in bytes.
+///
+/// # Safety
+/// `model` points at `bytes` bytes that never change.
+unsafe fn read_numbers(
+    model: *const c_void,
+    bytes: usize,
+) -> Result<(ModelHeader, &'static [f32], &'static [i8]), SinewStatus> {
     if !model.cast::<f32>().is_aligned() {
         return Err(SinewStatus::Misaligned);
     }
@@ -37,12 +66,22 @@ pub(super) unsafe fn read_model(model: *const c_void, bytes: usize) -> Result<Co
     // SAFETY: any bits make an f32 or an i8, which live as long as the bytes; the numbers begin at
     // a multiple of four.
     let (numbers, turns) = unsafe { (numbers.align_to::<f32>().1, turns.align_to::<i8>().1) };
-    Ok(header.lend_coupled(numbers, turns)?)
+    Ok((header, numbers, turns))
 }
 
 #[cfg(feature = "walking-model")]
 fn walking() -> Result<CoupledModel<'static>, SinewStatus> {
     Ok(crate::cyclic::model::walking::WALKING_COUPLED.model()?)
+}
+
+#[cfg(feature = "walking-model")]
+fn whole_walking() -> Result<MotionModel<'static>, SinewStatus> {
+    Ok(crate::cyclic::model::walking::WALKING.model()?)
+}
+
+#[cfg(not(feature = "walking-model"))]
+fn whole_walking() -> Result<MotionModel<'static>, SinewStatus> {
+    Err(SinewStatus::NoModel)
 }
 
 #[cfg(not(feature = "walking-model"))]

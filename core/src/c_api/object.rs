@@ -197,6 +197,26 @@ pub(super) unsafe fn list<'a, T>(pointer: *const T, len: usize) -> Result<&'a [T
     Ok(unsafe { core::slice::from_raw_parts(pointer, len) })
 }
 
+/// A list that is changed; of zero elements, `pointer` may be anything.
+///
+/// # Errors
+/// A pointer that is null or misaligned, `len` beyond what an address space holds.
+///
+/// # Safety
+/// If not refused, `pointer` points at `len` elements that no other code uses for `'a`; any bits
+/// make a `T`.
+pub(super) unsafe fn list_mut<'a, T>(pointer: *mut T, len: usize) -> Result<&'a mut [T], SinewStatus> {
+    if len == 0 {
+        return Ok(&mut []);
+    }
+    check(pointer)?;
+    if len > isize::MAX as usize / size_of::<T>().max(1) {
+        return Err(SinewStatus::OverCapacity);
+    }
+    // SAFETY: checked above, and the caller's duty.
+    Ok(unsafe { core::slice::from_raw_parts_mut(pointer, len) })
+}
+
 /// Bytes to write into.
 ///
 /// # Errors

@@ -28,6 +28,11 @@ pub(super) trait Stateful {
     /// Brings the memory into a state that can be saved.
     fn before_save(&mut self) {}
 
+    /// Makes what a saved state is read into, where it is not there yet.
+    fn before_restore(&mut self) -> Answer {
+        Ok(())
+    }
+
     /// Adapts the rest of the object to a memory that was restored.
     fn after_restore(&mut self) {}
 }
@@ -83,6 +88,7 @@ pub(super) unsafe fn restore_object<T: Handle<Content: Stateful>>(
             object.is_apart(state, state_bytes)?;
             let state = list(state, state_bytes)?;
             let fingerprint = object.fingerprint();
+            object.before_restore()?;
             let answer = restore(T::Content::KIND, fingerprint, object.memory(), state);
             if answer == Err(StateError::Illegal) {
                 object.begin()?;

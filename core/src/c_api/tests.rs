@@ -11,16 +11,27 @@ use super::arm_pair::{
     SinewArmPair, sinew_arm_pair_init, sinew_arm_pair_reset, sinew_arm_pair_restore, sinew_arm_pair_save,
     sinew_arm_pair_size, sinew_arm_pair_step,
 };
+use super::body::{
+    SinewBody, sinew_body_init, sinew_body_reset, sinew_body_restore, sinew_body_save, sinew_body_size, sinew_body_step,
+};
+use super::body_config::{SinewBodyConfig, sinew_body_default_config};
+use super::body_frame::{SINEW_BODY_PREDICTED, SINEW_BODY_TRACKING, SinewBodyFrame, SinewBodyResult};
 use super::cyclic::{
     SinewCyclic, sinew_cyclic_init, sinew_cyclic_mean_pose, sinew_cyclic_reset, sinew_cyclic_restore,
     sinew_cyclic_save, sinew_cyclic_size, sinew_cyclic_step,
 };
 use super::cyclic_frame::{SINEW_MAX_ANGLES, SinewCyclicFrame, SinewCyclicResult};
+use super::cyclic_particles::{
+    SINEW_CYCLIC_PARTICLES_STATE_MAX_BYTES, SinewCyclicParticles, sinew_cyclic_particles_init,
+    sinew_cyclic_particles_reset, sinew_cyclic_particles_restore, sinew_cyclic_particles_save,
+    sinew_cyclic_particles_size, sinew_cyclic_particles_step,
+};
+use super::cyclic_particles_config::{SinewCyclicParticlesConfig, sinew_cyclic_particles_default_config};
 use super::status::SinewStatus;
 use super::vision::{
-    SINEW_VISION_STATE_MAX_BYTES, SinewVision, sinew_vision_begin_calibration, sinew_vision_begin_frame,
-    sinew_vision_end_calibration, sinew_vision_end_frame, sinew_vision_init, sinew_vision_line, sinew_vision_reset,
-    sinew_vision_restore, sinew_vision_save, sinew_vision_size,
+    SinewVision, sinew_vision_begin_calibration, sinew_vision_begin_frame, sinew_vision_end_calibration,
+    sinew_vision_end_frame, sinew_vision_init, sinew_vision_line, sinew_vision_reset, sinew_vision_restore,
+    sinew_vision_save, sinew_vision_size,
 };
 use super::vision_frame::{SinewBox, SinewVisionConfig, SinewVisionResult, sinew_vision_default_config};
 use crate::camera::Pixel;
@@ -59,7 +70,7 @@ pub(super) fn written<T>(call: impl FnOnce(*mut T) -> SinewStatus) -> T {
 }
 
 /// Bytes that suffice for the state of every object.
-const MAX_STATE_BYTES: usize = SINEW_VISION_STATE_MAX_BYTES;
+const MAX_STATE_BYTES: usize = SINEW_CYCLIC_PARTICLES_STATE_MAX_BYTES;
 
 /// The functions that every object has.
 struct StateFunctions<T> {
@@ -143,6 +154,46 @@ fn a_cyclic_tracker_goes_on_from_its_state() {
     let status = unsafe { sinew_cyclic_mean_pose(other, 0.0, pose_rad.as_mut_ptr(), 2) };
     assert_eq!((status, pose_rad), (SinewStatus::Ok, swing_pose_rad(0.0)));
     functions.reset(first);
+}
+
+#[test]
+fn a_cyclic_particle_filter_goes_on_from_its_state() {
+    let functions = StateFunctions {
+        save: sinew_cyclic_particles_save,
+        restore: sinew_cyclic_particles_restore,
+        reset: sinew_cyclic_particles_reset,
+    };
+    let (model, bytes) = model();
+    // SAFETY: there is room for one.
+    let config = written(|config: *mut SinewCyclicParticlesConfig| unsafe {
+        sinew_cyclic_particles_default_config(config, size_of::<SinewCyclicParticlesConfig>())
+    });
+    let config = SinewCyclicParticlesConfig { particles: if cfg!(miri) { 3 } else { 60 }, ..config };
+    let init = |memory: &mut Memory| {
+        // SAFETY: memory and model have the sizes that are said.
+        written(|handle| unsafe {
+            let model = model.as_ptr().cast();
+            sinew_cyclic_particles_init(memory.start(), memory.bytes(), model, bytes, &raw const config, handle)
+        })
+    };
+    let step = |tracker: *mut SinewCyclicParticles, frame: &SinewCyclicFrame| {
+        // SAFETY: the tracker was initialised, frame and result are there.
+        written(|result: *mut SinewCyclicResult| unsafe { sinew_cyclic_particles_step(tracker, frame, result) })
+    };
+    let mut memories = [Memory::new(sinew_cyclic_particles_size()), Memory::new(sinew_cyclic_particles_size())];
+    let [first, other] = memories.each_mut().map(init);
+    let mut result = MaybeUninit::uninit();
+    // SAFETY: the tracker was initialised, frame and result are there.
+    let status = unsafe { sinew_cyclic_particles_step(first, &swing(0, 0), result.as_mut_ptr()) };
+    assert_eq!(status, SinewStatus::Waiting);
+    let begun = step(first, &swing(0, 0b11));
+    assert!(begun.cycle_position < 0.05 || begun.cycle_position > 0.95, "{begun:?}");
+    step(first, &swing(16_667, 0b11));
+    functions.copy(first, other);
+    let next = swing(50_000, 0b01);
+    assert_eq!(step(first, &next), step(other, &next));
+    functions.reset(first);
+    assert_eq!(step(first, &swing(0, 0b11)), begun);
 }
 
 #[test]
@@ -305,6 +356,85 @@ fn a_tracker_of_both_arms_goes_on_from_its_state() {
     if STEPS_ARMS {
         assert_eq!(step(first, &dark(33_333)), step(other, &dark(33_333)));
         functions.reset(first);
+    }
+}
+
+/// Points on the front of a trunk and two hanging arms, two metres away.
+fn body_points(shift_m: f32) -> Vec<[f32; 3]> {
+    let trunk = (0..60).map(|i| [0.02 * (i % 10) as f32 - 0.09, 0.08 * (i / 10) as f32, 1.88]);
+    let arm = |side: f32| (0..40).map(move |i| [side * 0.21, 0.02 + 0.014 * i as f32, 1.96]);
+    let all = trunk.chain(arm(1.0)).chain(arm(-1.0));
+    all.map(|[x, y, z]| [x + shift_m, y, z]).collect()
+}
+
+#[test]
+fn a_body_tracker_goes_on_from_its_state() {
+    let functions = StateFunctions { save: sinew_body_save, restore: sinew_body_restore, reset: sinew_body_reset };
+    // SAFETY: there is room for one.
+    let config = written(|config: *mut SinewBodyConfig| unsafe {
+        sinew_body_default_config(2.0, config, size_of::<SinewBodyConfig>())
+    });
+    let init = |memory: &mut Memory| {
+        // SAFETY: the memory has the size that is said.
+        written(|handle| unsafe { sinew_body_init(memory.start(), memory.bytes(), &raw const config, handle) })
+    };
+    let step = |tracker: *mut SinewBody, timestamp_us: u64, points_m: &mut [[f32; 3]]| {
+        let (points_m, point_count) = (points_m.as_mut_ptr(), points_m.len() as u32);
+        let frame = SinewBodyFrame { timestamp_us, points_m, point_count, reserved: 0 };
+        let mut result = MaybeUninit::uninit();
+        // SAFETY: the tracker was initialised, the points are there.
+        let status = unsafe { sinew_body_step(tracker, &raw const frame, result.as_mut_ptr()) };
+        // SAFETY: the status says that it was written.
+        if status == SinewStatus::Ok { Ok::<SinewBodyResult, _>(unsafe { result.assume_init() }) } else { Err(status) }
+    };
+    let mut memories = [Memory::new(sinew_body_size()), Memory::new(sinew_body_size())];
+    let [first, other] = memories.each_mut().map(init);
+    let steps = if cfg!(miri) { 1 } else { 6 };
+    for frame in 0..steps {
+        let mut points_m = body_points(0.01 * frame as f32);
+        points_m.push([f32::NAN, 0.0, 1.0]);
+        let result = step(first, 66_667 * frame, &mut points_m).unwrap();
+        assert_eq!((result.state, result.used_points, result.left_out_points), (SINEW_BODY_TRACKING, 140, 1));
+        // The trunk.
+        assert_eq!(result.observed >> 1 & 1, 1, "{result:?}");
+    }
+    functions.copy(first, other);
+    let next_us = 66_667 * steps;
+    assert_eq!(step(first, next_us, &mut body_points(0.05)), step(other, next_us, &mut body_points(0.05)));
+    assert_eq!(step(first, next_us, &mut []), Err(SinewStatus::OutOfOrder));
+    let dark = step(first, next_us + 1, &mut []).unwrap();
+    assert_eq!((dark.state, dark.observed), (SINEW_BODY_PREDICTED, 0));
+    functions.reset(first);
+    assert!(step(first, 0, &mut body_points(0.0)).is_ok());
+}
+
+#[test]
+fn options_of_the_body_are_checked() {
+    type Change = fn(&mut SinewBodyConfig);
+    // SAFETY: there is room for one.
+    let config = written(|config: *mut SinewBodyConfig| unsafe {
+        sinew_body_default_config(2.0, config, size_of::<SinewBodyConfig>())
+    });
+    let changes: [(Change, SinewStatus); 10] = [
+        (|config| config.struct_bytes -= 4, SinewStatus::StructSize),
+        (|config| config.solver_steps = 0, SinewStatus::OutOfRange),
+        (|config| config.height_m = 3.0, SinewStatus::OutOfRange),
+        (|config| config.point_std_m = 0.0, SinewStatus::OutOfRange),
+        (|config| config.outlier_m = f32::NAN, SinewStatus::NotFinite),
+        (|config| config.root_shift_std_m_per_sqrt_s = -1.0, SinewStatus::OutOfRange),
+        (|config| config.root_turn_std_rad_per_sqrt_s = 0.0, SinewStatus::OutOfRange),
+        (|config| config.jitter_std_m = -0.1, SinewStatus::OutOfRange),
+        (|config| config.first_coordinates[16] = f32::INFINITY, SinewStatus::NotFinite),
+        (|config| config.reserved = 1, SinewStatus::OutOfRange),
+    ];
+    let mut memory = Memory::new(sinew_body_size());
+    for (change, expected) in changes {
+        let mut wrong = config;
+        change(&mut wrong);
+        let mut handle = null_mut();
+        // SAFETY: the memory has the size that is said.
+        let status = unsafe { sinew_body_init(memory.start(), memory.bytes(), &raw const wrong, &raw mut handle) };
+        assert_eq!((status, handle), (expected, null_mut()), "{wrong:?}");
     }
 }
 

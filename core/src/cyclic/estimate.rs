@@ -55,6 +55,20 @@ pub struct CyclicEstimate<const N: usize> {
 }
 
 impl<const N: usize> CyclicEstimate<N> {
+    /// Before any frame: all zeros.
+    pub(crate) const NOTHING: Self = Self {
+        angles_rad: [0.0; N],
+        turns: [0; N],
+        angle_variance_rad2: [0.0; N],
+        cycle_position: 0.0,
+        cycle_position_variance: 0.0,
+        cycle_velocity_per_frame: 0.0,
+        cycle_velocity_variance: 0.0,
+        log_likelihood: 0.0,
+        outlier: false,
+        misfit: false,
+    };
+
     /// Cycles per minute at `rate_hz` frames per second, and their standard deviation.
     #[must_use]
     pub fn cadence_per_min(&self, rate_hz: f32) -> (f32, f32) {

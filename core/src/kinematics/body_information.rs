@@ -58,7 +58,7 @@ impl<const BONES: usize> BodyInformation<BONES> {
     /// Adds the sums to the gradient of a log density and to minus its second derivative,
     /// coordinate by coordinate.
     pub fn add_to<const ANGLES: usize>(
-        mut self,
+        &mut self,
         skeleton: &Skeleton<BONES, ANGLES>,
         posture: &Posture<BONES, ANGLES>,
         gradient: &mut [f32; ANGLES],
@@ -69,7 +69,7 @@ impl<const BONES: usize> BodyInformation<BONES> {
         for j in 0..ANGLES {
             let bone = skeleton.bone_of_angle(j);
             twists[j] = self.twist(skeleton, posture, j, bone);
-            let below = &self.of_bone[bone];
+            let Some(below) = self.of_bone.get(bone) else { continue };
             let mut push = [0.0; TWIST];
             for a in 0..TWIST {
                 gradient[j] += twists[j][a] * below.vector[a];
@@ -122,7 +122,8 @@ impl<const BONES: usize> BodyInformation<BONES> {
         if skeleton.is_shift(coordinate) {
             return [axis.x, axis.y, axis.z, 0.0, 0.0, 0.0];
         }
-        let shift = (posture.joints[bone] - self.about_m).cross(&axis);
+        let joint_m = posture.joints.get(bone).copied().unwrap_or(self.about_m);
+        let shift = (joint_m - self.about_m).cross(&axis);
         [shift.x, shift.y, shift.z, axis.x, axis.y, axis.z]
     }
 }

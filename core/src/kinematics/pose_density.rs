@@ -171,6 +171,17 @@ pub trait PoseObjective<const BONES: usize, const ANGLES: usize> {
         posture: &Posture<BONES, ANGLES>,
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]);
 
+    /// As [`Self::derivatives`], written in place: a Hessian of many angles takes a kilobyte of stack
+    /// each time that it is handed on.
+    fn write_derivatives(
+        &self,
+        angles_rad: &[f32; ANGLES],
+        posture: &Posture<BONES, ANGLES>,
+        (gradient, hessian): (&mut [f32; ANGLES], &mut [[f32; ANGLES]; ANGLES]),
+    ) {
+        (*gradient, *hessian) = self.derivatives(angles_rad, posture);
+    }
+
     /// Distance of the worst end-effector from its goal, metres; zero without goals.
     fn residual_m(&self, posture: &Posture<BONES, ANGLES>) -> f32;
 
@@ -220,6 +231,42 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]) {
         let mut gradient = [0.0; ANGLES];
         let mut hessian = [[0.0; ANGLES]; ANGLES];
+        self.fill_derivatives(posture, angles_rad, &mut gradient, &mut hessian);
+        (gradient, hessian)
+    }
+
+    fn write_derivatives(
+        &self,
+        angles_rad: &[f32; ANGLES],
+        posture: &Posture<BONES, ANGLES>,
+        (gradient, hessian): (&mut [f32; ANGLES], &mut [[f32; ANGLES]; ANGLES]),
+    ) {
+        (*gradient, *hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
+        self.fill_derivatives(posture, angles_rad, gradient, hessian);
+    }
+
+    /// Distance of the worst end-effector from its goal, metres.
+    fn residual_m(&self, posture: &Posture<BONES, ANGLES>) -> f32 {
+        let mut worst = 0.0;
+        for goal in self.goals {
+            if let Some(end) = posture.ends.get(goal.bone) {
+                worst = max(worst, length(&(goal.position_m - end)));
+            }
+        }
+        worst
+    }
+}
+
+impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
+    /// Writes the derivatives over zeros.
+    #[inline(always)]
+    fn fill_derivatives(
+        &self,
+        posture: &Posture<BONES, ANGLES>,
+        angles_rad: &[f32; ANGLES],
+        gradient: &mut [f32; ANGLES],
+        hessian: &mut [[f32; ANGLES]; ANGLES],
+    ) {
         for i in 0..ANGLES {
             gradient[i] = -self.stiffness[i] * (angles_rad[i] - self.previous_rad[i]);
             hessian[i][i] = self.stiffness[i];
@@ -249,17 +296,5 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
                 hessian[i][j] = hessian[j][i];
             }
         }
-        (gradient, hessian)
-    }
-
-    /// Distance of the worst end-effector from its goal, metres.
-    fn residual_m(&self, posture: &Posture<BONES, ANGLES>) -> f32 {
-        let mut worst = 0.0;
-        for goal in self.goals {
-            if let Some(end) = posture.ends.get(goal.bone) {
-                worst = max(worst, length(&(goal.position_m - end)));
-            }
-        }
-        worst
     }
 }

@@ -180,7 +180,7 @@ pub(crate) fn semi_cholesky(packed: &[f32], rows: usize, factor: &mut [f32]) {
 
 /// Share of an angle's variance below which its variance given the angles before counts as
 /// rounding. Chosen: about eight units of the last place of `f32`, far below [`DIAGONAL_EXCESS`].
-const VANISHED_PIVOT: f32 = 1.0e-6;
+pub(crate) const VANISHED_PIVOT: f32 = 1.0e-6;
 
 #[cfg(test)]
 mod tests {

@@ -104,6 +104,9 @@ impl<const BONES: usize> BodySurface<BONES> {
             let capsule = Capsule { start_m: posture.joints[bone], end_m: posture.ends[bone], radius_m: radii_m[bone] };
             let seen = SeenCapsule::new(capsule, bone, &camera_m);
             let lane = capsules.len();
+            if lane >= BONES {
+                break;
+            }
             for axis in 0..3 {
                 lanes.start[axis][lane] = capsule.start_m[axis];
                 lanes.along[axis][lane] = seen.along_m[axis];

@@ -162,6 +162,19 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
         Self::default()
     }
 
+    /// No points, for static memory.
+    ///
+    /// ```
+    /// use sinew_core::observation::point_cloud::PointCloud;
+    ///
+    /// static CLOUD: PointCloud<32> = PointCloud::empty();
+    /// assert!(CLOUD.is_empty() && CLOUD.blocks().is_empty());
+    /// ```
+    #[must_use]
+    pub const fn empty() -> Self {
+        Self { blocks: Vec::new(), points: 0 }
+    }
+
     /// Becomes the cloud of `points_m`, which are brought into Morton order in place (those left
     /// out come last).
     ///
@@ -169,6 +182,31 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
     /// beyond the capacity, the last given first. All are counted. No point at all is a frame
     /// without evidence.
     pub fn set(&mut self, points_m: &mut [Vec3], camera_m: &Vec3) -> LeftOut {
+        self.set_by(points_m, camera_m, |points_m| points_m.sort_unstable_by_key(morton_key))
+    }
+
+    /// As [`Self::set`], the same blocks, by a sort of which a linker can prove that it cannot panic.
+    /// It takes four bytes of stack a point.
+    ///
+    /// ```
+    /// use sinew_core::math::Vec3;
+    /// use sinew_core::observation::point_cloud::PointCloud;
+    ///
+    /// let points_m = core::array::from_fn::<Vec3, 40, _>(|i| Vec3::new(0.3 * (i as f32).sin(), 0.02 * i as f32, 2.0));
+    /// let (mut one, mut other) = (PointCloud::<3>::new(), PointCloud::<3>::new());
+    /// let _ = one.set(&mut points_m.clone(), &Vec3::zeros());
+    /// let _ = other.set_in_firmware(&mut points_m.clone(), &Vec3::zeros());
+    /// assert_eq!(one.blocks(), other.blocks());
+    /// ```
+    // Not inlined: the keys leave the stack before the points are looked at.
+    #[inline(never)]
+    pub fn set_in_firmware(&mut self, points_m: &mut [Vec3], camera_m: &Vec3) -> LeftOut {
+        let mut keys = [[0; BLOCK_POINTS]; BLOCKS];
+        self.set_by(points_m, camera_m, |points_m| heap_sort(points_m, keys.as_flattened_mut()))
+    }
+
+    #[inline(always)]
+    fn set_by(&mut self, points_m: &mut [Vec3], camera_m: &Vec3, sort: impl FnOnce(&mut [Vec3])) -> LeftOut {
         let mut left_out = LeftOut::default();
         let mut kept = 0;
         for i in 0..points_m.len() {
@@ -181,12 +219,17 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
             } else if kept == BLOCKS * BLOCK_POINTS {
                 left_out.over_capacity += 1;
             } else {
-                points_m.swap(i, kept);
+                if let Some(place) = points_m.get_mut(kept) {
+                    let other = core::mem::replace(place, point);
+                    if let Some(place) = points_m.get_mut(i) {
+                        *place = other;
+                    }
+                }
                 kept += 1;
             }
         }
         let points_m = points_m.get_mut(..kept).unwrap_or_default();
-        points_m.sort_unstable_by_key(morton_key);
+        sort(points_m);
         self.blocks.clear();
         self.points = kept;
         for chunk in points_m.chunks(BLOCK_POINTS) {
@@ -230,6 +273,59 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.points == 0
+    }
+}
+
+/// Sorts points by their Morton keys, in n log n steps at most and without a panic (J. W. J.
+/// Williams, Algorithm 232: heapsort, 1964). `keys` has one for each point; each is computed once.
+fn heap_sort(points_m: &mut [Vec3], keys: &mut [u32]) {
+    for (key, point_m) in keys.iter_mut().zip(&*points_m) {
+        *key = morton_key(point_m).0;
+    }
+    let count = points_m.len().min(keys.len());
+    for root in (0..count / 2).rev() {
+        sift_down((points_m, keys), root, count);
+    }
+    for end in (1..count).rev() {
+        exchange(points_m, 0, end);
+        exchange(keys, 0, end);
+        sift_down((points_m, keys), 0, end);
+    }
+}
+
+/// Brings the point at `root` below all greater ones of the heap of the first `count`.
+fn sift_down((points_m, keys): (&mut [Vec3], &mut [u32]), mut root: usize, count: usize) {
+    loop {
+        let (left, right) = (2 * root + 1, 2 * root + 2);
+        if left >= count {
+            return;
+        }
+        let child = if right < count && is_greater((points_m, keys), right, left) { right } else { left };
+        if !is_greater((points_m, keys), child, root) {
+            return;
+        }
+        exchange(points_m, root, child);
+        exchange(keys, root, child);
+        root = child;
+    }
+}
+
+/// Whether a point comes after another one in the order of [`morton_key`].
+fn is_greater((points_m, keys): (&[Vec3], &[u32]), one: usize, other: usize) -> bool {
+    let (first, second) = (keys.get(one), keys.get(other));
+    if first != second {
+        return first > second;
+    }
+    points_m.get(one).map(morton_key) > points_m.get(other).map(morton_key)
+}
+
+fn exchange<T: Copy>(values: &mut [T], one: usize, other: usize) {
+    let (Some(&first), Some(&second)) = (values.get(one), values.get(other)) else { return };
+    if let Some(place) = values.get_mut(one) {
+        *place = second;
+    }
+    if let Some(place) = values.get_mut(other) {
+        *place = first;
     }
 }
 
@@ -279,6 +375,21 @@ mod tests {
         let mut blocks = PointCloud::<2>::new();
         let left_out = blocks.set(&mut cloud(40), &Vec3::zeros());
         assert_eq!((left_out.over_capacity, blocks.len()), (8, 2 * BLOCK_POINTS));
+    }
+
+    #[test]
+    fn the_sort_of_firmware_gives_the_same_blocks() {
+        for count in [0, 1, 2, 3, 17, 500] {
+            let (mut one, mut other) = (cloud(count), cloud(count));
+            other.reverse();
+            let (mut a, mut b) = (PointCloud::<32>::new(), PointCloud::<32>::new());
+            assert_eq!(
+                a.set(&mut one, &Vec3::zeros()),
+                b.set_in_firmware(&mut other, &Vec3::zeros()),
+                "{count} points"
+            );
+            assert_eq!(a.blocks(), b.blocks(), "{count} points");
+        }
     }
 
     #[test]

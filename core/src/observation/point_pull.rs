@@ -1,7 +1,7 @@
 //! Derivatives of the point likelihood by a pose, for guided proposals.
 
 use super::body_surface::BodySurface;
-use super::point_cloud::PointBlock;
+use super::point_cloud::{BLOCK_POINTS, PointBlock};
 use super::point_likelihood::{NearestSkin, PointLikelihood};
 use crate::kinematics::body_information::BodyInformation;
 use crate::math::{Vec3, unit};
@@ -26,7 +26,7 @@ pub fn add_pull<'b, const BONES: usize>(
     for block in blocks {
         let stretch = likelihood.stretch(block);
         let nearest = NearestSkin::find_stretched(surface, block, likelihood.outlier_m, stretch);
-        for i in 0..usize::from(block.count) {
+        for i in 0..usize::from(block.count).min(BLOCK_POINTS) {
             let Some(seen) = surface.capsules.get(usize::from(nearest.capsule[i])) else { continue };
             let point_m = block.point_m(i);
             let skin_m = seen.capsule.nearest_visible(&surface.camera_m, &point_m);

@@ -135,8 +135,15 @@ impl<const BONES: usize, const ANGLES: usize> GuidedDensity<'_, BONES, ANGLES> {
     /// a limb that moved farther than points reach.
     #[must_use]
     pub fn mode_coarse_to_fine(&self, far_prior: &PoseDensity<'_, BONES, ANGLES>, max_steps: usize) -> Mode<ANGLES> {
+        self.mode_from(&[self.start_rad(), self.far_start_rad(far_prior)], max_steps)
+    }
+
+    /// The pose after two coarse steps about `far_prior`.
+    // Not inlined: coarse and fine steps need their stack one after the other.
+    #[inline(never)]
+    pub(crate) fn far_start_rad(&self, far_prior: &PoseDensity<'_, BONES, ANGLES>) -> [f32; ANGLES] {
         let far = GuidedDensity { prior: *far_prior, reach: FAR_REACH * self.reach, ..*self };
-        self.mode_from(&[self.start_rad(), far.mode(FAR_STEPS).angles_rad], max_steps)
+        far.mode(FAR_STEPS).angles_rad
     }
 
     fn likelihood(&self) -> PointLikelihood {
@@ -164,7 +171,7 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
 
     fn log_density(&self, angles_rad: &[f32; ANGLES], posture: &Posture<BONES, ANGLES>) -> f32 {
         let surface = self.scene.surface(posture);
-        let points = self.likelihood().log_likelihood_of(&surface, self.blocks.iter().step_by(self.stride));
+        let points = self.likelihood().log_likelihood_of(&surface, self.blocks.iter().step_by(self.stride.max(1)));
         self.prior.log_density(angles_rad, posture) + points * self.stride as f32
     }
 
@@ -173,13 +180,23 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
         angles_rad: &[f32; ANGLES],
         posture: &Posture<BONES, ANGLES>,
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]) {
-        let (mut gradient, mut hessian) = self.prior.derivatives(angles_rad, posture);
+        let (mut gradient, mut hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
+        self.write_derivatives(angles_rad, posture, (&mut gradient, &mut hessian));
+        (gradient, hessian)
+    }
+
+    fn write_derivatives(
+        &self,
+        angles_rad: &[f32; ANGLES],
+        posture: &Posture<BONES, ANGLES>,
+        (gradient, hessian): (&mut [f32; ANGLES], &mut [[f32; ANGLES]; ANGLES]),
+    ) {
+        self.prior.write_derivatives(angles_rad, posture, (gradient, hessian));
         let surface = self.scene.surface(posture);
         let mut information = BodyInformation::none(posture);
-        let pulling = self.blocks.iter().step_by(self.stride);
+        let pulling = self.blocks.iter().step_by(self.stride.max(1));
         add_pull(&self.likelihood(), &surface, pulling, self.stride as f32, &mut information);
-        information.add_to(self.prior.skeleton, posture, &mut gradient, &mut hessian);
-        (gradient, hessian)
+        information.add_to(self.prior.skeleton, posture, gradient, hessian);
     }
 
     fn residual_m(&self, posture: &Posture<BONES, ANGLES>) -> f32 {

@@ -51,6 +51,8 @@ pub enum StateKind {
     Body = 5,
     /// Of both hands over time.
     Hands = 6,
+    /// Of a cyclic particle filter.
+    CyclicParticles = 7,
 }
 
 /// Why a state was not saved, or not restored.

@@ -206,19 +206,30 @@ impl ArmGeometry {
         if abs(self.torso.determinant() - 1.0) > 1.0e-3 {
             return Err(ParameterError::new("torso determinant", Rule::Within { low: 1.0, high: 1.0 }));
         }
+        Skeleton::new(self.bones(), self.limits)
+    }
+
+    /// The bones of [`Self::skeleton`], for a body.
+    // Apart, so that an arm's own skeleton is made where it stays, with less stack.
+    #[inline(never)]
+    pub(super) fn bones_of_body(&self) -> [Bone; ARM_BONES] {
+        self.bones()
+    }
+
+    #[inline(always)]
+    fn bones(&self) -> [Bone; ARM_BONES] {
         let (outward, up, front) = self.directions();
         let (in_plane, out_of_plane) = scapular_plane(&outward, &front);
         let down = -up;
         let shoulder = Joint::Ball([down.cross(&in_plane), down.cross(&out_of_plane), front.cross(&-outward)]);
-        let bones = [
+        [
             Bone { parent: None, joint: shoulder, offset_m: down * self.upper_arm_m },
             Bone {
                 parent: Some(UPPER_ARM as u8),
                 joint: Joint::Hinge(down.cross(&front)),
                 offset_m: down * self.forearm_m,
             },
-        ];
-        Skeleton::new(bones, self.limits)
+        ]
     }
 
     /// The angles, cut to the limits, whose elbow and hand lie in the given directions: inverse

@@ -259,8 +259,8 @@ pub fn full_body(measures: &BodyMeasures) -> Result<BodySkeleton, ParameterError
     for (side, outward) in [LEFT, -LEFT].into_iter().enumerate() {
         let place = |offset: Vec3| outward * offset.x + UP * offset.y + FRONT * offset.z;
         let arm_side = if side == 0 { Side::Left } else { Side::Right };
-        let arm = ArmGeometry::new(arm_side, measures.upper_arm_m, measures.forearm_m)?.skeleton()?;
-        let [upper_arm, forearm] = *arm.bones();
+        let arm = ArmGeometry::new(arm_side, measures.upper_arm_m, measures.forearm_m)?;
+        let [upper_arm, forearm] = arm.bones_of_body();
         bones[COLLARS[side]] = bone(COLLARS[side], Joint::Fixed, place(measures.shoulder_m));
         bones[UPPER_ARMS[side]] = bone(UPPER_ARMS[side], upper_arm.joint, upper_arm.offset_m);
         bones[FOREARMS[side]] = bone(FOREARMS[side], forearm.joint, forearm.offset_m);

@@ -45,13 +45,16 @@ impl<const BONES: usize> Limbs<BONES> {
         // Parents come first.
         for (index, bone) in skeleton.bones().iter().enumerate() {
             let Some(parent) = bone.parent.map(usize::from) else { continue };
-            let begins = branches.get(parent).copied().unwrap_or(false) || skeleton.bones()[parent].parent.is_none();
-            let is_chain = !branches[index];
+            let begins = branches.get(parent).copied().unwrap_or(false)
+                || skeleton.bones().get(parent).is_some_and(|parent| parent.parent.is_none());
+            let is_chain = !branches.get(index).copied().unwrap_or(true);
+            let group = limbs.group(parent) as u8;
+            let Some(group_of) = limbs.group_of.get_mut(index) else { continue };
             if is_chain && begins && limbs.count < MAX_GROUPS {
-                limbs.group_of[index] = limbs.count as u8;
+                *group_of = limbs.count as u8;
                 limbs.count += 1;
             } else if is_chain && !begins {
-                limbs.group_of[index] = limbs.group(parent) as u8;
+                *group_of = group;
             }
         }
         limbs

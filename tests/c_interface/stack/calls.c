@@ -8,9 +8,9 @@
 extern const uint32_t model[];
 extern const size_t model_bytes;
 
-static uint64_t memory[SINEW_ARM_PAIR_MAX_BYTES / sizeof(uint64_t)];
+static uint64_t memory[SINEW_CYCLIC_PARTICLES_MAX_BYTES / sizeof(uint64_t)];
 static uint64_t vision_memory[SINEW_VISION_MAX_BYTES / sizeof(uint64_t)];
-static uint32_t state[SINEW_VISION_STATE_MAX_BYTES / sizeof(uint32_t)];
+static uint32_t state[SINEW_CYCLIC_PARTICLES_STATE_MAX_BYTES / sizeof(uint32_t)];
 static size_t state_bytes;
 
 /* Fails the program where a status is not the expected one. */
@@ -52,6 +52,49 @@ static void cyclic(const void *motion, size_t bytes) {
         expect("sinew_cyclic_step", frame == 0 ? SINEW_STATUS_WAITING : SINEW_STATUS_OK, status);
     }
     STATES(cyclic, tracker, SINEW_STATUS_BAD_STATE);
+}
+
+/* A walk without its last part: of the gap of twenty seconds each frame would be a step. The mean cycle comes from `poses`. */
+static void particles(const void *motion, size_t bytes, uint32_t has_first_position) {
+    static uint64_t poses_memory[SINEW_CYCLIC_MAX_BYTES / sizeof(uint64_t)];
+    SinewCyclic *poses = NULL;
+    SinewCyclicParticles *tracker = NULL;
+    SinewCyclicParticlesConfig config;
+    DONE(sinew_cyclic_init, poses_memory, sizeof poses_memory, NULL, 0, NULL, &poses);
+    DONE(sinew_cyclic_particles_default_config, &config, sizeof config);
+    config.has_first_position = has_first_position;
+    DONE(sinew_cyclic_particles_init, memory, sizeof memory, motion, bytes, &config, &tracker);
+    for (int frame = 0; frame < 60; frame++) {
+        SinewCyclicFrame measured = {0};
+        SinewCyclicResult result;
+        DONE(sinew_cyclic_mean_pose, poses, 0.015F * (float)frame, measured.angles_rad, SINEW_MAX_ANGLES);
+        walk(frame, &measured);
+        SinewStatus status = CALL(sinew_cyclic_particles_step, tracker, &measured, &result);
+        expect("sinew_cyclic_particles_step", frame == 0 ? SINEW_STATUS_WAITING : SINEW_STATUS_OK, status);
+    }
+    STATES(cyclic_particles, tracker, SINEW_STATUS_BAD_STATE);
+}
+
+/* A trunk and two arms that swing, dots on their front; now and then holes only, or nothing. */
+static void body(void) {
+    static float points[SINEW_BODY_POINTS + 20][3];
+    SinewBody *tracker = NULL;
+    SinewBodyConfig config;
+    DONE(sinew_body_default_config, 2.0F, &config, sizeof config);
+    DONE(sinew_body_init, memory, sizeof memory, &config, &tracker);
+    for (int number = 0; number < 30; number++) {
+        const SinewBodyFrame frame = {(uint64_t)number * 66667U, points, number % 7 == 6 ? 0U : SINEW_BODY_POINTS + 20U, 0};
+        SinewBodyResult result;
+        for (int i = 0; i < SINEW_BODY_POINTS + 20; i++) {
+            const float side = i % 3 == 1 ? 0.21F : -0.21F, swing = 0.02F * (float)(number % 12);
+            const float down = 0.0011F * (float)i;
+            points[i][0] = i % 3 == 0 ? 0.02F * (float)(i / 3 % 10) - 0.09F : side;
+            points[i][1] = i % 3 == 0 ? down : 0.02F + down;
+            points[i][2] = i % 3 == 0 ? 1.88F : 1.96F - down * swing * 4.0F;
+        }
+        DONE(sinew_body_step, tracker, &frame, &result);
+    }
+    STATES(body, tracker, SINEW_STATUS_BAD_STATE);
 }
 
 static void vision(uint32_t pixel_format, void (*use)(const SinewVisionResult *, int frame)) {
@@ -148,6 +191,10 @@ static void sizes(void) {
     (void)CALL(sinew_error_text, -3);
     (void)CALL(sinew_cyclic_size);
     (void)CALL(sinew_cyclic_align);
+    (void)CALL(sinew_cyclic_particles_size);
+    (void)CALL(sinew_cyclic_particles_align);
+    (void)CALL(sinew_body_size);
+    (void)CALL(sinew_body_align);
     (void)CALL(sinew_vision_size);
     (void)CALL(sinew_vision_align);
     (void)CALL(sinew_arm_size);
@@ -160,10 +207,15 @@ int main(void) {
     sizes();
     cyclic(NULL, 0);
     cyclic(model, model_bytes);
+    particles(NULL, 0, 0);
+    particles(model, model_bytes, 1);
+    body();
     vision(SINEW_PIXEL_RGB565_SWAPPED, use_nothing);
     vision(SINEW_PIXEL_YUYV, use_nothing);
     arms();
     note("SinewCyclic", (uint32_t)sinew_cyclic_size());
+    note("SinewCyclicParticles", (uint32_t)sinew_cyclic_particles_size());
+    note("SinewBody", (uint32_t)sinew_body_size());
     note("SinewVision", (uint32_t)sinew_vision_size());
     note("SinewArm", (uint32_t)sinew_arm_size());
     note("SinewArmPair", (uint32_t)sinew_arm_pair_size());

@@ -5,7 +5,7 @@
 extern uint32_t __stack_high[];
 void start(void);
 
-enum { SYS_OPEN = 1, SYS_WRITE = 5, SYS_EXIT_EXTENDED = 0x20, APPLICATION_EXIT = 0x20026, WRITE_MODE = 4, MAX_FUNCTIONS = 48 };
+enum { SYS_OPEN = 1, SYS_WRITE = 5, SYS_EXIT_EXTENDED = 0x20, APPLICATION_EXIT = 0x20026, WRITE_MODE = 4, MAX_FUNCTIONS = 64 };
 
 static struct {
     const char *function;

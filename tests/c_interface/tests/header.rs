@@ -5,16 +5,21 @@ use std::fs;
 use std::process::Command;
 
 /// Sources of the interface, and of the structures that it shares with the trackers.
-const SOURCES: [&str; 16] = [
+const SOURCES: [&str; 21] = [
     "c_api/status.rs",
     "c_api/clock.rs",
     "c_api/cyclic_frame.rs",
     "c_api/cyclic_config.rs",
     "c_api/cyclic.rs",
+    "c_api/cyclic_particles_config.rs",
+    "c_api/cyclic_particles.rs",
     "c_api/arm_frame.rs",
     "c_api/arm_config.rs",
     "c_api/arm.rs",
     "c_api/arm_pair.rs",
+    "c_api/body_frame.rs",
+    "c_api/body_config.rs",
+    "c_api/body.rs",
     "c_api/vision_frame.rs",
     "c_api/vision.rs",
     "c_api/model.rs",

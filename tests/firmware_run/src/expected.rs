@@ -1,7 +1,7 @@
 //! What images have to answer: files of the folder `firmware-sim/expected`, one an image.
 
 use anyhow::{Context, Result, bail, ensure};
-use sinew_record::{ArmResult, CyclicResult, Failure, Kind, Record, RecordStream, VisionResult};
+use sinew_record::{ArmResult, BodyResult, CyclicResult, Failure, Kind, Record, RecordStream, VisionResult};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -103,6 +103,7 @@ fn described(record: &Record<'_>) -> String {
     match record.kind {
         Kind::CyclicResult => format!("{:?}", record.read::<CyclicResult>()),
         Kind::ArmResult => format!("{:?}", record.read::<ArmResult>()),
+        Kind::BodyResult => format!("{:?}", record.read::<BodyResult>()),
         Kind::VisionResult => format!("{:?}", record.read::<VisionResult>()),
         Kind::Failure => format!("{:?}", record.read::<Failure>()),
         kind => format!("{kind:?} {:02x?}", record.payload),

@@ -21,6 +21,7 @@ use std::sync::atomic::AtomicBool;
 pub fn of_image(name: &str) -> Result<Option<Vec<u8>>> {
     match name {
         "cyclic" => cyclic().map(Some),
+        "particles" => short_walk().map(Some),
         "arm" => arm().map(Some),
         "camera" => Ok(Some(interleaved(&camera()?, &cyclic()?)?)),
         _ => Ok(None),
@@ -67,6 +68,22 @@ pub fn synthetic_walk(model: &CyclicModel) -> Result<AngleTable> {
 fn cyclic() -> Result<Vec<u8>> {
     let model = CyclicModel::from_option("walking")?;
     let table = synthetic_walk(&model)?;
+    Ok(cyclic_stream(&table, &model, &TrackingOptions::default())?)
+}
+
+/// Rows of [`synthetic_walk`] that the image `particles` gets: a gap of three frames and a jump of
+/// the position, and none of the gaps of a second and more, each frame of which takes a whole step.
+const SHORT_WALK_ROWS: usize = 320;
+
+/// The first rows of the same walk.
+///
+/// # Errors
+/// None in practice.
+pub fn short_walk() -> Result<Vec<u8>> {
+    let model = CyclicModel::from_option("walking")?;
+    let mut rows = synthetic_walk(&model)?.rows().to_vec();
+    rows.truncate(SHORT_WALK_ROWS);
+    let table = AngleTable::new(rows, Vec::new())?;
     Ok(cyclic_stream(&table, &model, &TrackingOptions::default())?)
 }
 

@@ -249,7 +249,8 @@ pub(super) fn check_rows(
     check: fn(&'static str, f32) -> Result<f32, ParameterError>,
 ) -> Result<(), ModelError> {
     let expected = rows * columns;
-    if values.len() != expected {
+    // A model has at least one angle; nothing else would show that there is no division by zero.
+    if values.len() != expected || columns == 0 {
         return Err(ModelError::of_all(ParameterError::new(parameter, Rule::SameLength { expected })));
     }
     for (index, &value) in values.iter().enumerate() {

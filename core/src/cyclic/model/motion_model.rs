@@ -184,7 +184,7 @@ fn check_covariances(covariances: &[f32], positions: usize, angles: usize) -> Re
         let rule = Rule::SameLength { expected: positions * packed };
         return Err(ModelError::of_all(ParameterError::new(NAME, rule)));
     }
-    for (position, covariance) in covariances.chunks_exact(packed).enumerate() {
+    for (position, covariance) in covariances.chunks_exact(packed.max(1)).enumerate() {
         let rule =
             if covariance.iter().all(|value| value.is_finite()) { Rule::PositiveSemiDefinite } else { Rule::Finite };
         if rule == Rule::Finite || !is_positive_semi_definite(covariance, angles) {

@@ -84,6 +84,20 @@ pub fn fill_factors(model: &MotionModel<'_>, factors: &mut [f32]) {
     }
 }
 
+/// Where particles have their accelerations from.
+pub(super) trait Accelerations<const N: usize> {
+    /// `mean_scale` mean + `noise_scale` factor draws: the mean a `fraction` of the way from
+    /// position `before` to `after`, the factor that of position `place`. The model has up to `N`
+    /// angles; `draws` beyond them are zero.
+    fn accelerations(
+        &mut self,
+        between: (usize, usize, f32),
+        place: usize,
+        scales: (f32, f32),
+        draws: &AngleBlocks,
+    ) -> AngleBlocks;
+}
+
 /// The table that [`fill_factors`] wrote.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ParticleTable<'a> {
@@ -106,14 +120,13 @@ impl<'a> ParticleTable<'a> {
         let (mean, factor) = numbers.split_at_checked(BLOCK * self.blocks).unwrap_or_default();
         (mean.as_chunks().0, factor.as_chunks().0)
     }
+}
 
-    /// `mean_scale` mean + `noise_scale` factor draws: the mean a `fraction` of the way from
-    /// position `before` to `after`, the factor that of position `place`. The model has up to
-    /// `N` angles; `draws` beyond them are zero, and the factor's columns there are not looked
-    /// at.
+impl<const N: usize> Accelerations<N> for ParticleTable<'_> {
+    /// The factor's columns beyond the model's angles are not looked at.
     #[inline(always)]
-    pub(super) fn accelerations<const N: usize>(
-        &self,
+    fn accelerations(
+        &mut self,
         (before, after, fraction): (usize, usize, f32),
         place: usize,
         (mean_scale, noise_scale): (f32, f32),
@@ -168,8 +181,11 @@ mod tests {
         let mut factors = vec![0.0; factors_len(&model)];
         assert_eq!(factors.len(), 20_800);
         fill_factors(&model, &mut factors);
-        let particle_table = ParticleTable::new(&model, &factors);
-        let still = particle_table.accelerations::<13>((99, 0, 0.25), 0, (2.0, 1.0), &AngleBlocks::default());
+        let mut particle_table = ParticleTable::new(&model, &factors);
+        let mut accelerations = |between, place, scales, draws: &AngleBlocks| {
+            Accelerations::<13>::accelerations(&mut particle_table, between, place, scales, draws)
+        };
+        let still = accelerations((99, 0, 0.25), 0, (2.0, 1.0), &AngleBlocks::default());
         let point = crate::cyclic::CyclePoint { before: 99, after: 0, fraction: 0.25 };
         let mean = model.mean_acceleration::<13>(point);
         assert_eq!(still.as_flattened()[..13], mean.map(|value| 2.0 * value));
@@ -180,7 +196,7 @@ mod tests {
             .map(|column| {
                 let mut draws = AngleBlocks::default();
                 draws[column / BLOCK][column % BLOCK] = 1.0;
-                particle_table.accelerations::<13>((7, 8, 0.0), 7, (0.0, 1.0), &draws)
+                accelerations((7, 8, 0.0), 7, (0.0, 1.0), &draws)
             })
             .collect();
         for i in 0..13 {

@@ -1,6 +1,7 @@
 //! The particle filter over poses in their cycle, with the transition of the paper's Kalman filter.
 
 mod angle_blocks;
+mod computed_factors;
 pub mod factors;
 pub mod moments;
 pub mod propose;

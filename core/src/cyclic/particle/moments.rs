@@ -131,12 +131,21 @@ impl<const N: usize> ParticleMoments<N> {
         }
     }
 
+    /// All zeros, which is not [`Self::nothing`]: what a static memory begins with.
+    pub(super) const ZERO: Self = Self {
+        angles: [AngleSums::ZERO; N],
+        phase: AngleSums::ZERO,
+        velocity_offset: [0.0; PARTS],
+        velocity_offset_square: [0.0; PARTS],
+        share: WeightShare { greatest_log_weight: 0.0, weight: 0.0 },
+    };
+
     /// Adds particles, without the sum of their weights.
     #[inline(always)]
     pub(super) fn add(&mut self, lanes: &ParticleLanes<N>) {
         let best = greatest(&lanes.log_weights);
         if best > self.share.greatest_log_weight {
-            self.merge(&Self { share: WeightShare { greatest_log_weight: best, weight: 0.0 }, ..Self::nothing() });
+            self.relate_to(best);
         }
         let mut weights = [0.0; LANES];
         for (weight, log_weight) in weights.iter_mut().zip(&lanes.log_weights) {
@@ -156,11 +165,30 @@ impl<const N: usize> ParticleMoments<N> {
         }
     }
 
-    /// The same with the sum of the weights relative to the greatest.
-    #[must_use]
-    pub(super) const fn weighing(mut self, weight: f32) -> Self {
+    /// As [`Self::merge`] with no sums at all and a greatest log-weight of `best`, which is greater:
+    /// without one more set of sums on the stack.
+    fn relate_to(&mut self, best: f32) {
+        let own_scale = self.share.scale(best);
+        for own in &mut self.angles {
+            own.merge(&AngleSums::ZERO, own_scale, 1.0);
+        }
+        self.phase.merge(&AngleSums::ZERO, own_scale, 1.0);
+        merge_parts(&mut self.velocity_offset, &[0.0; PARTS], own_scale, 1.0);
+        merge_parts(&mut self.velocity_offset_square, &[0.0; PARTS], own_scale, 1.0);
+        self.share = WeightShare { greatest_log_weight: best, weight: own_scale * self.share.weight };
+    }
+
+    /// Empties the sums.
+    pub(super) fn clear(&mut self) {
+        self.angles.fill(AngleSums::ZERO);
+        self.phase = AngleSums::ZERO;
+        (self.velocity_offset, self.velocity_offset_square) = ([0.0; PARTS], [0.0; PARTS]);
+        self.share = WeightShare::NOTHING;
+    }
+
+    /// Sets the sum of the weights relative to the greatest.
+    pub(super) const fn weigh(&mut self, weight: f32) {
         self.share.weight = weight;
-        self
     }
 
     /// Sum of the particles' weights.
@@ -262,7 +290,8 @@ mod tests {
         let weighed = |lanes: &ParticleLanes<1>, weight: f32| {
             let mut moments = ParticleMoments::<1>::nothing();
             moments.add(lanes);
-            moments.weighing(weight)
+            moments.weigh(weight);
+            moments
         };
         let together = weighed(&lanes(&[0.2, 0.6], &[-50.0, -50.0 + low]), 4.0 / 3.0);
         let (heavy, light) = (weighed(&lanes(&[0.2], &[-50.0]), 1.0), weighed(&lanes(&[0.6], &[-50.0 + low]), 1.0));

@@ -7,7 +7,7 @@
 use crate::angle::angle_difference;
 use crate::cyclic::MotionModel;
 use crate::cyclic::particle::angle_blocks::{AngleBlocks, BLOCK, blocks_of, used_blocks, write_back};
-use crate::cyclic::particle::factors::ParticleTable;
+use crate::cyclic::particle::factors::Accelerations;
 use crate::cyclic::phase::{POSITIONS_IN_CYCLE, wrap_position};
 use crate::cyclic::saved_ranges::NUMBER;
 use crate::cyclic::start::{CycleStart, MIN_SPREAD_RAD};
@@ -137,6 +137,16 @@ impl Default for ParticleOptions {
 }
 
 impl ParticleOptions {
+    /// No spread at all, all zeros.
+    pub(super) const NOTHING: Self = Self {
+        spread: Spread::Standard,
+        start_std: 0.0,
+        deviation_velocity_share: 0.0,
+        position_std: 0.0,
+        velocity_std: 0.0,
+        temporal_acceleration_std: 0.0,
+    };
+
     /// First standard deviation of each angle's velocity, rad per frame.
     fn first_velocity_std<const N: usize>(&self, model: &MotionModel<'_>) -> [f32; N] {
         model
@@ -214,7 +224,8 @@ pub fn first_particle<const N: usize>(
 ///
 /// Every position is as likely as any other before the first frame, which is known when the
 /// particles are drawn. Without any angle seen, or a spread in the model, the sums rise evenly.
-/// `positions` has one number for each stored position.
+/// `positions` has one number for each stored position; where it has another number of them, they
+/// lie evenly in the cycle.
 ///
 /// ```
 /// # #[cfg(feature = "walking-model")] {
@@ -234,11 +245,14 @@ pub fn first_particle<const N: usize>(
 /// ```
 pub fn fill_positions<const N: usize>(model: &MotionModel<'_>, start: &CycleStart<N>, positions: &mut [f32]) {
     let spread = model.deviation_std_rad::<N>();
-    let count = model.position_count() as f32;
+    let count = positions.len() as f32;
     for (index, value) in positions.iter_mut().enumerate() {
         let pose = model.mean_pose_rad::<N>(model.point(index as f32 / count));
         let mut squared = 0.0;
-        for i in (0..N.min(model.angle_count())).filter(|&i| start.extra_variance_rad2[i] == 0.0 && spread[i] > 0.0) {
+        for i in 0..N {
+            if i >= model.angle_count() || start.extra_variance_rad2[i] != 0.0 || !(spread[i] > 0.0) {
+                continue;
+            }
             let scaled = angle_difference(start.angles_rad[i], pose[i]) / max(spread[i], MIN_SPREAD_RAD);
             squared += scaled * scaled;
         }
@@ -273,7 +287,7 @@ fn drawn_position(sums: &[f32], uniform: f32) -> f32 {
 #[inline(always)]
 pub(super) fn advance<const N: usize>(
     model: &MotionModel<'_>,
-    table: &ParticleTable<'_>,
+    table: &mut impl Accelerations<N>,
     temporal_std: f32,
     step: f32,
     (streams, draws): (&mut StreamLanes, &mut [AngleBlocks; LANES]),
@@ -299,7 +313,7 @@ pub(super) fn advance<const N: usize>(
         let ratio = model.speed_ratio(particle.cycle_velocity);
         let squared_ratio = ratio * ratio;
         let place = if side[lane] < point.fraction { point.after } else { point.before };
-        let accelerations = table.accelerations::<N>(
+        let accelerations = table.accelerations(
             (point.before, point.after, point.fraction),
             place,
             (squared_ratio, squared_ratio * noise_factor),
@@ -383,14 +397,14 @@ mod tests {
         let model = table.model().unwrap();
         let mut factors = vec![0.0; factors_len(&model)];
         fill_factors(&model, &mut factors);
-        let particle_table = ParticleTable::new(&model, &factors);
+        let mut particle_table = crate::cyclic::particle::factors::ParticleTable::new(&model, &factors);
         let first =
             CyclicParticle { angles_rad: [0.2; 13], velocities: [0.0; 13], cycle_position: 0.3, cycle_velocity: 0.01 };
         let mut particles = vec![first; COUNT];
         let mut draws = [AngleBlocks::default(); LANES];
         for (block, particles) in particles.chunks_mut(LANES).enumerate() {
             let mut streams = StreamLanes::new(4, 1, (block * LANES) as u32);
-            advance(&model, &particle_table, 0.0, 1.0, (&mut streams, &mut draws), particles);
+            advance(&model, &mut particle_table, 0.0, 1.0, (&mut streams, &mut draws), particles);
         }
         let mean = model.mean_acceleration::<13>(model.point(0.3));
         let position = (0.3 * model.position_count() as f32) as usize;

@@ -8,8 +8,8 @@
 //! bits are the same however the chunks are spread over threads.
 
 use crate::cyclic::MotionModel;
-use crate::cyclic::particle::angle_blocks::AngleBlocks;
-use crate::cyclic::particle::factors::ParticleTable;
+use crate::cyclic::particle::angle_blocks::{AngleBlocks, BLOCK, MAX_BLOCKS};
+use crate::cyclic::particle::factors::{Accelerations, ParticleTable};
 use crate::cyclic::particle::moments::ParticleMoments;
 use crate::cyclic::particle::propose::{CyclicParticle, ParticleOptions, advance};
 use crate::cyclic::particle::weigh::{ParticleLanes, ParticleTarget};
@@ -61,26 +61,56 @@ pub fn sweep<const N: usize>(
     particles: &mut [CyclicParticle<N>],
     weights: &mut [f32],
 ) -> ParticleMoments<N> {
-    let (seed, frame, first_index) = key;
-    let table = ParticleTable::new(model, factors);
-    let mut draws = [AngleBlocks::default(); LANES];
-    let mut lanes = ParticleLanes::empty();
-    let mut moments = ParticleMoments::nothing();
+    let table = &mut ParticleTable::new(model, factors);
+    let mut memory = SweepMemory::empty();
+    sweep_by((model, table), options, (target, step_frames), key, (particles, weights), &mut memory);
+    memory.moments
+}
+
+/// What a sweep needs for a while, 8 KB, and its sums: on the stack of a host, in the memory of a
+/// tracker for firmware.
+#[derive(Debug, Clone)]
+pub(super) struct SweepMemory<const N: usize> {
+    draws: [AngleBlocks; LANES],
+    lanes: ParticleLanes<N>,
+    /// The sums of the last sweep.
+    pub(super) moments: ParticleMoments<N>,
+}
+
+impl<const N: usize> SweepMemory<N> {
+    /// Before the first sweep.
+    pub(super) const fn empty() -> Self {
+        let draws = [[[0.0; BLOCK]; MAX_BLOCKS]; LANES];
+        Self { draws, lanes: ParticleLanes::empty(), moments: ParticleMoments::ZERO }
+    }
+}
+
+/// As [`sweep`], with accelerations from any `table` and the sums in `memory`, which begins as it was
+/// left, or empty.
+#[inline(always)]
+pub(super) fn sweep_by<const N: usize>(
+    (model, table): (&MotionModel<'_>, &mut impl Accelerations<N>),
+    options: &ParticleOptions,
+    (target, step_frames): (&ParticleTarget<N>, f32),
+    (seed, frame, first_index): (u64, u64, u32),
+    (particles, weights): (&mut [CyclicParticle<N>], &mut [f32]),
+    SweepMemory { draws, lanes, moments }: &mut SweepMemory<N>,
+) {
+    moments.clear();
     let blocks = particles.chunks_mut(LANES).zip(weights.chunks_mut(LANES));
     for (block, (particles, log_weights)) in blocks.enumerate() {
         let mut streams = StreamLanes::new(seed, frame, first_index.wrapping_add((block * LANES) as u32));
         for step in Substeps::of(step_frames) {
-            let random = (&mut streams, &mut draws);
-            advance(model, &table, options.temporal_acceleration_std, step, random, particles);
+            advance(model, table, options.temporal_acceleration_std, step, (&mut streams, draws), particles);
         }
         lanes.take(particles, target);
         for (log_weight, value) in log_weights.iter_mut().zip(&lanes.log_weights) {
             *log_weight = *value;
         }
-        moments.add(&lanes);
+        moments.add(lanes);
     }
     let weight = exponentiate(moments.share().greatest_log_weight, weights);
-    moments.weighing(weight)
+    moments.weigh(weight);
 }
 
 #[cfg(test)]

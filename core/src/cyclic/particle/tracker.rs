@@ -2,11 +2,14 @@
 //! particles, nothing allocated.
 
 use crate::angle::split_turns;
+use crate::cyclic::particle::computed_factors::ComputedFactors;
+use crate::cyclic::particle::factors::{Accelerations, ParticleTable};
 use crate::cyclic::particle::moments::ParticleMoments;
-use crate::cyclic::particle::propose::{CyclicParticle, ParticleOptions, first_particle};
-use crate::cyclic::particle::sweep::{CHUNK, sweep};
+use crate::cyclic::particle::propose::{CyclicParticle, ParticleOptions, Spread, fill_positions, first_particle};
+use crate::cyclic::particle::sweep::{CHUNK, SweepMemory, sweep_by};
 use crate::cyclic::particle::{resample::Comb, weigh::ParticleTarget, weights::WeightShare};
 use crate::cyclic::{AngleMeasurement, CycleStart, CyclicEstimate, MotionModel};
+use crate::error::{ParameterError, Rule};
 use crate::math::ln;
 use crate::random::Stream;
 use crate::random::normal::LOG_SQRT_TAU;
@@ -82,10 +85,15 @@ pub struct ParticleTracker<const N: usize, const P: usize> {
     options: ParticleOptions,
     seed: u64,
     frame: u64,
+    /// How many of the particles are used.
+    count: usize,
     particles: [CyclicParticle<N>; P],
     next: [CyclicParticle<N>; P],
     weights: [f32; P],
     last: CyclicEstimate<N>,
+    memory: SweepMemory<N>,
+    /// The sums of all chunks.
+    all: ParticleMoments<N>,
 }
 
 impl<const N: usize, const P: usize> ParticleTracker<N, P> {
@@ -98,10 +106,83 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
         start: &CycleStart<N>,
         seed: u64,
     ) -> Self {
+        let mut tracker = Self::empty();
+        (tracker.options, tracker.seed, tracker.count, tracker.last) = (options, seed, P, start.estimate());
+        for (index, particle) in tracker.particles.iter_mut().enumerate() {
+            *particle = first_particle(model, tables.positions, start, &options, (seed, index as u32));
+        }
+        tracker
+    }
+
+    /// A tracker before [`Self::begin`], for static memory: all zeros, and it takes no stack. Its
+    /// estimates are meaningless.
+    #[must_use]
+    pub const fn empty() -> Self {
         const { assert!(P > 0 && P <= MAX_CHUNKS * CHUNK, "at least one particle, at most 8192") };
-        let draw = |index| first_particle(model, tables.positions, start, &options, (seed, index as u32));
-        let particles = core::array::from_fn(draw);
-        Self { options, seed, frame: 0, next: particles, particles, weights: [0.0; P], last: start.estimate() }
+        let particle =
+            CyclicParticle { angles_rad: [0.0; N], velocities: [0.0; N], cycle_position: 0.0, cycle_velocity: 0.0 };
+        Self {
+            options: ParticleOptions::NOTHING,
+            seed: 0,
+            frame: 0,
+            count: 0,
+            particles: [particle; P],
+            next: [particle; P],
+            weights: [0.0; P],
+            last: CyclicEstimate::NOTHING,
+            memory: SweepMemory::empty(),
+            all: ParticleMoments::ZERO,
+        }
+    }
+
+    /// Takes over options and a number of particles for the next [`Self::begin`] or saved state.
+    ///
+    /// # Errors
+    /// From 1 to `P` particles; the tracker is as before then.
+    pub fn configure(&mut self, options: ParticleOptions, particles: usize) -> Result<(), ParameterError> {
+        if particles == 0 || particles > P {
+            return Err(ParameterError::new("particles", Rule::Within { low: 1.0, high: P as f32 }));
+        }
+        (self.options, self.count) = (options, particles);
+        Ok(())
+    }
+
+    /// Begins, or begins anew, with particles about `start`, in place, after [`Self::configure`].
+    /// It needs no table: positions of a uniform start are spread over `P` places of the cycle.
+    ///
+    /// ```
+    /// # #[cfg(feature = "walking-model")] {
+    /// # use sinew_core::cyclic::model::walking::WALKING;
+    /// use sinew_core::cyclic::particle::propose::{ParticleOptions, Spread};
+    /// use sinew_core::cyclic::{AngleMeasurement, CycleStart, ParticleTracker};
+    ///
+    /// # let model = WALKING.model()?;
+    /// # let seen = AngleMeasurement::new(&model.mean_pose_rad::<13>(model.point(0.3)).map(Some), 0.1)?;
+    /// // Fifty of the hundred particles that there is room for, anywhere that the first pose allows.
+    /// let mut tracker = ParticleTracker::<13, 100>::empty();
+    /// let start = CycleStart::standard(&model, seen.angles_rad(), None, None)?;
+    /// let options = ParticleOptions { spread: Spread::UniformPosition, ..ParticleOptions::default() };
+    /// tracker.configure(options, 50)?;
+    /// tracker.begin(&model, &start, 1)?;
+    /// let estimate = tracker.step_without_table(&model, &seen);
+    /// assert!((estimate.cycle_position - 0.3).abs() < 0.05);
+    /// # }
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The start as [`CycleStart::check`] asks. The tracker is as before then.
+    pub fn begin(&mut self, model: &MotionModel<'_>, start: &CycleStart<N>, seed: u64) -> Result<(), ParameterError> {
+        start.check()?;
+        (self.seed, self.frame) = (seed, 0);
+        if self.options.spread == Spread::UniformPosition {
+            fill_positions(model, start, &mut self.weights);
+        }
+        for (index, particle) in self.particles.iter_mut().enumerate().take(self.count) {
+            *particle = first_particle(model, &self.weights, start, &self.options, (seed, index as u32));
+        }
+        self.last = start.estimate();
+        Ok(())
     }
 
     /// One frame: predict, weigh, estimate, resample.
@@ -111,14 +192,36 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
         tables: ParticleTables<'_>,
         measurement: &AngleMeasurement<N>,
     ) -> CyclicEstimate<N> {
+        self.step_by(model, &mut ParticleTable::new(model, tables.factors), measurement)
+    }
+
+    /// As [`Self::step`], to the bit, without the table of 83 KB: the factors of the model's
+    /// covariances are computed where particles need them, for a third more instructions.
+    pub fn step_without_table(
+        &mut self,
+        model: &MotionModel<'_>,
+        measurement: &AngleMeasurement<N>,
+    ) -> CyclicEstimate<N> {
+        self.step_by(model, &mut ComputedFactors::new(model), measurement)
+    }
+
+    #[inline(always)]
+    fn step_by(
+        &mut self,
+        model: &MotionModel<'_>,
+        table: &mut impl Accelerations<N>,
+        measurement: &AngleMeasurement<N>,
+    ) -> CyclicEstimate<N> {
         self.frame += 1;
         let target = ParticleTarget::new(measurement, model.angle_count(), &self.last);
-        let (moments, shares) = self.sweep(model, tables.factors, &target, measurement.step_frames());
-        let mut estimate = moments.estimate(&target);
+        let mut shares = [WeightShare::NOTHING; MAX_CHUNKS];
+        self.sweep((model, table), &target, measurement.step_frames(), &mut shares);
+        let mut estimate = self.all.estimate(&target);
         count_turns(&mut estimate, &self.last);
         if measurement.present(model.angle_count()) > 0 {
-            estimate.log_likelihood = log_likelihood(measurement, model.angle_count(), moments.share(), P);
-            self.resample(moments.share(), &shares);
+            let share = self.all.share();
+            estimate.log_likelihood = log_likelihood(measurement, model.angle_count(), share, self.count);
+            self.resample(share, &shares);
         }
         self.last = estimate;
         estimate
@@ -126,51 +229,65 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
 
     /// The particles after the last step, equally likely where it had a measurement.
     #[must_use]
-    pub const fn particles(&self) -> &[CyclicParticle<N>; P] {
-        &self.particles
+    pub fn particles(&self) -> &[CyclicParticle<N>] {
+        self.particles.get(..self.count).unwrap_or_default()
     }
 
-    /// Moves and weighs all particles; returns their sums and each chunk's share of the weights.
+    /// The last estimate; after [`Self::begin`] the start.
+    #[must_use]
+    pub const fn estimate(&self) -> &CyclicEstimate<N> {
+        &self.last
+    }
+
+    /// Moves, weighs and sums all particles, and writes each chunk's share of the weights.
+    #[inline(always)]
     fn sweep(
         &mut self,
-        model: &MotionModel<'_>,
-        factors: &[f32],
+        (model, table): (&MotionModel<'_>, &mut impl Accelerations<N>),
         target: &ParticleTarget<N>,
         step_frames: f32,
-    ) -> (ParticleMoments<N>, [WeightShare; MAX_CHUNKS]) {
-        let mut all = ParticleMoments::nothing();
-        let mut shares = [WeightShare::NOTHING; MAX_CHUNKS];
-        let chunks = self.particles.chunks_mut(CHUNK).zip(self.weights.chunks_mut(CHUNK));
-        for ((chunk, (particles, weights)), share) in chunks.enumerate().zip(&mut shares) {
+        shares: &mut [WeightShare; MAX_CHUNKS],
+    ) {
+        self.all.clear();
+        let particles = self.particles.get_mut(..self.count).unwrap_or_default();
+        let chunks = particles.chunks_mut(CHUNK).zip(self.weights.chunks_mut(CHUNK));
+        for ((chunk, (particles, weights)), share) in chunks.enumerate().zip(shares) {
             let key = (self.seed, self.frame, (chunk * CHUNK) as u32);
-            let moments = sweep(model, factors, &self.options, (target, step_frames), key, particles, weights);
-            all.merge(&moments);
-            *share = moments.share();
+            let weights = weights.get_mut(..particles.len()).unwrap_or_default();
+            let (seen, chunk) = ((target, step_frames), (particles, weights));
+            sweep_by((model, table), &self.options, seen, key, chunk, &mut self.memory);
+            self.all.merge(&self.memory.moments);
+            *share = self.memory.moments.share();
         }
-        (all, shares)
     }
 
     /// The next generation, chunk by chunk.
     fn resample(&mut self, all: WeightShare, shares: &[WeightShare; MAX_CHUNKS]) {
-        let comb = Comb::new(all, resampling_offset(self.seed, self.frame), P);
-        let shares = shares.get(..P.div_ceil(CHUNK)).unwrap_or_default();
+        let count = self.count;
+        let comb = Comb::new(all, resampling_offset(self.seed, self.frame), count);
+        let shares = shares.get(..count.div_ceil(CHUNK)).unwrap_or_default();
         let mut rest: &mut [CyclicParticle<N>] = &mut self.next;
-        let chunks = self.particles.chunks(CHUNK).zip(self.weights.chunks(CHUNK));
+        let particles = self.particles.get(..count).unwrap_or_default();
+        let chunks = particles.chunks(CHUNK).zip(self.weights.chunks(CHUNK));
         for ((particles, weights), teeth) in chunks.zip(comb.teeth(shares)) {
             let (next, others) = rest.split_at_mut_checked(teeth.count).unwrap_or_default();
             comb.choose(particles, weights, &teeth, next);
             rest = others;
         }
-        core::mem::swap(&mut self.particles, &mut self.next);
+        // Not exchanged: that would take a copy of all particles on the stack.
+        for (particle, next) in self.particles.iter_mut().zip(&self.next) {
+            *particle = *next;
+        }
     }
 }
 
 impl<const N: usize, const P: usize> SavedState for ParticleTracker<N, P> {
-    /// The next generation and the weights are written before they are read.
+    /// A state is for a tracker with as many particles. The next generation and the weights are
+    /// written before they are read.
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         visitor.long(&mut self.seed);
         visitor.long(&mut self.frame);
-        for particle in &mut self.particles {
+        for particle in self.particles.iter_mut().take(self.count) {
             particle.visit(visitor);
         }
         self.last.visit(visitor);
@@ -254,6 +371,39 @@ mod tests {
     use crate::cyclic::particle::propose::{Spread, factors_len, fill_factors, fill_positions};
     use crate::cyclic::synthetic;
     use crate::math::wrap_angle;
+
+    /// Both from the start that needs positions, with particles left over and gaps.
+    #[test]
+    fn steps_without_a_table_have_the_bits_of_those_with_one() {
+        let table = synthetic::table(4.0e-3, 9);
+        let model = table.model().unwrap();
+        let (mut factors, mut positions) = (vec![0.0; factors_len(&model)], vec![0.0; model.position_count()]);
+        fill_factors(&model, &mut factors);
+        let pose = |frame: u8| core::array::from_fn(|i| Some(synthetic::mean_angle(i, f32::from(frame) / 65.0)));
+        let start = CycleStart::<13>::standard(&model, &pose(0), None, None).unwrap();
+        fill_positions(&model, &start, &mut positions);
+        let tables = ParticleTables { factors: &factors, positions: &positions };
+        let options = ParticleOptions { spread: Spread::UniformPosition, ..ParticleOptions::default() };
+        let mut with = Box::new(ParticleTracker::<13, 70>::new(&model, tables, options, &start, 5));
+        let mut without = Box::new(ParticleTracker::<13, 100>::empty());
+        assert!(without.configure(options, 101).is_err() && without.configure(options, 0).is_err());
+        without.configure(options, 70).unwrap();
+        for _ in 0..2 {
+            without.begin(&model, &start, 5).unwrap();
+            let mut with = with.clone();
+            for frame in 1..=65_u8 {
+                let measurement = match frame {
+                    20..25 => AngleMeasurement::nothing(),
+                    _ => AngleMeasurement::new(&pose(frame), 0.3).unwrap(),
+                };
+                let measurement = measurement.after(if frame == 40 { 2.5 } else { 1.0 }).unwrap();
+                let found = without.step_without_table(&model, &measurement);
+                assert_eq!(found, with.step(&model, tables, &measurement), "frame {frame}");
+            }
+            assert!(with.particles() == without.particles());
+        }
+        with.step(&model, tables, &AngleMeasurement::nothing());
+    }
 
     #[test]
     fn three_hundred_particles_follow_a_cycle_from_a_known_and_an_unknown_phase() {

@@ -60,6 +60,7 @@ impl<const N: usize> ParticleTarget<N> {
 }
 
 /// Up to [`LANES`] particles relative to a target, number by number side by side.
+#[derive(Debug, Clone)]
 pub(super) struct ParticleLanes<const N: usize> {
     /// Angles minus the target's, in [-pi, pi].
     pub(super) off_rad: [[f32; LANES]; N],

@@ -73,9 +73,11 @@ impl<const BONES: usize, const ANGLES: usize> Deadband<BONES, ANGLES> {
             let share = share(self.moved_m((&groups, group), &off_m) / max(group_jitter_m, MIN_JITTER_STD_M), dt_s);
             let (poses, weights) = ([self.reported, *now], [1.0 - share, share]);
             mean_of_group(&scene.skeleton, (&poses, &weights), (limbs, group), &mut between_rad);
-            for (bone, goal) in goals.iter_mut().enumerate().filter(|(bone, _)| groups[*bone] == group) {
-                goal.bone = bone;
-                goal.position_m += off_m[bone] * share;
+            for (bone, (goal, (off_m, of_end))) in goals.iter_mut().zip(off_m.iter().zip(&groups)).enumerate() {
+                if *of_end == group {
+                    goal.bone = bone;
+                    goal.position_m += off_m * share;
+                }
             }
         }
         let nearest = PoseDensity {

@@ -100,7 +100,7 @@ fn mean_coordinates<const BONES: usize, const ANGLES: usize>(
             let about = *slot;
             let mut off = 0.0;
             for (particle, weight) in particles.iter().zip(weights) {
-                off += weight * (particle.angles_rad[index] - about);
+                off += weight * (particle.angles_rad.get(index).copied().unwrap_or(about) - about);
             }
             *slot = about + off;
         }

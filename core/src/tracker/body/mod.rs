@@ -87,6 +87,7 @@ mod step;
 mod tempering;
 #[cfg(test)]
 mod tests;
+pub mod upper;
 mod velocity;
 mod weigh;
 

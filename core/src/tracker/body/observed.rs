@@ -3,7 +3,7 @@
 use crate::math::{length, max, min, sqrt};
 use crate::observation::body_surface::BodySurface;
 use crate::observation::limb_likelihood::squared_by_group;
-use crate::observation::point_cloud::PointBlock;
+use crate::observation::point_cloud::{BLOCK_POINTS, PointBlock};
 use crate::observation::point_likelihood::NearestSkin;
 use crate::skeleton::Limbs;
 use crate::skeleton::limbs::{MAX_GROUPS, TRUNK_GROUP};
@@ -48,7 +48,7 @@ pub fn observed<const BONES: usize>(
         let nearest = NearestSkin::find(surface, block, NEAR_M);
         let squared_m = squared_by_group(surface, limbs, block, f32::INFINITY);
         for (i, &index) in nearest.capsule.iter().enumerate().take(usize::from(block.count)) {
-            let Some(seen) = surface.capsules.get(usize::from(index)) else { continue };
+            let Some(seen) = surface.capsules.get(usize::from(index)).filter(|_| i < BLOCK_POINTS) else { continue };
             found += 1.0;
             let group = limbs.group(seen.bone);
             let mut other = f32::INFINITY;
@@ -68,7 +68,9 @@ pub fn observed<const BONES: usize>(
         let squared = max(middle.dot(&middle), 1.0e-6);
         let foreshortened = length(&seen.along_m.cross(&middle)) / sqrt(squared);
         let r = seen.capsule.radius_m;
-        sizes[seen.bone] = (2.0 * r * foreshortened + 3.0 * r * r) / squared;
+        if let Some(size) = sizes.get_mut(seen.bone) {
+            *size = (2.0 * r * foreshortened + 3.0 * r * r) / squared;
+        }
     }
     let size: f32 = sizes.iter().sum();
     let mut result = [false; BONES];

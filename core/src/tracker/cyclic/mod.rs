@@ -34,10 +34,12 @@ mod coupled;
 mod estimate;
 mod frame;
 mod options;
+mod particles;
 mod step;
 
 pub use coupled::CoupledTracker;
 pub use estimate::CyclicFrame;
 pub use frame::CyclicFrameInput;
 pub use options::{CyclicTrackerOptions, FirstPhase};
+pub use particles::ParticleCycleTracker;
 pub use step::CyclicTracker;

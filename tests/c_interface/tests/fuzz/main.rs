@@ -3,7 +3,9 @@
 #![allow(unsafe_code)]
 
 mod arm;
+mod body;
 mod cyclic;
+mod cyclic_particles;
 mod saved;
 mod vision;
 

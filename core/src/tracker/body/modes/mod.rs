@@ -10,11 +10,13 @@ mod jumps;
 mod options;
 mod saved;
 mod select;
+mod single;
 mod state;
 mod step;
 #[cfg(test)]
 mod tests;
 
 pub use options::{DEFAULT_MODE_OPTIONS, MAX_MODES, ModeOptions};
+pub use single::SingleModeTracker;
 pub use state::{BodyMode, ModeTracker};
 pub use step::ModeAdvance;

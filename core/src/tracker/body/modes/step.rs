@@ -47,16 +47,16 @@ const MAX_STARTS: usize = MAX_MODES + MAX_RIVALS + MAX_DRAWS * MAX_GROUPS;
 /// ```
 #[derive(Debug)]
 pub struct ModeAdvance<'a, P, const BONES: usize, const ANGLES: usize> {
-    motion: &'a GuidedMotion<'a, P, ANGLES>,
-    scene: &'a BodyScene<BONES, ANGLES>,
-    limbs: &'a Limbs<BONES>,
-    blocks: &'a [PointBlock],
-    noise_share: [f32; BONES],
-    first_m: &'a [Vec3; BONES],
-    dt_s: f32,
-    evidence_share: f32,
-    seed: u64,
-    frame: u64,
+    pub(super) motion: &'a GuidedMotion<'a, P, ANGLES>,
+    pub(super) scene: &'a BodyScene<BONES, ANGLES>,
+    pub(super) limbs: &'a Limbs<BONES>,
+    pub(super) blocks: &'a [PointBlock],
+    pub(super) noise_share: [f32; BONES],
+    pub(super) first_m: &'a [Vec3; BONES],
+    pub(super) dt_s: f32,
+    pub(super) evidence_share: f32,
+    pub(super) seed: u64,
+    pub(super) frame: u64,
 }
 
 impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance<'_, P, BONES, ANGLES> {
@@ -85,13 +85,16 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance
         let stride = self.blocks.len().div_ceil(self.motion.pulling_blocks.max(1)).max(1);
         let density = GuidedDensity { prior, scene: self.scene, blocks: self.blocks, stride, reach: 1.0 };
         let steps = self.motion.solver_steps;
-        let mode = if group != TRUNK_GROUP {
-            density.mode_from(&[self.drawn_rad(&past, group, &prior.previous_rad, &mut stream)], steps)
+        // A limb begins where it was drawn; else coarse steps look for what is farther off than
+        // points reach.
+        let mut starts: Vec<[f32; ANGLES], 2> = Vec::new();
+        if group != TRUNK_GROUP {
+            let _ = starts.push(self.drawn_rad(&past, group, &prior.previous_rad, &mut stream));
         } else if self.motion.is_any_loose(&past) {
-            density.mode_coarse_to_fine(&prior, steps)
-        } else {
-            density.mode(steps)
-        };
+            let _ = starts.push(prior.previous_rad);
+            let _ = starts.push(density.far_start_rad(&prior));
+        }
+        let mode = density.mode_from(&starts, steps);
         start.pose.angles_rad = mode.angles_rad;
         let posture = self.scene.posture(&mode.angles_rad);
         start.pose.ends_m = posture.ends;
@@ -122,6 +125,8 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance
 
     /// Standard deviations of the bones' ends, of the normal with the Hessian PIK (21) as
     /// precision: root of the trace of J H^-1 J'.
+    // Not inlined: the factor's memory is not the climb's.
+    #[inline(never)]
     fn spread_m(&self, mode: &Mode<ANGLES>) -> Option<[f32; BONES]> {
         let factor = Cholesky::new(&mode.hessian)?;
         let (skeleton, posture) = (&self.scene.skeleton, self.scene.posture(&mode.angles_rad));
