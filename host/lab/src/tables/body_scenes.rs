@@ -95,9 +95,8 @@ pub fn deadband(recordings: &Path) -> Result<Rows> {
             lost_joint_share: trial.lost_joint_share,
             smoothness_m: trial.smoothness_m,
         };
-        let poses: [(&str, &dyn Fn(&TrialResult) -> PoseMeasures); 2] =
-            [("before the deadband", &|trial| trial.before_deadband), ("as reported", &reported)];
-        for (pose, of) in poses {
+        for (pose, is_before) in [("before the deadband", true), ("as reported", false)] {
+            let of = |trial: &TrialResult| if is_before { trial.before_deadband } else { reported(trial) };
             rows.push(line([
                 name.to_owned(),
                 pose.to_owned(),
