@@ -171,8 +171,8 @@ pub trait PoseObjective<const BONES: usize, const ANGLES: usize> {
         posture: &Posture<BONES, ANGLES>,
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]);
 
-    /// As [`Self::derivatives`], written in place: a Hessian of many angles takes a kilobyte of stack
-    /// each time that it is handed on.
+    /// As [`Self::derivatives`], written in place: a Hessian of many angles takes a kilobyte of
+    /// stack each time that it is handed on.
     fn write_derivatives(
         &self,
         angles_rad: &[f32; ANGLES],

@@ -185,8 +185,8 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
         self.set_by(points_m, camera_m, |points_m| points_m.sort_unstable_by_key(morton_key))
     }
 
-    /// As [`Self::set`], the same blocks, by a sort of which a linker can prove that it cannot panic.
-    /// It takes four bytes of stack a point.
+    /// As [`Self::set`], the same blocks, by a sort of which a linker can prove that it cannot
+    /// panic. It takes four bytes of stack a point.
     ///
     /// ```
     /// use sinew_core::math::Vec3;

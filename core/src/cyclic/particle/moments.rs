@@ -165,8 +165,8 @@ impl<const N: usize> ParticleMoments<N> {
         }
     }
 
-    /// As [`Self::merge`] with no sums at all and a greatest log-weight of `best`, which is greater:
-    /// without one more set of sums on the stack.
+    /// As [`Self::merge`] with no sums at all and a greatest log-weight of `best`, which is
+    /// greater: without one more set of sums on the stack.
     fn relate_to(&mut self, best: f32) {
         let own_scale = self.share.scale(best);
         for own in &mut self.angles {

@@ -85,8 +85,8 @@ impl<const N: usize> SweepMemory<N> {
     }
 }
 
-/// As [`sweep`], with accelerations from any `table` and the sums in `memory`, which begins as it was
-/// left, or empty.
+/// As [`sweep`], with accelerations from any `table` and the sums in `memory`, which begins as it
+/// was left, or empty.
 #[inline(always)]
 pub(super) fn sweep_by<const N: usize>(
     (model, table): (&MotionModel<'_>, &mut impl Accelerations<N>),

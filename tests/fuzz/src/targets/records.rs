@@ -6,7 +6,7 @@ use sinew_core::cyclic::AngleMeasurement;
 use sinew_core::tracker::arm::example::hand_blob;
 use sinew_core::tracker::cyclic::FirstPhase;
 use sinew_record::{
-    ArmInput, ArmResult, ArmSetup, CameraFace, CameraLine, CameraSetup, CandidateChunk, Cost, CyclicInput,
+    ArmInput, ArmResult, ArmSetup, BodyResult, CameraFace, CameraLine, CameraSetup, CandidateChunk, Cost, CyclicInput,
     CyclicResult, CyclicSetup, EdgeChunk, End, Failure, HEADER_BYTES, Kind, Payload, Record, RecordStream,
     VisionResult, decode, encode,
 };
@@ -58,9 +58,15 @@ fn contents() -> Vec<Vec<u8>> {
         })
         .collect();
     // Kinds without an example: zeros of their length.
-    let lengths = [ArmSetup::MAX_BYTES, ArmInput::MAX_BYTES, CameraSetup::MAX_BYTES, ArmResult::MAX_BYTES];
-    for (index, length) in [3, 6, 7, 10].into_iter().zip(lengths) {
-        contents.push([vec![index], vec![0; length]].concat());
+    for (kind, length) in [
+        (Kind::ArmSetup, ArmSetup::MAX_BYTES),
+        (Kind::ArmInput, ArmInput::MAX_BYTES),
+        (Kind::CameraSetup, CameraSetup::MAX_BYTES),
+        (Kind::ArmResult, ArmResult::MAX_BYTES),
+        (Kind::BodyResult, BodyResult::MAX_BYTES),
+    ] {
+        let index = Kind::ALL.iter().position(|known| *known == kind).unwrap_or_default();
+        contents.push([vec![index as u8], vec![0; length]].concat());
     }
     contents
 }
@@ -87,6 +93,7 @@ fn read(record: &Record<'_>) {
         Kind::CyclicResult => again::<CyclicResult>(record),
         Kind::ArmResult => again::<ArmResult>(record),
         Kind::VisionResult => again::<VisionResult>(record),
+        Kind::BodyResult => again::<BodyResult>(record),
         Kind::Failure => again::<Failure>(record),
         Kind::Cost => again::<Cost>(record),
         _ => panic!("{:?} is read by nothing here", record.kind),
