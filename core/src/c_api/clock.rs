@@ -66,7 +66,7 @@ mod tests {
     const MINUTE_US: u32 = 60_000_000;
 
     fn time_us(clock: &mut SinewClock, counter_us: u32) -> u64 {
-        super::super::tests::written(|time| {
+        super::super::every_object::written(|time| {
             // SAFETY: both are there.
             unsafe { sinew_clock_us(clock, counter_us, time) }
         })

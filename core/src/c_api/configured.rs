@@ -9,8 +9,9 @@ use super::cyclic_config::{SinewCyclicConfig, sinew_cyclic_default_config};
 use super::cyclic_frame::SinewCyclicResult;
 use super::cyclic_particles::{sinew_cyclic_particles_init, sinew_cyclic_particles_size, sinew_cyclic_particles_step};
 use super::cyclic_particles_config::{SinewCyclicParticlesConfig, sinew_cyclic_particles_default_config};
+use super::every_object::{Memory, written};
 use super::status::SinewStatus;
-use super::tests::{Memory, arm_config, arm_frame, arm_lists, model, see, swing, written};
+use super::tests::{arm_config, arm_frame, arm_lists, model, see, swing};
 use super::vision::{
     SINEW_VISION_STATE_MAX_BYTES, SinewVision, sinew_vision_init, sinew_vision_learn_skin, sinew_vision_restore,
     sinew_vision_save, sinew_vision_size,

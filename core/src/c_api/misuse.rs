@@ -8,10 +8,10 @@ use super::cyclic::{
     sinew_cyclic_step,
 };
 use super::cyclic_frame::{SinewCyclicFrame, SinewCyclicResult};
+use super::every_object::{Memory, written};
 use super::object::object;
 use super::status::SinewStatus;
-use super::tests::{Memory, arm_config, dark, model, swing, written};
-use crate::checksum::crc32;
+use super::tests::{arm_config, dark, model, swing};
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
 use core::ptr::{null, null_mut};
@@ -95,18 +95,6 @@ fn a_refused_call_leaves_the_object_free() {
 }
 
 #[test]
-fn a_copied_object_is_refused() {
-    let walker = Walker::new();
-    let mut copy = Memory::new(sinew_cyclic_size());
-    let tracker = copy.start().cast::<SinewCyclic>();
-    // SAFETY: both are memories of that size.
-    unsafe { copy.start().copy_from_nonoverlapping(walker.tracker.cast::<c_void>(), copy.bytes()) };
-    // SAFETY: memory of an object.
-    assert_eq!(unsafe { sinew_cyclic_reset(tracker) }, SinewStatus::Moved);
-    assert!(walker.step(&swing(0, 0b11)).is_ok(), "the original");
-}
-
-#[test]
 fn an_object_that_another_one_overlaps_is_refused() {
     let walker_bytes = sinew_cyclic_size();
     let mut memory = Memory::new(sinew_arm_size() + walker_bytes);
@@ -176,20 +164,4 @@ fn too_little_memory_and_a_wrong_configuration_leave_what_was_there() {
         // SAFETY: the tracker was initialised, a dark frame's lists are not looked at.
         written(|result: *mut SinewArmResult| unsafe { sinew_arm_step(arm, &dark(33_333), result) });
     }
-}
-
-#[test]
-fn a_state_of_an_older_version_is_refused() {
-    let walker = Walker::new();
-    assert!(walker.step(&swing(0, 0b11)).is_ok());
-    let state = walker.save();
-    let mut older = state.clone();
-    let version = u16::from_le_bytes([older[6], older[7]]);
-    older[6..8].copy_from_slice(&(version - 1).to_le_bytes());
-    let end = older.len() - 4;
-    let sum = crc32(&older[..end]);
-    older[end..].copy_from_slice(&sum.to_le_bytes());
-    assert_eq!(walker.restore(&older), SinewStatus::StateVersion);
-    assert_eq!(walker.save(), state, "as before");
-    assert_eq!(walker.restore(&state), SinewStatus::Ok);
 }

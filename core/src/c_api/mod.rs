@@ -33,6 +33,8 @@ pub mod cyclic_frame;
 pub mod cyclic_particles;
 pub mod cyclic_particles_config;
 #[cfg(test)]
+mod every_object;
+#[cfg(test)]
 mod misuse;
 mod model;
 mod object;

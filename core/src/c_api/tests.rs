@@ -22,11 +22,11 @@ use super::cyclic::{
 };
 use super::cyclic_frame::{SINEW_MAX_ANGLES, SinewCyclicFrame, SinewCyclicResult};
 use super::cyclic_particles::{
-    SINEW_CYCLIC_PARTICLES_STATE_MAX_BYTES, SinewCyclicParticles, sinew_cyclic_particles_init,
-    sinew_cyclic_particles_reset, sinew_cyclic_particles_restore, sinew_cyclic_particles_save,
-    sinew_cyclic_particles_size, sinew_cyclic_particles_step,
+    SinewCyclicParticles, sinew_cyclic_particles_init, sinew_cyclic_particles_reset, sinew_cyclic_particles_restore,
+    sinew_cyclic_particles_save, sinew_cyclic_particles_size, sinew_cyclic_particles_step,
 };
 use super::cyclic_particles_config::{SinewCyclicParticlesConfig, sinew_cyclic_particles_default_config};
+use super::every_object::{Memory, StateFunctions, written};
 use super::status::SinewStatus;
 use super::vision::{
     SinewVision, sinew_vision_begin_calibration, sinew_vision_begin_frame, sinew_vision_end_calibration,
@@ -42,66 +42,6 @@ use crate::vision::edges::EdgePixel;
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
 use core::ptr::{null, null_mut};
-
-/// Memory of one object.
-pub(super) struct Memory(Box<[MaybeUninit<u64>]>);
-
-impl Memory {
-    pub fn new(bytes: usize) -> Self {
-        assert_eq!(bytes % 8, 0);
-        Self(Box::new_uninit_slice(bytes / 8))
-    }
-
-    pub fn start(&mut self) -> *mut c_void {
-        self.0.as_mut_ptr().cast()
-    }
-
-    pub fn bytes(&self) -> usize {
-        size_of_val(&*self.0)
-    }
-}
-
-/// What a function that was answered with OK wrote.
-pub(super) fn written<T>(call: impl FnOnce(*mut T) -> SinewStatus) -> T {
-    let mut room = MaybeUninit::uninit();
-    assert_eq!(call(room.as_mut_ptr()), SinewStatus::Ok);
-    // SAFETY: the status says that it was written.
-    unsafe { room.assume_init() }
-}
-
-/// Bytes that suffice for the state of every object.
-const MAX_STATE_BYTES: usize = SINEW_CYCLIC_PARTICLES_STATE_MAX_BYTES;
-
-/// The functions that every object has.
-struct StateFunctions<T> {
-    save: unsafe extern "C" fn(*mut T, *mut u8, usize, *mut usize) -> SinewStatus,
-    restore: unsafe extern "C" fn(*mut T, *const u8, usize) -> SinewStatus,
-    reset: unsafe extern "C" fn(*mut T) -> SinewStatus,
-}
-
-impl<T> StateFunctions<T> {
-    /// The state.
-    fn saved(&self, object: *mut T) -> Vec<u8> {
-        let mut state = vec![0; MAX_STATE_BYTES];
-        // SAFETY: the object was initialised, the buffer has the size that is said.
-        let bytes = written(|bytes| unsafe { (self.save)(object, state.as_mut_ptr(), state.len(), bytes) });
-        state.truncate(bytes);
-        state
-    }
-
-    /// Brings `other` to the state of `object`.
-    fn copy(&self, object: *mut T, other: *mut T) {
-        let state = self.saved(object).into_boxed_slice();
-        // SAFETY: the object was initialised, the state has the size that is said.
-        assert_eq!(unsafe { (self.restore)(other, state.as_ptr(), state.len()) }, SinewStatus::Ok);
-        assert_eq!(*self.saved(other), *state);
-    }
-
-    fn reset(&self, object: *mut T) {
-        // SAFETY: the object was initialised.
-        assert_eq!(unsafe { (self.reset)(object) }, SinewStatus::Ok);
-    }
-}
 
 /// Memory of zeros is no object.
 #[test]
@@ -147,6 +87,7 @@ fn a_cyclic_tracker_goes_on_from_its_state() {
     assert_eq!(status, SinewStatus::Waiting);
     step(first, &swing(0, 0b11));
     functions.copy(first, other);
+    functions.refuse_misuse(first);
     let next = swing(16_667, 0b01);
     assert_eq!(step(first, &next), step(other, &next));
     let mut pose_rad = [f32::NAN; 2];
@@ -190,6 +131,7 @@ fn a_cyclic_particle_filter_goes_on_from_its_state() {
     assert!(begun.cycle_position < 0.05 || begun.cycle_position > 0.95, "{begun:?}");
     step(first, &swing(16_667, 0b11));
     functions.copy(first, other);
+    functions.refuse_misuse(first);
     let next = swing(50_000, 0b01);
     assert_eq!(step(first, &next), step(other, &next));
     functions.reset(first);
@@ -324,6 +266,7 @@ fn an_arm_tracker_goes_on_from_its_state() {
         assert_eq!(step(first, &arm_frame(0, &arm_lists())).state, SINEW_ARM_UNCERTAIN);
     }
     functions.copy(first, other);
+    functions.refuse_misuse(first);
     if STEPS_ARMS {
         assert_eq!(step(first, &dark(33_333)), step(other, &dark(33_333)));
         functions.reset(first);
@@ -353,6 +296,7 @@ fn a_tracker_of_both_arms_goes_on_from_its_state() {
         assert_eq!(step(first, &arm_frame(0, &arm_lists())).map(|result| result.candidate), [0, 1]);
     }
     functions.copy(first, other);
+    functions.refuse_misuse(first);
     if STEPS_ARMS {
         assert_eq!(step(first, &dark(33_333)), step(other, &dark(33_333)));
         functions.reset(first);
@@ -399,6 +343,7 @@ fn a_body_tracker_goes_on_from_its_state() {
         assert_eq!(result.observed >> 1 & 1, 1, "{result:?}");
     }
     functions.copy(first, other);
+    functions.refuse_misuse(first);
     let next_us = 66_667 * steps;
     assert_eq!(step(first, next_us, &mut body_points(0.05)), step(other, next_us, &mut body_points(0.05)));
     assert_eq!(step(first, next_us, &mut []), Err(SinewStatus::OutOfOrder));
@@ -490,6 +435,7 @@ fn a_front_end_goes_on_from_its_state() {
     // SAFETY: the front end was initialised; the skin may be null.
     assert_eq!(unsafe { sinew_vision_end_calibration(first, null_mut()) }, SinewStatus::Ok);
     functions.copy(first, other);
+    functions.refuse_misuse(first);
     functions.reset(first);
     assert_eq!(see(other, 10).0, 1);
 }

@@ -48,8 +48,8 @@ impl<const BONES: usize> BodyInformation<BONES> {
         let row = [normal.x, normal.y, normal.z, moment.x, moment.y, moment.z];
         for i in 0..TWIST {
             let weighted = weight * row[i];
-            for j in 0..=i {
-                information.matrix[i][j] += weighted * row[j];
+            for (entry, other) in information.matrix[i].iter_mut().zip(row).take(i + 1) {
+                *entry += weighted * other;
             }
             information.vector[i] += weighted * residual_m;
         }
@@ -70,7 +70,7 @@ impl<const BONES: usize> BodyInformation<BONES> {
             let bone = skeleton.bone_of_angle(j);
             twists[j] = self.twist(skeleton, posture, j, bone);
             let Some(below) = self.of_bone.get(bone) else { continue };
-            let mut push = [0.0; TWIST];
+            let (mut push, mut of_row) = ([0.0; TWIST], [0.0; ANGLES]);
             for a in 0..TWIST {
                 gradient[j] += twists[j][a] * below.vector[a];
                 for b in 0..TWIST {
@@ -78,17 +78,15 @@ impl<const BONES: usize> BodyInformation<BONES> {
                     push[a] += entry * twists[j][b];
                 }
             }
-            for i in 0..=j {
+            for (i, (twist, row)) in twists.iter().zip(hessian.iter_mut()).enumerate().take(j + 1) {
                 if skeleton.angle_moves(i, bone) {
-                    let mut sum = 0.0;
-                    for a in 0..TWIST {
-                        sum += twists[i][a] * push[a];
-                    }
-                    hessian[j][i] += sum;
-                    if i != j {
-                        hessian[i][j] += sum;
-                    }
+                    let sum = twist.iter().zip(push).fold(0.0, |sum, (twist, push)| sum + twist * push);
+                    row[j] += sum;
+                    of_row[i] = sum;
                 }
+            }
+            for (entry, sum) in hessian[j].iter_mut().zip(of_row).take(j) {
+                *entry += sum;
             }
         }
     }
@@ -100,10 +98,10 @@ impl<const BONES: usize> BodyInformation<BONES> {
                 continue;
             };
             let own = self.of_bone[bone];
-            let sum = &mut self.of_bone[parent];
+            let Some(sum) = self.of_bone.get_mut(parent) else { continue };
             for i in 0..TWIST {
-                for j in 0..=i {
-                    sum.matrix[i][j] += own.matrix[i][j];
+                for (entry, own) in sum.matrix[i].iter_mut().zip(own.matrix[i]).take(i + 1) {
+                    *entry += own;
                 }
                 sum.vector[i] += own.vector[i];
             }

@@ -3,7 +3,7 @@
 
 use super::forward::{Posture, posture};
 use super::jacobian::moving_column;
-use crate::math::{Mat3, Vec3, length, max};
+use crate::math::{Mat3, Vec3, length, max, times};
 use crate::skeleton::Skeleton;
 
 /// Whether whole rows of the Hessian are computed: faster with vectors than the half that is read.
@@ -214,7 +214,7 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
         for goal in self.goals {
             let Some(end) = posture.ends.get(goal.bone) else { continue };
             let miss = goal.position_m - end;
-            sum -= 0.5 * miss.dot(&(goal.precision * miss));
+            sum -= 0.5 * miss.dot(&times(&goal.precision, &miss));
         }
         for i in 0..ANGLES {
             let change = angles_rad[i] - self.previous_rad[i];
@@ -284,7 +284,7 @@ impl<const BONES: usize, const ANGLES: usize> PoseDensity<'_, BONES, ANGLES> {
                 }
                 let column = moving_column(self.skeleton, posture, goal.bone, i);
                 (x[i], y[i], z[i]) = (column.x, column.y, column.z);
-                let weighted = goal.precision * column;
+                let weighted = times(&goal.precision, &column);
                 gradient[i] += weighted.dot(&miss);
                 for j in 0..if WHOLE_ROWS { ANGLES } else { i + 1 } {
                     hessian[i][j] += weighted.x * x[j] + weighted.y * y[j] + weighted.z * z[j];

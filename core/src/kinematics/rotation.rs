@@ -1,6 +1,6 @@
 //! Rotations of bones, joint after joint.
 
-use crate::math::{Vec3, turn_columns};
+use crate::math::{Vec3, transform, turn_columns};
 
 /// Rotation of a bone against the world: its columns are the bone's own axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,7 +17,7 @@ impl Rotation {
     /// A vector that turns with the bone, in the world's axes.
     #[inline(always)]
     pub(super) fn turned(&self, vector: &Vec3) -> Vec3 {
-        if self.is_none { *vector } else { self.combined([vector.x, vector.y, vector.z]).into() }
+        if self.is_none { *vector } else { transform(&self.columns, [vector.x, vector.y, vector.z]).into() }
     }
 
     /// This rotation followed by a turn about `axis`, a unit vector in the bone's axes, by the
@@ -25,15 +25,8 @@ impl Rotation {
     #[inline(always)]
     pub(super) fn then(&self, axis: &Vec3, sine_and_cosine: (f32, f32)) -> Self {
         let turn = turn_columns(axis, sine_and_cosine);
-        let columns = if self.is_none { turn } else { turn.map(|column| self.combined(column)) };
+        let columns = if self.is_none { turn } else { turn.map(|column| transform(&self.columns, column)) };
         Self { columns, is_none: false }
-    }
-
-    /// The sum of the columns, each so many times.
-    #[inline(always)]
-    fn combined(&self, times: [f32; 3]) -> [f32; 3] {
-        let [a, b, c] = &self.columns;
-        core::array::from_fn(|row| a[row] * times[0] + b[row] * times[1] + c[row] * times[2])
     }
 }
 

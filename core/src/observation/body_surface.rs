@@ -107,9 +107,12 @@ impl<const BONES: usize> BodySurface<BONES> {
             if lane >= BONES {
                 break;
             }
-            for axis in 0..3 {
-                lanes.start[axis][lane] = capsule.start_m[axis];
-                lanes.along[axis][lane] = seen.along_m[axis];
+            let (start, along) = (capsule.start_m, seen.along_m);
+            for (axis, (start, along)) in
+                [(start.x, along.x), (start.y, along.y), (start.z, along.z)].into_iter().enumerate()
+            {
+                lanes.start[axis][lane] = start;
+                lanes.along[axis][lane] = along;
             }
             lanes.per_squared_length[lane] = seen.per_squared_length;
             lanes.radius[lane] = capsule.radius_m;

@@ -154,7 +154,7 @@ pub struct ArmGeometry {
 /// ```
 #[must_use]
 pub fn facing_camera() -> Mat3 {
-    Mat3::from_columns(&[Vec3::x(), -Vec3::y(), -Vec3::z()])
+    Mat3::new(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0)
 }
 
 impl ArmGeometry {

@@ -250,7 +250,10 @@ const LIMITS: [Limit; BODY_ANGLES] = {
 /// As [`BodyMeasures::checked`].
 pub fn full_body(measures: &BodyMeasures) -> Result<BodySkeleton, ParameterError> {
     let measures = measures.checked()?;
-    let bone = |index: usize, joint: Joint, offset_m: Vec3| Bone { parent: BODY_PARENTS[index], joint, offset_m };
+    let bone = |index: usize, joint: Joint, offset_m: Vec3| {
+        let parent = BODY_PARENTS.get(index).copied().flatten();
+        Bone { parent, joint, offset_m }
+    };
     let bend = Joint::Ball([UP.cross(&FRONT), UP.cross(&LEFT), UP]);
     let root = Joint::Free([Vec3::x(), Vec3::y(), Vec3::z(), UP, UP.cross(&LEFT), UP.cross(&FRONT)]);
     let mut bones = [bone(PELVIS, root, Vec3::zeros()); BODY_BONES];

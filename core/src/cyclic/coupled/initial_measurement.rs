@@ -50,11 +50,12 @@ impl<const N: usize> InitialMeasurement<N> {
         let count = model.angle_count().min(N);
         let mut unusual_offset_rad2 = [0.0; N];
         let mut excess: heapless::Vec<f32, N> = heapless::Vec::new();
-        for i in 0..rolled(count) {
+        let angles = unusual_offset_rad2.iter_mut().zip(pose).zip(spread).enumerate().take(rolled(count));
+        for (i, ((square, pose), spread)) in angles {
             if let Some(angle) = first.angle_rad(i) {
-                let off = wrap_angle(angle - pose[i]);
-                unusual_offset_rad2[i] = off * off;
-                let _ = excess.push(off * off / MEDIAN_CHI_SQUARE - spread[i] * spread[i]);
+                let off = wrap_angle(angle - pose);
+                *square = off * off;
+                let _ = excess.push(off * off / MEDIAN_CHI_SQUARE - spread * spread);
             }
         }
         let row_std_rad = if is_on(Part::FirstRowNoise) { sqrt(median(&excess)) } else { f32::MAX };

@@ -207,11 +207,15 @@ pub(super) fn mirror<const N: usize>(matrix: &mut [[f32; N]; N]) {
 fn transpose<const N: usize>(matrix: &[[f32; N]; N]) -> [[f32; N]; N] {
     let mut transposed = [[0.0; N]; N];
     let whole = const { N - N % SQUARE };
-    for first in (0..whole).step_by(SQUARE) {
-        for other in (0..whole).step_by(SQUARE) {
-            for i in first..first + SQUARE {
-                for j in other..other + SQUARE {
-                    transposed[j][i] = matrix[i][j];
+    let (rows, _) = matrix.as_chunks::<SQUARE>();
+    let (columns, _) = transposed.as_chunks_mut::<SQUARE>();
+    for (first, rows) in rows.iter().enumerate() {
+        for (other, columns) in columns.iter_mut().enumerate() {
+            for (i, row) in (0..SQUARE).zip(rows) {
+                let Some(row) = row.as_chunks::<SQUARE>().0.get(other) else { continue };
+                for (column, entry) in columns.iter_mut().zip(row) {
+                    let Some(column) = column.as_chunks_mut::<SQUARE>().0.get_mut(first) else { continue };
+                    column[i] = *entry;
                 }
             }
         }

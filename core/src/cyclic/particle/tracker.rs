@@ -249,11 +249,11 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
         shares: &mut [WeightShare; MAX_CHUNKS],
     ) {
         self.all.clear();
-        let particles = self.particles.get_mut(..self.count).unwrap_or_default();
-        let chunks = particles.chunks_mut(CHUNK).zip(self.weights.chunks_mut(CHUNK));
-        for ((chunk, (particles, weights)), share) in chunks.enumerate().zip(shares) {
-            let key = (self.seed, self.frame, (chunk * CHUNK) as u32);
-            let weights = weights.get_mut(..particles.len()).unwrap_or_default();
+        for (share, first) in shares.iter_mut().zip((0..self.count).step_by(CHUNK)) {
+            let chunk = first..(first + CHUNK).min(self.count);
+            let particles = self.particles.get_mut(chunk.clone()).unwrap_or_default();
+            let weights = self.weights.get_mut(chunk).unwrap_or_default();
+            let key = (self.seed, self.frame, first as u32);
             let (seen, chunk) = ((target, step_frames), (particles, weights));
             sweep_by((model, table), &self.options, seen, key, chunk, &mut self.memory);
             self.all.merge(&self.memory.moments);

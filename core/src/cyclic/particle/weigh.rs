@@ -85,9 +85,9 @@ impl<const N: usize> ParticleLanes<N> {
     /// Takes `particles` and compares them with `target`.
     #[inline(always)]
     pub(super) fn take(&mut self, particles: &[CyclicParticle<N>], target: &ParticleTarget<N>) {
-        for (lane, particle) in particles.iter().enumerate().take(LANES) {
-            for i in 0..N {
-                self.off_rad[i][lane] = particle.angles_rad[i];
+        for (lane, particle) in (0..LANES).zip(particles) {
+            for (off_rad, angle_rad) in self.off_rad.iter_mut().zip(&particle.angles_rad) {
+                off_rad[lane] = *angle_rad;
             }
             self.phase_offset[lane] = particle.cycle_position - target.cycle_position;
             self.velocity_offset[lane] = particle.cycle_velocity - target.cycle_velocity;

@@ -1,7 +1,7 @@
 //! One pose out of many particles (PIK (30)).
 
 use super::mean_rotation::{angles_of_rotation, mean_rotation};
-use crate::math::{Mat3, Vec3, axis_rotation, sqrt};
+use crate::math::{Mat3, Vec3, axis_rotation, product, sqrt};
 use crate::pik::motion::BodyParticle;
 use crate::skeleton::tree::SHIFTS;
 use crate::skeleton::{Joint, Limbs, Skeleton};
@@ -120,7 +120,8 @@ fn mean_ball<const BONES: usize, const ANGLES: usize>(
         let Some(&[a, b, c]) = particle.angles_rad.get(first..first + 3).and_then(|three| three.first_chunk()) else {
             return;
         };
-        sum += axis_rotation(&axes[0], a) * axis_rotation(&axes[1], b) * axis_rotation(&axes[2], c) * weight;
+        let [a, b, c] = [axis_rotation(&axes[0], a), axis_rotation(&axes[1], b), axis_rotation(&axes[2], c)];
+        sum += product(&product(&a, &b), &c) * weight;
     }
     let Some(mean) = mean_rotation(&sum) else { return };
     for (slot, angle) in result.iter_mut().skip(first).zip(angles_of_rotation(&mean, axes)) {

@@ -1,6 +1,6 @@
 //! The mean of many rotations, and its three angles (PIK (30), for ball joints).
 
-use crate::math::{Mat3, Vec3, abs, asin, atan2, clamp};
+use crate::math::{Mat3, Vec3, abs, asin, atan2, clamp, times};
 
 /// Steps of the polar decomposition; it converges quadratically.
 const POLAR_STEPS: usize = 12;
@@ -33,9 +33,10 @@ pub fn mean_rotation(sum: &Mat3) -> Option<Mat3> {
 }
 
 fn inverse_transpose(m: &Mat3) -> Option<Mat3> {
-    let (a, b, c): (Vec3, Vec3, Vec3) = (m.column(0).into(), m.column(1).into(), m.column(2).into());
+    let [a, b, c] = m.data.0.map(Vec3::from);
     let determinant = a.dot(&b.cross(&c));
-    (determinant > 1.0e-9).then(|| Mat3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)]) / determinant)
+    let cofactors = [b.cross(&c), c.cross(&a), a.cross(&b)].map(|column| [column.x, column.y, column.z]);
+    (determinant > 1.0e-9).then(|| Mat3::from(cofactors) / determinant)
 }
 
 /// Angles with R = R(axis 0) R(axis 1) R(axis 2); the axes are square to one another. The middle
@@ -53,7 +54,7 @@ fn inverse_transpose(m: &Mat3) -> Option<Mat3> {
 #[must_use]
 pub fn angles_of_rotation(rotation: &Mat3, axes: &[Vec3; 3]) -> [f32; 3] {
     let hand = if axes[0].dot(&axes[1].cross(&axes[2])) < 0.0 { -1.0 } else { 1.0 };
-    let entry = |row: usize, column: usize| axes[row].dot(&(rotation * axes[column]));
+    let entry = |row: usize, column: usize| axes[row].dot(&times(rotation, &axes[column]));
     let middle = asin(clamp(entry(0, 2), -1.0, 1.0));
     [hand * atan2(-entry(1, 2), entry(2, 2)), hand * middle, hand * atan2(-entry(0, 1), entry(0, 0))]
 }

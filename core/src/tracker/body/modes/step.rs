@@ -115,9 +115,9 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance
     ) -> [f32; ANGLES] {
         let std_rad = past.angle_std_rad(&self.motion.angle_std_rad_per_sqrt_s);
         let mut drawn_rad = *expected_rad;
-        for (angle, drawn) in drawn_rad.iter_mut().enumerate() {
+        for (angle, (drawn, std_rad)) in drawn_rad.iter_mut().zip(std_rad).enumerate() {
             if self.limbs.group(self.scene.skeleton.bone_of_angle(angle)) == group {
-                *drawn += std_rad[angle] * stream.normal();
+                *drawn += std_rad * stream.normal();
             }
         }
         self.scene.skeleton.clamp(drawn_rad)
@@ -133,11 +133,10 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance
         Some(core::array::from_fn(|bone| {
             let columns: [Vec3; ANGLES] = core::array::from_fn(|angle| column(skeleton, &posture, bone, angle));
             let mut variance_m2 = 0.0;
-            for axis in 0..3 {
-                let row = columns.map(|column| column[axis]);
-                let solved = factor.solve(&row);
-                for angle in 0..ANGLES {
-                    variance_m2 += row[angle] * solved[angle];
+            for row in [columns.map(|column| column.x), columns.map(|column| column.y), columns.map(|column| column.z)]
+            {
+                for (entry, solved) in row.iter().zip(factor.solve(&row)) {
+                    variance_m2 += entry * solved;
                 }
             }
             sqrt(crate::math::max(variance_m2, 0.0))
