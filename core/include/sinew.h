@@ -170,7 +170,7 @@
 /**
  * Bytes that always suffice for a body tracker, on every target.
  */
-#define SINEW_BODY_MAX_BYTES 12288
+#define SINEW_BODY_MAX_BYTES 16384
 
 /**
  * Bytes that always suffice for the saved state of a body tracker.
@@ -193,10 +193,19 @@
  */
 #define SINEW_PIXEL_YUYV 2
 
+#if !defined(SINEW_VGA)
 /**
  * Bytes that always suffice for a front end, on every target.
  */
 #define SINEW_VISION_MAX_BYTES 20480
+#endif
+
+#if defined(SINEW_VGA)
+/**
+ * Bytes that always suffice for a front end, on every target, in a library with the feature `vga`.
+ */
+#define SINEW_VISION_MAX_BYTES 28672
+#endif
 
 /**
  * Bytes that always suffice for the saved state of a front end.
@@ -945,11 +954,11 @@ typedef struct SinewVisionConfig {
    */
   uint32_t struct_bytes;
   /**
-   * Width of a frame, 1 to 320 pixels.
+   * Width of a frame, 1 to 320 pixels; to 640 with SINEW_VGA.
    */
   uint32_t width_px;
   /**
-   * Height of a frame, 1 to 240 pixels.
+   * Height of a frame, 1 to 240 pixels; to 480 with SINEW_VGA.
    */
   uint32_t height_px;
   /**
@@ -1553,7 +1562,7 @@ size_t sinew_vision_align(void);
  *
  * Fills the skin table, one decision for each of 65536 colours, which takes some time. `vision` is
  * written only if the status is SINEW_STATUS_OK. Returns SINEW_STATUS_OVER_CAPACITY for frames
- * larger than 320 x 240.
+ * larger than 320 x 240, or 640 x 480 in a library with the feature `vga`.
  *
  * Caller's duty:
  * `memory` has the size that is said.

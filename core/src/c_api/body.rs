@@ -13,7 +13,7 @@ use core::ffi::c_void;
 use core::mem::offset_of;
 
 /// Bytes that always suffice for a body tracker, on every target.
-pub const SINEW_BODY_MAX_BYTES: usize = 12288;
+pub const SINEW_BODY_MAX_BYTES: usize = 16384;
 /// Bytes that always suffice for the saved state of a body tracker.
 pub const SINEW_BODY_STATE_MAX_BYTES: usize = 2048;
 

@@ -11,7 +11,10 @@ use super::vision_frame::{
 };
 use crate::saved_state::{SavedState, StateKind, StateVisitor};
 use crate::slot::Slot;
-use crate::vision::front_end::QvgaFrontEnd;
+#[cfg(not(feature = "vga"))]
+use crate::vision::front_end::QvgaFrontEnd as FrontEnd;
+#[cfg(feature = "vga")]
+use crate::vision::front_end::VgaFrontEnd as FrontEnd;
 use crate::vision::front_end::calibration::SkinSample;
 use crate::vision::front_end::pixel_format::{PixelFormat, Rgb565, SwappedRgb565, Yuyv};
 use crate::vision::front_end::skin_table::{SkinTable, TABLE_WORDS};
@@ -22,7 +25,11 @@ use core::mem::offset_of;
 use core::ops::Range;
 
 /// Bytes that always suffice for a front end, on every target.
+#[cfg(not(feature = "vga"))]
 pub const SINEW_VISION_MAX_BYTES: usize = 20480;
+/// Bytes that always suffice for a front end, on every target, in a library with the feature `vga`.
+#[cfg(feature = "vga")]
+pub const SINEW_VISION_MAX_BYTES: usize = 28672;
 /// Bytes that always suffice for the saved state of a front end.
 pub const SINEW_VISION_STATE_MAX_BYTES: usize = 8320;
 
@@ -43,7 +50,7 @@ pub(super) struct Vision {
     is_in_frame: bool,
     learning: Slot<Learning>,
     skin: Skin,
-    front_end: QvgaFrontEnd,
+    front_end: FrontEnd,
 }
 
 /// A model that the table learns frame by frame.
@@ -79,7 +86,7 @@ pub(super) struct SkinOf<F> {
 }
 
 impl<F: PixelFormat> SkinOf<F> {
-    fn line(&mut self, row: usize, line: &[u16], front_end: &mut QvgaFrontEnd) {
+    fn line(&mut self, row: usize, line: &[u16], front_end: &mut FrontEnd) {
         if let Some(sample) = self.sample.get_mut() {
             sample.line(row, line);
         }
@@ -130,7 +137,7 @@ size_functions!(SinewVision, sinew_vision_size, sinew_vision_align);
 ///
 /// Fills the skin table, one decision for each of 65536 colours, which takes some time. `vision` is
 /// written only if the status is SINEW_STATUS_OK. Returns SINEW_STATUS_OVER_CAPACITY for frames
-/// larger than 320 x 240.
+/// larger than 320 x 240, or 640 x 480 in a library with the feature `vga`.
 ///
 /// # Safety
 /// `memory` has the size that is said.
@@ -151,7 +158,7 @@ pub unsafe extern "C" fn sinew_vision_init(
             if config.pixel_format > SINEW_PIXEL_YUYV {
                 return Err(SinewStatus::OutOfRange);
             }
-            QvgaFrontEnd::check_size(config.size())?;
+            FrontEnd::check_size(config.size())?;
             config.steps()?;
             config.min_area_share()?;
             // Zeros are a front end that did not begin, an empty table and no sample.

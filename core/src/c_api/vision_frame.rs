@@ -53,9 +53,9 @@ pub struct SinewVisionConfig {
     /// Bytes of this structure, as the function that fills it writes them; any other number is
     /// refused.
     pub struct_bytes: u32,
-    /// Width of a frame, 1 to 320 pixels.
+    /// Width of a frame, 1 to 320 pixels; to 640 with SINEW_VGA.
     pub width_px: u32,
-    /// Height of a frame, 1 to 240 pixels.
+    /// Height of a frame, 1 to 240 pixels; to 480 with SINEW_VGA.
     pub height_px: u32,
     /// `SINEW_PIXEL_RGB565`, `SINEW_PIXEL_RGB565_SWAPPED` or `SINEW_PIXEL_YUYV`.
     pub pixel_format: u32,

@@ -31,12 +31,19 @@ pub struct BodyInformation<const BONES: usize> {
 }
 
 impl<const BONES: usize> BodyInformation<BONES> {
-    /// No information, about the root of `posture`.
+    /// No information, about the origin.
     #[must_use]
-    pub fn none<const ANGLES: usize>(posture: &Posture<BONES, ANGLES>) -> Self {
+    pub const fn empty() -> Self {
         let nothing = RigidInformation { matrix: [[0.0; TWIST]; TWIST], vector: [0.0; TWIST] };
-        let about_m = posture.joints.first().copied().unwrap_or_default();
-        Self { of_bone: [nothing; BONES], about_m }
+        Self { of_bone: [nothing; BONES], about_m: Vec3::new(0.0, 0.0, 0.0) }
+    }
+
+    /// Becomes no information, about the root of `posture`.
+    pub fn clear<const ANGLES: usize>(&mut self, posture: &Posture<BONES, ANGLES>) {
+        for bone in &mut self.of_bone {
+            (bone.matrix, bone.vector) = ([[0.0; TWIST]; TWIST], [0.0; TWIST]);
+        }
+        self.about_m = posture.joints.first().copied().unwrap_or_default();
     }
 
     /// Adds a residual: the place `place_m` of `bone` should move by `residual_m` along the unit
@@ -145,7 +152,8 @@ mod tests {
         angles[2] = 3.0;
         let angles = skeleton.clamp(angles);
         let there = posture(&skeleton, &Vec3::zeros(), &angles);
-        let mut information = BodyInformation::none(&there);
+        let mut information = BodyInformation::empty();
+        information.clear(&there);
         let (mut gradient, mut hessian) = ([0.0_f64; BODY_ANGLES], [[0.0_f64; BODY_ANGLES]; BODY_ANGLES]);
         for point in 0..300 {
             let bone = point % BODY_BONES;

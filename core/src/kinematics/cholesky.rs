@@ -78,15 +78,29 @@ impl<const N: usize> Cholesky<N> {
     }
 
     fn by_columns(matrix: &[[f32; N]; N], first: usize) -> Option<Self> {
-        let mut lower = [[0.0; N]; N];
-        for (i, (row, given)) in lower.iter_mut().zip(matrix).enumerate().skip(first) {
-            for (entry, given) in row.iter_mut().zip(given).take(i + 1).skip(first) {
-                *entry = *given;
+        let mut factor = Self { lower: [[0.0; N]; N] };
+        factor.refactor(matrix, first).then_some(factor)
+    }
+
+    /// Becomes what [`Self::from`] gives, in place; not where it answers that there is none.
+    pub(super) fn refactor(&mut self, matrix: &[[f32; N]; N], first: usize) -> bool {
+        self.lower = *matrix;
+        self.factor_in_place(first)
+    }
+
+    /// As [`Self::refactor`], of the matrix that stands in place of the factor.
+    pub(super) fn factor_in_place(&mut self, first: usize) -> bool {
+        let lower = &mut self.lower;
+        for (i, row) in lower.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                if j < first || j > i {
+                    *entry = 0.0;
+                }
             }
         }
         for k in first..N {
             if !(lower[k][k] > 0.0 && lower[k][k] < f32::INFINITY) {
-                return None;
+                return false;
             }
             let pivot = sqrt(lower[k][k]);
             lower[k][k] = pivot;
@@ -105,7 +119,7 @@ impl<const N: usize> Cholesky<N> {
                 }
             }
         }
-        Some(Self { lower })
+        true
     }
 
     /// x with H x = `right`.

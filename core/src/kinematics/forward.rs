@@ -76,8 +76,9 @@ pub fn posture<const BONES: usize, const ANGLES: usize>(
 
 impl<const BONES: usize, const ANGLES: usize> Posture<BONES, ANGLES> {
     /// Room for a posture, all of it at the origin.
-    pub(super) fn folded() -> Self {
-        Self { joints: [Vec3::zeros(); BONES], ends: [Vec3::zeros(); BONES], axes: [Vec3::zeros(); ANGLES] }
+    pub(super) const fn folded() -> Self {
+        const ORIGIN: Vec3 = Vec3::new(0.0, 0.0, 0.0);
+        Self { joints: [ORIGIN; BONES], ends: [ORIGIN; BONES], axes: [ORIGIN; ANGLES] }
     }
 
     /// Becomes the posture of `skeleton` at `root_m` with `angles_rad`, in place.

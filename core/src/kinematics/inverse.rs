@@ -4,9 +4,11 @@
 //! projected Gauss-Newton step with an active set, since its Hessian J'WJ + lambda is needed for
 //! the proposal anyway. Both the steps and the halvings of the line search are bounded.
 
+use super::body_information::BodyInformation;
 use super::cholesky::Cholesky;
 use super::forward::Posture;
 pub use super::pose_density::{Goal, PoseDensity, PoseObjective};
+use super::solver_memory::SolverMemory;
 use crate::math::{abs, max};
 
 /// Largest number of halvings of a step that does not climb; the bound of the work.
@@ -103,6 +105,37 @@ impl<const ANGLES: usize> Mode<ANGLES> {
     }
 }
 
+/// A mode without its Hessian, which [`SolverMemory::hessian`] has.
+///
+/// ```
+/// use sinew_core::kinematics::inverse::{PoseDensity, Solve, Stop};
+/// use sinew_core::kinematics::solver_memory::SolverMemory;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// let skeleton = ArmGeometry::new(Side::Left, 0.3, 0.3)?.skeleton()?;
+/// let (root_m, previous_rad) = (Vec3::zeros(), [0.5; 4]);
+/// let stiffness = [1.0; 4];
+/// let density =
+///     PoseDensity { skeleton: &skeleton, root_m, goals: &[], previous_rad, stiffness, held: 0 };
+/// let solution = density.solve_within(&[], 3, &mut SolverMemory::new());
+/// assert_eq!((solution.stop, solution.residual_m), (Stop::LittleGain, 0.0));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solution<const ANGLES: usize> {
+    /// The pose, radians.
+    pub angles_rad: [f32; ANGLES],
+    /// Gradient of the log density there; of an angle at its limit it may point outside.
+    pub gradient: [f32; ANGLES],
+    /// log density there, up to a constant.
+    pub log_density: f32,
+    /// Distance of the worst end-effector from its goal, metres; zero without goals.
+    pub residual_m: f32,
+    /// Why the search ended.
+    pub stop: Stop,
+}
+
 /// The solver of any [`PoseObjective`].
 ///
 /// ```
@@ -132,80 +165,138 @@ pub trait Solve<const BONES: usize, const ANGLES: usize>: PoseObjective<BONES, A
     ///
     /// After a jump the way from the previous pose may end at a limit.
     fn mode_from(&self, starts: &[[f32; ANGLES]], max_steps: usize) -> Mode<ANGLES> {
-        let (first, others) =
-            starts.split_first().map_or((self.start_rad(), starts), |(first, others)| (*first, others));
-        let mut angles_rad = self.skeleton().clamp(first);
-        // Two buffers in turn: a posture is too large to be copied.
-        let (mut here, mut there) = (Posture::folded(), Posture::folded());
-        here.turn(self.skeleton(), &self.root_m(), &angles_rad);
-        let mut log_density = self.log_density(&angles_rad, &here);
-        for start in others {
-            let other = self.skeleton().clamp(*start);
-            there.turn(self.skeleton(), &self.root_m(), &other);
-            let log_other = self.log_density(&other, &there);
-            if log_other > log_density {
-                (angles_rad, log_density) = (other, log_other);
-                core::mem::swap(&mut here, &mut there);
-            }
-        }
-        let (mut gradient, mut hessian);
-        if ANGLES > FEW_ANGLES {
-            (gradient, hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
-            self.write_derivatives(&angles_rad, &here, (&mut gradient, &mut hessian));
-        } else {
-            (gradient, hessian) = self.derivatives(&angles_rad, &here);
-        }
-        let mut stop = Stop::StepsUsed;
-        for _ in 0..max_steps {
-            let found = if ANGLES > FEW_ANGLES {
-                free_direction_apart(self, &angles_rad, &gradient, &hessian)
-            } else {
-                free_direction(self, &angles_rad, &gradient, &hessian)
-            };
-            let Some((direction, gain)) = found else {
-                stop = Stop::NoCurvature;
-                break;
-            };
-            if gain < MIN_LOG_GAIN {
-                stop = Stop::LittleGain;
-                break;
-            }
-            let Some((next, log_next)) = climb(self, &angles_rad, &direction, log_density, &mut there) else {
-                stop = Stop::NoClimb;
-                break;
-            };
-            let mut longest = 0.0;
-            for (next, last) in next.iter().zip(&angles_rad) {
-                longest = max(longest, abs(next - last));
-            }
-            (angles_rad, log_density) = (next, log_next);
-            core::mem::swap(&mut here, &mut there);
-            if ANGLES > FEW_ANGLES {
-                self.write_derivatives(&angles_rad, &here, (&mut gradient, &mut hessian));
-            } else {
-                (gradient, hessian) = self.derivatives(&angles_rad, &here);
-            }
-            if longest < STEP_TOLERANCE_RAD {
-                stop = Stop::ShortStep;
-                break;
-            }
-        }
-        let (residual_m, held) = (self.residual_m(&here), self.held());
-        Mode { angles_rad, gradient, hessian, log_density, residual_m, stop, held }
+        let SolverMemory { mut postures, mut hessian, mut factor, mut information } = SolverMemory::new();
+        // Apart, so that a solver of few angles keeps what it needs in registers.
+        let matrices = (&mut hessian, &mut factor, &mut information);
+        let Solution { angles_rad, gradient, log_density, residual_m, stop } =
+            solve(self, starts, max_steps, postures.each_mut(), matrices);
+        Mode { angles_rad, gradient, hessian, log_density, residual_m, stop, held: self.held() }
+    }
+
+    /// As [`Self::mode_from`], in memory of the caller, where the Hessian stays.
+    #[inline(never)]
+    fn solve_within(
+        &self,
+        starts: &[[f32; ANGLES]],
+        max_steps: usize,
+        memory: &mut SolverMemory<BONES, ANGLES>,
+    ) -> Solution<ANGLES> {
+        let SolverMemory { postures, hessian, factor, information } = memory;
+        solve(self, starts, max_steps, postures.each_mut(), (hessian, factor, information))
     }
 }
 
 impl<const BONES: usize, const ANGLES: usize, T: PoseObjective<BONES, ANGLES> + ?Sized> Solve<BONES, ANGLES> for T {}
 
-/// As [`free_direction`], whose two matrices leave the stack before the derivatives need it.
-#[inline(never)]
-fn free_direction_apart<const BONES: usize, const ANGLES: usize>(
+#[inline(always)]
+fn solve<const BONES: usize, const ANGLES: usize>(
+    objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
+    starts: &[[f32; ANGLES]],
+    max_steps: usize,
+    // Two buffers in turn: a posture is too large to be copied.
+    [mut here, mut there]: [&mut Posture<BONES, ANGLES>; 2],
+    (hessian, factor, information): (&mut [[f32; ANGLES]; ANGLES], &mut Cholesky<ANGLES>, &mut BodyInformation<BONES>),
+) -> Solution<ANGLES> {
+    let (mut angles_rad, mut log_density) = likeliest_start(objective, starts, (&mut here, &mut there));
+    let mut gradient = [0.0; ANGLES];
+    differentiate(objective, (&angles_rad, here), (&mut gradient, hessian), information);
+    let mut stop = Stop::StepsUsed;
+    for _ in 0..max_steps {
+        let found = if ANGLES > FEW_ANGLES {
+            free_direction_within(objective, &angles_rad, &gradient, hessian, factor)
+        } else {
+            free_direction(objective, &angles_rad, &gradient, hessian)
+        };
+        let Some((direction, gain)) = found else {
+            stop = Stop::NoCurvature;
+            break;
+        };
+        if gain < MIN_LOG_GAIN {
+            stop = Stop::LittleGain;
+            break;
+        }
+        let Some((next, log_next)) = climb(objective, &angles_rad, &direction, log_density, there) else {
+            stop = Stop::NoClimb;
+            break;
+        };
+        let mut longest = 0.0;
+        for (next, last) in next.iter().zip(&angles_rad) {
+            longest = max(longest, abs(next - last));
+        }
+        (angles_rad, log_density) = (next, log_next);
+        core::mem::swap(&mut here, &mut there);
+        differentiate(objective, (&angles_rad, here), (&mut gradient, hessian), information);
+        if longest < STEP_TOLERANCE_RAD {
+            stop = Stop::ShortStep;
+            break;
+        }
+    }
+    Solution { angles_rad, gradient, log_density, residual_m: objective.residual_m(here), stop }
+}
+
+/// The most likely of `starts`, and its log density; its posture is then the first of the two.
+#[inline(always)]
+fn likeliest_start<'a, const BONES: usize, const ANGLES: usize>(
+    objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
+    starts: &[[f32; ANGLES]],
+    (here, there): (&mut &'a mut Posture<BONES, ANGLES>, &mut &'a mut Posture<BONES, ANGLES>),
+) -> ([f32; ANGLES], f32) {
+    let (first, others) =
+        starts.split_first().map_or((objective.start_rad(), starts), |(first, others)| (*first, others));
+    let mut angles_rad = objective.skeleton().clamp(first);
+    here.turn(objective.skeleton(), &objective.root_m(), &angles_rad);
+    let mut log_density = objective.log_density(&angles_rad, here);
+    for start in others {
+        let other = objective.skeleton().clamp(*start);
+        there.turn(objective.skeleton(), &objective.root_m(), &other);
+        let log_other = objective.log_density(&other, there);
+        if log_other > log_density {
+            (angles_rad, log_density) = (other, log_other);
+            core::mem::swap(here, there);
+        }
+    }
+    (angles_rad, log_density)
+}
+
+/// Writes gradient and Hessian: those of many angles in place, those of few in registers.
+#[inline(always)]
+fn differentiate<const BONES: usize, const ANGLES: usize>(
+    objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
+    (angles_rad, posture): (&[f32; ANGLES], &Posture<BONES, ANGLES>),
+    (gradient, hessian): (&mut [f32; ANGLES], &mut [[f32; ANGLES]; ANGLES]),
+    information: &mut BodyInformation<BONES>,
+) {
+    if ANGLES > FEW_ANGLES {
+        objective.write_derivatives((angles_rad, posture), (gradient, hessian), information);
+    } else {
+        (*gradient, *hessian) = objective.derivatives(angles_rad, posture);
+    }
+}
+
+/// Holds the angles that a limit holds: rows and columns of the identity in `hessian`, zeros in
+/// `gradient`.
+#[inline(always)]
+fn hold<const BONES: usize, const ANGLES: usize>(
     objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
     angles_rad: &[f32; ANGLES],
-    gradient: &[f32; ANGLES],
-    hessian: &[[f32; ANGLES]; ANGLES],
-) -> Option<([f32; ANGLES], f32)> {
-    free_direction(objective, angles_rad, gradient, hessian)
+    gradient: &mut [f32; ANGLES],
+    hessian: &mut [[f32; ANGLES]; ANGLES],
+) {
+    // A constant bound, so that no index is checked.
+    for i in 0..ANGLES {
+        let limit = &objective.skeleton().limits()[i];
+        let held = i < objective.held()
+            || (angles_rad[i] <= limit.low_rad && gradient[i] < 0.0)
+            || (angles_rad[i] >= limit.high_rad && gradient[i] > 0.0);
+        if held {
+            gradient[i] = 0.0;
+            for k in 0..ANGLES {
+                hessian[i][k] = 0.0;
+                hessian[k][i] = 0.0;
+            }
+            hessian[i][i] = 1.0;
+        }
+    }
 }
 
 /// Gauss-Newton direction of the angles that no limit holds, and its predicted gain of log density.
@@ -218,31 +309,38 @@ fn free_direction<const BONES: usize, const ANGLES: usize>(
     gradient: &[f32; ANGLES],
     hessian: &[[f32; ANGLES]; ANGLES],
 ) -> Option<([f32; ANGLES], f32)> {
-    let (mut reduced, mut right) = (*hessian, *gradient);
-    // A constant bound, so that no index is checked.
-    for i in 0..ANGLES {
-        let limit = &objective.skeleton().limits()[i];
-        let held = i < objective.held()
-            || (angles_rad[i] <= limit.low_rad && gradient[i] < 0.0)
-            || (angles_rad[i] >= limit.high_rad && gradient[i] > 0.0);
-        if held {
-            right[i] = 0.0;
-            for k in 0..ANGLES {
-                reduced[i][k] = 0.0;
-                reduced[k][i] = 0.0;
-            }
-            reduced[i][i] = 1.0;
-        }
+    let (mut right, mut reduced) = (*gradient, *hessian);
+    hold(objective, angles_rad, &mut right, &mut reduced);
+    let direction = Cholesky::from(&reduced, objective.held())?.solve_from(&right, objective.held());
+    Some((direction, gain(&right, &direction)))
+}
+
+/// As [`free_direction`], with the matrices of many angles in the caller's memory.
+#[inline(never)]
+fn free_direction_within<const BONES: usize, const ANGLES: usize>(
+    objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
+    angles_rad: &[f32; ANGLES],
+    gradient: &[f32; ANGLES],
+    hessian: &[[f32; ANGLES]; ANGLES],
+    factor: &mut Cholesky<ANGLES>,
+) -> Option<([f32; ANGLES], f32)> {
+    let mut right = *gradient;
+    factor.lower = *hessian;
+    hold(objective, angles_rad, &mut right, &mut factor.lower);
+    if !factor.factor_in_place(objective.held()) {
+        return None;
     }
-    let held = objective.held();
-    // By reference: a factor of many angles is a kilobyte.
-    let factor = Cholesky::from(&reduced, held);
-    let direction = factor.as_ref()?.solve_from(&right, held);
+    let direction = factor.solve_from(&right, objective.held());
+    Some((direction, gain(&right, &direction)))
+}
+
+#[inline(always)]
+fn gain<const ANGLES: usize>(gradient: &[f32; ANGLES], direction: &[f32; ANGLES]) -> f32 {
     let mut gain = 0.0;
     for i in 0..ANGLES {
-        gain += 0.5 * right[i] * direction[i];
+        gain += 0.5 * gradient[i] * direction[i];
     }
-    Some((direction, gain))
+    gain
 }
 
 /// The longest of the step and its halvings, cut to the limits, that raises the density, and the

@@ -40,3 +40,4 @@ pub mod inverse;
 pub mod jacobian;
 pub mod pose_density;
 mod rotation;
+pub mod solver_memory;

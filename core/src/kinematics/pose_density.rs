@@ -1,6 +1,7 @@
 //! The density of a pose given goals of its end-effectors, PIK (12), and the solver's trait of any
 //! density.
 
+use super::body_information::BodyInformation;
 use super::forward::{Posture, posture};
 use super::jacobian::moving_column;
 use crate::math::{Mat3, Vec3, length, max, times};
@@ -172,12 +173,12 @@ pub trait PoseObjective<const BONES: usize, const ANGLES: usize> {
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]);
 
     /// As [`Self::derivatives`], written in place: a Hessian of many angles takes a kilobyte of
-    /// stack each time that it is handed on.
+    /// stack each time that it is handed on. `information` is room for what residuals on bones add.
     fn write_derivatives(
         &self,
-        angles_rad: &[f32; ANGLES],
-        posture: &Posture<BONES, ANGLES>,
+        (angles_rad, posture): (&[f32; ANGLES], &Posture<BONES, ANGLES>),
         (gradient, hessian): (&mut [f32; ANGLES], &mut [[f32; ANGLES]; ANGLES]),
+        _information: &mut BodyInformation<BONES>,
     ) {
         (*gradient, *hessian) = self.derivatives(angles_rad, posture);
     }
@@ -237,9 +238,9 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for P
 
     fn write_derivatives(
         &self,
-        angles_rad: &[f32; ANGLES],
-        posture: &Posture<BONES, ANGLES>,
+        (angles_rad, posture): (&[f32; ANGLES], &Posture<BONES, ANGLES>),
         (gradient, hessian): (&mut [f32; ANGLES], &mut [[f32; ANGLES]; ANGLES]),
+        _information: &mut BodyInformation<BONES>,
     ) {
         (*gradient, *hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
         self.fill_derivatives(posture, angles_rad, gradient, hessian);

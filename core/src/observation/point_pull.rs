@@ -89,7 +89,8 @@ mod tests {
         let mut cloud = PointCloud::<64>::new();
         let _ = cloud.set(&mut points, &Vec3::zeros());
         cloud.scatter_by(along_std_m);
-        let mut information = BodyInformation::none(&there);
+        let mut information = BodyInformation::empty();
+        information.clear(&there);
         add_pull(&likelihood, &surface, cloud.blocks().iter(), 1.0, &mut information);
         let (mut gradient, mut hessian) = ([0.0; BODY_ANGLES], [[0.0; BODY_ANGLES]; BODY_ANGLES]);
         information.add_to(&skeleton, &there, &mut gradient, &mut hessian);

@@ -8,6 +8,7 @@ use super::root::RootProcess;
 use crate::kinematics::body_information::BodyInformation;
 use crate::kinematics::forward::Posture;
 use crate::kinematics::inverse::{Mode, PoseDensity, PoseObjective, Solve};
+use crate::kinematics::solver_memory::SolverMemory;
 use crate::math::Vec3;
 use crate::observation::point_cloud::PointBlock;
 use crate::observation::point_likelihood::PointLikelihood;
@@ -135,15 +136,28 @@ impl<const BONES: usize, const ANGLES: usize> GuidedDensity<'_, BONES, ANGLES> {
     /// a limb that moved farther than points reach.
     #[must_use]
     pub fn mode_coarse_to_fine(&self, far_prior: &PoseDensity<'_, BONES, ANGLES>, max_steps: usize) -> Mode<ANGLES> {
-        self.mode_from(&[self.start_rad(), self.far_start_rad(far_prior)], max_steps)
+        let far_rad = self.far_start_rad(far_prior, &mut SolverMemory::new());
+        self.mode_from(&[self.start_rad(), far_rad], max_steps)
     }
 
     /// The pose after two coarse steps about `far_prior`.
     // Not inlined: coarse and fine steps need their stack one after the other.
     #[inline(never)]
-    pub(crate) fn far_start_rad(&self, far_prior: &PoseDensity<'_, BONES, ANGLES>) -> [f32; ANGLES] {
+    pub(crate) fn far_start_rad(
+        &self,
+        far_prior: &PoseDensity<'_, BONES, ANGLES>,
+        memory: &mut SolverMemory<BONES, ANGLES>,
+    ) -> [f32; ANGLES] {
         let far = GuidedDensity { prior: *far_prior, reach: FAR_REACH * self.reach, ..*self };
-        far.mode(FAR_STEPS).angles_rad
+        far.solve_within(&[], FAR_STEPS, memory).angles_rad
+    }
+
+    /// Adds what the points say. Not inlined: the surface leaves the stack before twists need it.
+    #[inline(never)]
+    fn pull(&self, posture: &Posture<BONES, ANGLES>, information: &mut BodyInformation<BONES>) {
+        let surface = self.scene.surface(posture);
+        let pulling = self.blocks.iter().step_by(self.stride.max(1));
+        add_pull(&self.likelihood(), &surface, pulling, self.stride as f32, information);
     }
 
     fn likelihood(&self) -> PointLikelihood {
@@ -181,21 +195,20 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
         posture: &Posture<BONES, ANGLES>,
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]) {
         let (mut gradient, mut hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
-        self.write_derivatives(angles_rad, posture, (&mut gradient, &mut hessian));
+        let information = &mut BodyInformation::empty();
+        self.write_derivatives((angles_rad, posture), (&mut gradient, &mut hessian), information);
         (gradient, hessian)
     }
 
     fn write_derivatives(
         &self,
-        angles_rad: &[f32; ANGLES],
-        posture: &Posture<BONES, ANGLES>,
+        (angles_rad, posture): (&[f32; ANGLES], &Posture<BONES, ANGLES>),
         (gradient, hessian): (&mut [f32; ANGLES], &mut [[f32; ANGLES]; ANGLES]),
+        information: &mut BodyInformation<BONES>,
     ) {
-        self.prior.write_derivatives(angles_rad, posture, (gradient, hessian));
-        let surface = self.scene.surface(posture);
-        let mut information = BodyInformation::none(posture);
-        let pulling = self.blocks.iter().step_by(self.stride.max(1));
-        add_pull(&self.likelihood(), &surface, pulling, self.stride as f32, &mut information);
+        self.prior.write_derivatives((angles_rad, posture), (&mut *gradient, &mut *hessian), information);
+        information.clear(posture);
+        self.pull(posture, information);
         information.add_to(self.prior.skeleton, posture, gradient, hessian);
     }
 

@@ -185,7 +185,7 @@ const MAX_TURN_DEG: f32 = 36_000.0;
 
 /// Ranges of motion of a healthy adult, rounded outwards, since a hip or a trunk of one joint
 /// stands for several.
-const LIMITS: [Limit; BODY_ANGLES] = {
+pub(super) const LIMITS: [Limit; BODY_ANGLES] = {
     let shift = Limit { low_rad: -MAX_SHIFT_M, high_rad: MAX_SHIFT_M };
     let degrees = Limit::from_degrees;
     let shoulder = super::arm::ARM_LIMITS;
@@ -249,32 +249,45 @@ const LIMITS: [Limit; BODY_ANGLES] = {
 /// # Errors
 /// As [`BodyMeasures::checked`].
 pub fn full_body(measures: &BodyMeasures) -> Result<BodySkeleton, ParameterError> {
+    let mut bones = [NO_BONE; BODY_BONES];
+    fill_bones(measures, &mut bones)?;
+    Skeleton::new(bones, LIMITS)
+}
+
+/// Holds a bone's place until it is known.
+pub(super) const NO_BONE: Bone = Bone { parent: None, joint: Joint::Fixed, offset_m: Vec3::new(0.0, 0.0, 0.0) };
+
+/// Writes as many of the body's bones as there is room for.
+// Not inlined: it leaves the stack before the skeleton needs it.
+#[inline(never)]
+pub(super) fn fill_bones(measures: &BodyMeasures, bones: &mut [Bone]) -> Result<(), ParameterError> {
     let measures = measures.checked()?;
-    let bone = |index: usize, joint: Joint, offset_m: Vec3| {
-        let parent = BODY_PARENTS.get(index).copied().flatten();
-        Bone { parent, joint, offset_m }
+    let mut set = |index: usize, joint: Joint, offset_m: Vec3| {
+        if let (Some(bone), Some(&parent)) = (bones.get_mut(index), BODY_PARENTS.get(index)) {
+            *bone = Bone { parent, joint, offset_m };
+        }
     };
     let bend = Joint::Ball([UP.cross(&FRONT), UP.cross(&LEFT), UP]);
     let root = Joint::Free([Vec3::x(), Vec3::y(), Vec3::z(), UP, UP.cross(&LEFT), UP.cross(&FRONT)]);
-    let mut bones = [bone(PELVIS, root, Vec3::zeros()); BODY_BONES];
-    bones[TRUNK] = bone(TRUNK, bend, UP * measures.trunk_m);
-    bones[HEAD] = bone(HEAD, bend, UP * measures.head_m);
+    set(PELVIS, root, Vec3::zeros());
+    set(TRUNK, bend, UP * measures.trunk_m);
+    set(HEAD, bend, UP * measures.head_m);
     for (side, outward) in [LEFT, -LEFT].into_iter().enumerate() {
         let place = |offset: Vec3| outward * offset.x + UP * offset.y + FRONT * offset.z;
         let arm_side = if side == 0 { Side::Left } else { Side::Right };
         let arm = ArmGeometry::new(arm_side, measures.upper_arm_m, measures.forearm_m)?;
         let [upper_arm, forearm] = arm.bones_of_body();
-        bones[COLLARS[side]] = bone(COLLARS[side], Joint::Fixed, place(measures.shoulder_m));
-        bones[UPPER_ARMS[side]] = bone(UPPER_ARMS[side], upper_arm.joint, upper_arm.offset_m);
-        bones[FOREARMS[side]] = bone(FOREARMS[side], forearm.joint, forearm.offset_m);
+        set(COLLARS[side], Joint::Fixed, place(measures.shoulder_m));
+        set(UPPER_ARMS[side], upper_arm.joint, upper_arm.offset_m);
+        set(FOREARMS[side], forearm.joint, forearm.offset_m);
         let down = -UP;
         let hip = Joint::Ball([down.cross(&FRONT), down.cross(&outward), FRONT.cross(&-outward)]);
-        bones[HIPS[side]] = bone(HIPS[side], Joint::Fixed, place(measures.hip_m));
-        bones[THIGHS[side]] = bone(THIGHS[side], hip, down * measures.thigh_m);
-        bones[SHANKS[side]] = bone(SHANKS[side], Joint::Hinge(FRONT.cross(&down)), down * measures.shank_m);
-        bones[FEET[side]] = bone(FEET[side], Joint::Hinge(FRONT.cross(&UP)), place(measures.foot_m));
+        set(HIPS[side], Joint::Fixed, place(measures.hip_m));
+        set(THIGHS[side], hip, down * measures.thigh_m);
+        set(SHANKS[side], Joint::Hinge(FRONT.cross(&down)), down * measures.shank_m);
+        set(FEET[side], Joint::Hinge(FRONT.cross(&UP)), place(measures.foot_m));
     }
-    Skeleton::new(bones, LIMITS)
+    Ok(())
 }
 
 /// Radii of the capsules of a body with the given measures, metres; zero for a bone without flesh.

@@ -18,7 +18,7 @@
 //! ```
 
 use super::body_measures::BodyMeasures;
-use super::full_body::{BODY_ANGLES, BODY_BONES, BODY_RADII_M, TRUNK, full_body};
+use super::full_body::{BODY_ANGLES, BODY_BONES, BODY_RADII_M, LIMITS, NO_BONE, TRUNK, fill_bones};
 use super::tree::{Joint, Skeleton};
 use crate::error::ParameterError;
 
@@ -98,10 +98,10 @@ pub fn upper_bones<T: Copy>(whole: &[T; BODY_BONES]) -> [T; UPPER_BONES] {
 /// # Errors
 /// As [`BodyMeasures::checked`].
 pub fn upper_body(measures: &BodyMeasures) -> Result<UpperSkeleton, ParameterError> {
-    let whole = full_body(measures)?;
-    let mut bones = upper_bones(whole.bones());
+    let mut bones = [NO_BONE; UPPER_BONES];
+    fill_bones(measures, &mut bones)?;
     bones[TRUNK].joint = Joint::Fixed;
-    Skeleton::new(bones, upper_coordinates(whole.limits()))
+    Skeleton::new(bones, upper_coordinates(&LIMITS))
 }
 
 /// Radii of the capsules of an upper body with the given measures, metres; zero for a bone without
@@ -129,7 +129,7 @@ mod tests {
     use crate::kinematics::forward::posture;
     use crate::math::Vec3;
     use crate::random::Stream;
-    use crate::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_PARENTS};
+    use crate::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_PARENTS, full_body};
 
     #[test]
     fn its_pose_is_that_of_a_whole_body_with_a_stiff_trunk() {

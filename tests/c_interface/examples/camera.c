@@ -1,4 +1,4 @@
-/* A camera that sees an arm: lines of 320 x 240 pixels go into the front end as they arrive, its blobs and edges into the arm tracker,
+/* A camera that sees an arm: lines of 320 x 240 pixels (640 x 480 with SINEW_VGA) go into the front end as they arrive, its blobs and edges into the arm tracker,
  * the place of the hand comes out.
  *
  * The pictures are made up: a hand and a face before a wall. The hand is behind the back for half of a second. The same program runs on
@@ -10,7 +10,12 @@
 static uint64_t vision_memory[SINEW_VISION_MAX_BYTES / sizeof(uint64_t)];
 static uint64_t arm_memory[SINEW_ARM_MAX_BYTES / sizeof(uint64_t)];
 
-enum { WIDTH = 320, HEIGHT = 240, FRAMES_PER_S = 15, FRAMES = 5 * FRAMES_PER_S };
+#ifdef SINEW_VGA
+enum { SCALE = 2 };
+#else
+enum { SCALE = 1 };
+#endif
+enum { WIDTH = 320 * SCALE, HEIGHT = 240 * SCALE, FRAMES_PER_S = 15, FRAMES = 5 * FRAMES_PER_S };
 
 static const uint16_t SKIN = 0xcc6c, WALL = 0x6b2c, SLEEVE = 0x2a0a;
 
@@ -41,7 +46,9 @@ static void draw_line(int frame, int v, uint16_t line[WIDTH]) {
     /* The person's left hand is on the right of the picture. */
     int hand_u = 195 + back_and_forth(2 * frame, 50), hand_v = 165 - back_and_forth(2 * frame, 40);
     int hidden = frame >= 40 && frame < 48;
-    for (int u = 0; u < WIDTH; u++) {
+    v /= SCALE;
+    for (int pixel = 0; pixel < WIDTH; pixel++) {
+        int u = pixel / SCALE;
         uint16_t colour = (uint16_t)(WALL + (uint16_t)((u * 7 + v * 13 + frame * 5) % 3));
         if (u > 185 && u < 215 && v > 110 && v < 200) {
             colour = SLEEVE;
@@ -49,7 +56,7 @@ static void draw_line(int frame, int v, uint16_t line[WIDTH]) {
         if (is_in_disc(u, v, 160, 50, 20) || (!hidden && is_in_disc(u, v, hand_u, hand_v, 13))) {
             colour = SKIN;
         }
-        line[u] = colour;
+        line[pixel] = colour;
     }
 }
 
@@ -69,6 +76,8 @@ int main(void) {
     SinewVisionConfig vision_config;
     SinewStatus status = sinew_vision_default_config(&vision_config, sizeof vision_config);
     if (status == SINEW_STATUS_OK) {
+        vision_config.width_px = WIDTH;
+        vision_config.height_px = HEIGHT;
         status = sinew_vision_init(vision_memory, sizeof vision_memory, &vision_config, &vision);
     }
     if (status != SINEW_STATUS_OK) {

@@ -60,6 +60,34 @@ fn the_examples_run_on_this_computer_under_the_sanitizers() {
     }
 }
 
+/// Four times as many pixels of the same pictures give the same hand until it is hidden.
+#[test]
+fn larger_frames_are_taken_by_a_library_for_them() {
+    if !has_tool("gcc") {
+        return;
+    }
+    let library = static_library("sinew-core", None, "3", "c-api,panic-handler,vga");
+    let scratch = tempfile::tempdir().unwrap();
+    let program = scratch.path().join("camera");
+    let mut command = compiler("gcc", "c11");
+    command.args(["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-DSINEW_VGA"]);
+    expect_success(command.arg(folder().join("camera.c")).arg(&library).arg("-o").arg(&program));
+    let output = String::from_utf8(expect_success(&mut Command::new(&program)).stdout).unwrap();
+    let small = fs::read_to_string(folder().join("camera.out")).unwrap();
+    let row = |line: &str| line.split(' ').filter_map(|field| field.parse().ok()).collect::<Vec<f32>>();
+    let mut compared = 0;
+    for (line, small) in output.lines().zip(small.lines()).skip(1).take(8) {
+        let (large, small) = (row(line), row(small));
+        let (&[.., u_px, v_px, _, _, _], &[.., small_u_px, small_v_px, _, _, _]) = (&large[..], &small[..]) else {
+            panic!("{line}");
+        };
+        let off_px = (u_px - 2.0 * small_u_px).hypot(v_px - 2.0 * small_v_px);
+        assert!(off_px < 12.0, "{line}: {off_px} pixels of 640 x 480 off");
+        compared += 1;
+    }
+    assert_eq!(compared, 8, "{output}");
+}
+
 /// Levels at which the examples and their start are compiled for the emulator; the last flag
 /// counts.
 const LEVELS: [&str; 3] = ["-O0", "-O2", "-Os"];

@@ -57,6 +57,7 @@ fn header() -> String {
     for name in ["HandCandidate", "EdgePixel", "Pixel"] {
         config.export.rename.insert(name.into(), format!("Sinew{name}"));
     }
+    config.defines.insert("feature = vga".into(), "SINEW_VGA".into());
     // Constants of the sources that the structures come from.
     config.export.exclude.extend(["DEFAULT_MIN_GRADIENT", "DEFAULT_MIN_MOTION"].map(String::from));
     let mut builder = cbindgen::Builder::new().with_config(config);

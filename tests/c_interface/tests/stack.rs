@@ -20,8 +20,6 @@ use std::process::Command;
 /// Bytes of stack that no call exceeds, and none that makes an object.
 const MAX_BYTES: u32 = 8192;
 const MAX_INIT_BYTES: u32 = 2048;
-/// The body's Hessian of 17 coordinates takes a kilobyte each time that it is factored.
-const MAX_BODY_STEP_BYTES: u32 = 18 * 1024;
 /// What a cell of the table may grow by: a twentieth, as the budgets of firmware.
 const MAX_GROWTH: f64 = 1.05;
 /// Bytes that may come on top: registers that a compiler saves, in calls that take almost nothing.
@@ -143,7 +141,6 @@ fn check_limits(column: &str, measured: &Measured) {
     for function in declared_functions() {
         let bytes = *measured.get(&function).unwrap_or_else(|| panic!("{column}: {function} was not called"));
         let limit = match function.as_str() {
-            "sinew_body_step" | "sinew_body_restore" => MAX_BODY_STEP_BYTES,
             _ if function.ends_with("_init") => MAX_INIT_BYTES,
             _ => MAX_BYTES,
         };

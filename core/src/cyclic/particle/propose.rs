@@ -297,10 +297,8 @@ pub(super) fn advance<const N: usize>(
     let side = streams.uniform();
     for i in 0..model.angle_count().min(MAX_ANGLES) {
         let drawn = streams.normal();
-        for (draws, drawn) in draws.iter_mut().zip(drawn) {
-            if let Some(draw) = draws.as_flattened_mut().get_mut(i) {
-                *draw = drawn;
-            }
+        for lane in 0..LANES {
+            draws[lane].as_flattened_mut()[i] = drawn[lane];
         }
     }
     let temporal = streams.normal();
@@ -310,7 +308,8 @@ pub(super) fn advance<const N: usize>(
     for (point, particle) in points.iter_mut().zip(particles.iter()) {
         *point = model.point(particle.cycle_position);
     }
-    for ((lane, particle), point) in (0..LANES).zip(particles).zip(points) {
+    for (lane, particle) in (0..LANES).zip(particles) {
+        let point = points[lane];
         let ratio = model.speed_ratio(particle.cycle_velocity);
         let squared_ratio = ratio * ratio;
         let place = if side[lane] < point.fraction { point.after } else { point.before };

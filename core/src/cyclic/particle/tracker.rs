@@ -249,10 +249,11 @@ impl<const N: usize, const P: usize> ParticleTracker<N, P> {
         shares: &mut [WeightShare; MAX_CHUNKS],
     ) {
         self.all.clear();
-        for (share, first) in shares.iter_mut().zip((0..self.count).step_by(CHUNK)) {
-            let chunk = first..(first + CHUNK).min(self.count);
-            let particles = self.particles.get_mut(chunk.clone()).unwrap_or_default();
-            let weights = self.weights.get_mut(chunk).unwrap_or_default();
+        for (chunk, share) in (0..self.count.div_ceil(CHUNK)).zip(shares) {
+            let first = chunk * CHUNK;
+            let range = first..self.count.min(first + CHUNK);
+            let Some(particles) = self.particles.get_mut(range.clone()) else { break };
+            let weights = self.weights.get_mut(range).unwrap_or_default();
             let key = (self.seed, self.frame, first as u32);
             let (seen, chunk) = ((target, step_frames), (particles, weights));
             sweep_by((model, table), &self.options, seen, key, chunk, &mut self.memory);

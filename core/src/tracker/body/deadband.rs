@@ -8,6 +8,7 @@
 
 use super::estimate::mean_of_group;
 use crate::kinematics::inverse::{Goal, PoseDensity, Solve};
+use crate::kinematics::solver_memory::SolverMemory;
 use crate::math::{Mat3, Vec3, max, min, sqrt};
 use crate::pik::motion::{BodyParticle, BodyScene};
 use crate::skeleton::{Joint, Limbs, Skeleton};
@@ -56,6 +57,18 @@ impl<const BONES: usize, const ANGLES: usize> Deadband<BONES, ANGLES> {
         jitter_std_m: &[f32; BONES],
         dt_s: f32,
     ) -> &BodyParticle<BONES, ANGLES> {
+        self.filter_within((scene, limbs), now, jitter_std_m, dt_s, &mut SolverMemory::new())
+    }
+
+    /// As [`Self::filter`], in memory of the caller.
+    pub(super) fn filter_within(
+        &mut self,
+        (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
+        now: &BodyParticle<BONES, ANGLES>,
+        jitter_std_m: &[f32; BONES],
+        dt_s: f32,
+        memory: &mut SolverMemory<BONES, ANGLES>,
+    ) -> &BodyParticle<BONES, ANGLES> {
         if !jitter_std_m.iter().any(|&end_m| end_m > 0.0) {
             self.reported = *now;
             return &self.reported;
@@ -88,7 +101,7 @@ impl<const BONES: usize, const ANGLES: usize> Deadband<BONES, ANGLES> {
             stiffness: [STIFFNESS; ANGLES],
             held: 0,
         };
-        let angles_rad = nearest.mode(SOLVER_STEPS).angles_rad;
+        let angles_rad = nearest.solve_within(&[], SOLVER_STEPS, memory).angles_rad;
         self.off_m = off_m;
         self.reported = BodyParticle { angles_rad, ends_m: scene.posture(&angles_rad).ends, ..*now };
         &self.reported

@@ -9,6 +9,7 @@ use super::frame::BodyFrame;
 use super::modes::{DEFAULT_MODE_OPTIONS, ModeOptions, SingleModeTracker};
 use super::pace::SpeedScaledNoise;
 use crate::error::{ParameterError, Rule, within};
+use crate::kinematics::solver_memory::SolverMemory;
 use crate::math::Vec3;
 use crate::observation::point_cloud::{BLOCK_POINTS, LeftOut, PointCloud};
 use crate::observation::point_likelihood::PointLikelihood;
@@ -142,6 +143,7 @@ pub struct UpperBodyTracker {
     goals: Slot<LinearGoals>,
     tracker: Slot<SingleModeTracker<UPPER_BONES, UPPER_ANGLES>>,
     cloud: PointCloud<UPPER_BLOCKS>,
+    memory: SolverMemory<UPPER_BONES, UPPER_ANGLES>,
 }
 
 impl UpperBodyTracker {
@@ -162,6 +164,7 @@ impl UpperBodyTracker {
             goals: Slot::Empty,
             tracker: Slot::Empty,
             cloud: PointCloud::empty(),
+            memory: SolverMemory::new(),
         }
     }
 
@@ -240,7 +243,8 @@ impl UpperBodyTracker {
             solver_steps: self.options.solver_steps,
             pulling_blocks: UPPER_BLOCKS,
         };
-        let estimate = tracker.step(scene, &motion, &BodyFrame { dt_s, blocks: self.cloud.blocks() });
+        let frame = BodyFrame { dt_s, blocks: self.cloud.blocks() };
+        let estimate = tracker.step_within(scene, &motion, &frame, &mut self.memory);
         Some((estimate, left_out))
     }
 }

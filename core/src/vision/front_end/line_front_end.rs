@@ -97,6 +97,18 @@ pub struct LineFrontEnd<
 /// ```
 pub type QvgaFrontEnd = LineFrontEnd<10, 32, 24, 8, 512, 120>;
 
+/// A front end for 640 x 480 pixels: twice the runs and components of a line, and four times the
+/// edge map; as many blobs and edges, since they say as much.
+///
+/// ```
+/// use sinew_core::vision::front_end::{VgaFrontEnd, edge_lines::EdgeSteps};
+/// use sinew_core::vision::hand_likelihood::HandLikelihood;
+///
+/// const { assert!(size_of::<VgaFrontEnd>() < 22 * 1024) };
+/// assert!(VgaFrontEnd::new((640, 480), HandLikelihood::default(), EdgeSteps::default()).is_ok());
+/// ```
+pub type VgaFrontEnd = LineFrontEnd<20, 64, 48, 8, 512, 240>;
+
 /// Bytes that vision may take for 320 x 240 pixels, the table included, the edge map not.
 ///
 /// Chosen: the stated budget of the front end, asserted below.

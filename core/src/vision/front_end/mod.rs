@@ -46,5 +46,5 @@ pub mod skin_table;
 mod tests;
 
 pub use frame_lines::{FrameLines, FrameLosses};
-pub use line_front_end::{LineFrontEnd, QvgaFrontEnd};
+pub use line_front_end::{LineFrontEnd, QvgaFrontEnd, VgaFrontEnd};
 pub use person_lines::{PersonFrame, PersonHands, PersonLines};

@@ -15,6 +15,7 @@ use super::options::ModeOptions;
 use super::state::BodyMode;
 use super::step::ModeAdvance;
 use crate::error::ParameterError;
+use crate::kinematics::solver_memory::SolverMemory;
 use crate::math::Vec3;
 use crate::observation::point_cloud::PointBlock;
 use crate::pik::goal::GoalProcess;
@@ -86,6 +87,17 @@ impl<const BONES: usize, const ANGLES: usize> SingleModeTracker<BONES, ANGLES> {
         motion: &GuidedMotion<'_, P, ANGLES>,
         frame: &BodyFrame<'_>,
     ) -> BodyEstimate<BONES, ANGLES> {
+        self.step_within(scene, motion, frame, &mut SolverMemory::new())
+    }
+
+    /// As [`Self::step`], in memory of the caller, which it leaves on the stack else.
+    pub fn step_within<P: GoalProcess<BONES>>(
+        &mut self,
+        scene: &BodyScene<BONES, ANGLES>,
+        motion: &GuidedMotion<'_, P, ANGLES>,
+        frame: &BodyFrame<'_>,
+        memory: &mut SolverMemory<BONES, ANGLES>,
+    ) -> BodyEstimate<BONES, ANGLES> {
         self.frame += 1;
         let dt_s = frame_time_s(frame);
         let is_usable = frame.blocks.iter().all(PointBlock::is_usable);
@@ -104,9 +116,20 @@ impl<const BONES: usize, const ANGLES: usize> SingleModeTracker<BONES, ANGLES> {
             seed: 0,
             frame: self.frame,
         };
-        climb(&advance, &mut self.mode);
+        climb(&advance, &mut self.mode, memory);
         self.mode.log_weight = 0.0;
-        self.conclude((scene, &limbs), blocks, dt_s)
+        let observed = self.observed((scene, &limbs), blocks);
+        self.conclude((scene, &limbs), observed, dt_s, memory)
+    }
+
+    // Not inlined: the surface leaves the stack before the conclusion needs it.
+    #[inline(never)]
+    fn observed(
+        &self,
+        (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
+        blocks: &[PointBlock],
+    ) -> [bool; BONES] {
+        observed(&scene.surface(&scene.posture(&self.mode.pose.angles_rad)), limbs, blocks)
     }
 
     // Not inlined: climb and conclusion need their stack one after the other.
@@ -114,15 +137,16 @@ impl<const BONES: usize, const ANGLES: usize> SingleModeTracker<BONES, ANGLES> {
     fn conclude(
         &mut self,
         (scene, limbs): (&BodyScene<BONES, ANGLES>, &Limbs<BONES>),
-        blocks: &[PointBlock],
+        observed: [bool; BONES],
         dt_s: f32,
+        memory: &mut SolverMemory<BONES, ANGLES>,
     ) -> BodyEstimate<BONES, ANGLES> {
         let mode = &self.mode;
-        let observed = observed(&scene.surface(&scene.posture(&mode.pose.angles_rad)), limbs, blocks);
         if let Some(pace) = &self.options.pace {
             self.noise.follow((pace, limbs), &mode.velocity.last.ends_m_per_s, (&observed, &scene.radii_m), dt_s);
         }
-        let reported = self.deadband.filter((scene, limbs), &mode.pose, &[self.options.jitter_std_m; BONES], dt_s);
+        let jitter_std_m = [self.options.jitter_std_m; BONES];
+        let reported = self.deadband.filter_within((scene, limbs), &mode.pose, &jitter_std_m, dt_s, memory);
         BodyEstimate {
             angles_rad: reported.angles_rad,
             ends_m: reported.ends_m,
@@ -140,8 +164,9 @@ impl<const BONES: usize, const ANGLES: usize> SingleModeTracker<BONES, ANGLES> {
 fn climb<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize>(
     advance: &ModeAdvance<'_, P, BONES, ANGLES>,
     mode: &mut BodyMode<BONES, ANGLES>,
+    memory: &mut SolverMemory<BONES, ANGLES>,
 ) {
-    advance.climb(mode);
+    advance.climb_within(mode, memory);
 }
 
 impl<const BONES: usize, const ANGLES: usize> SavedState for SingleModeTracker<BONES, ANGLES> {

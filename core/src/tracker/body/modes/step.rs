@@ -8,13 +8,14 @@ use super::jumps::{MAX_RIVALS, rivals};
 use super::options::{MAX_DRAWS, MAX_MODES};
 use super::select::select;
 use super::state::{BodyMode, ModeTracker};
-use crate::kinematics::cholesky::Cholesky;
-use crate::kinematics::inverse::{Mode, Solve};
+use crate::kinematics::forward::Posture;
+use crate::kinematics::inverse::Solve;
 use crate::kinematics::jacobian::column;
+use crate::kinematics::solver_memory::SolverMemory;
 use crate::math::{Vec3, exp, sqrt};
 use crate::observation::point_cloud::PointBlock;
 use crate::pik::goal::GoalProcess;
-use crate::pik::guided::{GuidedDensity, GuidedMotion};
+use crate::pik::guided::{GuidedDensity, GuidedMotion, GuidedPrior};
 use crate::pik::motion::{BodyMotion, BodyScene, FramePast};
 use crate::random::Stream;
 use crate::skeleton::Limbs;
@@ -59,10 +60,46 @@ pub struct ModeAdvance<'a, P, const BONES: usize, const ANGLES: usize> {
     pub(super) frame: u64,
 }
 
+/// What is expected of a start.
+struct Expected<const ANGLES: usize> {
+    prior: GuidedPrior<ANGLES>,
+    /// The pose with a limb drawn, if one was.
+    drawn_rad: Option<[f32; ANGLES]>,
+    /// Whether a limb may be farther off than points reach.
+    is_loose: bool,
+}
+
 impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance<'_, P, BONES, ANGLES> {
     /// Takes a start to the mode near it, and adds the frame's evidence to its weight.
     pub fn climb(&self, start: &mut BodyMode<BONES, ANGLES>) {
-        let ancestor = start.pose;
+        self.climb_within(start, &mut SolverMemory::new());
+    }
+
+    /// As [`Self::climb`], in memory of the caller.
+    pub(super) fn climb_within(&self, start: &mut BodyMode<BONES, ANGLES>, memory: &mut SolverMemory<BONES, ANGLES>) {
+        let Expected { prior, drawn_rad, is_loose } = self.expected(start);
+        let prior = prior.density(&self.scene.skeleton);
+        let stride = self.blocks.len().div_ceil(self.motion.pulling_blocks.max(1)).max(1);
+        let density = GuidedDensity { prior, scene: self.scene, blocks: self.blocks, stride, reach: 1.0 };
+        // A limb begins where it was drawn; else coarse steps look for what is farther off than
+        // points reach.
+        let mut starts: Vec<[f32; ANGLES], 2> = Vec::new();
+        if let Some(drawn_rad) = drawn_rad {
+            let _ = starts.push(drawn_rad);
+        } else if is_loose {
+            let _ = starts.push(prior.previous_rad);
+            let _ = starts.push(density.far_start_rad(&prior, memory));
+        }
+        let solution = density.solve_within(&starts, self.motion.solver_steps, memory);
+        self.arrive(start, &solution.angles_rad, memory);
+        start.log_density = solution.log_density;
+        start.log_weight += self.evidence_share * solution.log_density;
+    }
+
+    /// What is expected of a start. Not inlined: the past leaves the stack before the solver needs
+    /// it.
+    #[inline(never)]
+    fn expected(&self, start: &mut BodyMode<BONES, ANGLES>) -> Expected<ANGLES> {
         let velocity = start.velocity.expected(0.0, self.dt_s);
         let root_change = self.motion.root().expected_change(&velocity.angles_per_s, self.dt_s);
         let past = FramePast {
@@ -80,29 +117,12 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance
         };
         let (group, index) = start.drawn.take().unwrap_or((TRUNK_GROUP, 0));
         let mut stream = Stream::new(self.seed, self.frame, index);
-        let prior = self.motion.prior(&past, &ancestor, &mut start.pose.memory, &mut stream);
-        let prior = prior.density(&self.scene.skeleton);
-        let stride = self.blocks.len().div_ceil(self.motion.pulling_blocks.max(1)).max(1);
-        let density = GuidedDensity { prior, scene: self.scene, blocks: self.blocks, stride, reach: 1.0 };
-        let steps = self.motion.solver_steps;
-        // A limb begins where it was drawn; else coarse steps look for what is farther off than
-        // points reach.
-        let mut starts: Vec<[f32; ANGLES], 2> = Vec::new();
-        if group != TRUNK_GROUP {
-            let _ = starts.push(self.drawn_rad(&past, group, &prior.previous_rad, &mut stream));
-        } else if self.motion.is_any_loose(&past) {
-            let _ = starts.push(prior.previous_rad);
-            let _ = starts.push(density.far_start_rad(&prior));
-        }
-        let mode = density.mode_from(&starts, steps);
-        start.pose.angles_rad = mode.angles_rad;
-        let posture = self.scene.posture(&mode.angles_rad);
-        start.pose.ends_m = posture.ends;
-        // A precision that cannot be inverted says nothing new: the spread stays.
-        start.spread_m = self.spread_m(&mode).unwrap_or(start.spread_m);
-        start.velocity.follow(&ancestor, &start.pose, self.dt_s);
-        start.log_density = mode.log_density;
-        start.log_weight += self.evidence_share * mode.log_density;
+        let mut memory = start.pose.memory;
+        let prior = self.motion.prior(&past, &start.pose, &mut memory, &mut stream);
+        start.pose.memory = memory;
+        let is_drawn = group != TRUNK_GROUP;
+        let drawn_rad = is_drawn.then(|| self.drawn_rad(&past, group, &prior.expected_rad, &mut stream));
+        Expected { prior, drawn_rad, is_loose: self.motion.is_any_loose(&past) }
     }
 
     /// The expected pose with the angles of one limb drawn from the motion model's noise.
@@ -123,15 +143,33 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance
         self.scene.skeleton.clamp(drawn_rad)
     }
 
+    /// Brings `start` to the pose that the solver found.
+    // Not inlined: its memory is not the solver's.
+    #[inline(never)]
+    fn arrive(
+        &self,
+        start: &mut BodyMode<BONES, ANGLES>,
+        angles_rad: &[f32; ANGLES],
+        memory: &mut SolverMemory<BONES, ANGLES>,
+    ) {
+        let (ancestor, posture) = (start.pose, self.scene.posture(angles_rad));
+        (start.pose.angles_rad, start.pose.ends_m) = (*angles_rad, posture.ends);
+        // A precision that cannot be inverted says nothing new: the spread stays.
+        start.spread_m = self.spread_m(&posture, memory).unwrap_or(start.spread_m);
+        start.velocity.follow(&ancestor, &start.pose, self.dt_s);
+    }
+
     /// Standard deviations of the bones' ends, of the normal with the Hessian PIK (21) as
     /// precision: root of the trace of J H^-1 J'.
-    // Not inlined: the factor's memory is not the climb's.
-    #[inline(never)]
-    fn spread_m(&self, mode: &Mode<ANGLES>) -> Option<[f32; BONES]> {
-        let factor = Cholesky::new(&mode.hessian)?;
-        let (skeleton, posture) = (&self.scene.skeleton, self.scene.posture(&mode.angles_rad));
+    fn spread_m(
+        &self,
+        posture: &Posture<BONES, ANGLES>,
+        memory: &mut SolverMemory<BONES, ANGLES>,
+    ) -> Option<[f32; BONES]> {
+        let factor = memory.factor_hessian()?;
+        let skeleton = &self.scene.skeleton;
         Some(core::array::from_fn(|bone| {
-            let columns: [Vec3; ANGLES] = core::array::from_fn(|angle| column(skeleton, &posture, bone, angle));
+            let columns: [Vec3; ANGLES] = core::array::from_fn(|angle| column(skeleton, posture, bone, angle));
             let mut variance_m2 = 0.0;
             for row in [columns.map(|column| column.x), columns.map(|column| column.y), columns.map(|column| column.z)]
             {
