@@ -11,6 +11,7 @@ pub mod pik;
 pub mod pik_geometry;
 pub mod plot;
 pub mod printed;
+pub mod runs;
 
 use page::Page;
 use plot::Plot;
