@@ -108,6 +108,8 @@ fn run_until(args: &ReproduceArgs, console: &Console, stop: Stop<'_>) -> Result<
     let plots = plots.into_iter().map(|(file, plot)| (file, plot.to_svg()));
     for (file, svg) in plots.chain(drawings) {
         output.write(&file, |writer| Ok(writer.write_all(svg.as_bytes())?))?;
+        #[cfg(feature = "png")]
+        output.write_png(file.replace(".svg", ".png"), &crate::reproduce::raster::to_picture(&svg)?)?;
     }
     for (file, picture) in &pictures {
         output.write_png(file, picture)?;
