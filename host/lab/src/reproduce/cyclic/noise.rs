@@ -11,6 +11,8 @@ use anyhow::Result;
 use sinew::cyclic::angle_table::COLUMNS;
 use sinew::cyclic::tracking::FilterName;
 
+/// Head of the table; noises are in degrees.
+const HEAD: [&str; 8] = ["filter", "protocol", "sigma 1", "sigma 3", "sigma 6", "sigma 29", "sigma 57", "sigma 115"];
 /// Filters of the table.
 const FILTERS: [FilterName; 3] = [FilterName::Paper, FilterName::PaperCut, FilterName::Coupled];
 /// How far labels by hand may scatter, degrees: 2 and 5 pixels at both ends of a part of 50.
@@ -39,7 +41,7 @@ pub fn table_1(setting: &Setting<'_>, training: &[TestCycle], made: &mut Made) -
     let named = |name: &str, protocol: Protocol, cells: &mut dyn Iterator<Item = &Cell>| -> Vec<String> {
         [name.to_owned(), protocol.name().to_owned()].into_iter().chain(cells.map(text)).collect()
     };
-    let mut table = vec![["filter", "protocol", "1", "3", "6", "29", "57", "115"].map(String::from).to_vec()];
+    let mut table = vec![HEAD.map(String::from).to_vec()];
     for protocol in [Protocol::ExactMean, Protocol::Noisy] {
         for filter in FILTERS {
             table.push(named(filter.name(), protocol, &mut of(filter, protocol)));
@@ -75,7 +77,7 @@ pub fn table_1(setting: &Setting<'_>, training: &[TestCycle], made: &mut Made) -
         let points = points(&mut of(filter, Protocol::ExactMean));
         plot.series.push(Series { name: format!("ours, {}", filter.name()), points });
     }
-    let name = format!("paper, labels +- {} degrees", LABELS_DEG[LABELS_DEG.len() - 1]);
+    let name = format!("ours, paper, labels +- {}", LABELS_DEG[LABELS_DEG.len() - 1]);
     plot.series.push(Series { name, points: points(&mut labelled.iter()) });
     made.plots.push(("table_1.svg".into(), plot));
     made.page.sections.push(Section {
@@ -125,7 +127,8 @@ pub fn figure_4a(setting: &Setting<'_>, made: &mut Made) -> Result<()> {
     let wide: Vec<&Cell> = noise.iter().filter(is_wide).collect();
     let first = wide.iter().find(|cell| cell.filter == FilterName::Paper).map_or([0.0; 13], |cell| cell.each_deg);
     let limbs = |angles: &[usize; 4]| angles.iter().map(|&angle| first[angle]).sum::<f64>() / 4.0;
-    let mut table = vec![std::iter::once("filter").chain(names.iter().copied()).map(String::from).collect()];
+    let mut table: Vec<Vec<String>> =
+        std::iter::once("angle").chain(names.iter().copied()).map(|name| vec![name.to_owned()]).collect();
     let mut plot = Plot {
         title: "Figure 4a: error of each angle, sigma 115 degrees (exact-mean)".into(),
         x_label: "angle, named by the joint at its end".into(),
@@ -136,9 +139,10 @@ pub fn figure_4a(setting: &Setting<'_>, made: &mut Made) -> Result<()> {
     };
     for (index, cell) in wide.iter().enumerate() {
         let each = cell.each_deg.iter().zip(&cell.each_cycle_std_deg);
-        let mut row: Vec<String> = vec![cell.filter.name().into()];
-        row.extend(each.clone().map(|(error, std)| format!("{error:.1} +- {std:.1}")));
-        table.push(row);
+        table[0].push(cell.filter.name().into());
+        table[1..].iter_mut().zip(each.clone()).for_each(|(row, (error, std))| {
+            row.push(format!("{error:.1} +- {std:.1}"));
+        });
         // Beside each other, a fifth of the way to the next name apart.
         let beside = 0.2 * (index as f64 - 1.0);
         let points = each.enumerate().map(|(angle, (error, std))| (angle as f64 + beside, *error, *std)).collect();
