@@ -23,11 +23,12 @@ const TICK_PX: usize = 100;
 /// Signs of what every panel shows.
 const BLOB: (&str, &str) = ("<circle r='10' fill='#e8c39e' stroke='#a0703c'/>", "blob, by its area");
 const HAND: (&str, &str) = ("<path d='M-10 0h20m-10 -10v20' stroke='#d55e00' stroke-width='3'/>", "true hand");
-/// Strokes of the three best arms, the heaviest first: the paper's black, white and thin black.
+/// Strokes of the three best arms, the heaviest first and below the others, so that each shows
+/// where they coincide.
 const BEST: [&str; 3] = [
-    "stroke='black' stroke-width='4'",
-    "stroke='black' stroke-width='3' stroke-dasharray='8 4'",
-    "stroke='black' stroke-width='1'",
+    "stroke='black' stroke-width='8'",
+    "stroke='#56b4e9' stroke-width='4' stroke-dasharray='8 4'",
+    "stroke='#d55e00' stroke-width='1.5'",
 ];
 
 /// What the particles of a tracker show in one frame.
@@ -207,7 +208,10 @@ pub fn figure_3(frame: &Panel<'_>, standard: &Shown, corrected: &Shown) -> Strin
     let dots = |shown: &Shown| -> String {
         let dot =
             |pixel: &Pixel| format!("<circle cx='{:.1}' cy='{:.1}' r='4' fill='#0072b2'/>", pixel.u_px, pixel.v_px);
-        shown.hands_px.iter().map(dot).collect()
+        let (width, height) = frame.size_px;
+        let is_inside =
+            |pixel: &&Pixel| (0.0..width as f32).contains(&pixel.u_px) && (0.0..height as f32).contains(&pixel.v_px);
+        shown.hands_px.iter().filter(is_inside).map(dot).collect()
     };
     let arms = |shown: &Shown| -> String {
         let line = |(joints, style): (&[Pixel; 3], &&str)| {
