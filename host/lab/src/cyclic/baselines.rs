@@ -116,7 +116,7 @@ fn errors(
         let position = (velocity * index as f64).fract() as f32;
         let mean = view.mean_pose_rad::<ANGLES>(view.point(position));
         for angle in 0..ANGLES {
-            let seen = measured.angles_rad[angle].filter(|_| index as u64 % every == 0);
+            let seen = measured.angles_rad[angle].filter(|_| (index as u64).is_multiple_of(every));
             last_seen[angle] = seen.or(last_seen[angle]);
             let estimate = match baseline {
                 Baseline::Raw => last_seen[angle],

@@ -118,14 +118,18 @@ pub fn body_panels(panels: &[BodyPanel<'_>]) -> String {
     }
     let y = PANEL.1 + 1.9 * LINE;
     let mut x = 2.0;
-    let mut named = vec![("left", style(Some(Side::Left))), ("right", style(Some(Side::Right)))];
-    named.push(("trunk, head", style(None)));
+    let mut named = Vec::new();
+    if panels.iter().any(|panel| !panel.poses.is_empty()) {
+        named.push(("left", style(Some(Side::Left))));
+        named.push(("right", style(Some(Side::Right))));
+        named.push(("trunk, head", style(None)));
+    }
     if panels.iter().any(|panel| !panel.truth.is_empty()) {
         named.push(("truth", TRUTH));
     }
     for (name, style) in named {
         let _ = writeln!(svg, "<path d='M{x} {y}h26' {style}/><text x='{}' y='{}'>{name}</text>", x + 32.0, y + 4.0);
-        x += 48.0 + 7.0 * name.len() as f32;
+        x += 52.0 + 7.0 * name.len() as f32;
     }
     let bar = BAR_M * scale;
     let _ = writeln!(
@@ -151,13 +155,9 @@ mod tests {
         let poses = [vec![bone(-0.4, Some(Side::Left)), bone(0.4, Some(Side::Right))]];
         let truth = [bone(0.0, None)];
         let wide = [vec![bone(-2.0, None), bone(2.0, None)]];
-        let panel = |poses, truth| BodyPanel {
-            title: "a & b".into(),
-            look: Look::Front,
-            truth,
-            poses,
-            points_m: &[Vec3::new(0.1, 0.0, 3.0)],
-        };
+        let point = [Vec3::new(0.1, 0.0, 3.0)];
+        let panel =
+            |poses, truth| BodyPanel { title: "a & b".into(), look: Look::Front, truth, poses, points_m: &point };
         let alone = body_panels(&[panel(&poses, &truth)]);
         let scale = (PANEL.1 - 2.0 * GAP) / 1.0;
         assert!(alone.contains(&format!("h{:.1}m0 -4v8", BAR_M * scale)), "{alone}");

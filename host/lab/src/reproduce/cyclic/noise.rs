@@ -58,28 +58,7 @@ pub fn table_1(setting: &Setting<'_>, training: &[TestCycle], made: &mut Made) -
     }
     let acceleration_std = baselines::tuned_acceleration_std(&Setting { cycles: training, seeds: 1, ..*setting });
     table.extend(baselines::rows(setting, acceleration_std)?);
-    let mut plot = Plot {
-        title: "Table 1: error against the noise that the filter assumes (exact-mean)".into(),
-        x_label: "sigma, degrees (logarithmic)".into(),
-        y_label: "mean absolute error, degrees".into(),
-        log_x: true,
-        bars: "one standard deviation over test cycles".into(),
-        ..Plot::default()
-    };
-    for (name, values) in [("paper's test set 1", paper), ("paper's test set 2", printed::CYCLIC_TABLE_1_DEG[1])] {
-        let points = printed::CYCLIC_SIGMAS_DEG.into_iter().zip(values).map(|(x, y)| (x, y, 0.0)).collect();
-        plot.series.push(Series { name: name.into(), points });
-    }
-    let points = |cells: &mut dyn Iterator<Item = &Cell>| -> Vec<(f64, f64, f64)> {
-        cells.map(|c| (c.sigma_deg, c.error_deg, c.cycle_std_deg)).collect()
-    };
-    for filter in FILTERS {
-        let points = points(&mut of(filter, Protocol::ExactMean));
-        plot.series.push(Series { name: format!("ours, {}", filter.name()), points });
-    }
-    let name = format!("ours, paper, labels +- {}", LABELS_DEG[LABELS_DEG.len() - 1]);
-    plot.series.push(Series { name, points: points(&mut labelled.iter()) });
-    made.plots.push(("table_1.svg".into(), plot));
+    made.plots.push(("table_1.svg".into(), plot(&cells, &labelled)));
     made.page.sections.push(Section {
         id: "table-1",
         title: "Table 1: error against measurement noise".into(),
@@ -90,6 +69,30 @@ pub fn table_1(setting: &Setting<'_>, training: &[TestCycle], made: &mut Made) -
         pictures: vec!["table_1.svg".into()],
     });
     Ok(acceleration_std)
+}
+
+/// The paper's test sets, our filters, and `paper` with labels that scatter.
+fn plot(cells: &[Cell], labelled: &[Cell]) -> Plot {
+    let mut plot = Plot {
+        title: "Table 1: error against the noise that the filter assumes (exact-mean)".into(),
+        x_label: "sigma, degrees (logarithmic)".into(),
+        y_label: "mean absolute error, degrees".into(),
+        log_x: true,
+        bars: "one standard deviation over test cycles".into(),
+        ..Plot::default()
+    };
+    for (name, values) in ["paper's test set 1", "paper's test set 2"].into_iter().zip(printed::CYCLIC_TABLE_1_DEG) {
+        let points = printed::CYCLIC_SIGMAS_DEG.into_iter().zip(values).map(|(x, y)| (x, y, 0.0)).collect();
+        plot.series.push(Series { name: name.into(), points });
+    }
+    let point = |c: &Cell| (c.sigma_deg, c.error_deg, c.cycle_std_deg);
+    for filter in FILTERS {
+        let shown = cells.iter().filter(|c| c.filter == filter && c.protocol == Protocol::ExactMean);
+        plot.series.push(Series { name: format!("ours, {}", filter.name()), points: shown.map(point).collect() });
+    }
+    let name = format!("ours, paper, labels +- {}", LABELS_DEG[LABELS_DEG.len() - 1]);
+    plot.series.push(Series { name, points: labelled.iter().map(point).collect() });
+    plot
 }
 
 /// `paper` where the truth, and with it the measurement, scatters as labels by hand do; trained

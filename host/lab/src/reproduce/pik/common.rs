@@ -25,6 +25,8 @@ pub fn with_head<'a>(
 
 /// A margin with its interval.
 pub fn percent((mean, low, high): (f64, f64, f64)) -> String {
+    // Zero has no sign.
+    let [mean, low, high] = [mean, low, high].map(|value| value.round() + 0.0);
     format!("{mean:.0} % ({low:.0} to {high:.0})")
 }
 
@@ -57,5 +59,6 @@ mod tests {
         assert_eq!((error.as_str(), joints.as_str()), ("2.00 +- 1.41", "5.00 +- 0.00"));
         assert_eq!((lost.as_str(), smoothness.as_str()), ("25 %", "0.40 +- 0.00"));
         assert_eq!(percent((27.4, -3.6, 35.5)), "27 % (-4 to 36)");
+        assert_eq!(percent((-0.2, -0.4, 0.3)), "0 % (0 to 0)");
     }
 }
