@@ -16,7 +16,7 @@
 use sinew::body::tracking::{BodyTuning, ByJoint, PaperTuning};
 
 /// Steps of the gradient projection.
-/// Chosen: with them the errors are those of Gauss-Newton steps (docs/reproduce.md).
+/// Chosen: with them the errors are those of Gauss-Newton steps (docs/reproduce_pik.md).
 const GRADIENT_STEPS: usize = 20;
 
 /// Numbers of goals and of angles that are compared.
