@@ -69,22 +69,22 @@ impl Searched {
     }
 }
 
-/// Mean natural logarithm of PIK (34) over motions and models, metres.
+/// Mean natural logarithm of PIK (34) over motions, each with its seed, and models, metres.
 ///
 /// # Errors
 /// Names a number of the tracker that broke a rule.
 pub fn mean_log_error(
-    motions: &[SeenMotion],
+    motions: &[(u64, SeenMotion)],
     models: &[BodyModelKind],
     paper: &PaperTuning,
     particles: usize,
 ) -> Result<f64> {
     let tuning = BodyTuning { paper: *paper, ..BodyTuning::default() };
-    let jobs: Vec<(&SeenMotion, BodyModelKind)> =
+    let jobs: Vec<(&(u64, SeenMotion), BodyModelKind)> =
         motions.iter().flat_map(|motion| models.iter().map(move |&model| (motion, model))).collect();
     let logs: Vec<f64> = jobs
         .par_iter()
-        .map(|(motion, model)| Ok(trial(motion, *model, &tuning, particles, 1)?.0.error_m.ln()))
+        .map(|((seed, motion), model)| Ok(trial(motion, *model, &tuning, particles, *seed)?.0.error_m.ln()))
         .collect::<Result<_>>()?;
     Ok(logs.iter().sum::<f64>() / logs.len() as f64)
 }
@@ -110,7 +110,7 @@ pub struct Found {
 pub fn search(
     searched: Searched,
     start: &PaperTuning,
-    (motions, particles): (&[SeenMotion], usize),
+    (motions, particles): (&[(u64, SeenMotion)], usize),
     tries: usize,
     tried: impl Fn(usize, f64),
 ) -> Result<Found> {

@@ -3,6 +3,7 @@
 use super::until_signal;
 use crate::experiments::STACK_BYTES;
 use crate::reproduce::page::Page;
+use crate::reproduce::runs::{Runs, commit};
 use crate::reproduce::{Made, Material, arm, cyclic, pik};
 use crate::tables::{markdown, page};
 use anyhow::{Context, Result, ensure};
@@ -14,7 +15,6 @@ use sinew::output::OutputDir;
 use sinew::resume::{Begun, CELLS_FOLDER, Cells, Stop};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::Instant;
 
 /// The papers.
@@ -57,7 +57,8 @@ pub struct ReproduceArgs {
     /// Fewer seeds and particles; the page says what is left out.
     #[arg(long)]
     pub quick: bool,
-    /// PIK: leave out larger numbers of particles; a later run with more goes on from this one.
+    /// PIK and cyclic: leave out larger numbers of particles; a later run with more goes on from
+    /// this one.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..))]
     pub max_particles: Option<u32>,
     /// Also renew the tables of this page that have a mark of the paper, such as
@@ -93,17 +94,22 @@ fn run_until(args: &ReproduceArgs, console: &Console, stop: Stop<'_>) -> Result<
     let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build()?;
     let max_particles = args.max_particles.map_or(usize::MAX, |most| most as usize);
     let material = Material { data: &args.data, is_quick: args.quick, max_particles };
-    let start = Instant::now();
+    let (start, commit) = (Instant::now(), commit());
+    let mut runs = if is_begun { Runs::read(&output) } else { Runs::default() };
     let make = || match args.paper {
         Paper::Cyclic => cyclic::make(material, &cells),
         Paper::Pik => pik::make(material, &cells),
         Paper::Arm => arm::make(material, &cells),
     };
-    let Made { mut page, plots, drawings, pictures } = console.busy("tracking", || pool.install(make))?;
-    page.made_by = made_by(args, start.elapsed().as_secs_f64());
+    let made = console.busy("tracking", || pool.install(make));
+    runs.add(&output, &commit, start.elapsed().as_secs_f64())?;
+    let Made { mut page, plots, drawings, pictures } = made?;
+    page.made_by = made_by(args, &runs);
     let plots = plots.into_iter().map(|(file, plot)| (file, plot.to_svg()));
     for (file, svg) in plots.chain(drawings) {
         output.write(&file, |writer| Ok(writer.write_all(svg.as_bytes())?))?;
+        #[cfg(feature = "png")]
+        output.write_png(file.replace(".svg", ".png"), &crate::reproduce::raster::to_picture(&svg)?)?;
     }
     for (file, picture) in &pictures {
         output.write_png(file, picture)?;
@@ -128,18 +134,15 @@ fn renew(book: &Path, name: &str, page: &Page) -> Result<()> {
     fs::write(book, text).with_context(|| format!("the page `{shown}` cannot be written"))
 }
 
-/// Command, commit, machine and time of a run.
-fn made_by(args: &ReproduceArgs, seconds: f64) -> Vec<(&'static str, String)> {
+/// Command, commits, machine and time of what a page shows.
+fn made_by(args: &ReproduceArgs, runs: &Runs) -> Vec<(&'static str, String)> {
     let quick = if args.quick { " --quick" } else { "" };
     let most = args.max_particles.map_or_else(String::new, |most| format!(" --max-particles {most}"));
-    let git = Command::new("git").args(["describe", "--always", "--dirty"]).output().ok();
-    let commit =
-        git.filter(|git| git.status.success()).map(|git| String::from_utf8_lossy(&git.stdout).trim().to_owned());
     let (arch, threads) = (std::env::consts::ARCH, rayon::current_num_threads());
     vec![
         ("command", format!("`sinew-lab reproduce {}{quick}{most}`", args.paper.name())),
-        ("commit", commit.unwrap_or_else(|| format!("sinew {}", env!("CARGO_PKG_VERSION")))),
+        ("commit", runs.commits()),
         ("machine", format!("{arch}, {threads} threads")),
-        ("time of this run, s", format!("{seconds:.0}")),
+        ("time, s", format!("{:.0}", runs.seconds())),
     ]
 }

@@ -172,6 +172,25 @@ impl Setting<'_> {
         Ok(cells)
     }
 
+    /// One row of table 1.
+    ///
+    /// # Errors
+    /// As [`runs`] and [`Cells::cell`].
+    pub fn of_filter(&self, filter: FilterName, protocol: Protocol) -> Result<Vec<Cell>> {
+        SIGMAS_DEG
+            .iter()
+            .map(|&sigma| self.measure(protocol, &self.options(filter, sigma), Density::Every(1)))
+            .collect()
+    }
+
+    /// Exact-mean with a measurement every so many frames.
+    ///
+    /// # Errors
+    /// As [`runs`] and [`Cells::cell`].
+    pub fn skipping(&self, filter: FilterName, sigma_deg: f64, every: u64) -> Result<Cell> {
+        self.measure(Protocol::ExactMean, &self.options(filter, sigma_deg), Density::Every(every))
+    }
+
     /// Beside table 1: `paper` with the covariance scaled by k^2, as the paper words it.
     ///
     /// # Errors

@@ -24,7 +24,7 @@ pub fn figures(setting: &Setting<'_>, report: &CyclicReport) -> Result<Vec<(Stri
     for (name, column) in SHOWN {
         let angle = COLUMNS[1..].iter().position(|other| *other == column).unwrap_or_default();
         let title = format!("Figure 3: {name}, sigma 6 degrees, two cycles");
-        let curves = trajectories(setting, angle)?;
+        let curves = trajectories(setting, angle, Protocol::Noisy)?;
         all.push((
             format!("figure_3_{}.png", name.replace(' ', "_")),
             curves_plot(&title, "frame", "angle, degrees", false, &curves)?,
@@ -71,7 +71,7 @@ pub fn figures(setting: &Setting<'_>, report: &CyclicReport) -> Result<Vec<(Stri
 ///
 /// # Errors
 /// A run that fails.
-pub fn trajectories(setting: &Setting<'_>, angle: usize) -> Result<Vec<Curve>> {
+pub fn trajectories(setting: &Setting<'_>, angle: usize, protocol: Protocol) -> Result<Vec<Curve>> {
     let mut truth = Curve { name: "truth".into(), ..Curve::default() };
     let mut curves: Vec<Curve> = Vec::new();
     for (place, filter) in [FilterName::Paper, FilterName::Coupled].into_iter().enumerate() {
@@ -86,7 +86,7 @@ pub fn trajectories(setting: &Setting<'_>, angle: usize) -> Result<Vec<Curve>> {
                 rate_hz: Some(setting.rate_hz),
                 ..TrackingOptions::default()
             };
-            let measured = measurements(&cycle.truth, Protocol::Noisy, options.sigma_rad, 1);
+            let measured = measurements(&cycle.truth, protocol, options.sigma_rad, 1);
             let tracked = track(&measured, setting.model, &options)?;
             for (frame, row) in tracked.frames.iter().zip(cycle.truth.rows()) {
                 let x = start + (frame.frame - cycle.truth.first_frame()) as f64;

@@ -103,10 +103,12 @@ fn particles(scenes: &[ObservedScene], cells: &Cells<'_>, made: &mut Made) -> Re
     made.page.sections.push(Section {
         id: "figures-2-3",
         title: "Figures 2 and 3: temporal edges, particles, and the three best arms".into(),
-        material: "The first scene after 100 frames, in the image's pixels from its upper left corner. Discs: blobs, by \
-                   their area. Cross: the true hand. Heaviest arm first: thick, dashed, thin. The number is the share of \
+        material:
+            "The first scene after 100 frames, in the image's pixels from its upper left corner. Discs: blobs, by \
+                   their area. Cross: the true hand. Hands outside of the \
+                   image are not drawn. The number is the share of \
                    particles within a hand's width of the hand in the image, median over scenes with quartiles."
-            .into(),
+                .into(),
         rows: vec![
             Row {
                 what: "particles at the hand, standard".into(),
@@ -136,7 +138,7 @@ fn filmed(data: &Path, skin: &SkinModel, made: &mut Made) -> Result<()> {
     let film = Film::read(&folder.join(FILM), &folder.join(format!("{FILM}_boxes.csv")), skin)?;
     let trackers =
         [Variant::Standard, Variant::Corrected].map(|variant| experiments::as_printed(variant, printed::ARM_PARTICLES));
-    let frame = film.footage().views.len() - 1;
+    let frame = film.last_with_both_hands();
     let shown = |index: usize| shown_in(&film.footage(), &trackers[index], frame);
     let panel = film.panel(frame);
     made.drawings.push(("figure_2_filmed.svg".into(), figure_2(&panel)));
@@ -144,8 +146,9 @@ fn filmed(data: &Path, skin: &SkinModel, made: &mut Made) -> Result<()> {
     made.page.sections.push(Section {
         title: "Figures 2 and 3 on a filmed clip".into(),
         material: format!(
-            "The last frame of the clip {FILM} of two hands before a webcam: frame {frame}, since it has no more. The \
-             right arm is tracked. Crosses: centres of the reference boxes. Camera and shoulder are guessed."
+            "Frame {frame} of the clip {FILM} of two hands before a webcam, the last one in which each hand has a \
+             reference box. The right arm is tracked. Crosses: centres of the boxes, whose outlines are part of the \
+             film and have edges. Camera and shoulder are guessed."
         ),
         pictures: vec!["figure_2_filmed.svg".into(), "figure_3_filmed.svg".into()],
         ..Section::default()

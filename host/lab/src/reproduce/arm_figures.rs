@@ -16,11 +16,19 @@ use std::fmt::Write;
 /// Width of a hand, metres.
 /// Chosen: the breadth across the knuckles of an adult, 8 to 9 cm.
 const HAND_WIDTH_M: f32 = 0.085;
-/// Strokes of the three best arms, the heaviest first: the paper's black, white and thin black.
+/// Room left of and below a panel for its axes, pixels.
+const MARGIN_PX: (u32, u32) = (48, 56);
+/// Pixels from one tick to the next.
+const TICK_PX: usize = 100;
+/// Signs of what every panel shows.
+const BLOB: (&str, &str) = ("<circle r='10' fill='#e8c39e' stroke='#a0703c'/>", "blob, by its area");
+const HAND: (&str, &str) = ("<path d='M-10 0h20m-10 -10v20' stroke='#d55e00' stroke-width='3'/>", "true hand");
+/// Strokes of the three best arms, the heaviest first and below the others, so that each shows
+/// where they coincide.
 const BEST: [&str; 3] = [
-    "stroke='black' stroke-width='4'",
-    "stroke='black' stroke-width='3' stroke-dasharray='8 4'",
-    "stroke='black' stroke-width='1'",
+    "stroke='black' stroke-width='8'",
+    "stroke='#56b4e9' stroke-width='4' stroke-dasharray='8 4'",
+    "stroke='#d55e00' stroke-width='1.5'",
 ];
 
 /// What the particles of a tracker show in one frame.
@@ -142,17 +150,45 @@ fn panel(shown: &Panel<'_>, title: &str, marks: &str) -> String {
     svg
 }
 
-/// Panels beside each other.
-fn sheet((width, height): (u32, u32), panels: &[String]) -> String {
-    let total = panels.len() as u32 * (width + 10);
+/// Panels, two in a row, each with axes, and a legend below; a legend's sign stands at (0, 0).
+fn sheet((width, height): (u32, u32), panels: &[String], legend: &[(&str, &str)]) -> String {
+    let (columns, rows) = (panels.len().clamp(1, 2) as u32, panels.len().div_ceil(2) as u32);
+    let (step, step_down) = (width + MARGIN_PX.0, height + MARGIN_PX.1);
+    let (total, total_down) = (columns * step + 14, rows * step_down + 40);
     let mut svg = format!(
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {total} {height}' font-family='sans-serif'>\
-         <rect width='100%' height='100%' fill='white'/>\n"
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {total} {total_down}' font-family='sans-serif' \
+         font-size='16'>\n<rect width='100%' height='100%' fill='white'/>\n"
     );
-    for (index, panel) in panels.iter().enumerate() {
-        let _ = writeln!(svg, "<g transform='translate({} 0)'>{panel}</g>", index as u32 * (width + 10));
+    for (index, panel) in (0..).zip(panels) {
+        let corner = (MARGIN_PX.0 + index % 2 * step, 8 + index / 2 * step_down);
+        let axes = axes((width, height));
+        let _ = writeln!(svg, "<g transform='translate({} {})'>{panel}{axes}</g>", corner.0, corner.1);
+    }
+    let mut x = MARGIN_PX.0 + 30;
+    for (sign, name) in legend {
+        let y = total_down - 20;
+        let _ = writeln!(svg, "<g transform='translate({x} {y})'>{sign}<text x='28' y='5'>{name}</text></g>");
+        x += 60 + 8 * name.len() as u32;
     }
     svg.push_str("</svg>\n");
+    svg
+}
+
+/// Numbers of pixels along the left and the lower edge.
+fn axes((width, height): (u32, u32)) -> String {
+    let mut svg = String::new();
+    for u in (0..=width).step_by(TICK_PX) {
+        let _ = write!(
+            svg,
+            "<path d='M{u} {height}v6' stroke='black'/><text x='{u}' y='{}' text-anchor='middle'>{u}</text>",
+            height + 22
+        );
+    }
+    for v in (0..=height).step_by(TICK_PX) {
+        let _ =
+            write!(svg, "<path d='M0 {v}h-6' stroke='black'/><text x='-9' y='{}' text-anchor='end'>{v}</text>", v + 5);
+    }
+    let _ = write!(svg, "<text x='{}' y='{}' text-anchor='end'>u, v in pixels</text>", width, height + 40);
     svg
 }
 
@@ -162,7 +198,8 @@ pub fn figure_2(shown: &Panel<'_>) -> String {
     let edges = &shown.view.edges;
     let dots: String =
         edges.iter().map(|edge| format!("<rect x='{}' y='{}' width='2' height='2'/>", edge.u, edge.v)).collect();
-    sheet(shown.size_px, &[panel(shown, &format!("B: {} temporal edge pixels", edges.len()), &dots)])
+    let panels = [panel(shown, &format!("B: {} temporal edge pixels", edges.len()), &dots)];
+    sheet(shown.size_px, &panels, &[("<rect x='-3' y='-3' width='6' height='6'/>", "temporal edge pixel"), BLOB, HAND])
 }
 
 /// Figure 3: particles (A, B) and the three best arms (C, D) of `standard` and `corrected`.
@@ -171,7 +208,10 @@ pub fn figure_3(frame: &Panel<'_>, standard: &Shown, corrected: &Shown) -> Strin
     let dots = |shown: &Shown| -> String {
         let dot =
             |pixel: &Pixel| format!("<circle cx='{:.1}' cy='{:.1}' r='4' fill='#0072b2'/>", pixel.u_px, pixel.v_px);
-        shown.hands_px.iter().map(dot).collect()
+        let (width, height) = frame.size_px;
+        let is_inside =
+            |pixel: &&Pixel| (0.0..width as f32).contains(&pixel.u_px) && (0.0..height as f32).contains(&pixel.v_px);
+        shown.hands_px.iter().filter(is_inside).map(dot).collect()
     };
     let arms = |shown: &Shown| -> String {
         let line = |(joints, style): (&[Pixel; 3], &&str)| {
@@ -181,6 +221,8 @@ pub fn figure_3(frame: &Panel<'_>, standard: &Shown, corrected: &Shown) -> Strin
         };
         shown.best_px.iter().zip(&BEST).map(line).collect()
     };
+    let signs = BEST.map(|style| format!("<path d='M-12 0h30' {style}/>"));
+    let [first, second, third] = &signs;
     sheet(
         frame.size_px,
         &[
@@ -188,6 +230,14 @@ pub fn figure_3(frame: &Panel<'_>, standard: &Shown, corrected: &Shown) -> Strin
             panel(frame, "B: corrected, hands of all particles", &dots(corrected)),
             panel(frame, "C: standard, three best arms", &arms(standard)),
             panel(frame, "D: corrected, three best arms", &arms(corrected)),
+        ],
+        &[
+            ("<circle r='4' fill='#0072b2'/>", "a particle's hand"),
+            BLOB,
+            HAND,
+            (first, "heaviest arm"),
+            (second, "second"),
+            (third, "third"),
         ],
     )
 }

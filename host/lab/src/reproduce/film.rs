@@ -46,6 +46,13 @@ impl Film {
         Footage { config, size_px: *size_px, side: SideChoice::Right, seed: 1, frame_us, views }
     }
 
+    /// The last frame in which each hand has a box of its own; the last one where none has.
+    #[must_use]
+    pub fn last_with_both_hands(&self) -> usize {
+        let boxes = |frame: usize| self.boxes.iter().filter(|b| b.frame == frame).count();
+        (0..self.views.len()).rev().find(|&frame| boxes(frame) == 2).unwrap_or(self.views.len() - 1)
+    }
+
     /// What is drawn of a frame: its blobs, and crosses at the boxes' centres.
     #[must_use]
     pub fn panel(&self, frame: usize) -> Panel<'_> {

@@ -114,6 +114,7 @@ pub fn plots(pairs: &[Pair], part: BodyPart, truth_smoothness_m: f64) -> Vec<(St
             log_x: true,
             bars: "one standard deviation over seeds, as in the paper; mean over the motions".into(),
             series: vec![series(0, value, scale), series(1, value, scale)],
+            ..Plot::default()
         };
         if file == "figure_14" {
             let points = pairs.iter().map(|pair| (pair.particles as f64, 100.0 * truth_smoothness_m, 0.0)).collect();

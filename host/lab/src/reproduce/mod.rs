@@ -2,15 +2,20 @@
 
 pub mod arm;
 pub mod arm_figures;
+pub mod body_panels;
 pub mod cyclic;
 pub mod film;
 pub mod goals_against_angles;
+pub mod matrix;
 pub mod open_numbers;
 pub mod page;
 pub mod pik;
 pub mod pik_geometry;
 pub mod plot;
 pub mod printed;
+#[cfg(feature = "png")]
+pub mod raster;
+pub mod runs;
 
 use page::Page;
 use plot::Plot;

@@ -54,8 +54,15 @@ table{border-collapse:collapse;margin:1em 0}th,td{border:1px solid #999;padding:
 vertical-align:top}figure{margin:1em 0}img{max-width:100%}";
 
 fn cells(tag: &str, texts: &[&str]) -> String {
-    let cells: String = texts.iter().map(|text| format!("<{tag}>{}</{tag}>", escaped(text))).collect();
+    let cells: String = texts.iter().map(|text| format!("<{tag}>{}</{tag}>", prose(text))).collect();
     format!("<tr>{cells}</tr>\n")
+}
+
+/// `text` for HTML; what stands between backticks is code.
+fn prose(text: &str) -> String {
+    let text = escaped(text);
+    let parts = text.split('`').enumerate();
+    parts.map(|(index, part)| if index % 2 == 1 { format!("<code>{part}</code>") } else { part.to_owned() }).collect()
 }
 
 impl Page {
@@ -73,7 +80,7 @@ impl Page {
         html.push_str("</table>\n");
         if !self.left_out.is_empty() {
             html.push_str("<h2>Left out of this run</h2><ul>\n");
-            self.left_out.iter().for_each(|text| html.push_str(&format!("<li>{}</li>\n", escaped(text))));
+            self.left_out.iter().for_each(|text| html.push_str(&format!("<li>{}</li>\n", prose(text))));
             html.push_str("</ul>\n");
         }
         self.sections.iter().for_each(|section| section.write(&mut html));
@@ -102,7 +109,7 @@ impl Page {
 
 impl Section {
     fn write(&self, html: &mut String) {
-        let _ = writeln!(html, "<h2>{}</h2><p>{}</p>", escaped(&self.title), escaped(&self.material));
+        let _ = writeln!(html, "<h2>{}</h2><p>{}</p>", escaped(&self.title), prose(&self.material));
         if !self.rows.is_empty() {
             html.push_str("<table>\n");
             html.push_str(&cells("th", &["", "paper", "ours", "difference"]));
@@ -112,7 +119,7 @@ impl Section {
             html.push_str("</table>\n");
         }
         if !self.reason.is_empty() {
-            let _ = writeln!(html, "<p>Reason: {}</p>", escaped(&self.reason));
+            let _ = writeln!(html, "<p>Reason: {}</p>", prose(&self.reason));
         }
         if let Some((head, rows)) = self.table.split_first() {
             html.push_str("<table>\n");
@@ -147,7 +154,7 @@ mod tests {
         let page = Page {
             title: "cyclic".into(),
             left_out: vec!["seeds 6 to 10".into()],
-            made_by: vec![("command", "reproduce cyclic".into()), ("commit", "abc".into())],
+            made_by: vec![("command", "`reproduce cyclic` <all>".into()), ("commit", "abc".into())],
             sections: vec![section],
         };
         let html = page.to_html();
@@ -158,13 +165,14 @@ mod tests {
             "<li>seeds 6 to 10</li>",
             "<tr><th>a</th></tr>",
             "<td>commit</td><td>abc</td>",
+            "<td><code>reproduce cyclic</code> &lt;all&gt;</td>",
         ] {
             assert!(html.contains(part), "{part} is not in {html}");
         }
         let tables = page.tables("cyclic");
         let names: Vec<&str> = tables.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(names, ["reproduce-cyclic-made", "reproduce-cyclic-table-1", "reproduce-cyclic-table-1-numbers"]);
-        assert_eq!(tables[0].1, [line(["command", "commit"]), line(["reproduce cyclic", "abc"])]);
+        assert_eq!(tables[0].1, [line(["command", "commit"]), line(["`reproduce cyclic` <all>", "abc"])]);
         assert_eq!(tables[1].1[1], line(["sigma 1", "2.81", "0.35", "-2.46"]));
     }
 }

@@ -4,7 +4,9 @@
 use std::fmt::Write;
 
 /// Width and height of a plot, units of the view box.
-const SIZE: (f64, f64) = (720.0, 400.0);
+const SIZE: (f64, f64) = (720.0, 408.0);
+/// More height where values of x have names.
+const NAMES_HEIGHT: f64 = 60.0;
 /// The plot's own area: left, top, right, bottom.
 const AREA: (f64, f64, f64, f64) = (70.0, 40.0, 500.0, 350.0);
 /// Colours that stay apart for colour-blind people (Okabe and Ito's set without yellow).
@@ -30,6 +32,8 @@ pub struct Plot {
     pub x_label: String,
     /// y axis with its unit.
     pub y_label: String,
+    /// Names of x = 0, 1, ...; with them the values stand apart, without a line between them.
+    pub x_names: Vec<String>,
     /// Whether the x axis is logarithmic.
     pub log_x: bool,
     /// What the error bars are.
@@ -105,19 +109,24 @@ impl Plot {
             "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {} {}' font-family='sans-serif' font-size='12' role='img'>\
              <rect width='100%' height='100%' fill='white'/><text x='{}' y='22' font-size='14'>{}</text>\n",
             SIZE.0,
-            SIZE.1,
+            SIZE.1 + self.names_height(),
             AREA.0,
             escaped(&self.title)
         );
         self.axes(&scale, &mut svg);
         for (index, series) in self.series.iter().enumerate() {
-            curve(index, series, &scale, &mut svg);
+            curve((index, self.x_names.is_empty()), series, &scale, &mut svg);
         }
         if !self.bars.is_empty() {
-            let _ = writeln!(svg, "<text x='{}' y='394' font-size='11'>Bars: {}</text>", AREA.0, escaped(&self.bars));
+            let y = SIZE.1 + self.names_height() - 6.0;
+            let _ = writeln!(svg, "<text x='{}' y='{y}' font-size='11'>Bars: {}</text>", AREA.0, escaped(&self.bars));
         }
         svg.push_str("</svg>\n");
         svg
+    }
+
+    const fn names_height(&self) -> f64 {
+        if self.x_names.is_empty() { 0.0 } else { NAMES_HEIGHT }
     }
 
     fn axes(&self, scale: &Scale, svg: &mut String) {
@@ -132,40 +141,56 @@ impl Plot {
                 (y * 1.0e6).round() / 1.0e6
             );
         }
-        let mut xs: Vec<f64> = self.series.iter().flat_map(|series| &series.points).map(|point| point.0).collect();
-        xs.sort_by(f64::total_cmp);
-        // Values that come by way of radians differ in their last digits.
-        xs.dedup_by(|a, b| (*a - *b).abs() < 1.0e-6);
-        let xs = if self.log_x && xs.len() <= 10 { xs } else { ticks(scale.x.0, scale.x.1) };
-        for x in xs {
-            let at = scale.x_px(x);
-            let _ = writeln!(
-                svg,
-                "<path d='M{at:.1} {bottom}v5' stroke='black'/><text x='{at:.1}' y='{}' text-anchor='middle'>{}</text>",
-                bottom + 18.0,
-                (x * 1.0e6).round() / 1.0e6
-            );
-        }
+        self.x_ticks(scale, svg);
         let _ = writeln!(
             svg,
             "<path d='M{left} {top}V{bottom}H{right}' fill='none' stroke='black'/>\
              <text x='{}' y='{}' text-anchor='middle'>{}</text>\
              <text transform='translate(16 {}) rotate(-90)' text-anchor='middle'>{}</text>",
             0.5 * (left + right),
-            bottom + 33.0,
+            bottom + 33.0 + self.names_height(),
             escaped(&self.x_label),
             0.5 * (top + bottom),
             escaped(&self.y_label)
         );
     }
+
+    fn x_ticks(&self, scale: &Scale, svg: &mut String) {
+        let bottom = AREA.3;
+        let mut tick = |x: f64, placed: &dyn Fn(f64) -> String| {
+            let at = scale.x_px(x);
+            let _ = writeln!(svg, "<path d='M{at:.1} {bottom}v5' stroke='black'/><text {}</text>", placed(at));
+        };
+        if !self.x_names.is_empty() {
+            for (index, name) in self.x_names.iter().enumerate() {
+                let name = escaped(name);
+                let turned = |at| {
+                    format!("transform='translate({at:.1} {}) rotate(-45)' text-anchor='end'>{name}", bottom + 16.0)
+                };
+                tick(index as f64, &turned);
+            }
+            return;
+        }
+        let mut xs: Vec<f64> = self.series.iter().flat_map(|series| &series.points).map(|point| point.0).collect();
+        xs.sort_by(f64::total_cmp);
+        // Values that come by way of radians differ in their last digits.
+        xs.dedup_by(|a, b| (*a - *b).abs() < 1.0e-6);
+        let xs = if self.log_x && xs.len() <= 10 { xs } else { ticks(scale.x.0, scale.x.1) };
+        for x in xs {
+            let value = (x * 1.0e6).round() / 1.0e6;
+            tick(x, &|at| format!("x='{at:.1}' y='{}' text-anchor='middle'>{value}", bottom + 18.0));
+        }
+    }
 }
 
-fn curve(index: usize, series: &Series, scale: &Scale, svg: &mut String) {
+fn curve((index, has_line): (usize, bool), series: &Series, scale: &Scale, svg: &mut String) {
     let (colour, dash) = (COLOURS[index % COLOURS.len()], DASHES[index % DASHES.len()]);
     let stroke = format!("fill='none' stroke='{colour}' stroke-width='2' stroke-dasharray='{dash}'");
     let place = |&(x, y, _): &(f64, f64, f64)| (scale.x_px(x), scale.y_px(y));
     let line: Vec<String> = series.points.iter().map(place).map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
-    let _ = writeln!(svg, "<polyline points='{}' {stroke}/>", line.join(" "));
+    if has_line {
+        let _ = writeln!(svg, "<polyline points='{}' {stroke}/>", line.join(" "));
+    }
     // A line of many points needs no marks.
     let is_marked = series.points.len() <= 40;
     for point in series.points.iter().filter(|_| is_marked) {
@@ -182,7 +207,9 @@ fn curve(index: usize, series: &Series, scale: &Scale, svg: &mut String) {
     }
     let y = AREA.1 + 18.0 * index as f64;
     let x = AREA.2 + 14.0;
-    let _ = writeln!(svg, "<path d='M{x} {y}h30' {stroke}/>");
+    if has_line {
+        let _ = writeln!(svg, "<path d='M{x} {y}h30' {stroke}/>");
+    }
     if is_marked {
         svg.push_str(&mark(index, x + 15.0, y, colour));
     }
@@ -207,6 +234,15 @@ mod tests {
         assert!(svg.contains("a &lt; b") && svg.contains("<circle") && svg.contains("<rect x="), "{svg}");
         assert!(svg.contains("stroke-dasharray=''") && svg.contains("stroke-dasharray='8 3'"), "{svg}");
         assert_eq!(svg.matches("h8M").count(), 2, "one bar a curve: the other points have none");
+    }
+
+    #[test]
+    fn named_values_have_no_line_between_them() {
+        let series = vec![Series { name: "a".into(), points: vec![(0.0, 1.0, 0.1), (1.0, 2.0, 0.1)] }];
+        let names = vec!["neck".to_owned(), "knee".to_owned()];
+        let svg = Plot { series: series.clone(), x_names: names, ..Plot::default() }.to_svg();
+        assert!(svg.contains("neck") && svg.contains("rotate(-45)") && !svg.contains("<polyline"), "{svg}");
+        assert!(Plot { series, ..Plot::default() }.to_svg().contains("<polyline"));
     }
 
     #[test]

@@ -78,7 +78,7 @@ fn mean_errors_m<const CELLS: usize>(
 }
 
 /// By how much goals are below angles with the paper's structure and 100 particles, PIK (34): six
-/// motions and five seeds have 27 % (19 to 34, docs/reproduce.md), three motions scatter more.
+/// motions and five seeds have 27 % (18 to 35, docs/reproduce_pik.md), three motions scatter more.
 const GOALS_LEAD: [f64; 2] = [0.10, 0.50];
 
 #[test]
