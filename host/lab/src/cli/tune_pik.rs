@@ -30,7 +30,7 @@ pub struct TunePikArgs {
     #[arg(long, default_value_t = 150)]
     pub tries: usize,
     /// Seeds of each motion. One is enough to search; to compare what several searches found, take
-    /// five with `--tries 0`, since rounding alone changes the error of one seed by 5 %.
+    /// five with `--tries 0`, since rounding alone changes the error of one seed by 2 to 15 %.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     pub seeds: u64,
     /// Search only these numbers.
