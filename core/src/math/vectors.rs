@@ -1,7 +1,7 @@
 //! Vectors and 3x3 matrices. Products here have the bits of nalgebra's, in which the compiler keeps
 //! a check at level `z` that a panic stands behind.
 
-use super::{sin_cos, sqrt};
+use super::elementary::{sin_cos, sqrt};
 
 /// Three-component vector of metres (or a unit direction).
 ///
@@ -99,4 +99,15 @@ pub(crate) fn turn_columns(axis: &Vec3, (sine, cosine): (f32, f32)) -> [[f32; 3]
         [rest * x * y - sine * z, rest * y * y + cosine, rest * y * z + sine * x],
         [rest * x * z + sine * y, rest * y * z - sine * x, rest * z * z + cosine],
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rotation_keeps_its_axis_and_turns_right_handed() {
+        let turned = axis_rotation(&Vec3::z(), core::f32::consts::FRAC_PI_2) * Vec3::x();
+        assert!((turned - Vec3::y()).norm() < 1.0e-6);
+    }
 }
