@@ -34,7 +34,7 @@ pub struct SolverMemory<const BONES: usize, const ANGLES: usize> {
     pub(super) postures: [Posture<BONES, ANGLES>; 2],
     pub(super) hessian: [[f32; ANGLES]; ANGLES],
     /// Of the Hessian without the angles that are held.
-    pub(crate) factor: Cholesky<ANGLES>,
+    pub(super) factor: Cholesky<ANGLES>,
     pub(super) information: BodyInformation<BONES>,
 }
 

@@ -90,7 +90,7 @@ impl<const BONES: usize, const ANGLES: usize> SingleModeTracker<BONES, ANGLES> {
         self.step_within(scene, motion, frame, &mut SolverMemory::new())
     }
 
-    /// As [`Self::step`], in memory of the caller, which it leaves on the stack else.
+    /// As [`Self::step`], with the solver in memory of the caller; there it lies on the stack.
     pub fn step_within<P: GoalProcess<BONES>>(
         &mut self,
         scene: &BodyScene<BONES, ANGLES>,
