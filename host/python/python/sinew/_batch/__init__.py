@@ -91,6 +91,7 @@ def batch(
         A package is missing that the engine or a format needs.
     KeyboardInterrupt
         Ctrl-C came. What was finished is kept; ``status.csv`` shows the others as ``open``.
+        Where Ray ran before the call, tasks that it already has go on to their end.
     """
     if engine not in ("local", "ray"):
         raise ValueError(f'`engine` has to be "local" or "ray", not {engine!r}')

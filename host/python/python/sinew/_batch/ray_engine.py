@@ -20,7 +20,7 @@ from .result import Row, row_of
 
 # Tasks that are handed to Ray at once, for each processor.
 AHEAD = 4
-# How long an address may take to answer, and tasks to end after Ctrl-C.
+# How long an address may take to answer.
 PATIENCE_S = 5.0
 # Bytes of memory for what tasks return; Ray's least. A row takes two kilobytes.
 STORE_BYTES = 80 << 20
@@ -81,24 +81,25 @@ class _Driver:
         self._waiting: deque[list[int]] = deque()
 
     def run(self, workers: int) -> None:
-        """Work on all recordings, with so many tasks at once."""
+        """Work on all recordings, with so many tasks at once.
+
+        After Ctrl-C no task is cancelled: Ray 2.60 aborts the whole process if a task ends while it is
+        (`Tried to complete task that was not pending`, 2 of 25 times). A cluster that ends with the batch takes
+        its tasks along.
+        """
         kinds = [kind for _, kind, _ in self._recordings]
         self._waiting.extend(cut(kinds, self._plan.chunk, workers))
         again = self._plan.max_retries
         task = self._ray.remote(num_cpus=1, max_retries=again, retry_exceptions=[OSError])(work)
-        try:
-            where = self._ray.put(self._where)
-            while self._waiting or self._pending:
-                while self._waiting and len(self._pending) < AHEAD * workers:
-                    part = self._waiting.popleft()
-                    self._pending[task.remote([self._recordings[row][2] for row in part], where)] = part
-                ended, _ = self._ray.wait(list(self._pending), num_returns=1)
-                for reference in ended:
-                    self._take(reference, self._pending.pop(reference))
-                self._progress.show(len(self._found), len(self._recordings))
-        except BaseException:
-            self._cancel()
-            raise
+        where = self._ray.put(self._where)
+        while self._waiting or self._pending:
+            while self._waiting and len(self._pending) < AHEAD * workers:
+                part = self._waiting.popleft()
+                self._pending[task.remote([self._recordings[row][2] for row in part], where)] = part
+            ended, _ = self._ray.wait(list(self._pending), num_returns=1)
+            for reference in ended:
+                self._take(reference, self._pending.pop(reference))
+            self._progress.show(len(self._found), len(self._recordings))
 
     def _take(self, reference: Any, part: list[int]) -> None:
         errors = self._ray.exceptions
@@ -115,15 +116,6 @@ class _Driver:
             lines = lost(self._recordings[part[0]][0], reason, 1 + self._plan.max_retries)
         self._whole.add(part, lines)
         self._found.update(zip(part, map(row_of, lines.splitlines())))
-
-    def _cancel(self) -> None:
-        """Let tasks end after what they are at."""
-        left = list(self._pending)
-        for reference in left:
-            with contextlib.suppress(Exception):
-                self._ray.cancel(reference)
-        with contextlib.suppress(Exception):
-            self._ray.wait(left, num_returns=len(left), timeout=PATIENCE_S)
 
     @property
     def rows(self) -> list[Row]:
