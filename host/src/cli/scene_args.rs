@@ -11,6 +11,13 @@ pub(super) fn pair<T: FromStr>(text: &str) -> Result<(T, T), String> {
     parsed.ok_or_else(|| "two numbers with a comma between them were expected".to_string())
 }
 
+/// So many numbers with commas between them.
+pub(super) fn numbers<const N: usize>(text: &str) -> Result<[f32; N], String> {
+    let parsed: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    let wanted = || format!("{N} numbers with commas between them were expected");
+    parsed.and_then(|numbers| numbers.try_into().ok()).ok_or_else(wanted)
+}
+
 /// Frames of an older scene would mix with the new ones: they are refused, or with `force` removed.
 pub(super) fn clear_frames(frames: &Path, start: &str, end: &str, force: bool) -> Result<()> {
     let Ok(entries) = std::fs::read_dir(frames) else { return Ok(()) };

@@ -2,10 +2,11 @@
 
 use super::checkpoint_args::CheckpointArgs;
 use super::console::Console;
+use super::scene_args::numbers;
 use super::signals::stop_flag;
 use super::viewer_args::ViewerArgs;
 use crate::body::BodyPart;
-use crate::body::run::{BodyEvent, BodyRunReport, BodyTrackOptions, BodyTrackRun, tuning_file};
+use crate::body::run::{BodyEvent, BodyRunReport, BodyTrackOptions, BodyTrackRun, DEPTH_POINTS, tuning_file};
 use crate::body::tracking::{BodyModelKind, BodyStreamOptions, BodyTuning};
 use crate::cloud::MAX_POINTS;
 use crate::registry::{Kind, MEASURABLE, choice, extensions};
@@ -28,6 +29,26 @@ pub struct TrackBodyArgs {
         choice(&[Kind::Cloud])
     ))]
     pub folder: Option<PathBuf>,
+    /// Camera of depth images.
+    #[arg(long, value_name = "FILE.json", help = format!(
+        "Camera of depth images: DIR or DIR/depth holds those ({}), 16 bits of grey, in place of clouds \
+         [default: DIR/camera.json]",
+        choice(&[Kind::Depth])
+    ))]
+    pub camera: Option<PathBuf>,
+    /// Points count inside of this box, metres, camera axes: x right, y down, z forward.
+    #[arg(long, value_name = "X0,X1,Y0,Y1,Z0,Z1", value_parser = numbers::<6>, allow_hyphen_values = true)]
+    pub inside: Option<[f32; 6]>,
+    /// Points count where A x + B y + C z + D is positive, in metres: 0,-1,0,0.95 cuts off a floor
+    /// that is a metre below a level camera.
+    #[arg(long, value_name = "A,B,C,D", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    pub above_plane: Option<[f32; 4]>,
+    /// Maximum number of points of a frame that are weighed, drawn at random.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, help = format!(
+        "Maximum number of points of a frame that are weighed, drawn at random [default: {MAX_POINTS} of clouds, \
+         {DEPTH_POINTS} of depth images]"
+    ))]
+    pub points: Option<usize>,
     /// Folder for track.csv, track.bvh, track.trc, run.json and what else is asked for; files of
     /// these names are replaced.
     #[arg(long, value_name = "DIR", required_unless_present = "print_config")]
@@ -110,6 +131,10 @@ pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
     let out = args.out.as_deref().context("no --out was given")?;
     let options = BodyTrackOptions {
         folder: args.folder.clone().context("no DIR was given")?,
+        camera: args.camera.clone(),
+        inside_m: args.inside,
+        above_plane: args.above_plane,
+        max_points: args.points,
         part: args.body,
         model: args.model,
         particles: args.particles.unwrap_or(args.model.default_particles()),
@@ -146,8 +171,8 @@ fn run_with_progress(run: BodyTrackRun, console: &Console) -> Result<BodyRunRepo
     let outcome = run.run(stop_flag()?, &mut |event| match event {
         BodyEvent::Note(note) => print(format!("note: {note}")),
         BodyEvent::Skipped(cloud) => print(format!("skipped frame {}: {}", cloud.frame, cloud.reason)),
-        BodyEvent::OverCap(points) => print(format!(
-            "note: a cloud has {points} points; {MAX_POINTS} of them, drawn at random, are weighed, here and in all like it"
+        BodyEvent::OverCap { points, weighed } => print(format!(
+            "note: a cloud has {points} points; {weighed} of them, drawn at random, are weighed, here and in all like it"
         )),
         BodyEvent::Finished(frames) => bar.set_position(frames as u64),
     });

@@ -4,7 +4,7 @@ use super::diagnosis::{Diagnosis, Severity};
 use super::{frames, recordings};
 use crate::body::BodyFile;
 use crate::body::pose_file::read_pose;
-use crate::cloud::CloudFolder;
+use crate::cloud::{CloudError, CloudFolder, FoundSource, Region};
 use crate::images::list_images;
 use crate::report::Page;
 use crate::report::document::Level;
@@ -13,7 +13,7 @@ use std::path::Path;
 /// By what it holds; a run directory before anything else, since it may hold pictures too.
 pub(super) fn examine(path: &Path) -> Diagnosis {
     let has = |name: &str| path.join(name).exists();
-    if has("points") || CloudFolder::open(path).is_ok() {
+    if has("points") || has("camera.json") || CloudFolder::open(path).is_ok() {
         return clouds(path);
     }
     if ["run.json", "summary.json", "report.json", "track.csv", "arm.json", "cyclic.json"].iter().any(|name| has(name))
@@ -63,11 +63,16 @@ fn run(path: &Path) -> Diagnosis {
     diagnosis
 }
 
+/// The frames of a folder of clouds, or of depth images beside their camera.
+fn frames_of(path: &Path) -> Result<CloudFolder, CloudError> {
+    let found = FoundSource::find(path, None, Region::default())?;
+    found.source.open(&found.folder)
+}
+
 /// A folder that `sinew track body` takes.
 fn clouds(path: &Path) -> Diagnosis {
     let mut diagnosis = Diagnosis::new(path, "folder of point clouds");
-    let inside = path.join("points");
-    match CloudFolder::open(if inside.is_dir() { &inside } else { path }) {
+    match frames_of(path) {
         Ok(clouds) => {
             diagnosis.add(Severity::Good, format!("{} clouds", clouds.frames.len()));
             if clouds.missing() > 0 {

@@ -10,6 +10,7 @@ mod cut;
 mod cyclic_endurance;
 mod cyclic_walk;
 mod demo;
+mod depth_images;
 mod doctor;
 mod evaluate;
 mod evaluate_body;

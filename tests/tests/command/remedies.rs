@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Commands that read something, with `INPUT` in its place.
-const READERS: [&str; 29] = [
+const READERS: [&str; 30] = [
     "batch INPUT --out o",
     "angles INPUT --out o.csv",
     "cut INPUT --out o.csv",
@@ -26,6 +26,7 @@ const READERS: [&str; 29] = [
     "track arm in --config INPUT --out o",
     "track body INPUT --out o",
     "track body in --config INPUT --out o",
+    "track body in --camera INPUT --out o",
     "evaluate hands INPUT --boxes boxes.csv",
     "evaluate hands in --boxes INPUT",
     "train skin --images INPUT --masks INPUT --out o.json",

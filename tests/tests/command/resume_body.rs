@@ -3,7 +3,7 @@
 
 use sinew::body::BodyPart;
 use sinew::body::run::{BodyEvent, BodyTrackOptions, BodyTrackRun};
-use sinew::body::tracking::{BodyModelKind, BodyTuning};
+use sinew::body::tracking::BodyModelKind;
 use sinew_tests::{files_below, modified, set_modified, sinew_command};
 use std::collections::BTreeMap;
 use std::fs;
@@ -74,21 +74,12 @@ impl Scene {
     fn options(&self, model: BodyModelKind, everything: bool) -> BodyTrackOptions {
         BodyTrackOptions {
             folder: self.path("in"),
-            part: None,
             model,
             particles: 20,
-            skeleton: None,
-            partial: false,
-            height_m: None,
-            init: None,
-            stick: None,
             seed: 3,
-            threads: None,
-            rate_hz: None,
-            strict: false,
             particles_csv: everything,
             pictures: everything,
-            tuning: BodyTuning::default(),
+            ..BodyTrackOptions::default()
         }
     }
 

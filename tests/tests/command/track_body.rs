@@ -2,7 +2,6 @@
 
 use assert_cmd::Command;
 use sinew::body::run::{BodyEvent, BodyTrackOptions, BodyTrackRun};
-use sinew::body::tracking::{BodyModelKind, BodyTuning};
 use sinew_core::skeleton::BodyMeasures;
 use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_JOINT_NAMES, full_body};
 use sinew_tests::sinew_command;
@@ -410,21 +409,10 @@ fn what_was_finished_before_ctrl_c_is_kept() {
     let scene = Scene::new("stick-wave");
     let options = BodyTrackOptions {
         folder: scene.path("in"),
-        part: None,
-        model: BodyModelKind::Guided,
         particles: 30,
-        skeleton: None,
-        partial: false,
-        height_m: None,
-        init: None,
-        stick: None,
-        seed: 1,
         threads: Some(2),
-        rate_hz: None,
-        strict: false,
-        particles_csv: false,
         pictures: true,
-        tuning: BodyTuning::default(),
+        ..BodyTrackOptions::default()
     };
     let stop = AtomicBool::new(false);
     let run = BodyTrackRun::prepare(options, &scene.path("out")).unwrap();

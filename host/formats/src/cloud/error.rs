@@ -17,7 +17,7 @@ pub enum CloudError {
         reason: std::io::Error,
     },
     /// The file ending is none of those that are read.
-    #[error("`{}` is no cloud of points that can be read; files that end in {} are", path.display(), extension_list())]
+    #[error("`{}` is no cloud of points that can be read; files that end in {} are", path.display(), extension_list(Kind::Cloud))]
     UnknownKind {
         /// The file.
         path: PathBuf,
@@ -39,19 +39,34 @@ pub enum CloudError {
         /// The rule, with what was found instead.
         rule: String,
     },
+    /// The camera of depth images is none.
+    #[error("`{}` is no camera of depth images: {rule}; docs/track_body.md shows one", path.display())]
+    Camera {
+        /// The file.
+        path: PathBuf,
+        /// The rule, with what was found instead.
+        rule: String,
+    },
     /// The path is a file.
     #[error("`{}` is not a folder; give the folder that holds one file of points for each frame", .0.display())]
     NotAFolder(PathBuf),
     /// The folder holds nothing at all.
-    #[error("`{}` is empty; put one file of points for each frame there ({})", .0.display(), extension_list())]
-    Empty(PathBuf),
+    #[error("`{}` is empty; put one file of points for each frame there ({})", folder.display(), extension_list(*kind))]
+    Empty {
+        /// The folder.
+        folder: PathBuf,
+        /// What was looked for.
+        kind: Kind,
+    },
     /// The folder holds files, but no cloud.
-    #[error("`{}` holds no points; files that end in {} are read, and it holds {found}", folder.display(), extension_list())]
+    #[error("`{}` holds no points; files that end in {} are read, and it holds {found}", folder.display(), extension_list(*kind))]
     NoCloud {
         /// The folder.
         folder: PathBuf,
         /// What was found instead, in words.
         found: String,
+        /// What was looked for.
+        kind: Kind,
     },
     /// Clouds of more than one kind.
     #[error("`{}` holds {found}; keep the frames of one run in one kind of file, and other tables elsewhere", folder.display())]
@@ -92,6 +107,6 @@ impl CloudError {
     }
 }
 
-fn extension_list() -> String {
-    extensions(&[Kind::Cloud])
+fn extension_list(kind: Kind) -> String {
+    extensions(&[kind])
 }

@@ -32,6 +32,11 @@ impl CloudFolder {
     /// The folder is missing, is a file, is empty, or holds no cloud or clouds of several kinds.
     /// The names do not number the frames.
     pub fn open(folder: &Path) -> Result<Self, CloudError> {
+        Self::open_kind(folder, Kind::Cloud)
+    }
+
+    /// As [`Self::open`], of clouds or depth images.
+    pub(super) fn open_kind(folder: &Path, kind: Kind) -> Result<Self, CloudError> {
         let unreadable = |reason| CloudError::Unreadable { path: folder.to_path_buf(), reason };
         if folder.is_file() {
             return Err(CloudError::NotAFolder(folder.to_path_buf()));
@@ -44,11 +49,11 @@ impl CloudFolder {
                 continue;
             }
             *kinds.entry(kind_in_words(&path)).or_default() += 1;
-            if path.is_file() && find(&path, &[Kind::Cloud]).is_some() {
+            if path.is_file() && find(&path, &[kind]).is_some() {
                 files.push(path);
             }
         }
-        check_kinds(folder, &kinds)?;
+        check_kinds(folder, &kinds, kind)?;
         files.sort_by(|a, b| natord::compare(&text(a.file_name()), &text(b.file_name())).then_with(|| a.cmp(b)));
         let stems: Vec<String> = files.iter().map(|file| text(file.file_stem())).collect();
         let stems: Vec<&str> = stems.iter().map(String::as_str).collect();
@@ -78,18 +83,18 @@ fn kind_in_words(path: &Path) -> String {
     )
 }
 
-fn check_kinds(folder: &Path, kinds: &BTreeMap<String, usize>) -> Result<(), CloudError> {
+fn check_kinds(folder: &Path, kinds: &BTreeMap<String, usize>, wanted: Kind) -> Result<(), CloudError> {
     let in_words = |(kind, count): (&String, &usize)| format!("{count} {kind}");
     let is_cloud =
-        |(kind, _): &(&String, &usize)| endings(&[Kind::Cloud]).any(|known| **kind == format!("*.{known} file(s)"));
+        |(kind, _): &(&String, &usize)| endings(&[wanted]).any(|known| **kind == format!("*.{known} file(s)"));
     let clouds: Vec<String> = kinds.iter().filter(is_cloud).map(in_words).collect();
     let folder = folder.to_path_buf();
     match clouds.len() {
         1 => Ok(()),
-        0 if kinds.is_empty() => Err(CloudError::Empty(folder)),
+        0 if kinds.is_empty() => Err(CloudError::Empty { folder, kind: wanted }),
         0 => {
             let found = kinds.iter().map(in_words).collect::<Vec<_>>().join(", ");
-            Err(CloudError::NoCloud { folder, found })
+            Err(CloudError::NoCloud { folder, found, kind: wanted })
         }
         _ => Err(CloudError::MixedKinds { folder, found: clouds.join(" and ") }),
     }

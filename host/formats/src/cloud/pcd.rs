@@ -145,7 +145,7 @@ mod tests {
         fn all_three_kinds_of_data_are_read(points in prop::collection::vec((-9.0_f32..9.0, -9.0_f32..9.0, 0.02_f32..9.0), 0..40)) {
             let points: Vec<Vec3> = points.into_iter().map(|(x, y, z)| Vec3::new(x, y, z)).collect();
             for bytes in [ascii(&points), binary(&points), compressed(&points)] {
-                prop_assert_eq!(parse(&bytes).unwrap(), PointCloud { points_m: points.clone(), skipped: 0 });
+                prop_assert_eq!(parse(&bytes).unwrap(), PointCloud { points_m: points.clone(), ..PointCloud::default() });
             }
         }
     }
@@ -154,7 +154,7 @@ mod tests {
     fn points_that_were_not_measured_are_counted() {
         let points = [Vec3::new(f32::NAN, f32::NAN, f32::NAN), Vec3::zeros(), Vec3::new(0.0, 0.0, 1.0)];
         for bytes in [ascii(&points), binary(&points), compressed(&points)] {
-            assert_eq!(parse(&bytes).unwrap(), PointCloud { points_m: vec![points[2]], skipped: 2 });
+            assert_eq!(parse(&bytes).unwrap(), PointCloud { points_m: vec![points[2]], skipped: 2, outside: 0 });
         }
     }
 

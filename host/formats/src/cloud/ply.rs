@@ -128,14 +128,14 @@ mod tests {
             let points: Vec<Vec3> = points.into_iter().map(|(x, y, z)| Vec3::new(x, y, z)).collect();
             let mut bytes = Vec::new();
             write_ply(&points, &mut bytes).unwrap();
-            prop_assert_eq!(parse(&bytes).unwrap(), PointCloud { points_m: points, skipped: 0 });
+            prop_assert_eq!(parse(&bytes).unwrap(), PointCloud { points_m: points, ..PointCloud::default() });
         }
     }
 
     #[test]
     fn other_types_properties_and_elements_do_no_harm() {
         let cloud = parse(ASCII.as_bytes()).unwrap();
-        assert_eq!(cloud, PointCloud { points_m: vec![Vec3::new(1.25, -2.0, 3.5)], skipped: 2 });
+        assert_eq!(cloud, PointCloud { points_m: vec![Vec3::new(1.25, -2.0, 3.5)], skipped: 2, outside: 0 });
         assert_eq!(parse(ASCII.replace('\n', "\r\n").as_bytes()).unwrap(), cloud);
     }
 

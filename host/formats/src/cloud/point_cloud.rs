@@ -21,6 +21,8 @@ pub struct PointCloud {
     pub points_m: Vec<Vec3>,
     /// Number of points of the file that were left out as unusable.
     pub skipped: usize,
+    /// Number of points that were left out since they are outside of the region that counts.
+    pub outside: usize,
 }
 
 impl PointCloud {

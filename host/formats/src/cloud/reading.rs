@@ -25,6 +25,15 @@ pub fn read_noting(path: &Path, note: impl FnOnce(&[u8])) -> Result<PointCloud, 
     let Some(Reader::Cloud(parser)) = find(path, &[Kind::Cloud]).map(|format| format.reader) else {
         return Err(CloudError::UnknownKind { path: path.to_path_buf() });
     };
+    read_with(path, note, parser)
+}
+
+/// Reads a file's content by `parser`.
+pub(super) fn read_with(
+    path: &Path,
+    note: impl FnOnce(&[u8]),
+    parser: impl Fn(&[u8]) -> Result<PointCloud, String>,
+) -> Result<PointCloud, CloudError> {
     let bytes = read_bytes(path, MAX_FILE_BYTES).map_err(|error| CloudError::of_file(path, error))?;
     note(&bytes);
     parse(parser, &bytes).map_err(|rule| {
@@ -35,7 +44,7 @@ pub fn read_noting(path: &Path, note: impl FnOnce(&[u8])) -> Result<PointCloud, 
 
 /// Parses the content of a file. A parser of another crate may panic on a damaged file: that is an
 /// error too.
-fn parse(parser: fn(&[u8]) -> Result<PointCloud, String>, bytes: &[u8]) -> Result<PointCloud, String> {
+fn parse(parser: impl Fn(&[u8]) -> Result<PointCloud, String>, bytes: &[u8]) -> Result<PointCloud, String> {
     let parsed = catch_quietly(|| parser(bytes));
     parsed.unwrap_or_else(|| Err("it is damaged in a way that its reader does not know".to_owned()))
 }

@@ -18,6 +18,8 @@ pub enum Kind {
     Skeleton,
     /// The points of one frame.
     Cloud,
+    /// The depth of each pixel of one frame.
+    Depth,
     /// One picture.
     Image,
     /// Pictures over time.
@@ -50,6 +52,7 @@ impl Format {
             Reader::Markers(_) => Kind::MarkerMotion,
             Reader::Skeleton => Kind::Skeleton,
             Reader::Cloud(_) => Kind::Cloud,
+            Reader::Depth => Kind::Depth,
             Reader::Image => Kind::Image,
             Reader::Video => Kind::Video,
             Reader::Keypoints => Kind::Keypoints,
@@ -84,6 +87,8 @@ pub enum Reader {
     Skeleton,
     /// Parses the content of a point cloud's file.
     Cloud(fn(&[u8]) -> Result<PointCloud, String>),
+    /// Depth images are read by `cloud::CloudSource`, with their camera.
+    Depth,
     /// Images are read by `images::load_rgb`, which goes by the content.
     Image,
     /// Videos are read by `images::VideoFrames`, through ffmpeg.

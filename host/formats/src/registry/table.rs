@@ -6,7 +6,7 @@ use crate::cloud::{csv, pcd, ply};
 use crate::motion::{amc, bvh, c3d, exponential_map, trc};
 
 /// All formats, in the order in which texts list them.
-pub static FORMATS: [Format; 25] = [
+pub static FORMATS: [Format; 27] = [
     Format {
         name: "BVH",
         extensions: &["bvh"],
@@ -63,6 +63,8 @@ pub static FORMATS: [Format; 25] = [
     cloud("PLY", &["ply"], &[at(0, b"ply\n"), at(0, b"ply\r")], ply::parse),
     cloud("PCD", &["pcd"], &[at(0, b"# .PCD"), at(0, b"VERSION")], pcd::parse),
     cloud("CSV", &["csv"], &[], csv::parse),
+    depth("PNG", &["png"], &[at(0, b"\x89PNG")]),
+    depth("PGM", &["pgm"], &[at(0, b"P2"), at(0, b"P5")]),
     image("PNG", &["png"], &[at(0, b"\x89PNG")]),
     image("JPEG", &["jpg", "jpeg"], &[at(0, b"\xff\xd8\xff")]),
     image("PPM", &["ppm"], &[at(0, b"P3"), at(0, b"P6")]),
@@ -97,6 +99,10 @@ const fn cloud(
     parse: fn(&[u8]) -> Result<PointCloud, String>,
 ) -> Format {
     Format { name, extensions, note: "", signatures, reader: Reader::Cloud(parse) }
+}
+
+const fn depth(name: &'static str, extensions: Words, signatures: Signatures) -> Format {
+    Format { name, extensions, note: "", signatures, reader: Reader::Depth }
 }
 
 const fn image(name: &'static str, extensions: Words, signatures: Signatures) -> Format {

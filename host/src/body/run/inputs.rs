@@ -8,7 +8,7 @@ use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::tracking::BodyModelKind;
 use crate::body::tracking::stream::stick_at;
 use crate::body::tracking::stream_options::{check_part, check_rate};
-use crate::cloud::{CloudFolder, MAX_DISTANCE_M};
+use crate::cloud::{CloudFolder, CloudSource, FoundSource, MAX_DISTANCE_M};
 use crate::error::{Context, Result, ensure};
 use crate::json_file::read_json;
 use crate::stereo::{SeenStick, StereoCamera, TrueFrame, read_stick, read_truth};
@@ -25,6 +25,8 @@ use std::path::{Path, PathBuf};
 pub struct InputFiles {
     /// Folder of the clouds.
     pub clouds: PathBuf,
+    /// The camera of depth images; none of clouds.
+    pub camera: Option<PathBuf>,
     /// The person's measures; a height where there is none.
     pub skeleton: Option<PathBuf>,
     /// The first pose; found in the points where there is none.
@@ -42,6 +44,8 @@ pub struct InputFiles {
 pub struct BodyInputs {
     /// The clouds.
     pub clouds: CloudFolder,
+    /// What their files are, and which points count.
+    pub source: CloudSource,
     /// Frames in a second.
     pub rate_hz: f32,
     /// How much of the body is tracked.
@@ -80,10 +84,10 @@ impl BodyInputs {
     /// # Errors
     /// Names the file or option, the rule it broke, and the remedy.
     pub fn read(options: &BodyTrackOptions) -> Result<Self> {
-        let points = options.folder.join("points");
-        let clouds_folder = if points.is_dir() { points } else { options.folder.clone() };
-        let clouds = CloudFolder::open(&clouds_folder)?;
         let beside = |name: &str| Some(options.folder.join(name)).filter(|path| path.is_file());
+        let FoundSource { source, folder: clouds_folder, camera } =
+            FoundSource::find(&options.folder, options.camera.as_deref(), options.region())?;
+        let clouds = source.open(&clouds_folder)?;
         let mut notes = Vec::new();
         let scene_file = beside("run.json");
         let scene = scene_file.as_deref().map_or_else(|| Ok(SceneReport::default()), read_scene)?;
@@ -114,6 +118,7 @@ impl BodyInputs {
         let truth = truth_file.as_deref().map_or_else(|| Ok(Vec::new()), read_truth)?;
         Ok(Self {
             clouds,
+            source,
             rate_hz,
             part,
             measures,
@@ -123,6 +128,7 @@ impl BodyInputs {
             floor_y_m: scene.floor_y_m,
             files: InputFiles {
                 clouds: clouds_folder,
+                camera,
                 skeleton,
                 init,
                 stick: stick_file,

@@ -1,17 +1,32 @@
 //! What decides the result of a run.
 
 use crate::body::BodyPart;
-use crate::body::tracking::stream_options::{check_modes, check_particles, check_rate, check_threads};
+use crate::body::tracking::stream_options::{check_modes, check_particles, check_points, check_rate, check_threads};
 use crate::body::tracking::{BodyModelKind, BodyStreamOptions, BodyTuning};
+use crate::cloud::Region;
 use crate::error::{Result, ensure_option};
 use serde::Serialize;
+use sinew_core::math::Vec3;
 use std::path::PathBuf;
+
+/// Points of a depth image that are weighed where nothing else is asked for.
+///
+/// Chosen: as many as the scenes have that the models were tuned on.
+pub const DEPTH_POINTS: usize = 2000;
 
 /// Everything that decides the result of a run; results do not depend on `threads`.
 #[derive(Debug, Clone, Serialize)]
 pub struct BodyTrackOptions {
     /// Folder of clouds, or a folder that holds them in `points/`.
     pub folder: PathBuf,
+    /// The camera of depth images; `camera.json` of the folder where there is none.
+    pub camera: Option<PathBuf>,
+    /// Least and greatest x, y and z of the points that count, metres.
+    pub inside_m: Option<[f32; 6]>,
+    /// Points count where a x + b y + c z + d is positive, x, y and z in metres.
+    pub above_plane: Option<[f32; 4]>,
+    /// Maximum number of points of a frame that are weighed.
+    pub max_points: Option<usize>,
     /// How much of the body is tracked; what the folder's `run.json` says, or all, where there is
     /// none.
     pub part: Option<BodyPart>,
@@ -52,6 +67,10 @@ impl Default for BodyTrackOptions {
         let BodyStreamOptions { model, particles, seed, threads, tuning, .. } = BodyStreamOptions::default();
         Self {
             folder: PathBuf::new(),
+            camera: None,
+            inside_m: None,
+            above_plane: None,
+            max_points: None,
             part: None,
             model,
             particles,
@@ -72,6 +91,12 @@ impl Default for BodyTrackOptions {
 }
 
 impl BodyTrackOptions {
+    /// Where points count.
+    pub(super) fn region(&self) -> Region {
+        let corners = |[x0, x1, y0, y1, z0, z1]: [f32; 6]| [Vec3::new(x0, y0, z0), Vec3::new(x1, y1, z1)];
+        Region { inside_m: self.inside_m.map(corners), above: self.above_plane }
+    }
+
     /// Checks what can be checked without files.
     ///
     /// # Errors
@@ -80,6 +105,17 @@ impl BodyTrackOptions {
         check_particles(self.particles)?;
         check_modes(self.model, self.particles)?;
         check_threads(self.threads)?;
+        self.max_points.map_or(Ok(()), check_points)?;
+        if let Some([x0, x1, y0, y1, z0, z1]) = self.inside_m {
+            ensure_option!(
+                x0 < x1 && y0 < y1 && z0 < z1,
+                "--inside has to be least and greatest x, y and z, and one of {x0},{x1},{y0},{y1},{z0},{z1} is not below its greatest"
+            );
+        }
+        if let Some([a, b, c, d]) = self.above_plane {
+            let is_plane = [a, b, c, d].iter().all(|number| number.is_finite()) && [a, b, c] != [0.0; 3];
+            ensure_option!(is_plane, "--above-plane has to be finite with a direction A,B,C, not {a},{b},{c},{d}");
+        }
         if let Some(rate_hz) = self.rate_hz {
             check_rate("--rate", rate_hz)?;
         }

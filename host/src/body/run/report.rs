@@ -27,6 +27,9 @@ pub struct PointCounts {
     pub used: u64,
     /// Points that are none: not finite, at the camera's centre, or too far away.
     pub skipped: u64,
+    /// Points outside of the region that counts.
+    #[serde(default)]
+    pub outside: u64,
     /// Points left out by chance, since their cloud had more than can be weighed.
     pub over_cap: u64,
     /// Clouds that had more points than can be weighed.
@@ -137,6 +140,7 @@ impl BodyRunReport {
             (self.frames_missing, "frame numbers have no file and no row"),
             (points.frames_without_points as u64, "frames without points; their rows are predictions"),
             (points.skipped, "points were not finite, at the camera, or too far away"),
+            (points.outside, "points were outside of --inside or not above --above-plane"),
             (points.over_cap, "points were left out of clouds that had too many"),
             (self.degenerate_frames as u64, "frames in which no particle fitted"),
         ];

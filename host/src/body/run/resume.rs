@@ -61,7 +61,9 @@ fn begun(options: &BodyTrackOptions) -> Result<Begun> {
 /// The same with what `run` reads.
 fn read_by(mut begun: Begun, run: &BodyTrackRun) -> Result<Begun> {
     let files = &run.inputs.files;
-    for path in [&files.skeleton, &files.init, &files.stick, &files.truth, &files.scene].into_iter().flatten() {
+    for path in
+        [&files.camera, &files.skeleton, &files.init, &files.stick, &files.truth, &files.scene].into_iter().flatten()
+    {
         begun = begun.reading(format!("`{}`", path.display()), file_crc32(path)?);
     }
     let clouds = &run.inputs.clouds.frames;
@@ -104,7 +106,8 @@ impl BodyTrackRun {
             let wants = run.pictures.as_ref().is_some_and(|pictures| pictures.wants(index));
             let cloud = run.inputs.clouds.frames.get(index).filter(|_| wants);
             let points_m = match cloud {
-                Some(cloud) => read_cloud(cloud, &run.stream)?.map_or_else(|_| Vec::new(), |cloud| cloud.seen.points_m),
+                Some(cloud) => read_cloud(cloud, &run.inputs.source, &run.stream)?
+                    .map_or_else(|_| Vec::new(), |cloud| cloud.seen.points_m),
                 None => Vec::new(),
             };
             run.take(index, answer, &points_m);

@@ -2,14 +2,14 @@
 
 use super::answer::Answer;
 use super::inputs::BodyInputs;
-use super::options::BodyTrackOptions;
+use super::options::{BodyTrackOptions, DEPTH_POINTS};
 use super::pictures::BodyPictures;
 use super::report::{BodyRunReport, SkippedCloud};
 use super::resume;
 use super::score::{BodyScore, RunningMean};
 use super::{particles, table};
 use crate::body::tracking::{BodyStream, BodyStreamOptions, FrameTime, SeenPoints};
-use crate::cloud::{self, CloudError, CloudFrame};
+use crate::cloud::{CloudError, CloudFrame, CloudSource, MAX_POINTS};
 use crate::error::{Context, Result, WriteContext, bail};
 use crate::output::{OutputDir, OutputLock, PendingFile};
 use crate::reading_again::read_again;
@@ -33,8 +33,13 @@ pub enum BodyEvent<'a> {
     Note(&'a str),
     /// A cloud could not be read.
     Skipped(&'a SkippedCloud),
-    /// The first cloud with more points than can be weighed: how many it has.
-    OverCap(usize),
+    /// The first cloud with more points than are weighed.
+    OverCap {
+        /// Points of the cloud.
+        points: usize,
+        /// Points of it that are weighed.
+        weighed: usize,
+    },
     /// So many frames are in the table.
     Finished(usize),
 }
@@ -151,9 +156,9 @@ impl BodyTrackRun {
         self.save_if_due()?;
         let frames = self.inputs.clouds.frames[self.report.frames_finished..].to_vec();
         for chunk in frames.chunks(CHUNK) {
-            let stream = &self.stream;
+            let (stream, source) = (&self.stream, &self.inputs.source);
             let clouds: Vec<Result<Result<ReadCloud, SkippedCloud>>> =
-                stream.install(|| chunk.par_iter().map(|frame| read_cloud(frame, stream)).collect());
+                stream.install(|| chunk.par_iter().map(|frame| read_cloud(frame, source, stream)).collect());
             for (frame, cloud) in chunk.iter().zip(clouds) {
                 if stop.load(Ordering::Relaxed) {
                     return Ok(false);
@@ -194,10 +199,13 @@ impl BodyTrackRun {
         let (points, seen) = (&mut self.report.points, &cloud.seen);
         points.used += seen.points_m.len() as u64;
         points.skipped += seen.skipped as u64;
+        points.outside += seen.outside as u64;
         points.frames_without_points += usize::from(seen.points_m.is_empty());
         if seen.over_cap > 0 {
-            if points.frames_over_cap == 0 {
-                notify(BodyEvent::OverCap(seen.points_m.len() + seen.over_cap));
+            // Of depth images far fewer points than pixels are weighed.
+            if points.frames_over_cap == 0 && self.inputs.source.camera.is_none() {
+                let weighed = seen.points_m.len();
+                notify(BodyEvent::OverCap { points: weighed + seen.over_cap, weighed });
             }
             points.over_cap += seen.over_cap as u64;
             points.frames_over_cap += 1;
@@ -250,6 +258,11 @@ fn stream_options(options: &BodyTrackOptions, inputs: &BodyInputs) -> BodyStream
         part: inputs.part,
         model: options.model,
         particles: options.particles,
+        max_points: options.max_points.unwrap_or(if inputs.source.camera.is_some() {
+            DEPTH_POINTS
+        } else {
+            MAX_POINTS
+        }),
         seed: options.seed,
         rate_hz: inputs.rate_hz,
         floor_y_m: inputs.floor_y_m,
@@ -258,13 +271,17 @@ fn stream_options(options: &BodyTrackOptions, inputs: &BodyInputs) -> BodyStream
     }
 }
 
-/// Reads one cloud for `stream`. Where it is no cloud, the answer says why.
+/// Reads one cloud of `source` for `stream`. Where it is no cloud, the answer says why.
 ///
 /// # Errors
 /// The operating system refuses the file.
-pub(super) fn read_cloud(frame: &CloudFrame, stream: &BodyStream) -> Result<Result<ReadCloud, SkippedCloud>> {
+pub(super) fn read_cloud(
+    frame: &CloudFrame,
+    source: &CloudSource,
+    stream: &BodyStream,
+) -> Result<Result<ReadCloud, SkippedCloud>> {
     let mut crc32 = 0;
-    let read = || cloud::read_noting(&frame.path, |bytes| crc32 = crc32fast::hash(bytes));
+    let read = || source.read_noting(&frame.path, |bytes| crc32 = crc32fast::hash(bytes));
     match read_again(read, CloudError::is_io)? {
         Ok(cloud) => Ok(Ok(ReadCloud { seen: stream.seen(cloud, frame.frame), crc32 })),
         Err(error) => Ok(Err(SkippedCloud {
@@ -279,7 +296,7 @@ pub(super) fn read_cloud(frame: &CloudFrame, stream: &BodyStream) -> Result<Resu
 fn check_readable(inputs: &BodyInputs) -> Result<()> {
     let mut first = None;
     for frame in &inputs.clouds.frames {
-        match cloud::read(&frame.path) {
+        match inputs.source.read_noting(&frame.path, |_| ()) {
             Ok(_) => return Ok(()),
             Err(error) => first = first.or(Some(error)),
         }
@@ -294,7 +311,8 @@ fn check_readable(inputs: &BodyInputs) -> Result<()> {
 /// Starts from the first cloud that has points, and notes it.
 fn find_start(inputs: &mut BodyInputs, stream: &mut BodyStream) -> Result<()> {
     let clouds = inputs.clouds.frames.iter().take(START_CLOUDS);
-    let mut readable = clouds.filter_map(|frame| Some((frame.frame, read_cloud(frame, stream).ok()?.ok()?.seen)));
+    let seen = |frame| Some(read_cloud(frame, &inputs.source, stream).ok()?.ok()?.seen);
+    let mut readable = clouds.filter_map(|frame| Some((frame.frame, seen(frame)?)));
     let found = readable.find(|(_, seen)| !seen.points_m.is_empty());
     stream.begin_from(found.as_ref().map_or(&[], |(_, seen)| &seen.points_m))?;
     inputs.notes.push(match &found {
@@ -309,7 +327,7 @@ fn find_start(inputs: &mut BodyInputs, stream: &mut BodyStream) -> Result<()> {
 /// The report would replace that of the scene, and tables among the clouds would be read as clouds.
 fn refuse_output_in_input(folder: &Path, out: &Path) -> Result<()> {
     let Ok(output) = out.canonicalize() else { return Ok(()) };
-    for input in [folder.to_path_buf(), folder.join("points")] {
+    for input in [folder.to_path_buf(), folder.join("points"), folder.join("depth")] {
         if input.canonicalize().is_ok_and(|input| input == output) {
             bail!("`{}` holds what is read; choose another --out", out.display());
         }

@@ -1,6 +1,6 @@
 //! The points of a frame, ready to be weighed.
 
-use crate::cloud::{MAX_POINTS, PointCloud, blocks_of};
+use crate::cloud::{PointCloud, blocks_of};
 use sinew_core::math::Vec3;
 use sinew_core::observation::point_cloud::PointBlock;
 use sinew_core::observation::range_smoothing::RangeSmoothing;
@@ -8,7 +8,7 @@ use sinew_core::observation::range_smoothing::RangeSmoothing;
 /// The points of a frame: what is weighed of them, and how many are not.
 #[derive(Debug, Clone, Default)]
 pub struct SeenPoints {
-    /// At most [`MAX_POINTS`] in their order, metres, camera axes.
+    /// At most as many as are weighed, in their order, metres, camera axes.
     pub points_m: Vec<Vec3>,
     /// The same in the blocks in which they are weighed, smoothed.
     pub(super) blocks: Vec<PointBlock>,
@@ -16,15 +16,23 @@ pub struct SeenPoints {
     pub skipped: usize,
     /// Points left out by chance, since there are more than can be weighed.
     pub over_cap: usize,
+    /// Points outside of the region that counts.
+    pub outside: usize,
 }
 
 impl SeenPoints {
-    /// The points of `cloud`; `seed` and `frame` draw those that stay of a large one.
+    /// At most `max_points` points of `cloud`; `seed` and `frame` draw those that stay of a large
+    /// one.
     #[must_use]
-    pub fn new(mut cloud: PointCloud, seed: u64, frame: u64, smoothing: Option<&RangeSmoothing>) -> Self {
-        let before = cloud.limit(MAX_POINTS, seed, frame);
+    pub fn new(
+        mut cloud: PointCloud,
+        max_points: usize,
+        (seed, frame): (u64, u64),
+        smoothing: Option<&RangeSmoothing>,
+    ) -> Self {
+        let before = cloud.limit(max_points, seed, frame);
         let blocks = blocks_of(&mut cloud.points_m.clone(), smoothing);
         let over_cap = before - cloud.points_m.len();
-        Self { points_m: cloud.points_m, blocks, skipped: cloud.skipped, over_cap }
+        Self { points_m: cloud.points_m, blocks, skipped: cloud.skipped, over_cap, outside: cloud.outside }
     }
 }

@@ -145,7 +145,8 @@ impl BodyStream {
     /// The points of a frame as [`Self::step`] takes them. Frames may be prepared in any order.
     #[must_use]
     pub fn seen(&self, cloud: PointCloud, frame: u64) -> SeenPoints {
-        SeenPoints::new(cloud, self.options.seed, frame, self.filter.smoothing())
+        let BodyStreamOptions { max_points, seed, .. } = self.options;
+        SeenPoints::new(cloud, max_points, (seed, frame), self.filter.smoothing())
     }
 
     /// Finds the first pose in these points: someone upright who faces the camera is fitted to

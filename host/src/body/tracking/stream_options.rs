@@ -5,6 +5,7 @@ use super::model_kind::BodyModelKind;
 use super::tuning::BodyTuning;
 use crate::body::BodyPart;
 use crate::body::recording::DEFAULT_RATE_HZ;
+use crate::cloud::MAX_POINTS;
 use crate::error::{Result, ensure, ensure_option};
 use serde::{Deserialize, Serialize};
 use sinew_core::tracker::body::modes::MAX_MODES;
@@ -23,6 +24,8 @@ pub struct BodyStreamOptions {
     pub model: BodyModelKind,
     /// Number of particles.
     pub particles: usize,
+    /// Maximum number of points of a frame that are weighed; of more they are drawn at random.
+    pub max_points: usize,
     /// Seed of all that is random.
     pub seed: u64,
     /// Frames in a second.
@@ -42,6 +45,7 @@ impl Default for BodyStreamOptions {
             part: BodyPart::default(),
             model,
             particles: model.default_particles(),
+            max_points: MAX_POINTS,
             seed: 1,
             rate_hz: DEFAULT_RATE_HZ,
             floor_y_m: None,
@@ -58,6 +62,7 @@ impl BodyStreamOptions {
     /// Names the option and its range.
     pub fn check(&self) -> Result<()> {
         check_particles(self.particles)?;
+        check_points(self.max_points)?;
         check_threads(self.threads)?;
         check_rate("--rate", self.rate_hz)?;
         check_part(self.part, self.model)?;
@@ -77,6 +82,15 @@ pub fn check_particles(particles: usize) -> Result<()> {
         (1..=MAX_BODY_PARTICLES).contains(&particles),
         "--particles has to be from 1 to {MAX_BODY_PARTICLES}, not {particles}"
     );
+    Ok(())
+}
+
+/// Checks a number of points.
+///
+/// # Errors
+/// Names the option and its range.
+pub fn check_points(points: usize) -> Result<()> {
+    ensure_option!((1..=MAX_POINTS).contains(&points), "--points has to be from 1 to {MAX_POINTS}, not {points}");
     Ok(())
 }
 

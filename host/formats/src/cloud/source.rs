@@ -1,0 +1,71 @@
+//! What the files of a folder are, and which of their points count.
+
+use super::depth_camera::DepthCamera;
+use super::depth_image;
+use super::error::CloudError;
+use super::folder::CloudFolder;
+use super::point_cloud::PointCloud;
+use super::reading::{read_noting, read_with};
+use super::region::Region;
+use crate::registry::Kind;
+use std::path::{Path, PathBuf};
+
+/// Clouds of points, or depth images of one camera.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct CloudSource {
+    /// The camera of depth images; `None` of clouds.
+    pub camera: Option<DepthCamera>,
+    /// Where points count.
+    pub region: Region,
+}
+
+/// A source and where it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundSource {
+    /// What the files are.
+    pub source: CloudSource,
+    /// The folder of the files.
+    pub folder: PathBuf,
+    /// The file of the camera.
+    pub camera: Option<PathBuf>,
+}
+
+impl FoundSource {
+    /// Clouds lie in `points` of `folder`, depth images in `depth`, or either in `folder` itself.
+    /// Depth images are what has a camera: `camera`, or `camera.json` in a folder without `points`.
+    ///
+    /// # Errors
+    /// A camera that cannot be read.
+    pub fn find(folder: &Path, camera: Option<&Path>, region: Region) -> Result<Self, CloudError> {
+        let points = folder.join("points");
+        let beside = || Some(folder.join("camera.json")).filter(|path| path.is_file() && !points.is_dir());
+        let file = camera.map(Path::to_path_buf).or_else(beside);
+        let camera = file.as_deref().map(DepthCamera::read).transpose()?;
+        let inside = if camera.is_some() { folder.join("depth") } else { points };
+        let folder = if inside.is_dir() { inside } else { folder.to_path_buf() };
+        Ok(Self { source: CloudSource { camera, region }, folder, camera: file })
+    }
+}
+
+impl CloudSource {
+    /// Lists the frames of a folder.
+    ///
+    /// # Errors
+    /// As [`CloudFolder::open`].
+    pub fn open(&self, folder: &Path) -> Result<CloudFolder, CloudError> {
+        CloudFolder::open_kind(folder, if self.camera.is_some() { Kind::Depth } else { Kind::Cloud })
+    }
+
+    /// The points of a frame that count; `note` is shown the bytes of its file first.
+    ///
+    /// # Errors
+    /// As [`super::read`].
+    pub fn read_noting(&self, path: &Path, note: impl FnOnce(&[u8])) -> Result<PointCloud, CloudError> {
+        let mut cloud = match &self.camera {
+            Some(camera) => read_with(path, note, |bytes| depth_image::parse(bytes, camera))?,
+            None => read_noting(path, note)?,
+        };
+        cloud.cut_to(&self.region);
+        Ok(cloud)
+    }
+}
