@@ -75,8 +75,8 @@ pub struct TrackBodyArgs {
     /// Height of a person who is not measured, metres.
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub height: Option<f32>,
-    /// Pose of the first frame [default: DIR/first_pose.json; without one, someone upright who
-    /// faces the camera].
+    /// Pose of the first frame [default: DIR/first_pose.json; without one, someone who
+    /// stands or walks is looked for].
     #[arg(long, value_name = "FILE.json")]
     pub init: Option<PathBuf>,
     /// Ends of the stick, for --model stick [default: DIR/stick.csv].

@@ -96,7 +96,7 @@ fn clouds(path: &Path) -> Diagnosis {
     } else {
         diagnosis.add(
             Severity::Warning,
-            "there is no first_pose.json; someone upright who faces the camera is looked for, give others by --init",
+            "there is no first_pose.json; someone who stands or walks is looked for, give others by --init",
         );
     }
     if !path.join("run.json").is_file() {

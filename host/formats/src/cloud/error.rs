@@ -40,7 +40,7 @@ pub enum CloudError {
         rule: String,
     },
     /// The camera of depth images is none.
-    #[error("`{}` is no camera of depth images: {rule}; docs/track_body.md shows one", path.display())]
+    #[error("`{}` is no camera of depth images: {rule}; give one as docs/track_body.md shows", path.display())]
     Camera {
         /// The file.
         path: PathBuf,

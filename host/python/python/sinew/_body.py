@@ -45,8 +45,8 @@ class BodyTracker:
         Frames per second.
     first_pose : path, dict or array_like of shape (30,), optional
         Pose of the first frame: a ``first_pose.json``, coordinates by name (others are zero), or
-        all in the order of :data:`sinew.BODY_COORDINATE_NAMES`. Without it someone upright who
-        faces the camera is fitted to the first points.
+        all in the order of :data:`sinew.BODY_COORDINATE_NAMES`. Without it someone who stands
+        or walks is fitted to the first points.
     floor_y_m : float, optional
         The floor of ``"pelvic-lift"``, camera axes.
     threads : int, optional

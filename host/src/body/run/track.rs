@@ -317,9 +317,12 @@ fn find_start(inputs: &mut BodyInputs, stream: &mut BodyStream) -> Result<()> {
     stream.begin_from(found.as_ref().map_or(&[], |(_, seen)| &seen.points_m))?;
     inputs.notes.push(match &found {
         Some((frame, _)) => format!(
-            "no first pose is given; someone upright who faces the camera is fitted to the points of frame {frame} (--init)"
+            "no first pose is given; someone who stands or walks is fitted to the points of frame {frame} (--init)"
         ),
-        None => "no first pose is given and the first clouds have no points; someone upright 3 m before the camera (--init)".to_owned(),
+        None => {
+            "no first pose is given and the first clouds have no points; someone upright 3 m before the camera (--init)"
+                .to_owned()
+        }
     });
     Ok(())
 }

@@ -149,7 +149,7 @@ impl BodyStream {
         SeenPoints::new(cloud, max_points, (seed, frame), self.filter.smoothing())
     }
 
-    /// Finds the first pose in these points: someone upright who faces the camera is fitted to
+    /// Finds the first pose in these points: someone who stands or walks is fitted to
     /// them. Without points they stand 3 m before the camera.
     ///
     /// # Errors
