@@ -54,7 +54,9 @@ impl SavedState for BlobMemory {
             }
             visitor.real(&mut blob.belief, &(0.0..=1.0));
             visitor.real(&mut blob.still_s, &NOT_NEGATIVE);
+            visitor.flag(&mut blob.is_confirmed);
         }
+        visitor.flag(&mut self.hand_is_confirmed);
     }
 }
 

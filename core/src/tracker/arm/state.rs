@@ -135,6 +135,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         self.limbs.upper.begin(bins);
         self.limbs.fore.begin(bins);
         self.memory.blobs.clear();
+        self.memory.hand_is_confirmed = false;
         self.estimate = ArmJoints { shoulder_m, elbow_m, hand_m };
         self.hand_velocity_m_per_s = ORIGIN_M;
         self.elbow_velocity_m_per_s = ORIGIN_M;
