@@ -12,7 +12,8 @@ pub(super) fn tracker_stream(run: &mut ArmRun) -> Result<(Vec<u8>, usize)> {
     let mut reader = FrameReader::new(run.config.likelihood.build()?, run.config.edges.build()?)?;
     let mut stream = StreamWriter::default();
     stream.push(&run.setup)?;
-    let (skin, shoulder_m) = (run.skin.clone(), run.setup.shoulder_m);
+    let shoulder_m = run.setup.shoulder_m;
+    let skin = run.skin.for_image(run.frames.first().1)?.into_owned();
     let frames = run.each_frame(|frame, timestamp_us, image| {
         let view = image.map(|image| reader.read(&image, &skin)).transpose()?;
         if view.is_none() {
