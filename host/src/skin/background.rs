@@ -15,8 +15,8 @@ use std::cell::Cell;
 /// Greatest difference of a channel from what is usual there, levels. Chosen: five standard
 /// deviations of a webcam's noise.
 const MAX_FROM_USUAL: u8 = 12;
-/// What stays for so long is background, seconds. Chosen on seeds 100 to 260 of `sinew demo`: of the
-/// frames that say `tracking` 0.8 % are wrong, with two seconds 1.2 %.
+/// What stays for so long is background, seconds. Chosen on seeds 100 to 260 of `sinew demo`: of
+/// the frames that say `tracking` 0.8 % are wrong, with two seconds 1.2 %.
 const LEARNING_S: f64 = 1.0;
 /// Bytes of a pixel's state.
 const BYTES: usize = 5;

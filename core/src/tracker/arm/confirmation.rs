@@ -3,8 +3,8 @@
 //! A face, or wood, has the colour and the shape of a hand. Without a face box only motion tells a
 //! hand from them. So a track is tentative, and its status uncertain, until its blob has moved:
 //! confirmation of tracks, as in Blackman and Popoli, "Design and analysis of modern tracking
-//! systems", 1999, chapter 6. A blob that rests while another one of nearly its likelihood moves
-//! is uncertain, too.
+//! systems", 1999. A blob that rests while another one of nearly its likelihood moves is uncertain,
+//! too.
 
 use super::memory::BlobMemory;
 use crate::camera::Pixel;
@@ -16,17 +16,17 @@ use crate::vision::candidate::HandCandidate;
 const SAME_HAND_RADII: f32 = 4.0;
 /// Another blob is a rival from this share of the likelihood on. Chosen: 0.2 to 0.8 give the same.
 const RIVAL_SHARE: f32 = 0.5;
-/// A rival is livelier if it moved so much later, seconds. Chosen: from 0 to 0.5 nothing changes
-/// much.
+/// A rival is livelier if it moved so much later, seconds. Chosen: 0 to 0.5 give nearly the same.
 const LIVELIER_S: f32 = 0.2;
-/// A blob that rests so long and has no rival is the hand, seconds. Chosen: the time in which a blob
-/// wins back its belief (`rise_time_s`).
+/// A blob that rests so long and has no rival is the hand, seconds. Chosen: the time in which a
+/// blob wins back its belief (`rise_time_s`).
 const ALONE_S: f32 = 2.0;
 
 impl BlobMemory {
     /// Confirms the blob at index `carrier` of this frame's `candidates`: if it moved, if it is new
-    /// where the hand was, `before` (none before the first hand), or if it is alone. Whether it is confirmed, and no rival
-    /// is livelier. To be called after [`learn`](Self::learn), with its `dt_s`.
+    /// where the hand was, `before` (none before the first hand), or if it is alone. Whether it is
+    /// confirmed, and no rival is livelier. To be called after [`learn`](Self::learn), with its
+    /// `dt_s`.
     pub fn confirm(
         &mut self,
         carrier: usize,
