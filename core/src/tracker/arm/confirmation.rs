@@ -24,18 +24,19 @@ const ALONE_S: f32 = 2.0;
 
 impl BlobMemory {
     /// Confirms the blob at index `carrier` of this frame's `candidates`: if it moved, if it is new
-    /// where the hand was, `before` (none before the first hand), or if it is alone. Whether it is
-    /// confirmed, and no rival is livelier. To be called after [`learn`](Self::learn), with its
-    /// `dt_s`.
+    /// where the hand was, or if it is alone. `before` is where the hand was, and whether its blob
+    /// was confirmed; none before the first one. Whether the blob is confirmed, and whether no
+    /// rival is livelier either. To be called after [`learn`](Self::learn), with its `dt_s`.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub fn confirm(
         &mut self,
         carrier: usize,
         candidates: &[HandCandidate],
-        before: Option<Pixel>,
+        before: Option<(Pixel, bool)>,
         radius_px: f32,
         dt_s: f32,
-    ) -> bool {
-        let (Some(&blob), Some(own)) = (self.blobs.get(carrier), candidates.get(carrier)) else { return false };
+    ) -> [bool; 2] {
+        let (Some(&blob), Some(own)) = (self.blobs.get(carrier), candidates.get(carrier)) else { return [false; 2] };
         let (mut has_rival, mut is_livelier) = (false, false);
         for (index, (other, candidate)) in self.blobs.iter().zip(candidates).enumerate() {
             if index != carrier && candidate.likelihood >= RIVAL_SHARE * own.likelihood {
@@ -46,18 +47,17 @@ impl BlobMemory {
         // One that never moved has rested for a frame more in each frame.
         let is_new = blob.still_s <= dt_s;
         let is_hand = match before {
-            Some(hand) if is_new => {
-                self.hand_is_confirmed && hand.distance_px(blob.centre) <= SAME_HAND_RADII * radius_px
+            Some((hand, was_confirmed)) if is_new => {
+                was_confirmed && hand.distance_px(blob.centre) <= SAME_HAND_RADII * radius_px
             }
             Some(_) => !has_rival && blob.still_s > ALONE_S,
             None => !has_rival,
         };
         let is_confirmed = blob.is_confirmed || is_hand;
-        self.hand_is_confirmed = is_confirmed;
         if let Some(blob) = self.blobs.get_mut(carrier) {
             blob.is_confirmed = is_confirmed;
         }
-        is_confirmed && !is_livelier
+        [is_confirmed, is_confirmed && !is_livelier]
     }
 }
 
@@ -74,13 +74,14 @@ mod tests {
     }
 
     /// Frames in which the first of the blobs carries the estimate; whether the last one is sure.
-    fn show(memory: &mut BlobMemory, before: &mut Option<Pixel>, frames: &[&[f32]]) -> bool {
+    fn show(memory: &mut BlobMemory, before: &mut Option<(Pixel, bool)>, frames: &[&[f32]]) -> bool {
         let mut is_sure = false;
         for places in frames {
             let candidates: Vec<_> = places.iter().map(|u_px| at(*u_px)).collect();
             memory.learn(&candidates, &[1.0], |_| RADIUS_PX, DT_S, &OPTIONS);
-            is_sure = memory.confirm(0, &candidates, *before, RADIUS_PX, DT_S);
-            *before = candidates.first().map(|candidate| candidate.centre);
+            let is_confirmed;
+            [is_confirmed, is_sure] = memory.confirm(0, &candidates, *before, RADIUS_PX, DT_S);
+            *before = candidates.first().map(|candidate| (candidate.centre, is_confirmed));
         }
         is_sure
     }

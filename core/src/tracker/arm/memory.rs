@@ -31,14 +31,12 @@ pub(super) struct Remembered {
 #[derive(Debug, Clone, Default)]
 pub(super) struct BlobMemory {
     pub(super) blobs: Vec<Remembered, MAX_CANDIDATES>,
-    /// Whether the blob that carried the estimate last is confirmed.
-    pub(super) hand_is_confirmed: bool,
 }
 
 impl BlobMemory {
     /// Of no blob.
     pub const fn empty() -> Self {
-        Self { blobs: Vec::new(), hand_is_confirmed: false }
+        Self { blobs: Vec::new() }
     }
 
     /// The remembered blob nearest to `centre` within `radius_px`.

@@ -205,14 +205,18 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
 
     /// Remembers the blobs. Whether motion confirms the one that carries the estimate; always
     /// without memory.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn remember_blobs(&mut self, context: &FrameContext<'_>, cluster: &Cluster, dt_s: f32) -> bool {
         let model = context.model;
         let Some(memory) = &model.options().blob_memory else { return true };
         let radius_of = |blob: &HandCandidate| model.cluster_radius_px(blob);
         self.memory.learn(&context.candidates, &cluster.masses, radius_of, dt_s, memory);
         let Some(carrier) = cluster.candidate else { return false };
-        let before = if self.ever_seen { model.camera().project(&self.estimate.hand_m) } else { None };
+        let hand = if self.ever_seen { model.camera().project(&self.estimate.hand_m) } else { None };
+        let before = hand.map(|hand| (hand, self.hand_is_confirmed));
         let radius_px = context.radii_px.get(carrier).copied().unwrap_or(0.0);
-        self.memory.confirm(carrier, &context.candidates, before, radius_px, dt_s)
+        let [is_confirmed, is_sure] = self.memory.confirm(carrier, &context.candidates, before, radius_px, dt_s);
+        self.hand_is_confirmed = is_confirmed;
+        is_sure
     }
 }
