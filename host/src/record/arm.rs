@@ -4,6 +4,7 @@ use super::StreamWriter;
 use super::arm_run::ArmRun;
 use crate::error::Result;
 use crate::frames::{FrameReader, FrameView};
+use crate::skin::Background;
 use sinew_core::math::Vec3;
 use sinew_record::{ArmInput, CANDIDATES_A_RECORD, CandidateChunk, EDGES_A_RECORD, EdgeChunk};
 
@@ -12,9 +13,15 @@ pub(super) fn tracker_stream(run: &mut ArmRun) -> Result<(Vec<u8>, usize)> {
     let mut reader = FrameReader::new(run.config.likelihood.build()?, run.config.edges.build()?)?;
     let mut stream = StreamWriter::default();
     stream.push(&run.setup)?;
-    let (skin, shoulder_m) = (run.skin.clone(), run.setup.shoulder_m);
+    let shoulder_m = run.setup.shoulder_m;
+    let skin = run.skin.for_image(run.frames.first().1)?.into_owned();
+    let mut background = Background::new(run.rate_hz);
     let frames = run.each_frame(|frame, timestamp_us, image| {
-        let view = image.map(|image| reader.read(&image, &skin)).transpose()?;
+        let see = |image| {
+            background.see(&image, &skin);
+            reader.read(&image, &background.without(&skin))
+        };
+        let view = image.map(see).transpose()?;
         if view.is_none() {
             reader.forget_last_frame();
         }

@@ -49,7 +49,7 @@ pub(super) struct ArmRun {
     pub skin: SkinModel,
     pub config: Config,
     pub setup: ArmSetup,
-    rate_hz: f64,
+    pub rate_hz: f64,
     /// Whether it looked for a face in lines.
     looks: bool,
     /// Table of faces.

@@ -3,6 +3,7 @@
 //!
 //! The decisions taken here are written down in `docs/skin.md`.
 
+pub mod background;
 pub mod bit_image;
 pub mod calibrate;
 pub mod colour_cube;
@@ -19,6 +20,7 @@ pub mod training;
 pub mod training_set;
 pub mod white_balance;
 
+pub use background::Background;
 pub use bit_image::BitImage;
 pub use calibrate::Rectangle;
 pub use model::SkinModel;

@@ -99,10 +99,7 @@ impl ArmStream {
         if let Some(rectangle) = self.options.calibrate {
             self.skin = self.skin.calibrated(first, rectangle)?;
         }
-        let skin = match self.options.front_end {
-            FrontEnd::Lines => self.skin.for_image(first)?.into_owned(),
-            FrontEnd::Pictures => self.skin.clone(),
-        };
+        let skin = self.skin.for_image(first)?.into_owned();
         self.see_by(skin)
     }
 

@@ -7,8 +7,9 @@ use crate::error::{Error, Result};
 use crate::frames::{FrameReader, FrameView};
 use crate::person::{LinesFinder, PersonFinder, PersonView};
 use crate::pixels::{Picture, Pixels};
-use crate::skin::SkinModel;
+use crate::skin::{Background, SkinModel};
 use image::RgbImage;
+use serde::{Deserialize, Serialize};
 use sinew_core::camera::Camera;
 use sinew_core::math::Vec3;
 use sinew_core::vision::objects::head::HeadBox;
@@ -26,6 +27,16 @@ pub(super) struct PictureVision {
     skin: SkinModel,
     /// Of a run that looks for a face.
     person: Option<PersonFinder>,
+    /// Of a run that knows no face.
+    background: Background,
+    width_px: u32,
+}
+
+/// The state of what reads pictures.
+#[derive(Debug, Serialize, Deserialize)]
+struct PictureState {
+    person: Option<String>,
+    background: String,
 }
 
 impl RunVision {
@@ -37,6 +48,8 @@ impl RunVision {
             FrontEnd::Pictures => Self::Pictures(Box::new(PictureVision {
                 reader: FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?,
                 skin: skin.clone(),
+                background: Background::new(options.rate_hz),
+                width_px: size_px.0,
                 person: faces.map(|faces| PersonFinder::new(size_px, camera, faces)),
             })),
         })
@@ -88,7 +101,7 @@ impl RunVision {
     /// The state after the last frame as text, which [`RunVision::restore`] takes.
     pub fn saved(&mut self) -> Result<Option<String>> {
         match self {
-            Self::Pictures(vision) => vision.person.as_mut().map(PersonFinder::saved).transpose(),
+            Self::Pictures(vision) => vision.saved().map(Some),
             Self::Lines(finder) => finder.saved().map(Some),
         }
     }
@@ -96,9 +109,9 @@ impl RunVision {
     /// Goes on from what was saved after a frame which it saw as `last`.
     pub fn restore(&mut self, last: Option<RgbImage>, saved: Option<&str>) -> Result<()> {
         match (self, saved) {
-            (Self::Pictures(vision), saved) => vision.restore(last.as_ref(), saved),
+            (Self::Pictures(vision), Some(saved)) => vision.restore(last.as_ref(), saved),
             (Self::Lines(finder), Some(saved)) => finder.restore(last, saved),
-            (Self::Lines(_), None) => Err(Error::Invalid("the state of the front end is missing".to_owned())),
+            (_, None) => Err(Error::Invalid("the state of the front end is missing".to_owned())),
         }
     }
 
@@ -122,19 +135,32 @@ impl PictureVision {
             person.look(frame, image, head);
         }
         let view = match self.person.as_ref().and_then(PersonFinder::skin) {
-            Some(skin) => self.reader.read(image, skin)?,
-            None => self.reader.read(image, &self.skin)?,
+            Some(skin) => {
+                self.background.forget();
+                self.reader.read(image, skin)?
+            }
+            None => {
+                self.background.see(image, &self.skin);
+                self.reader.read(image, &self.background.without(&self.skin))?
+            }
         };
         let person = self.person.as_mut().and_then(|person| person.see(&mut self.reader));
         Ok((view, person))
     }
 
-    fn restore(&mut self, last: Option<&RgbImage>, saved: Option<&str>) -> Result<()> {
+    fn saved(&mut self) -> Result<String> {
+        let person = self.person.as_mut().map(PersonFinder::saved).transpose()?;
+        Ok(serde_json::to_string(&PictureState { person, background: self.background.saved() })?)
+    }
+
+    fn restore(&mut self, last: Option<&RgbImage>, saved: &str) -> Result<()> {
+        let state: PictureState = serde_json::from_str(saved)?;
         if let Some(last) = last {
             // The next frame has the edges that it would have had.
             self.reader.read(last, &self.skin)?;
         }
-        match (&mut self.person, saved) {
+        self.background.restore(&state.background, self.width_px)?;
+        match (&mut self.person, &state.person) {
             (Some(person), Some(saved)) => person.restore(saved),
             _ => Ok(()),
         }

@@ -36,7 +36,8 @@ use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Status {
     /// A blob of this frame that is likely a hand carries the estimate. Nearly all particles that
-    /// are at any blob are at this one. See
+    /// are at any blob are at this one. With blob memory it has moved, or nothing else can be the
+    /// hand. See
     /// [`ArmOptions::sure_likelihood`](super::ArmOptions::sure_likelihood) and
     /// [`ArmOptions::sure_share`](super::ArmOptions::sure_share).
     Tracking,

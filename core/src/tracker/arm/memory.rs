@@ -23,6 +23,8 @@ pub(super) struct Remembered {
     pub(super) anchor: Pixel,
     /// Time since it last moved, seconds.
     pub(super) still_s: f32,
+    /// Whether it moved, or took the place of a hand that did; see `confirmation`.
+    pub(super) is_confirmed: bool,
 }
 
 /// The blobs of the last frame.
@@ -74,20 +76,21 @@ impl BlobMemory {
         };
         let mut next = Vec::new();
         for (index, candidate) in candidates.iter().enumerate() {
-            let fresh = Remembered { centre: candidate.centre, belief: 1.0, anchor: candidate.centre, still_s: 0.0 };
+            let centre = candidate.centre;
+            let fresh = Remembered { centre, belief: 1.0, anchor: centre, still_s: 0.0, is_confirmed: false };
             let radius_px = radius_of_px(candidate);
-            let before = self.recall(candidate.centre, radius_px).copied().unwrap_or(fresh);
+            let before = self.recall(centre, radius_px).copied().unwrap_or(fresh);
             let away = elsewhere(index);
             let fallen = before.belief * exp(-dt_s * away / options.fall_time_s);
             let recovery = 1.0 - exp(-dt_s * (1.0 - away) / options.rise_time_s);
-            let moved = before.anchor.distance_px(candidate.centre) > options.moved_per_radius * radius_px;
+            let moved = before.anchor.distance_px(centre) > options.moved_per_radius * radius_px;
             // What moves may be the hand after all, also where the tracker sits on something that
             // rests.
             let belief = if moved { 1.0 } else { max(fallen + recovery * (1.0 - fallen), options.floor) };
-            let (anchor, still_s) =
-                if moved { (candidate.centre, 0.0) } else { (before.anchor, before.still_s + dt_s) };
+            let (anchor, still_s) = if moved { (centre, 0.0) } else { (before.anchor, before.still_s + dt_s) };
+            let is_confirmed = before.is_confirmed || moved;
             // One entry a candidate, of which there are not more than fit.
-            let _ = next.push(Remembered { centre: candidate.centre, belief, anchor, still_s });
+            let _ = next.push(Remembered { centre, belief, anchor, still_s, is_confirmed });
         }
         self.blobs = next;
     }

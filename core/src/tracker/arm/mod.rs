@@ -4,6 +4,7 @@
 //! of one arm, and [`ArmPair`] that of two arms that share one list of blobs. A frame goes in as an
 //! [`ArmFrame`], an [`ArmEstimate`] comes out, for every frame.
 
+mod confirmation;
 mod context;
 mod estimate;
 pub mod example;

@@ -54,6 +54,7 @@ impl SavedState for BlobMemory {
             }
             visitor.real(&mut blob.belief, &(0.0..=1.0));
             visitor.real(&mut blob.still_s, &NOT_NEGATIVE);
+            visitor.flag(&mut blob.is_confirmed);
         }
     }
 }
@@ -78,6 +79,7 @@ impl<const CAPACITY: usize> SavedState for ArmTracker<CAPACITY> {
         }
         self.limbs.visit(visitor);
         self.memory.visit(visitor);
+        visitor.flag(&mut self.hand_is_confirmed);
         self.estimate.visit(visitor);
         place(&mut self.hand_velocity_m_per_s, visitor);
         place(&mut self.elbow_velocity_m_per_s, visitor);

@@ -59,6 +59,8 @@ pub struct ArmTracker<const CAPACITY: usize> {
     pub(super) timestamp_us: Option<u64>,
     pub(super) unseen_s: f32,
     pub(super) ever_seen: bool,
+    /// Whether the blob that carried the estimate last is confirmed.
+    pub(super) hand_is_confirmed: bool,
     pub(super) generations: [Vec<Particle, CAPACITY>; 2],
     pub(super) current: usize,
     pub(super) weights: Weights<CAPACITY>,
@@ -93,6 +95,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
             timestamp_us: None,
             unseen_s: UNSEEN_AT_START_S,
             ever_seen: false,
+            hand_is_confirmed: false,
             generations: [Vec::new(), Vec::new()],
             current: 0,
             weights: Weights::none(),
@@ -135,6 +138,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         self.limbs.upper.begin(bins);
         self.limbs.fore.begin(bins);
         self.memory.blobs.clear();
+        self.hand_is_confirmed = false;
         self.estimate = ArmJoints { shoulder_m, elbow_m, hand_m };
         self.hand_velocity_m_per_s = ORIGIN_M;
         self.elbow_velocity_m_per_s = ORIGIN_M;

@@ -166,10 +166,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
     /// carried it.
     fn remember(&mut self, context: &FrameContext<'_>, cluster: &Cluster, dt_s: f32) -> Status {
         self.limbs = *self.limb_room.hypotheses.at(cluster.candidate);
-        if let Some(memory) = &context.model.options().blob_memory {
-            let radius_of = |blob: &HandCandidate| context.model.cluster_radius_px(blob);
-            self.memory.learn(&context.candidates, &cluster.masses, radius_of, dt_s, memory);
-        }
+        let is_confirmed = self.remember_blobs(context, cluster, dt_s);
         let was_seen = self.ever_seen && self.unseen_s == 0.0;
         let carried = cluster.candidate.is_some();
         let options = context.model.options();
@@ -195,7 +192,7 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         self.estimate = cluster.joints;
         let carrier = cluster.candidate.and_then(|index| context.candidates.get(index));
         let is_likely = carrier.is_some_and(|candidate| candidate.likelihood >= options.sure_likelihood);
-        if is_likely && cluster.share() >= options.sure_share {
+        if is_likely && is_confirmed && cluster.share() >= options.sure_share {
             Status::Tracking
         } else if carried {
             Status::Uncertain
@@ -204,5 +201,22 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         } else {
             Status::Lost
         }
+    }
+
+    /// Remembers the blobs. Whether motion confirms the one that carries the estimate; always
+    /// without memory.
+    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
+    fn remember_blobs(&mut self, context: &FrameContext<'_>, cluster: &Cluster, dt_s: f32) -> bool {
+        let model = context.model;
+        let Some(memory) = &model.options().blob_memory else { return true };
+        let radius_of = |blob: &HandCandidate| model.cluster_radius_px(blob);
+        self.memory.learn(&context.candidates, &cluster.masses, radius_of, dt_s, memory);
+        let Some(carrier) = cluster.candidate else { return false };
+        let hand = if self.ever_seen { model.camera().project(&self.estimate.hand_m) } else { None };
+        let before = hand.map(|hand| (hand, self.hand_is_confirmed));
+        let radius_px = context.radii_px.get(carrier).copied().unwrap_or(0.0);
+        let [is_confirmed, is_sure] = self.memory.confirm(carrier, &context.candidates, before, radius_px, dt_s);
+        self.hand_is_confirmed = is_confirmed;
+        is_sure
     }
 }

@@ -178,8 +178,9 @@ impl<const COLUMNS: usize, const ROWS: usize> CellGrid<COLUMNS, ROWS> {
         let mut levels = brightness.chunks(self.samples);
         for (column, (count, sum)) in self.counts.iter_mut().zip(&mut self.sums).enumerate().take(self.size.columns) {
             *count = count.saturating_add(ones(skin, column * self.cell_px, self.cell_px));
+            // Of a line of a cell: far from any overflow, and added side by side.
             let levels = levels.next().unwrap_or(&[]).iter();
-            *sum = levels.fold(*sum, |sum, level| sum.saturating_add(u32::from(*level)));
+            *sum = sum.saturating_add(levels.fold(0, |sum: u32, level| sum.wrapping_add(u32::from(*level))));
         }
     }
 
