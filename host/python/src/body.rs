@@ -70,7 +70,9 @@ impl Body {
                 || Ok(BodyTuning::default()),
                 |given| given.read(tuning_file::load, |text| tuning_file::parse_json(text, "config")),
             )?;
-            let options = BodyStreamOptions { part, model, particles, seed, rate_hz, floor_y_m, threads, tuning };
+            let defaults = BodyStreamOptions::default();
+            let options =
+                BodyStreamOptions { part, model, particles, seed, rate_hz, floor_y_m, threads, tuning, ..defaults };
             options.check()?;
             let measures = match &measures {
                 None => measures_of_height(height_m, &mut notes)?,
