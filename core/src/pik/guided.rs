@@ -343,6 +343,48 @@ mod tests {
         cloud
     }
 
+    /// Brute force over all poses of an arm: the best of a few climbs is above the greatest of
+    /// 15^4 poses, and the arm is where that one is.
+    #[test]
+    fn the_best_of_a_few_climbs_is_the_greatest_of_a_grid() {
+        const SIDES: usize = 15;
+        let scene = scene_of(0.3);
+        let limits = scene.skeleton.limits();
+        let pose_of = |mut index: usize| {
+            core::array::from_fn(|angle| {
+                let step = (index % SIDES) as f32 / (SIDES - 1) as f32;
+                index /= SIDES;
+                limits[angle].low_rad + step * (limits[angle].high_rad - limits[angle].low_rad)
+            })
+        };
+        for truth_rad in [[0.9, 0.2, 0.3, 1.4], [2.0, -0.3, 0.1, 0.7]] {
+            let cloud = cloud_of(&scene, &truth_rad);
+            let prior = PoseDensity {
+                skeleton: &scene.skeleton,
+                root_m: Vec3::zeros(),
+                goals: &[],
+                previous_rad: [0.4, 0.0, 0.0, 0.9],
+                stiffness: [0.5; 4],
+                held: 0,
+            };
+            let density = GuidedDensity { prior, scene: &scene, blocks: cloud.blocks(), stride: 1, reach: 1.0 };
+            let log_density = |pose_rad: &[f32; 4]| density.log_density(pose_rad, &scene.posture(pose_rad));
+            let grid = (0..SIDES.pow(4)).map(pose_of).map(|pose_rad| (log_density(&pose_rad), pose_rad));
+            let (grid_log, grid_rad) = grid.reduce(|best, next| if next.0 > best.0 { next } else { best }).unwrap();
+            let starts =
+                [0.2, 1.2, 2.2].into_iter().flat_map(|elevation| [0.2, 1.2].map(|elbow| [elevation, 0.0, 0.0, elbow]));
+            let climbs = starts.map(|start_rad| density.mode_from(&[start_rad], 30));
+            let mode =
+                climbs.reduce(|best, next| if next.log_density > best.log_density { next } else { best }).unwrap();
+            let above = mode.log_density - grid_log;
+            assert!((0.0..30.0).contains(&above), "{truth_rad:?}: {} against {grid_log}", mode.log_density);
+            let ends = |pose_rad: &[f32; 4]| scene.posture(pose_rad).ends;
+            for (found_m, grid_m) in ends(&mode.angles_rad).iter().zip(ends(&grid_rad)) {
+                assert!((found_m - grid_m).norm() < 0.12, "{truth_rad:?}: {found_m} against {grid_m}");
+            }
+        }
+    }
+
     /// A forearm that swung farther than its points reach: it stays where it was without coarse
     /// steps. One that has hardly moved ends at the same place either way.
     #[test]

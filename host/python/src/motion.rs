@@ -6,15 +6,19 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sinew::body::camera_axes::{turn_to_camera, up_of};
-use sinew::cloud;
+use sinew::cloud::{CloudSource, DepthCamera};
 use sinew::motion::{ReadOptions, has_skin_markers, read_space};
 use sinew_core::math::Vec3;
 use std::path::PathBuf;
 
-/// The usable points of a cloud's file.
+/// The usable points of a cloud's file, or of a depth image by its camera's file.
 #[pyfunction]
-pub fn read_cloud(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyArray2<f32>>> {
-    let cloud = py.detach(|| cloud::read(&path)).map_err(|error| exception(&error.into()))?;
+pub fn read_cloud(py: Python<'_>, path: PathBuf, camera: Option<PathBuf>) -> PyResult<Bound<'_, PyArray2<f32>>> {
+    let read = || {
+        let camera = camera.as_deref().map(DepthCamera::read).transpose()?;
+        CloudSource { camera, ..CloudSource::default() }.read_noting(&path, |_| ())
+    };
+    let cloud = py.detach(read).map_err(|error| exception(&error.into()))?;
     Ok(points_array(py, &cloud.points_m))
 }
 

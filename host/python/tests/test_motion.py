@@ -128,6 +128,16 @@ def test_clouds_of_every_format(tmp_path):
         sinew.read_cloud(broken)
 
 
+def test_depth_images_are_clouds(tmp_path):
+    image, camera = tmp_path / "d.pgm", tmp_path / "camera.json"
+    image.write_bytes(b"P5\n3 2\n65535\n" + np.array([[0, 2000, 0], [0, 0, 4000]], ">u2").tobytes())
+    camera.write_text('{"fx": 100, "fy": 100, "cx": 1, "cy": 0}')
+    np.testing.assert_allclose(sinew.read_cloud(image, camera), [[0, 0, 2], [0.04, 0.04, 4]], rtol=1e-6)
+    camera.write_text("{}")
+    with pytest.raises(sinew.SinewError, match="camera.json.*fx, fy, cx and cy"):
+        sinew.read_cloud(image, camera)
+
+
 def test_scenes_are_the_commands(tmp_path, command):
     folder = tmp_path / "scene"
     options = ["--points", 300, "--rate", 1, "--seed", 5, "--outliers", 0.2, "--patches", 2, "--hide", "l_arm:1-3"]

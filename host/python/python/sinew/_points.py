@@ -53,25 +53,28 @@ def _plain_array(value: Any, name: str) -> npt.NDArray[Any]:
         raise ValueError(f"`{name}` has to be an array of real numbers: {error}") from None
 
 
-def read_cloud(path: str | os.PathLike[str]) -> PointArray:
-    """The points of a PLY, PCD or CSV file.
+def read_cloud(path: str | os.PathLike[str], camera: str | os.PathLike[str] | None = None) -> PointArray:
+    """The points of a PLY, PCD or CSV file, or of a depth image.
 
     Parameters
     ----------
     path : path
         The file; its ending says the format.
+    camera : path, optional
+        The ``camera.json`` of a depth image (PNG or PGM, one channel of 16 bits), as
+        ``sinew track body`` reads it. Each pixel that has a depth is a point.
 
     Returns
     -------
     ndarray of shape (n, 3), float32
-        Metres in the axes of the file, in its order. Points that are not finite, within 1 cm of
+        Metres in the axes of the file, or of the camera, in its order. Points that are not finite, within 1 cm of
         the origin or farther than 1 km are left out, as ``sinew track body`` does.
 
     Raises
     ------
     SinewError
-        The file breaks a rule of its format.
+        A file breaks a rule of its format.
     OSError
-        The file cannot be read.
+        A file cannot be read.
     """
-    return _sinew.read_cloud(path)
+    return _sinew.read_cloud(path, camera)
