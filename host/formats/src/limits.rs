@@ -28,6 +28,8 @@ pub const MAX_SIDE_PX: u32 = sinew_core::vision::mask::MAX_SIDE_PX as u32;
 /// Largest memory that decoding one picture may take, bytes: 8192 x 8192 pixels of 4 channels of
 /// 16 bits take half of it.
 pub const MAX_DECODE_BYTES: u64 = 1 << 30;
+/// Largest number of pixels of a depth image. Chosen: stereo cameras have 2.7 million, others less.
+pub const MAX_DEPTH_PIXELS: u32 = 1 << 22;
 /// Most characters that a message quotes of a file.
 pub const MAX_QUOTED_CHARS: usize = 80;
 
@@ -46,6 +48,7 @@ mod tests {
             ("line of", format!("{} MiB", MAX_LINE_BYTES >> 20)),
             ("picture, width", format!("{MAX_SIDE_PX} pixels")),
             ("memory for decoding", format!("{} MiB", MAX_DECODE_BYTES >> 20)),
+            ("pixels of a depth image", MAX_DEPTH_PIXELS.to_string()),
             ("number", format!("{MAX_NUMBER:e}")),
             ("joints or bones of", MAX_JOINTS.to_string()),
             ("depth of a skeleton", MAX_SKELETON_DEPTH.to_string()),

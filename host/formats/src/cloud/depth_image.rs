@@ -2,8 +2,8 @@
 
 use super::depth_camera::DepthCamera;
 use super::point_cloud::PointCloud;
-use crate::limits::{MAX_DECODE_BYTES, MAX_SIDE_PX};
-use image::{DynamicImage, ImageReader, Limits};
+use crate::limits::{MAX_DEPTH_PIXELS, MAX_SIDE_PX};
+use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 use std::io::Cursor;
 
 /// The points of an image's content. A pixel of zero has no depth, and is no point.
@@ -14,9 +14,13 @@ pub fn parse(bytes: &[u8], camera: &DepthCamera) -> Result<PointCloud, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
     let mut limits = Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(MAX_SIDE_PX), Some(MAX_SIDE_PX));
-    limits.max_alloc = Some(MAX_DECODE_BYTES);
     reader.limits(limits);
-    let image = match reader.decode().map_err(|error| error.to_string())? {
+    let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
+    let (width, height) = decoder.dimensions();
+    if u64::from(width) * u64::from(height) > u64::from(MAX_DEPTH_PIXELS) {
+        return Err(format!("a depth image has at most {MAX_DEPTH_PIXELS} pixels, and it has {width} x {height}"));
+    }
+    let image = match DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())? {
         DynamicImage::ImageLuma16(image) => image,
         other => {
             let bits = other.color().bits_per_pixel() / u16::from(other.color().channel_count());
@@ -24,11 +28,10 @@ pub fn parse(bytes: &[u8], camera: &DepthCamera) -> Result<PointCloud, String> {
             return Err(format!("a depth image has one channel of 16 bits, and it has {channels} of {bits}"));
         }
     };
-    if let Some([width, height]) = camera.size_px
-        && (width, height) != image.dimensions()
+    if let Some([w, h]) = camera.size_px
+        && (w, h) != (width, height)
     {
-        let (w, h) = image.dimensions();
-        return Err(format!("its camera takes images of {width} x {height} pixels, and it has {w} x {h}"));
+        return Err(format!("its camera takes images of {w} x {h} pixels, and it has {width} x {height}"));
     }
     let seen = image.enumerate_pixels().filter(|(.., depth)| depth.0[0] > 0);
     Ok(PointCloud::from_points(seen.map(|(u, v, depth)| camera.point_m((u, v), depth.0[0]))))
@@ -68,5 +71,7 @@ mod tests {
         let found = parse(&bytes(&large, ImageFormat::Png), &CAMERA).unwrap_err();
         assert!(found.contains("images of 3 x 2 pixels, and it has 4 x 2"), "{found}");
         assert!(parse(b"no picture", &CAMERA).is_err());
+        let found = parse(b"P5\n4096 2048\n65535\n", &CAMERA).unwrap_err();
+        assert!(found.contains("at most 4194304 pixels, and it has 4096 x 2048"), "{found}");
     }
 }
