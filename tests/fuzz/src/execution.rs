@@ -2,9 +2,10 @@
 
 use crate::Target;
 use crate::allocation::peak_during;
+use std::cell::RefCell;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
-use std::sync::{Mutex, Once, PoisonError};
+use std::sync::Once;
 use std::time::{Duration, Instant};
 
 /// Longest time of an execution.
@@ -65,7 +66,10 @@ pub struct Execution {
     pub failure: Option<Failure>,
 }
 
-static REPORT: Mutex<String> = Mutex::new(String::new());
+thread_local! {
+    /// Place and message of the thread's last panic: targets may run side by side.
+    static REPORT: RefCell<String> = const { RefCell::new(String::new()) };
+}
 static HOOK: Once = Once::new();
 
 /// Runs `target` on `input`.
@@ -91,14 +95,14 @@ fn once(target: &Target, input: &[u8]) -> Execution {
             let text = payload.downcast_ref::<&str>().copied();
             let message = text.or(payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message");
             let place = panic.location().map(ToString::to_string).unwrap_or_default();
-            *REPORT.lock().unwrap_or_else(PoisonError::into_inner) = format!("{place}\n{message}");
+            REPORT.set(format!("{place}\n{message}"));
         }));
     });
     let start = Instant::now();
     let (result, peak_bytes) = peak_during(|| catch_unwind(AssertUnwindSafe(|| (target.run)(input))));
     let time = start.elapsed();
     let failure = match result {
-        Err(_) => Some(Failure::Panic(REPORT.lock().unwrap_or_else(PoisonError::into_inner).clone())),
+        Err(_) => Some(Failure::Panic(REPORT.take())),
         Ok(()) if peak_bytes > MAX_BYTES => Some(Failure::Memory(peak_bytes)),
         Ok(()) => None,
     };
