@@ -103,8 +103,10 @@ fn number(file: &Map<String, Value>, names: &[&str]) -> Result<Option<f32>, Stri
 /// The nine numbers by this name.
 fn matrix(file: &Map<String, Value>, name: &str) -> Result<Option<[f32; 9]>, String> {
     let Some(value) = file.get(name) else { return Ok(None) };
-    let numbers: Option<Vec<f32>> =
-        value.as_array().and_then(|all| all.iter().map(|one| one.as_f64().map(|one| one as f32)).collect());
+    // Also as three rows, or columns, of three.
+    let entries = value.as_array().into_iter().flatten();
+    let entries = entries.flat_map(|entry| entry.as_array().map_or(std::slice::from_ref(entry), Vec::as_slice));
+    let numbers: Option<Vec<f32>> = entries.map(|one| one.as_f64().map(|one| one as f32)).collect();
     let nine = numbers.and_then(|numbers| numbers.try_into().ok());
     nine.map(Some).ok_or_else(|| format!("`{name}` has to be nine numbers"))
 }
@@ -119,6 +121,7 @@ mod tests {
             r#"{"fx": 580.0, "fy": 570, "cx": 320, "cy": 240.5}"#,
             r#"{"fx": 580.0, "fy": 570, "ppx": 320, "ppy": 240.5, "coeffs": [0, 0, 0, 0, 0], "depth_scale": 0.001}"#,
             r#"{"K": [580, 0, 320, 0, 570, 240.5, 0, 0, 1], "D": [], "depth_scale": 1000}"#,
+            r#"{"K": [[580, 0, 320], [0, 570, 240.5], [0, 0, 1]]}"#,
             r#"{"intrinsic_matrix": [580, 0, 0, 0, 570, 0, 320, 240.5, 1], "depth_scale": 1000.0}"#,
         ];
         let cameras = forms.map(|form| DepthCamera::parse(form.as_bytes()).unwrap());

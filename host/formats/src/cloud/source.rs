@@ -32,13 +32,14 @@ pub struct FoundSource {
 
 impl FoundSource {
     /// Clouds lie in `points` of `folder`, depth images in `depth`, or either in `folder` itself.
-    /// Depth images are what has a camera: `camera`, or `camera.json` in a folder without `points`.
+    /// Depth images are what has a camera: `camera`, or `camera.json` in a folder without clouds.
     ///
     /// # Errors
     /// A camera that cannot be read.
     pub fn find(folder: &Path, camera: Option<&Path>, region: Region) -> Result<Self, CloudError> {
         let points = folder.join("points");
-        let beside = || Some(folder.join("camera.json")).filter(|path| path.is_file() && !points.is_dir());
+        let has_clouds = || points.is_dir() || CloudFolder::open(folder).is_ok();
+        let beside = || Some(folder.join("camera.json")).filter(|path| path.is_file() && !has_clouds());
         let file = camera.map(Path::to_path_buf).or_else(beside);
         let camera = file.as_deref().map(DepthCamera::read).transpose()?;
         let inside = if camera.is_some() { folder.join("depth") } else { points };
@@ -67,5 +68,20 @@ impl CloudSource {
         };
         cloud.cut_to(&self.region);
         Ok(cloud)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_camera_beside_clouds_makes_no_depth_images_of_them() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("camera.json"), r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 1}"#).unwrap();
+        let find = || FoundSource::find(folder.path(), None, Region::default()).unwrap();
+        assert!(find().camera.is_some());
+        std::fs::write(folder.path().join("1.ply"), "").unwrap();
+        assert_eq!((find().camera, find().source), (None, CloudSource::default()));
     }
 }
