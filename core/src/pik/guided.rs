@@ -343,6 +343,12 @@ mod tests {
         cloud
     }
 
+    /// No goals; each angle is held on to alike.
+    fn prior_about(scene: &BodyScene<2, 4>, previous_rad: [f32; 4], stiffness: f32) -> PoseDensity<'_, 2, 4> {
+        let (skeleton, stiffness) = (&scene.skeleton, [stiffness; 4]);
+        PoseDensity { skeleton, root_m: Vec3::zeros(), goals: &[], previous_rad, stiffness, held: 0 }
+    }
+
     /// Brute force over all poses of an arm: the best of a few climbs is above the greatest of
     /// 15^4 poses, and the arm is where that one is.
     #[test]
@@ -359,14 +365,7 @@ mod tests {
         };
         for truth_rad in [[0.9, 0.2, 0.3, 1.4], [2.0, -0.3, 0.1, 0.7]] {
             let cloud = cloud_of(&scene, &truth_rad);
-            let prior = PoseDensity {
-                skeleton: &scene.skeleton,
-                root_m: Vec3::zeros(),
-                goals: &[],
-                previous_rad: [0.4, 0.0, 0.0, 0.9],
-                stiffness: [0.5; 4],
-                held: 0,
-            };
+            let prior = prior_about(&scene, [0.4, 0.0, 0.0, 0.9], 0.5);
             let density = GuidedDensity { prior, scene: &scene, blocks: cloud.blocks(), stride: 1, reach: 1.0 };
             let log_density = |pose_rad: &[f32; 4]| density.log_density(pose_rad, &scene.posture(pose_rad));
             let grid = (0..SIDES.pow(4)).map(pose_of).map(|pose_rad| (log_density(&pose_rad), pose_rad));
@@ -392,14 +391,7 @@ mod tests {
         let scene = scene_of(0.08);
         let off_m = |truth_rad: [f32; 4], coarse_to_fine: bool| {
             let cloud = cloud_of(&scene, &truth_rad);
-            let prior = PoseDensity {
-                skeleton: &scene.skeleton,
-                root_m: Vec3::zeros(),
-                goals: &[],
-                previous_rad: [0.5, 0.1, 0.1, 0.9],
-                stiffness: [4.0; 4],
-                held: 0,
-            };
+            let prior = prior_about(&scene, [0.5, 0.1, 0.1, 0.9], 4.0);
             let density = GuidedDensity { prior, scene: &scene, blocks: cloud.blocks(), stride: 1, reach: 1.0 };
             let hand_m = |pose_rad| scene.posture(&pose_rad).ends[FOREARM];
             let mode = if coarse_to_fine { density.mode_coarse_to_fine(&prior, 4) } else { density.mode(4) };

@@ -24,7 +24,7 @@ const NO_POINTS_Z_M: f32 = 3.0;
 const UPPER_MIDDLE_SHARE: f32 = 0.7;
 /// Elbows and knees of a guess: a straight one has a direction in which it cannot turn.
 const BENT_RAD: f32 = 0.2;
-/// Ways that a guess faces. Chosen: with four instead of eight a third more starts are wrong.
+/// Ways that a guess faces. Chosen: with four instead of eight a quarter more starts are wrong.
 const HEADINGS: usize = 8;
 /// Elevation and deviation of both shoulders, radians: arms that hang, a T and an A.
 const ARMS_RAD: [[f32; 2]; 3] = [[0.0, 0.0], [1.5, -0.7], [0.7, -0.4]];
