@@ -13,5 +13,6 @@ pub mod hands_report;
 pub mod observed;
 pub mod reproduce;
 pub mod score;
+pub mod skin_faces;
 pub mod skin_scores;
 pub mod tables;

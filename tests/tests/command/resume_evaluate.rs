@@ -130,7 +130,7 @@ fn evaluations_of_pictures_go_on() {
     fs::write(&boxes, "frame,x,y,w,h\n9,280,300,90,90\n").unwrap();
     folder.resumes(&format!("evaluate hands {scene}/frames --boxes {boxes} --seeds 3"), [1, 2]);
     let skin = format!("evaluate skin --images {scene}/frames --masks {masks}");
-    for more in ["", " --cross-validate 4"] {
+    for more in ["", " --face", " --cross-validate 4"] {
         for out in ["whole", "broken"] {
             fs::remove_dir_all(folder.path(out)).unwrap();
         }

@@ -135,3 +135,33 @@ fn the_shipped_gaussian_reaches_its_floors() {
         assert!((floor..0.9).contains(&f1), "{set}: {f1}");
     }
 }
+
+/// The numbers of docs/skin.md: skin by the colour of the face, on all images and on pale skin.
+#[test]
+fn the_face_adapts_the_model_to_pale_skin() {
+    let (Some(ecu), Some(pratheepan)) = (shared_data("skin/ecu"), shared_data("skin/pratheepan")) else { return };
+    let mut command = sinew();
+    command.args(["evaluate", "skin", "--json", "--face"]);
+    for folder in [ecu, pratheepan] {
+        command.arg("--images").arg(folder.join("images")).arg("--masks").arg(folder.join("masks"));
+    }
+    let output = command.assert().success().get_output().stdout.clone();
+    let report: Value = serde_json::from_slice(&output).unwrap();
+    let rows = report["rows"].as_array().unwrap();
+    let row = |folder: &str, part: &str| rows.iter().find(|row| row["images_folder"] == folder && row["part"] == part);
+    let bounds = [
+        ("ecu/images", "all", 0.77..0.85),
+        ("pratheepan/images", "all", 0.82..0.90),
+        ("ecu/images", "pale", 0.77..0.85),
+        ("pratheepan/images", "pale", 0.86..0.94),
+        ("all folders", "pale", 0.82..0.90),
+    ];
+    for (folder, part, bounds) in bounds {
+        let f1 = row(folder, part).unwrap()["f1"].as_f64().unwrap();
+        assert!(bounds.contains(&f1), "{folder}, {part}: {f1}");
+    }
+    let of = |part| row("all folders", part).unwrap();
+    assert!(of("face")["images"].as_u64().unwrap() >= 78, "{}", of("face"));
+    let outside = of("pale")["f1_outside_head"].as_f64().unwrap();
+    assert!((0.74..0.84).contains(&outside), "{outside}");
+}

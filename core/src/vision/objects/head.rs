@@ -93,8 +93,15 @@ pub(super) const fn sign(side: Side) -> f32 {
 }
 
 /// Whether a place, relative to the face's centre in widths, belongs to head or neck.
+///
+/// ```
+/// use sinew_core::vision::objects::head::is_head;
+///
+/// assert!(is_head([0.0, 0.0]) && is_head([0.4, 0.9]));
+/// assert!(!is_head([0.6, 0.9]));
+/// ```
 #[must_use]
-pub(super) fn is_head([x, y]: [f32; 2]) -> bool {
+pub fn is_head([x, y]: [f32; 2]) -> bool {
     let (across, down) = (x / 0.58, (y - 0.05) / 0.80);
     let is_in_neck = x < 0.45 && x > -0.45 && y > 0.0 && y < 1.0;
     across * across + down * down <= 1.0 || is_in_neck

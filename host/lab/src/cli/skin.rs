@@ -1,14 +1,16 @@
 //! `sinew evaluate skin`: pixel scores of a skin model on images with masks.
 
 use super::{cells_in, until_signal};
-use crate::skin_scores::{FolderScores, by_folder, cross_validate, judge};
-use anyhow::Result;
+use crate::skin_faces::Faces;
+use crate::skin_scores::{FolderScores, Judge, MIN_PALE_LIGHTNESS, Part, by_folder, cross_validate, judge};
+use anyhow::{Error, Result};
 use clap::Args;
 use serde::Serialize;
 use serde_json::json;
 use sinew::cli::console::Console;
 use sinew::cli::train_skin::report_unmasked;
 use sinew::output::OutputDir;
+use sinew::person::FaceDetector;
 use sinew::resume::{Begun, Stop, identity, text_crc32};
 use sinew::skin::model::{DEFAULT_SKIN, ModelKind};
 use sinew::skin::pairs::{self, PairList};
@@ -33,9 +35,13 @@ pub struct EvaluateSkinArgs {
     /// Skin model: gaussian or histogram (shipped), or a FILE made by `sinew train skin`.
     #[arg(long, value_name = "gaussian|histogram|FILE", default_value = DEFAULT_SKIN)]
     pub skin: String,
+    /// Look for a face in each image, whose colour takes the place of the model, as in `sinew track
+    /// arm`. Scores pale skin and the pixels outside of heads, too.
+    #[arg(long)]
+    pub face: bool,
     /// Train anew on K folds of these images, and score each image by a model that was not trained
     /// on it.
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=1000), conflicts_with = "skin")]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=1000), conflicts_with_all = ["skin", "face"])]
     pub cross_validate: Option<u32>,
     /// Kind of model that --cross-validate trains.
     #[arg(long, value_enum, default_value = "histogram", requires = "cross_validate")]
@@ -63,6 +69,7 @@ struct Report<'a> {
     sinew_version: &'static str,
     model: &'a str,
     cross_validated: bool,
+    face: bool,
     morphology: bool,
     rows: Vec<FolderScores>,
     skipped: Vec<String>,
@@ -97,12 +104,15 @@ pub fn run_until(args: &EvaluateSkinArgs, console: &Console, stop: Stop<'_>) -> 
         }
         None => {
             warn_if_trained_on(&shipped, &list, console);
-            (judge(&list.pairs, &shipped, args.morphology, &cells)?, args.skin.clone())
+            let faces = args.face.then(|| Ok::<_, Error>(Faces { detector: FaceDetector::new()?, adapt: true }));
+            let faces = faces.transpose()?;
+            let by = Judge { model: &shipped, faces: faces.as_ref(), morphology: args.morphology };
+            (judge(&list.pairs, by, &cells)?, args.skin.clone())
         }
     };
     let skipped: Vec<String> = judged.iter().filter_map(|image| image.as_ref().err().cloned()).collect();
     skipped.iter().for_each(|reason| console.note(format!("skipped: {reason}")));
-    let rows = by_folder(&list, &judged)?;
+    let rows = by_folder(&list, &judged, args.face)?;
     let cross_validated = args.cross_validate.is_some();
     let report = Report {
         format: "sinew-evaluate-skin",
@@ -110,6 +120,7 @@ pub fn run_until(args: &EvaluateSkinArgs, console: &Console, stop: Stop<'_>) -> 
         sinew_version: env!("CARGO_PKG_VERSION"),
         model: &model,
         cross_validated,
+        face: args.face,
         morphology: args.morphology,
         rows,
         skipped,
@@ -132,6 +143,7 @@ fn begun(args: &EvaluateSkinArgs, list: &PairList, model: &SkinModel) -> Result<
         "images": args.images,
         "masks": args.masks,
         "skin": args.skin,
+        "face": args.face,
         "cross_validate": args.cross_validate,
         "kind": args.kind,
         "seed": args.seed,
@@ -151,15 +163,24 @@ fn warn_if_trained_on(model: &SkinModel, list: &PairList, console: &Console) {
 }
 
 fn summary(report: &Report<'_>) -> String {
-    let mut text = format!("model: {}\n", report.model);
+    let by = if report.face { "the colour of the face, or " } else { "" };
+    let mut text = format!("model: {by}{}\n", report.model);
+    let more = if report.face { "  F1 outside heads" } else { "" };
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "{:<24} images  precision  recall  F1     median image F1", "folder");
+    let _ = writeln!(text, "{:<24} images  precision  recall  F1     median image F1{more}", "folder");
     for row in &report.rows {
-        let _ = writeln!(
+        let name = match row.part {
+            Part::All => row.images_folder.clone(),
+            Part::Face => "  with a face".to_owned(),
+            Part::Pale => format!("  skin above L* {MIN_PALE_LIGHTNESS}"),
+        };
+        let _ = write!(
             text,
-            "{:<24} {:>6}  {:>9.3}  {:>6.3}  {:.3}  {:>15.3}",
-            row.images_folder, row.images, row.precision, row.recall, row.f1, row.median_image_f1
+            "{name:<24} {:>6}  {:>9.3}  {:>6.3}  {:.3}  {:>15.3}",
+            row.images, row.precision, row.recall, row.f1, row.median_image_f1
         );
+        let _ = row.f1_outside_head.map(|f1| write!(text, "  {f1:>16.3}"));
+        text.push('\n');
     }
     text
 }

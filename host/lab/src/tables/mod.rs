@@ -52,7 +52,7 @@ pub struct Table {
 }
 
 /// All tables that have a maker.
-pub const TABLES: [Table; 18] = [
+pub const TABLES: [Table; 19] = [
     Table {
         name: "arm-hands",
         page: "measurements_arm.md",
@@ -70,6 +70,7 @@ pub const TABLES: [Table; 18] = [
     Table { name: "cluster-work", page: "cluster.md", cost: Cost::Cheap, recordings: None, rows: cluster::work },
     Table { name: "cluster-chunks", page: "cluster.md", cost: Cost::Cheap, recordings: None, rows: cluster::chunks },
     Table { name: "skin-scores", page: "skin.md", cost: Cost::Long, recordings: Some("skin"), rows: skin::scores },
+    Table { name: "skin-faces", page: "skin.md", cost: Cost::Cheap, recordings: Some("skin"), rows: skin::faces },
     Table {
         name: "body-figure-2",
         page: "measurements_body.md",
