@@ -18,6 +18,8 @@ const MAX_FROM_USUAL: u8 = 12;
 /// What stays for so long is background, seconds. Chosen on seeds 100 to 260 of `sinew demo`: of
 /// the frames that say `tracking` 0.8 % are wrong, with two seconds 1.2 %.
 const LEARNING_S: f64 = 1.0;
+/// One of so many pixels is looked at for colours.
+const SKIPPED: usize = 4;
 /// Bytes of a pixel's state.
 const BYTES: usize = 5;
 
@@ -82,6 +84,17 @@ impl Background {
     #[must_use]
     pub fn is_background(&self, u: usize, v: usize) -> bool {
         self.mask.get(v * self.words + u / 32).is_some_and(|word| word >> (u % 32) & 1 == 1)
+    }
+
+    /// Of each pixel whose background was learned: its usual colour, and the colour of the last
+    /// picture, `image`, if that hides it.
+    pub fn learned<'a>(
+        &'a self,
+        image: &'a Picture<impl Pixels>,
+    ) -> impl Iterator<Item = ([u8; 3], Option<[u8; 3]>)> + 'a {
+        let pixels = self.pixels.iter().zip(image.as_raw().as_chunks::<3>().0).step_by(SKIPPED);
+        let learned = pixels.filter(|([.., alike, _], _)| *alike >= self.frames);
+        learned.map(|([r, g, b, _, other], now)| ([*r, *g, *b], (*other > 0).then_some(*now)))
     }
 
     /// What `skin` says of the last picture but for the background. For one pass over its lines,
@@ -176,6 +189,9 @@ mod tests {
         assert!(show(&mut background, SKIN, 20), "it rests from the start");
         assert!(!show(&mut background, SHELF, 19) && show(&mut background, SHELF, 1), "it has gone");
         assert!(!show(&mut background, SKIN, 19), "a hand before the shelf");
+        let hand = RgbImage::from_pixel(40, 2, Rgb(SKIN));
+        assert!(background.learned(&hand).eq([(SHELF, Some(SKIN)); 20]), "each fourth pixel");
+        assert!(show(&mut background, SHELF, 1) && background.learned(&hand).eq([(SHELF, None); 20]));
     }
 
     #[test]

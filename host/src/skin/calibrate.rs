@@ -97,19 +97,24 @@ impl SkinModel {
 fn adapt_gaussian(trained: &GaussianModel, colours: &[[u8; 3]], gains: Gains) -> Result<GaussianModel> {
     let points: Vec<[f64; 2]> = colours.iter().filter_map(|&rgb| chromaticity(gains.apply(rgb))).collect();
     let (mean, covariance, kept) = trimmed_moments(&points)?;
-    let part = (kept / (kept + TRAINED_PIXELS)).min(MAX_RECTANGLE_PART);
-    let blend = |trained: f64, here: f64| (1.0 - part) * trained + part * here;
     let mut sums: Vec<u16> = colours.iter().map(|rgb| rgb.iter().map(|&c| u16::from(c)).sum()).collect();
     sums.sort_unstable();
     // Half as bright as the rectangle's darker part may still be this skin, in its own shadow.
     let shadow = sums[sums.len() / 10] / 2;
-    Ok(GaussianModel {
+    let blended = blended(trained, (mean, covariance), kept);
+    Ok(GaussianModel { min_sum: trained.min_sum.min(shadow), ..blended })
+}
+
+/// The trained model with mean and covariance of so many pixels of this scene in part.
+pub(super) fn blended(trained: &GaussianModel, here: ([f64; 2], [f64; 3]), pixels: f64) -> GaussianModel {
+    let part = (pixels / (pixels + TRAINED_PIXELS)).min(MAX_RECTANGLE_PART);
+    let blend = |trained: f64, here: f64| (1.0 - part) * trained + part * here;
+    let (mean, covariance) = here;
+    GaussianModel {
         mean: [0, 1].map(|i| blend(trained.mean[i], mean[i])),
         covariance: [0, 1, 2].map(|i| blend(trained.covariance[i], covariance[i])),
-        threshold: trained.threshold,
-        min_sum: trained.min_sum.min(shadow),
-        white_balance: trained.white_balance,
-    })
+        ..*trained
+    }
 }
 
 /// Mean, covariance and number of points, after rounds of leaving out what lies far from the rest.

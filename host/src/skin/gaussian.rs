@@ -60,7 +60,7 @@ impl ColourLevels for GaussianSkin {
 }
 
 /// Weighted mean and covariance of chromaticities.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Moments {
     weight: f64,
     sum: [f64; 2],
@@ -73,6 +73,27 @@ impl Moments {
         self.sum = [self.sum[0] + weight * r, self.sum[1] + weight * g];
         self.products =
             [self.products[0] + weight * r * r, self.products[1] + weight * r * g, self.products[2] + weight * g * g];
+    }
+
+    /// Sum of the weights.
+    pub(super) fn weight(&self) -> f64 {
+        self.weight
+    }
+
+    /// Leaves a share of all weights.
+    pub(super) fn fade(&mut self, kept: f64) {
+        *self = Self::of_numbers(self.numbers().map(|number| kept * number));
+    }
+
+    /// All that is known: the weight, sums of r and g, sums of the products rr, rg, gg.
+    pub(super) fn numbers(&self) -> [f64; 6] {
+        let ([r, g], [rr, rg, gg]) = (self.sum, self.products);
+        [self.weight, r, g, rr, rg, gg]
+    }
+
+    /// From these.
+    pub(super) fn of_numbers([weight, r, g, rr, rg, gg]: [f64; 6]) -> Self {
+        Self { weight, sum: [r, g], products: [rr, rg, gg] }
     }
 
     /// Mean (r, g) and covariance (rr, rg, gg, with a small floor on the diagonal); `None` without

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::frames::{FrameReader, FrameView};
 use crate::person::{LinesFinder, PersonFinder, PersonView};
 use crate::pixels::{Picture, Pixels};
-use crate::skin::{Background, SkinModel};
+use crate::skin::{Background, MovingSkin, SkinModel};
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use sinew_core::camera::Camera;
@@ -29,6 +29,8 @@ pub(super) struct PictureVision {
     person: Option<PersonFinder>,
     /// Of a run that knows no face.
     background: Background,
+    /// As `background`.
+    moving: MovingSkin,
     width_px: u32,
 }
 
@@ -37,6 +39,7 @@ pub(super) struct PictureVision {
 struct PictureState {
     person: Option<String>,
     background: String,
+    moving: [u64; 6],
 }
 
 impl RunVision {
@@ -49,6 +52,7 @@ impl RunVision {
                 reader: FrameReader::new(options.config.likelihood.build()?, options.config.edges.build()?)?,
                 skin: skin.clone(),
                 background: Background::new(options.rate_hz),
+                moving: MovingSkin::new(options.rate_hz),
                 width_px: size_px.0,
                 person: faces.map(|faces| PersonFinder::new(size_px, camera, faces)),
             })),
@@ -137,11 +141,13 @@ impl PictureVision {
         let view = match self.person.as_ref().and_then(PersonFinder::skin) {
             Some(skin) => {
                 self.background.forget();
+                self.moving.forget();
                 self.reader.read(image, skin)?
             }
             None => {
                 self.background.see(image, &self.skin);
-                self.reader.read(image, &self.background.without(&self.skin))?
+                let own = self.moving.see(image, &self.background, &self.skin)?;
+                self.reader.read(image, &self.background.without(&own))?
             }
         };
         let person = self.person.as_mut().and_then(|person| person.see(&mut self.reader));
@@ -150,7 +156,8 @@ impl PictureVision {
 
     fn saved(&mut self) -> Result<String> {
         let person = self.person.as_mut().map(PersonFinder::saved).transpose()?;
-        Ok(serde_json::to_string(&PictureState { person, background: self.background.saved() })?)
+        let (background, moving) = (self.background.saved(), self.moving.saved());
+        Ok(serde_json::to_string(&PictureState { person, background, moving })?)
     }
 
     fn restore(&mut self, last: Option<&RgbImage>, saved: &str) -> Result<()> {
@@ -160,6 +167,7 @@ impl PictureVision {
             self.reader.read(last, &self.skin)?;
         }
         self.background.restore(&state.background, self.width_px)?;
+        self.moving.restore(state.moving);
         match (&mut self.person, &state.person) {
             (Some(person), Some(saved)) => person.restore(saved),
             _ => Ok(()),
