@@ -41,6 +41,6 @@ pub mod limbs;
 pub mod orientation;
 pub mod point_cloud;
 pub mod point_likelihood;
-pub(crate) mod point_pull;
+pub mod point_pull;
 pub mod range_smoothing;
 pub mod self_penetration;

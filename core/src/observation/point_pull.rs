@@ -11,18 +11,37 @@ use crate::math::{Vec3, unit};
 /// Chosen: far above rounding at a few metres, far below a sensor's noise.
 const TOUCHING_M: f32 = 1.0e-4;
 
-/// Adds the information of `blocks` about the bones of `surface`.
+/// A point that skin is near to, and how it pulls.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointPull {
+    /// The bone of that skin.
+    pub bone: usize,
+    /// Nearest place of the visible skin, metres.
+    pub skin_m: Vec3,
+    /// Place of the bone's axis under it, metres.
+    pub axis_m: Vec3,
+    /// Where that lies: 0 at the bone's start, 1 at its end.
+    pub axis_share: f32,
+    /// Unit vector of the line between skin and point.
+    pub normal: Vec3,
+    /// How far the skin should move along it, metres.
+    pub residual_m: f32,
+    /// Inverse variance of the residual, 1 / m^2.
+    pub weight: f32,
+}
+
+/// Calls `each` for the points of `blocks`, but for outliers.
 ///
-/// Each point has a residual to the nearest place of the visible skin, along the line between both.
-/// Outliers have none. `share` multiplies every point, for a cloud of which only a part is used.
-pub fn add_pull<'b, const BONES: usize>(
+/// A point's residual is to the nearest place of the visible skin, along the line between both.
+/// `share` multiplies every point, for a cloud of which only a part is used.
+pub fn for_each_pull<'b, const BONES: usize>(
     likelihood: &PointLikelihood,
     surface: &BodySurface<BONES>,
     blocks: impl Iterator<Item = &'b PointBlock>,
     share: f32,
-    information: &mut BodyInformation<BONES>,
+    mut each: impl FnMut(&PointPull),
 ) {
-    let weight = share / (likelihood.std_m * likelihood.std_m);
+    let all = share / (likelihood.std_m * likelihood.std_m);
     for block in blocks {
         let stretch = likelihood.stretch(block);
         let nearest = NearestSkin::find_stretched(surface, block, likelihood.outlier_m, stretch);
@@ -30,19 +49,34 @@ pub fn add_pull<'b, const BONES: usize>(
             let Some(seen) = surface.capsules.get(usize::from(nearest.capsule[i])) else { continue };
             let point_m = block.point_m(i);
             let skin_m = seen.capsule.nearest_visible(&surface.camera_m, &point_m);
-            let (axis_m, _) = seen.axis_point(&point_m);
+            let (axis_m, axis_share) = seen.axis_point(&point_m);
             // On the skin the line between both has no direction: the skin's normal is taken.
             let way = point_m - skin_m;
             let apart = unit(way).filter(|_| nearest.squared_m[i] > TOUCHING_M * TOUCHING_M);
             let normal = apart.or_else(|| unit(skin_m - axis_m)).unwrap_or_else(Vec3::z);
             let weight = if stretch > 0.0 {
-                weight / PointLikelihood::variance_ratio(stretch, &normal, &(point_m - surface.camera_m))
+                all / PointLikelihood::variance_ratio(stretch, &normal, &(point_m - surface.camera_m))
             } else {
-                weight
+                all
             };
-            information.add(seen.bone, &skin_m, &normal, way.dot(&normal), weight);
+            let residual_m = way.dot(&normal);
+            each(&PointPull { bone: seen.bone, skin_m, axis_m, axis_share, normal, residual_m, weight });
         }
     }
+}
+
+/// Adds the information of `blocks` about the bones of `surface`; `share` as in
+/// [`for_each_pull`].
+pub fn add_pull<'b, const BONES: usize>(
+    likelihood: &PointLikelihood,
+    surface: &BodySurface<BONES>,
+    blocks: impl Iterator<Item = &'b PointBlock>,
+    share: f32,
+    information: &mut BodyInformation<BONES>,
+) {
+    for_each_pull(likelihood, surface, blocks, share, |pull| {
+        information.add(pull.bone, &pull.skin_m, &pull.normal, pull.residual_m, pull.weight);
+    });
 }
 
 #[cfg(test)]

@@ -81,7 +81,7 @@ impl Body {
             };
             let first = first_pose.as_ref().map(|given| {
                 let pose = given.read(read_pose, |text| pose_from_json(text, "first_pose"))?;
-                inside_limits(pose, &measures, "first_pose", &mut notes)
+                inside_limits(pose, &measures.measures, "first_pose", &mut notes)
             });
             BodyStream::new(options, measures, first.transpose()?)
         };
@@ -139,7 +139,7 @@ impl Body {
 
     #[getter]
     fn measures_json(&self) -> PyResult<String> {
-        json_of_measures(&BodyFile::from(self.stream.measures()))
+        json_of_measures(&BodyFile::from(self.stream.size()))
     }
 
     #[getter]

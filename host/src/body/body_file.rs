@@ -1,13 +1,17 @@
 //! `body.json`: who is tracked.
 
-use crate::error::{Context, Result};
+use super::BodySize;
+use crate::error::{Context, Result, ensure};
 use crate::json_file::read_json;
 use serde::{Deserialize, Serialize};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::BodyMeasures;
-use sinew_core::skeleton::full_body::{BODY_BONES, BODY_JOINT_NAMES, body_radii_m};
+use sinew_core::skeleton::full_body::{BODY_BONES, BODY_JOINT_NAMES};
 use std::collections::BTreeMap;
 use std::path::Path;
+
+/// Thickest capsule, metres. Chosen: twice the trunk of a heavy adult.
+const MAX_RADIUS_M: f32 = 0.5;
 
 /// Measures of a person as a file holds them; lengths in metres, offsets as (outward, up, front).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,15 +37,19 @@ pub struct BodyFile {
     pub foot_m: [f32; 3],
     /// Girth relative to a body 1.75 m tall.
     pub girth: f32,
-    /// Radii of the capsules by the joint that they end at; for readers of the file, `girth` says
-    /// the same.
+    /// Radii of the capsules by the joint that they end at; by `girth` where there is none.
     #[serde(default)]
     pub radii_m: BTreeMap<String, f32>,
 }
 
 impl From<&BodyMeasures> for BodyFile {
     fn from(measures: &BodyMeasures) -> Self {
-        let radii_m = body_radii_m(measures);
+        Self::from(&BodySize::from(*measures))
+    }
+}
+
+impl From<&BodySize> for BodyFile {
+    fn from(BodySize { measures, radii_m }: &BodySize) -> Self {
         let named = (0..BODY_BONES).map(|bone| (BODY_JOINT_NAMES[bone].to_owned(), radii_m[bone]));
         Self {
             trunk_m: measures.trunk_m,
@@ -80,12 +88,31 @@ impl BodyFile {
         Ok(measures.checked()?)
     }
 
+    /// The measures, and the radii.
+    ///
+    /// # Errors
+    /// A length or radius that is not above zero, or a joint that no body has, by name.
+    pub fn size(&self) -> Result<BodySize> {
+        let mut size = BodySize::from(self.measures()?);
+        for (joint, &radius_m) in &self.radii_m {
+            let has_flesh = |bone: &usize| size.radii_m[*bone] > 0.0 && BODY_JOINT_NAMES[*bone] == joint;
+            let bone = (0..BODY_BONES).find(has_flesh);
+            let bone = bone.with_context(|| format!("`radii_m` has `{joint}`, where no capsule ends; leave it out"))?;
+            ensure!(
+                radius_m > 0.0 && radius_m <= MAX_RADIUS_M,
+                "the radius at `{joint}` has to be above 0 and at most {MAX_RADIUS_M} m, not {radius_m}"
+            );
+            size.radii_m[bone] = radius_m;
+        }
+        Ok(size)
+    }
+
     /// Reads the measures of a file.
     ///
     /// # Errors
     /// Names the file and what is wrong in it.
-    pub fn read(path: &Path) -> Result<BodyMeasures> {
-        let inner = || -> Result<BodyMeasures> { read_json::<Self>(path)?.measures() };
+    pub fn read(path: &Path) -> Result<BodySize> {
+        let inner = || -> Result<BodySize> { read_json::<Self>(path)?.size() };
         inner().with_context(|| format!("`{}` is no body.json", path.display()))
     }
 }
@@ -100,7 +127,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("body.json");
         std::fs::write(&path, serde_json::to_string(&BodyFile::from(&measures)).unwrap()).unwrap();
-        assert_eq!(BodyFile::read(&path).unwrap(), measures);
+        assert_eq!(BodyFile::read(&path).unwrap(), measures.into());
         let text = std::fs::read_to_string(&path).unwrap().replace("\"trunk_m\":", "\"trunk_m\":-");
         std::fs::write(&path, text).unwrap();
         let message = format!("{:#}", BodyFile::read(&path).unwrap_err());

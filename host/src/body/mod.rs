@@ -2,6 +2,7 @@
 //! nearest to them.
 
 pub mod body_file;
+pub mod body_size;
 pub mod camera_axes;
 pub mod export;
 pub mod fitting;
@@ -15,6 +16,7 @@ pub mod run;
 pub mod tracking;
 
 pub use body_file::BodyFile;
+pub use body_size::BodySize;
 pub use fitting::{FittedPose, fit_pose, fit_recording};
 pub use joints::{BodyJoints, BodySources};
 pub use measuring::measure;

@@ -1,8 +1,7 @@
 //! How much of a body is seen and tracked: all of it, or what a camera behind a desk sees.
 
 use serde::{Deserialize, Serialize};
-use sinew_core::skeleton::BodyMeasures;
-use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, body_radii_m};
+use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES};
 use sinew_core::skeleton::upper_body::{UPPER_BONES, UPPER_COORDINATES};
 use std::str::FromStr;
 
@@ -62,8 +61,8 @@ impl BodyPart {
 
     /// Radii of a whole body's capsules, metres; zero for what is not part of it.
     #[must_use]
-    pub fn radii_m(self, measures: &BodyMeasures) -> [f32; BODY_BONES] {
-        let mut radii_m = body_radii_m(measures);
+    pub fn fleshed(self, radii_m: &[f32; BODY_BONES]) -> [f32; BODY_BONES] {
+        let mut radii_m = *radii_m;
         radii_m[self.bones()..].fill(0.0);
         radii_m
     }

@@ -6,7 +6,9 @@ use super::scene_args::numbers;
 use super::signals::stop_flag;
 use super::viewer_args::ViewerArgs;
 use crate::body::BodyPart;
-use crate::body::run::{BodyEvent, BodyRunReport, BodyTrackOptions, BodyTrackRun, DEPTH_POINTS, tuning_file};
+use crate::body::run::{
+    BodyEvent, BodyRunReport, BodyTrackOptions, BodyTrackRun, DEPTH_POINTS, SizeSource, tuning_file,
+};
 use crate::body::tracking::{BodyModelKind, BodyStreamOptions, BodyTuning};
 use crate::cloud::MAX_POINTS;
 use crate::registry::{Kind, MEASURABLE, choice, extensions};
@@ -75,6 +77,10 @@ pub struct TrackBodyArgs {
     /// Height of a person who is not measured, metres.
     #[arg(long, value_name = "METRES", allow_negative_numbers = true)]
     pub height: Option<f32>,
+    /// Where lengths and radii come from [default: given with --skeleton or DIR/body.json,
+    /// otherwise estimated].
+    #[arg(long, value_enum)]
+    pub size: Option<SizeSource>,
     /// Pose of the first frame [default: DIR/first_pose.json; without one, someone who
     /// stands or walks is looked for].
     #[arg(long, value_name = "FILE.json")]
@@ -141,6 +147,7 @@ pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
         skeleton: args.skeleton.clone(),
         partial: args.partial,
         height_m: args.height,
+        size: args.size,
         init: args.init.clone(),
         stick: args.stick.clone(),
         seed: args.seed,

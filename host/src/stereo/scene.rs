@@ -14,7 +14,7 @@ use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
 use sinew_core::random::Stream;
 use sinew_core::skeleton::BodyMeasures;
-use sinew_core::skeleton::full_body::{BODY_BONES, BODY_PARENTS, full_body};
+use sinew_core::skeleton::full_body::{BODY_BONES, BODY_PARENTS, body_radii_m, full_body};
 
 /// Draws of a pixel for one point before the point is left out: nearly all of the body is behind
 /// patches.
@@ -105,7 +105,7 @@ impl StereoScene {
         let (errors, seed) = (options.errors, options.seed);
         errors.check(outliers)?;
         let measures = errors.given_measures(&measure(&recording)?, seed);
-        let radii_m = errors.seen_radii_m(&options.part.radii_m(&measures), seed);
+        let radii_m = errors.seen_radii_m(&options.part.fleshed(&body_radii_m(&measures)), seed);
         let patches = Patches::new(seed, options.patches);
         let depths_m = recording.joints_m.iter().flatten().flatten().map(|joint| joint.z);
         let wall_m = depths_m.fold(NEAREST_M, f32::max) + WALL_DISTANCE_M;

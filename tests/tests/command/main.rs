@@ -4,6 +4,7 @@ mod anatomy;
 mod angles;
 mod batch;
 mod blobs;
+mod body_size;
 mod coach;
 mod console;
 mod cut;

@@ -81,6 +81,7 @@ mod options;
 mod pace;
 mod propose;
 mod resample;
+mod reshape;
 mod saved;
 mod state;
 mod step;

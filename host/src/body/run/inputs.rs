@@ -1,13 +1,13 @@
 //! What a run reads: clouds, and beside them who is seen, by which camera, from which pose on.
 
 use super::measures_source::{measures_of_height, read_measures};
-use super::options::BodyTrackOptions;
-use crate::body::BodyPart;
+use super::options::{BodyTrackOptions, SizeSource};
 use crate::body::pose_file::{inside_limits, read_pose};
 use crate::body::recording::DEFAULT_RATE_HZ;
 use crate::body::tracking::BodyModelKind;
 use crate::body::tracking::stream::stick_at;
 use crate::body::tracking::stream_options::{check_part, check_rate};
+use crate::body::{BodyPart, BodySize};
 use crate::cloud::{CloudFolder, CloudSource, FoundSource, MAX_DISTANCE_M};
 use crate::error::{Context, Result, ensure};
 use crate::json_file::read_json;
@@ -27,7 +27,7 @@ pub struct InputFiles {
     pub clouds: PathBuf,
     /// The camera of depth images; none of clouds.
     pub camera: Option<PathBuf>,
-    /// The person's measures; a height where there is none.
+    /// The person: what the files or the height say.
     pub skeleton: Option<PathBuf>,
     /// The first pose; found in the points where there is none.
     pub init: Option<PathBuf>,
@@ -51,7 +51,9 @@ pub struct BodyInputs {
     /// How much of the body is tracked.
     pub part: BodyPart,
     /// The person.
-    pub measures: BodyMeasures,
+    pub size: BodySize,
+    /// Whether the size is to be estimated from the first seconds, beginning with `size`.
+    pub estimates_size: bool,
     /// The first pose inside the limits; `None` if it has to be found in the points.
     pub first_rad: Option<[f32; BODY_ANGLES]>,
     /// What is known of the stick in each frame; empty but for the stick model.
@@ -97,9 +99,9 @@ impl BodyInputs {
             DEFAULT_RATE_HZ
         });
         let skeleton = options.skeleton.clone().or_else(|| beside("body.json").filter(|_| options.height_m.is_none()));
-        let measures = measures(options, skeleton.as_deref(), &mut notes)?;
+        let size = size(options, skeleton.as_deref(), &mut notes)?;
         let init = options.init.clone().or_else(|| beside("first_pose.json"));
-        let first_rad = init.as_deref().map(|path| first_pose(path, &measures, &mut notes)).transpose()?;
+        let first_rad = init.as_deref().map(|path| first_pose(path, &size.measures, &mut notes)).transpose()?;
         let part = options.part.or(scene.body).unwrap_or_default();
         check_part(part, options.model)?;
         let mut stick_file = options.stick.clone();
@@ -121,7 +123,8 @@ impl BodyInputs {
             source,
             rate_hz,
             part,
-            measures,
+            size,
+            estimates_size: options.size.map_or(skeleton.is_none(), |source| source == SizeSource::Estimated),
             first_rad,
             stick,
             truth: truth.into_iter().map(|frame| (frame.frame, frame)).collect(),
@@ -156,7 +159,7 @@ fn read_scene(path: &Path) -> Result<SceneReport> {
     })
 }
 
-fn measures(options: &BodyTrackOptions, file: Option<&Path>, notes: &mut Vec<String>) -> Result<BodyMeasures> {
+fn size(options: &BodyTrackOptions, file: Option<&Path>, notes: &mut Vec<String>) -> Result<BodySize> {
     if let Some(path) = file {
         return read_measures(path, options.partial, notes);
     }

@@ -1,7 +1,7 @@
 //! The person's measures from a file: `body.json`, or a motion or skeleton that is measured.
 
 use crate::body::recording::BodyRecording;
-use crate::body::{BodyFile, BodySources, measure};
+use crate::body::{BodyFile, BodySize, BodySources, measure};
 use crate::error::{Context, Result, bail, ensure};
 use crate::motion::{self, DEFAULT_FRAMES_PER_SECOND, MarkerMotion, ReadOptions, amc, asf};
 use crate::registry::{Kind, MEASURABLE, extensions, find};
@@ -22,12 +22,13 @@ const MAX_REACH_M: f32 = 2.0;
 ///
 /// # Errors
 /// Names the file, and what is missing in it or breaks a rule.
-pub fn read_measures(path: &Path, partial: bool, notes: &mut Vec<String>) -> Result<BodyMeasures> {
+pub fn read_measures(path: &Path, partial: bool, notes: &mut Vec<String>) -> Result<BodySize> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     let measures = match extension.as_str() {
         "json" => BodyFile::read(path)?,
         _ if find(path, MEASURABLE).is_some() => measured(path, partial, notes)
-            .with_context(|| format!("the person of `{}` cannot be measured", path.display()))?,
+            .with_context(|| format!("the person of `{}` cannot be measured", path.display()))?
+            .into(),
         _ => bail!(
             "`{}` is no skeleton that can be read; give a body.json, or a motion to measure ({})",
             path.display(),
@@ -41,8 +42,8 @@ pub fn read_measures(path: &Path, partial: bool, notes: &mut Vec<String>) -> Res
 ///
 /// # Errors
 /// Names the text, and what is missing in it or breaks a rule.
-pub fn measures_from_json(text: &str, name: &str) -> Result<BodyMeasures> {
-    let parsed = || -> Result<BodyMeasures> { serde_json::from_str::<BodyFile>(text)?.measures() };
+pub fn measures_from_json(text: &str, name: &str) -> Result<BodySize> {
+    let parsed = || -> Result<BodySize> { serde_json::from_str::<BodyFile>(text)?.size() };
     checked(parsed().with_context(|| format!("`{name}` is no body.json"))?, name)
 }
 
@@ -51,25 +52,25 @@ pub fn measures_from_json(text: &str, name: &str) -> Result<BodyMeasures> {
 ///
 /// # Errors
 /// No person is as tall.
-pub fn measures_of_height(height_m: Option<f32>, notes: &mut Vec<String>) -> Result<BodyMeasures> {
+pub fn measures_of_height(height_m: Option<f32>, notes: &mut Vec<String>) -> Result<BodySize> {
     if height_m.is_none() {
         notes.push(format!("nothing says who is tracked; a person {UNKNOWN_HEIGHT_M} m tall (--height, --skeleton)"));
     }
     let height_m = height_m.unwrap_or(UNKNOWN_HEIGHT_M);
     ensure!((0.5..=2.5).contains(&height_m), "--height has to be from 0.5 to 2.5 metres, not {height_m}");
-    Ok(BodyMeasures::of_height(height_m)?)
+    Ok(BodyMeasures::of_height(height_m)?.into())
 }
 
 /// Refuses what is no person's measures; `name` is where they come from.
-fn checked(measures: BodyMeasures, name: &str) -> Result<BodyMeasures> {
-    let skeleton = full_body(&measures).with_context(|| format!("`{name}` is no person's skeleton"))?;
+fn checked(size: BodySize, name: &str) -> Result<BodySize> {
+    let skeleton = full_body(&size.measures).with_context(|| format!("`{name}` is no person's skeleton"))?;
     let ends_m = posture(&skeleton, &Vec3::zeros(), &[0.0; BODY_ANGLES]).ends;
     let farthest_m = ends_m.iter().map(Vec3::norm).fold(0.0, f32::max);
     ensure!(
         farthest_m <= MAX_REACH_M,
         "the person of `{name}` has a joint {farthest_m} m from the pelvis, and {MAX_REACH_M} m is the most; give lengths in metres"
     );
-    Ok(measures)
+    Ok(size)
 }
 
 fn measured(path: &Path, partial: bool, notes: &mut Vec<String>) -> Result<BodyMeasures> {
@@ -123,7 +124,7 @@ mod tests {
         let write = |file: &BodyFile| std::fs::write(&path, serde_json::to_string(file).unwrap()).unwrap();
         let file = BodyFile::from(&measures);
         write(&file);
-        assert_eq!(read_measures(&path, false, &mut Vec::new()).unwrap(), measures);
+        assert_eq!(read_measures(&path, false, &mut Vec::new()).unwrap(), measures.into());
         write(&BodyFile { shank_m: 40.0, ..file });
         let message = format!("{:#}", read_measures(&path, false, &mut Vec::new()).unwrap_err());
         assert!(message.contains("give lengths in metres"), "{message}");

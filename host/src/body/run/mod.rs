@@ -19,6 +19,6 @@ pub mod track;
 pub mod tuning_file;
 
 pub use inputs::BodyInputs;
-pub use options::{BodyTrackOptions, DEPTH_POINTS};
+pub use options::{BodyTrackOptions, DEPTH_POINTS, SizeSource};
 pub use report::{BodyRunReport, REPORT_VERSION};
 pub use track::{BodyEvent, BodyTrackRun};

@@ -41,6 +41,8 @@ pub struct BodyTrackOptions {
     pub partial: bool,
     /// Height of the person instead of measures, metres.
     pub height_m: Option<f32>,
+    /// Where the person's size comes from; estimated where no file says it, if there is none.
+    pub size: Option<SizeSource>,
     /// The pose of the first frame; `first_pose.json` of the folder where there is none.
     pub init: Option<PathBuf>,
     /// The stick's ends; `stick.csv` of the folder where there is none.
@@ -61,6 +63,17 @@ pub struct BodyTrackOptions {
     pub tuning: BodyTuning,
 }
 
+/// Where the person's lengths and radii come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "command", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+pub enum SizeSource {
+    /// As the file or the height says.
+    Given,
+    /// From the points of the first three seconds, beginning with what file or height says.
+    Estimated,
+}
+
 impl Default for BodyTrackOptions {
     /// Those of the command. The folder is still to be named.
     fn default() -> Self {
@@ -77,6 +90,7 @@ impl Default for BodyTrackOptions {
             skeleton: None,
             partial: false,
             height_m: None,
+            size: None,
             init: None,
             stick: None,
             seed,

@@ -118,7 +118,7 @@ impl BodyRunReport {
             notes: inputs.notes.clone(),
             inputs: inputs.files.clone(),
             part: inputs.part,
-            body: BodyFile::from(&inputs.measures),
+            body: BodyFile::from(&inputs.size),
             options,
         }
     }

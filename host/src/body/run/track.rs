@@ -8,6 +8,7 @@ use super::report::{BodyRunReport, SkippedCloud};
 use super::resume;
 use super::score::{BodyScore, RunningMean};
 use super::{particles, table};
+use crate::body::tracking::size_from_frames::{SIZE_SECONDS, size_from_frames, sizing_options};
 use crate::body::tracking::{BodyStream, BodyStreamOptions, FrameTime, SeenPoints};
 use crate::cloud::{CloudError, CloudFrame, CloudSource, MAX_POINTS};
 use crate::error::{Context, Result, WriteContext, bail};
@@ -99,7 +100,10 @@ impl BodyTrackRun {
         options.check()?;
         let mut inputs = BodyInputs::read(&options)?;
         check_readable(&inputs)?;
-        let mut stream = BodyStream::new(stream_options(&options, &inputs), inputs.measures, inputs.first_rad)?;
+        let mut stream = BodyStream::new(stream_options(&options, &inputs), inputs.size, inputs.first_rad)?;
+        if inputs.estimates_size {
+            stream = sized(&mut inputs, stream.options().clone())?;
+        }
         if inputs.first_rad.is_none() {
             find_start(&mut inputs, &mut stream)?;
         }
@@ -306,6 +310,27 @@ fn check_readable(inputs: &BodyInputs) -> Result<()> {
         "no cloud in `{}` can be read; of the first one, {reason}; give a folder of intact clouds",
         inputs.files.clouds.display()
     )
+}
+
+/// A stream of the person whose size the first seconds with points show; notes it.
+fn sized(inputs: &mut BodyInputs, options: BodyStreamOptions) -> Result<BodyStream> {
+    let sizing = BodyStream::new(sizing_options(&options), inputs.size, inputs.first_rad)?;
+    let seen = |frame: &CloudFrame| {
+        let cloud = read_cloud(frame, &inputs.source, &sizing).ok()?.ok()?;
+        (!cloud.seen.points_m.is_empty()).then_some((frame.frame, cloud.seen))
+    };
+    let most = (SIZE_SECONDS * inputs.rate_hz).ceil().max(1.0) as usize;
+    let clouds = &inputs.clouds.frames[..inputs.clouds.frames.len().min(START_CLOUDS + most)];
+    let mut frames: Vec<(u64, SeenPoints)> = sizing.install(|| clouds.par_iter().filter_map(seen).collect());
+    frames.truncate(most);
+    let first_rad = inputs.first_rad;
+    inputs.size = size_from_frames(&options, &inputs.size, first_rad, &frames)?;
+    inputs.notes.push(format!(
+        "lengths and radii are estimated from {} frames: {:.2} m from the soles to the middle of the head (--size given keeps those that are given)",
+        frames.len(),
+        inputs.size.standing_m()
+    ));
+    BodyStream::new(options, inputs.size, first_rad)
 }
 
 /// Starts from the first cloud that has points, and notes it.

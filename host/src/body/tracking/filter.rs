@@ -4,7 +4,7 @@
 use super::model_kind::BodyModelKind;
 use super::sized::{SeenFrame, SizedBody, SizedFilter};
 use super::tuning::BodyTuning;
-use crate::body::BodyPart;
+use crate::body::{BodyPart, BodySize};
 use crate::cloud::blocks_of;
 use crate::error::Result;
 use crate::resume::{from_text, to_text};
@@ -81,7 +81,7 @@ impl BodyFilter {
         let (points, _) = tuning.points_and_goals(kind);
         let scene = BodyScene {
             skeleton: full_body(measures)?,
-            radii_m: part.radii_m(measures),
+            radii_m: part.fleshed(&body_radii_m(measures)),
             camera_m: Vec3::zeros(),
             likelihood: PointLikelihood { std_m: points.std_m, outlier_m: points.outlier_m },
             self_penetration: None,
@@ -108,6 +108,22 @@ impl BodyFilter {
     pub fn above_floor(mut self, floor_y_m: f32) -> Self {
         self.floor_y_m = floor_y_m;
         self
+    }
+
+    /// Goes on with the same poses of a body of another size.
+    ///
+    /// # Errors
+    /// Lengths that no body has.
+    pub fn resize(&mut self, size: &BodySize) -> Result<(), ParameterError> {
+        let BodySize { measures, radii_m } = size;
+        let part = self.part();
+        self.scene.skeleton = full_body(measures)?;
+        self.scene.radii_m = part.fleshed(radii_m);
+        self.completed = OnceLock::new();
+        match &mut self.tracked {
+            Sizes::Whole(filter) => filter.resize(full_body(measures)?, *radii_m),
+            Sizes::Upper(filter) => filter.resize(upper_body(measures)?, std::array::from_fn(|bone| radii_m[bone])),
+        }
     }
 
     /// How much of the body is tracked.

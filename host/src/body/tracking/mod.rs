@@ -8,6 +8,8 @@ pub mod frame_time;
 pub mod model_kind;
 pub mod paper_tuning;
 pub mod seen_points;
+pub mod size_estimate;
+pub mod size_from_frames;
 mod sized;
 pub mod start;
 pub mod stream;

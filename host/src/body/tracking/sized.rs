@@ -94,15 +94,12 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         seed: u64,
     ) -> Result<Self, ParameterError> {
         let (points, goals) = tuning.points_and_goals(kind);
-        let std_m = tuning.self_penetration_std_m;
-        let apart = (std_m > 0.0).then(|| SelfPenetration::new(&body.skeleton, &body.radii_m, std_m));
-        let self_penetration = apart.transpose()?;
         let scene = BodyScene {
+            self_penetration: kept_apart(&tuning, &body.skeleton, &body.radii_m)?,
             skeleton: body.skeleton,
             radii_m: body.radii_m,
             camera_m: Vec3::zeros(),
             likelihood: PointLikelihood { std_m: points.std_m, outlier_m: points.outlier_m },
-            self_penetration,
         };
         let goals = LinearGoals::new(end_effectors(BONES), BONES, goals.extrapolation(), goals.reach_std_m)?
             .spreading_by(&goals.goal_std.per_end_effector())?
@@ -129,6 +126,20 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             tracker,
             modes: (set, weights),
         })
+    }
+
+    /// Goes on with the same poses of a body with other lengths and radii.
+    ///
+    /// # Errors
+    /// Names the parameter that broke a rule.
+    pub fn resize(&mut self, skeleton: Skeleton<BONES, ANGLES>, radii_m: [f32; BONES]) -> Result<(), ParameterError> {
+        match &mut self.tracker {
+            AnyTracker::Particles(tracker) => tracker.reshape(&skeleton),
+            AnyTracker::Modes(tracker) => tracker.reshape(&skeleton),
+        }
+        self.scene.self_penetration = kept_apart(&self.tuning, &skeleton, &radii_m)?;
+        (self.scene.skeleton, self.scene.radii_m) = (skeleton, radii_m);
+        Ok(())
     }
 
     /// The particles after the last step.
@@ -284,6 +295,16 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         self.modes = poses_and_weights(tracker);
         estimate
     }
+}
+
+/// What limbs in limbs cost, where they are kept apart.
+fn kept_apart<const BONES: usize, const ANGLES: usize>(
+    tuning: &BodyTuning,
+    skeleton: &Skeleton<BONES, ANGLES>,
+    radii_m: &[f32; BONES],
+) -> Result<Option<SelfPenetration<BONES>>, ParameterError> {
+    let std_m = tuning.self_penetration_std_m;
+    (std_m > 0.0).then(|| SelfPenetration::new(skeleton, radii_m, std_m)).transpose()
 }
 
 /// The poses of the modes, and weights that sum to one.

@@ -2,7 +2,7 @@
 //! way, is fitted to them.
 
 use super::tuning::PointTuning;
-use crate::body::BodyPart;
+use crate::body::{BodyPart, BodySize};
 use crate::error::Result;
 use rayon::prelude::*;
 use sinew_core::kinematics::inverse::{PoseDensity, Solve};
@@ -11,7 +11,6 @@ use sinew_core::observation::point_cloud::PointBlock;
 use sinew_core::observation::point_likelihood::PointLikelihood;
 use sinew_core::pik::guided::GuidedDensity;
 use sinew_core::pik::motion::BodyScene;
-use sinew_core::skeleton::BodyMeasures;
 use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, BODY_BONES, full_body};
 use sinew_core::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
 use std::f32::consts::TAU;
@@ -50,21 +49,21 @@ const ANGLE_STD_RAD: f32 = 0.4;
 /// Measures that no body has.
 pub fn pose_from_points(
     part: BodyPart,
-    measures: &BodyMeasures,
+    size: &BodySize,
     points: &PointTuning,
     points_m: &[Vec3],
     blocks: &[PointBlock],
 ) -> Result<[f32; BODY_ANGLES]> {
     let scene = BodyScene {
-        skeleton: full_body(measures)?,
-        radii_m: part.radii_m(measures),
+        skeleton: full_body(&size.measures)?,
+        radii_m: part.fleshed(&size.radii_m),
         camera_m: Vec3::zeros(),
         likelihood: PointLikelihood { std_m: points.std_m, outlier_m: points.outlier_m },
         self_penetration: None,
     };
     let mut pelvis_m = middle(points_m).unwrap_or(Vec3::new(0.0, 0.0, NO_POINTS_Z_M));
     if part == BodyPart::Upper {
-        pelvis_m.y += UPPER_MIDDLE_SHARE * measures.trunk_m;
+        pelvis_m.y += UPPER_MIDDLE_SHARE * size.measures.trunk_m;
     }
     let guesses = guesses(part, pelvis_m);
     let climbed: Vec<([f32; BODY_ANGLES], f32)> = guesses
@@ -158,6 +157,7 @@ mod tests {
     use crate::cloud::blocks_of;
     use crate::stereo::{StereoOptions, StereoScene, stick_wave};
     use sinew_core::kinematics::forward::posture;
+    use sinew_core::skeleton::BodyMeasures;
 
     /// Mean distance of the joints that are found from the true ones, metres, of a person who is
     /// turned by `turn_rad`.
@@ -172,7 +172,8 @@ mod tests {
         let scene = StereoScene::new(recording, StereoOptions::default()).unwrap();
         let tuning = BodyTuning::default().guided_points;
         let blocks = blocks_of(&mut scene.points_m(0), None);
-        let pose = pose_from_points(BodyPart::Whole, scene.measures(), &tuning, &scene.points_m(0), &blocks).unwrap();
+        let pose = pose_from_points(BodyPart::Whole, &(*scene.measures()).into(), &tuning, &scene.points_m(0), &blocks)
+            .unwrap();
         let skeleton = full_body(scene.measures()).unwrap();
         assert_eq!(skeleton.clamp(pose), pose);
         let ends = posture(&skeleton, &Vec3::zeros(), &pose).ends;
@@ -190,7 +191,8 @@ mod tests {
 
     #[test]
     fn no_points_and_one_point_are_starts_too() {
-        let (measures, tuning) = (BodyMeasures::of_height(1.75).unwrap(), BodyTuning::default().guided_points);
+        let tuning = BodyTuning::default().guided_points;
+        let measures = BodySize::from(BodyMeasures::of_height(1.75).unwrap());
         let pose = pose_from_points(BodyPart::Whole, &measures, &tuning, &[], &[]).unwrap();
         assert_eq!(pose[..3], [0.0, 0.0, NO_POINTS_Z_M]);
         let one = pose_from_points(BodyPart::Whole, &measures, &tuning, &[Vec3::new(1.0, 0.0, 4.0)], &[]).unwrap();

@@ -7,7 +7,7 @@ use super::frame_time::{FrameTime, Moment};
 use super::seen_points::SeenPoints;
 use super::start::pose_from_points;
 use super::stream_options::BodyStreamOptions;
-use crate::body::BodyFile;
+use crate::body::{BodyFile, BodySize};
 use crate::cloud::{MAX_DISTANCE_M, PointCloud, blocks_of};
 use crate::error::{Context, Result};
 use crate::resume::text_crc32;
@@ -15,7 +15,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::{Deserialize, Serialize};
 use sinew_core::math::Vec3;
 use sinew_core::pik::processes::stick::StickSight;
-use sinew_core::skeleton::BodyMeasures;
 use sinew_core::skeleton::full_body::BODY_ANGLES;
 
 /// How far a stream has got.
@@ -85,7 +84,7 @@ pub struct StreamedFrame {
 #[derive(Debug)]
 pub struct BodyStream {
     options: BodyStreamOptions,
-    measures: BodyMeasures,
+    size: BodySize,
     filter: BodyFilter,
     threads: ThreadPool,
     phase: Phase,
@@ -93,24 +92,24 @@ pub struct BodyStream {
 }
 
 impl BodyStream {
-    /// A stream of the person with `measures`. Without a first pose it is found in the first
-    /// points.
+    /// A stream of a person of that size. Without a first pose it is found in the first points.
     ///
     /// # Errors
     /// Names the option or number that broke a rule.
     pub fn new(
         options: BodyStreamOptions,
-        measures: BodyMeasures,
+        size: impl Into<BodySize>,
         first_rad: Option<[f32; BODY_ANGLES]>,
     ) -> Result<Self> {
         options.check()?;
-        let filter = filter(&options, &measures, first_rad.unwrap_or([0.0; BODY_ANGLES]))?;
+        let size = size.into();
+        let filter = filter(&options, &size, first_rad.unwrap_or([0.0; BODY_ANGLES]))?;
         let threads = ThreadPoolBuilder::new()
             .num_threads(options.threads.unwrap_or(0))
             .build()
             .context("the threads cannot be started; give --threads a smaller number")?;
         let phase = if first_rad.is_some() { Phase::Placed } else { Phase::Waiting };
-        Ok(Self { options, measures, filter, threads, phase, last: None })
+        Ok(Self { options, size, filter, threads, phase, last: None })
     }
 
     /// How it was made.
@@ -121,14 +120,24 @@ impl BodyStream {
 
     /// The person.
     #[must_use]
-    pub const fn measures(&self) -> &BodyMeasures {
-        &self.measures
+    pub const fn size(&self) -> &BodySize {
+        &self.size
     }
 
     /// The filter with its particles.
     #[must_use]
     pub const fn filter(&self) -> &BodyFilter {
         &self.filter
+    }
+
+    /// Goes on with a person of that size.
+    ///
+    /// # Errors
+    /// Lengths that no body has.
+    pub fn resize(&mut self, size: &BodySize) -> Result<()> {
+        self.filter.resize(size)?;
+        self.size = *size;
+        Ok(())
     }
 
     /// Number of the last frame; `None` before the first one.
@@ -157,8 +166,8 @@ impl BodyStream {
     pub fn begin_from(&mut self, points_m: &[Vec3]) -> Result<()> {
         let BodyStreamOptions { part, tuning, .. } = &self.options;
         let blocks = blocks_of(&mut points_m.to_vec(), tuning.range_smoothing()?.as_ref());
-        let pose = pose_from_points(*part, &self.measures, &tuning.guided_points, points_m, &blocks)?;
-        self.filter = filter(&self.options, &self.measures, pose)?;
+        let pose = pose_from_points(*part, &self.size, &tuning.guided_points, points_m, &blocks)?;
+        self.filter = filter(&self.options, &self.size, pose)?;
         self.phase = Phase::Placed;
         Ok(())
     }
@@ -232,7 +241,7 @@ impl BodyStream {
     /// None that a user can bring about.
     pub fn saved(&mut self) -> Result<String> {
         let state = self.state()?;
-        let saved = SavedStream { options: self.options.clone(), body: BodyFile::from(&self.measures), state };
+        let saved = SavedStream { options: self.options.clone(), body: BodyFile::from(&self.size), state };
         Ok(serde_json::to_string(&saved)?)
     }
 
@@ -243,7 +252,7 @@ impl BodyStream {
     pub fn restored(saved: &str) -> Result<Self> {
         let inner = || -> Result<Self> {
             let SavedStream { options, body, state } = serde_json::from_str(saved)?;
-            let mut stream = Self::new(options, body.measures()?, None)?;
+            let mut stream = Self::new(options, body.size()?, None)?;
             stream.set_state(&state)?;
             Ok(stream)
         };
@@ -261,9 +270,11 @@ impl BodyStream {
 }
 
 /// A filter that begins at `first_rad`.
-fn filter(options: &BodyStreamOptions, measures: &BodyMeasures, first_rad: [f32; BODY_ANGLES]) -> Result<BodyFilter> {
+fn filter(options: &BodyStreamOptions, size: &BodySize, first_rad: [f32; BODY_ANGLES]) -> Result<BodyFilter> {
     let BodyStreamOptions { part, model, tuning, particles, seed, floor_y_m, .. } = options;
-    let filter = BodyFilter::of_part(*part, *model, *tuning, (measures, first_rad), *particles, *seed)?;
+    let who = (&size.measures, first_rad);
+    let mut filter = BodyFilter::of_part(*part, *model, *tuning, who, *particles, *seed)?;
+    filter.resize(size)?;
     Ok(match floor_y_m {
         Some(floor_y_m) => filter.above_floor(*floor_y_m),
         None => filter,
@@ -292,6 +303,7 @@ mod tests {
     use super::*;
     use crate::body::tracking::BodyModelKind;
     use crate::stereo::{StereoOptions, StereoScene, StereoSource};
+    use sinew_core::skeleton::BodyMeasures;
 
     const UNSEEN: StickSight = StickSight::Unseen;
 

@@ -7,6 +7,7 @@ use super::options::{MAX_MODES, ModeOptions};
 use crate::error::ParameterError;
 use crate::math::Vec3;
 use crate::pik::motion::BodyParticle;
+use crate::skeleton::Skeleton;
 use heapless::Vec;
 
 /// One explanation of a body: the mode of its density, and how it moves.
@@ -101,5 +102,12 @@ impl<const BONES: usize, const ANGLES: usize> ModeTracker<BONES, ANGLES> {
     #[must_use]
     pub fn modes(&self) -> &[BodyMode<BONES, ANGLES>] {
         &self.modes
+    }
+
+    /// Goes on with the same poses of a body with the lengths of `skeleton`. The next step has to
+    /// be given a scene with it.
+    pub fn reshape(&mut self, skeleton: &Skeleton<BONES, ANGLES>) {
+        self.modes.iter_mut().for_each(|mode| mode.pose.reshape(skeleton));
+        self.deadband.reported.reshape(skeleton);
     }
 }
