@@ -23,8 +23,9 @@ pub fn sizing_options(options: &BodyStreamOptions) -> BodyStreamOptions {
     BodyStreamOptions { model, particles: model.default_particles(), ..options.clone() }
 }
 
-/// The size of the person of these frames; `start` is the likeliest one before they are seen. The
-/// frames are as a stream of [`sizing_options`] sees them, with their numbers.
+/// The size of the person of these frames; `start` is the likeliest one before they are seen, and
+/// stays where the frames are no likelier with another. The frames are as a stream of
+/// [`sizing_options`] sees them, with their numbers.
 ///
 /// # Errors
 /// Options out of their range; a first pose or a size that no body has.
@@ -34,10 +35,11 @@ pub fn size_from_frames(
     first_rad: Option<[f32; BODY_ANGLES]>,
     frames: &[(u64, SeenPoints)],
 ) -> Result<BodySize> {
+    let options = sizing_options(options);
     let mut estimate = SizeEstimate::new(*start);
     for _ in 0..PASSES {
         estimate.forget();
-        let mut stream = BodyStream::new(sizing_options(options), estimate.size(), first_rad)?;
+        let mut stream = BodyStream::new(options.clone(), estimate.size(), first_rad)?;
         for (frame, seen) in frames {
             if stream.step(seen, FrameTime::Number(*frame), StickSight::Unseen)?.is_some() {
                 let filter = stream.filter();
@@ -46,7 +48,29 @@ pub fn size_from_frames(
             }
         }
     }
-    Ok(estimate.size())
+    let found = estimate.size();
+    let log_likelihood = |size: &BodySize| log_likelihood(&options, size, first_rad, frames);
+    let is_likelier = log_likelihood(&found)? > log_likelihood(start)?;
+    Ok(if is_likelier { found } else { *start })
+}
+
+/// Log-likelihood of all frames' points about the tracked poses of a person of that size.
+fn log_likelihood(
+    options: &BodyStreamOptions,
+    size: &BodySize,
+    first_rad: Option<[f32; BODY_ANGLES]>,
+    frames: &[(u64, SeenPoints)],
+) -> Result<f32> {
+    let mut stream = BodyStream::new(options.clone(), *size, first_rad)?;
+    let mut sum = 0.0;
+    for (frame, seen) in frames {
+        if stream.step(seen, FrameTime::Number(*frame), StickSight::Unseen)?.is_some() {
+            let scene = stream.filter().scene();
+            let surface = scene.surface(&scene.posture(&stream.filter().before_deadband().0));
+            sum += scene.likelihood.log_likelihood(&surface, &seen.blocks);
+        }
+    }
+    Ok(sum)
 }
 
 #[cfg(test)]
@@ -60,8 +84,9 @@ mod tests {
     /// Someone with both arms on a stick, whose lengths are off by 5 % and whose radii by 15 %.
     fn scene(seed: u64) -> StereoScene {
         let errors = SceneErrors { radius_share: 0.15, length_share: 0.05, ..SceneErrors::default() };
-        let recording = stick_wave(1, 15.0, 3.0, 3.0).unwrap().recording;
-        StereoScene::new(recording, StereoOptions { errors, seed, ..StereoOptions::default() }).unwrap()
+        let mut recording = stick_wave(seed, 15.0, 1.0, 3.0).unwrap().recording;
+        recording.joints_m.truncate(30);
+        StereoScene::new(recording, StereoOptions { errors, seed, points: 1000, ..StereoOptions::default() }).unwrap()
     }
 
     fn frames(stream: &BodyStream, clouds_m: Vec<Vec<sinew_core::math::Vec3>>) -> Vec<(u64, SeenPoints)> {
@@ -78,7 +103,7 @@ mod tests {
             let scene = scene(seed);
             let given = BodySize::from(*scene.measures());
             let stream = BodyStream::new(options.clone(), given, None).unwrap();
-            let first = scene.first_pose().unwrap().angles_rad;
+            let first = scene.first_pose().unwrap().angles;
             let seen = frames(&stream, scene.clouds_m());
             let found = size_from_frames(&options, &given, Some(first), &seen).unwrap();
             for bone in [TRUNK, THIGHS[0], SHANKS[0], FEET[0]] {
