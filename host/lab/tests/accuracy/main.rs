@@ -5,6 +5,7 @@ mod arm;
 mod body;
 mod body_first_pose;
 mod body_foresight;
+mod body_size;
 mod cadence_of_windows;
 mod circles;
 mod cyclic;
