@@ -10,9 +10,6 @@ use sinew_core::skeleton::full_body::{BODY_BONES, BODY_JOINT_NAMES};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Thickest capsule, metres. Chosen: twice the trunk of a heavy adult.
-const MAX_RADIUS_M: f32 = 0.5;
-
 /// Measures of a person as a file holds them; lengths in metres, offsets as (outward, up, front).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -99,8 +96,8 @@ impl BodyFile {
             let bone = (0..BODY_BONES).find(has_flesh);
             let bone = bone.with_context(|| format!("`radii_m` has `{joint}`, where no capsule ends; leave it out"))?;
             ensure!(
-                radius_m > 0.0 && radius_m <= MAX_RADIUS_M,
-                "the radius at `{joint}` has to be above 0 and at most {MAX_RADIUS_M} m, not {radius_m}"
+                radius_m > 0.0 && radius_m.is_finite(),
+                "the radius at `{joint}` has to be finite and above 0 metres, not {radius_m}"
             );
             size.radii_m[bone] = radius_m;
         }

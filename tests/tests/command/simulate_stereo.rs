@@ -41,8 +41,8 @@ fn the_stick_has_points_truth_pose_and_ends_in_space_and_pixels() {
         assert!(stick.ends_px.is_some());
     }
     let pose = sinew::body::pose_file::read_pose(&out.join("first_pose.json")).unwrap();
-    let measures = BodyFile::read(&out.join("body.json")).unwrap();
-    let skeleton = full_body(&measures).unwrap();
+    let size = BodyFile::read(&out.join("body.json")).unwrap();
+    let skeleton = full_body(&size.measures).unwrap();
     let ends = posture(&skeleton, &Vec3::zeros(), &pose).ends;
     for (end, wanted) in ends.iter().zip(&truth[0].joints_m) {
         assert!((end - wanted.unwrap()).norm() < 0.01);

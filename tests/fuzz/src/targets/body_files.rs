@@ -4,7 +4,7 @@ use crate::Target;
 use crate::file::file;
 use sinew::body::pose_file::{pose_json, read_pose};
 use sinew::body::run::measures_source::read_measures;
-use sinew::body::{BodyFile, BodyRecording, BodyRecordingOptions, measure};
+use sinew::body::{BodyFile, BodyRecording, BodyRecordingOptions, BodySize, measure};
 use sinew_core::skeleton::BodyMeasures;
 use sinew_core::skeleton::full_body::{BODY_ANGLES, full_body};
 use std::path::Path;
@@ -16,7 +16,7 @@ pub const TARGETS: &[Target] = &[
     Target { name: "body_recording", run: recording, seeds: || vec![stick_figure().into_bytes()] },
 ];
 
-fn measures_of(path: &Path) -> Option<BodyMeasures> {
+fn size_of(path: &Path) -> Option<BodySize> {
     read_measures(path, false, &mut Vec::new()).ok()
 }
 
@@ -26,11 +26,11 @@ fn body_json() -> Vec<u8> {
 }
 
 fn body(bytes: &[u8]) {
-    let Some(measures) = measures_of(&file("body.json", bytes)) else { return };
-    full_body(&measures).expect("measures that were read make a skeleton");
-    let text = serde_json::to_vec(&BodyFile::from(&measures)).expect("memory takes it");
-    let again = measures_of(&file("again.json", &text)).expect("it was written");
-    assert_eq!(again, measures, "as it was written");
+    let Some(size) = size_of(&file("body.json", bytes)) else { return };
+    full_body(&size.measures).expect("measures that were read make a skeleton");
+    let text = serde_json::to_vec(&BodyFile::from(&size)).expect("memory takes it");
+    let again = size_of(&file("again.json", &text)).expect("it was written");
+    assert_eq!(again, size, "as it was written");
 }
 
 fn pose(bytes: &[u8]) {
@@ -75,5 +75,5 @@ fn recording(bytes: &[u8]) {
     if let Ok(recording) = BodyRecording::read(&path, &BodyRecordingOptions::default()) {
         let _ = measure(&recording);
     }
-    let _ = measures_of(&path);
+    let _ = size_of(&path);
 }
