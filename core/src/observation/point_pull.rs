@@ -12,6 +12,31 @@ use crate::math::{Vec3, unit};
 const TOUCHING_M: f32 = 1.0e-4;
 
 /// A point that skin is near to, and how it pulls.
+///
+/// ```
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::observation::body_surface::BodySurface;
+/// use sinew_core::observation::point_cloud::PointCloud;
+/// use sinew_core::observation::point_likelihood::PointLikelihood;
+/// use sinew_core::observation::point_pull::for_each_pull;
+/// use sinew_core::skeleton::arm::FOREARM;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// let hanging = posture(&arm, &Vec3::new(0.0, 0.0, 2.0), &[0.0; 4]);
+/// let surface = BodySurface::new(&hanging, &[0.05, 0.04], Vec3::zeros());
+/// let likelihood = PointLikelihood { std_m: 0.1, outlier_m: 0.2 };
+/// let mut cloud = PointCloud::<1>::new();
+/// let _ = cloud.set(&mut [Vec3::new(0.0, 0.5, 1.91)], &Vec3::zeros());
+/// for_each_pull(&likelihood, &surface, cloud.blocks().iter(), 1.0, |pull| {
+///     // Half way down the forearm, five centimetres before its skin.
+///     assert_eq!(pull.bone, FOREARM);
+///     assert!((pull.residual_m - 0.05).abs() < 0.002);
+///     assert!((pull.axis_share - 0.57).abs() < 0.02);
+/// });
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointPull {
     /// The bone of that skin.
@@ -34,6 +59,29 @@ pub struct PointPull {
 ///
 /// A point's residual is to the nearest place of the visible skin, along the line between both.
 /// `share` multiplies every point, for a cloud of which only a part is used.
+///
+/// ```
+/// use sinew_core::kinematics::forward::posture;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::observation::body_surface::BodySurface;
+/// use sinew_core::observation::point_cloud::PointCloud;
+/// use sinew_core::observation::point_likelihood::PointLikelihood;
+/// use sinew_core::observation::point_pull::for_each_pull;
+/// use sinew_core::skeleton::arm::FOREARM;
+/// use sinew_core::skeleton::{ArmGeometry, Side};
+///
+/// let arm = ArmGeometry::new(Side::Left, 0.30, 0.35)?.skeleton()?;
+/// let hanging = posture(&arm, &Vec3::new(0.0, 0.0, 2.0), &[0.0; 4]);
+/// let surface = BodySurface::new(&hanging, &[0.05, 0.04], Vec3::zeros());
+/// let likelihood = PointLikelihood { std_m: 0.1, outlier_m: 0.2 };
+/// let mut cloud = PointCloud::<1>::new();
+/// let _ = cloud
+///     .set(&mut [Vec3::new(0.0, 0.5, 1.91), Vec3::new(0.9, 0.0, 3.0)], &Vec3::zeros());
+/// let mut pulls = 0;
+/// for_each_pull(&likelihood, &surface, cloud.blocks().iter(), 1.0, |_| pulls += 1);
+/// assert_eq!(pulls, 1, "the other point is an outlier");
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
 pub fn for_each_pull<'b, const BONES: usize>(
     likelihood: &PointLikelihood,
     surface: &BodySurface<BONES>,
@@ -67,7 +115,7 @@ pub fn for_each_pull<'b, const BONES: usize>(
 
 /// Adds the information of `blocks` about the bones of `surface`; `share` as in
 /// [`for_each_pull`].
-pub fn add_pull<'b, const BONES: usize>(
+pub(crate) fn add_pull<'b, const BONES: usize>(
     likelihood: &PointLikelihood,
     surface: &BodySurface<BONES>,
     blocks: impl Iterator<Item = &'b PointBlock>,

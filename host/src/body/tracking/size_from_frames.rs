@@ -11,7 +11,7 @@ use crate::error::Result;
 use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::skeleton::full_body::BODY_ANGLES;
 
-/// How much of a recording is looked at, seconds. Chosen: the joints are as near with twice as much.
+/// How much of a recording is looked at, seconds. Chosen: some strides of a walk.
 pub const SIZE_SECONDS: f32 = 3.0;
 /// How often it is tracked, each time with the size found before.
 const PASSES: usize = 2;
