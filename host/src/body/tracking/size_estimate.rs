@@ -57,7 +57,7 @@ const MIN_POINTS: usize = 20;
 /// Chosen: with 0.9 no difference.
 const MIN_SINE: f32 = 0.7;
 /// Where along a bone its sides are looked at, and how far inside of its rim, metres. Chosen: with
-/// a rim 2 cm farther out the joints are 6 % farther off, as thighs and heads are seldom seen alone.
+/// a rim 2 cm farther out the joints are 6 % farther off, thighs and heads are seldom seen alone.
 const STATIONS: [f32; 2] = [0.5, 0.8];
 const INSIDE_M: f32 = 0.01;
 
