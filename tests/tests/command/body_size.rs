@@ -21,7 +21,7 @@ fn made() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let words = ["-q", "simulate", "stereo", "--motion", "stick-wave"];
     let errors = ["--radius-error", "0.15", "--length-error", "0.05", "--points", "1000", "--out"];
-    let status = sinew_command().args(words).args(errors).arg(folder.path()).status().unwrap();
+    let status = sinew_command().args(words).args(errors).arg(folder.path()).output().unwrap().status;
     assert!(status.success());
     for point_cloud in fs::read_dir(folder.path().join("points")).unwrap() {
         let path = point_cloud.unwrap().path();
