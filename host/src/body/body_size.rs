@@ -26,3 +26,20 @@ impl BodySize {
         trunk_m + head_m + thigh_m + shank_m - foot_m.y
     }
 }
+
+/// Measures with each of the nine lengths times its own factor, in the order of the fields: trunk,
+/// head, shoulder, upper arm, forearm, hip, thigh, shank, foot.
+pub(crate) fn lengths_times(measures: &BodyMeasures, of: impl Fn(usize) -> f32) -> BodyMeasures {
+    BodyMeasures {
+        trunk_m: measures.trunk_m * of(0),
+        head_m: measures.head_m * of(1),
+        shoulder_m: measures.shoulder_m * of(2),
+        upper_arm_m: measures.upper_arm_m * of(3),
+        forearm_m: measures.forearm_m * of(4),
+        hip_m: measures.hip_m * of(5),
+        thigh_m: measures.thigh_m * of(6),
+        shank_m: measures.shank_m * of(7),
+        foot_m: measures.foot_m * of(8),
+        girth: measures.girth,
+    }
+}

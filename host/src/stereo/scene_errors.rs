@@ -1,6 +1,7 @@
 //! What makes a scene harder than noise of disparities alone: errors of what a tracker is given,
 //! and of matching, background and shutter.
 
+use crate::body::body_size::lengths_times;
 use crate::error::{Result, ensure};
 use serde::Serialize;
 use sinew_core::camera::Pixel;
@@ -108,19 +109,7 @@ impl SceneErrors {
     /// Measures that the tracker is given of a person with `measures`.
     #[must_use]
     pub fn given_measures(&self, measures: &BodyMeasures, seed: u64) -> BodyMeasures {
-        let of = |index: u32| factor(self.length_share, seed, 1, index);
-        BodyMeasures {
-            trunk_m: measures.trunk_m * of(0),
-            head_m: measures.head_m * of(1),
-            shoulder_m: measures.shoulder_m * of(2),
-            upper_arm_m: measures.upper_arm_m * of(3),
-            forearm_m: measures.forearm_m * of(4),
-            hip_m: measures.hip_m * of(5),
-            thigh_m: measures.thigh_m * of(6),
-            shank_m: measures.shank_m * of(7),
-            foot_m: measures.foot_m * of(8),
-            girth: measures.girth,
-        }
+        lengths_times(measures, |index| factor(self.length_share, seed, 1, index as u32))
     }
 
     /// `pose` with every angle off to one side, to the other one where a limit is in the way.

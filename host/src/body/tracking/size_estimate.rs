@@ -8,6 +8,7 @@
 //! across the line of sight says more.
 
 use crate::body::BodySize;
+use crate::body::body_size::lengths_times;
 use nalgebra::{Cholesky, SMatrix, SVector};
 use sinew_core::kinematics::forward::Posture;
 use sinew_core::math::{Vec3, exp, ln};
@@ -66,21 +67,9 @@ type LengthMatrix = SMatrix<f64, KINDS, KINDS>;
 
 /// `size` with lengths and radii times the exponentials of these logarithms.
 fn scaled(size: &BodySize, log_lengths: &Lengths, log_radii: &Lengths) -> BodySize {
-    let of = |kind: usize| exp(log_lengths[kind] as f32);
-    let measures = &size.measures;
+    let girth = size.measures.girth * exp(log_radii.mean() as f32);
     BodySize {
-        measures: BodyMeasures {
-            trunk_m: measures.trunk_m * of(0),
-            head_m: measures.head_m * of(1),
-            shoulder_m: measures.shoulder_m * of(2),
-            upper_arm_m: measures.upper_arm_m * of(3),
-            forearm_m: measures.forearm_m * of(4),
-            hip_m: measures.hip_m * of(5),
-            thigh_m: measures.thigh_m * of(6),
-            shank_m: measures.shank_m * of(7),
-            foot_m: measures.foot_m * of(8),
-            girth: measures.girth * (exp(log_radii.mean() as f32)),
-        },
+        measures: BodyMeasures { girth, ..lengths_times(&size.measures, |kind| exp(log_lengths[kind] as f32)) },
         radii_m: std::array::from_fn(|bone| {
             kind_of(bone).map_or(0.0, |kind| size.radii_m[bone] * exp(log_radii[kind] as f32))
         }),

@@ -39,14 +39,12 @@ pub fn size_from_frames(
     let mut estimate = SizeEstimate::new(*start);
     for _ in 0..PASSES {
         estimate.forget();
-        let mut stream = BodyStream::new(options.clone(), estimate.size(), first_rad)?;
-        for (frame, seen) in frames {
-            if stream.step(seen, FrameTime::Number(*frame), StickSight::Unseen)?.is_some() {
-                let filter = stream.filter();
-                estimate.observe(filter.scene(), &filter.before_deadband().0, &seen.blocks);
-                stream.resize(&estimate.size())?;
-            }
-        }
+        let stream = BodyStream::new(options.clone(), estimate.size(), first_rad)?;
+        track(stream, frames, |stream, seen| {
+            let filter = stream.filter();
+            estimate.observe(filter.scene(), &filter.before_deadband().0, &seen.blocks);
+            stream.resize(&estimate.size())
+        })?;
     }
     let found = estimate.size();
     let log_likelihood = |size: &BodySize| log_likelihood(&options, size, first_rad, frames);
@@ -61,16 +59,28 @@ fn log_likelihood(
     first_rad: Option<[f32; BODY_ANGLES]>,
     frames: &[(u64, SeenPoints)],
 ) -> Result<f32> {
-    let mut stream = BodyStream::new(options.clone(), *size, first_rad)?;
     let mut sum = 0.0;
+    track(BodyStream::new(options.clone(), *size, first_rad)?, frames, |stream, seen| {
+        let scene = stream.filter().scene();
+        let surface = scene.surface(&scene.posture(&stream.filter().before_deadband().0));
+        sum += scene.likelihood.log_likelihood(&surface, &seen.blocks);
+        Ok(())
+    })?;
+    Ok(sum)
+}
+
+/// Steps through the frames; `each` is called after those that were answered.
+fn track(
+    mut stream: BodyStream,
+    frames: &[(u64, SeenPoints)],
+    mut each: impl FnMut(&mut BodyStream, &SeenPoints) -> Result<()>,
+) -> Result<()> {
     for (frame, seen) in frames {
         if stream.step(seen, FrameTime::Number(*frame), StickSight::Unseen)?.is_some() {
-            let scene = stream.filter().scene();
-            let surface = scene.surface(&scene.posture(&stream.filter().before_deadband().0));
-            sum += scene.likelihood.log_likelihood(&surface, &seen.blocks);
+            each(&mut stream, seen)?;
         }
     }
-    Ok(sum)
+    Ok(())
 }
 
 #[cfg(test)]
