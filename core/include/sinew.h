@@ -1,6 +1,6 @@
 /* Sinew: how a human body moves, from a camera, in a few kilobytes.
  *
- * Made from the interface's source by `SINEW_REGENERATE=1 cargo test -p sinew-c-interface --test header`; do not edit.
+ * Made from the interface's source by `SINEW_REGENERATE=1 cargo test -p sinew-c-interface header`; do not edit.
  *
  * Nothing is allocated, nothing is global. Objects live in memory that the caller gives: SINEW_*_MAX_BYTES bytes, aligned to SINEW_ALIGN,
  * always suffice, and sinew_*_size and sinew_*_align return the exact numbers of this target. Different objects may be used by different

@@ -94,8 +94,7 @@ pub fn checks_all_targets() -> bool {
 }
 
 /// Targets and levels that are always checked.
-pub const SHORT: [(&str, &str); 3] =
-    [("thumbv7em-none-eabihf", "3"), ("thumbv7em-none-eabihf", "s"), ("thumbv6m-none-eabi", "s")];
+pub const SHORT: [(&str, &str); 2] = [("thumbv7em-none-eabihf", "3"), ("thumbv6m-none-eabi", "s")];
 
 /// Levels that firmware is built at.
 pub const LEVELS: [&str; 4] = ["2", "3", "s", "z"];

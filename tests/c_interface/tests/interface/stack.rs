@@ -25,7 +25,7 @@ const MAX_GROWTH: f64 = 1.05;
 /// Bytes that may come on top: registers that a compiler saves, in calls that take almost nothing.
 const GROWTH_BYTES: u32 = 32;
 const PAGE: &str = "docs/firmware_memory.md";
-const REGENERATE: &str = "SINEW_ALL_TARGETS=1 SINEW_REGENERATE=1 cargo test -p sinew-c-interface --test stack";
+const REGENERATE: &str = "SINEW_ALL_TARGETS=1 SINEW_REGENERATE=1 cargo test -p sinew-c-interface stack";
 
 /// A processor, and a machine of QEMU that runs its instructions.
 struct Processor {

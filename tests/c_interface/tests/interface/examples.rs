@@ -32,7 +32,7 @@ fn expect_output(example: &str, stdout: &[u8]) {
         fs::write(&path, &text).unwrap();
     }
     let expected = fs::read_to_string(&path).unwrap_or_default();
-    assert_eq!(text, expected, "{example}; SINEW_REGENERATE=1 cargo test -p sinew-c-interface --test examples");
+    assert_eq!(text, expected, "{example}; SINEW_REGENERATE=1 cargo test -p sinew-c-interface examples");
 }
 
 fn compiler(name: &str, standard: &str) -> Command {

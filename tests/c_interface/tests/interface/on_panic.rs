@@ -34,7 +34,7 @@ fn library(folder: &Path) {
     let manifest = format!(
         "[package]\nname = \"panicking\"\nedition = \"2024\"\n[lib]\ncrate-type = [\"staticlib\"]\n\
          [dependencies]\nsinew-core = {{ path = {core:?}, features = [\"c-api\", \"panic-handler\"] }}\n\
-         [profile.release]\nlto = \"fat\"\ncodegen-units = 1\npanic = \"abort\"\n[workspace]\n",
+         [profile.release]\nopt-level = 1\nlto = \"fat\"\npanic = \"abort\"\n[workspace]\n",
         core = core.to_string()
     );
     fs::write(folder.join("Cargo.toml"), manifest).unwrap();
