@@ -38,7 +38,8 @@ fn error_cm(scene: &StereoScene, clouds_m: &[Vec<sinew_core::math::Vec3>], is_es
         .collect();
     if is_estimated {
         let looked_at = frames.len().min((SIZE_SECONDS * options.rate_hz) as usize);
-        size = size_from_frames(&options, &size, Some(first), &frames[..looked_at]).unwrap();
+        let found = size_from_frames(&options, &size, Some(first), &frames[..looked_at]).unwrap();
+        size = found.unwrap_or(size);
     }
     let mut stream = BodyStream::new(options, size, Some(first)).unwrap();
     let (mut sum, mut count) = (0.0, 0.0);

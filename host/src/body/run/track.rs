@@ -324,9 +324,14 @@ fn sized(inputs: &mut BodyInputs, options: BodyStreamOptions) -> Result<BodyStre
     let mut frames: Vec<(u64, SeenPoints)> = sizing.install(|| clouds.par_iter().filter_map(seen).collect());
     frames.truncate(most);
     let first_rad = inputs.first_rad;
-    inputs.size = size_from_frames(&options, &inputs.size, first_rad, &frames)?;
+    let found = size_from_frames(&options, &inputs.size, first_rad, &frames)?;
+    let how = match found {
+        Some(_) => "lengths and radii are estimated from",
+        None => "no lengths and radii make the points likelier than those at the start, in",
+    };
+    inputs.size = found.unwrap_or(inputs.size);
     inputs.notes.push(format!(
-        "lengths and radii are estimated from {} frames: {:.2} m from the soles to the middle of the head (--size given keeps those that are given)",
+        "{how} {} frames: {:.2} m from the soles to the middle of the head (--size given keeps those that are given)",
         frames.len(),
         inputs.size.standing_m()
     ));

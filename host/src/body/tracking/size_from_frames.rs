@@ -23,8 +23,8 @@ pub fn sizing_options(options: &BodyStreamOptions) -> BodyStreamOptions {
     BodyStreamOptions { model, particles: model.default_particles(), ..options.clone() }
 }
 
-/// The size of the person of these frames; `start` is the likeliest one before they are seen, and
-/// stays where the frames are no likelier with another. The frames are as a stream of
+/// The size of the person of these frames, or `None` where they are no likelier with it than with
+/// `start`, the likeliest one before they are seen. The frames are as a stream of
 /// [`sizing_options`] sees them, with their numbers.
 ///
 /// # Errors
@@ -34,7 +34,7 @@ pub fn size_from_frames(
     start: &BodySize,
     first_rad: Option<[f32; BODY_ANGLES]>,
     frames: &[(u64, SeenPoints)],
-) -> Result<BodySize> {
+) -> Result<Option<BodySize>> {
     let options = sizing_options(options);
     let mut estimate = SizeEstimate::new(*start);
     for _ in 0..PASSES {
@@ -49,7 +49,7 @@ pub fn size_from_frames(
     let found = estimate.size();
     let log_likelihood = |size: &BodySize| log_likelihood(&options, size, first_rad, frames);
     let is_likelier = log_likelihood(&found)? > log_likelihood(start)?;
-    Ok(if is_likelier { found } else { *start })
+    Ok(is_likelier.then_some(found))
 }
 
 /// Log-likelihood of all frames' points about the tracked poses of a person of that size.
@@ -115,7 +115,7 @@ mod tests {
             let stream = BodyStream::new(options.clone(), given, None).unwrap();
             let first = scene.first_pose().unwrap().angles;
             let seen = frames(&stream, scene.clouds_m());
-            let found = size_from_frames(&options, &given, Some(first), &seen).unwrap();
+            let found = size_from_frames(&options, &given, Some(first), &seen).unwrap().unwrap();
             for bone in [TRUNK, THIGHS[0], SHANKS[0], FEET[0]] {
                 let off = |size: &BodySize| (size.radii_m[bone] / scene.radii_m()[bone]).ln().powi(2);
                 before += off(&given);
@@ -129,9 +129,9 @@ mod tests {
     fn without_points_the_size_stays() {
         let options = sizing_options(&BodyStreamOptions::default());
         let start = BodySize::from(BodyMeasures::of_height(1.6).unwrap());
-        assert_eq!(size_from_frames(&options, &start, None, &[]).unwrap(), start);
+        assert_eq!(size_from_frames(&options, &start, None, &[]).unwrap(), None);
         let stream = BodyStream::new(options.clone(), start, None).unwrap();
         let empty = frames(&stream, vec![Vec::new(), Vec::new()]);
-        assert_eq!(size_from_frames(&options, &start, None, &empty).unwrap(), start);
+        assert_eq!(size_from_frames(&options, &start, None, &empty).unwrap(), None);
     }
 }
