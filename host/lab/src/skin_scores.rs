@@ -108,7 +108,7 @@ fn one(pair: &Pair, judge: Judge<'_>) -> Result<Result<JudgedImage, String>> {
         Ok(loaded) => loaded,
         Err(unreadable) => return Ok(Err(unreadable.to_string())),
     };
-    let face = judge.faces.and_then(|faces| faces.detector.find(&image));
+    let face = judge.faces.and_then(|faces| faces.detector.find(image.as_raw(), image.dimensions()));
     let adapting = face.filter(|_| judge.faces.is_some_and(|faces| faces.adapt));
     let by_face = adapting.and_then(|face| by_face(&image, &face)).transpose()?;
     let is_by_face = by_face.is_some();

@@ -1,6 +1,5 @@
 //! Where a run's faces come from: a detector beside the tracker, or a table.
 
-use super::face::{FaceDetector, FoundFace};
 use super::given::FaceTable;
 use crate::error::Result;
 use crate::pixels::{Picture, Pixels};
@@ -9,6 +8,7 @@ use image::RgbImage;
 use sinew_core::saved_state::{SavedState, StateVisitor};
 use sinew_core::vision::objects::head::HeadBox;
 use sinew_core::vision::objects::person_colour::PersonColour;
+use sinew_face::{FaceDetector, FoundFace};
 use std::thread::JoinHandle;
 
 /// Frames after which an answer counts. Chosen: a third of a second, in which any computer finds a
@@ -66,7 +66,7 @@ impl FaceLooks {
     /// The face that counts from this frame on, if there is one, and begins the next look. A `head`
     /// is taken in place of whatever is found.
     pub fn look(&mut self, frame: usize, image: &Picture<impl Pixels>, head: Option<HeadBox>) -> Option<FoundFace> {
-        let given = |head| FoundFace::at(image, of_blocks(head, self.block));
+        let given = |head| FoundFace::at(image.as_raw(), image.dimensions(), of_blocks(head, self.block));
         if let Some(head) = head {
             self.look = None;
             return Some(given(head));
@@ -78,11 +78,12 @@ impl FaceLooks {
         let is_time = self.look.is_none() && frame.is_multiple_of(self.interval);
         match &self.faces {
             Faces::Given(faces) => faces.at(frame).map(given),
-            Faces::Detector(detector) if is_time && frame == 0 => detector.find(image),
+            Faces::Detector(detector) if is_time && frame == 0 => detector.find(image.as_raw(), image.dimensions()),
             Faces::Detector(detector) => {
                 if is_time {
                     let (detector, image) = (detector.clone(), owned(image));
-                    let answer = Answer::Awaited(std::thread::spawn(move || detector.find(&image)));
+                    let answer =
+                        Answer::Awaited(std::thread::spawn(move || detector.find(image.as_raw(), image.dimensions())));
                     self.look = Some(Look { due: frame + LATENCY, answer });
                 }
                 found

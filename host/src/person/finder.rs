@@ -1,8 +1,6 @@
 //! Both hands of the person before the camera, frame by frame.
 
-use super::face::FoundFace;
 use super::faces::FaceLooks;
-use super::skin::PersonSkin;
 use crate::error::Result;
 use crate::frames::FrameReader;
 use crate::pixels::{Picture, Pixels};
@@ -15,6 +13,7 @@ use sinew_core::vision::objects::grid::CellGrid;
 use sinew_core::vision::objects::hands::HandFinder;
 use sinew_core::vision::objects::head::HeadBox;
 use sinew_core::vision::objects::person_colour::PersonColour;
+use sinew_face::{FoundFace, PersonSkin};
 
 /// Most columns of cells. Chosen: a hand of a person two metres away is a few cells wide.
 const COLUMNS: usize = 80;
@@ -63,14 +62,7 @@ impl PersonFinder {
 
     fn take(&mut self, face: Option<FoundFace>) {
         let (Some(face), Some(hands)) = (face, &mut self.hands) else { return };
-        let colour = match (&self.skin, face.colour) {
-            (Some(skin), Some(colour)) => skin.colour().moved_to(&colour),
-            (None, colour) => colour,
-            (Some(_), None) => None,
-        };
-        if let Some(colour) = colour {
-            self.skin = Some(PersonSkin::new(colour));
-        }
+        PersonSkin::learn(&mut self.skin, &face);
         if self.skin.is_some() {
             hands.add_face(face.head);
         }

@@ -1,15 +1,12 @@
 //! The person before the camera: the face, the skin's own colour, and both hands over time.
 
-mod face;
 mod faces;
 mod finder;
 mod given;
 mod lines_finder;
-mod skin;
 
-pub use face::{FaceDetector, FoundFace};
 pub use faces::FaceLooks;
 pub use finder::{PersonFinder, PersonView};
 pub use given::{FaceTable, GivenHand, GivenHands, HandTable, given_head};
 pub use lines_finder::LinesFinder;
-pub use skin::PersonSkin;
+pub use sinew_face::{FaceDetector, FoundFace, PersonSkin};

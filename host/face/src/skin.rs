@@ -1,5 +1,6 @@
 //! A person's colour as a table that classifies a pixel by one look.
 
+use crate::FoundFace;
 use sinew_core::vision::objects::person_colour::PersonColour;
 use sinew_core::vision::skin::{PIXELS_PER_WORD, SkinClassifier};
 
@@ -26,6 +27,18 @@ impl PersonSkin {
         let is_skin = |key: usize| colour.is_skin([middle(key, 2), middle(key, 1), middle(key, 0)]);
         let word = |index: usize| (0..32).fold(0, |word, bit| word | u32::from(is_skin(32 * index + bit)) << bit);
         Self { colour, words: (0..WORDS).map(word).collect() }
+    }
+
+    /// Takes the colour of a face: the first one as it is, a later one in part.
+    pub fn learn(skin: &mut Option<Self>, face: &FoundFace) {
+        let colour = match (&skin, face.colour) {
+            (Some(skin), Some(colour)) => skin.colour.moved_to(&colour),
+            (None, colour) => colour,
+            (Some(_), None) => None,
+        };
+        if let Some(colour) = colour {
+            *skin = Some(Self::new(colour));
+        }
     }
 
     /// The colour.
