@@ -1,5 +1,4 @@
-//! The arm tracker on a browser's pictures, as a WebAssembly module without allocator and without a
-//! binding generator.
+//! The arm tracker on a browser's pictures, as a WebAssembly module without a binding generator.
 //!
 //! A page writes a picture into the module's memory, calls `see` and `track`, and reads numbers:
 //! [`exports`] lists the functions. What they do is [`session::Session`], an ordinary structure.
@@ -7,18 +6,11 @@
 //! defaults of `sinew track arm`. A test holds the answers bit for bit to the command's on the same
 //! pictures.
 
-#![cfg_attr(target_arch = "wasm32", no_std)]
-
 pub mod answer;
 pub mod calibration;
 pub mod exports;
+pub mod face;
 pub mod frame;
 pub mod person;
 pub mod session;
 pub mod skin_model;
-
-#[cfg(target_arch = "wasm32")]
-#[panic_handler]
-fn stop(_: &core::panic::PanicInfo<'_>) -> ! {
-    core::arch::wasm32::unreachable()
-}

@@ -2,6 +2,7 @@
 
 use crate::answer::{ANSWER_NUMBERS, PARTICLE_NUMBERS, answer, particle};
 use crate::calibration::{adapted, box_around};
+use crate::face::Person;
 use crate::frame::{Frame, checked_size};
 use crate::person::{Shoulder, arm};
 use crate::skin_model::{BalancedSkin, SHIPPED};
@@ -14,7 +15,7 @@ use sinew_core::vision::blobs::{BlobFinder, BlobList, DEFAULT_MIN_AREA_FRACTION}
 use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::edges::{EdgeDetector, EdgeList};
 use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
-use sinew_core::vision::frame::FrameAnalyser;
+use sinew_core::vision::frame::{FrameAnalyser, last_mask};
 use sinew_core::vision::hand_likelihood::HandLikelihood;
 use sinew_core::vision::white_balance::Gains;
 
@@ -46,14 +47,17 @@ pub struct Choice {
 #[derive(Debug)]
 pub struct Session {
     choice: Choice,
-    model: ArmModel,
+    models: Models,
     shoulder_m: Vec3,
     tracker: ArmTracker<MAX_PARTICLES>,
     analyser: FrameAnalyser<LINE_CAPACITY, LINE_CAPACITY>,
-    skin: BalancedSkin,
+    /// Of a click on the hand.
+    clicked_skin: Option<BalancedSkin>,
+    person: Person,
     blobs: BlobList<MAX_BLOBS>,
     edges: EdgeList<MAX_EDGES>,
-    /// Blobs of the last frame as the tracker sees them, the most likely first.
+    /// What the tracker sees of the last frame, the most likely first: places of the tracked hand
+    /// once a face is known, else blobs.
     pub candidates: Vec<HandCandidate, MAX_BLOBS>,
     /// The last frame's answer, see [`answer()`].
     pub answer: [f32; ANSWER_NUMBERS],
@@ -67,16 +71,17 @@ impl Session {
     /// # Errors
     /// A size or a number of particles that there is no room for.
     pub fn new(choice: Choice) -> Result<Self, ParameterError> {
-        let (model, shoulder_m, tracker) = begun(&choice)?;
+        let (models, shoulder_m, tracker) = begun(&choice)?;
         let finder =
             BlobFinder::new(BlobMeter::new(DEFAULT_FILL_RATIO)?, HandLikelihood::default(), DEFAULT_MIN_AREA_FRACTION);
         Ok(Self {
             choice,
-            model,
+            models,
             shoulder_m,
             tracker,
             analyser: FrameAnalyser::new(finder, EdgeDetector::default()),
-            skin: SHIPPED,
+            clicked_skin: None,
+            person: Person::new(choice.size_px),
             blobs: BlobList::new(),
             edges: EdgeList::new(),
             candidates: Vec::new(),
@@ -85,14 +90,16 @@ impl Session {
         })
     }
 
-    /// Begins anew with another choice; the skin model stays.
+    /// Begins anew with another choice: the person is looked for again, what a click has taught
+    /// stays.
     ///
     /// # Errors
     /// As [`Self::new`]; the session is as before then.
     pub fn begin_again(&mut self, choice: Choice) -> Result<(), ParameterError> {
-        (self.model, self.shoulder_m, self.tracker) = begun(&choice)?;
+        (self.models, self.shoulder_m, self.tracker) = begun(&choice)?;
         self.choice = choice;
         self.analyser.forget_last_frame();
+        self.person.begin_again(choice.size_px);
         self.candidates.clear();
         self.particles.clear();
         self.answer = [f32::NAN; ANSWER_NUMBERS];
@@ -108,10 +115,17 @@ impl Session {
     /// Camera, arm and options.
     #[must_use]
     pub fn model(&self) -> &ArmModel {
-        &self.model
+        &self.models.of_blobs
     }
 
-    /// Finds blobs and temporal edges of the picture in `frame`.
+    /// The person before the camera.
+    #[must_use]
+    pub fn person(&self) -> &Person {
+        &self.person
+    }
+
+    /// Finds candidates and temporal edges of the picture in `frame`. Skin is what a click has
+    /// taught, else that of the face, else that of the shipped model.
     ///
     /// # Errors
     /// None in practice: the buffers fit every size that a session accepts.
@@ -119,24 +133,39 @@ impl Session {
         let size = self.size_px();
         frame.take_rgba(size.0 * size.1);
         let (rgb, mut buffers) = frame.parts(size);
-        let skin = self.skin.for_picture(&Gains::of_picture(rgb, size.0))?;
-        self.analyser.analyse(rgb, size, &skin, &mut buffers, &mut self.blobs, &mut self.edges)?;
+        self.person.look(rgb, size);
+        let (analyser, blobs, edges) = (&mut self.analyser, &mut self.blobs, &mut self.edges);
+        match (self.clicked_skin, self.person.skin()) {
+            (None, Some(skin)) => analyser.analyse(rgb, size, skin, &mut buffers, blobs, edges)?,
+            (clicked, _) => {
+                let skin = clicked.unwrap_or(SHIPPED).for_picture(&Gains::of_picture(rgb, size.0))?;
+                analyser.analyse(rgb, size, &skin, &mut buffers, blobs, edges)?;
+            }
+        }
         self.candidates.clear();
         // As many as blobs, of which there are no more than that.
         self.candidates.extend(self.blobs.candidates().take(MAX_BLOBS));
+        let (mask, luminance) = (last_mask(&buffers, size.0, size.1)?, self.analyser.last_luminance(&buffers));
+        self.person.find_hands(&mask, luminance, self.choice.side, &mut self.candidates);
         Ok(())
     }
 
     /// Moves the tracker on to the frame that was seen last, taken at `timestamp_us`, microseconds
     /// since any start.
     pub fn track(&mut self, timestamp_us: u64) -> ArmEstimate {
+        let head = self.person.head();
+        let model = if head.is_some() { &self.models.of_hands } else { &self.models.of_blobs };
+        if let (Some(head), Shoulder::Guessed { .. }) = (head, self.choice.shoulder) {
+            let [left, right] = head.shoulders_m(model.camera());
+            self.shoulder_m = if self.choice.side == Side::Left { left } else { right };
+        }
         let image = Some(ArmImage { candidates: &self.candidates, edges: self.edges.as_slice() });
         let frame = ArmFrame { timestamp_us, image, shoulder_m: self.shoulder_m };
-        let estimate = self.tracker.step(&self.model, &frame);
-        self.answer = answer(&estimate, &self.model, self.edges.as_slice().len());
+        let estimate = self.tracker.step(model, &frame);
+        self.answer = answer(&estimate, model, self.edges.as_slice().len(), head);
         self.particles.clear();
         let weighted = self.tracker.particles().iter().zip(self.tracker.weights());
-        self.particles.extend(weighted.map(|(one, &weight)| particle(one, weight, &self.model)).take(MAX_PARTICLES));
+        self.particles.extend(weighted.map(|(one, &weight)| particle(one, weight, model)).take(MAX_PARTICLES));
         estimate
     }
 
@@ -148,24 +177,34 @@ impl Session {
     pub fn calibrate(&mut self, frame: &Frame, u: usize, v: usize) -> Result<(), ParameterError> {
         let (width, height) = self.size_px();
         let bounds = box_around((u, v), (width, height))?;
-        self.skin = adapted(&SHIPPED, frame.rgb(width * height), width, bounds)?;
+        self.clicked_skin = Some(adapted(&SHIPPED, frame.rgb(width * height), width, bounds)?);
         Ok(())
     }
 
-    /// Goes back to the shipped skin model.
+    /// Goes back to the skin of the face, or the shipped model.
     pub fn forget_calibration(&mut self) {
-        self.skin = SHIPPED;
+        self.clicked_skin = None;
     }
 }
 
-/// Model, shoulder and tracker of a choice.
-fn begun(choice: &Choice) -> Result<(ArmModel, Vec3, ArmTracker<MAX_PARTICLES>), ParameterError> {
+/// Camera, arm and options.
+#[derive(Debug)]
+struct Models {
+    of_blobs: ArmModel,
+    /// For the hands of a person whose face is known.
+    of_hands: ArmModel,
+}
+
+/// Models, shoulder and tracker of a choice.
+fn begun(choice: &Choice) -> Result<(Models, Vec3, ArmTracker<MAX_PARTICLES>), ParameterError> {
     checked_size(choice.size_px.0, choice.size_px.1)?;
     if !(1..=MAX_PARTICLES).contains(&choice.particles) {
         return Err(ParameterError::new("particles", Rule::Within { low: 1.0, high: MAX_PARTICLES as f32 }));
     }
     let size_px = (choice.size_px.0 as u32, choice.size_px.1 as u32);
-    let (model, shoulder_m) = arm(size_px, choice.side, choice.particles, choice.shoulder)?;
-    let tracker = ArmTracker::new(&model, shoulder_m, choice.seed)?;
-    Ok((model, shoulder_m, tracker))
+    let (of_blobs, shoulder_m) = arm(size_px, choice.side, choice.particles, choice.shoulder)?;
+    let options = of_blobs.options().for_hands_over_time();
+    let of_hands = ArmModel::new(*of_blobs.camera(), size_px, *of_blobs.geometry(), options)?;
+    let tracker = ArmTracker::new(&of_blobs, shoulder_m, choice.seed)?;
+    Ok((Models { of_blobs, of_hands }, shoulder_m, tracker))
 }

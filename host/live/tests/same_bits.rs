@@ -5,16 +5,18 @@ use sinew::config::Config;
 use sinew::frames::FrameReader;
 use sinew::motion::{ArmSide, reach};
 use sinew::scene::{Scene, SceneOptions, Sides};
+use sinew::skin::model::DEFAULT_SKIN;
 use sinew::skin::model::{ModelNumbers, SkinModel};
 use sinew::skin::white_balance::WhiteBalance;
-use sinew::track::{ArmSet, SideChoice};
+use sinew::track::{ArmSet, ArmStream, FrameSource, SideChoice, StreamFrame, StreamOptions};
 use sinew_core::camera::Pixel;
 use sinew_core::skeleton::Side;
-use sinew_core::tracker::arm::ArmEstimate;
+use sinew_core::tracker::arm::{ArmEstimate, Status};
 use sinew_live::frame::Frame;
 use sinew_live::person::{DISTANCE_M, Shoulder};
 use sinew_live::session::{Choice, Session};
 use sinew_live::skin_model::SHIPPED;
+use std::path::Path;
 
 const SIZE_PX: (u32, u32) = (320, 240);
 const FRAMES: usize = 40;
@@ -139,4 +141,40 @@ fn beginning_again_forgets_the_frames_and_keeps_the_skin() {
     assert_eq!(session.begin_again(Choice { size_px: (641, 1), ..choice }).unwrap_err().parameter, "width");
     let nowhere = Shoulder::At { pixel: Pixel::new(f32::INFINITY, 0.0), distance_m: 1.0 };
     assert_eq!(session.begin_again(Choice { shoulder: nowhere, ..choice }).unwrap_err().parameter, "shoulder");
+}
+
+/// On a person with a face, looks for it included.
+#[test]
+fn a_person_with_a_face_is_followed_as_by_the_command() {
+    let clip = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/video/asl/yes.mkv");
+    if !clip.exists() {
+        eprintln!("skipped: ../shared/data is not beside the project");
+        return;
+    }
+    for (choice, side) in [(SideChoice::Right, Side::Right), (SideChoice::Left, Side::Left)] {
+        let mut frames = FrameSource::open(&clip, false, 30.0).unwrap();
+        let size_px = frames.size_px();
+        let options = StreamOptions { side: choice, rate_hz: 30.0, seed: 3, ..StreamOptions::default() };
+        let mut stream = ArmStream::new(options, SkinModel::from_option(DEFAULT_SKIN).unwrap(), size_px).unwrap();
+        let size_px = (size_px.0 as usize, size_px.1 as usize);
+        let shoulder = Shoulder::Guessed { distance_m: DISTANCE_M };
+        let mut session = Session::new(Choice { size_px, side, particles: 50, seed: 3, shoulder }).unwrap();
+        let mut frame = Frame::boxed();
+        let (mut number, mut tracking) = (0, 0);
+        while let Some(Ok(image)) = frames.load(number, 1).unwrap().pop() {
+            let timestamp_us = number as u64 * 33_333;
+            let answer = stream
+                .step(StreamFrame { number, timestamp_us, image: Some(&image), hands: None, head: None })
+                .unwrap();
+            write(&mut frame, &image);
+            session.see(&mut frame).unwrap();
+            let here = session.track(timestamp_us);
+            assert!(answer.knows_face && session.person().head().is_some(), "frame {number}");
+            assert_eq!(bits(&here), bits(&answer.arms[0].estimate), "frame {number}");
+            assert_eq!(here.status, answer.arms[0].estimate.status, "frame {number}");
+            tracking += usize::from(here.status == Status::Tracking);
+            number += 1;
+        }
+        assert!(number > 60 && tracking > number / 2, "{tracking} of {number} frames");
+    }
 }
