@@ -1,7 +1,5 @@
 //! The person by the face: skin, shoulders and both hands over time, as `sinew track arm` has them.
 
-use crate::session::MAX_BLOBS;
-use heapless::Vec;
 use sinew_core::skeleton::Side;
 use sinew_core::vision::candidate::HandCandidate;
 use sinew_core::vision::mask::Mask;
@@ -82,28 +80,17 @@ impl Person {
         self.hands.head()
     }
 
-    /// Finds the hands in a frame's mask and its luminance; those of a `side` go into `candidates`.
-    /// Without a face nothing is done.
-    pub fn find_hands(
-        &mut self,
-        mask: &Mask<'_>,
-        luminance: &[u8],
-        side: Side,
-        candidates: &mut Vec<HandCandidate, MAX_BLOBS>,
-    ) {
-        if self.head().is_none() {
-            return;
-        }
+    /// Finds where the hand of a `side` may be in a frame's mask and its luminance, the likeliest
+    /// place first; `None` without a face.
+    pub fn find_hand(&mut self, mask: &Mask<'_>, luminance: &[u8], side: Side) -> Option<&[HandCandidate]> {
+        self.head()?;
         let grid = self.hands.grid_mut();
         grid.begin();
         for (v, (bits, levels)) in mask.rows().zip(luminance.chunks(mask.width().max(1))).enumerate() {
             grid.line(v, bits, levels, 1);
         }
         let [left, right] = self.hands.step();
-        let hand = if side == Side::Left { left } else { right };
-        candidates.clear();
-        // Fewer than blobs.
-        candidates.extend(hand.iter().copied().take(MAX_BLOBS));
+        Some(if side == Side::Left { left } else { right })
     }
 }
 
@@ -120,7 +107,7 @@ mod tests {
     const HEAD: HeadBox = HeadBox { centre_px: [160.0, 50.0], width_px: 36.0 };
 
     /// A face, and a hand that goes up on the person's left.
-    fn picture(frame: usize) -> std::vec::Vec<u8> {
+    fn picture(frame: usize) -> Vec<u8> {
         let top = 200 - 3 * frame;
         let is_hand = |u, v| (210..234).contains(&u) && (top..top + 26).contains(&v);
         let is_face = |u, v| (142..178).contains(&u) && (32..72).contains(&v);
@@ -128,16 +115,14 @@ mod tests {
         places.flat_map(|(u, v)| if is_hand(u, v) || is_face(u, v) { SKIN } else { WALL }).collect()
     }
 
-    fn show(person: &mut Person, frame: usize, side: Side) -> Vec<HandCandidate, MAX_BLOBS> {
+    fn show(person: &mut Person, frame: usize, side: Side) -> Vec<HandCandidate> {
         let rgb = picture(frame);
         person.look(&rgb, SIZE_PX);
         let mut words = vec![0; mask_words(SIZE_PX.0, SIZE_PX.1)];
         let mut mask = MaskMut::new(&mut words, SIZE_PX.0, SIZE_PX.1).unwrap();
         person.skin().into_iter().for_each(|skin| segment(&rgb, skin, &mut mask));
-        let luminance: std::vec::Vec<u8> = rgb.as_chunks::<3>().0.iter().map(|pixel| pixel[1]).collect();
-        let mut candidates = Vec::new();
-        person.find_hands(&mask.view(), &luminance, side, &mut candidates);
-        candidates
+        let luminance: Vec<u8> = rgb.as_chunks::<3>().0.iter().map(|pixel| pixel[1]).collect();
+        person.find_hand(&mask.view(), &luminance, side).unwrap_or_default().to_vec()
     }
 
     #[test]

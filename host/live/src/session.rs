@@ -142,11 +142,13 @@ impl Session {
                 analyser.analyse(rgb, size, &skin, &mut buffers, blobs, edges)?;
             }
         }
-        self.candidates.clear();
-        // As many as blobs, of which there are no more than that.
-        self.candidates.extend(self.blobs.candidates().take(MAX_BLOBS));
         let (mask, luminance) = (last_mask(&buffers, size.0, size.1)?, self.analyser.last_luminance(&buffers));
-        self.person.find_hands(&mask, luminance, self.choice.side, &mut self.candidates);
+        self.candidates.clear();
+        // Blobs are as many as there is room for, and places of a hand are fewer.
+        match self.person.find_hand(&mask, luminance, self.choice.side) {
+            Some(places) => self.candidates.extend(places.iter().copied().take(MAX_BLOBS)),
+            None => self.candidates.extend(self.blobs.candidates().take(MAX_BLOBS)),
+        }
         Ok(())
     }
 

@@ -144,7 +144,8 @@ class App {
     rows.blobs = String(this.engine.blobs().length);
     rows['is a hand'] = `${Math.round(100 * answer.likelihood)} %`;
     if (answer.sampleSize) rows['effective particles'] = answer.sampleSize.toFixed(0);
-    rows.shoulder = this.shoulder ? 'placed' : 'guessed';
+    rows.face = answer.head ? 'found' : 'none';
+    rows.shoulder = this.shoulder ? 'placed' : answer.head ? 'by the face' : 'guessed';
     if (this.firstMs !== null) rows['found after'] = `${(this.firstMs / 1000).toFixed(2)} s`;
     if (this.errors.length) rows['greatest error so far'] = `${((100 * Math.max(...this.errors)) / this.work.width).toFixed(1)} % of the width`;
     showRows(element('answers'), rows);
@@ -157,7 +158,7 @@ class App {
     try {
       if (chosen('click') === 'hand') {
         this.tracker.calibrate(u, v);
-        element('how').textContent = `The skin at ${u}, ${v} was learnt. Reset goes back to the usual skin.`;
+        element('how').textContent = `The skin at ${u}, ${v} was learnt. Reset goes back to the skin of the face, or the usual one.`;
       } else {
         this.shoulder = [u, v];
         this.begin();

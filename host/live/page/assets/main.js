@@ -1,5 +1,5 @@
 // Ties the controls to the application.
-const HOW = 'Where the arm does not reach the hand, set the shoulder’s distance. Click on the hand to teach its skin, on the shoulder (chosen at the side) to place it. By keys: arrows move a cross in the picture, Enter clicks.';
+const HOW = 'Look at the camera: the face gives skin, shoulders and scale. Click on the hand where its skin is not found. Where the arm does not reach the hand, click on the shoulder (chosen at the side) and set its distance. By keys: arrows move a cross in the picture, Enter clicks.';
 const data = JSON.parse(element('data').textContent);
 
 function tellHow() {

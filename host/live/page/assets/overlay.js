@@ -1,5 +1,5 @@
 // Draws what was found over the picture.
-const COLOURS = { blob: '#ffd54a', carrier: '#25e0c8', arm: '#ff5a36', predicted: '#b48cff', particle: '#ffffff', truth: '#ffffff', pointer: '#ffffff' };
+const COLOURS = { blob: '#ffd54a', carrier: '#25e0c8', arm: '#ff5a36', predicted: '#b48cff', particle: '#ffffff', truth: '#ffffff', pointer: '#ffffff', head: '#7fb4ff' };
 
 // The ellipse of a blob's second moments, two standard deviations wide.
 function drawBlob(context, blob, isCarrier) {
@@ -58,10 +58,18 @@ function drawCross(context, [u, v], size, colour) {
   context.stroke();
 }
 
+// The box of the face.
+function drawHead(context, { u, v, width }) {
+  context.strokeStyle = COLOURS.head;
+  context.lineWidth = 1.5;
+  context.strokeRect(u - width / 2, v - width / 2, width, width);
+}
+
 // `shown` says which parts are wanted; those that are null were not given.
 function drawOverlay(context, { skin, blobs, particles, answer, truth, pointer }) {
   if (skin) context.drawImage(skin, 0, 0);
   for (const [index, blob] of (blobs ?? []).entries()) drawBlob(context, blob, index === answer.carrier);
+  if (answer.head && blobs) drawHead(context, answer.head);
   if (particles) drawParticles(context, particles);
   if (answer.drawn) drawArm(context, answer);
   if (truth) drawCross(context, truth, 9, COLOURS.truth);

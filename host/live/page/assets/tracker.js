@@ -1,5 +1,5 @@
 // The WebAssembly module: pictures in, numbers out.
-const ANSWER_NUMBERS = 16;
+const ANSWER_NUMBERS = 19;
 const BLOB_NUMBERS = 7;
 const PARTICLE_NUMBERS = 5;
 const SEED = 1;
@@ -26,7 +26,7 @@ class Tracker {
     [this.width, this.height] = [width, height];
   }
 
-  // Takes a picture's pixels, red, green, blue, opacity, and finds its blobs.
+  // Takes a picture's pixels, red, green, blue, opacity, and finds face, blobs and hands.
   see(pixels) {
     new Uint8Array(this.module.memory.buffer, this.module.picture(), pixels.length).set(pixels);
     this.#check(this.module.see());
@@ -52,6 +52,7 @@ class Tracker {
     return new ImageData(bytes.slice(), this.width, this.height);
   }
 
+  // Blobs; the places that may be the tracked hand once a face is known.
   blobs() {
     return this.#rows(this.module.blobs(), this.module.blob_count(), BLOB_NUMBERS)
       .map(([u, v, uu, uv, vv, area, likelihood]) => ({ u, v, uu, uv, vv, area, likelihood }));
@@ -68,6 +69,7 @@ class Tracker {
       status: ['tracking', 'predicted', 'lost', 'uncertain'][n[0]],
       shoulder: [n[1], n[2]], elbow: [n[3], n[4]], hand: [n[5], n[6]],
       handM: [n[7], n[8], n[9]], handStdM: n[10], sampleSize: n[11], likelihood: n[12], carrier: n[13], edges: n[14],
+      head: Number.isFinite(n[16]) ? { u: n[16], v: n[17], width: n[18] } : null,
     };
   }
 
