@@ -8,6 +8,7 @@
 
 pub mod answer;
 pub mod calibration;
+pub mod either_skin;
 pub mod exports;
 pub mod face;
 pub mod frame;

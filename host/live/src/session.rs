@@ -1,7 +1,8 @@
 //! From pictures to an arm: one session of the page.
 
 use crate::answer::{ANSWER_NUMBERS, PARTICLE_NUMBERS, answer, particle};
-use crate::calibration::{adapted, box_around};
+use crate::calibration::{adapted, box_around, colour_in};
+use crate::either_skin::EitherSkin;
 use crate::face::Person;
 use crate::frame::{Frame, checked_size};
 use crate::person::{Shoulder, arm};
@@ -18,6 +19,7 @@ use sinew_core::vision::features::{BlobMeter, DEFAULT_FILL_RATIO};
 use sinew_core::vision::frame::{FrameAnalyser, last_mask};
 use sinew_core::vision::hand_likelihood::HandLikelihood;
 use sinew_core::vision::white_balance::Gains;
+use sinew_face::PersonSkin;
 
 /// Particles that there is room for.
 pub const MAX_PARTICLES: usize = 512;
@@ -51,8 +53,7 @@ pub struct Session {
     shoulder_m: Vec3,
     tracker: ArmTracker<MAX_PARTICLES>,
     analyser: FrameAnalyser<LINE_CAPACITY, LINE_CAPACITY>,
-    /// Of a click on the hand.
-    clicked_skin: Option<BalancedSkin>,
+    click: Option<ClickedSkin>,
     person: Person,
     blobs: BlobList<MAX_BLOBS>,
     edges: EdgeList<MAX_EDGES>,
@@ -80,7 +81,7 @@ impl Session {
             shoulder_m,
             tracker,
             analyser: FrameAnalyser::new(finder, EdgeDetector::default()),
-            clicked_skin: None,
+            click: None,
             person: Person::new(choice.size_px),
             blobs: BlobList::new(),
             edges: EdgeList::new(),
@@ -124,8 +125,8 @@ impl Session {
         &self.person
     }
 
-    /// Finds candidates and temporal edges of the picture in `frame`. Skin is what a click has
-    /// taught, else that of the face, else that of the shipped model.
+    /// Finds candidates and temporal edges of the picture in `frame`. Skin is what the
+    /// face and a click have taught, and without both that of the shipped model.
     ///
     /// # Errors
     /// None in practice: the buffers fit every size that a session accepts.
@@ -135,10 +136,15 @@ impl Session {
         let (rgb, mut buffers) = frame.parts(size);
         self.person.look(rgb, size);
         let (analyser, blobs, edges) = (&mut self.analyser, &mut self.blobs, &mut self.edges);
-        match (self.clicked_skin, self.person.skin()) {
-            (None, Some(skin)) => analyser.analyse(rgb, size, skin, &mut buffers, blobs, edges)?,
-            (clicked, _) => {
-                let skin = clicked.unwrap_or(SHIPPED).for_picture(&Gains::of_picture(rgb, size.0))?;
+        match self.person.skin() {
+            Some(of_face) => {
+                let of_click = self.click.as_ref().and_then(|click| click.of_person.as_ref());
+                let skin = EitherSkin { of_face, of_click };
+                analyser.analyse(rgb, size, &skin, &mut buffers, blobs, edges)?;
+            }
+            None => {
+                let skin = self.click.as_ref().map_or(SHIPPED, |click| click.of_anyone);
+                let skin = skin.for_picture(&Gains::of_picture(rgb, size.0))?;
                 analyser.analyse(rgb, size, &skin, &mut buffers, blobs, edges)?;
             }
         }
@@ -171,22 +177,32 @@ impl Session {
         estimate
     }
 
-    /// Adapts the shipped skin model to a box around the pixel (`u`, `v`) of the picture in
-    /// `frame`.
+    /// Learns the skin in a box around the pixel (`u`, `v`) of the picture in `frame`.
     ///
     /// # Errors
     /// A pixel outside of the picture, a box that shows only black; the model is as before then.
     pub fn calibrate(&mut self, frame: &Frame, u: usize, v: usize) -> Result<(), ParameterError> {
         let (width, height) = self.size_px();
-        let bounds = box_around((u, v), (width, height))?;
-        self.clicked_skin = Some(adapted(&SHIPPED, frame.rgb(width * height), width, bounds)?);
+        let bounds = box_around((u, v), (width, height), self.person.head())?;
+        let rgb = frame.rgb(width * height);
+        let of_anyone = adapted(&SHIPPED, rgb, width, bounds)?;
+        self.click = Some(ClickedSkin { of_anyone, of_person: colour_in(rgb, width, bounds).map(PersonSkin::new) });
         Ok(())
     }
 
     /// Goes back to the skin of the face, or the shipped model.
     pub fn forget_calibration(&mut self) {
-        self.clicked_skin = None;
+        self.click = None;
     }
+}
+
+/// What a click on the hand has taught.
+#[derive(Debug)]
+struct ClickedSkin {
+    /// The shipped model in this light, for pictures in which no face is known.
+    of_anyone: BalancedSkin,
+    /// The colour alone, beside that of the face; none where too little is alike.
+    of_person: Option<PersonSkin>,
 }
 
 /// Camera, arm and options.

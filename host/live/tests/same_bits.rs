@@ -176,5 +176,11 @@ fn a_person_with_a_face_is_followed_as_by_the_command() {
             number += 1;
         }
         assert!(number > 60 && tracking > number / 2, "{tracking} of {number} frames");
+        // A click on the hand adds its colour to that of the face.
+        let hand = session.candidates[0].centre;
+        session.calibrate(&frame, hand.u_px as usize, hand.v_px as usize).unwrap();
+        session.see(&mut frame).unwrap();
+        let likeliest = session.candidates[0].centre;
+        assert!(likeliest.distance_px(hand) < 40.0, "{likeliest:?}, not {hand:?}");
     }
 }
