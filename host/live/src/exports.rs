@@ -68,7 +68,8 @@ pub extern "C" fn picture() -> *mut u8 {
 
 /// Begins a session, or begins it anew for another choice. A choice is the size of all pictures,
 /// side of the arm (0 is right), particles, seed, and the shoulder's distance (metres) and pixel.
-/// Distance and pixel are NaN where they are not known. The skin model stays.
+/// Distance and pixel are NaN where they are not known. The person is looked for again, and
+/// what a click has taught stays.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn begin(
     width: u32,
@@ -104,7 +105,7 @@ fn begin_in(slot: &mut SpinMutexGuard<'_, Slot<Session>>, choice: Choice) -> Res
     Ok(())
 }
 
-/// Finds blobs and edges of the picture.
+/// Looks for a face if it is time, and finds candidates and edges of the picture.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn see() -> u32 {
     with_session(Session::see)
@@ -121,13 +122,13 @@ pub extern "C" fn track(timestamp_us: f64) -> u32 {
     })
 }
 
-/// Adapts the skin model to a box around a pixel of the picture that was seen last.
+/// Learns the skin in a box around a pixel of the picture that was seen last.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn calibrate(u: u32, v: u32) -> u32 {
     with_session(|session, frame| session.calibrate(frame, u as usize, v as usize))
 }
 
-/// Goes back to the shipped skin model.
+/// Goes back to the skin of the face, or the shipped model.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn forget_calibration() -> u32 {
     with_session(|session, _| {
@@ -142,7 +143,7 @@ pub extern "C" fn answer() -> *const f32 {
     ask(|session| session.answer.as_ptr() as usize) as *const f32
 }
 
-/// Number of blobs of the last frame.
+/// Number of blobs of the last frame; of places of the hand once a face is known.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn blob_count() -> u32 {
     ask(|session| session.candidates.len() as u32)

@@ -141,7 +141,7 @@ class App {
     this.shownMs = now;
     const rows = { status: answer.status, 'hand, pixels': rounded(answer.hand, 0) };
     if (answer.handM) rows['hand, metres'] = rounded(answer.handM, 2);
-    rows.blobs = String(this.engine.blobs().length);
+    rows[answer.head ? 'places' : 'blobs'] = String(this.engine.blobs().length);
     rows['is a hand'] = `${Math.round(100 * answer.likelihood)} %`;
     if (answer.sampleSize) rows['effective particles'] = answer.sampleSize.toFixed(0);
     rows.face = answer.head ? 'found' : 'none';
