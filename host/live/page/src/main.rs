@@ -18,8 +18,8 @@ use clap::Parser;
 use sinew::output::OutputDir;
 use std::path::PathBuf;
 
-/// Maximum number of bytes of the page: what a visitor downloads. The face detector's model is 1.6 MB
-/// of it, in base64.
+/// Maximum number of bytes of the page: what a visitor downloads. The model of the face detector
+/// has 1.6 million of them.
 const MAX_PAGE_BYTES: usize = 3_200_000;
 
 /// Build the live page.
