@@ -128,7 +128,7 @@ fn rustc() -> std::ffi::OsString {
 
 /// Builds the static library of `package` as a user does, and gives its path.
 ///
-/// `target` is a triple, or `None` for this machine; `opt_level` is `2`, `3`, `s` or `z`.
+/// `target` is a triple, or `None` for this machine; `opt_level` is `1`, `2`, `3`, `s` or `z`.
 ///
 /// # Panics
 /// If it cannot be built.
