@@ -6,15 +6,10 @@ use sinew_core::vision::mask::Mask;
 use sinew_core::vision::objects::grid::CellGrid;
 use sinew_core::vision::objects::hands::HandFinder;
 use sinew_core::vision::objects::head::HeadBox;
-use sinew_face::{FaceDetector, FoundFace, PersonSkin};
+use sinew_face::{COLUMNS, FaceDetector, FoundFace, LATENCY, PersonSkin, ROWS};
 
-/// Columns and rows of cells at most, the host's numbers.
-const COLUMNS: usize = 80;
-const ROWS: usize = 60;
 /// Frames between two looks: a second of the thirty frames that the page asks a camera for.
 const INTERVAL: usize = 30;
-/// Frames after which a look's answer counts, the host's number. There a thread looks meanwhile.
-const LATENCY: usize = 10;
 
 /// Looks for a face in the first frame and once a second, and follows the hands of whose it is.
 #[derive(Debug)]

@@ -8,12 +8,9 @@ use image::RgbImage;
 use sinew_core::saved_state::{SavedState, StateVisitor};
 use sinew_core::vision::objects::head::HeadBox;
 use sinew_core::vision::objects::person_colour::PersonColour;
-use sinew_face::{FaceDetector, FoundFace};
+use sinew_face::{FaceDetector, FoundFace, LATENCY};
 use std::thread::JoinHandle;
 
-/// Frames after which an answer counts. Chosen: a third of a second, in which any computer finds a
-/// face.
-const LATENCY: usize = 10;
 /// Most frames between two looks.
 const MAX_INTERVAL: f64 = 600.0;
 

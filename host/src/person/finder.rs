@@ -13,12 +13,7 @@ use sinew_core::vision::objects::grid::CellGrid;
 use sinew_core::vision::objects::hands::HandFinder;
 use sinew_core::vision::objects::head::HeadBox;
 use sinew_core::vision::objects::person_colour::PersonColour;
-use sinew_face::{FoundFace, PersonSkin};
-
-/// Most columns of cells. Chosen: a hand of a person two metres away is a few cells wide.
-const COLUMNS: usize = 80;
-/// Most rows of cells.
-const ROWS: usize = 60;
+use sinew_face::{COLUMNS, FoundFace, PersonSkin, ROWS};
 
 /// What one frame shows of the person.
 #[derive(Debug, Clone)]
