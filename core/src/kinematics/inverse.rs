@@ -197,7 +197,7 @@ fn solve<const BONES: usize, const ANGLES: usize>(
     [mut here, mut there]: [&mut Posture<BONES, ANGLES>; 2],
     (hessian, factor, information): (&mut [[f32; ANGLES]; ANGLES], &mut Cholesky<ANGLES>, &mut BodyInformation<BONES>),
 ) -> Solution<ANGLES> {
-    let (mut angles_rad, mut log_density) = likeliest_start(objective, starts, (&mut here, &mut there));
+    let (mut angles_rad, mut log_density) = likeliest_start(objective, starts, (&mut here, &mut there), information);
     let mut gradient = [0.0; ANGLES];
     differentiate(objective, (&angles_rad, here), (&mut gradient, hessian), information);
     let mut stop = Stop::StepsUsed;
@@ -215,7 +215,8 @@ fn solve<const BONES: usize, const ANGLES: usize>(
             stop = Stop::LittleGain;
             break;
         }
-        let Some((next, log_next)) = climb(objective, &angles_rad, &direction, log_density, there) else {
+        let Some((next, log_next)) = climb(objective, (&angles_rad, log_density), &direction, there, information)
+        else {
             stop = Stop::NoClimb;
             break;
         };
@@ -234,17 +235,23 @@ fn solve<const BONES: usize, const ANGLES: usize>(
     Solution { angles_rad, gradient, log_density, residual_m: objective.residual_m(here), stop }
 }
 
-/// The most likely of `starts`, and its log density; its posture is then the first of the two.
+/// The most likely of `starts`, and its log density. Its posture is then the first of the two, and
+/// `information` is its.
 #[inline(always)]
 fn likeliest_start<'a, const BONES: usize, const ANGLES: usize>(
     objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
     starts: &[[f32; ANGLES]],
     (here, there): (&mut &'a mut Posture<BONES, ANGLES>, &mut &'a mut Posture<BONES, ANGLES>),
+    information: &mut BodyInformation<BONES>,
 ) -> ([f32; ANGLES], f32) {
     let (first, others) =
         starts.split_first().map_or((objective.start_rad(), starts), |(first, others)| (*first, others));
     let mut angles_rad = objective.skeleton().clamp(first);
     here.turn(objective.skeleton(), &objective.root_m(), &angles_rad);
+    if others.is_empty() {
+        let log_density = inform(objective, &angles_rad, here, information);
+        return (angles_rad, log_density);
+    }
     let mut log_density = objective.log_density(&angles_rad, here);
     for start in others {
         let other = objective.skeleton().clamp(*start);
@@ -255,7 +262,23 @@ fn likeliest_start<'a, const BONES: usize, const ANGLES: usize>(
             core::mem::swap(here, there);
         }
     }
+    inform(objective, &angles_rad, here, information);
     (angles_rad, log_density)
+}
+
+/// The log density; of many angles with what [`differentiate`] needs at this pose.
+#[inline(always)]
+fn inform<const BONES: usize, const ANGLES: usize>(
+    objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
+    angles_rad: &[f32; ANGLES],
+    posture: &Posture<BONES, ANGLES>,
+    information: &mut BodyInformation<BONES>,
+) -> f32 {
+    if ANGLES > FEW_ANGLES {
+        objective.inform(angles_rad, posture, information)
+    } else {
+        objective.log_density(angles_rad, posture)
+    }
 }
 
 /// Writes gradient and Hessian: those of many angles in place, those of few in registers.
@@ -346,13 +369,13 @@ fn gain<const ANGLES: usize>(gradient: &[f32; ANGLES], direction: &[f32; ANGLES]
 /// The longest of the step and its halvings, cut to the limits, that raises the density, and the
 /// density.
 ///
-/// Its posture is left in `there`.
+/// Its posture is left in `there`, and `information` is its.
 fn climb<const BONES: usize, const ANGLES: usize>(
     objective: &(impl PoseObjective<BONES, ANGLES> + ?Sized),
-    angles_rad: &[f32; ANGLES],
+    (angles_rad, log_density): (&[f32; ANGLES], f32),
     direction: &[f32; ANGLES],
-    log_density: f32,
     there: &mut Posture<BONES, ANGLES>,
+    information: &mut BodyInformation<BONES>,
 ) -> Option<([f32; ANGLES], f32)> {
     let mut scale = 1.0;
     for _ in 0..=MAX_HALVINGS {
@@ -362,7 +385,7 @@ fn climb<const BONES: usize, const ANGLES: usize>(
         }
         let next = objective.skeleton().clamp(next);
         there.turn(objective.skeleton(), &objective.root_m(), &next);
-        let log_next = objective.log_density(&next, there);
+        let log_next = inform(objective, &next, there, information);
         if log_next > log_density {
             return Some((next, log_next));
         }

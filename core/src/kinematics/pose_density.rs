@@ -172,8 +172,20 @@ pub trait PoseObjective<const BONES: usize, const ANGLES: usize> {
         posture: &Posture<BONES, ANGLES>,
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]);
 
+    /// As [`Self::log_density`]. Leaves in `information` what residuals on bones tell of the pose, so
+    /// that [`Self::write_derivatives`] need not find them again.
+    fn inform(
+        &self,
+        angles_rad: &[f32; ANGLES],
+        posture: &Posture<BONES, ANGLES>,
+        _information: &mut BodyInformation<BONES>,
+    ) -> f32 {
+        self.log_density(angles_rad, posture)
+    }
+
     /// As [`Self::derivatives`], written in place: a Hessian of many angles takes a kilobyte of
-    /// stack each time that it is handed on. `information` is room for what residuals on bones add.
+    /// stack each time that it is handed on. `information` is what [`Self::inform`] left at this
+    /// pose.
     fn write_derivatives(
         &self,
         (angles_rad, posture): (&[f32; ANGLES], &Posture<BONES, ANGLES>),

@@ -55,7 +55,8 @@ pub struct PointPull {
     pub weight: f32,
 }
 
-/// Calls `each` for the points of `blocks`, but for outliers.
+/// Calls `each` for the points of `blocks`, but for outliers. Returns the log-likelihood of all, as
+/// [`PointLikelihood::log_likelihood_of`] does: `share` is no factor of it.
 ///
 /// A point's residual is to the nearest place of the visible skin, along the line between both.
 /// `share` multiplies every point, for a cloud of which only a part is used.
@@ -78,8 +79,10 @@ pub struct PointPull {
 /// let _ = cloud
 ///     .set(&mut [Vec3::new(0.0, 0.5, 1.91), Vec3::new(0.9, 0.0, 3.0)], &Vec3::zeros());
 /// let mut pulls = 0;
-/// for_each_pull(&likelihood, &surface, cloud.blocks().iter(), 1.0, |_| pulls += 1);
+/// let log_likelihood =
+///     for_each_pull(&likelihood, &surface, cloud.blocks().iter(), 1.0, |_| pulls += 1);
 /// assert_eq!(pulls, 1, "the other point is an outlier");
+/// assert_eq!(log_likelihood, likelihood.log_likelihood(&surface, cloud.blocks()));
 /// # Ok::<(), sinew_core::error::ParameterError>(())
 /// ```
 pub fn for_each_pull<'b, const BONES: usize>(
@@ -88,12 +91,14 @@ pub fn for_each_pull<'b, const BONES: usize>(
     blocks: impl Iterator<Item = &'b PointBlock>,
     share: f32,
     mut each: impl FnMut(&PointPull),
-) {
+) -> f32 {
+    let mut squares_m2 = 0.0;
     let all = share / (likelihood.std_m * likelihood.std_m);
     for block in blocks {
         let stretch = likelihood.stretch(block);
         let nearest = NearestSkin::find_stretched(surface, block, likelihood.outlier_m, stretch);
         for i in 0..usize::from(block.count).min(BLOCK_POINTS) {
+            squares_m2 += nearest.squared_m[i];
             let Some(seen) = surface.capsules.get(usize::from(nearest.capsule[i])) else { continue };
             let point_m = block.point_m(i);
             let skin_m = seen.capsule.nearest_visible(&surface.camera_m, &point_m);
@@ -111,20 +116,21 @@ pub fn for_each_pull<'b, const BONES: usize>(
             each(&PointPull { bone: seen.bone, skin_m, axis_m, axis_share, normal, residual_m, weight });
         }
     }
+    -squares_m2 / (2.0 * likelihood.std_m * likelihood.std_m)
 }
 
-/// Adds the information of `blocks` about the bones of `surface`; `share` as in
-/// [`for_each_pull`].
+/// Adds the information of `blocks` about the bones of `surface`; `share` and what is returned as
+/// in [`for_each_pull`].
 pub(crate) fn add_pull<'b, const BONES: usize>(
     likelihood: &PointLikelihood,
     surface: &BodySurface<BONES>,
     blocks: impl Iterator<Item = &'b PointBlock>,
     share: f32,
     information: &mut BodyInformation<BONES>,
-) {
+) -> f32 {
     for_each_pull(likelihood, surface, blocks, share, |pull| {
         information.add(pull.bone, &pull.skin_m, &pull.normal, pull.residual_m, pull.weight);
-    });
+    })
 }
 
 #[cfg(test)]
@@ -173,7 +179,8 @@ mod tests {
         cloud.scatter_by(along_std_m);
         let mut information = BodyInformation::empty();
         information.clear(&there);
-        add_pull(&likelihood, &surface, cloud.blocks().iter(), 1.0, &mut information);
+        let pulled = add_pull(&likelihood, &surface, cloud.blocks().iter(), 1.0, &mut information);
+        assert_eq!(pulled, likelihood.log_likelihood(&surface, cloud.blocks()));
         let (mut gradient, mut hessian) = ([0.0; BODY_ANGLES], [[0.0; BODY_ANGLES]; BODY_ANGLES]);
         information.add_to(&skeleton, &there, &mut gradient, &mut hessian);
         let log_likelihood = |angles: &[f32; BODY_ANGLES]| {

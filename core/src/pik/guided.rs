@@ -152,12 +152,14 @@ impl<const BONES: usize, const ANGLES: usize> GuidedDensity<'_, BONES, ANGLES> {
         far.solve_within(&[], FAR_STEPS, memory).angles_rad
     }
 
-    /// Adds what the points say. Not inlined: the surface leaves the stack before twists need it.
+    /// Writes what the points say of the bones, and returns their log-likelihood. Not inlined: the
+    /// surface leaves the stack before twists need it.
     #[inline(never)]
-    fn pull(&self, posture: &Posture<BONES, ANGLES>, information: &mut BodyInformation<BONES>) {
+    fn pull(&self, posture: &Posture<BONES, ANGLES>, information: &mut BodyInformation<BONES>) -> f32 {
+        information.clear(posture);
         let surface = self.scene.surface(posture);
         let pulling = self.blocks.iter().step_by(self.stride.max(1));
-        add_pull(&self.likelihood(), &surface, pulling, self.stride as f32, information);
+        add_pull(&self.likelihood(), &surface, pulling, self.stride as f32, information)
     }
 
     fn likelihood(&self) -> PointLikelihood {
@@ -189,14 +191,25 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
         self.prior.log_density(angles_rad, posture) + points * self.stride as f32
     }
 
+    fn inform(
+        &self,
+        angles_rad: &[f32; ANGLES],
+        posture: &Posture<BONES, ANGLES>,
+        information: &mut BodyInformation<BONES>,
+    ) -> f32 {
+        let points = self.pull(posture, information);
+        self.prior.log_density(angles_rad, posture) + points * self.stride as f32
+    }
+
     fn derivatives(
         &self,
         angles_rad: &[f32; ANGLES],
         posture: &Posture<BONES, ANGLES>,
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]) {
         let (mut gradient, mut hessian) = ([0.0; ANGLES], [[0.0; ANGLES]; ANGLES]);
-        let information = &mut BodyInformation::empty();
-        self.write_derivatives((angles_rad, posture), (&mut gradient, &mut hessian), information);
+        let mut information = BodyInformation::empty();
+        self.pull(posture, &mut information);
+        self.write_derivatives((angles_rad, posture), (&mut gradient, &mut hessian), &mut information);
         (gradient, hessian)
     }
 
@@ -207,8 +220,6 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
         information: &mut BodyInformation<BONES>,
     ) {
         self.prior.write_derivatives((angles_rad, posture), (&mut *gradient, &mut *hessian), information);
-        information.clear(posture);
-        self.pull(posture, information);
         information.add_to(self.prior.skeleton, posture, gradient, hessian);
     }
 
