@@ -4,7 +4,7 @@
 //! "Funnel-structured cascade for multi-view face detection with alignment-awareness",
 //! Neurocomputing 221, 2017.
 
-use rustface::{ImageData, Model};
+use rustface::{ImageData, Model, Rectangle};
 use sinew_core::vision::objects::head::HeadBox;
 use sinew_core::vision::objects::person_colour::PersonColour;
 use std::fmt::{Debug, Formatter};
@@ -70,8 +70,8 @@ impl FaceDetector {
         Ok(Self { model: rustface::read_model(MODEL)? })
     }
 
-    /// The likeliest face of a picture: interleaved RGB, and its width and height in pixels. None
-    /// where there are too few bytes.
+    /// The likeliest face of a picture: interleaved RGB, and its width and height in pixels. Where
+    /// there is none, the picture is brightened and searched again. None where there are too few bytes.
     #[must_use]
     pub fn find(&self, rgb: &[u8], size_px: (u32, u32)) -> Option<FoundFace> {
         let (width, height) = size_px;
@@ -81,20 +81,26 @@ impl FaceDetector {
             return None;
         }
         let grey = shrunk(rgb, size_px, step);
-        let mut detector = rustface::create_detector_with_model(self.model.clone());
-        detector.set_min_face_size(MIN_FACE_PX);
-        detector.set_score_thresh(MIN_SCORE);
-        detector.set_pyramid_scale_factor(0.8);
-        detector.set_slide_window_step(4, 4);
-        let faces = detector.detect(&ImageData::new(&grey, columns, rows));
-        let best = faces.iter().reduce(|best, face| if face.score() > best.score() { face } else { best })?;
+        let found =
+            self.likeliest(&grey, columns, rows).or_else(|| self.likeliest(&brightened(grey), columns, rows))?;
         let place = |at: i32, length: u32| (at as f32 + 0.5 * length as f32) * step as f32;
-        let found = best.bbox();
         let head = HeadBox {
             centre_px: [place(found.x(), found.width()), place(found.y(), found.height())],
             width_px: (found.width() * step) as f32,
         };
         Some(FoundFace::at(rgb, size_px, head))
+    }
+
+    /// Box of the likeliest face in levels of grey.
+    fn likeliest(&self, grey: &[u8], columns: u32, rows: u32) -> Option<Rectangle> {
+        let mut detector = rustface::create_detector_with_model(self.model.clone());
+        detector.set_min_face_size(MIN_FACE_PX);
+        detector.set_score_thresh(MIN_SCORE);
+        detector.set_pyramid_scale_factor(0.8);
+        detector.set_slide_window_step(4, 4);
+        let faces = detector.detect(&ImageData::new(grey, columns, rows));
+        let best = faces.iter().reduce(|best, face| if face.score() > best.score() { face } else { best })?;
+        Some(*best.bbox())
     }
 }
 
@@ -118,6 +124,16 @@ fn shrunk(rgb: &[u8], (width, height): (u32, u32), step: u32) -> Vec<u8> {
             }
             grey.push((sum / (256 * step * step)) as u8);
         }
+    }
+    grey
+}
+
+/// Square roots: in shadow and on dark skin a step of light then counts as elsewhere. Of the powers
+/// 0.35, 0.5, 0.7 and 1 the first two found most faces on clips with skin made dark. With one of them
+/// alone a face that is found anyway has another box, and hands were found no better.
+fn brightened(mut grey: Vec<u8>) -> Vec<u8> {
+    for level in &mut grey {
+        *level = (u32::from(*level) * 255).isqrt() as u8;
     }
     grey
 }
@@ -159,6 +175,11 @@ mod tests {
     fn a_shrunk_picture_has_the_mean_grey_of_its_pixels() {
         let image = picture((5, 4), |u, v| [if (u + v) % 2 == 0 { 200 } else { 100 }; 3]);
         assert_eq!(shrunk(&image, (5, 4), 2), [150; 4]);
+    }
+
+    #[test]
+    fn dark_levels_are_brightened_most() {
+        assert_eq!(brightened(vec![0, 1, 64, 255]), [0, 15, 127, 255]);
     }
 
     #[test]

@@ -11,6 +11,7 @@ pub mod hand_ranking;
 pub mod hands;
 pub mod hands_report;
 pub mod observed;
+pub mod people;
 pub mod reproduce;
 pub mod score;
 pub mod skin_faces;

@@ -6,12 +6,12 @@ use sinew_core::vision::mask::Mask;
 use sinew_core::vision::objects::grid::CellGrid;
 use sinew_core::vision::objects::hands::HandFinder;
 use sinew_core::vision::objects::head::HeadBox;
-use sinew_face::{COLUMNS, FaceDetector, FoundFace, LATENCY, PersonSkin, ROWS};
+use sinew_face::{COLUMNS, FaceDetector, FoundFace, LATENCY, PersonSkin, ROWS, is_time_to_look};
 
 /// Frames between two looks: a second of the thirty frames that the page asks a camera for.
 const INTERVAL: usize = 30;
 
-/// Looks for a face in the first frame and once a second, and follows the hands of whose it is.
+/// Looks for a face in the first frame and once a second, until one was found more often, and follows the hands of whose it is.
 #[derive(Debug)]
 pub struct Person {
     detector: Option<FaceDetector>,
@@ -19,8 +19,10 @@ pub struct Person {
     skin: Option<PersonSkin>,
     /// Number of the next frame.
     frame: usize,
-    /// The last look's face.
-    found: Option<FoundFace>,
+    /// The last look's frame, and its face.
+    look: Option<(usize, Option<FoundFace>)>,
+    /// Whether a face was found.
+    is_known: bool,
 }
 
 impl Person {
@@ -30,7 +32,7 @@ impl Person {
         // The model is shipped, so it can be read.
         let detector = FaceDetector::new().ok();
         let hands = Box::new(HandFinder::new(CellGrid::empty()));
-        let mut person = Self { detector, hands, skin: None, frame: 0, found: None };
+        let mut person = Self { detector, hands, skin: None, frame: 0, look: None, is_known: false };
         person.begin_again(size_px);
         person
     }
@@ -39,25 +41,31 @@ impl Person {
     pub fn begin_again(&mut self, size_px: (usize, usize)) {
         // A picture without a cell is too small for a face.
         let _ = self.hands.resize(size_px.0, size_px.1);
-        (self.skin, self.frame, self.found) = (None, 0, None);
+        (self.skin, self.frame, self.look, self.is_known) = (None, 0, None, false);
     }
 
     /// Looks at the next picture, interleaved RGB, if it is time.
     pub fn look(&mut self, rgb: &[u8], (width, height): (usize, usize)) {
-        let since_look = self.frame % INTERVAL;
-        if since_look == 0 {
-            let find = |detector: &FaceDetector| detector.find(rgb, (width as u32, height as u32));
-            self.found = self.detector.as_ref().and_then(find);
-        }
-        if self.frame == 0 || since_look == LATENCY {
-            self.take();
-        }
+        let frame = self.frame;
         self.frame += 1;
+        let mut answer = self.look.take_if(|(begun, _)| *begun + LATENCY <= frame).and_then(|(_, face)| face);
+        if self.look.is_none() && is_time_to_look(frame, INTERVAL, self.is_known || answer.is_some()) {
+            let find = |detector: &FaceDetector| detector.find(rgb, (width as u32, height as u32));
+            let found = self.detector.as_ref().and_then(find);
+            if frame == 0 {
+                answer = found;
+            } else {
+                self.look = Some((frame, found));
+            }
+        }
+        if let Some(face) = answer {
+            self.take(&face);
+        }
     }
 
-    fn take(&mut self) {
-        let Some(face) = self.found.take() else { return };
-        PersonSkin::learn(&mut self.skin, &face);
+    fn take(&mut self, face: &FoundFace) {
+        self.is_known = true;
+        PersonSkin::learn(&mut self.skin, face);
         if self.skin.is_some() {
             self.hands.add_face(face.head);
         }
@@ -125,7 +133,7 @@ mod tests {
         let mut person = Person::new(SIZE_PX);
         // What is drawn is no face to the detector.
         assert!(show(&mut person, 0, Side::Left).is_empty() && person.head().is_none());
-        person.found = Some(FoundFace::at(&picture(0), (320, 240), HEAD));
+        person.look = Some((0, Some(FoundFace::at(&picture(0), (320, 240), HEAD))));
         let mut last = None;
         for frame in 1..40 {
             let hands = show(&mut person, frame, Side::Left);

@@ -8,14 +8,15 @@ use image::RgbImage;
 use sinew_core::saved_state::{SavedState, StateVisitor};
 use sinew_core::vision::objects::head::HeadBox;
 use sinew_core::vision::objects::person_colour::PersonColour;
-use sinew_face::{FaceDetector, FoundFace, LATENCY};
+use sinew_face::{FaceDetector, FoundFace, LATENCY, is_time_to_look};
 use std::thread::JoinHandle;
 
 /// Most frames between two looks.
 const MAX_INTERVAL: f64 = 600.0;
 
-/// Looks for a face in the first frame and once a second, beside the tracker. What is found counts
-/// a fixed number of frames later, so that no result depends on threads.
+/// Looks for a face in the first frame and once a second, beside the tracker; until one was found
+/// as often as answers come. What is found counts a fixed number of frames later, so that no result
+/// depends on threads.
 #[derive(Debug)]
 pub struct FaceLooks {
     faces: Faces,
@@ -24,6 +25,8 @@ pub struct FaceLooks {
     /// whole pictures.
     block: u32,
     look: Option<Look>,
+    /// Whether a face was found.
+    is_known: bool,
 }
 
 #[derive(Debug)]
@@ -57,22 +60,33 @@ impl FaceLooks {
             Some(faces) => Faces::Given(faces),
             None => Faces::Detector(FaceDetector::new()?),
         };
-        Ok(Self { faces, interval: rate_hz.round().clamp(1.0, MAX_INTERVAL) as usize, block, look: None })
+        Ok(Self {
+            faces,
+            interval: rate_hz.round().clamp(1.0, MAX_INTERVAL) as usize,
+            block,
+            look: None,
+            is_known: false,
+        })
     }
 
     /// The face that counts from this frame on, if there is one, and begins the next look. A `head`
     /// is taken in place of whatever is found.
     pub fn look(&mut self, frame: usize, image: &Picture<impl Pixels>, head: Option<HeadBox>) -> Option<FoundFace> {
+        let found = self.found(frame, image, head);
+        self.is_known |= found.is_some();
+        found
+    }
+
+    fn found(&mut self, frame: usize, image: &Picture<impl Pixels>, head: Option<HeadBox>) -> Option<FoundFace> {
         let given = |head| FoundFace::at(image.as_raw(), image.dimensions(), of_blocks(head, self.block));
         if let Some(head) = head {
             self.look = None;
             return Some(given(head));
         }
-        let mut found = None;
-        if self.look.as_ref().is_some_and(|look| look.due <= frame) {
-            found = self.look.take().and_then(|look| look.answer.wait());
-        }
-        let is_time = self.look.is_none() && frame.is_multiple_of(self.interval);
+        let answered = self.look.take_if(|look| look.due <= frame);
+        let found = answered.and_then(|look| look.answer.wait());
+        let is_known = self.is_known || found.is_some();
+        let is_time = self.look.is_none() && is_time_to_look(frame, self.interval, is_known);
         match &self.faces {
             Faces::Given(faces) => faces.at(frame).map(given),
             Faces::Detector(detector) if is_time && frame == 0 => detector.find(image.as_raw(), image.dimensions()),
@@ -113,6 +127,7 @@ impl SavedState for FaceLooks {
             });
         });
         self.look = look.map(|(due, face)| Look { due: due as usize, answer: Answer::Known(face) });
+        visitor.flag(&mut self.is_known);
     }
 }
 

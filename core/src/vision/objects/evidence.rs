@@ -19,6 +19,9 @@ const UPPER_ARM: f32 = 2.3;
 const ASIDE: f32 = 2.3;
 /// Longest arm to the middle of its hand.
 const ARM: f32 = 4.7;
+/// What rests where no hand hangs. Chosen: 1 to 4 tried on the clips, also cut below the elbows,
+/// where forearms go on beyond the picture; 3 and 4 do as well.
+const STALE: f32 = 3.0;
 
 /// Log-evidence of a place for one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,7 +84,7 @@ fn where_it_is(place: &HandPlace, side: Side, fresh: f32) -> f32 {
     let (beside, below) = ((sign(side) * reached[0] - 0.35) / 0.5, (distance - 4.0) / 0.7);
     let across = max(0.0, -sign(side) * place.position[0]);
     let rest = exp(-(beside * beside) - below * below);
-    let stale = if fresh < 0.3 && rest < 0.2 { 1.0 } else { 0.0 };
+    let stale = if fresh < 0.3 && rest < 0.2 { STALE } else { 0.0 };
     let aside = if abs(place.position[0]) > ASIDE { 2.5 * (1.0 - fresh) } else { 0.0 };
     1.5 * rest - 2.0 * across - 4.0 * max(0.0, distance - ARM) - stale - aside
 }

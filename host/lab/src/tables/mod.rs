@@ -8,6 +8,7 @@ mod cyclic;
 mod hands;
 pub mod markdown;
 pub mod page;
+mod people;
 mod runners;
 mod skin;
 
@@ -52,7 +53,7 @@ pub struct Table {
 }
 
 /// All tables that have a maker.
-pub const TABLES: [Table; 19] = [
+pub const TABLES: [Table; 20] = [
     Table {
         name: "arm-hands",
         page: "measurements_arm.md",
@@ -66,6 +67,13 @@ pub const TABLES: [Table; 19] = [
         cost: Cost::Cheap,
         recordings: Some("video/handtracking"),
         rows: hands::ranking,
+    },
+    Table {
+        name: "people",
+        page: "measurements_people.md",
+        cost: Cost::Long,
+        recordings: Some("video/asl"),
+        rows: people::hands,
     },
     Table { name: "cluster-work", page: "cluster.md", cost: Cost::Cheap, recordings: None, rows: cluster::work },
     Table { name: "cluster-chunks", page: "cluster.md", cost: Cost::Cheap, recordings: None, rows: cluster::chunks },

@@ -2,6 +2,7 @@
 //! the belief over time? The area under the ROC curve, at the places that the tracker is offered.
 //! Runs where `../shared/data` is at hand, and says so where not.
 
+use crate::shared_data::in_release;
 use sinew::frames::{FrameReader, FrameView};
 use sinew::person::{FaceLooks, PersonFinder};
 use sinew::skin::SkinModel;
@@ -13,17 +14,13 @@ use sinew_core::vision::hand_likelihood::{
     DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE, DEFAULT_WEIGHTS, HandLikelihood, LikelihoodForm,
 };
 use sinew_lab::hand_ranking::area_under_curve;
+use sinew_lab::people::clips::{RATE_HZ, list, reference};
+use sinew_lab::people::reference::{Palm, Reference};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Frames per second of the clips.
-const RATE_HZ: f64 = 30.0;
-/// A place is on a palm within this, sizes of the palm.
-const NEAR_PALM: f32 = 0.35;
 /// A place that is neither is further than this from any palm, sizes of the palm.
 const FAR_FROM_PALM: f32 = 0.7;
-/// A place is on the face within this of the nose, distances of the ears.
-const NEAR_NOSE: f32 = 0.8;
 /// A place is on a forearm within this, distances of the ears.
 const NEAR_FOREARM: f32 = 0.5;
 /// Ways to rank a place.
@@ -36,29 +33,22 @@ struct Places {
     others: BTreeMap<&'static str, Vec<[f32; 4]>>,
 }
 
-type Row = BTreeMap<String, f32>;
-
-fn point(row: &Row, name: &str) -> Option<Pixel> {
-    Some(Pixel::new(*row.get(&format!("{name}_u_px"))?, *row.get(&format!("{name}_v_px"))?))
-}
-
 /// What is at a place; none where it is not clear.
-fn label(row: &Row, place: Pixel) -> Option<&'static str> {
-    let palms = [1, 2].map(|palm| Some((point(row, &format!("palm{palm}"))?, row.get(&format!("size{palm}_px"))?)));
-    let [Some(first), Some(second)] = palms else { return None };
-    let ears_px = *row.get("ears_px")?;
-    let sizes = [first, second].map(|(palm, size)| place.distance_px(palm) / size);
-    if sizes.iter().any(|sizes| *sizes <= NEAR_PALM) {
+fn label(row: &Reference, place: Pixel) -> Option<&'static str> {
+    let palms: Vec<Palm> = row.palms().collect();
+    let ([_, _], Some(ears_px)) = (palms.as_slice(), row.ears_px()) else { return None };
+    if palms.iter().any(|palm| palm.holds(place)) {
         return Some("hand");
     }
-    if sizes.iter().any(|sizes| *sizes <= FAR_FROM_PALM) {
+    if palms.iter().any(|palm| palm.distance(place) <= FAR_FROM_PALM) {
         return None;
     }
-    if place.distance_px(point(row, "nose")?) <= NEAR_NOSE * ears_px {
+    row.point("nose")?;
+    if row.is_on_face(place) {
         return Some("face");
     }
     let is_on = |side: &str| {
-        let (elbow, wrist) = (point(row, &format!("{side}_elbow"))?, point(row, &format!("{side}_wrist"))?);
+        let (elbow, wrist) = (row.point(&format!("{side}_elbow"))?, row.point(&format!("{side}_wrist"))?);
         let (du, dv) = (wrist.u_px - elbow.u_px, wrist.v_px - elbow.v_px);
         let along = (place.u_px - elbow.u_px) * du + (place.v_px - elbow.v_px) * dv;
         let part = (along / (du * du + dv * dv).max(1.0)).clamp(0.0, 1.0);
@@ -67,14 +57,6 @@ fn label(row: &Row, place: Pixel) -> Option<&'static str> {
     };
     let is_arm = ["l", "r"].into_iter().filter_map(is_on).any(|is_on| is_on);
     Some(if is_arm { "forearm" } else { "clutter" })
-}
-
-fn rows(path: &Path) -> Vec<Row> {
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    let read = |row: Result<BTreeMap<String, String>, csv::Error>| {
-        row.unwrap().into_iter().filter_map(|(name, value)| Some((name, value.parse().ok()?))).collect()
-    };
-    reader.deserialize().map(read).collect()
 }
 
 /// Likelihoods of the smallest blob around a place, and the motion there.
@@ -101,9 +83,7 @@ fn add(clip: &Path, places: &mut Places) {
     let anyone = SkinModel::from_option(DEFAULT_SKIN).unwrap();
     let paper = HandLikelihood::new(LikelihoodForm::Paper, DEFAULT_WEIGHTS, DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE);
     let forms = [paper.unwrap(), HandLikelihood::default()];
-    let name = clip.file_stem().unwrap().to_string_lossy();
-    let reference = rows(&clip.with_file_name(format!("{name}_points.csv")));
-    for (frame, row) in reference.iter().enumerate() {
+    for (frame, row) in reference(clip).unwrap().iter().enumerate() {
         let Some(Ok(image)) = frames.load(frame, 1).unwrap().pop() else { break };
         finder.look(frame, &image, None);
         let view = match finder.skin().cloned() {
@@ -118,7 +98,7 @@ fn add(clip: &Path, places: &mut Places) {
                 None => seen.push((hand.centre, hand.likelihood)),
             }
         }
-        let radius_px = 0.5 * row.get("ears_px").copied().unwrap_or(60.0);
+        let radius_px = 0.5 * row.ears_px().unwrap_or(60.0);
         for (place, belief) in seen {
             let Some(what) = label(row, place) else { continue };
             let [paper, filled, moving] = alone(&view, place, radius_px, &forms, (width * height) as f32);
@@ -140,21 +120,11 @@ fn areas(hands: &[[f32; 4]], others: &[[f32; 4]]) -> [f64; 4] {
     })
 }
 
-fn clips() -> Option<Vec<PathBuf>> {
-    let folder = std::env::var_os("SINEW_CLIPS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/video/asl"), PathBuf::from);
-    let mut clips: Vec<PathBuf> = folder.read_dir().ok()?.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    clips.retain(|path| path.extension().is_some_and(|extension| extension == "mkv"));
-    clips.sort();
-    (!clips.is_empty()).then_some(clips)
-}
-
 #[test]
 fn the_belief_ranks_hands_above_all_else() {
-    let Some(clips) = clips() else {
-        eprintln!("skipped: ../shared/data is not beside the project");
-        return;
-    };
+    let Some(folder) = in_release("video/asl") else { return };
+    let folder = std::env::var_os("SINEW_CLIPS").map_or(folder, PathBuf::from);
+    let clips = list(&folder).unwrap();
     let mut places = Places::default();
     clips.iter().for_each(|clip| add(clip, &mut places));
     println!("{} places on hands; rankings {RANKINGS:?}", places.hands.len());

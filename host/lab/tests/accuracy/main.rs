@@ -24,6 +24,7 @@ mod front_end;
 mod hand_likelihood_roc;
 mod hand_roc_of_people;
 mod particle;
+mod people;
 mod shared_data;
 mod walk_cuts;
 mod walks;
