@@ -19,7 +19,7 @@ pub const REFUSED: &[i32] = &[64, 65, 66];
 /// `CARGO_BIN_EXE_sinew` is set for the tests of the package that owns the binary only, and `cargo
 /// test` does not build binaries of other packages. So the target folder is taken from the path of
 /// the running test. Cargo is asked once a process to bring the binary up to date, which is quick
-/// if it is.
+/// if it is. Where `cargo test` was given a `--config`, `SINEW_CARGO_CONFIG` has to name it, too.
 ///
 /// # Panics
 /// If the binary cannot be built.
@@ -39,7 +39,9 @@ fn build_sinew() -> PathBuf {
         Some(profile) => profile,
     };
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let config = env::var("SINEW_CARGO_CONFIG").ok();
     let output = Command::new(cargo)
+        .args(config.iter().flat_map(|config| ["--config", config]))
         .current_dir(workspace_root())
         .args([
             "build",
