@@ -172,8 +172,8 @@ pub trait PoseObjective<const BONES: usize, const ANGLES: usize> {
         posture: &Posture<BONES, ANGLES>,
     ) -> ([f32; ANGLES], [[f32; ANGLES]; ANGLES]);
 
-    /// As [`Self::log_density`]. Leaves in `information` what residuals on bones tell of the pose, so
-    /// that [`Self::write_derivatives`] need not find them again.
+    /// As [`Self::log_density`]. Leaves in `information` what residuals on bones say of the pose,
+    /// so that [`Self::write_derivatives`] need not find them again.
     fn inform(
         &self,
         angles_rad: &[f32; ANGLES],

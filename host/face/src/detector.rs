@@ -71,7 +71,8 @@ impl FaceDetector {
     }
 
     /// The likeliest face of a picture: interleaved RGB, and its width and height in pixels. Where
-    /// there is none, the picture is brightened and searched again. None where there are too few bytes.
+    /// there is none, the picture is brightened and searched again. None where there are too few
+    /// bytes.
     #[must_use]
     pub fn find(&self, rgb: &[u8], size_px: (u32, u32)) -> Option<FoundFace> {
         let (width, height) = size_px;
@@ -128,9 +129,9 @@ fn shrunk(rgb: &[u8], (width, height): (u32, u32), step: u32) -> Vec<u8> {
     grey
 }
 
-/// Square roots: in shadow and on dark skin a step of light then counts as elsewhere. Of the powers
-/// 0.35, 0.5, 0.7 and 1 the first two found most faces on clips with skin made dark. With one of them
-/// alone a face that is found anyway has another box, and hands were found no better.
+/// Square roots: in shadow and on dark skin a step of light then counts as elsewhere. Of the
+/// powers 0.35, 0.5, 0.7 and 1 the first two found most faces on clips with skin made dark. With
+/// one of them alone a face that is found anyway has another box, and hands were found no better.
 fn brightened(mut grey: Vec<u8>) -> Vec<u8> {
     for level in &mut grey {
         *level = (u32::from(*level) * 255).isqrt() as u8;

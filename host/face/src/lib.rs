@@ -9,14 +9,16 @@ mod skin;
 /// Frames after which the answer of a look for a face counts. Chosen: a third of a second, in which
 /// any computer finds a face.
 pub const LATENCY: usize = 10;
-/// Whether a look begins in a frame: every `interval` frames, and until a face is known as soon as the
-/// answer to the last look has come.
+/// Whether a look begins in a frame: every `interval` frames, and until a face is known as soon as
+/// the answer to the last look has come.
 ///
 /// ```
 /// use sinew_face::is_time_to_look;
 ///
-/// let begin = |is_known| (0..50).filter(|frame| is_time_to_look(*frame, 30, is_known)).collect::<Vec<usize>>();
-/// assert_eq!((begin(false), begin(true)), (vec![0, 10, 20, 30, 40], vec![0, 30]));
+/// let frames = |is_known| -> Vec<usize> {
+///     (0..50).filter(|frame| is_time_to_look(*frame, 30, is_known)).collect()
+/// };
+/// assert_eq!((frames(false), frames(true)), (vec![0, 10, 20, 30, 40], vec![0, 30]));
 /// ```
 #[must_use]
 pub const fn is_time_to_look(frame: usize, interval: usize, is_known: bool) -> bool {

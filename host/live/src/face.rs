@@ -11,7 +11,8 @@ use sinew_face::{COLUMNS, FaceDetector, FoundFace, LATENCY, PersonSkin, ROWS, is
 /// Frames between two looks: a second of the thirty frames that the page asks a camera for.
 const INTERVAL: usize = 30;
 
-/// Looks for a face in the first frame and once a second, until one was found more often, and follows the hands of whose it is.
+/// Looks for a face in the first frame and once a second, until one was found more often, and
+/// follows the hands of whose it is.
 #[derive(Debug)]
 pub struct Person {
     detector: Option<FaceDetector>,
