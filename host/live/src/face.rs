@@ -22,8 +22,6 @@ pub struct Person {
     frame: usize,
     /// The last look's frame, and its face.
     look: Option<(usize, Option<FoundFace>)>,
-    /// Whether a face was found.
-    is_known: bool,
 }
 
 impl Person {
@@ -33,7 +31,7 @@ impl Person {
         // The model is shipped, so it can be read.
         let detector = FaceDetector::new().ok();
         let hands = Box::new(HandFinder::new(CellGrid::empty()));
-        let mut person = Self { detector, hands, skin: None, frame: 0, look: None, is_known: false };
+        let mut person = Self { detector, hands, skin: None, frame: 0, look: None };
         person.begin_again(size_px);
         person
     }
@@ -42,31 +40,29 @@ impl Person {
     pub fn begin_again(&mut self, size_px: (usize, usize)) {
         // A picture without a cell is too small for a face.
         let _ = self.hands.resize(size_px.0, size_px.1);
-        (self.skin, self.frame, self.look, self.is_known) = (None, 0, None, false);
+        (self.skin, self.frame, self.look) = (None, 0, None);
     }
 
     /// Looks at the next picture, interleaved RGB, if it is time.
     pub fn look(&mut self, rgb: &[u8], (width, height): (usize, usize)) {
         let frame = self.frame;
         self.frame += 1;
-        let mut answer = self.look.take_if(|(begun, _)| *begun + LATENCY <= frame).and_then(|(_, face)| face);
-        if self.look.is_none() && is_time_to_look(frame, INTERVAL, self.is_known || answer.is_some()) {
+        let answer = self.look.take_if(|(begun, _)| *begun + LATENCY <= frame);
+        self.take(answer.and_then(|(_, face)| face));
+        if self.look.is_none() && is_time_to_look(frame, INTERVAL, self.skin.is_some()) {
             let find = |detector: &FaceDetector| detector.find(rgb, (width as u32, height as u32));
             let found = self.detector.as_ref().and_then(find);
             if frame == 0 {
-                answer = found;
+                self.take(found);
             } else {
                 self.look = Some((frame, found));
             }
         }
-        if let Some(face) = answer {
-            self.take(&face);
-        }
     }
 
-    fn take(&mut self, face: &FoundFace) {
-        self.is_known = true;
-        PersonSkin::learn(&mut self.skin, face);
+    fn take(&mut self, face: Option<FoundFace>) {
+        let Some(face) = face else { return };
+        PersonSkin::learn(&mut self.skin, &face);
         if self.skin.is_some() {
             self.hands.add_face(face.head);
         }

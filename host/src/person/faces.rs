@@ -25,7 +25,7 @@ pub struct FaceLooks {
     /// whole pictures.
     block: u32,
     look: Option<Look>,
-    /// Whether a face was found.
+    /// Whether a face and its colour were found.
     is_known: bool,
 }
 
@@ -73,7 +73,7 @@ impl FaceLooks {
     /// is taken in place of whatever is found.
     pub fn look(&mut self, frame: usize, image: &Picture<impl Pixels>, head: Option<HeadBox>) -> Option<FoundFace> {
         let found = self.found(frame, image, head);
-        self.is_known |= found.is_some();
+        self.is_known |= has_colour(found.as_ref());
         found
     }
 
@@ -85,7 +85,7 @@ impl FaceLooks {
         }
         let answered = self.look.take_if(|look| look.due <= frame);
         let found = answered.and_then(|look| look.answer.wait());
-        let is_known = self.is_known || found.is_some();
+        let is_known = self.is_known || has_colour(found.as_ref());
         let is_time = self.look.is_none() && is_time_to_look(frame, self.interval, is_known);
         match &self.faces {
             Faces::Given(faces) => faces.at(frame).map(given),
@@ -101,6 +101,10 @@ impl FaceLooks {
             }
         }
     }
+}
+
+fn has_colour(face: Option<&FoundFace>) -> bool {
+    face.is_some_and(|face| face.colour.is_some())
 }
 
 /// The same image for another thread.
