@@ -2,14 +2,12 @@
 
 use sinew::config::Config;
 use sinew::track::{Event, FrontEnd, SideChoice, TrackOptions, TrackRun};
+use sinew_core::camera::Pixel;
+use sinew_lab::people::reference::{Palm, read};
 use sinew_tests::{shared_data, table_rows};
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Distance of the tracked hand from the palm that counts, in sizes of the palm.
-const NEAR: f64 = 0.35;
 
 fn options(video: &Path) -> TrackOptions {
     TrackOptions {
@@ -34,28 +32,15 @@ fn run(options: TrackOptions, out: &Path) {
     TrackRun::prepare(options, out).unwrap().run(&AtomicBool::new(false), &mut |_| ()).unwrap();
 }
 
-fn numbers<const N: usize>(row: &BTreeMap<String, String>, columns: [&str; N]) -> Option<[f64; N]> {
-    let numbers = columns.map(|column| row[column].parse().ok());
-    numbers.iter().all(Option::is_some).then(|| numbers.map(Option::unwrap_or_default))
-}
-
-/// Of the rows that say `tracking` where a palm is known: how many lie on one, and all.
+/// Of the rows that say `tracking` where both palms are known: how many lie on one, and all.
 fn on_palms(track: &Path, points: &Path) -> [usize; 2] {
-    let points: BTreeMap<String, _> = table_rows(points).into_iter().map(|row| (row["frame"].clone(), row)).collect();
+    let frames = read(points).unwrap();
     let mut counts = [0; 2];
     for row in table_rows(track).iter().filter(|row| row["status"] == "tracking") {
-        let of = |palm: u8| ["u_px", "v_px"].map(|axis| format!("palm{palm}_{axis}"));
-        let palms: Vec<[f64; 3]> = [1, 2]
-            .iter()
-            .filter_map(|palm| {
-                let ([u, v], size) = (of(*palm), format!("size{palm}_px"));
-                numbers(&points[&row["frame"]], [&u, &v, &size])
-            })
-            .collect();
-        let Some(hand) = numbers(row, ["hand_u_px", "hand_v_px"]) else { continue };
+        let palms: Vec<Palm> = frames[row["frame"].parse::<usize>().unwrap()].palms().collect();
+        let [Ok(u_px), Ok(v_px)] = ["hand_u_px", "hand_v_px"].map(|column| row[column].parse()) else { continue };
         if palms.len() == 2 {
-            counts[0] +=
-                usize::from(palms.iter().any(|palm| (hand[0] - palm[0]).hypot(hand[1] - palm[1]) <= NEAR * palm[2]));
+            counts[0] += usize::from(palms.iter().any(|palm| palm.holds(Pixel::new(u_px, v_px))));
             counts[1] += 1;
         }
     }
