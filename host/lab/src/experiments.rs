@@ -3,7 +3,7 @@
 //! was away.
 
 use super::clips::Clip;
-use super::observed::{ObservedScene, observe_all};
+use super::observed::{FrontEnd, ObservedScene, observe_all};
 use super::score::{FrameError, Spread, run_all, track};
 use anyhow::Result;
 use rayon::prelude::*;
@@ -12,7 +12,6 @@ use serde_json::json;
 use sinew::config::Config;
 use sinew::resume::Cells;
 use sinew::scene::SceneOptions;
-use sinew::skin::SkinModel;
 use sinew_core::observation::hough::HoughSettings;
 use sinew_core::tracker::arm::options::{AreaCue, DEFAULT_AREA_CUE, EstimateRule, LimbCombination};
 use sinew_core::tracker::arm::{ArmOptions, Variant};
@@ -102,7 +101,7 @@ pub fn as_printed(variant: Variant, particles: usize) -> ArmOptions {
     }
 }
 
-/// Three of these trackers on all scenes, which [`printed_base`] observed.
+/// Three of these trackers on all scenes, which were read alone, by [`printed_base`].
 ///
 /// # Errors
 /// As [`row`].
@@ -169,7 +168,7 @@ fn recovered(errors: &[FrameError], width_px: u32) -> bool {
 ///
 /// # Errors
 /// As [`observe_all`], [`track`] and [`Cells::cell`].
-pub fn recovery(clips: &[Clip], seeds: &[u64], base: &Config, skin: &SkinModel, cells: &Cells<'_>) -> Result<Recovery> {
+pub fn recovery(clips: &[Clip], seeds: &[u64], front_end: &FrontEnd<'_>, cells: &Cells<'_>) -> Result<Recovery> {
     let share = |false_blob_fraction: f32| -> Result<f64> {
         let options = SceneOptions {
             frames: AWAY.end + 15,
@@ -178,13 +177,14 @@ pub fn recovery(clips: &[Clip], seeds: &[u64], base: &Config, skin: &SkinModel, 
             false_blob_fraction,
             ..SceneOptions::default()
         };
-        let scenes = observe_all(clips, seeds, &options, base, skin, cells)?;
+        let scenes = observe_all(clips, seeds, &options, front_end, cells)?;
         let found: Vec<bool> = scenes
             .par_iter()
             .map(|scene| {
                 let key = json!(["recovery", scene.key(), f64::from(false_blob_fraction)]);
                 cells.cell(&key, || {
-                    track(scene, &base.tracker, scene.seed).map(|errors| recovered(&errors, scene.size_px.0))
+                    track(scene, &front_end.config.tracker, scene.seed)
+                        .map(|errors| recovered(&errors, scene.size_px.0))
                 })
             })
             .collect::<Result<_>>()?;

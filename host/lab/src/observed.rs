@@ -3,6 +3,7 @@
 
 use super::clips::Clip;
 use anyhow::Result;
+use image::RgbImage;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use sinew::config::Config;
@@ -11,9 +12,10 @@ use sinew::motion::ArmSide;
 use sinew::resume::{Cells, crc32_of};
 use sinew::scene::{Scene, SceneOptions, Sides};
 use sinew::skin::SkinModel;
-use sinew::track::SideChoice;
+use sinew::track::{ArmStream, FaceSource, SideChoice, StreamOptions};
 use sinew_core::camera::Pixel;
 use sinew_core::math::Vec3;
+use std::borrow::Borrow;
 
 /// Truth of one frame of the tracked arm.
 #[derive(Debug, Clone, Copy)]
@@ -81,22 +83,67 @@ impl ObservedScene {
     }
 }
 
+/// How the pictures of a scene are read.
+#[derive(Debug, Clone, Copy)]
+pub enum Reading {
+    /// As `sinew track arm --no-face`: what rests is learned as background.
+    OverTime,
+    /// As the arm paper: each picture by itself, in its own light.
+    Alone,
+}
+
+/// What reads the pictures of scenes.
+#[derive(Debug, Clone, Copy)]
+pub struct FrontEnd<'a> {
+    /// Thresholds, tracker, ranking of blobs; camera and body are those of a scene.
+    pub config: &'a Config,
+    /// Colours of skin.
+    pub skin: &'a SkinModel,
+    /// How pictures are read.
+    pub reading: Reading,
+}
+
+impl FrontEnd<'_> {
+    /// What the `images` of a camera of `config` show, so many a second.
+    ///
+    /// # Errors
+    /// As [`ArmStream::see`] and [`FrameReader::read`].
+    pub fn views(
+        &self,
+        images: impl Iterator<Item = impl Borrow<RgbImage>>,
+        config: &Config,
+        (rate_hz, size_px): (f32, (u32, u32)),
+    ) -> Result<Vec<FrameView>> {
+        match self.reading {
+            Reading::OverTime => {
+                let (rate_hz, config) = (f64::from(rate_hz), config.clone());
+                let options = StreamOptions { rate_hz, face: FaceSource::Unknown, config, ..StreamOptions::default() };
+                let mut stream = ArmStream::new(options, self.skin.clone(), size_px)?;
+                let see = |(number, image): (usize, _)| Ok(stream.see(number, Borrow::borrow(&image), None)?.0);
+                images.enumerate().map(see).collect()
+            }
+            Reading::Alone => {
+                let mut reader = FrameReader::new(config.likelihood.build()?, config.edges.build()?)?;
+                let mut read = |image: &RgbImage| Ok(reader.read(image, &*self.skin.for_image(image)?)?);
+                images.map(|image| read(image.borrow())).collect()
+            }
+        }
+    }
+}
+
 /// Renders the scene of `clip` and sends every frame through the front end.
 ///
 /// # Errors
 /// A clip that cannot be read, an option out of range.
-pub fn observe(clip: &Clip, options: &SceneOptions, base: &Config, skin: &SkinModel) -> Result<ObservedScene> {
+pub fn observe(clip: &Clip, options: &SceneOptions, front_end: &FrontEnd<'_>) -> Result<ObservedScene> {
     let options = SceneOptions { sides: Sides::One(clip.side), ..options.clone() };
     let motion = clip.load(options.frames_per_second, options.frames)?;
     let scene = Scene::new(&motion, &options)?;
     let parsed = Config::parse(&scene.config_toml())?;
-    let config = Config { camera: parsed.camera, body: parsed.body, ..base.clone() };
-    let mut reader = FrameReader::new(config.likelihood.build()?, config.edges.build()?)?;
-    let mut read = |frame| {
-        let image = scene.render(frame);
-        reader.read(&image, &*skin.for_image(&image)?)
-    };
-    let views = (0..scene.len()).map(&mut read).collect::<sinew::Result<_>>()?;
+    let config = Config { camera: parsed.camera, body: parsed.body, ..front_end.config.clone() };
+    let (rate_hz, size_px) = (options.frames_per_second, (options.width_px, options.height_px));
+    let images = (0..scene.len()).map(|frame| scene.render(frame));
+    let views = front_end.views(images, &config, (rate_hz, size_px))?;
     let camera = scene.camera();
     let truth = (0..scene.len()).map(|frame| {
         let truth = scene.truth(frame);
@@ -112,9 +159,9 @@ pub fn observe(clip: &Clip, options: &SceneOptions, base: &Config, skin: &SkinMo
         clip: clip.name.clone(),
         seed: options.seed,
         config,
-        size_px: (options.width_px, options.height_px),
+        size_px,
         side: if clip.side == ArmSide::Left { SideChoice::Left } else { SideChoice::Right },
-        frame_us: (1.0e6 / f64::from(options.frames_per_second)) as u64,
+        frame_us: (1.0e6 / f64::from(rate_hz)) as u64,
         views,
         truth: truth.collect(),
     })
@@ -128,15 +175,14 @@ pub fn observe_all(
     clips: &[Clip],
     seeds: &[u64],
     options: &SceneOptions,
-    base: &Config,
-    skin: &SkinModel,
+    front_end: &FrontEnd<'_>,
     cells: &Cells<'_>,
 ) -> Result<Vec<ObservedScene>> {
     let jobs: Vec<(&Clip, u64)> = clips.iter().flat_map(|clip| seeds.iter().map(move |&seed| (clip, seed))).collect();
     jobs.into_par_iter()
         .map(|(clip, seed)| {
             cells.go_on()?;
-            observe(clip, &SceneOptions { seed, ..options.clone() }, base, skin)
+            observe(clip, &SceneOptions { seed, ..options.clone() }, front_end)
         })
         .collect()
 }

@@ -6,7 +6,7 @@ use super::options::{FrontEnd, StreamOptions, check_rate};
 use super::vision::RunVision;
 use crate::error::{Result, bail, ensure};
 use crate::frames::FrameView;
-use crate::person::GivenHands;
+use crate::person::{GivenHands, PersonView};
 use crate::pixels::{Picture, Pixels};
 use crate::skin::SkinModel;
 use image::RgbImage;
@@ -121,7 +121,7 @@ impl ArmStream {
         );
         let (view, person) = match frame.image {
             Some(image) => {
-                let (view, person) = self.vision(image)?.see(frame.number, image, frame.head)?;
+                let (view, person) = self.see(frame.number, image, frame.head)?;
                 (Some(view), person)
             }
             None => {
@@ -152,6 +152,20 @@ impl ArmStream {
             (None, None) => self.arms.step(timestamp_us, Some(&view)),
         };
         Ok(StreamAnswer { arms, view: Some(view), knows_face })
+    }
+
+    /// What image `number` shows, and the person in it where a face is known: the part of a step
+    /// that comes before the arms. `head` is the face, in place of one that is looked for.
+    ///
+    /// # Errors
+    /// An image of another size, or without skin in the rectangle of `calibrate`.
+    pub fn see(
+        &mut self,
+        number: usize,
+        image: &Picture<impl Pixels>,
+        head: Option<HeadBox>,
+    ) -> Result<(FrameView, Option<PersonView>)> {
+        self.vision(image)?.see(number, image, head)
     }
 
     /// What reads the images, of which `image` is one.

@@ -4,8 +4,8 @@ use super::cells::{CellBox, GridSize};
 use super::geodesic::{Length, STRAIGHT, distances};
 use crate::math::max;
 
-/// Cells within this of an end belong to it, widths of the face: the length of a hand.
-const END: f32 = 0.8;
+/// Length of a hand, widths of the face. Cells within it of an end belong to the end.
+pub(super) const HAND_LENGTH: f32 = 0.8;
 
 /// Both ends of an object.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ pub(super) fn ends(
     (start, width): (usize, f32),
     scratch: &mut [u16],
 ) -> Ends {
-    let near = (END * width * f32::from(STRAIGHT)) as u16;
+    let near = (HAND_LENGTH * width * f32::from(STRAIGHT)) as u16;
     let middle = |distances: &[u16]| {
         let (mut count, mut sum) = (0.0_f32, [0.0; 2]);
         for cell in within.cells(size).filter(|cell| inside(*cell) && distances[*cell] <= near) {

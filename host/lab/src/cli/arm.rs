@@ -3,7 +3,7 @@
 use super::until_signal;
 use crate::clips::{builtin, recorded};
 use crate::experiments::{self, Recovery, Row, STACK_BYTES};
-use crate::observed::{ObservedScene, observe_all};
+use crate::observed::{FrontEnd, ObservedScene, Reading, observe_all};
 use anyhow::{Result, ensure};
 use clap::Args;
 use serde::Serialize;
@@ -130,10 +130,12 @@ fn measure(args: &EvaluateArmArgs, skin: &SkinModel, cells: &Cells<'_>) -> Resul
     };
     clips.truncate(args.clips);
     let seeds: Vec<u64> = (1..=args.seeds).collect();
-    let base = Config::default();
+    let (base, printed_base) = (Config::default(), experiments::printed_base());
+    let front_end = FrontEnd { config: &base, skin, reading: Reading::OverTime };
     let options = SceneOptions { frames: args.frames, ..SceneOptions::default() };
-    let scenes: Vec<ObservedScene> = observe_all(&clips, &seeds, &options, &base, skin, cells)?;
-    let as_seen = observe_all(&clips, &seeds, &options, &experiments::printed_base(), skin, cells)?;
+    let scenes: Vec<ObservedScene> = observe_all(&clips, &seeds, &options, &front_end, cells)?;
+    let printed = FrontEnd { config: &printed_base, skin, reading: Reading::Alone };
+    let as_seen = observe_all(&clips, &seeds, &options, &printed, cells)?;
     let as_printed = experiments::printed(&as_seen, cells)?;
     drop(as_seen);
     let mut effects = experiments::options(&scenes, Variant::Pik, cells)?;
@@ -147,7 +149,7 @@ fn measure(args: &EvaluateArmArgs, skin: &SkinModel, cells: &Cells<'_>) -> Resul
         variants: experiments::variants(&scenes, &args.variants, &args.particles, cells)?,
         options: effects,
         as_printed,
-        recovery: experiments::recovery(&clips, &seeds, &base, skin, cells)?,
+        recovery: experiments::recovery(&clips, &seeds, &front_end, cells)?,
     })
 }
 

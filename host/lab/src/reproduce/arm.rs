@@ -7,7 +7,7 @@ use super::page::{Row, Section};
 use super::{Made, Material, of_trend, printed, seeds};
 use crate::clips::recorded;
 use crate::experiments::{self, Row as Measurement};
-use crate::observed::{ObservedScene, observe_all};
+use crate::observed::{FrontEnd, ObservedScene, Reading, observe_all};
 use crate::score::{FIRST_SCORED_FRAME, Spread};
 use anyhow::Result;
 use rayon::prelude::*;
@@ -39,7 +39,9 @@ pub fn make(material: Material<'_>, cells: &Cells<'_>) -> Result<Made> {
     made.page.left_out.push("figure 1, a drawing of the geometry".into());
     let skin = SkinModel::from_option("gaussian")?;
     let options = SceneOptions::default();
-    let scenes = observe_all(&clips, &seeds, &options, &experiments::printed_base(), &skin, cells)?;
+    let printed_base = experiments::printed_base();
+    let front_end = FrontEnd { config: &printed_base, skin: &skin, reading: Reading::Alone };
+    let scenes = observe_all(&clips, &seeds, &options, &front_end, cells)?;
     let rows = experiments::printed(&scenes, cells)?;
     let mut table = vec![["tracker", "particles", "3D error, m", "2D error, px"].map(String::from).to_vec()];
     for row in &rows {

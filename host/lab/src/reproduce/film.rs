@@ -2,10 +2,10 @@
 
 use super::arm_figures::Panel;
 use crate::hands::{ReferenceBox, load_frames, read_boxes};
-use crate::observed::Footage;
+use crate::observed::{Footage, FrontEnd, Reading};
 use anyhow::{Result, ensure};
 use sinew::config::Config;
-use sinew::frames::{FrameReader, FrameView};
+use sinew::frames::FrameView;
 use sinew::skin::SkinModel;
 use sinew::track::SideChoice;
 use std::path::Path;
@@ -32,9 +32,8 @@ impl Film {
         let (frames, config) = (load_frames(folder)?, crate::experiments::printed_base());
         let size_px = frames.first().map_or((0, 0), |first| first.dimensions());
         ensure!(!frames.is_empty(), "`{}` holds no picture; give a folder of a clip's frames", folder.display());
-        let mut reader = FrameReader::new(config.likelihood.build()?, config.edges.build()?)?;
-        let mut read = |image| -> Result<FrameView> { Ok(reader.read(image, &*skin.for_image(image)?)?) };
-        let views = frames.iter().map(&mut read).collect::<Result<_>>()?;
+        let front_end = FrontEnd { config: &config, skin, reading: Reading::Alone };
+        let views = front_end.views(frames.iter(), &config, (RATE_HZ as f32, size_px))?;
         Ok(Self { config, size_px, views, boxes: read_boxes(boxes)? })
     }
 

@@ -3,7 +3,7 @@
 use super::markdown::{Rows, line, named};
 use crate::clips::{Clip, recorded};
 use crate::experiments::{self, Row, STACK_BYTES};
-use crate::observed::{ObservedScene, observe_all};
+use crate::observed::{FrontEnd, ObservedScene, Reading, observe_all};
 use anyhow::Result;
 use sinew::config::Config;
 use sinew::resume::Cells;
@@ -20,9 +20,13 @@ const FRAMES: usize = 250;
 /// Numbers of particles.
 const PARTICLES: [usize; 7] = [10, 25, 50, 100, 250, 1000, 5000];
 
-/// Rows that `measure` makes of all scenes, observed with `base`, on threads with room for
-/// thousands of particles.
-fn on_scenes(recordings: &Path, base: &Config, measure: fn(&[ObservedScene]) -> Result<Rows>) -> Result<Rows> {
+/// Rows that `measure` makes of all scenes, read with `config`, on threads with room for thousands
+/// of particles.
+fn on_scenes(
+    recordings: &Path,
+    (config, reading): (&Config, Reading),
+    measure: fn(&[ObservedScene]) -> Result<Rows>,
+) -> Result<Rows> {
     let pool = rayon::ThreadPoolBuilder::new().stack_size(STACK_BYTES).build()?;
     pool.install(|| {
         let mut clips: Vec<Clip> = recorded(&recordings.join("mocap"))?;
@@ -30,12 +34,13 @@ fn on_scenes(recordings: &Path, base: &Config, measure: fn(&[ObservedScene]) -> 
         let seeds: Vec<u64> = (1..=SEEDS).collect();
         let options = SceneOptions { frames: FRAMES, ..SceneOptions::default() };
         let skin = SkinModel::from_option(DEFAULT_SKIN)?;
-        measure(&observe_all(&clips, &seeds, &options, base, &skin, &Cells::not_kept())?)
+        let front_end = FrontEnd { config, skin: &skin, reading };
+        measure(&observe_all(&clips, &seeds, &options, &front_end, &Cells::not_kept())?)
     })
 }
 
 pub fn variants(recordings: &Path) -> Result<Rows> {
-    on_scenes(recordings, &Config::default(), |scenes| {
+    on_scenes(recordings, (&Config::default(), Reading::OverTime), |scenes| {
         let measured = experiments::variants(scenes, &Variant::ALL, &PARTICLES, &Cells::not_kept())?;
         let mut rows = vec![named("", PARTICLES.map(|count| count.to_string()))];
         let error = |row: &Row| format!("{:.3} m, {:.1} px", row.error_m.median, row.error_px.median);
@@ -47,7 +52,7 @@ pub fn variants(recordings: &Path) -> Result<Rows> {
 }
 
 pub fn options(recordings: &Path) -> Result<Rows> {
-    let mut rows = on_scenes(recordings, &Config::default(), |scenes| {
+    let mut rows = on_scenes(recordings, (&Config::default(), Reading::OverTime), |scenes| {
         let cells = &Cells::not_kept();
         let mut rows = vec![line(["", "3D error, m (quartiles)", "2D error, px (quartiles)"])];
         for variant in [Variant::Pik, Variant::Corrected] {
@@ -56,7 +61,7 @@ pub fn options(recordings: &Path) -> Result<Rows> {
         }
         Ok(rows)
     })?;
-    rows.extend(on_scenes(recordings, &experiments::printed_base(), |scenes| {
+    rows.extend(on_scenes(recordings, (&experiments::printed_base(), Reading::Alone), |scenes| {
         let printed = experiments::printed(scenes, &Cells::not_kept())?;
         Ok(printed.iter().map(|row| spread(format!("{}, {} particles", row.name, row.particles), row)).collect())
     })?);

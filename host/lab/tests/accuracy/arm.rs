@@ -9,8 +9,9 @@ use sinew::scene::SceneOptions;
 use sinew::skin::SkinModel;
 use sinew::skin::model::DEFAULT_SKIN;
 use sinew_core::tracker::arm::ArmOptions;
+use sinew_lab::clips;
+use sinew_lab::observed::{FrontEnd, Reading, observe_all};
 use sinew_lab::score::{Spread, run_all};
-use sinew_lab::{clips, observed::observe_all};
 
 /// Largest median 3D error of the hand with 50 particles, metres.
 const LARGEST_ERROR_M: f64 = 0.12;
@@ -23,8 +24,8 @@ fn the_default_tracker_is_as_accurate_as_the_book_says() {
     let clips = clips::recorded(&folder).unwrap();
     assert!(clips.len() >= 6, "{} clips", clips.len());
     let skin = SkinModel::from_option(DEFAULT_SKIN).unwrap();
-    let scenes =
-        observe_all(&clips, &[1, 2], &SceneOptions::default(), &Config::default(), &skin, &Cells::not_kept()).unwrap();
+    let front_end = FrontEnd { config: &Config::default(), skin: &skin, reading: Reading::OverTime };
+    let scenes = observe_all(&clips, &[1, 2], &SceneOptions::default(), &front_end, &Cells::not_kept()).unwrap();
     let runs = run_all(&scenes, &ArmOptions::default(), &Cells::not_kept()).unwrap();
     let metres = Spread::of(&runs.iter().map(|run| run.mean_m).collect::<Vec<_>>()).median;
     let pixels = Spread::of(&runs.iter().map(|run| run.mean_px).collect::<Vec<_>>()).median;
