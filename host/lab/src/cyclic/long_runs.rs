@@ -37,13 +37,19 @@ pub struct LongRun {
 
 /// Cycles of a recording that follow each other.
 #[derive(Debug, Clone)]
-struct Recording {
+pub struct Recording {
     cycle: TestCycle,
     /// Starts of all cycles and the end of the last, frames.
     borders: Vec<u64>,
 }
 
 impl Recording {
+    /// The recording `truth`, whose cycles lie between `borders`, frames.
+    #[must_use]
+    pub const fn new(name: String, truth: AngleTable, borders: Vec<u64>) -> Self {
+        Self { cycle: TestCycle { name, truth }, borders }
+    }
+
     /// Cycles since the first start.
     fn true_cycles(&self, frame: u64) -> f64 {
         let later = self.borders.partition_point(|&border| border <= frame);
@@ -68,7 +74,7 @@ fn recordings(list: &CutList) -> Result<Vec<Recording>> {
         let mut borders: Vec<u64> = cuts.iter().map(|cut| cut.start_frame).collect();
         borders.push(last.end_frame);
         let name = format!("{}:{}", first.file, first.start_frame);
-        all.push(Recording { cycle: TestCycle { name, truth: AngleTable::new(rows, Vec::new())? }, borders });
+        all.push(Recording::new(name, AngleTable::new(rows, Vec::new())?, borders));
     }
     ensure!(
         !all.is_empty(),
@@ -88,14 +94,25 @@ pub fn long_runs(
     model: &CyclicModel,
     rate_hz: f64,
     filters: &[FilterName],
-    (sigma_deg, seed): (f64, u64),
+    noise: (f64, u64),
 ) -> Result<Vec<LongRun>> {
-    let recordings = recordings(list)?;
+    tracked(&recordings(list)?, model, rate_hz, filters, noise)
+}
+
+/// As [`long_runs`], of `recordings`.
+///
+/// # Errors
+/// A filter that cannot start.
+pub fn tracked(
+    recordings: &[Recording],
+    model: &CyclicModel,
+    rate_hz: f64,
+    filters: &[FilterName],
+    noise: (f64, u64),
+) -> Result<Vec<LongRun>> {
     let jobs: Vec<(&Recording, FilterName)> =
         recordings.iter().flat_map(|recording| filters.iter().map(move |&filter| (recording, filter))).collect();
-    jobs.into_par_iter()
-        .map(|(recording, filter)| long_run(recording, model, rate_hz, filter, (sigma_deg, seed)))
-        .collect()
+    jobs.into_par_iter().map(|(recording, filter)| long_run(recording, model, rate_hz, filter, noise)).collect()
 }
 
 fn long_run(

@@ -8,10 +8,12 @@ pub mod long_runs;
 pub mod protocol;
 pub mod rate;
 pub mod report;
+pub mod stress;
 pub mod synthetic;
+pub mod tempo;
 
 pub use experiments::{Cell, Setting};
-pub use long_runs::{LONG_RUN_SIGMA_DEG, LongRun, long_runs};
+pub use long_runs::{LONG_RUN_SIGMA_DEG, LongRun, Recording, long_runs, tracked};
 pub use protocol::{Errors, Protocol, TestCycle, test_cycles};
 pub use rate::rate_of;
 pub use report::CyclicReport;

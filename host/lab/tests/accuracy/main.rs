@@ -18,6 +18,7 @@ mod cyclic_misfit;
 mod cyclic_noise_assumed;
 mod cyclic_smoothing;
 mod cyclic_speeds;
+mod cyclic_stress;
 mod cyclic_turns;
 mod finished_recordings;
 mod front_end;

@@ -1,0 +1,36 @@
+//! Walkers of the training tracked by a model of the other people, at nine tempos: `coupled` keeps
+//! the position. Runs in release where `../shared/data` is at hand, and says so where not.
+
+use crate::shared_data;
+use sinew_lab::cyclic::LongRun;
+use sinew_lab::cyclic::stress::{strangers, stress_runs};
+
+/// Noise, degrees, with the largest mean error of the cadence and the largest share of lost runs.
+const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.03, 0.05), (6.0, 0.012, 0.07), (29.0, 0.02, 0.02)];
+/// Seeds of the noise.
+const SEEDS: [u64; 2] = [1, 2];
+/// Position errors beyond which a run was lost for a while, cycles.
+const LOST: f64 = 0.2;
+
+fn score(runs: &[&LongRun]) -> [f64; 2] {
+    let error = runs.iter().map(|run| run.cadence_error.abs()).sum::<f64>();
+    let lost = runs.iter().filter(|run| run.phase_max > LOST).count();
+    [error, lost as f64].map(|sum| sum / runs.len() as f64)
+}
+
+#[test]
+fn strangers_are_followed_at_any_tempo_also_with_joints_elsewhere() {
+    let Some(data) = shared_data::in_release("mocap") else { return };
+    let strangers = strangers(&data.join("cmu-walk")).unwrap();
+    for (sigma_deg, most_cadence, most_lost) in BOUNDS {
+        let [plain, elsewhere] = stress_runs(&strangers, sigma_deg, &SEEDS).unwrap();
+        for (name, runs) in [("own joints", &plain), ("joints elsewhere", &elsewhere)] {
+            let [error, lost] = score(&runs.iter().collect::<Vec<_>>());
+            println!("sigma {sigma_deg}, {name}: cadence {:.2} % off, lost {:.1} %", 100.0 * error, 100.0 * lost);
+        }
+        let [error, lost] = score(&plain.iter().chain(&elsewhere).collect::<Vec<_>>());
+        println!("sigma {sigma_deg}: cadence {:.2} % off, lost {:.1} %", 100.0 * error, 100.0 * lost);
+        assert!(error > 0.001 && error < most_cadence, "sigma {sigma_deg}: cadence off by {error}");
+        assert!(lost < most_lost, "sigma {sigma_deg}: {lost} lost");
+    }
+}
