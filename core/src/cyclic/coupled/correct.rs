@@ -6,7 +6,7 @@ use crate::cyclic::coupled::evidence::{FrameInnovation, PhaseEvidence};
 use crate::cyclic::coupled::spread_scale::FrameProducts;
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::{AngleMeasurement, CoupledModel};
-use crate::math::{clamp, max, sqrt, wrap_angle};
+use crate::math::{max, sqrt, wrap_angle};
 
 /// Gate of a single angle, standard deviations. An angle beyond it does not inform the phase, and
 /// its offset is learned again. Chosen: short links that wind in a side view would drag the phase.
@@ -71,8 +71,8 @@ impl<const N: usize> CoupledFilter<N> {
         if growth > 1.0 {
             self.blocks.iter_mut().for_each(|block| block.inflate(growth));
         }
-        self.velocity = clamp(self.velocity + shift[1], -0.5, 0.5);
-        self.move_by(clamp(shift[0], -0.5, 0.5));
+        self.forget_drift(model);
+        self.shift_by(model, shift);
         self.update_angles(model, measurement);
         innovation
     }

@@ -27,6 +27,7 @@ impl<const N: usize> SavedState for CoupledFilter<N> {
         self.winding.visit(visitor);
         self.path.visit(visitor);
         self.swing.visit(visitor);
+        visitor.real(&mut self.drift, &(-1.0..=1.0));
         let mut relocks = u32::from(self.relocks);
         visitor.word(&mut relocks);
         self.relocks = relocks as u16;

@@ -108,6 +108,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.last_innovation_rad = [0.0; N];
         self.winding = Winding::new();
         self.path = MeasuredPath::new();
+        self.drift = 0.0;
         self.relocks = 0;
         self.swing = ExplainedVariance::new();
         Ok(())

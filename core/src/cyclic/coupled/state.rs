@@ -17,12 +17,16 @@ use crate::cyclic::coupled::watch::agreement::Watch;
 use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::phase::wrap_position;
 use crate::cyclic::recognition::explained_variance::ExplainedVariance;
-use crate::math::round;
+use crate::math::{clamp, min, round};
 
 /// Standard deviation of c, cycles, above which the linearisation does not hold and the filter
 /// searches by the grid. Chosen: about a sixth of a cycle, over which the mean pose is no straight
 /// line.
 pub(super) const LOST_STD: f32 = 0.15;
+
+/// Cycles over which the corrections of the position are averaged. Chosen: a step, which is half a
+/// cycle. With a whole cycle the cadence is a sixth farther off.
+const DRIFT_CYCLES: f32 = 0.5;
 
 /// State of the filter `coupled` for models of up to `N` angles.
 ///
@@ -66,11 +70,13 @@ pub struct CoupledFilter<const N: usize> {
     pub(super) path: MeasuredPath<N>,
     /// Variance that the mean cycle explains at the filter's position.
     pub(super) swing: ExplainedVariance<N>,
+    /// Mean correction of the position in a frame over about [`DRIFT_CYCLES`], cycles.
+    pub(super) drift: f32,
     /// Number of relocks.
     pub(super) relocks: u16,
 }
 
-const _: () = assert!(size_of::<CoupledFilter<13>>() <= 2728, "the state has to fit 2.7 KiB");
+const _: () = assert!(size_of::<CoupledFilter<13>>() <= 2732, "the state has to fit 2.7 KiB");
 
 impl<const N: usize> CoupledFilter<N> {
     /// A filter before [`Self::begin`], for static memory: it takes no stack. Its estimates are
@@ -92,6 +98,7 @@ impl<const N: usize> CoupledFilter<N> {
             last_innovation_rad: [0.0; N],
             winding: Winding::new(),
             path: MeasuredPath::new(),
+            drift: 0.0,
             relocks: 0,
             swing: ExplainedVariance::new(),
         }
@@ -107,6 +114,28 @@ impl<const N: usize> CoupledFilter<N> {
     #[must_use]
     pub const fn cycles(&self) -> i32 {
         self.cycles
+    }
+
+    /// Corrects position and velocity by `shift`, and averages the position's corrections.
+    pub(super) fn shift_by(&mut self, model: &CoupledModel<'_>, shift: [f32; 2]) {
+        let way = clamp(shift[0], -0.5, 0.5);
+        self.velocity = clamp(self.velocity + shift[1], -0.5, 0.5);
+        self.drift += min(model.mean_cycle_velocity() / DRIFT_CYCLES, 1.0) * way;
+        self.move_by(way);
+    }
+
+    /// Forgets a frame's part of the corrections of the position.
+    pub(super) fn forget_drift(&mut self, model: &CoupledModel<'_>) {
+        self.drift -= min(model.mean_cycle_velocity() / DRIFT_CYCLES, 1.0) * self.drift;
+    }
+
+    /// Speed at which the position moved, corrections included, cycles per frame.
+    ///
+    /// A person whom the model does not fit moves position and velocity by corrections that do not
+    /// cancel over a cycle, so the velocity alone is not the rate of the cycles. Where an angle
+    /// winds, it is: corrections there are few and large.
+    pub(super) fn travelled_velocity(&self, model: &CoupledModel<'_>) -> f32 {
+        if model.winds() { self.velocity } else { self.velocity + self.drift }
     }
 
     pub(super) fn move_by(&mut self, way: f32) {

@@ -54,7 +54,7 @@ impl<const N: usize> CoupledFilter<N> {
             angle_variance_rad2,
             cycle_position: self.position,
             cycle_position_variance: self.pair.cc,
-            cycle_velocity_per_frame: self.velocity,
+            cycle_velocity_per_frame: self.travelled_velocity(model),
             cycle_velocity_variance: self.pair.vv,
             log_likelihood,
             outlier,

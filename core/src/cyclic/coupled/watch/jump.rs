@@ -93,7 +93,7 @@ impl<const N: usize> CoupledFilter<N> {
             self.relock_to(&PhaseMode { position, ..mode });
             self.learn_offsets_here(model, measurement);
         } else if mode.weight > MIN_MODE_WEIGHT && self.was_relocked_lately(model) {
-            self.fuse_grid_phase(&mode);
+            self.fuse_grid_phase(model, &mode);
         }
         Some(mode)
     }

@@ -9,7 +9,6 @@ use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::phase::position_difference;
 use crate::cyclic::recognition::explained_variance::ExplainedVariance;
 use crate::cyclic::{AngleMeasurement, CoupledModel};
-use crate::math::clamp;
 
 /// Inflation of the grid's variances when its phase is fused.
 ///
@@ -18,7 +17,7 @@ const GRID_VARIANCE_INFLATION: f32 = 3.0;
 
 impl<const N: usize> CoupledFilter<N> {
     /// Corrects position and velocity by the grid's mode, as by a measurement of both.
-    pub(super) fn fuse_grid_phase(&mut self, mode: &PhaseMode) {
+    pub(super) fn fuse_grid_phase(&mut self, model: &CoupledModel<'_>, mode: &PhaseMode) {
         let way = position_difference(position_difference(mode.position, self.position), self.watch.mean_phase_offset);
         let mut information = Information::NONE;
         information.add(&[1.0, 0.0], 1.0 / (GRID_VARIANCE_INFLATION * mode.covariance[0]), way);
@@ -29,8 +28,7 @@ impl<const N: usize> CoupledFilter<N> {
         );
         let shift = self.pair.correct(&information);
         self.blocks.iter_mut().for_each(|block| block.follow(shift));
-        self.velocity = clamp(self.velocity + shift[1], -0.5, 0.5);
-        self.move_by(clamp(shift[0], -0.5, 0.5));
+        self.shift_by(model, shift);
     }
 
     /// Learns from one measurement how the person differs from the mean cycle at the present phase.
@@ -46,6 +44,7 @@ impl<const N: usize> CoupledFilter<N> {
     pub(super) fn relock_to(&mut self, mode: &PhaseMode) {
         self.move_by(position_difference(mode.position, self.position));
         self.velocity = mode.velocity;
+        self.drift = 0.0;
         let [cc, cv, vv] = mode.covariance;
         self.pair = CyclePair { cc, cv, vv };
         for block in &mut self.blocks {
