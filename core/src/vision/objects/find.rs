@@ -33,6 +33,8 @@ const BEYOND_END: f32 = 1.0;
 const MIN_LENGTH: f32 = 1.2;
 /// Thickest parts of an object that are looked at.
 const MAX_PEAKS: usize = 5;
+/// Both ends, the thickest parts and the middle.
+const MAX_SPOTS: usize = 2 + MAX_PEAKS + 1;
 /// Least half thickness of a hand.
 const MIN_THICKNESS: f32 = 0.1;
 /// Two thickest parts are at least so far apart: half a hand.
@@ -111,11 +113,24 @@ struct View<'a, const COLUMNS: usize, const ROWS: usize> {
     width: f32,
 }
 
+/// Where a hand may be in an object.
+#[derive(Clone, Copy)]
+struct Spot {
+    /// Where its fill, thickness and motion are seen.
+    seen: Position,
+    /// The end of an arm that it is, if it is one.
+    end: Option<ArmEnd>,
+    /// Where the hand is, if that is before the face.
+    before_face: Option<Position>,
+}
+
 /// Where the hand is whose arm ends at `end`, if it is before the face: no cell is its own there,
 /// since those of the head belong to no object. Then it is beyond the end, away from the `other`.
+#[inline(never)]
 fn before_face(end: Position, other: Position) -> Option<Position> {
-    let length = max(distance(end, other), ONE_PLACE);
-    let beyond = |by: f32| core::array::from_fn(|axis| end[axis] + by * (end[axis] - other[axis]) / length);
+    let per_width = 1.0 / max(distance(end, other), ONE_PLACE);
+    let direction = [per_width * (end[0] - other[0]), per_width * (end[1] - other[1])];
+    let beyond = |by: f32| [end[0] + by * direction[0], end[1] + by * direction[1]];
     is_head(beyond(HAND_LENGTH)).then(|| beyond(BEYOND_END))
 }
 
@@ -163,59 +178,67 @@ impl<const COLUMNS: usize, const ROWS: usize> View<'_, COLUMNS, ROWS> {
 
     #[inline(never)]
     fn places_of(&self, object: &Object, maps: &mut Layers<'_>, found: &mut Vec<HandPlace, MAX_FOUND>) {
-        let (size, within, first) = (self.grid.size(), object.within(), found.len());
-        let (area, label) = (self.area(object), object.label);
-        let Layers { labels, depths, scratch } = maps;
-        let inside = |cell: usize| labels[cell] == label;
-        let mut add = |seen: Position, end: Option<ArmEnd>, before_face: Option<Position>| {
+        let (label, first) = (object.label, found.len());
+        let mut spots = Vec::new();
+        self.spots_of(object, maps, &mut spots);
+        for &Spot { seen, end, before_face } in &spots {
             let position = before_face.unwrap_or(seen);
             if found.iter().skip(first).all(|other| distance(other.position, position) >= ONE_PLACE) {
-                let mut place = self.place(seen, label, end, labels, depths);
+                let mut place = self.place(seen, label, end, maps.labels, maps.depths);
                 if before_face.is_some() {
                     (place.thickness, place.fill) = (THICKNESS_BEFORE_FACE, FILL_BEFORE_FACE);
                 }
                 // What finds no room is the last of many specks.
                 let _ = found.push(HandPlace { position, ..place });
             }
-        };
+        }
+    }
+
+    /// Both ends of an object, its thickest parts, and its middle; there is room for all.
+    #[inline(never)]
+    fn spots_of(&self, object: &Object, maps: &mut Layers<'_>, spots: &mut Vec<Spot, MAX_SPOTS>) {
+        let (size, within, area) = (self.grid.size(), object.within(), self.area(object));
+        let Layers { labels, depths, scratch } = maps;
+        let inside = |cell: usize| labels[cell] == object.label;
         if area < MAX_AREA_OF_ARM {
             let start = (usize::from(object.first), self.width);
-            let found = ends(size, &within, inside, start, scratch);
-            for (position, end, before_face) in self.places_at(&found).into_iter().flatten() {
-                add(position, Some(end), before_face);
-            }
+            self.add_ends(&ends(size, &within, inside, start, scratch), spots);
         }
-        let mut peaks: Vec<[f32; 2], MAX_PEAKS> = Vec::new();
-        while !peaks.is_full() {
-            let mut best = (None, (MIN_THICKNESS * self.width * f32::from(STRAIGHT)) as u8);
+        let inner = |seen| Spot { seen, end: None, before_face: None };
+        let (ends, least) = (spots.len(), (MIN_THICKNESS * self.width * f32::from(STRAIGHT)) as u8);
+        for _ in 0..MAX_PEAKS {
+            let mut best = (None, least);
             for cell in within.cells(size).filter(|cell| inside(*cell)) {
-                let is_free = |at| peaks.iter().all(|peak| distance(*peak, at) > BETWEEN_PEAKS);
+                let is_free = |at| spots.iter().skip(ends).all(|peak| distance(peak.seen, at) > BETWEEN_PEAKS);
                 if depths[cell] > best.1 && is_free(self.of_cell(cell)) {
                     best = (Some(cell), depths[cell]);
                 }
             }
             let Some(cell) = best.0 else { break };
-            let _ = peaks.push(self.of_cell(cell));
-            add(self.of_cell(cell), None, None);
+            let _ = spots.push(inner(self.of_cell(cell)));
         }
         if area < MAX_AREA_OF_HAND {
             let sum = self.positions(object, labels).fold([0.0; 2], |[u, v], at| [u + at[0], v + at[1]]);
-            add(sum.map(|sum| sum / f32::from(object.cells)), None, None);
+            let _ = spots.push(inner(sum.map(|sum| sum / f32::from(object.cells))));
         }
     }
 
-    /// Both ends, if the object is longer than a hand, and where the hand of each is if that is
-    /// before the face. An arm whose hand is there is longer by a hand than what is seen of it.
-    fn places_at(&self, found: &Ends) -> Option<[(Position, ArmEnd, Option<Position>); 2]> {
-        let seen = found.length / self.width;
-        if seen <= MIN_LENGTH {
-            return None;
+    /// Both ends, if the object is longer than a hand. An arm whose hand is before the face is
+    /// longer by a hand than what is seen of it.
+    fn add_ends(&self, found: &Ends, spots: &mut Vec<Spot, MAX_SPOTS>) {
+        let mut length = found.length / self.width;
+        if length <= MIN_LENGTH {
+            return;
         }
         let [a, b] = found.places.map(|place| self.relative(place));
-        let (hand_a, hand_b) = (before_face(a, b), before_face(b, a));
-        let hands = [hand_a, hand_b].iter().flatten().count();
-        let end = |other| ArmEnd { length: seen + hands as f32 * HAND_LENGTH, other };
-        Some([(a, end(hand_b.unwrap_or(b)), hand_a), (b, end(hand_a.unwrap_or(a)), hand_b)])
+        let hidden = [before_face(a, b), before_face(b, a)];
+        for _ in hidden.iter().flatten() {
+            length += HAND_LENGTH;
+        }
+        for (index, seen) in [a, b].into_iter().enumerate() {
+            let end = ArmEnd { length, other: hidden[1 - index].unwrap_or([b, a][index]) };
+            let _ = spots.push(Spot { seen, end: Some(end), before_face: hidden[index] });
+        }
     }
 
     #[inline(never)]

@@ -16,6 +16,7 @@ use sinew::cyclic::turns::least_angle;
 use sinew::cyclic::{AngleRow, AngleTable, Cut, CutList, CyclicModel};
 use sinew_core::random::Stream;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 
 /// Frames per second.
@@ -23,9 +24,9 @@ const RATE_HZ: f64 = 60.0;
 /// Cycles of a chain.
 const CHAIN_CYCLES: usize = 8;
 /// Standard deviation of an angle's offset where joints lie elsewhere, of the long parts and of the
-/// links of hips and shoulders, degrees. Chosen: as other sources of recordings have it.
+/// links of hips and shoulders, degrees. Chosen: so large that the filter loses some of the runs.
 const OFFSET_STD_DEG: [f64; 2] = [12.0, 30.0];
-/// Smallest and largest factor of such an angle's swing.
+/// Smallest and largest factor of such an angle's swing. Chosen likewise.
 const SWING: [f64; 2] = [0.6, 1.3];
 /// The cut list of the shipped walking model.
 const CUTS: &str = include_str!("../../../models/cuts/walking.csv");
@@ -56,10 +57,9 @@ fn tables(list: &CutList, cmu_walk: &Path) -> Result<BTreeMap<PathBuf, AngleTabl
     let options = RecordingOptions { rate_hz: Some(RATE_HZ), ..RecordingOptions::default() };
     let mut tables = BTreeMap::new();
     for cut in list.cuts() {
-        let path = list.table_path(cut);
-        if !tables.contains_key(&path) {
+        if let Entry::Vacant(table) = tables.entry(list.table_path(cut)) {
             let recording = cmu_walk.join(&cut.file[..2]).join(cut.file.replace(".csv", ".amc"));
-            tables.insert(path, angles(&recording, &options)?.table);
+            table.insert(angles(&recording, &options)?.table);
         }
     }
     Ok(tables)

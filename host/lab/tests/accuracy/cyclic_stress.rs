@@ -6,7 +6,7 @@ use sinew_lab::cyclic::LongRun;
 use sinew_lab::cyclic::stress::{strangers, stress_runs};
 
 /// Noise, degrees, with the largest mean error of the cadence and the largest share of lost runs.
-const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.03, 0.05), (6.0, 0.012, 0.07), (29.0, 0.02, 0.02)];
+const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.013, 0.05), (6.0, 0.005, 0.07), (29.0, 0.008, 0.02)];
 /// Seeds of the noise.
 const SEEDS: [u64; 2] = [1, 2];
 /// Position errors beyond which a run was lost for a while, cycles.
