@@ -119,8 +119,9 @@ impl FrontEnd<'_> {
                 let (rate_hz, config) = (f64::from(rate_hz), config.clone());
                 let options = StreamOptions { rate_hz, face: FaceSource::Unknown, config, ..StreamOptions::default() };
                 let mut stream = ArmStream::new(options, self.skin.clone(), size_px)?;
-                let see = |(number, image): (usize, _)| Ok(stream.see(number, Borrow::borrow(&image), None)?.0);
-                images.enumerate().map(see).collect()
+                let mut see = |(number, image): (usize, _)| stream.see(number, Some(Borrow::borrow(&image)), None);
+                let seen = images.enumerate().filter_map(|frame| see(frame).transpose());
+                seen.map(|seen| Ok(seen?.0)).collect()
             }
             Reading::Alone => {
                 let mut reader = FrameReader::new(config.likelihood.build()?, config.edges.build()?)?;

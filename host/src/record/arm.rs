@@ -3,29 +3,22 @@
 use super::StreamWriter;
 use super::arm_run::ArmRun;
 use crate::error::Result;
-use crate::frames::{FrameReader, FrameView};
-use crate::skin::Background;
+use crate::frames::FrameView;
+use crate::track::{ArmStream, FaceSource, StreamOptions};
 use sinew_core::math::Vec3;
 use sinew_record::{ArmInput, CANDIDATES_A_RECORD, CandidateChunk, EDGES_A_RECORD, EdgeChunk};
 
 /// The stream of a run and its number of frames: the host's vision, firmware's tracker.
 pub(super) fn tracker_stream(run: &mut ArmRun) -> Result<(Vec<u8>, usize)> {
-    let mut reader = FrameReader::new(run.config.likelihood.build()?, run.config.edges.build()?)?;
+    let (config, face) = (run.config.clone(), FaceSource::Unknown);
+    let options = StreamOptions { rate_hz: run.rate_hz, face, config, ..StreamOptions::default() };
+    let mut arm = ArmStream::new(options, run.skin.clone(), run.frames.size_px())?;
     let mut stream = StreamWriter::default();
     stream.push(&run.setup)?;
     let shoulder_m = run.setup.shoulder_m;
-    let skin = run.skin.for_image(run.frames.first().1)?.into_owned();
-    let mut background = Background::new(run.rate_hz);
     let frames = run.each_frame(|frame, timestamp_us, image| {
-        let see = |image| {
-            background.see(&image, &skin);
-            reader.read(&image, &background.without(&skin))
-        };
-        let view = image.map(see).transpose()?;
-        if view.is_none() {
-            reader.forget_last_frame();
-        }
-        push_frame(&mut stream, frame, timestamp_us, shoulder_m, view.as_ref())
+        let seen = arm.see(frame, image.as_ref(), None)?;
+        push_frame(&mut stream, frame, timestamp_us, shoulder_m, seen.map(|(view, _)| view).as_ref())
     })?;
     Ok((stream.finish()?, frames))
 }

@@ -119,15 +119,9 @@ impl ArmStream {
             frame.hands.is_none() || self.options.front_end != FrontEnd::Lines,
             "hands take the place of what is seen, and the front end `lines` is a way to see: leave one out"
         );
-        let (view, person) = match frame.image {
-            Some(image) => {
-                let (view, person) = self.see(frame.number, image, frame.head)?;
-                (Some(view), person)
-            }
-            None => {
-                self.seeing.iter_mut().for_each(|seeing| seeing.vision.forget_last_frame());
-                (frame.hands.as_ref().map(|_| FrameView::default()), None)
-            }
+        let (view, person) = match self.see(frame.number, frame.image, frame.head)? {
+            Some((view, person)) => (Some(view), person),
+            None => (frame.hands.as_ref().map(|_| FrameView::default()), None),
         };
         let timestamp_us = frame.timestamp_us;
         let knows_face = person.is_some();
@@ -155,17 +149,22 @@ impl ArmStream {
     }
 
     /// What image `number` shows, and the person in it where a face is known: the part of a step
-    /// that comes before the arms. `head` is the face, in place of one that is looked for.
+    /// that comes before the arms. None where the image is missing. `head` is the face, in place of
+    /// one that is looked for.
     ///
     /// # Errors
     /// An image of another size, or without skin in the rectangle of `calibrate`.
     pub fn see(
         &mut self,
         number: usize,
-        image: &Picture<impl Pixels>,
+        image: Option<&Picture<impl Pixels>>,
         head: Option<HeadBox>,
-    ) -> Result<(FrameView, Option<PersonView>)> {
-        self.vision(image)?.see(number, image, head)
+    ) -> Result<Option<(FrameView, Option<PersonView>)>> {
+        let Some(image) = image else {
+            self.seeing.iter_mut().for_each(|seeing| seeing.vision.forget_last_frame());
+            return Ok(None);
+        };
+        self.vision(image)?.see(number, image, head).map(Some)
     }
 
     /// What reads the images, of which `image` is one.

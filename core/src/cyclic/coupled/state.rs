@@ -24,9 +24,10 @@ use crate::math::{clamp, min, round};
 /// line.
 pub(super) const LOST_STD: f32 = 0.15;
 
-/// Cycles over which the corrections of the position are averaged. Chosen: a step, which is half a
-/// cycle. With a whole cycle the cadence is a sixth farther off.
-const DRIFT_CYCLES: f32 = 0.5;
+/// Cycles over which the corrections of the position are averaged. Chosen: those of one cycle
+/// cancel where the velocity is right. With half a cycle the cadence of single frames is half again
+/// as unsteady, and its mean a sixth nearer.
+const DRIFT_CYCLES: f32 = 1.0;
 
 /// State of the filter `coupled` for models of up to `N` angles.
 ///

@@ -2,8 +2,8 @@
 
 use super::long_runs::Recording;
 use anyhow::Result;
+use sinew::cyclic::turns::least_angle;
 use sinew::cyclic::{AngleRow, AngleTable};
-use std::f64::consts::TAU;
 
 /// A tempo: its name, and the frame of the recording, of which there are so many, that is seen at a
 /// frame of the new one.
@@ -58,10 +58,7 @@ impl Walk {
 fn between(before: &AngleRow, after: &AngleRow, part: f64, frame: u64) -> AngleRow {
     let mut row = AngleRow { frame, extra: Vec::new(), ..before.clone() };
     for (angle, after) in row.angles_rad.iter_mut().zip(&after.angles_rad) {
-        *angle = angle.zip(*after).map(|(before, after)| {
-            let way = after - before;
-            before + part * (way - TAU * (way / TAU).round())
-        });
+        *angle = angle.zip(*after).map(|(before, after)| before + part * least_angle(after - before));
     }
     row
 }
