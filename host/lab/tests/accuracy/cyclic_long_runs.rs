@@ -13,7 +13,7 @@ use sinew_lab::cyclic::experiments::SIGMAS_DEG;
 use sinew_lab::cyclic::{Cell, LONG_RUN_SIGMA_DEG, Protocol, Setting, long_runs, test_cycles};
 
 /// Largest relative error of the mean cadence from the third cycle on.
-const CADENCE: f64 = 0.012;
+const CADENCE: f64 = 0.02;
 /// Largest difference of the cycles counted and those that there were.
 const COUNT: f64 = 0.3;
 /// Root mean square and greatest error of the position over eight or more cycles.
