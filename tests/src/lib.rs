@@ -14,6 +14,17 @@ use std::time::SystemTime;
 /// Exit statuses of a command that refuses an option or an input.
 pub const REFUSED: &[i32] = &[64, 65, 66];
 
+/// Whether a test of half a minute and more is left out, as `.ci/run` does in its short form; says
+/// so aloud.
+#[must_use]
+pub fn leaves_out_long_tests() -> bool {
+    let is_short = env::var_os("SINEW_SHORT_TESTS").is_some();
+    if is_short {
+        eprintln!("left out: takes long, and SINEW_SHORT_TESTS is set");
+    }
+    is_short
+}
+
 /// The command `sinew` of this workspace, freshly built in the profile of the running test.
 ///
 /// `CARGO_BIN_EXE_sinew` is set for the tests of the package that owns the binary only, and `cargo

@@ -87,14 +87,35 @@ pub fn builds_with_debian() -> bool {
 }
 
 /// Whether every target and level is to be checked, which takes many builds of the library;
-/// otherwise those of [`SHORT`].
+/// otherwise two, and one in the short form.
 #[must_use]
 pub fn checks_all_targets() -> bool {
     std::env::var_os("SINEW_ALL_TARGETS").is_some()
 }
 
-/// Targets and levels that are always checked.
-pub const SHORT: [(&str, &str); 2] = [("thumbv7em-none-eabihf", "3"), ("thumbv6m-none-eabi", "s")];
+/// Whether only the shorter builds are wanted, as by `.ci/run` in its short form.
+fn is_short_form() -> bool {
+    std::env::var_os("SINEW_SHORT_TESTS").is_some()
+}
+
+/// Whether a test whose build takes long is left out; says so aloud.
+#[must_use]
+pub fn leaves_out_long_builds() -> bool {
+    if is_short_form() {
+        eprintln!("left out: takes long, and SINEW_SHORT_TESTS is set");
+    }
+    is_short_form()
+}
+
+/// Targets and levels that are checked where not all are; the short form checks the first.
+const USUAL: [(&str, &str); 2] = [("thumbv7em-none-eabihf", "3"), ("thumbv6m-none-eabi", "s")];
+
+/// Whether `level` is to be checked for `target`.
+#[must_use]
+pub fn is_checked(target: &str, level: &str) -> bool {
+    let usual = if is_short_form() { &USUAL[..1] } else { &USUAL[..] };
+    checks_all_targets() || usual.contains(&(target, level))
+}
 
 /// Levels that firmware is built at.
 pub const LEVELS: [&str; 4] = ["2", "3", "s", "z"];

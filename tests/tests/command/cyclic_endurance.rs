@@ -8,6 +8,7 @@ use sinew_core::cyclic::{
 };
 use sinew_core::numeric::semi_definite::{packed_index, packed_len};
 use sinew_core::random::Stream;
+use sinew_tests::leaves_out_long_tests;
 
 const N: usize = 13;
 const POSITIONS: usize = 100;
@@ -137,6 +138,9 @@ fn a_hundred_thousand_frames() {
 #[test]
 #[cfg_attr(debug_assertions, ignore = "ten million frames take a release build")]
 fn ten_million_frames() {
+    if leaves_out_long_tests() {
+        return;
+    }
     let table = model_table();
     let model = table.model().expect("a sound model");
     run_kalman(10_000_000, &KalmanOptions::default(), &model);
@@ -146,6 +150,9 @@ fn ten_million_frames() {
 #[test]
 #[cfg_attr(debug_assertions, ignore = "ten million frames take a release build")]
 fn ten_million_frames_of_coupled() {
+    if leaves_out_long_tests() {
+        return;
+    }
     let table = model_table();
     run_coupled(10_000_000, &table.model().expect("a sound model"));
 }

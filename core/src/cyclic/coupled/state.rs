@@ -17,17 +17,12 @@ use crate::cyclic::coupled::watch::agreement::Watch;
 use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::phase::wrap_position;
 use crate::cyclic::recognition::explained_variance::ExplainedVariance;
-use crate::math::{clamp, min, round};
+use crate::math::{clamp, round};
 
 /// Standard deviation of c, cycles, above which the linearisation does not hold and the filter
 /// searches by the grid. Chosen: about a sixth of a cycle, over which the mean pose is no straight
 /// line.
 pub(super) const LOST_STD: f32 = 0.15;
-
-/// Cycles over which the corrections of the position are averaged. Chosen: those of one cycle
-/// cancel where the velocity is right. With half a cycle the cadence of single frames is half again
-/// as unsteady, and its mean a sixth nearer.
-const DRIFT_CYCLES: f32 = 1.0;
 
 /// State of the filter `coupled` for models of up to `N` angles.
 ///
@@ -71,7 +66,9 @@ pub struct CoupledFilter<const N: usize> {
     pub(super) path: MeasuredPath<N>,
     /// Variance that the mean cycle explains at the filter's position.
     pub(super) swing: ExplainedVariance<N>,
-    /// Mean correction of the position in a frame over about [`DRIFT_CYCLES`], cycles.
+    /// Mean correction of the position in a frame over about a cycle, cycles. Corrections within a
+    /// cycle cancel where the velocity is right; over half a cycle the mean is half again as
+    /// unsteady.
     pub(super) drift: f32,
     /// Number of relocks.
     pub(super) relocks: u16,
@@ -121,13 +118,13 @@ impl<const N: usize> CoupledFilter<N> {
     pub(super) fn shift_by(&mut self, model: &CoupledModel<'_>, shift: [f32; 2]) {
         let way = clamp(shift[0], -0.5, 0.5);
         self.velocity = clamp(self.velocity + shift[1], -0.5, 0.5);
-        self.drift += min(model.mean_cycle_velocity() / DRIFT_CYCLES, 1.0) * way;
+        self.drift += model.mean_cycle_velocity() * way;
         self.move_by(way);
     }
 
     /// Forgets a frame's part of the corrections of the position.
     pub(super) fn forget_drift(&mut self, model: &CoupledModel<'_>) {
-        self.drift -= min(model.mean_cycle_velocity() / DRIFT_CYCLES, 1.0) * self.drift;
+        self.drift -= model.mean_cycle_velocity() * self.drift;
     }
 
     /// Speed at which the position moved, corrections included, cycles per frame.

@@ -21,13 +21,14 @@ const AREAS: RangeInclusive<f32> = 0.06..=8.0;
 const REACH: f32 = 4.8;
 /// Objects above this area are no single arm.
 const MAX_AREA_OF_ARM: f32 = 5.0;
-/// Half thickness of a hand before the face, where its own is not seen. Chosen: a hand's in sight.
-const THICKNESS_BEFORE_FACE: f32 = 0.25;
+/// Half thickness of a hand in front of the face, where its own is not seen. Chosen: a hand's in
+/// sight.
+const THICKNESS_IN_FRONT_OF_FACE: f32 = 0.25;
 /// Its fill, likewise. Chosen: 0.7 to 0.9 tried on the clips; with 0.7 it loses to the elbow, with
 /// 0.9 faces are taken for hands.
-const FILL_BEFORE_FACE: f32 = 0.8;
-/// A hand before the face is so far beyond the middle of the arm's last cells. Chosen: 0.8 and 1.2
-/// tried on the clips, both with a share of 0.01 less on a hand.
+const FILL_IN_FRONT_OF_FACE: f32 = 0.8;
+/// A hand in front of the face is so far beyond the middle of the arm's last cells. Chosen: 0.8 and
+/// 1.2 tried on the clips, both with a share of 0.01 less on a hand.
 const BEYOND_END: f32 = 1.0;
 /// Longer objects are more than a hand.
 const MIN_LENGTH: f32 = 1.2;
@@ -120,14 +121,15 @@ struct Spot {
     seen: Position,
     /// The end of an arm that it is, if it is one.
     end: Option<ArmEnd>,
-    /// Where the hand is, if that is before the face.
-    before_face: Option<Position>,
+    /// Where the hand is, if that is in front of the face.
+    in_front_of_face: Option<Position>,
 }
 
-/// Where the hand is whose arm ends at `end`, if it is before the face: no cell is its own there,
-/// since those of the head belong to no object. Then it is beyond the end, away from the `other`.
+/// Where the hand is whose arm ends at `end`, if it is in front of the face: no cell is its own
+/// there, since those of the head belong to no object. Then it is beyond the end, away from the
+/// `other`.
 #[inline(never)]
-fn before_face(end: Position, other: Position) -> Option<Position> {
+fn in_front_of_face(end: Position, other: Position) -> Option<Position> {
     let per_width = 1.0 / max(distance(end, other), ONE_PLACE);
     let direction = [per_width * (end[0] - other[0]), per_width * (end[1] - other[1])];
     let beyond = |by: f32| [end[0] + by * direction[0], end[1] + by * direction[1]];
@@ -181,12 +183,12 @@ impl<const COLUMNS: usize, const ROWS: usize> View<'_, COLUMNS, ROWS> {
         let (label, first) = (object.label, found.len());
         let mut spots = Vec::new();
         self.spots_of(object, maps, &mut spots);
-        for &Spot { seen, end, before_face } in &spots {
-            let position = before_face.unwrap_or(seen);
+        for &Spot { seen, end, in_front_of_face } in &spots {
+            let position = in_front_of_face.unwrap_or(seen);
             if found.iter().skip(first).all(|other| distance(other.position, position) >= ONE_PLACE) {
                 let mut place = self.place(seen, label, end, maps.labels, maps.depths);
-                if before_face.is_some() {
-                    (place.thickness, place.fill) = (THICKNESS_BEFORE_FACE, FILL_BEFORE_FACE);
+                if in_front_of_face.is_some() {
+                    (place.thickness, place.fill) = (THICKNESS_IN_FRONT_OF_FACE, FILL_IN_FRONT_OF_FACE);
                 }
                 // What finds no room is the last of many specks.
                 let _ = found.push(HandPlace { position, ..place });
@@ -204,7 +206,7 @@ impl<const COLUMNS: usize, const ROWS: usize> View<'_, COLUMNS, ROWS> {
             let start = (usize::from(object.first), self.width);
             self.add_ends(&ends(size, &within, inside, start, scratch), spots);
         }
-        let inner = |seen| Spot { seen, end: None, before_face: None };
+        let inner = |seen| Spot { seen, end: None, in_front_of_face: None };
         let (ends, least) = (spots.len(), (MIN_THICKNESS * self.width * f32::from(STRAIGHT)) as u8);
         for _ in 0..MAX_PEAKS {
             let mut best = (None, least);
@@ -223,7 +225,7 @@ impl<const COLUMNS: usize, const ROWS: usize> View<'_, COLUMNS, ROWS> {
         }
     }
 
-    /// Both ends, if the object is longer than a hand. An arm whose hand is before the face is
+    /// Both ends, if the object is longer than a hand. An arm whose hand is in front of the face is
     /// longer by a hand than what is seen of it.
     fn add_ends(&self, found: &Ends, spots: &mut Vec<Spot, MAX_SPOTS>) {
         let mut length = found.length / self.width;
@@ -231,13 +233,13 @@ impl<const COLUMNS: usize, const ROWS: usize> View<'_, COLUMNS, ROWS> {
             return;
         }
         let [a, b] = found.places.map(|place| self.relative(place));
-        let hidden = [before_face(a, b), before_face(b, a)];
+        let hidden = [in_front_of_face(a, b), in_front_of_face(b, a)];
         for _ in hidden.iter().flatten() {
             length += HAND_LENGTH;
         }
         for (index, seen) in [a, b].into_iter().enumerate() {
             let end = ArmEnd { length, other: hidden[1 - index].unwrap_or([b, a][index]) };
-            let _ = spots.push(Spot { seen, end: Some(end), before_face: hidden[index] });
+            let _ = spots.push(Spot { seen, end: Some(end), in_front_of_face: hidden[index] });
         }
     }
 
@@ -323,7 +325,7 @@ mod tests {
         assert!(hidden.position[0].abs() < 0.05 && (0.2..0.6).contains(&hidden.position[1]), "{hidden:?}");
         let end = hidden.end.unwrap();
         assert!(end.length > (60.0 - 27.0 - 2.0) / 12.0 + HAND_LENGTH && end.other[1] > 3.0, "{end:?}");
-        assert_eq!((hidden.fill, hidden.thickness), (FILL_BEFORE_FACE, THICKNESS_BEFORE_FACE));
+        assert_eq!((hidden.fill, hidden.thickness), (FILL_IN_FRONT_OF_FACE, THICKNESS_IN_FRONT_OF_FACE));
         // One that ends before the chin is where it is seen.
         assert!(places_of_forearm(36).iter().all(|place| !is_head(place.position)));
     }

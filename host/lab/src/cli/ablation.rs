@@ -1,7 +1,7 @@
 //! `sinew-lab ablation`: the phase-coupled filter without each of its parts.
 
 use crate::cyclic::protocol::pooled;
-use crate::cyclic::{Protocol, TestCycle, long_runs, rate_of, test_cycles};
+use crate::cyclic::{LongRun, Protocol, TestCycle, long_runs, rate_of, test_cycles};
 use crate::tables::markdown::{Rows, named, table};
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -16,9 +16,6 @@ use std::path::PathBuf;
 /// What a cell of the table holds.
 const LEGEND: &str =
     "each cell: error of the angles in degrees; truth inside the 90 % band, error of the cadence, lost runs, in %";
-
-/// Largest error of the position beyond which a run was lost for a while, cycles.
-const LOST: f64 = 0.2;
 
 /// Options of `sinew-lab ablation`.
 #[derive(Debug, Args)]
@@ -116,13 +113,7 @@ impl Material {
             let coupled = [FilterName::Coupled];
             runs.extend(long_runs(&self.list, &self.model, self.rate_hz, &coupled, (sigma_deg, seed))?);
         }
-        let count = runs.len() as f64;
-        Ok(Score {
-            sigma_deg,
-            error_deg: errors.all_deg(),
-            inside_90: errors.inside_90().0,
-            cadence_error: runs.iter().map(|run| run.cadence_error.abs()).sum::<f64>() / count,
-            lost: runs.iter().filter(|run| run.phase_max > LOST).count() as f64 / count,
-        })
+        let [cadence_error, lost] = LongRun::cadence_error_and_lost(&runs);
+        Ok(Score { sigma_deg, error_deg: errors.all_deg(), inside_90: errors.inside_90().0, cadence_error, lost })
     }
 }

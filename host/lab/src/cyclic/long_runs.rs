@@ -12,6 +12,8 @@ use sinew::cyclic::{AngleRow, AngleTable, Cut, CutList, CyclicModel};
 
 /// Measurement noise of the evaluation's own runs, degrees.
 pub const LONG_RUN_SIGMA_DEG: f64 = 6.0;
+/// Errors of the position beyond which a run was lost for a while, cycles.
+const LOST_CYCLES: f64 = 0.2;
 
 /// One recording with one filter.
 #[derive(Debug, Clone, Serialize)]
@@ -33,6 +35,25 @@ pub struct LongRun {
     /// Relative error of the mean of the reported cadence from the third cycle on, beside the true
     /// number of cycles in that time.
     pub cadence_error: f64,
+}
+
+impl LongRun {
+    /// Whether the position was lost for a while.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        self.phase_max > LOST_CYCLES
+    }
+
+    /// Mean of the cadence's errors, relative, and share of lost runs.
+    pub fn cadence_error_and_lost<'a>(runs: impl IntoIterator<Item = &'a Self>) -> [f64; 2] {
+        let (mut count, mut sums) = (0.0, [0.0; 2]);
+        for run in runs {
+            count += 1.0;
+            sums[0] += run.cadence_error.abs();
+            sums[1] += f64::from(u8::from(run.is_lost()));
+        }
+        sums.map(|sum| sum / count)
+    }
 }
 
 /// Cycles of a recording that follow each other.

@@ -38,7 +38,7 @@ pub fn track<'p>(frames: usize, picture: impl Fn(usize) -> &'p RgbImage) -> Resu
 }
 
 /// Scores of a clip after `change`: all its frames, those with both hands together, and those with
-/// a hand before the face.
+/// a hand in front of the face.
 ///
 /// # Errors
 /// Clip or reference cannot be read.

@@ -20,11 +20,11 @@ pub fn hands(recordings: &Path) -> Result<Rows> {
         vec![line(["", "tracking", "of these on a hand", "left, right", "on the face", "palms found", "of"])];
     for change in Change::ALL {
         let scores: Vec<[HandScore; 3]> = clips.par_iter().map(|clip| score(clip, change)).collect::<Result<_>>()?;
-        let [all, together, before_face] = sums(&scores);
+        let [all, together, in_front_of_face] = sums(&scores);
         rows.push(row(change.name(), &all));
         if change == Change::None {
             rows.push(row("hands that touch", &together));
-            rows.push(row("a hand before the face", &before_face));
+            rows.push(row("a hand in front of the face", &in_front_of_face));
         }
     }
     let (frames, part) = ((MINUTES_S * RATE_HZ) as usize, (PART_S * RATE_HZ) as usize);

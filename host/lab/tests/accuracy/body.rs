@@ -122,7 +122,7 @@ fn the_coarse_to_fine_search_finds_the_feet_of_runners() {
 /// A camera that sees no legs: arms that wave and direct traffic.
 #[test]
 fn an_upper_body_is_followed_without_legs() {
-    let Some(folder) = shared_data::in_release("mocap") else { return };
+    let Some(folder) = shared_data::in_long_form("mocap") else { return };
     let motions = [MOTIONS[0], "cmu-expmap/train_directing_traffic_1.txt@0-5"];
     let cells = [(BodyModelKind::EndEffector, 100), (BodyModelKind::Guided, 25)];
     let means = mean_errors_m(&folder, (&motions, BodyPart::Upper), 1..=1, cells);
@@ -135,7 +135,7 @@ fn an_upper_body_is_followed_without_legs() {
 /// Each arm in turns, 15 frames at a time, on six motions with three seeds.
 #[test]
 fn hidden_arms_are_found_again() {
-    let Some(folder) = shared_data::in_release("mocap") else { return };
+    let Some(folder) = shared_data::in_long_form("mocap") else { return };
     let skeleton = folder.join("cmu-walk/35/35.asf");
     let mut arms = Vec::new();
     for motion in HIDING_MOTIONS {

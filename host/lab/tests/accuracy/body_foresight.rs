@@ -242,7 +242,7 @@ impl Model {
 /// back.
 #[test]
 fn with_a_past_free_of_noise_goals_are_ahead_by_a_tenth() {
-    let Some(folder) = shared_data::in_release("mocap") else { return };
+    let Some(folder) = shared_data::in_long_form("mocap") else { return };
     let skeleton = folder.join("cmu-walk/35/35.asf");
     let mut errors_m = [[0.0; 2]; PARTICLES.len()];
     for motion in MOTIONS {

@@ -62,7 +62,7 @@ fn scene(path: &Path, between_s: Option<(f32, f32)>, errors: SceneErrors) -> Ste
 
 #[test]
 fn a_person_of_the_wrong_size_is_tracked_almost_as_well() {
-    let Some(data) = shared_data::in_release("mocap") else { return };
+    let Some(data) = shared_data::in_long_form("mocap") else { return };
     let off = SceneErrors { radius_share: 0.15, length_share: 0.05, first_pose_deg: 10.0, ..SceneErrors::default() };
     let errors_cm: Vec<[f64; 3]> = MOTIONS
         .par_iter()

@@ -16,8 +16,6 @@ use sinew_lab::cyclic::{LongRun, Recording, tracked};
 const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.006, 0.06), (6.0, 0.005, 0.045), (29.0, 0.008, 0.07)];
 /// Seeds of the noise.
 const SEEDS: [u64; 3] = [1, 2, 3];
-/// Position errors beyond which a run was lost for a while, cycles.
-const LOST: f64 = 0.2;
 
 fn walks(list: &CutList) -> Vec<Walk> {
     let of_one_file = list.cuts().chunk_by(|before, after| before.file == after.file);
@@ -48,16 +46,11 @@ fn walkers_of_any_tempo_are_followed_with_little_and_with_much_noise() {
         BOUNDS.map(|(sigma_deg, ..)| run(sigma_deg))
     });
     for (column, (sigma_deg, most_cadence, most_lost)) in BOUNDS.into_iter().enumerate() {
-        let (mut errors, mut lost) = (Vec::new(), Vec::new());
         for ((name, _), runs) in TEMPOS.iter().zip(&lists) {
-            let runs = &runs[column];
-            let error = runs.iter().map(|run| run.cadence_error.abs()).sum::<f64>() / runs.len() as f64;
-            let off = runs.iter().filter(|run| run.phase_max > LOST).count();
-            println!("sigma {sigma_deg}, {name}: cadence {:.1} % off, {off} of {} lost", 100.0 * error, runs.len());
-            errors.push(error);
-            lost.push(off as f64 / runs.len() as f64);
+            let [error, lost] = LongRun::cadence_error_and_lost(&runs[column]);
+            println!("sigma {sigma_deg}, {name}: cadence {:.1} % off, lost {:.1} %", 100.0 * error, 100.0 * lost);
         }
-        let [error, lost] = [errors, lost].map(|values| values.iter().sum::<f64>() / values.len() as f64);
+        let [error, lost] = LongRun::cadence_error_and_lost(lists.iter().flat_map(|runs| &runs[column]));
         println!("sigma {sigma_deg}: cadence {:.2} % off, lost {:.1} %", 100.0 * error, 100.0 * lost);
         assert!(error > 0.001 && error < most_cadence, "sigma {sigma_deg}: cadence off by {error}");
         assert!(lost < most_lost, "sigma {sigma_deg}: {lost} lost");

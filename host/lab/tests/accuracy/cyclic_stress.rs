@@ -9,14 +9,6 @@ use sinew_lab::cyclic::stress::{strangers, stress_runs};
 const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.013, 0.05), (6.0, 0.005, 0.07), (29.0, 0.008, 0.02)];
 /// Seeds of the noise.
 const SEEDS: [u64; 2] = [1, 2];
-/// Position errors beyond which a run was lost for a while, cycles.
-const LOST: f64 = 0.2;
-
-fn score(runs: &[&LongRun]) -> [f64; 2] {
-    let error = runs.iter().map(|run| run.cadence_error.abs()).sum::<f64>();
-    let lost = runs.iter().filter(|run| run.phase_max > LOST).count();
-    [error, lost as f64].map(|sum| sum / runs.len() as f64)
-}
 
 #[test]
 fn strangers_are_followed_at_any_tempo_also_with_joints_elsewhere() {
@@ -25,10 +17,10 @@ fn strangers_are_followed_at_any_tempo_also_with_joints_elsewhere() {
     for (sigma_deg, most_cadence, most_lost) in BOUNDS {
         let [plain, elsewhere] = stress_runs(&strangers, sigma_deg, &SEEDS).unwrap();
         for (name, runs) in [("own joints", &plain), ("joints elsewhere", &elsewhere)] {
-            let [error, lost] = score(&runs.iter().collect::<Vec<_>>());
+            let [error, lost] = LongRun::cadence_error_and_lost(runs);
             println!("sigma {sigma_deg}, {name}: cadence {:.2} % off, lost {:.1} %", 100.0 * error, 100.0 * lost);
         }
-        let [error, lost] = score(&plain.iter().chain(&elsewhere).collect::<Vec<_>>());
+        let [error, lost] = LongRun::cadence_error_and_lost(plain.iter().chain(&elsewhere));
         println!("sigma {sigma_deg}: cadence {:.2} % off, lost {:.1} %", 100.0 * error, 100.0 * lost);
         assert!(error > 0.001 && error < most_cadence, "sigma {sigma_deg}: cadence off by {error}");
         assert!(lost < most_lost, "sigma {sigma_deg}: {lost} lost");

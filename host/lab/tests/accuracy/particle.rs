@@ -25,7 +25,7 @@ const UNIFORM_SHARE: [f64; 2] = [0.85, 1.1];
 
 #[test]
 fn more_particles_and_an_unknown_phase_do_what_the_book_says() {
-    let Some(folder) = shared_data::in_release("cyclic-walking") else { return };
+    let Some(folder) = shared_data::in_long_form("cyclic-walking") else { return };
     let list = CutList::read(&folder.join("train_cuts.csv")).unwrap();
     let model = train(&list, TrainingOptions { rate_hz: Some(60.0), ..TrainingOptions::default() }).unwrap();
     let cycles = test_cycles(&CutList::read(&folder.join("test_cuts.csv")).unwrap()).unwrap();

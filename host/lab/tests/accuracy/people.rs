@@ -1,6 +1,6 @@
 //! Hands of recorded people, as recorded and changed: rows of `docs/measurements_people.md`.
 
-use crate::shared_data::in_release;
+use crate::shared_data::in_long_form;
 use sinew_lab::people::changes::Change;
 use sinew_lab::people::clips::list;
 use sinew_lab::people::score::HandScore;
@@ -9,7 +9,7 @@ use sinew_lab::people::track::score;
 /// Shares of all clips together after a change: rows that say `tracking`, of these on a hand, palms
 /// that were found.
 fn shares(change: Change) -> Option<[f64; 3]> {
-    let clips = list(&in_release("video/asl")?).unwrap();
+    let clips = list(&in_long_form("video/asl")?).unwrap();
     let mut sum = HandScore::default();
     clips.iter().for_each(|clip| sum.plus(&score(clip, change).unwrap()[0]));
     let shares = [sum.sure_share(), sum.both().on_hand_share(), sum.found_share()];

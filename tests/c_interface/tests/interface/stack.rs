@@ -6,8 +6,7 @@
 //! `SINEW_ALL_TARGETS=1` measures all their columns.
 
 use sinew_c_interface::{
-    LEVELS, SHORT, builds_with_debian, checks_all_targets, expect_success, has_target, has_tool, static_library,
-    workspace_root,
+    LEVELS, builds_with_debian, expect_success, has_target, has_tool, is_checked, static_library, workspace_root,
 };
 use sinew_core::cyclic::model::bytes::write;
 use sinew_core::cyclic::model::walking::WALKING;
@@ -226,9 +225,7 @@ fn check_page(measured: &[(String, String, Measured)]) {
 fn every_call_keeps_within_its_stack() {
     let mut measured = Vec::new();
     for processor in &PROCESSORS {
-        for level in
-            LEVELS.into_iter().filter(|level| checks_all_targets() || SHORT.contains(&(processor.target, level)))
-        {
+        for level in LEVELS.into_iter().filter(|level| is_checked(processor.target, level)) {
             if let Some(bytes) = measure(processor, level) {
                 check_limits(&format!("{} at {level}", processor.target), &bytes);
                 measured.push((processor.target.to_owned(), level.to_owned(), bytes));
