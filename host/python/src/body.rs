@@ -184,6 +184,8 @@ impl Body {
         named.set_item("joints_m", points_array(py, &estimate.ends_m[..bones]))?;
         named.set_item("spread_m", estimate.spread_m[..bones].to_vec().into_pyarray(py))?;
         named.set_item("observed", estimate.observed[..bones].to_vec().into_pyarray(py))?;
+        let ambiguous = self.stream.filter().ambiguous(estimate);
+        named.set_item("ambiguous", ambiguous[..bones].to_vec().into_pyarray(py))?;
         named.set_item("effective_sample_size", estimate.effective_sample_size)?;
         named.set_item("log_evidence", estimate.log_evidence)?;
         named.set_item("tempering", estimate.tempering)?;

@@ -26,7 +26,7 @@ def tracker_of(scene, **options):
 
 
 def same_estimates(found, wanted):
-    for name in ("pose", "joints_m", "spread_m", "observed"):
+    for name in ("pose", "joints_m", "spread_m", "observed", "ambiguous"):
         np.testing.assert_array_equal(getattr(found, name), getattr(wanted, name))
     assert (found.frame, found.points, found.log_evidence) == (wanted.frame, wanted.points, wanted.log_evidence)
 
@@ -48,6 +48,7 @@ def same_as_table(estimates, path):
             if f"{joint}_spread_m" in row:
                 found[f"{joint}_spread_m"] = estimate.spread_m[index]
                 found[f"{joint}_observed"] = estimate.observed[index]
+                found[f"{joint}_ambiguous"] = estimate.ambiguous[index]
         assert set(row) == set(found)
         for name, cell in row.items():
             assert np.float32(cell) == np.float32(found[name]), (estimate.frame, name)

@@ -63,6 +63,10 @@ pub fn body_run(mut folder: RunFolder, pictures: &mut Pictures) -> Run {
                 "head_observed",
                 "l_wrist_observed",
                 "r_wrist_observed",
+                "l_wrist_ambiguous",
+                "r_wrist_ambiguous",
+                "l_ankle_ambiguous",
+                "r_ankle_ambiguous",
             ]
             .map(str::to_owned)
             .to_vec(),

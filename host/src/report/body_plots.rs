@@ -42,7 +42,7 @@ pub fn body_plots(track: &Table, error: Option<&Table>, rate_hz: Option<f64>) ->
         "natural logarithm",
         "How well the particles explained the points; a drop marks a surprise.",
     ));
-    plots.push(spread(track, &time));
+    plots.extend([spread(track, &time), ambiguous(track, &time)]);
     plots.push(one("points", "Points", "points weighed", "How much there was to see; 0 makes the frame a prediction."));
     for plot in &mut plots {
         plot.series.retain(|series| series.table != track.name || (track.has(&series.x) && track.has(&series.y)));
@@ -133,19 +133,36 @@ fn angles(track: &Table, name: &str, starts: &[&str], time: &Time) -> Plot {
 }
 
 fn spread(track: &Table, time: &Time) -> Plot {
-    let series = ENDS
-        .iter()
-        .enumerate()
-        .map(|(index, end)| time.series(track, &format!("{end}_spread_m"), &words(end), Colour::nth(index)));
     Plot {
         id: "body spread".to_owned(),
-        group: "How sure the tracker was".to_owned(),
         title: "Spread of the ends".to_owned(),
         reading:
             "Standard deviation of head, wrists and ankles over the particles; it grows where no points show them."
                 .to_owned(),
+        ..of_ends(track, time, "spread_m", "standard deviation, m")
+    }
+}
+
+fn ambiguous(track: &Table, time: &Time) -> Plot {
+    Plot {
+        id: "body ambiguous".to_owned(),
+        title: "Ends that may be elsewhere".to_owned(),
+        reading: "Weight of the particles that put head, wrists or ankles more than 10 cm from the estimate."
+            .to_owned(),
+        ..of_ends(track, time, "ambiguous", "share of the weight")
+    }
+}
+
+/// The columns `name` of head, wrists and ankles.
+fn of_ends(track: &Table, time: &Time, name: &str, y_label: &str) -> Plot {
+    let series = ENDS
+        .iter()
+        .enumerate()
+        .map(|(index, end)| time.series(track, &format!("{end}_{name}"), &words(end), Colour::nth(index)));
+    Plot {
+        group: "How sure the tracker was".to_owned(),
         from_zero: true,
         series: series.collect(),
-        ..time.plot("standard deviation, m")
+        ..time.plot(y_label)
     }
 }

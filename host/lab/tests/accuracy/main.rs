@@ -3,6 +3,7 @@
 
 mod arm;
 mod body;
+mod body_ambiguity;
 mod body_first_pose;
 mod body_foresight;
 mod body_size;

@@ -32,6 +32,8 @@ class BodyEstimate:
     """Standard deviation of each end over the particles, (k,) metres."""
     observed: npt.NDArray[np.bool_]
     """Whether points show the bone that ends there, (k,)."""
+    ambiguous: npt.NDArray[np.float32]
+    """Weight of the particles that put it more than 10 cm from ``joints_m``, (k,), [0, 1]."""
     effective_sample_size: float
     """How many particles carry the weight."""
     log_evidence: float

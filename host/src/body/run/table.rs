@@ -3,12 +3,12 @@
 use crate::body::BodyPart;
 use crate::body::tracking::end_effectors::END_EFFECTORS;
 use crate::body::tracking::filter::WholeBodyEstimate;
-use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_JOINT_NAMES};
+use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_BONES, BODY_JOINT_NAMES};
 use sinew_core::skeleton::tree::SHIFTS;
 
 /// Columns: frame, the root, every joint in metres (camera axes), every angle in radians, the
-/// filter's own state. Then of every end-effector its spread and whether points show it, and the
-/// number of weighed points.
+/// filter's own state. Then of every end-effector its spread, whether points show it and the weight
+/// that puts it elsewhere, and the number of weighed points.
 #[must_use]
 pub fn header(part: BodyPart) -> Vec<String> {
     let mut columns = vec!["frame".to_owned()];
@@ -22,7 +22,7 @@ pub fn header(part: BodyPart) -> Vec<String> {
     columns.extend(["effective_sample_size".to_owned(), "log_evidence".to_owned()]);
     for bone in end_effectors(part) {
         let joint = BODY_JOINT_NAMES[bone];
-        columns.extend([format!("{joint}_spread_m"), format!("{joint}_observed")]);
+        columns.extend(["spread_m", "observed", "ambiguous"].map(|name| format!("{joint}_{name}")));
     }
     columns.push("points".to_owned());
     columns
@@ -43,7 +43,13 @@ pub fn coordinate_columns(part: BodyPart) -> impl Iterator<Item = String> {
 
 /// Cells of a row; numbers have the shortest digits that give the same number back.
 #[must_use]
-pub fn cells(part: BodyPart, frame: u64, estimate: &WholeBodyEstimate, points: usize) -> Vec<String> {
+pub fn cells(
+    part: BodyPart,
+    frame: u64,
+    estimate: &WholeBodyEstimate,
+    ambiguous: &[f32; BODY_BONES],
+    points: usize,
+) -> Vec<String> {
     let mut cells = vec![frame.to_string()];
     let angles = part.coordinates().iter().map(|&index| estimate.angles_rad[index].to_string());
     cells.extend(angles.clone().take(SHIFTS));
@@ -52,6 +58,7 @@ pub fn cells(part: BodyPart, frame: u64, estimate: &WholeBodyEstimate, points: u
     cells.extend([estimate.effective_sample_size.to_string(), estimate.log_evidence.to_string()]);
     for bone in end_effectors(part) {
         cells.extend([estimate.spread_m[bone].to_string(), u8::from(estimate.observed[bone]).to_string()]);
+        cells.push(ambiguous[bone].to_string());
     }
     cells.push(points.to_string());
     cells
@@ -74,15 +81,16 @@ mod tests {
             tempering: 1.0,
             is_degenerate: false,
         };
-        let upper = cells(BodyPart::Upper, 7, &estimate, 1990);
+        let upper = cells(BodyPart::Upper, 7, &estimate, &[0.25; 17], 1990);
         assert_eq!(header(BodyPart::Upper).len(), upper.len());
-        let (header, cells) = (header(BodyPart::Whole), cells(BodyPart::Whole, 7, &estimate, 1990));
+        let (header, cells) = (header(BodyPart::Whole), cells(BodyPart::Whole, 7, &estimate, &[0.25; 17], 1990));
         assert_eq!(header.len(), cells.len());
         assert_eq!(header.iter().collect::<std::collections::BTreeSet<_>>().len(), header.len());
         let cell = |name: &str| cells[header.iter().position(|column| column == name).unwrap()].as_str();
         assert_eq!((cell("frame"), cell("root_y_m"), cell("root_turn_rad")), ("7", "0.1", "0.3"));
         assert_eq!((cell("l_wrist_y_m"), cell("r_ankle_flexion_rad")), ("-1", "2.9"));
         assert_eq!((cell("head_observed"), cell("l_wrist_spread_m"), cell("points")), ("1", "0.02", "1990"));
+        assert_eq!(cell("r_ankle_ambiguous"), "0.25");
         assert_eq!(header[..5], ["frame", "root_x_m", "root_y_m", "root_z_m", "pelvis_x_m"]);
     }
 }

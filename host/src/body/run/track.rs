@@ -227,8 +227,9 @@ impl BodyTrackRun {
         self.step_s += start.elapsed().as_secs_f64();
         let estimate = estimate.context("the tracker has no first pose")?;
         let points_m = &seen.points_m;
+        let ambiguous = self.stream.filter().ambiguous(&estimate);
         self.table
-            .write_record(table::cells(self.inputs.part, frame, &estimate, points_m.len()))
+            .write_record(table::cells(self.inputs.part, frame, &estimate, &ambiguous, points_m.len()))
             .writing(|| "`track.csv` cannot be written")?;
         if let Some(particles) = &mut self.particles {
             for row in particles::rows(self.inputs.part, frame, self.stream.filter()) {

@@ -157,6 +157,20 @@ impl BodyFilter {
         }
     }
 
+    /// Share of the hypotheses' weight that puts each joint more than
+    /// [`ELSEWHERE_M`](super::ambiguity::ELSEWHERE_M) from `estimate`, the last step's; zero of what
+    /// is not tracked.
+    #[must_use]
+    pub fn ambiguous(&self, estimate: &WholeBodyEstimate) -> [f32; BODY_BONES] {
+        match &self.tracked {
+            Sizes::Whole(filter) => filter.ambiguous(&estimate.ends_m),
+            Sizes::Upper(filter) => {
+                let upper = filter.ambiguous(&std::array::from_fn(|bone| estimate.ends_m[bone]));
+                std::array::from_fn(|bone| upper.get(bone).copied().unwrap_or(0.0))
+            }
+        }
+    }
+
     /// Coordinates and bones' ends (metres) of the last step's pose before the deadband; of an
     /// upper body the legs hang.
     #[must_use]

@@ -1,6 +1,7 @@
 //! Tracking a body from point clouds: which motion model, its numbers, the core's step over many
 //! threads, and a stream of frames.
 
+pub mod ambiguity;
 pub mod by_joint;
 pub mod end_effectors;
 pub mod filter;

@@ -3,6 +3,7 @@
 //! Every particle draws from its own stream and results are stored by index, so the bits do not
 //! depend on the threads.
 
+use super::ambiguity::elsewhere_share;
 use super::by_joint::ByJoint;
 use super::end_effectors::{CARRIED, END_EFFECTORS, JOINTS, MAX_BODY_PARTICLES};
 use super::model_kind::BodyModelKind;
@@ -164,6 +165,11 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             AnyTracker::Particles(tracker) => tracker.weights(),
             AnyTracker::Modes(_) => &self.modes.1,
         }
+    }
+
+    /// Share of the weight that puts each bone's end elsewhere than `ends_m`.
+    pub fn ambiguous(&self, ends_m: &[Vec3; BONES]) -> [f32; BONES] {
+        elsewhere_share(self.particles(), self.weights(), ends_m)
     }
 
     /// The core's tracker, whose state is saved.

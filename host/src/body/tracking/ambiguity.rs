@@ -1,0 +1,45 @@
+//! How far the hypotheses of a body disagree about each joint: where they do, the estimate is one
+//! of several answers.
+
+use sinew_core::math::Vec3;
+use sinew_core::pik::motion::BodyParticle;
+
+/// A joint so far from the estimate is elsewhere, metres. Chosen: what `lost_joint_share` counts.
+pub const ELSEWHERE_M: f32 = 0.1;
+
+/// Share of the weight of the hypotheses whose joint is more than [`ELSEWHERE_M`] from the
+/// estimate's `ends_m`, for each joint.
+///
+/// `weights` are those of `particles`, of any sum. Without weight nothing is known, and the share
+/// is one.
+///
+/// ```
+/// use sinew::body::tracking::ambiguity::elsewhere_share;
+/// use sinew_core::math::Vec3;
+/// use sinew_core::pik::motion::BodyParticle;
+/// use sinew_core::skeleton::BodyMeasures;
+/// use sinew_core::skeleton::full_body::{BODY_ANGLES, full_body};
+///
+/// let skeleton = full_body(&BodyMeasures::of_height(1.75)?)?;
+/// let here = BodyParticle::at(&skeleton, [0.0; BODY_ANGLES]);
+/// let mut there = here;
+/// there.ends_m[5] += Vec3::new(0.3, 0.0, 0.0);
+/// let share = elsewhere_share(&[here, there], &[0.75, 0.25], &here.ends_m);
+/// assert_eq!((share[4], share[5]), (0.0, 0.25));
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
+#[must_use]
+pub fn elsewhere_share<const BONES: usize, const ANGLES: usize>(
+    particles: &[BodyParticle<BONES, ANGLES>],
+    weights: &[f32],
+    ends_m: &[Vec3; BONES],
+) -> [f32; BONES] {
+    let total: f32 = weights.iter().sum();
+    std::array::from_fn(|bone| {
+        let is_elsewhere = |end_m: Vec3| (end_m - ends_m[bone]).norm_squared() > ELSEWHERE_M * ELSEWHERE_M;
+        let weighed = particles.iter().zip(weights);
+        let there = weighed.filter(|(particle, _)| is_elsewhere(particle.ends_m[bone]));
+        let share = there.map(|(_, weight)| weight).sum::<f32>() / total;
+        if share.is_finite() { share.min(1.0) } else { 1.0 }
+    })
+}
