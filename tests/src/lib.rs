@@ -14,8 +14,7 @@ use std::time::SystemTime;
 /// Exit statuses of a command that refuses an option or an input.
 pub const REFUSED: &[i32] = &[64, 65, 66];
 
-/// Whether a test of half a minute and more is left out, as `.ci/run` does in its short form; says
-/// so aloud.
+/// Whether a test that takes long is left out, as `.ci/run` does in its short form; says so aloud.
 #[must_use]
 pub fn leaves_out_long_tests() -> bool {
     let is_short = env::var_os("SINEW_SHORT_TESTS").is_some();

@@ -83,7 +83,7 @@ const GOALS_LEAD: [f64; 2] = [0.10, 0.50];
 
 #[test]
 fn goals_lead_angles_with_the_papers_structure() {
-    let Some(folder) = shared_data::in_release("mocap") else { return };
+    let Some(folder) = shared_data::in_long_form("mocap") else { return };
     let cells = [(BodyModelKind::EndEffectorPaper, 100), (BodyModelKind::AngularPaper, 100)];
     let motions = [MOTIONS[0], MOTIONS[1], "cmu-expmap/train_directing_traffic_1.txt@0-5"];
     let [goals_m, angles_m] = mean_errors_m(&folder, (&motions, BodyPart::Upper), 1..=2, cells);
@@ -110,7 +110,7 @@ fn fifty_guided_particles_do_what_a_hundred_do_by_goals_or_angles() {
 /// Two seeds: what a stride loses differs from run to run.
 #[test]
 fn the_coarse_to_fine_search_finds_the_feet_of_runners() {
-    let Some(folder) = shared_data::in_release("mocap") else { return };
+    let Some(folder) = shared_data::in_long_form("mocap") else { return };
     let cells = [(BodyModelKind::Guided, 50), (BodyModelKind::EndEffector, 100)];
     let means = mean_errors_m(&folder, (&RUNNERS, BodyPart::Whole), 1..=2, cells);
     println!("runners: guided with 50, end-effector with 100: {means:.4?} m");

@@ -4,7 +4,7 @@
 
 use crate::shared_data;
 use rayon::prelude::*;
-use sinew::body::tracking::ambiguity::ELSEWHERE_M;
+use sinew::body::tracking::ambiguity::LOST_JOINT_M;
 use sinew::body::tracking::end_effectors::END_EFFECTORS;
 use sinew::body::tracking::{BodyFilter, BodyModelKind, BodyTuning};
 use sinew_core::pik::processes::stick::StickSight;
@@ -45,7 +45,7 @@ fn joints(seen: &SeenMotion, seed: u64) -> Vec<Joint> {
         let ambiguous = filter.ambiguous(&estimate);
         joints.extend(END_EFFECTORS.iter().filter_map(|&bone| {
             let error_m = (estimate.ends_m[bone] - truth_m[bone]?).norm();
-            Some((ambiguous[bone], error_m > ELSEWHERE_M))
+            Some((ambiguous[bone], error_m > LOST_JOINT_M))
         }));
     }
     joints

@@ -2,7 +2,7 @@
 //! the belief over time? The area under the ROC curve, at the places that the tracker is offered.
 //! Runs where `../shared/data` is at hand, and says so where not.
 
-use crate::shared_data::in_release;
+use crate::shared_data::in_long_form;
 use sinew::frames::{FrameReader, FrameView};
 use sinew::person::{FaceLooks, PersonFinder};
 use sinew::skin::SkinModel;
@@ -123,7 +123,7 @@ fn areas(hands: &[[f32; 4]], others: &[[f32; 4]]) -> [f64; 4] {
 #[test]
 fn the_belief_ranks_hands_above_all_else() {
     let given = std::env::var_os("SINEW_CLIPS").map(PathBuf::from);
-    let Some(folder) = given.or_else(|| in_release("video/asl")) else { return };
+    let Some(folder) = given.or_else(|| in_long_form("video/asl")) else { return };
     let clips = list(&folder).unwrap();
     let mut places = Places::default();
     clips.iter().for_each(|clip| add(clip, &mut places));

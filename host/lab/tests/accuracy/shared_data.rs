@@ -13,8 +13,8 @@ pub fn in_release(part: &str) -> Option<PathBuf> {
     Some(folder)
 }
 
-/// As [`in_release`], for tests of half a minute and more: `None`, said aloud, also where
-/// `SINEW_SHORT_TESTS` is set, as `.ci/run` does in its short form.
+/// As [`in_release`], for tests that take long: `None`, said aloud, also where `SINEW_SHORT_TESTS`
+/// is set, as `.ci/run` does in its short form.
 pub fn in_long_form(part: &str) -> Option<PathBuf> {
     if std::env::var_os("SINEW_SHORT_TESTS").is_some() {
         eprintln!("left out: takes long, and SINEW_SHORT_TESTS is set");

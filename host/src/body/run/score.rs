@@ -2,6 +2,7 @@
 
 use crate::body::BodyJoints;
 use crate::body::tracking::BodyFilter;
+use crate::body::tracking::ambiguity::LOST_JOINT_M;
 use crate::body::tracking::filter::WholeBodyEstimate;
 use sinew_core::math::Vec3;
 
@@ -25,12 +26,6 @@ impl RunningMean {
         (self.count > 0.0).then(|| self.sum / self.count)
     }
 }
-
-/// A joint farther than this from its true place is lost, metres.
-///
-/// Chosen: the width of a shank; PIK (34) takes the nearest skin of any bone, so that exchanged
-/// legs cost nothing there.
-pub const LOST_JOINT_M: f64 = 0.10;
 
 /// Errors of the frames so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -67,7 +62,7 @@ impl BodyScore {
             }
         }
         if let Some(farthest_m) = farthest_m {
-            self.lost.add(f64::from(u8::from(farthest_m > LOST_JOINT_M)));
+            self.lost.add(f64::from(u8::from(farthest_m > f64::from(LOST_JOINT_M))));
         }
         frame.mean()
     }

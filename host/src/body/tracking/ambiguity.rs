@@ -4,10 +4,13 @@
 use sinew_core::math::Vec3;
 use sinew_core::pik::motion::BodyParticle;
 
-/// A joint so far from the estimate is elsewhere, metres. Chosen: what `lost_joint_share` counts.
-pub const ELSEWHERE_M: f32 = 0.1;
+/// A joint farther than this from its place is lost, metres.
+///
+/// Chosen: the width of a shank; PIK (34) takes the nearest skin of any bone, so that exchanged
+/// legs cost nothing there.
+pub const LOST_JOINT_M: f32 = 0.1;
 
-/// Share of the weight of the hypotheses whose joint is more than [`ELSEWHERE_M`] from the
+/// Share of the weight of the hypotheses whose joint is more than [`LOST_JOINT_M`] from the
 /// estimate's `ends_m`, for each joint.
 ///
 /// `weights` are those of `particles`, of any sum. Without weight nothing is known, and the share
@@ -36,7 +39,7 @@ pub fn elsewhere_share<const BONES: usize, const ANGLES: usize>(
 ) -> [f32; BONES] {
     let total: f32 = weights.iter().sum();
     std::array::from_fn(|bone| {
-        let is_elsewhere = |end_m: Vec3| (end_m - ends_m[bone]).norm_squared() > ELSEWHERE_M * ELSEWHERE_M;
+        let is_elsewhere = |end_m: Vec3| (end_m - ends_m[bone]).norm_squared() > LOST_JOINT_M * LOST_JOINT_M;
         let weighed = particles.iter().zip(weights);
         let there = weighed.filter(|(particle, _)| is_elsewhere(particle.ends_m[bone]));
         let share = there.map(|(_, weight)| weight).sum::<f32>() / total;

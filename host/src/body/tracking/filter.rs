@@ -158,7 +158,7 @@ impl BodyFilter {
     }
 
     /// Share of the hypotheses' weight that puts each joint more than
-    /// [`ELSEWHERE_M`](super::ambiguity::ELSEWHERE_M) from `estimate`, the last step's; zero of
+    /// [`LOST_JOINT_M`](super::ambiguity::LOST_JOINT_M) from `estimate`, the last step's; zero of
     /// what is not tracked.
     #[must_use]
     pub fn ambiguous(&self, estimate: &WholeBodyEstimate) -> [f32; BODY_BONES] {

@@ -1,7 +1,7 @@
 //! The examples in C: on this computer with sanitizers, and on an emulated Cortex-M4F. They print
 //! the same.
 
-use sinew_c_interface::{expect_success, has_target, has_tool, static_library, workspace_root};
+use sinew_c_interface::{expect_success, has_target, has_tool, leaves_out_long_builds, static_library, workspace_root};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -63,7 +63,7 @@ fn the_examples_run_on_this_computer_under_the_sanitizers() {
 /// Four times as many pixels of the same pictures give the same hand until it is hidden.
 #[test]
 fn larger_frames_are_taken_by_a_library_for_them() {
-    if !has_tool("gcc") {
+    if leaves_out_long_builds() || !has_tool("gcc") {
         return;
     }
     let library = static_library("sinew-core", None, "1", "c-api,panic-handler,vga");
