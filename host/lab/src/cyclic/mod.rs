@@ -1,6 +1,7 @@
 //! The cyclic tracker where the true angles are known: the paper's tables and figures on any cut
 //! cycles.
 
+pub mod after_something_else;
 pub mod baselines;
 pub mod experiments;
 pub mod figures;
