@@ -2,11 +2,14 @@
 //! soon its phase is found.
 
 use super::Protocol;
+use super::other_sources::{Excerpt, WALKS, excerpt};
 use super::protocol::measurements;
+use super::stress::strangers;
 use anyhow::Result;
 use sinew::cyclic::tracking::{TrackingOptions, track};
 use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
 use std::ops::Range;
+use std::path::Path;
 
 /// Error of the position beyond which a frame is off, cycles. Chosen: less than a foot's whole
 /// stance.
@@ -14,9 +17,69 @@ const OFF_CYCLES: f64 = 0.15;
 /// Frames of the second second at 60 a second.
 const SECOND_SECOND: Range<usize> = 60..120;
 
+/// Frames of a walk: five seconds from the half second on.
+const WALK: Range<usize> = 30..330;
+/// Frames for which somebody stands before walking.
+const STANDING: [usize; 2] = [20, 90];
+/// What comes before [`WALKS`]: squats, a waving hand, half a second of an arm exercise.
+const EXERCISES: [Excerpt; 3] = [
+    ("cmu-exercise/13_30.amc", Some("cmu-walk/35/35.asf"), 708..828),
+    ("bandai/dataset-2_wave-right-hand_normal_001.bvh", None, 60..180),
+    ("cmu-exercise/13_31.amc", Some("cmu-walk/35/35.asf"), 1000..1031),
+];
+/// What comes before the people of the training.
+const SIGNALS: [Excerpt; 3] = [
+    ("cmu-expmap/train_directing_traffic_1.txt", None, 0..120),
+    ("cmu-expmap/train_basketball_signal_3.txt", None, 0..90),
+    ("cmu-expmap/train_jumping_1.txt", None, 0..120),
+];
+
+/// Share of the frames of [`WALKS`] below `mocap` that are off in the second second, and from then
+/// on, after standing and after exercises; by the shipped model, with noise of `sigma_deg`.
+///
+/// # Errors
+/// A recording cannot be read.
+pub fn of_other_sources(mocap: &Path, sigma_deg: f64, seeds: &[u64]) -> Result<[f64; 2]> {
+    let model = CyclicModel::from_option("walking")?;
+    let exercises = before(mocap, EXERCISES)?;
+    let mut off = OffFrames::default();
+    for file in WALKS {
+        let walk = excerpt(mocap, (file, None, WALK))?;
+        off.add(&model, &walk, &with_standing(&walk, &exercises), (sigma_deg, seeds))?;
+    }
+    Ok(off.shares())
+}
+
+/// The same of the [people of the training](super::stress), each by a model of the others, after
+/// standing, hand signals and jumps. By these the filter may be chosen.
+///
+/// # Errors
+/// As [`of_other_sources`].
+pub fn of_strangers(mocap: &Path, sigma_deg: f64, seeds: &[u64]) -> Result<[f64; 2]> {
+    let signals = before(mocap, SIGNALS)?;
+    let mut off = OffFrames::default();
+    for stranger in strangers(&mocap.join("cmu-walk"))? {
+        for chain in &stranger.chains {
+            let walk = &chain.rows[..WALK.len().min(chain.rows.len())];
+            off.add(&stranger.model, walk, &with_standing(walk, &signals), (sigma_deg, seeds))?;
+        }
+    }
+    Ok(off.shares())
+}
+
+fn before(mocap: &Path, others: [Excerpt; 3]) -> Result<Vec<Vec<AngleRow>>> {
+    others.into_iter().map(|other| excerpt(mocap, other)).collect()
+}
+
+/// Standing as `walk` begins, and each of `others`.
+fn with_standing(walk: &[AngleRow], others: &[Vec<AngleRow>]) -> Vec<Vec<AngleRow>> {
+    let standing = STANDING.iter().map(|&frames| vec![walk[0].clone(); frames]);
+    standing.chain(others.iter().cloned()).collect()
+}
+
 /// Frames of walks whose position is off.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct OffFrames {
+struct OffFrames {
     /// Of the second second, off and all.
     soon: [usize; 2],
     /// From then on, off and all.
@@ -26,10 +89,7 @@ pub struct OffFrames {
 impl OffFrames {
     /// Adds the frames of `walk`, angles at 60 a second, each time after one of `befores`: the
     /// positions with noise of `sigma_deg` against those of the walk alone without noise.
-    ///
-    /// # Errors
-    /// A table that the model cannot track.
-    pub fn add(
+    fn add(
         &mut self,
         model: &CyclicModel,
         walk: &[AngleRow],
@@ -56,8 +116,7 @@ impl OffFrames {
     }
 
     /// Share of the frames that are off in the second second, and from then on.
-    #[must_use]
-    pub fn shares(&self) -> [f64; 2] {
+    fn shares(&self) -> [f64; 2] {
         [self.soon, self.later].map(|[off, all]| off as f64 / all as f64)
     }
 }

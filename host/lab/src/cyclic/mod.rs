@@ -6,6 +6,7 @@ pub mod baselines;
 pub mod experiments;
 pub mod figures;
 pub mod long_runs;
+pub mod other_sources;
 pub mod protocol;
 pub mod rate;
 pub mod report;

@@ -4,13 +4,12 @@
 //! Each person's cycles follow each other in a chain, at nine tempos. In a second set the joints
 //! lie elsewhere, as in a recording of another source.
 
+use super::LongRun;
 use super::protocol::LONG_ANGLES;
-use super::tempo::{TEMPOS, Walk};
-use super::{LongRun, Recording, tracked};
+use super::tempo::{RATE_HZ, Walk, tempo_runs};
 use anyhow::{Context, Result};
 use sinew::cyclic::angle_table::ANGLES;
 use sinew::cyclic::recording::{RecordingOptions, angles};
-use sinew::cyclic::tracking::FilterName;
 use sinew::cyclic::training::{TrainingOptions, cycles_of, train_on};
 use sinew::cyclic::turns::least_angle;
 use sinew::cyclic::{AngleRow, AngleTable, Cut, CutList, CyclicModel};
@@ -19,8 +18,6 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 
-/// Frames per second.
-const RATE_HZ: f64 = 60.0;
 /// Cycles of a chain.
 const CHAIN_CYCLES: usize = 8;
 /// Standard deviation of an angle's offset where joints lie elsewhere, of the long parts and of the
@@ -142,11 +139,8 @@ pub fn stress_runs(strangers: &[Stranger], sigma_deg: f64, seeds: &[u64]) -> Res
     let mut runs = [Vec::new(), Vec::new()];
     for stranger in strangers {
         for (walk, runs) in stranger.chains.iter().zip(&mut runs) {
-            let played: Vec<Recording> = TEMPOS.iter().map(|tempo| walk.played(*tempo)).collect::<Result<_>>()?;
-            for &seed in seeds {
-                let filters = [FilterName::Coupled];
-                runs.extend(tracked(&played, &stranger.model, RATE_HZ, &filters, (sigma_deg, seed))?);
-            }
+            let tempos = tempo_runs(std::slice::from_ref(walk), &stranger.model, (sigma_deg, seeds))?;
+            runs.extend(tempos.into_iter().flat_map(|(_, runs)| runs));
         }
     }
     Ok(runs)

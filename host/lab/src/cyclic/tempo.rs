@@ -1,9 +1,13 @@
 //! A recording of whole cycles, played at another tempo.
 
-use super::long_runs::Recording;
+use super::long_runs::{LongRun, Recording, tracked};
 use anyhow::Result;
+use sinew::cyclic::tracking::FilterName;
 use sinew::cyclic::turns::least_angle;
-use sinew::cyclic::{AngleRow, AngleTable};
+use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
+
+/// Frames per second.
+pub const RATE_HZ: f64 = 60.0;
 
 /// A tempo: its name, and the frame of the recording, of which there are so many, that is seen at a
 /// frame of the new one.
@@ -16,8 +20,8 @@ pub const TEMPOS: [Tempo; 9] = [
     ("0.8 times", |frame, _| 0.8 * frame),
     ("1.25 times", |frame, _| 1.25 * frame),
     ("1.4 times", |frame, _| 1.4 * frame),
-    ("slower and slower", |frame, frames| frame - 0.16 * frame * frame / frames),
-    ("faster and faster", |frame, frames| frame + 0.24 * frame * frame / frames),
+    ("slower and slower, to 0.7 times", |frame, frames| frame - 0.16 * frame * frame / frames),
+    ("faster and faster, to 1.4 times", |frame, frames| frame + 0.24 * frame * frame / frames),
     ("0.75 times from the middle on", |frame, frames| frame - 0.25 * (frame - 0.5 * frames).max(0.0)),
     ("1.3 times from the middle on", |frame, frames| frame + 0.3 * (frame - 0.5 * frames).max(0.0)),
 ];
@@ -52,6 +56,26 @@ impl Walk {
         let truth = AngleTable::new(rows.take_while(|row| row.frame < last).collect(), Vec::new())?;
         Ok(Recording::new(self.name.clone(), truth, borders))
     }
+}
+
+/// Runs of one tempo: its name with a run for each walk and seed.
+pub type TempoRuns = (&'static str, Vec<LongRun>);
+
+/// Runs of `coupled` on `walks` at each tempo by `model`, with noise of `sigma_deg` degrees drawn
+/// from each of the seeds.
+///
+/// # Errors
+/// As [`tracked`].
+pub fn tempo_runs(walks: &[Walk], model: &CyclicModel, (sigma_deg, seeds): (f64, &[u64])) -> Result<Vec<TempoRuns>> {
+    let of_tempo = |tempo: Tempo| {
+        let played: Vec<Recording> = walks.iter().map(|walk| walk.played(tempo)).collect::<Result<_>>()?;
+        let mut runs = Vec::new();
+        for &seed in seeds {
+            runs.extend(tracked(&played, model, RATE_HZ, &[FilterName::Coupled], (sigma_deg, seed))?);
+        }
+        Ok((tempo.0, runs))
+    };
+    TEMPOS.into_iter().map(of_tempo).collect()
 }
 
 /// Angles between two rows, the shorter way round.

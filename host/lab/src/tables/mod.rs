@@ -9,6 +9,7 @@ mod hands;
 pub mod markdown;
 pub mod page;
 mod people;
+mod recordings;
 mod runners;
 mod skin;
 
@@ -53,7 +54,7 @@ pub struct Table {
 }
 
 /// All tables that have a maker.
-pub const TABLES: [Table; 20] = [
+pub const TABLES: [Table; 22] = [
     Table {
         name: "arm-hands",
         page: "measurements_arm.md",
@@ -149,6 +150,20 @@ pub const TABLES: [Table; 20] = [
         cost: Cost::Cheap,
         recordings: Some("cyclic-walking"),
         rows: cyclic::smoothing,
+    },
+    Table {
+        name: "recordings-tempo",
+        page: "measurements_recordings.md",
+        cost: Cost::Cheap,
+        recordings: Some("mocap"),
+        rows: recordings::tempo,
+    },
+    Table {
+        name: "recordings-after",
+        page: "measurements_recordings.md",
+        cost: Cost::Cheap,
+        recordings: Some("mocap"),
+        rows: recordings::after,
     },
     Table {
         name: "arm-variants",

@@ -65,7 +65,7 @@ fn of_all(folder: &Path, motions: &[&str]) -> Vec<Joint> {
 
 #[test]
 fn joints_are_lost_as_often_as_particles_are_elsewhere() {
-    let Some(folder) = shared_data::in_release("mocap") else { return };
+    let Some(folder) = shared_data::in_long_form("mocap") else { return };
     let sets: [(&str, &[&str], &[Row]); 2] = [("runners", &RUNNERS, &OF_RUNNERS), ("others", &OTHERS, &OF_OTHERS)];
     for (name, motions, rows) in sets {
         let joints = of_all(&folder, motions);

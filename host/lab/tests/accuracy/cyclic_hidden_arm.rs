@@ -3,12 +3,12 @@
 
 use crate::shared_data;
 use crate::walk_cuts::list;
-use crate::walks::WALKS;
 use sinew::cyclic::cuts::Cut;
 use sinew::cyclic::tracking::{TrackingOptions, track};
 use sinew::cyclic::turns::least_angle;
 use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
 use sinew_lab::cyclic::Protocol;
+use sinew_lab::cyclic::other_sources::WALKS;
 use sinew_lab::cyclic::protocol::measurements;
 
 /// Noise, degrees, with the mean error of upper arm and forearm while they are hidden, degrees.

@@ -5,11 +5,11 @@
 use crate::shared_data;
 
 use crate::walk_cuts::list;
-use crate::walks::WALKS;
 use sinew::cyclic::CyclicModel;
 use sinew::cyclic::tracking::FilterName;
 use sinew::resume::Cells;
 use sinew_lab::cyclic::experiments::SIGMAS_DEG;
+use sinew_lab::cyclic::other_sources::WALKS;
 use sinew_lab::cyclic::{Cell, LONG_RUN_SIGMA_DEG, Protocol, Setting, long_runs, test_cycles};
 
 /// Largest relative error of the mean cadence from the third cycle on.

@@ -2,10 +2,10 @@
 //! release where `../shared/data` is at hand, and says so where not.
 
 use crate::shared_data;
-use crate::walks::WALKS;
 use sinew::cyclic::CyclicModel;
 use sinew::cyclic::recording::{RecordingOptions, angles};
 use sinew::cyclic::tracking::{Tracked, TrackingOptions, track};
+use sinew_lab::cyclic::other_sources::WALKS;
 use sinew_lab::cyclic::protocol::measurements;
 use sinew_lab::cyclic::{Errors, Protocol};
 

@@ -4,11 +4,11 @@
 use crate::shared_data;
 
 use crate::walk_cuts::list;
-use crate::walks::WALKS;
 use sinew::cyclic::tracking::{TrackingOptions, track};
 use sinew::cyclic::{AngleTable, CyclicModel};
 use sinew_core::random::Stream;
 use sinew_lab::cyclic::Errors;
+use sinew_lab::cyclic::other_sources::WALKS;
 use std::ops::Range;
 
 /// Standard deviation that the filter assumes, degrees.

@@ -29,4 +29,3 @@ mod particle;
 mod people;
 mod shared_data;
 mod walk_cuts;
-mod walks;
