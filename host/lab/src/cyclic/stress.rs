@@ -134,7 +134,7 @@ fn elsewhere((poses, _): &(Vec<[f64; ANGLES]>, Vec<u64>), seed: u64) -> Vec<[f64
 /// elsewhere.
 ///
 /// # Errors
-/// As [`tracked`].
+/// A filter cannot start.
 pub fn stress_runs(strangers: &[Stranger], sigma_deg: f64, seeds: &[u64]) -> Result<[Vec<LongRun>; 2]> {
     let mut runs = [Vec::new(), Vec::new()];
     for stranger in strangers {
