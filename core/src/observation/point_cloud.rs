@@ -337,11 +337,16 @@ fn morton_key(point_m: &Vec3) -> (u32, [u32; 3]) {
         crate::math::clamp(floor(x / CELL_M) + half, 0.0, 2.0 * half - 1.0) as u32
     };
     let (x, y, z) = (cell(point_m.x), cell(point_m.y), cell(point_m.z - 0.5 * CELL_M * (1 << KEY_BITS) as f32));
-    let mut key = 0;
-    for bit in 0..KEY_BITS {
-        key |= ((x >> bit & 1) | (y >> bit & 1) << 1 | (z >> bit & 1) << 2) << (3 * bit);
-    }
+    let key = every_third_bit(x) | every_third_bit(y) << 1 | every_third_bit(z) << 2;
     (key, [point_m.x.to_bits(), point_m.y.to_bits(), point_m.z.to_bits()])
+}
+
+/// The [`KEY_BITS`] bits of a number with two zeros before each: halves move apart, then quarters.
+fn every_third_bit(number: u32) -> u32 {
+    let halves = (number | number << 16) & 0x0300_00ff;
+    let quarters = (halves | halves << 8) & 0x0300_f00f;
+    let pairs = (quarters | quarters << 4) & 0x030c_30c3;
+    (pairs | pairs << 2) & 0x0924_9249
 }
 
 #[cfg(test)]
@@ -352,6 +357,14 @@ mod tests {
     fn cloud(count: u32) -> std::vec::Vec<Vec3> {
         let mut stream = Stream::new(4, 0, 0);
         (0..count).map(|_| Vec3::new(0.0, 0.0, 3.0) + stream.normal3() * 0.4).collect()
+    }
+
+    #[test]
+    fn bits_are_spread_in_their_order() {
+        for number in 0..1 << KEY_BITS {
+            let one_by_one = (0..KEY_BITS).fold(0, |sum, bit| sum | (number >> bit & 1) << (3 * bit));
+            assert_eq!(every_third_bit(number), one_by_one);
+        }
     }
 
     #[test]

@@ -211,8 +211,9 @@ impl Canvas {
                 sums[row_length + 3 + channel] = sums[row_length + channel];
             }
             let noise = noise.values(stream, row_length);
-            for ((out, window), &grain) in out.iter_mut().zip(sums.windows(7)).zip(noise) {
-                let blurred = (window[0] + 2 * window[3] + window[6]) >> 4;
+            let neighbours = sums.iter().zip(&sums[3..]).zip(&sums[6..]);
+            for ((out, ((left, middle), right)), &grain) in out.iter_mut().zip(neighbours).zip(noise) {
+                let blurred = (left + 2 * middle + right) >> 4;
                 let level = (blurred + i32::from(grain) + i32::from(FINE) / 2) >> FINE.trailing_zeros();
                 *out = level.clamp(0, 255) as u8;
             }

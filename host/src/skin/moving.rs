@@ -143,8 +143,9 @@ impl ColourCounts {
     }
 
     fn cell([r, g, b]: [u8; 3]) -> [usize; 2] {
-        let [r, g, b] = [r, g, b].map(usize::from);
-        [r, g].map(|channel| (CELLS - 1) * channel / (r + g + b).max(1))
+        let sum = usize::from(r) + usize::from(g) + usize::from(b);
+        let share = |channel: u8| (CELLS - 1) * usize::from(channel) / sum.max(1);
+        [share(r), share(g)]
     }
 
     fn add(&mut self, rgb: [u8; 3]) {

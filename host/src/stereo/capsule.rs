@@ -26,9 +26,12 @@ impl Capsule {
     /// So the first entry of the three is that of the capsule.
     #[must_use]
     pub fn entry(&self, direction: &Vec3) -> Option<f32> {
-        let caps = [self.start_m, self.end_m].map(|centre| enters_ball(&centre, direction, self.radius_m));
-        let nearest = [caps[0], caps[1], self.enters_side(direction)].into_iter().flatten().reduce(f32::min)?;
-        (nearest > 0.0).then_some(nearest)
+        let mut nearest = f32::INFINITY;
+        for cap_m in [&self.start_m, &self.end_m] {
+            nearest = nearest.min(enters_ball(cap_m, direction, self.radius_m).unwrap_or(nearest));
+        }
+        nearest = nearest.min(self.enters_side(direction).unwrap_or(nearest));
+        (nearest > 0.0 && nearest < f32::INFINITY).then_some(nearest)
     }
 
     fn enters_side(&self, direction: &Vec3) -> Option<f32> {

@@ -101,7 +101,8 @@ fn rows(table: &Table, data: &Path, console: &Console) -> Result<Option<markdown
     Ok(Some(rows))
 }
 
-/// Every table of the pages with its cost, or that it has no maker.
+/// Every table of the pages with its cost, or that `sinew-lab reproduce` or somebody by hand
+/// writes it.
 fn list(docs: &Path, console: &Console) -> Result<()> {
     let mut pages: Vec<PathBuf> = fs::read_dir(docs)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
     pages.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
@@ -111,8 +112,9 @@ fn list(docs: &Path, console: &Console) -> Result<()> {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
         for name in page::names(&fs::read_to_string(&path)?) {
             let maker = TABLES.iter().find(|table| table.name == name && table.page == file);
-            let cost = maker.map_or("by hand", |table| table.cost.name());
-            text.push_str(&format!("{name:<22} {cost:<8} {}\n", path.display()));
+            let without = if name.starts_with("reproduce-") { "reproduce" } else { "by hand" };
+            let cost = maker.map_or(without, |table| table.cost.name());
+            text.push_str(&format!("{name:<22} {cost:<9} {}\n", path.display()));
             listed.push(json!({ "name": name, "page": path, "cost": cost }));
         }
     }

@@ -4,7 +4,7 @@
 use super::Protocol;
 use super::other_sources::{Excerpt, WALKS, excerpt};
 use super::protocol::measurements;
-use super::stress::strangers;
+use super::stress::{Stranger, strangers};
 use anyhow::Result;
 use sinew::cyclic::tracking::{TrackingOptions, track};
 use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
@@ -34,35 +34,55 @@ const SIGNALS: [Excerpt; 3] = [
     ("cmu-expmap/train_jumping_1.txt", None, 0..120),
 ];
 
-/// Share of the frames of [`WALKS`] below `mocap` that are off in the second second, and from then
-/// on, after standing and after exercises; by the shipped model, with noise of `sigma_deg`.
+/// A walk, what came before it, and who follows it.
+#[derive(Debug, Clone)]
+pub struct WalkAfter {
+    model: CyclicModel,
+    /// Angles at 60 a second.
+    walk: Vec<AngleRow>,
+    befores: Vec<Vec<AngleRow>>,
+}
+
+/// [`WALKS`] below `mocap` after standing and after exercises, for the shipped model.
 ///
 /// # Errors
 /// A recording cannot be read.
-pub fn of_other_sources(mocap: &Path, sigma_deg: f64, seeds: &[u64]) -> Result<[f64; 2]> {
+pub fn of_other_sources(mocap: &Path) -> Result<Vec<WalkAfter>> {
     let model = CyclicModel::from_option("walking")?;
     let exercises = before(mocap, EXERCISES)?;
-    let mut off = OffFrames::default();
-    for file in WALKS {
+    let after = |file| {
         let walk = excerpt(mocap, (file, None, WALK))?;
-        off.add(&model, &walk, &with_standing(&walk, &exercises), (sigma_deg, seeds))?;
-    }
-    Ok(off.shares())
+        Ok(WalkAfter { model: model.clone(), befores: with_standing(&walk, &exercises), walk })
+    };
+    WALKS.into_iter().map(after).collect()
 }
 
-/// The same of the [people of the training](super::stress), each by a model of the others, after
-/// standing, hand signals and jumps. By these the filter may be chosen.
+/// The [people of the training](super::stress) after standing, hand signals and jumps, each for a
+/// model of the others. By these the filter may be chosen.
 ///
 /// # Errors
 /// As [`of_other_sources`].
-pub fn of_strangers(mocap: &Path, sigma_deg: f64, seeds: &[u64]) -> Result<[f64; 2]> {
+pub fn of_strangers(mocap: &Path) -> Result<Vec<WalkAfter>> {
     let signals = before(mocap, SIGNALS)?;
-    let mut off = OffFrames::default();
-    for stranger in strangers(&mocap.join("cmu-walk"))? {
-        for chain in &stranger.chains {
-            let walk = &chain.rows[..WALK.len().min(chain.rows.len())];
-            off.add(&stranger.model, walk, &with_standing(walk, &signals), (sigma_deg, seeds))?;
+    let mut all = Vec::new();
+    for Stranger { model, chains } in strangers(&mocap.join("cmu-walk"))? {
+        for chain in chains {
+            let walk = chain.rows[..WALK.len().min(chain.rows.len())].to_vec();
+            all.push(WalkAfter { model: model.clone(), befores: with_standing(&walk, &signals), walk });
         }
+    }
+    Ok(all)
+}
+
+/// Share of the frames that are off in the second second of the walks, and from then on; with noise
+/// of `sigma_deg` from each of the seeds.
+///
+/// # Errors
+/// The filter refuses a recording.
+pub fn off_shares(walks: &[WalkAfter], (sigma_deg, seeds): (f64, &[u64])) -> Result<[f64; 2]> {
+    let mut off = OffFrames::default();
+    for walk in walks {
+        off.add(walk, (sigma_deg, seeds))?;
     }
     Ok(off.shares())
 }
@@ -87,15 +107,9 @@ struct OffFrames {
 }
 
 impl OffFrames {
-    /// Adds the frames of `walk`, angles at 60 a second, each time after one of `befores`: the
-    /// positions with noise of `sigma_deg` against those of the walk alone without noise.
-    fn add(
-        &mut self,
-        model: &CyclicModel,
-        walk: &[AngleRow],
-        befores: &[Vec<AngleRow>],
-        (sigma_deg, seeds): (f64, &[u64]),
-    ) -> Result<()> {
+    /// Adds the frames of a walk, each time after something else: the positions with noise of
+    /// `sigma_deg` against those of the walk alone without noise.
+    fn add(&mut self, WalkAfter { model, walk, befores }: &WalkAfter, (sigma_deg, seeds): (f64, &[u64])) -> Result<()> {
         let wanted = positions(model, walk, None)?;
         for before in befores {
             let whole: Vec<AngleRow> = before.iter().chain(walk).cloned().collect();

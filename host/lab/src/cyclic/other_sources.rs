@@ -1,6 +1,7 @@
 //! Walks of two sources that no shipped model was trained on. They are kept for reporting.
 
-use super::tempo::{RATE_HZ, Walk};
+use super::rate::DEFAULT_RATE_HZ;
+use super::tempo::Walk;
 use anyhow::{Context, Result};
 use sinew::cyclic::AngleRow;
 use sinew::cyclic::cutting::{CuttingOptions, cycles};
@@ -29,7 +30,7 @@ pub type Excerpt = (&'static str, Option<&'static str>, Range<usize>);
 /// The recording cannot be read.
 pub fn excerpt(mocap: &Path, (file, skeleton, frames): Excerpt) -> Result<Vec<AngleRow>> {
     let skeleton = skeleton.map(|skeleton| mocap.join(skeleton));
-    let options = RecordingOptions { rate_hz: Some(RATE_HZ), skeleton, ..RecordingOptions::default() };
+    let options = RecordingOptions { rate_hz: Some(DEFAULT_RATE_HZ), skeleton, ..RecordingOptions::default() };
     let rows = angles(&mocap.join(file), &options)?.table.rows().to_vec();
     Ok(rows.into_iter().take(frames.end).skip(frames.start).collect())
 }
@@ -43,7 +44,7 @@ pub fn walks(mocap: &Path) -> Result<Vec<Walk>> {
 }
 
 fn walk(mocap: &Path, file: &str) -> Result<Walk> {
-    let options = RecordingOptions { rate_hz: Some(RATE_HZ), ..RecordingOptions::default() };
+    let options = RecordingOptions { rate_hz: Some(DEFAULT_RATE_HZ), ..RecordingOptions::default() };
     let table = angles(&mocap.join(file), &options)?.table;
     let cuts = cycles(&table, file, CuttingOptions::default())?;
     let (first, last) = cuts.first().zip(cuts.last()).context("there is no cycle")?;

@@ -6,7 +6,8 @@
 
 use super::LongRun;
 use super::protocol::LONG_ANGLES;
-use super::tempo::{RATE_HZ, Walk, tempo_runs};
+use super::rate::DEFAULT_RATE_HZ;
+use super::tempo::{Walk, tempo_runs};
 use anyhow::{Context, Result};
 use sinew::cyclic::angle_table::ANGLES;
 use sinew::cyclic::recording::{RecordingOptions, angles};
@@ -51,7 +52,7 @@ pub fn strangers(cmu_walk: &Path) -> Result<Vec<Stranger>> {
 
 /// Angle tables of the recordings, by the path that the list gives them.
 fn tables(list: &CutList, cmu_walk: &Path) -> Result<BTreeMap<PathBuf, AngleTable>> {
-    let options = RecordingOptions { rate_hz: Some(RATE_HZ), ..RecordingOptions::default() };
+    let options = RecordingOptions { rate_hz: Some(DEFAULT_RATE_HZ), ..RecordingOptions::default() };
     let mut tables = BTreeMap::new();
     for cut in list.cuts() {
         if let Entry::Vacant(table) = tables.entry(list.table_path(cut)) {
@@ -67,7 +68,7 @@ fn stranger(list: &CutList, tables: &BTreeMap<PathBuf, AngleTable>, (person, see
         list.cuts().iter().cloned().partition(|cut| cut.person.as_deref() == Some(person));
     let others = CutList::of_cuts(others, list.path())?;
     let cycles = cycles_of(&others, true, &|path| Ok(tables[path].clone()))?;
-    let options = TrainingOptions { rate_hz: Some(RATE_HZ), mirror: true, ..TrainingOptions::default() };
+    let options = TrainingOptions { rate_hz: Some(DEFAULT_RATE_HZ), mirror: true, ..TrainingOptions::default() };
     let model = train_on(&cycles, &others, options)?;
     let chain = chain(&own, |cut| &tables[&list.table_path(cut)]).context("an angle is missing in a cycle")?;
     let elsewhere = elsewhere(&chain, seed);

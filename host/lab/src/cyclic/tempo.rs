@@ -1,13 +1,11 @@
 //! A recording of whole cycles, played at another tempo.
 
 use super::long_runs::{LongRun, Recording, tracked};
+use super::rate::DEFAULT_RATE_HZ;
 use anyhow::Result;
 use sinew::cyclic::tracking::FilterName;
 use sinew::cyclic::turns::least_angle;
 use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
-
-/// Frames per second.
-pub const RATE_HZ: f64 = 60.0;
 
 /// A tempo: its name, and the frame of the recording, of which there are so many, that is seen at a
 /// frame of the new one.
@@ -71,7 +69,7 @@ pub fn tempo_runs(walks: &[Walk], model: &CyclicModel, (sigma_deg, seeds): (f64,
         let played: Vec<Recording> = walks.iter().map(|walk| walk.played(tempo)).collect::<Result<_>>()?;
         let mut runs = Vec::new();
         for &seed in seeds {
-            runs.extend(tracked(&played, model, RATE_HZ, &[FilterName::Coupled], (sigma_deg, seed))?);
+            runs.extend(tracked(&played, model, DEFAULT_RATE_HZ, &[FilterName::Coupled], (sigma_deg, seed))?);
         }
         Ok((tempo.0, runs))
     };

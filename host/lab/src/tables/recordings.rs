@@ -1,7 +1,7 @@
 //! The coupled filter on walks of other sources.
 
 use super::markdown::{Rows, line, named};
-use crate::cyclic::after_something_else::of_other_sources;
+use crate::cyclic::after_something_else::{of_other_sources, off_shares};
 use crate::cyclic::tempo::{TempoRuns, tempo_runs};
 use crate::cyclic::{LongRun, other_sources};
 use anyhow::Result;
@@ -46,8 +46,8 @@ pub fn tempo(recordings: &Path) -> Result<Rows> {
 
 /// Walks after something else: frames off in the second second, and from then on.
 pub fn after(recordings: &Path) -> Result<Rows> {
-    let mocap = recordings.join("mocap");
-    let shares = SIGMAS_DEG.map(|sigma_deg| of_other_sources(&mocap, sigma_deg, &AFTER_SEEDS));
+    let walks = of_other_sources(&recordings.join("mocap"))?;
+    let shares = SIGMAS_DEG.map(|sigma_deg| off_shares(&walks, (sigma_deg, &AFTER_SEEDS)));
     let shares = shares.into_iter().collect::<Result<Vec<_>>>()?;
     let row = |name, index: usize| named(name, shares.iter().map(|of| format!("{:.0} %", 100.0 * of[index])));
     Ok(vec![heading(), row("second second of walking", 0), row("from then on", 1)])

@@ -4,7 +4,7 @@
 
 use crate::shared_data;
 use anyhow::Result;
-use sinew_lab::cyclic::after_something_else::{of_other_sources, of_strangers};
+use sinew_lab::cyclic::after_something_else::{WalkAfter, of_other_sources, of_strangers, off_shares};
 use std::path::Path;
 
 /// Noise, degrees, with the greatest share of frames off in the second second of walking, and from
@@ -14,10 +14,11 @@ const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.04, 0.02), (6.0, 0.04, 0.02), (29.
 const STRANGERS_BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.03, 0.01), (6.0, 0.03, 0.01), (29.0, 0.16, 0.05)];
 const SEEDS: [u64; 2] = [1, 2];
 
-fn expect_found(shares: fn(&Path, f64, &[u64]) -> Result<[f64; 2]>, bounds: [(f64, f64, f64); 3]) {
+fn expect_found(walks: fn(&Path) -> Result<Vec<WalkAfter>>, bounds: [(f64, f64, f64); 3]) {
     let Some(data) = shared_data::in_release("mocap") else { return };
+    let walks = walks(&data).unwrap();
     for (sigma_deg, most_soon, most_later) in bounds {
-        let [soon, later] = shares(&data, sigma_deg, &SEEDS).unwrap();
+        let [soon, later] = off_shares(&walks, (sigma_deg, &SEEDS)).unwrap();
         println!("sigma {sigma_deg}: {soon:.3} off in the second second, {later:.3} from then on");
         assert!(soon < most_soon && later < most_later, "sigma {sigma_deg}: {soon}, {later}");
     }
