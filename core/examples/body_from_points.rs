@@ -60,6 +60,7 @@ fn main() -> Result<(), ParameterError> {
         angle_persistence: 0.0,
         solver_steps: 2,
         pulling_blocks: 32,
+        refining_steps: 2,
     };
     let first = BodyParticle::at(&scene.skeleton, true_pose(0));
     let memory = (vec![first; PARTICLES], vec![first; PARTICLES]);

@@ -123,6 +123,7 @@ pub const fn guided_arm(goals: &LinearGoals) -> GuidedMotion<'_, LinearGoals, AR
         angle_persistence: 0.0,
         solver_steps: 3,
         pulling_blocks: 2,
+        refining_steps: 0,
     }
 }
 

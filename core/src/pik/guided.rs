@@ -58,6 +58,7 @@ pub(crate) const LOOSE_SHARE: f32 = 0.8;
 ///     angle_persistence: 0.0,
 ///     solver_steps: 5,
 ///     pulling_blocks: 2,
+///     refining_steps: 0,
 /// };
 /// let hand_m = scene.posture(&[0.5, 0.1, 0.1, 1.4]).ends[FOREARM];
 /// let mut mean_m = Vec3::zeros();
@@ -85,6 +86,10 @@ pub struct GuidedMotion<'a, P, const ANGLES: usize> {
     /// Each particle draws for itself with which one it begins. Were it the same for all, what the
     /// others show would be missing from every particle's mode alike.
     pub pulling_blocks: usize,
+    /// Steps from the particles' mean to the mode of the density about the estimate before, by all
+    /// points; zero reports the mean. A mean of few particles has their chance in it, the mode
+    /// has not.
+    pub refining_steps: usize,
 }
 
 /// Eq. (12) times the points' likelihood.
@@ -322,6 +327,24 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         let log_ratio = prior.log_density(&draw.angles_rad, &posture) - proposal.log_density(&draw);
         Proposed { angles_rad: draw.angles_rad, posture, log_ratio }
     }
+
+    // Not inlined: the solver's memory is not that of the weights.
+    #[inline(never)]
+    fn refine(
+        &self,
+        past: &FramePast<'_, BONES, ANGLES>,
+        before: &BodyParticle<BONES, ANGLES>,
+        mean_rad: &[f32; ANGLES],
+    ) -> Option<[f32; ANGLES]> {
+        if self.refining_steps == 0 {
+            return None;
+        }
+        // Goals are expected without chance.
+        let prior = self.prior(past, before, &mut before.memory.clone(), &mut Stream::new(0, 0, 0));
+        let prior = prior.density(&past.scene.skeleton);
+        let density = GuidedDensity { prior, scene: past.scene, blocks: past.blocks, stride: 1, reach: 1.0 };
+        Some(density.solve_within(&[*mean_rad], self.refining_steps, &mut SolverMemory::new()).angles_rad)
+    }
 }
 
 #[cfg(test)]
@@ -450,6 +473,7 @@ mod tests {
             angle_persistence: 0.0,
             solver_steps: 4,
             pulling_blocks: 1,
+            refining_steps: 0,
         };
         // Along the way from one place of the hand to the other, from the middle between them.
         let hand_m = |elbow_rad| scene.posture(&[0.5, 0.1, 0.1, elbow_rad]).ends[FOREARM];

@@ -317,4 +317,16 @@ pub trait BodyMotion<const BONES: usize, const ANGLES: usize> {
         memory: &mut GoalMemory,
         stream: &mut Stream,
     ) -> Proposed<BONES, ANGLES>;
+
+    /// The estimate, where that is not the particles' mean `mean_rad`, PIK (30). `before` is the
+    /// estimate of the frame before.
+    fn refine(
+        &self,
+        past: &FramePast<'_, BONES, ANGLES>,
+        before: &BodyParticle<BONES, ANGLES>,
+        mean_rad: &[f32; ANGLES],
+    ) -> Option<[f32; ANGLES]> {
+        let _ = (past, before, mean_rad);
+        None
+    }
 }

@@ -134,6 +134,7 @@ fn moving_rod(goals: &LinearGoals) -> GuidedMotion<'_, LinearGoals, 6> {
         angle_persistence: 0.0,
         solver_steps: 2,
         pulling_blocks: 3,
+        refining_steps: 2,
     }
 }
 

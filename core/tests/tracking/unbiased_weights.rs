@@ -268,6 +268,7 @@ fn guided_poses_are_those_of_prior_and_points_with_and_without_active_limits() {
                 angle_persistence: 0.0,
                 solver_steps: 20,
                 pulling_blocks: 100,
+                refining_steps: 0,
             };
             let weighted = draw(&scene, &motion, blocks);
             let goals = goals_at(&process.places_m);

@@ -62,7 +62,7 @@ pub struct TrackBodyArgs {
     /// How particles move.
     #[arg(long, value_enum, default_value_t)]
     pub model: BodyModelKind,
-    /// Number of particles [default: 50 of guided, 500 of the others].
+    /// Number of particles [default: 30 of guided, 500 of the others].
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub particles: Option<usize>,
     /// The person: measures, or a motion or skeleton to measure.

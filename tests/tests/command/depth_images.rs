@@ -90,7 +90,8 @@ fn cut() -> Vec<String> {
     ["--inside", "-1.5,1.5,-2,2,0.5,4.4", "--above-plane", &floor].map(str::to_owned).to_vec()
 }
 
-/// Errors of depth images lie by those of clouds, which are noisier: 0.3 to 1.3 times.
+/// These depth images have no noise but their millimetres. So their errors are a tenth of those of
+/// clouds, 0.03 to 0.4 times.
 #[test]
 fn a_person_before_a_wall_is_tracked_as_in_clouds() {
     let out = tempfile::tempdir().unwrap();
@@ -103,7 +104,7 @@ fn a_person_before_a_wall_is_tracked_as_in_clouds() {
     let (clouds, depth) = (report(&clouds), report(&depth));
     let joints_m = |run: &Value| run["joint_error_m"].as_f64().unwrap();
     let ratio = joints_m(&depth) / joints_m(&clouds);
-    assert!((0.3..1.3).contains(&ratio), "{} instead of {}", joints_m(&depth), joints_m(&clouds));
+    assert!((0.03..0.4).contains(&ratio), "{} instead of {}", joints_m(&depth), joints_m(&clouds));
     assert_eq!((&depth["frames_finished"], &depth["complete"]), (&FRAMES.into(), &true.into()));
     assert_eq!(depth["points"]["used"], 2000 * FRAMES);
     let outside = depth["points"]["outside"].as_u64().unwrap();

@@ -56,6 +56,7 @@
 //!     angle_persistence: 0.0,
 //!     solver_steps: 2,
 //!     pulling_blocks: 32,
+//!     refining_steps: 2,
 //! };
 //! let first = BodyParticle::at(&scene.skeleton, truth(0));
 //! let memory = (vec![first; 20], vec![first; 20]);

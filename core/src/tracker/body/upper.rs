@@ -242,6 +242,7 @@ impl UpperBodyTracker {
             angle_persistence: ANGLE_PERSISTENCE,
             solver_steps: self.options.solver_steps,
             pulling_blocks: UPPER_BLOCKS,
+            refining_steps: 0,
         };
         let frame = BodyFrame { dt_s, blocks: self.cloud.blocks() };
         let estimate = tracker.step_within(scene, &motion, &frame, &mut self.memory);

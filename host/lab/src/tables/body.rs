@@ -135,7 +135,7 @@ pub fn hdm05(recordings: &Path) -> Result<Rows> {
 pub fn smoothness(recordings: &Path) -> Result<Rows> {
     let mocap = recordings.join("mocap");
     let cells: [(&str, BodyModelKind, usize, usize); 8] = [
-        ("guided, 50 particles", Guided, 50, 5),
+        ("guided, 30 particles", Guided, 30, 5),
         ("guided, 100", Guided, 100, 5),
         ("end-effector, 50", EndEffector, 50, 5),
         ("end-effector, 100", EndEffector, 100, 5),
@@ -162,7 +162,7 @@ pub fn hidden(recordings: &Path) -> Result<Rows> {
     let mocap = recordings.join("mocap");
     let mut rows = vec![line(["model", "particles", "back", "grew", "unobserved", "all three (asked: 90 %)"])];
     let cells =
-        [(Guided, 50, 4, "guided"), (EndEffector, 100, 8, "end-effector, `--trials 8`"), (Angular, 100, 4, "angular")];
+        [(Guided, 30, 4, "guided"), (EndEffector, 100, 8, "end-effector, `--trials 8`"), (Angular, 100, 4, "angular")];
     for (model, particles, seeds, name) in cells {
         let mut arms = Vec::new();
         for file in HIDING_SET {

@@ -16,7 +16,7 @@ use std::path::Path;
 const SEEDS: u64 = 3;
 /// Models with their particles.
 const MODELS: [(&str, BodyModelKind, usize); 3] =
-    [("end-effector, 100", EndEffector, 100), ("angular, 100", Angular, 100), ("guided, 50", Guided, 50)];
+    [("end-effector, 100", EndEffector, 100), ("angular, 100", Angular, 100), ("guided, 30", Guided, 30)];
 
 /// The scenes: each error alone, and all together.
 fn scenes() -> [(&'static str, SceneErrors); 8] {

@@ -11,9 +11,9 @@ use std::path::Path;
 /// Seeds of a cell. Chosen: the table takes ten minutes.
 const SEEDS: Seeds = Seeds { clouds: 3, trackers: 2 };
 /// Particles of the guided model.
-const PARTICLES: usize = 50;
+const PARTICLES: usize = 30;
 /// Shares of the scatter along lines of sight, and the model's name with each.
-const SHARES: [(f32, &str); 2] = [(0.0, "guided, 50"), (0.5, "the same, `along_share = 0.5`")];
+const SHARES: [(f32, &str); 2] = [(0.0, "guided, 30"), (0.5, "the same, `along_share = 0.5`")];
 
 pub fn runners(recordings: &Path) -> Result<Rows> {
     let mut rows = vec![line([

@@ -21,15 +21,15 @@ const OTHERS: [&str; 3] =
 /// Clouds of the camera for each motion.
 const CLOUDS: u64 = 2;
 /// Particles of the guided model.
-const PARTICLES: usize = 50;
+const PARTICLES: usize = 30;
 
 /// Weights from which on a joint is counted in a row, and the smallest and largest share of lost
 /// ones in it.
 type Row = (f32, [f64; 2]);
 
-const OF_RUNNERS: [Row; 4] = [(0.0, [0.03, 0.1]), (0.01, [0.2, 0.38]), (0.3, [0.5, 0.75]), (0.6, [0.8, 0.97])];
+const OF_RUNNERS: [Row; 4] = [(0.0, [0.003, 0.05]), (0.01, [0.06, 0.25]), (0.3, [0.28, 0.52]), (0.6, [0.6, 0.85])];
 /// Few joints of these are lost.
-const OF_OTHERS: [Row; 3] = [(0.0, [0.0, 0.005]), (0.01, [0.01, 0.2]), (0.3, [0.25, 0.8])];
+const OF_OTHERS: [Row; 3] = [(0.0, [0.0, 0.005]), (0.01, [0.0, 0.1]), (0.3, [0.1, 0.6])];
 
 /// Weight elsewhere of a joint, and whether it is elsewhere.
 type Joint = (f32, bool);

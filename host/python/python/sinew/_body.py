@@ -37,7 +37,7 @@ class BodyTracker:
         How particles move: ``"guided"``, ``"modes"``, ``"end-effector"``, ``"angular"``,
         ``"stick"``, ``"pelvic-lift"``, ``"end-effector-paper"`` or ``"angular-paper"``.
     particles : int, optional
-        Number of particles; 50 of guided, 8 of modes (the most that are followed) and
+        Number of particles; 30 of guided, 8 of modes (the most that are followed) and
         500 of the others where not given.
     seed : int
         Seed of all that is random.

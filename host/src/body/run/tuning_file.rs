@@ -164,7 +164,8 @@ fn check(prefix: &str, table: &Table) -> Result<()> {
             Value::Table(inner) => check(&format!("{full}."), inner)?,
             Value::Integer(count) => {
                 let most = if key == "pulling_blocks" { MAX_PULLING_BLOCKS } else { MAX_SOLVER_STEPS };
-                ensure!((1..=most).contains(count), "`{full}` has to be from 1 to {most}, not {count}");
+                let least = i64::from(key != "refining_steps");
+                ensure!((least..=most).contains(count), "`{full}` has to be from {least} to {most}, not {count}");
             }
             Value::Float(number) => {
                 check_number(key, &full, *number).map_err(|rule| Error::Invalid(format!("`{full}` {rule}")))?;

@@ -46,7 +46,7 @@ impl BodyModelKind {
     #[must_use]
     pub fn default_particles(self) -> usize {
         match self {
-            Self::Guided => 50,
+            Self::Guided => 30,
             Self::Modes => MAX_MODES,
             _ => 500,
         }

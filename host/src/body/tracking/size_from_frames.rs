@@ -6,6 +6,7 @@ use super::seen_points::SeenPoints;
 use super::size_estimate::SizeEstimate;
 use super::stream::BodyStream;
 use super::stream_options::BodyStreamOptions;
+use super::tuning::BodyTuning;
 use crate::body::BodySize;
 use crate::error::Result;
 use sinew_core::pik::processes::stick::StickSight;
@@ -16,11 +17,13 @@ pub const SIZE_SECONDS: f32 = 3.0;
 /// How often it is tracked, each time with the size found before.
 const PASSES: usize = 2;
 
-/// The options under which a size is estimated: those of `options` with the guided model.
+/// The options under which a size is estimated: those of `options` with the guided model, whose
+/// mean is taken. A mode fits a wrong size as well as it can, and says less of the true one.
 #[must_use]
 pub fn sizing_options(options: &BodyStreamOptions) -> BodyStreamOptions {
     let model = BodyModelKind::Guided;
-    BodyStreamOptions { model, particles: model.default_particles(), ..options.clone() }
+    let tuning = BodyTuning { refining_steps: 0, ..options.tuning };
+    BodyStreamOptions { model, particles: model.default_particles(), tuning, ..options.clone() }
 }
 
 /// The size of the person of these frames, or `None` where they are no likelier with it than with

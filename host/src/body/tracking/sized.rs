@@ -186,6 +186,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             BodyModelKind::EndEffector => self.advance(&with_goals(&tuning, goal_std, &goals, root), &frame),
             BodyModelKind::Guided => {
                 let motion = self.guided(&goals, tuning.guided.solver_steps, tuning.pulling_blocks);
+                let motion = GuidedMotion { refining_steps: tuning.refining_steps, ..motion };
                 self.advance(&motion, &frame)
             }
             BodyModelKind::Modes => {
@@ -236,6 +237,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             angle_persistence: self.tuning.guided.angle_persistence,
             solver_steps,
             pulling_blocks,
+            refining_steps: 0,
         }
     }
 

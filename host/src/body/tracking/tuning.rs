@@ -234,6 +234,8 @@ pub struct BodyTuning {
     pub modes: ModesTuning,
     /// Blocks of points that pull in the guided model.
     pub pulling_blocks: usize,
+    /// Steps from the guided particles' mean to the mode that is reported; 0 reports the mean.
+    pub refining_steps: usize,
     /// Angular.
     pub angular: AngularTuning,
     /// Points of all models but the printed ones, before they are weighed.
@@ -394,7 +396,8 @@ impl Default for BodyTuning {
             draw: DrawTuning { corrects_weight: false, share: 0.62 },
             guided: GUIDED_GOALS,
             modes: MODES,
-            pulling_blocks: 64,
+            pulling_blocks: 32,
+            refining_steps: 3,
             angular: AngularTuning { persistence: 0.55, acceleration_share: 0.35, joint_std: ANGULAR_JOINTS },
             pace: SpeedScaledNoise {
                 rest_share: 0.4,

@@ -154,6 +154,7 @@ fn moving_rod<'a>(goals: &'a LinearGoals, numbers: &mut Numbers<'_>) -> GuidedMo
         angle_persistence: numbers.number(0.0),
         solver_steps: 1 + numbers.below(3),
         pulling_blocks: numbers.below(5),
+        refining_steps: numbers.below(3),
     }
 }
 

@@ -77,6 +77,7 @@ fn motion(goals: &LinearGoals) -> GuidedMotion<'_, LinearGoals, BODY_ANGLES> {
         angle_persistence: 0.5,
         solver_steps: 4,
         pulling_blocks: usize::MAX,
+        refining_steps: 0,
     }
 }
 

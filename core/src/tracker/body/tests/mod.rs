@@ -109,6 +109,7 @@ fn guided(process: &LinearGoals) -> GuidedMotion<'_, LinearGoals, BODY_ANGLES> {
         angle_persistence: 0.0,
         solver_steps: 2,
         pulling_blocks: 32,
+        refining_steps: 0,
     }
 }
 
