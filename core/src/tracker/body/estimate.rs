@@ -28,7 +28,8 @@ use crate::skeleton::{Joint, Limbs, Skeleton};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyEstimate<const BONES: usize, const ANGLES: usize> {
-    /// Coordinates of the mean pose, inside the limits; with the deadband of the options.
+    /// Coordinates of the mean pose, or of what the motion model refines it to, inside the limits;
+    /// with the deadband of the options.
     pub angles_rad: [f32; ANGLES],
     /// Ends of all bones in that pose, metres.
     pub ends_m: [Vec3; BONES],

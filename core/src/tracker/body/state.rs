@@ -100,8 +100,8 @@ where
         self.particles.as_ref()
     }
 
-    /// The mean pose of the last step, PIK (30), before the deadband; at first the pose that the
-    /// tracker begins with.
+    /// The mean pose of the last step, PIK (30), or what the motion model refines it to, before the
+    /// deadband; at first the pose that the tracker begins with.
     ///
     /// ```
     /// use sinew_core::pik::example::{arm_points, arm_scene, bending_elbow, guided_arm, hand_goals};

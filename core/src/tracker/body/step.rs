@@ -19,11 +19,11 @@ const LIMB_STREAM: u32 = u32::MAX - 1;
 /// Shortest time between two frames, seconds: it still lets particles differ, and says nothing of
 /// their velocity. Chosen: no camera is as fast.
 const MIN_DT_S: f32 = 1.0e-4;
+/// Longest time between two frames, seconds. Chosen: the pose is unknown after it.
+const MAX_DT_S: f32 = 10.0;
 /// Share of the mean's standard error that is left in a refined pose. Chosen: the reported pose
 /// moves as far as the truth on seven motions of the tuning; with 0.25 to 0.5 by 3 % more or less.
 const REFINED_ERROR_SHARE: f32 = 0.33;
-/// Longest time between two frames, seconds. Chosen: the pose is unknown after it.
-const MAX_DT_S: f32 = 10.0;
 
 /// Time since the frame before within its bounds, seconds.
 pub(super) fn frame_time_s(frame: &BodyFrame<'_>) -> f32 {

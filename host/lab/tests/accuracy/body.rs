@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// Largest mean error (34) of the end-effector and the angular model with 100 particles, metres.
 const LARGEST_UNGUIDED_M: f64 = 0.0080;
-/// Largest mean error (34) of the guided model with 50 particles, metres.
+/// Largest mean error (34) of the guided model with 30 particles, metres.
 const LARGEST_GUIDED_M: f64 = 0.0045;
 /// Largest error (34) of the pelvic lift model with 100 particles, metres.
 const LARGEST_LIFT_M: f64 = 0.03;

@@ -45,6 +45,29 @@ fn every_model_follows_a_wave_inside_the_limits() {
     assert!(few < 0.08, "guided with 20: {few}");
 }
 
+/// Trackers of ten particles differ by their seeds: the places of the left hand scatter.
+#[test]
+fn a_refined_pose_has_less_of_the_particles_chance() {
+    let (scene, goals) = (scene(), goals());
+    let scatter_m = |refining_steps| {
+        let motion = GuidedMotion { refining_steps, ..guided(&goals) };
+        let hands_m: Vec<Vec3> = (0..12)
+            .map(|seed| {
+                let mut tracker = tracker(&scene, 10, seed);
+                let step = |frame| {
+                    let cloud = cloud(&scene, frame, &[]);
+                    tracker.step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: cloud.blocks() })
+                };
+                (1..6).map(step).last().unwrap().ends_m[FOREARMS[0]]
+            })
+            .collect();
+        let mean_m = hands_m.iter().sum::<Vec3>() / 12.0;
+        (hands_m.iter().map(|hand_m| (hand_m - mean_m).norm_squared()).sum::<f32>() / 12.0).sqrt()
+    };
+    let [mean_m, refined_m] = [0, 3].map(scatter_m);
+    assert!((0.02..0.7).contains(&(refined_m / mean_m)), "{refined_m} instead of {mean_m} m");
+}
+
 /// A person who leans to the side, by an angular model that holds the trunk: particles lean where
 /// it is fitted to the points.
 #[test]
