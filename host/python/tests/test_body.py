@@ -123,7 +123,7 @@ def test_shapes_and_types(scene):
     upper = tracker_of(scene, part="upper").update(scene.clouds[0])
     assert upper.joints_m.shape == (9, 3) and len(upper.angles_rad) == 14
     assert len(sinew.BODY_PARENTS) == len(sinew.BODY_JOINT_NAMES) == 17
-    assert "guided, 50 particles" in repr(tracker)
+    assert "guided, 30 particles" in repr(tracker)
 
 
 def test_a_pickled_tracker_goes_on_bit_for_bit(scene):
