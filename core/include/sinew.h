@@ -21,12 +21,12 @@
 /**
  * Bytes that always suffice for a cyclic tracker, on every target.
  */
-#define SINEW_CYCLIC_MAX_BYTES 3072
+#define SINEW_CYCLIC_MAX_BYTES 4608
 
 /**
  * Bytes that always suffice for the saved state of a cyclic tracker.
  */
-#define SINEW_CYCLIC_STATE_MAX_BYTES 3328
+#define SINEW_CYCLIC_STATE_MAX_BYTES 5120
 
 /**
  * Alignment that suffices for every object of this library.

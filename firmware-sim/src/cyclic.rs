@@ -18,7 +18,7 @@ pub struct CyclicApp {
     model: Slot<CoupledModel<'static>>,
     /// A setup that came, until its first frame begins the tracker.
     first: Slot<FirstPhase>,
-    tracker: Slot<CoupledTracker<HUMAN_ANGLES>>,
+    tracker: CoupledTracker<HUMAN_ANGLES>,
     /// Whether the tracker has begun.
     begun: bool,
     last_frame: Option<u32>,
@@ -33,7 +33,7 @@ impl CyclicApp {
         Self {
             model: Slot::Empty,
             first: Slot::Empty,
-            tracker: Slot::Empty,
+            tracker: CoupledTracker::empty(),
             begun: false,
             last_frame: None,
             step: Cost::zero(),
@@ -61,14 +61,16 @@ impl CyclicApp {
             return Err(RecordError::OutOfOrder.into());
         }
         if let Slot::Full(first) = self.first {
-            self.tracker.get_or_insert(CoupledTracker::empty).begin(model, &input.angles, first)?;
+            self.tracker.begin(model, &input.angles, first)?;
             self.begun = true;
             (self.first, self.last_frame) = (Slot::Empty, Some(input.frame));
             return Ok(None);
         }
-        let tracker = self.tracker.get_mut().filter(|_| self.begun).ok_or(RecordError::OutOfOrder)?;
+        if !self.begun {
+            return Err(RecordError::OutOfOrder.into());
+        }
         let before = self.step.total;
-        let answered = counted::<P, _>(&mut self.step, || tracker.step(model, &input.angles));
+        let answered = counted::<P, _>(&mut self.step, || self.tracker.step(model, &input.angles));
         self.last_step = u32::try_from(self.step.total - before).unwrap_or(u32::MAX);
         self.last_frame = Some(input.frame);
         Ok(Some(CyclicResult::new(input.frame, &answered)))

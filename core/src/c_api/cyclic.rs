@@ -17,9 +17,9 @@ use core::ffi::c_void;
 use core::mem::offset_of;
 
 /// Bytes that always suffice for a cyclic tracker, on every target.
-pub const SINEW_CYCLIC_MAX_BYTES: usize = 3072;
+pub const SINEW_CYCLIC_MAX_BYTES: usize = 4608;
 /// Bytes that always suffice for the saved state of a cyclic tracker.
-pub const SINEW_CYCLIC_STATE_MAX_BYTES: usize = 3328;
+pub const SINEW_CYCLIC_STATE_MAX_BYTES: usize = 5120;
 /// Alignment that suffices for every object of this library.
 pub const SINEW_ALIGN: usize = 8;
 

@@ -66,7 +66,7 @@ pub enum CyclicFilter<const N: usize> {
     Kalman(KalmanFilter<N>),
 }
 
-const _: () = assert!(size_of::<CyclicFilter<13>>() <= 2732, "the state has to fit 2.7 KiB");
+const _: () = assert!(size_of::<CyclicFilter<13>>() <= 4096, "the state has to fit 4 KiB");
 
 impl<const N: usize> CyclicFilter<N> {
     /// The standard start: the angles of the first row. Where absent, the position in the cycle

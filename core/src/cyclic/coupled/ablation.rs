@@ -34,16 +34,10 @@ pub enum Part {
     AngleGate,
     /// The slope as a secant; without it, it is the tangent.
     Secant,
-    /// The relock to the grid's phase after the start.
-    Relock,
-    /// The filter's right to stay where it predicts well.
-    OverrulesGrid,
-    /// The search for a lock that explains nothing of the swing.
-    SpuriousLock,
-    /// The fusion with the grid's phase after a relock.
-    Fusion,
-    /// The mean offset between the phases of grid and filter.
-    MeanPhaseOffset,
+    /// The second hypothesis, where the grid names another place.
+    Rival,
+    /// Giving way to it without a comparison, of a filter that does not fit.
+    GivingWay,
     /// The prior of an angle of the first row that is far from the mean pose.
     UnusualOffset,
     /// The noise of the first row; without it, it is as stated.
@@ -55,7 +49,7 @@ pub enum Part {
 #[cfg(feature = "ablation")]
 impl Part {
     /// All parts.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 12] = [
         Self::NoiseScale,
         Self::SpreadScale,
         Self::Tempering,
@@ -63,11 +57,8 @@ impl Part {
         Self::WindingExclusion,
         Self::AngleGate,
         Self::Secant,
-        Self::Relock,
-        Self::OverrulesGrid,
-        Self::SpuriousLock,
-        Self::Fusion,
-        Self::MeanPhaseOffset,
+        Self::Rival,
+        Self::GivingWay,
         Self::UnusualOffset,
         Self::FirstRowNoise,
         Self::MeasuredPath,

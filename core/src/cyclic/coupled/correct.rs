@@ -3,8 +3,10 @@
 use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::block::{AnglePrediction, Basis};
 use crate::cyclic::coupled::evidence::{FrameInnovation, PhaseEvidence};
+use crate::cyclic::coupled::hypothesis::Hypothesis;
+use crate::cyclic::coupled::measurement_noise::MeasurementNoise;
 use crate::cyclic::coupled::spread_scale::FrameProducts;
-use crate::cyclic::coupled::state::CoupledFilter;
+use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::{max, sqrt, wrap_angle};
 
@@ -12,14 +14,16 @@ use crate::math::{max, sqrt, wrap_angle};
 /// its offset is learned again. Chosen: short links that wind in a side view would drag the phase.
 pub(super) const GATE_SIGMAS: f32 = 4.0;
 
-impl<const N: usize> CoupledFilter<N> {
+impl<const N: usize> Hypothesis<N> {
     /// The extended Kalman correction about the present position; returns the innovation.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    pub(super) fn correct_phase(
+    pub(super) fn correct(
         &mut self,
         model: &CoupledModel<'_>,
         measurement: &AngleMeasurement<N>,
+        winding: &Winding<N>,
+        (noises, learns): (&mut MeasurementNoise<N>, bool),
     ) -> FrameInnovation {
         let point = model.point(self.position);
         let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
@@ -30,18 +34,18 @@ impl<const N: usize> CoupledFilter<N> {
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
             let stated = measurement.std_rad()[i] * measurement.std_rad()[i];
-            let noise = self.noise.scale(i) * stated;
+            let noise = noises.scale(i) * stated;
             let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
             let mut prediction = self.blocks[i].predict_angle(&basis, slope[i]);
             let given = prediction.variance + noise;
-            let (total, informs_phase) = (given + self.pair.along(&prediction.gradient), self.winding.informs_phase(i));
+            let (total, informs_phase) = (given + self.pair.along(&prediction.gradient), winding.informs_phase(i));
             let innovations = [residual, self.last_innovation_rad[i]];
             self.last_innovation_rad[i] = residual;
             products.add(innovations, max(total, total - noise + stated));
             if informs_phase {
                 evidence.add(&prediction.gradient, given, residual);
-                if self.watch.agrees {
-                    self.noise.add(i, [stated, noise, total - noise], innovations);
+                if learns {
+                    noises.add(i, [stated, noise, total - noise], innovations);
                 }
             } else {
                 evidence.add_excluded(total, residual);
@@ -54,8 +58,8 @@ impl<const N: usize> CoupledFilter<N> {
             }
             seen[i] = Some((prediction, noise, residual));
         }
-        if self.watch.agrees {
-            self.noise.update();
+        if learns {
+            noises.update();
         }
         let innovation = evidence.innovation(&self.pair);
         let shift = self.pair.correct(&evidence.gated);
@@ -71,9 +75,7 @@ impl<const N: usize> CoupledFilter<N> {
         if growth > 1.0 {
             self.blocks.iter_mut().for_each(|block| block.inflate(growth));
         }
-        self.forget_drift(model);
         self.shift_by(model, shift);
-        self.update_angles(model, measurement);
         innovation
     }
 
@@ -84,26 +86,5 @@ impl<const N: usize> CoupledFilter<N> {
     pub(super) fn pose_slope(&self, model: &CoupledModel<'_>) -> [f32; N] {
         let half_width = if is_on(Part::Secant) { sqrt(self.pair.cc) } else { 0.0 };
         model.mean_pose_secant(self.position, half_width)
-    }
-
-    /// Angles from the state.
-    #[cfg_attr(target_arch = "x86_64", inline(always))]
-    fn update_angles(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) {
-        let pose = model.mean_pose_rad::<N>(model.point(self.position));
-        let basis = Basis::at(self.position);
-        self.winding.count_cycles(self.cycles);
-        for i in 0..model.angle_count().min(N) {
-            let (before, angle) = (self.angles_rad[i], wrap_angle(pose[i] + self.blocks[i].deviation(&basis)));
-            self.turn_to(i, angle);
-            let beyond = self.path.turns(i, [before, angle], measurement);
-            self.turns[i] = self.turns[i].saturating_add(beyond);
-            let turns_a_cycle = model.parts().turns_per_cycle.get(i).map_or(0, |turns| i32::from(*turns));
-            self.winding.update(
-                i,
-                self.turns[i].wrapping_sub(turns_a_cycle.wrapping_mul(self.cycles)),
-                self.angles_rad[i] - pose[i],
-            );
-        }
-        self.winding.initialise();
     }
 }

@@ -33,14 +33,10 @@ pub(super) struct PhaseEvidence {
     shape_rad2: f32,
 }
 
-/// Innovation of a frame: its likelihood, its NIS and the gate.
+/// Innovation of a frame: its likelihood and the gate.
 pub(super) struct FrameInnovation {
     /// ln of the density of all angles together.
     pub(super) log_likelihood: f32,
-    /// Normalised innovation squared (NIS) of the angles that inform the phase.
-    pub(super) squared: f32,
-    /// Number of these angles.
-    pub(super) present: usize,
     /// Whether the innovation lies beyond the gate.
     pub(super) outlier: bool,
 }
@@ -60,7 +56,7 @@ impl PhaseEvidence {
         }
     }
 
-    /// Adds an angle to likelihood and NIS; `variance`, rad^2, is the innovation's given (c, v).
+    /// Adds an angle to the likelihood; `variance`, rad^2, is the innovation's given (c, v).
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn add(&mut self, gradient: &[f32; 2], variance: f32, residual: f32) {
         self.all.add(gradient, 1.0 / variance, residual);
@@ -94,8 +90,6 @@ impl PhaseEvidence {
         let squared = crate::math::max(self.squares - explained, 0.0);
         FrameInnovation {
             log_likelihood: -0.5 * (squared + self.excluded.0 + self.volume.ln() + log_growth),
-            squared,
-            present: self.count,
             outlier: is_outlier(squared + self.excluded.0, self.count + self.excluded.1, DEFAULT_GATE_SIGMAS),
         }
     }

@@ -60,7 +60,12 @@ impl<const N: usize> SavedState for MeasurementNoise<N> {
 impl<const N: usize> MeasurementNoise<N> {
     /// Noise as stated.
     pub(super) const fn new() -> Self {
-        Self { sums: [0.0; N], frames: [0.0; N], shared: 1.0 }
+        Self { shared: 1.0, ..Self::zero() }
+    }
+
+    /// Zeros, for a filter that has not begun.
+    pub(super) const fn zero() -> Self {
+        Self { sums: [0.0; N], frames: [0.0; N], shared: 0.0 }
     }
 
     /// Factor of the stated variance of the angle at `index` for the gains, in [[`MIN_SCALE`],

@@ -5,17 +5,19 @@
 pub mod ablation;
 #[cfg(not(feature = "ablation"))]
 mod ablation;
+mod all_places;
 pub mod block;
 mod correct;
 mod cycle_pair;
 mod evidence;
+mod hypothesis;
 mod initial_measurement;
 mod measured_path;
 mod measurement_noise;
 pub mod moments;
-mod nis_monitor;
 pub mod phase_grid;
 pub mod predict;
+mod rival;
 mod saved;
 mod spread_scale;
 mod start;

@@ -66,10 +66,10 @@ impl<const N: usize> CoupledFilter<N> {
     /// Position and velocity in the cycle with their covariance.
     #[must_use]
     pub const fn cycle(&self) -> CycleState {
-        let CyclePair { cc, cv, vv } = self.pair;
+        let CyclePair { cc, cv, vv } = self.leader.pair;
         CycleState {
-            position: self.position,
-            velocity: self.velocity,
+            position: self.leader.position,
+            velocity: self.leader.velocity,
             position_variance: cc,
             covariance: cv,
             velocity_variance: vv,
@@ -79,11 +79,11 @@ impl<const N: usize> CoupledFilter<N> {
     /// Coefficients of each angle given (c, v); those beyond the model's angles are meaningless.
     #[must_use]
     pub const fn blocks(&self) -> &[AngleBlock; N] {
-        &self.blocks
+        &self.leader.blocks
     }
 
-    /// Number of relocks, after each of which the phase is independent of the frames before (wraps
-    /// at 65536).
+    /// Number of changes of place, after each of which the phase is independent of the frames
+    /// before (wraps at 65536).
     #[must_use]
     pub const fn relocks(&self) -> u16 {
         self.relocks
@@ -97,17 +97,18 @@ impl<const N: usize> CoupledFilter<N> {
         if self.is_searching() {
             return None;
         }
-        let (slope, basis) = (self.pose_slope(model), Basis::at(self.position));
+        let (slope, basis) = (self.leader.pose_slope(model), Basis::at(self.leader.position));
         let count = model.angle_count().min(N);
-        let predictions: [_; N] = core::array::from_fn(|i| self.blocks[i].predict_angle(&basis, slope[i]));
+        let predictions: [_; N] = core::array::from_fn(|i| self.leader.blocks[i].predict_angle(&basis, slope[i]));
         let bands: [f32; N] = core::array::from_fn(|i| sqrt(self.band_scale(i)));
         let mut covariance_rad2 = [[0.0; N]; N];
         for i in 0..count {
-            let given = self.band_scale(i) * (predictions[i].variance + self.pair.along(&predictions[i].gradient));
+            let given =
+                self.band_scale(i) * (predictions[i].variance + self.leader.pair.along(&predictions[i].gradient));
             covariance_rad2[i][i] = given;
             for j in 0..i {
                 let gradients = [&predictions[i].gradient, &predictions[j].gradient];
-                covariance_rad2[i][j] = bands[i] * bands[j] * self.pair.between(gradients);
+                covariance_rad2[i][j] = bands[i] * bands[j] * self.leader.pair.between(gradients);
                 covariance_rad2[j][i] = covariance_rad2[i][j];
             }
         }
@@ -118,7 +119,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// covariance.
     #[must_use]
     pub fn transition(&self, model: &CoupledModel<'_>, step_frames: f32) -> CoupledTransition<N> {
-        let mut still = *self;
+        let mut still = self.leader;
         still.pair = CyclePair { cc: 0.0, cv: 0.0, vv: 0.0 };
         for block in &mut still.blocks {
             *block = AngleBlock::zero();
@@ -148,16 +149,16 @@ impl<const N: usize> CoupledFilter<N> {
     /// rad^2; 0 for the others. To be called before it, on the predicted filter.
     #[must_use]
     pub fn gated_variance_rad2(&self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> [f32; N] {
-        let point = model.point(self.position);
-        let (pose, slope) = (model.mean_pose_rad::<N>(point), self.pose_slope(model));
-        let basis = Basis::at(self.position);
+        let point = model.point(self.leader.position);
+        let (pose, slope) = (model.mean_pose_rad::<N>(point), self.leader.pose_slope(model));
+        let basis = Basis::at(self.leader.position);
         let mut inflation_rad2 = [0.0; N];
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
             let noise = self.noise.scale(i) * measurement.std_rad()[i] * measurement.std_rad()[i];
-            let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
-            let prediction = self.blocks[i].predict_angle(&basis, slope[i]);
-            let total = prediction.variance + noise + self.pair.along(&prediction.gradient);
+            let residual = wrap_angle(measured - pose[i] - self.leader.blocks[i].deviation(&basis));
+            let prediction = self.leader.blocks[i].predict_angle(&basis, slope[i]);
+            let total = prediction.variance + noise + self.leader.pair.along(&prediction.gradient);
             if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total && is_on(Part::AngleGate) {
                 inflation_rad2[i] = residual * residual;
             }
@@ -190,13 +191,13 @@ mod tests {
         let table = table(0.001, 9);
         let model = table.model().unwrap();
         let mut filter = started(&model);
-        for block in &mut filter.blocks {
+        for block in &mut filter.leader.blocks {
             block.regression = [[0.0; 2]; PARTS];
         }
         let transition = filter.transition(&model, 2.5);
         let mut moved = filter;
         moved.predict(&model, 2.5);
-        for ((old, new), step) in filter.blocks.iter().zip(&moved.blocks).zip(&transition.blocks) {
+        for ((old, new), step) in filter.blocks().iter().zip(moved.blocks()).zip(&transition.blocks) {
             for i in 0..PARTS {
                 let mean: f32 = (0..PARTS).map(|j| step.map[i][j] * old.mean[j]).sum();
                 assert!((mean - new.mean[i]).abs() < 1.0e-5, "{mean} beside {}", new.mean[i]);

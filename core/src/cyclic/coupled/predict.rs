@@ -2,7 +2,7 @@
 
 use crate::cyclic::CoupledModel;
 use crate::cyclic::coupled::block::PARTS;
-use crate::cyclic::coupled::state::{CoupledFilter, LOST_STD, spread};
+use crate::cyclic::coupled::hypothesis::{Hypothesis, LOST_STD, spread};
 use crate::cyclic::substeps::Substeps;
 use crate::math::{abs, exp, max};
 
@@ -13,15 +13,14 @@ const FORGETTING: f32 = 0.02;
 /// a frame.
 pub const MAX_SUBSTEPS: u8 = 5;
 
-impl<const N: usize> CoupledFilter<N> {
+impl<const N: usize> Hypothesis<N> {
     /// Moves on by `step_frames`, in substeps of one frame, longer ones where that would be more
     /// than [`MAX_SUBSTEPS`].
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub fn predict(&mut self, model: &CoupledModel<'_>, step_frames: f32) {
+    pub(super) fn predict(&mut self, model: &CoupledModel<'_>, step_frames: f32) {
         for step in Substeps::few(step_frames, MAX_SUBSTEPS) {
             self.advance(model, step);
         }
-        self.watch.unwatched_frames += step_frames;
     }
 
     #[cfg_attr(target_arch = "x86_64", inline(always))]

@@ -1,33 +1,24 @@
 //! The phase-coupled filter's state as it is saved.
 
 use crate::cyclic::coupled::state::CoupledFilter;
-use crate::cyclic::phase::POSITIONS_IN_CYCLE;
-use crate::cyclic::start::MAX_CYCLE_VELOCITY;
-use crate::saved_state::{SavedState, StateVisitor};
+use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 use core::f32::consts::PI;
 
 impl<const N: usize> SavedState for CoupledFilter<N> {
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
-        for block in &mut self.blocks {
-            block.visit(visitor);
-        }
+        self.leader.visit(visitor);
+        self.rival.visit(visitor);
+        self.grid.visit(visitor);
+        visitor.real(&mut self.unwatched_frames, &NOT_NEGATIVE);
+        visitor.flag(&mut self.searching);
+        visitor.real(&mut self.misfit_cycles, &(-1.0..=1.0));
+        self.noise.visit(visitor);
         visitor.reals(&mut self.angles_rad, &(-PI..=PI));
         for turns in &mut self.turns {
             visitor.integer(turns);
         }
-        visitor.real(&mut self.position, &POSITIONS_IN_CYCLE);
-        visitor.real(&mut self.velocity, &(-MAX_CYCLE_VELOCITY..=MAX_CYCLE_VELOCITY));
-        self.pair.visit(visitor);
-        visitor.integer(&mut self.cycles);
-        self.grid.visit(visitor);
-        self.watch.visit(visitor);
-        self.noise.visit(visitor);
-        self.spread_scale.visit(visitor);
-        visitor.reals(&mut self.last_innovation_rad, &(-1.01 * PI..=1.01 * PI));
         self.winding.visit(visitor);
         self.path.visit(visitor);
-        self.swing.visit(visitor);
-        visitor.real(&mut self.drift, &(-1.0..=1.0));
         let mut relocks = u32::from(self.relocks);
         visitor.word(&mut relocks);
         self.relocks = relocks as u16;
@@ -49,14 +40,14 @@ mod tests {
         };
         let mut filter = CoupledFilter::<13>::new(&model, &seen(0), None, None).unwrap();
         let mut other = filter;
-        let mut bytes = [0; 4096];
+        let mut bytes = [0; 8192];
         for frame in 1..=150 {
             filter.step(&model, &seen(frame));
             let count = save(StateKind::Cyclic, 1, &mut filter, &mut bytes).unwrap();
             restore(StateKind::Cyclic, 1, &mut other, &bytes[..count]).unwrap();
             assert_eq!(other, filter, "frame {frame}");
         }
-        filter.position = 1.0;
+        filter.leader.position = 1.0;
         let count = save(StateKind::Cyclic, 1, &mut filter, &mut bytes).unwrap();
         assert_eq!(restore(StateKind::Cyclic, 1, &mut other, &bytes[..count]), Err(StateError::Illegal));
     }

@@ -35,6 +35,11 @@ const MAX_SCALE: f32 = 16.0;
 /// Measured at sigma 1.5 to 29 degrees: walkers of the training source reach 2.1, two of 72 with
 /// twice their deviation from the mean cycle 9, and jumps, traffic signs and basketball 16.
 const MAX_FITTING_SCALE: f32 = 9.0;
+/// Scale above which a hypothesis gives way to another place.
+///
+/// Chosen: above the 2.1 that walkers of the training source reach. 2 and 4 do as well, with 9 a
+/// walk after another motion is found later.
+const MAX_DEFENDED_SCALE: f32 = 3.0;
 
 /// Scale of the prior variances of a person's deviation, at least one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,7 +89,12 @@ impl SavedState for SpreadScale {
 impl SpreadScale {
     /// As in the training.
     pub(super) const fn new() -> Self {
-        Self { scale: 1.0, frames: 0.0, nis_excess: 0.0, product: 0.0, product_variance: 0.0 }
+        Self { scale: 1.0, ..Self::zero() }
+    }
+
+    /// Zeros, for a hypothesis that has not begun.
+    pub(super) const fn zero() -> Self {
+        Self { scale: 0.0, frames: 0.0, nis_excess: 0.0, product: 0.0, product_variance: 0.0 }
     }
 
     /// Factor of the prior variances, in [1, [`MAX_SCALE`]].
@@ -95,6 +105,11 @@ impl SpreadScale {
     /// Whether the motion differs from the mean cycle by more than a person does.
     pub(super) fn is_misfit(&self) -> bool {
         self.scale > MAX_FITTING_SCALE
+    }
+
+    /// Whether the deviations are so free that they follow any motion.
+    pub(super) fn is_doubtful(&self) -> bool {
+        self.scale > MAX_DEFENDED_SCALE
     }
 
     /// Adds a frame, `cycles` of the mean cycle after the last one. Returns the factor by which the

@@ -1,26 +1,17 @@
 //! Start of the phase-coupled filter: at the first row, or anywhere in the cycle.
 
-use crate::cyclic::coupled::block::AngleBlock;
-use crate::cyclic::coupled::cycle_pair::CyclePair;
 use crate::cyclic::coupled::initial_measurement::InitialMeasurement;
 use crate::cyclic::coupled::measured_path::MeasuredPath;
 use crate::cyclic::coupled::measurement_noise::MeasurementNoise;
 use crate::cyclic::coupled::phase_grid::PhaseGrid;
-use crate::cyclic::coupled::spread_scale::SpreadScale;
-use crate::cyclic::coupled::state::{CoupledFilter, spread};
-use crate::cyclic::coupled::watch::agreement::Watch;
+use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::phase::wrap_position;
-use crate::cyclic::recognition::explained_variance::ExplainedVariance;
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::error::{ParameterError, Rule, finite, within};
-use crate::math::{max, round};
+use crate::math::round;
 use crate::numeric::rolled::rolled;
 use core::f32::consts::TAU;
-
-/// Standard deviation of a person's speed, relative to the model's mean. Chosen: a tenth, as people
-/// walk.
-const SPEED_SPREAD: f32 = 0.1;
 
 impl<const N: usize> CoupledFilter<N> {
     /// The standard start from the first row. Its noise is estimated from its distance to the mean
@@ -59,13 +50,14 @@ impl<const N: usize> CoupledFilter<N> {
         };
         let row = InitialMeasurement::of(model, first, position)?;
         self.forget(model)?;
-        self.position = position;
-        self.velocity = velocity;
+        self.leader.position = position;
+        self.leader.velocity = velocity;
         self.grid.store(&PhaseGrid::near(position));
-        for (block, unusual_offset_rad2) in self.blocks.iter_mut().zip(row.unusual_offset_rad2).take(rolled(N)) {
+        for (block, unusual_offset_rad2) in self.leader.blocks.iter_mut().zip(row.unusual_offset_rad2).take(rolled(N)) {
             block.inflate_offset_prior(unusual_offset_rad2);
         }
-        self.correct_phase(model, &row.measurement);
+        self.leader.correct(model, &row.measurement, &self.winding, (&mut self.noise, false));
+        self.update_angles(model, &row.measurement);
         self.start_counting(model, first);
         Ok(())
     }
@@ -78,7 +70,7 @@ impl<const N: usize> CoupledFilter<N> {
     pub fn anywhere(model: &CoupledModel<'_>, first: &AngleMeasurement<N>) -> Result<Self, ParameterError> {
         let mut filter = Self::empty();
         filter.forget(model)?;
-        filter.watch.searching = true;
+        filter.searching = true;
         filter.correct(model, first);
         filter.start_counting(model, first);
         Ok(filter)
@@ -92,46 +84,31 @@ impl<const N: usize> CoupledFilter<N> {
         if model.parts().deviation.is_absent() {
             return Err(ParameterError::new("deviation of the model", Rule::NotEmpty));
         }
-        let velocity = model.mean_cycle_velocity();
-        self.forget_person(model);
+        self.leader.forget(model);
+        self.rival.forget(model);
+        self.grid.forget();
+        self.unwatched_frames = 0.0;
+        self.searching = false;
+        self.misfit_cycles = 0.0;
+        self.noise = MeasurementNoise::new();
         self.angles_rad = [0.0; N];
         self.turns = [0; N];
-        self.position = 0.0;
-        self.velocity = velocity;
-        self.pair =
-            CyclePair { cc: 1.0e-5, cv: 0.0, vv: max(1.0e-6, SPEED_SPREAD * SPEED_SPREAD * velocity * velocity) };
-        self.cycles = 0;
-        self.grid.forget();
-        self.watch = Watch::new();
-        self.noise = MeasurementNoise::new();
-        self.spread_scale = SpreadScale::new();
-        self.last_innovation_rad = [0.0; N];
         self.winding = Winding::new();
         self.path = MeasuredPath::new();
-        self.drift = 0.0;
         self.relocks = 0;
-        self.swing = ExplainedVariance::new();
         Ok(())
-    }
-
-    /// Resets what was learned of each angle.
-    #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    pub(super) fn forget_person(&mut self, model: &CoupledModel<'_>) {
-        for (i, block) in self.blocks.iter_mut().enumerate().take(rolled(N)) {
-            *block = AngleBlock::unknown(&spread(model, i));
-        }
     }
 
     /// Starts all counts. Whole turns of the first row (of the mean pose for a missing angle) are
     /// kept, so that no angle jumps after it.
     fn start_counting(&mut self, model: &CoupledModel<'_>, first: &AngleMeasurement<N>) {
-        let pose = model.mean_pose_rad::<N>(model.point(self.position));
+        let pose = model.mean_pose_rad::<N>(model.point(self.leader.position));
         let angles = self.turns.iter_mut().zip(&self.angles_rad).zip(&pose).enumerate().take(rolled(N));
         for (i, ((turns, angle_rad), &mean_rad)) in angles {
             let first_rad = first.angle_rad(i).unwrap_or(mean_rad);
             *turns = round((first_rad - angle_rad) / TAU) as i32;
         }
-        self.cycles = 0;
+        self.leader.cycles = 0;
         self.relocks = 0;
         self.winding = Winding::new();
     }

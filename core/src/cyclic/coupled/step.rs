@@ -1,8 +1,10 @@
 //! A step of the phase-coupled filter: predict, update the grid, correct, estimate.
 
 use crate::cyclic::coupled::block::Basis;
+use crate::cyclic::coupled::evidence::FrameInnovation;
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::{AngleMeasurement, CoupledModel, CyclicEstimate};
+use crate::math::max;
 
 impl<const N: usize> CoupledFilter<N> {
     /// One frame: predict over the measurement's step, then correct by the angles seen. On x86-64
@@ -14,17 +16,46 @@ impl<const N: usize> CoupledFilter<N> {
         self.correct(model, measurement)
     }
 
-    /// Corrects by the measured angles, after the grid was updated and the filter relocked where
-    /// needed.
+    /// Moves on by `step_frames`, in substeps of one frame, longer ones where that would be more
+    /// than [`MAX_SUBSTEPS`](crate::cyclic::coupled::predict::MAX_SUBSTEPS).
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
+    pub fn predict(&mut self, model: &CoupledModel<'_>, step_frames: f32) {
+        self.leader.predict(model, step_frames);
+        if self.rival.exists() {
+            self.rival.hypothesis.predict(model, step_frames);
+        }
+        self.unwatched_frames += step_frames;
+        self.misfit_cycles = max(self.misfit_cycles - step_frames * model.mean_cycle_velocity(), 0.0);
+    }
+
+    /// Corrects by the measured angles, after the grid was updated. The better of leader and rival
+    /// leads.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn correct(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> CyclicEstimate<N> {
         let mode = if measurement.is_empty(model.angle_count()) { None } else { self.watch(model, measurement) };
-        if self.watch.searching {
+        if self.searching {
             return self.estimate_of_all_places(model, measurement, mode);
         }
-        let innovation = self.correct_phase(model, measurement);
-        self.watch.nis.update(&innovation, measurement.step_frames());
+        let innovation = self.correct_hypotheses(model, measurement);
+        self.update_angles(model, measurement);
         self.estimate(model, innovation.log_likelihood, innovation.outlier)
+    }
+
+    /// Corrects leader and rival; returns the innovation of the one that leads then.
+    #[cfg_attr(target_arch = "x86_64", inline(always))]
+    fn correct_hypotheses(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> FrameInnovation {
+        let (winding, noise) = (&self.winding, &mut self.noise);
+        let learns = !self.rival.exists();
+        let innovation = self.leader.correct(model, measurement, winding, (noise, learns));
+        if learns {
+            return innovation;
+        }
+        let other = self.rival.hypothesis.correct(model, measurement, winding, (noise, false));
+        if !self.rival.beats(&other, &innovation) {
+            return innovation;
+        }
+        self.lead_by_rival();
+        other
     }
 
     /// The estimate after the last correction, by `measurement`, without its likelihood.
@@ -33,7 +64,7 @@ impl<const N: usize> CoupledFilter<N> {
         model: &CoupledModel<'_>,
         measurement: &AngleMeasurement<N>,
     ) -> CyclicEstimate<N> {
-        if self.watch.searching {
+        if self.searching {
             return self.estimate_of_all_places(model, measurement, None);
         }
         self.estimate(model, 0.0, false)
@@ -41,25 +72,31 @@ impl<const N: usize> CoupledFilter<N> {
 
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn estimate(&self, model: &CoupledModel<'_>, log_likelihood: f32, outlier: bool) -> CyclicEstimate<N> {
-        let slope = self.pose_slope(model);
-        let basis = Basis::at(self.position);
+        let slope = self.leader.pose_slope(model);
+        let basis = Basis::at(self.leader.position);
         let mut angle_variance_rad2 = [0.0; N];
         for i in 0..model.angle_count().min(N) {
-            let prediction = self.blocks[i].predict_angle(&basis, slope[i]);
-            angle_variance_rad2[i] = self.band_scale(i) * (prediction.variance + self.pair.along(&prediction.gradient));
+            let prediction = self.leader.blocks[i].predict_angle(&basis, slope[i]);
+            angle_variance_rad2[i] =
+                self.band_scale(i) * (prediction.variance + self.leader.pair.along(&prediction.gradient));
         }
         CyclicEstimate {
             angles_rad: self.angles_rad,
             turns: self.turns,
             angle_variance_rad2,
-            cycle_position: self.position,
-            cycle_position_variance: self.pair.cc,
-            cycle_velocity_per_frame: self.travelled_velocity(model),
-            cycle_velocity_variance: self.pair.vv,
+            cycle_position: self.leader.position,
+            cycle_position_variance: self.leader.pair.cc,
+            cycle_velocity_per_frame: self.leader.travelled_velocity(model),
+            cycle_velocity_variance: self.leader.pair.vv,
             log_likelihood,
             outlier,
-            misfit: self.spread_scale.is_misfit(),
+            misfit: self.is_misfit(),
         }
+    }
+
+    /// Whether the motion is another than the model's, or was within the last cycle.
+    pub(super) fn is_misfit(&self) -> bool {
+        self.leader.spread_scale.is_misfit() || self.misfit_cycles > 0.0
     }
 
     /// Factor of the reported variance of the angle at `index`, at least one: the inverse of a

@@ -6,7 +6,7 @@ use crate::cyclic::phase::POSITIONS_IN_CYCLE;
 use crate::numeric::bf16::Bf16;
 use crate::saved_state::{SavedState, StateVisitor};
 
-/// A [`PhaseGrid`] with its weights in [`Bf16`], so that the filter's state fits 2.7 KiB.
+/// A [`PhaseGrid`] with its weights in [`Bf16`], so that the filter's state fits 4 KiB.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StoredGrid {
     weights: [[Bf16; POSITIONS]; SPEEDS],

@@ -1,11 +1,14 @@
 //! The phase-coupled filter on made-up motion.
 
+use crate::cyclic::model::HumanModelTable;
 use crate::cyclic::phase::{position_difference, wrap_position};
 use crate::cyclic::synthetic::{mean_angle, table};
 use crate::cyclic::{AngleMeasurement, CoupledFilter, CoupledModel};
 use crate::math::wrap_angle;
 use crate::random::Stream;
+use crate::saved_state::{StateKind, restore, save};
 use core::f32::consts::TAU;
+use std::boxed::Box;
 use std::vec::Vec;
 
 const N: usize = 13;
@@ -165,6 +168,14 @@ fn it_follows_a_person_who_speeds_up_slows_down_or_stops_and_goes_on() {
     }
 }
 
+/// The motion of [`table`] in which the angle that winds moves as the first one.
+fn swinging() -> Box<HumanModelTable> {
+    let mut swinging = table(0.001, 9);
+    swinging.turns_per_cycle[12] = 0;
+    swinging.mean_pose_rad.iter_mut().for_each(|pose| pose[12] = pose[0]);
+    swinging
+}
+
 /// Share of the 90 % bands that hold `person`, with true noise of 0.1 rad and stated noise of
 /// `stated` rad.
 fn inside_the_band(model: &CoupledModel<'_>, person: impl Fn(usize, f32) -> f32, stated: f32) -> f64 {
@@ -188,11 +199,7 @@ fn inside_the_band(model: &CoupledModel<'_>, person: impl Fn(usize, f32) -> f32,
 /// spread of the cycle's shape, so its bands are wider.
 #[test]
 fn the_bands_hold_where_the_noise_is_larger_than_stated() {
-    let winding = table(0.001, 9);
-    let mut swinging = winding.clone();
-    // The angle that winds moves as the first one.
-    swinging.turns_per_cycle[12] = 0;
-    swinging.mean_pose_rad.iter_mut().for_each(|pose| pose[12] = pose[0]);
+    let (winding, swinging) = (table(0.001, 9), swinging());
     for stated in [0.05, 0.1] {
         let share = inside_the_band(&winding.model().unwrap(), person, stated);
         assert!((0.8..0.99).contains(&share), "stated {stated} rad: {share} inside the 90 % band, winding");
@@ -313,4 +320,55 @@ fn a_search_with_little_noise_reports_no_negative_variance() {
             assert!(variances.iter().all(|variance| *variance >= 0.0), "{variances:?}");
         }
     }
+}
+
+/// A filter that was told a place half a cycle from the person's.
+fn started_half_a_cycle_off(model: &CoupledModel<'_>) -> CoupledFilter<N> {
+    let first = core::array::from_fn(|i| Some(person(i, 0.0)));
+    CoupledFilter::<N>::new(model, &AngleMeasurement::new(&first, 0.1).unwrap(), Some(0.5), None).unwrap()
+}
+
+#[test]
+fn a_rival_at_the_right_place_leads_within_half_a_cycle() {
+    let table = swinging();
+    let model = table.model().unwrap();
+    for seed in 1..=5 {
+        let mut filter = started_half_a_cycle_off(&model);
+        let mut stream = Stream::new(seed, 0, 0);
+        for (frame, position) in walked(65, |_| 1.0).into_iter().enumerate() {
+            let seen = core::array::from_fn(|i| Some(person(i % 12, position) + 0.1 * stream.normal()));
+            let estimate = filter.step(&model, &AngleMeasurement::new(&seen, 0.1).unwrap());
+            let way = position_difference(estimate.cycle_position, wrap_position(position));
+            assert!(frame < 33 || way.abs() < 0.08, "seed {seed}, frame {frame}: {way} off");
+        }
+        assert!(filter.relocks() > 0 && !filter.rival.exists(), "seed {seed}");
+    }
+}
+
+#[test]
+fn where_an_angle_winds_there_is_no_rival_and_the_leader_moves_to_the_grids_place() {
+    let table = table(0.001, 9);
+    let model = table.model().unwrap();
+    let mut filter = started_half_a_cycle_off(&model);
+    let ways = ways(&mut filter, &model, 1, &walked(130, |_| 1.0));
+    assert!(!filter.rival.exists() && filter.relocks() > 0);
+    assert!(ways[100..].iter().all(|way| way.abs() < 0.2), "{:?}", &ways[100..]);
+}
+
+#[test]
+fn a_filter_with_a_rival_is_restored_as_it_was_saved() {
+    let table = swinging();
+    let model = table.model().unwrap();
+    let mut filter = started_half_a_cycle_off(&model);
+    let (mut other, mut stream, mut bytes) = (filter, Stream::new(1, 0, 0), [0; 8192]);
+    let mut rivals = 0;
+    for (frame, position) in walked(130, |_| 1.0).into_iter().enumerate() {
+        let seen = core::array::from_fn(|i| Some(person(i % 12, position) + 0.5 * stream.normal()));
+        filter.step(&model, &AngleMeasurement::new(&seen, 0.5).unwrap());
+        rivals += i32::from(filter.rival.exists());
+        let count = save(StateKind::Cyclic, 1, &mut filter, &mut bytes).unwrap();
+        restore(StateKind::Cyclic, 1, &mut other, &bytes[..count]).unwrap();
+        assert_eq!(other, filter, "frame {frame}");
+    }
+    assert!(rivals > 0);
 }

@@ -42,7 +42,7 @@ pub struct CyclicTracker<const N: usize> {
     place: Option<FigurePlace<N>>,
 }
 
-const _: () = assert!(size_of::<CyclicTracker<13>>() <= 4096, "the tracker has to fit 4 KiB");
+const _: () = assert!(size_of::<CyclicTracker<13>>() <= 5632, "the tracker has to fit 5.5 KiB");
 
 impl<const N: usize> CyclicTracker<N> {
     /// A tracker that begins with the frame `first`.

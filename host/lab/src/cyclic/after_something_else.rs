@@ -4,7 +4,7 @@
 use super::Protocol;
 use super::other_sources::{Excerpt, WALKS, excerpt};
 use super::protocol::measurements;
-use super::stress::{Stranger, strangers};
+use super::stress::{ELSEWHERE, Stranger, strangers};
 use anyhow::Result;
 use sinew::cyclic::tracking::{TrackingOptions, track};
 use sinew::cyclic::{AngleRow, AngleTable, CyclicModel};
@@ -28,10 +28,17 @@ const EXERCISES: [Excerpt; 3] = [
     ("cmu-exercise/13_31.amc", Some("cmu-walk/35/35.asf"), 1000..1031),
 ];
 /// What comes before the people of the training.
-const SIGNALS: [Excerpt; 3] = [
+const SIGNALS: [Excerpt; 10] = [
     ("cmu-expmap/train_directing_traffic_1.txt", None, 0..120),
+    ("cmu-expmap/train_directing_traffic_1.txt", None, 150..181),
+    ("cmu-expmap/train_directing_traffic_1.txt", None, 400..520),
     ("cmu-expmap/train_basketball_signal_3.txt", None, 0..90),
+    ("cmu-expmap/train_basketball_signal_3.txt", None, 100..131),
+    ("cmu-expmap/train_basketball_signal_3.txt", None, 120..240),
     ("cmu-expmap/train_jumping_1.txt", None, 0..120),
+    ("cmu-expmap/train_jumping_1.txt", None, 130..161),
+    ("cmu-expmap/train_running_1.txt", None, 0..60),
+    ("cmu-expmap/train_running_2.txt", None, 0..100),
 ];
 
 /// A walk, what came before it, and who follows it.
@@ -58,15 +65,15 @@ pub fn of_other_sources(mocap: &Path) -> Result<Vec<WalkAfter>> {
 }
 
 /// The [people of the training](super::stress) after standing, hand signals and jumps, each for a
-/// model of the others. By these the filter may be chosen.
+/// model of the others, by [`ELSEWHERE`]. By these the filter may be chosen.
 ///
 /// # Errors
 /// As [`of_other_sources`].
-pub fn of_strangers(mocap: &Path) -> Result<Vec<WalkAfter>> {
+pub fn of_strangers(mocap: &Path) -> Result<[Vec<WalkAfter>; ELSEWHERE.len()]> {
     let signals = before(mocap, SIGNALS)?;
-    let mut all = Vec::new();
+    let mut all = ELSEWHERE.map(|_| Vec::new());
     for Stranger { model, chains } in strangers(&mocap.join("cmu-walk"))? {
-        for chain in chains {
+        for (chain, all) in chains.iter().zip(&mut all) {
             let walk = chain.rows[..WALK.len().min(chain.rows.len())].to_vec();
             all.push(WalkAfter { model: model.clone(), befores: with_standing(&walk, &signals), walk });
         }
@@ -87,7 +94,7 @@ pub fn off_shares(walks: &[WalkAfter], (sigma_deg, seeds): (f64, &[u64])) -> Res
     Ok(off.shares())
 }
 
-fn before(mocap: &Path, others: [Excerpt; 3]) -> Result<Vec<Vec<AngleRow>>> {
+fn before<const COUNT: usize>(mocap: &Path, others: [Excerpt; COUNT]) -> Result<Vec<Vec<AngleRow>>> {
     others.into_iter().map(|other| excerpt(mocap, other)).collect()
 }
 

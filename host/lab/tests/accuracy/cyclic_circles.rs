@@ -32,7 +32,7 @@ const COUNT: f64 = 0.15;
 /// Mean error of the cadence of the recorded circles by models of two or three of them. First for
 /// circles that the model knows, then for those of the other recording, of which other joints go
 /// round.
-const FEW_CADENCE: f64 = 0.03;
+const FEW_CADENCE: f64 = 0.07;
 
 /// Writes the poses of `cycle_frames` a cycle and gives their cuts.
 fn write(folder: &Path, file: &str, cycle_frames: u64, pose_rad: impl Fn(u64) -> [f64; ANGLES]) -> Vec<Cut> {

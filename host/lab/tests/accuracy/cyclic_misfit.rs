@@ -14,8 +14,8 @@ const OTHERS: [&str; 2] = ["cmu-expmap/train_basketball_signal_3.txt", "cmu-expm
 /// Runners of another source, by the model of walking, with the least share of the truth inside the
 /// 90 % band at each noise. The first second, in which nothing is known of the runner, is included.
 const RUNNERS: [(&str, [f64; 3]); 3] = [
-    ("bandai/dataset-2_run_active_001.bvh", [0.90, 0.85, 0.80]),
-    ("bandai/dataset-2_run_active_002.bvh", [0.90, 0.87, 0.77]),
+    ("bandai/dataset-2_run_active_001.bvh", [0.88, 0.82, 0.80]),
+    ("bandai/dataset-2_run_active_002.bvh", [0.90, 0.82, 0.77]),
     ("bandai/dataset-2_run_exhausted_001.bvh", [0.90, 0.87, 0.70]),
 ];
 /// Noise, degrees.
@@ -46,7 +46,7 @@ fn misfit_share(file: &str, sigma_deg: f64) -> Option<f64> {
 #[test]
 fn another_motion_is_flagged() {
     for file in OTHERS {
-        // With more noise the filter relocks again and again, and starts anew each time.
+        // With more noise the filter goes elsewhere again and again, and starts anew each time.
         for sigma_deg in &SIGMAS_DEG[..2] {
             let Some(share) = misfit_share(file, *sigma_deg) else { return };
             assert!((0.5..1.0).contains(&share), "{file}: {share}");
@@ -58,8 +58,10 @@ fn another_motion_is_flagged() {
 fn the_band_of_a_runner_widens() {
     for (file, least) in RUNNERS {
         for (sigma_deg, least) in SIGMAS_DEG.into_iter().zip(least) {
-            let Some((_, inside)) = tracked(file, sigma_deg) else { return };
-            println!("{file}, sigma {sigma_deg}: {inside:.3} inside");
+            let Some((tracked, inside)) = tracked(file, sigma_deg) else { return };
+            let later = tracked.frames.iter().skip(60);
+            let flagged = later.clone().filter(|frame| frame.estimate.misfit).count() as f64 / later.count() as f64;
+            println!("{file}, sigma {sigma_deg}: {inside:.3} inside, from the second second on {flagged:.2} flagged");
             assert!((least..0.97).contains(&inside), "{file}, sigma {sigma_deg}: {inside}");
         }
     }

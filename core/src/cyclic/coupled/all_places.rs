@@ -15,15 +15,15 @@ impl<const N: usize> CoupledFilter<N> {
     /// The mean pose over the grid's positions by weight, corrected angle by angle. `mode` is the
     /// grid's mode where it is known.
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    pub(in crate::cyclic::coupled) fn estimate_of_all_places(
+    pub(super) fn estimate_of_all_places(
         &mut self,
         model: &CoupledModel<'_>,
         measurement: &AngleMeasurement<N>,
         mode: Option<PhaseMode>,
     ) -> CyclicEstimate<N> {
         let mode = mode.unwrap_or_else(|| self.grid.mode(model));
-        self.move_by(position_difference(mode.position, self.position));
-        self.velocity = mode.velocity;
+        self.leader.move_by(position_difference(mode.position, self.leader.position));
+        self.leader.velocity = mode.velocity;
         self.path = MeasuredPath::new();
         let (mean, mut variance) = self.pose_of_all_places(model);
         let (mut squares, mut volume, mut count) = (0.0, LogProduct::one(), 0);
@@ -46,14 +46,14 @@ impl<const N: usize> CoupledFilter<N> {
             angles_rad: self.angles_rad,
             turns: self.turns,
             angle_variance_rad2: variance,
-            cycle_position: self.position,
+            cycle_position: self.leader.position,
             // The rest of the weight has the variance of a uniform position.
             cycle_position_variance: mode.weight * mode.covariance[0] + elsewhere / 12.0,
-            cycle_velocity_per_frame: self.velocity,
+            cycle_velocity_per_frame: self.leader.velocity,
             cycle_velocity_variance: mode.covariance[2],
             log_likelihood: -0.5 * (squares + volume.ln()),
             outlier: is_outlier(squares, count, DEFAULT_GATE_SIGMAS),
-            misfit: self.spread_scale.is_misfit(),
+            misfit: self.is_misfit(),
         }
     }
 
@@ -61,7 +61,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// deviation.
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     fn pose_of_all_places(&self, model: &CoupledModel<'_>) -> ([f32; N], [f32; N]) {
-        let reference = model.mean_pose_rad::<N>(model.point(self.position));
+        let reference = model.mean_pose_rad::<N>(model.point(self.leader.position));
         let (mut mean, mut square) = ([0.0; N], [0.0; N]);
         for (cell, weight) in self.grid.by_position().into_iter().enumerate() {
             let pose = model.mean_pose_rad::<N>(model.point(cell as f32 / POSITIONS as f32));
@@ -71,12 +71,12 @@ impl<const N: usize> CoupledFilter<N> {
                 square[i] += weight * off * off;
             }
         }
-        let basis = Basis::at(self.position);
+        let basis = Basis::at(self.leader.position);
         let mut variance = [0.0; N];
         for i in 0..model.angle_count().min(N) {
-            let prediction = self.blocks[i].predict_angle(&basis, 0.0);
+            let prediction = self.leader.blocks[i].predict_angle(&basis, 0.0);
             variance[i] = max(square[i] - mean[i] * mean[i], 0.0) + prediction.variance;
-            mean[i] += reference[i] + self.blocks[i].deviation(&basis);
+            mean[i] += reference[i] + self.leader.blocks[i].deviation(&basis);
         }
         (mean, variance)
     }
