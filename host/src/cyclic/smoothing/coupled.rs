@@ -106,7 +106,12 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
         Some(Link { predicted_mean: moved.mean(model), cross, predicted_covariance })
     }
 
-    fn smoothed(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N> {
+    /// While the phase is unknown the estimate is the mean over all places, which these moments do
+    /// not describe.
+    fn smoothed(&self, model: &MotionModel<'_>, moments: &Moments) -> Option<Smoothed<N>> {
+        if self.0.is_searching() {
+            return None;
+        }
         let mean = &moments.mean;
         let position = mean[0].rem_euclid(1.0);
         let pose = model.mean_pose_rad::<N>(model.point(position as f32));
@@ -137,13 +142,13 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
         // adds that up as if it knew less of them.
         let filtered = self.0.cycle();
         let variance = |index: usize, filtered: f32| moments.covariance[(index, index)].clamp(0.0, f64::from(filtered));
-        Smoothed {
+        Some(Smoothed {
             angles_rad,
             angle_variance_rad2,
             cycle_position: position,
             cycle_position_variance: variance(0, filtered.position_variance),
             cycle_velocity: mean[1],
             cycle_velocity_variance: variance(1, filtered.velocity_variance),
-        }
+        })
     }
 }

@@ -114,10 +114,10 @@ impl<const N: usize> Smoothable<N> for KalmanState<N> {
         Some(Link { predicted_mean: moved.mean(model), cross: part(&cross), predicted_covariance: part(&predicted) })
     }
 
-    fn smoothed(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N> {
+    fn smoothed(&self, model: &MotionModel<'_>, moments: &Moments) -> Option<Smoothed<N>> {
         let count = model.angle_count().min(N);
         let cycle = self.filter.cycle();
-        Smoothed {
+        Some(Smoothed {
             angles_rad: std::array::from_fn(|i| if i < count { moments.mean[i] } else { 0.0 }),
             angle_variance_rad2: std::array::from_fn(
                 |i| if i < count { moments.covariance[(i, i)].max(0.0) } else { 0.0 },
@@ -126,6 +126,6 @@ impl<const N: usize> Smoothable<N> for KalmanState<N> {
             cycle_position_variance: cycle.position_variance.into(),
             cycle_velocity: cycle.velocity.into(),
             cycle_velocity_variance: cycle.velocity_variance.into(),
-        }
+        })
     }
 }

@@ -45,9 +45,9 @@ pub trait Smoothable<const N: usize> {
     /// not follow from this.
     fn link(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, next: &Self) -> Option<Link>;
 
-    /// The estimate of the frame from moments of this kind of state. Numbers that no later
-    /// measurement changes are those of this state.
-    fn smoothed(&self, model: &MotionModel<'_>, moments: &Moments) -> Smoothed<N>;
+    /// The estimate of the frame from moments of this kind of state, `None` where the forward one
+    /// stays. Numbers that no later measurement changes are those of this state.
+    fn smoothed(&self, model: &MotionModel<'_>, moments: &Moments) -> Option<Smoothed<N>>;
 }
 
 /// Smooths: `measurements` at k led from the state k to the state k + 1.
@@ -56,7 +56,7 @@ pub fn backward<const N: usize, S: Smoothable<N>>(
     model: &MotionModel<'_>,
     states: &[S],
     measurements: &[AngleMeasurement<N>],
-) -> Vec<Smoothed<N>> {
+) -> Vec<Option<Smoothed<N>>> {
     let mut all = Vec::with_capacity(states.len());
     let mut later: Option<(&S, Moments)> = None;
     for (index, state) in states.iter().enumerate().rev() {
@@ -73,7 +73,7 @@ pub fn backward<const N: usize, S: Smoothable<N>>(
         });
         let moments = linked.unwrap_or(filtered);
         let mut smoothed = state.smoothed(model, &moments);
-        for angle in &mut smoothed.angles_rad {
+        for angle in smoothed.iter_mut().flat_map(|smoothed| &mut smoothed.angles_rad) {
             *angle = least_angle(*angle);
         }
         all.push(smoothed);

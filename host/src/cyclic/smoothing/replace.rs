@@ -10,11 +10,15 @@ use std::f64::consts::TAU;
 /// their variances. Likelihood and outlier flags stay those of the forward pass. Cycles count from
 /// the smoothed position of the first frame.
 ///
-/// The one of `smoothed` at an index belongs to the frame at that index; frames beyond keep the
-/// estimate that they have.
-pub fn replace_estimates<const N: usize>(frames: &mut [TrackedFrame], smoothed: &[Smoothed<N>]) {
+/// The one of `smoothed` at an index belongs to the frame at that index; frames without one keep
+/// the estimate that they have.
+pub fn replace_estimates<const N: usize>(frames: &mut [TrackedFrame], smoothed: &[Option<Smoothed<N>>]) {
     let mut first_shift = None;
     for (frame, smoothed) in frames.iter_mut().zip(smoothed) {
+        let Some(smoothed) = smoothed else {
+            frame.cycles -= first_shift.unwrap_or(0.0);
+            continue;
+        };
         let estimate = &mut frame.estimate;
         for (i, angle) in frame.angles_rad.iter_mut().enumerate().take(N) {
             *angle += least_angle(smoothed.angles_rad[i] - *angle);

@@ -178,9 +178,9 @@ impl<'m, const N: usize> Pass<'m, N> {
         }
     }
 
-    /// The estimate of each state given all measurements.
+    /// The estimate of each state given all measurements, `None` where the forward one stays.
     #[must_use]
-    pub fn smoothed(&self) -> Vec<Smoothed<N>> {
+    pub fn smoothed(&self) -> Vec<Option<Smoothed<N>>> {
         match &self.states {
             States::Kalman(states) => backward(&self.model, states, &self.measurements),
             States::Coupled(states) => backward(&self.model, states, &self.measurements),

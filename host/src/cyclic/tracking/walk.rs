@@ -83,9 +83,9 @@ impl<'a, const N: usize> Walk<'a, N> {
         self.frames[1] = frame;
     }
 
-    /// The estimates from the first row with an angle on, given all that are answered; `None`
-    /// unless the options ask for that.
-    pub fn smoothed(&self) -> Option<Vec<Smoothed<N>>> {
+    /// The estimates from the first row with an angle on, given all that are answered, each `None`
+    /// where the forward one stays; no list unless the options ask for it.
+    pub fn smoothed(&self) -> Option<Vec<Option<Smoothed<N>>>> {
         self.pass.as_ref().map(Pass::smoothed)
     }
 }
