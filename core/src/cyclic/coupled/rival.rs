@@ -2,8 +2,8 @@
 //!
 //! Leader and rival see the same frames, and each learns its person. Their log-likelihoods, summed
 //! since the rival began, decide which of them leads: the sequential probability ratio test of
-//! Wald 1945, Sequential Tests of Statistical Hypotheses, Annals of Mathematical Statistics 16. A
-//! rival pays for what it has to learn of the person, as a Bayes factor does.
+//! Wald 1945, Sequential Tests of Statistical Hypotheses, Annals of Mathematical Statistics 16. What
+//! a rival has to learn of the person counts against it, as in a Bayes factor.
 
 use crate::cyclic::CoupledModel;
 use crate::cyclic::coupled::evidence::FrameInnovation;

@@ -80,8 +80,8 @@ impl<const N: usize> CoupledFilter<N> {
         }
     }
 
-    /// In an even circle an offset and a leading phase are the same, so likelihoods tell no places
-    /// apart, and the leader keeps its person.
+    /// In an even circle an offset and a leading phase are the same, so likelihoods do not
+    /// distinguish places, and the leader keeps its person.
     fn compare_winding(&mut self, mode: &PhaseMode) {
         if abs(position_difference(mode.position, self.leader.position)) > MAX_WINDING_DIFFERENCE_CYCLES {
             self.move_leader(mode);
