@@ -4,8 +4,8 @@ use super::arm::{SinewArm, sinew_arm_init, sinew_arm_reset, sinew_arm_size, sine
 use super::arm_config::SinewArmConfig;
 use super::arm_frame::{SINEW_SIDE_LEFT, SinewArmResult};
 use super::cyclic::{
-    SinewCyclic, sinew_cyclic_init, sinew_cyclic_reset, sinew_cyclic_restore, sinew_cyclic_save, sinew_cyclic_size,
-    sinew_cyclic_step,
+    SINEW_CYCLIC_STATE_MAX_BYTES, SinewCyclic, sinew_cyclic_init, sinew_cyclic_reset, sinew_cyclic_restore,
+    sinew_cyclic_save, sinew_cyclic_size, sinew_cyclic_step,
 };
 use super::cyclic_frame::{SinewCyclicFrame, SinewCyclicResult};
 use super::every_object::{Memory, written};
@@ -43,7 +43,7 @@ impl Walker {
     }
 
     fn save(&self) -> Vec<u8> {
-        let mut state = vec![0; 4096];
+        let mut state = vec![0; SINEW_CYCLIC_STATE_MAX_BYTES];
         // SAFETY: the tracker's memory and the buffer are there.
         let bytes = written(|bytes| unsafe { sinew_cyclic_save(self.tracker, state.as_mut_ptr(), state.len(), bytes) });
         state.truncate(bytes);
