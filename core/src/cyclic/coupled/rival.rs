@@ -2,8 +2,8 @@
 //!
 //! Leader and rival see the same frames, and each learns its person. Their log-likelihoods, summed
 //! since the rival began, decide which of them leads: the sequential probability ratio test of
-//! Wald 1945, Sequential Tests of Statistical Hypotheses, Annals of Mathematical Statistics 16. What
-//! a rival has to learn of the person counts against it, as in a Bayes factor.
+//! Wald 1945, Sequential Tests of Statistical Hypotheses, Annals of Mathematical Statistics 16.
+//! What a rival has to learn of the person counts against it, as in a Bayes factor.
 
 use crate::cyclic::CoupledModel;
 use crate::cyclic::coupled::evidence::FrameInnovation;
@@ -20,7 +20,7 @@ const MIN_DIFFERENCE_CYCLES: f32 = 0.12;
 /// ln of the likelihood ratio from which the rival leads. Chosen: 150 to one. 3 loses three times
 /// as many runs at much noise, 7 and 10 do as well.
 const MIN_LOG_ODDS: f32 = 5.0;
-/// Largest ln of the ratio that is kept, either way.
+/// Largest ln of the ratio that is kept, either way. Chosen: beyond any that frames give.
 const MAX_LOG_ODDS: f32 = 1.0e6;
 
 /// Whether two positions are different places in the cycle.

@@ -322,7 +322,7 @@ fn a_search_with_little_noise_reports_no_negative_variance() {
     }
 }
 
-/// A filter that was told a place half a cycle from the person's.
+/// A filter that begins half a cycle from the person's place.
 fn started_half_a_cycle_off(model: &CoupledModel<'_>) -> CoupledFilter<N> {
     let first = core::array::from_fn(|i| Some(person(i, 0.0)));
     CoupledFilter::<N>::new(model, &AngleMeasurement::new(&first, 0.1).unwrap(), Some(0.5), None).unwrap()

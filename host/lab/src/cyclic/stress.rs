@@ -27,7 +27,7 @@ const OFFSET_STD_DEG: [f64; 2] = [12.0, 30.0];
 /// Smallest and largest factor of such an angle's swing. Chosen likewise.
 const SWING: [f64; 2] = [0.6, 1.3];
 /// Factors of the offsets and powers of the swings' factors: own joints, elsewhere, and farther.
-/// Chosen: so that a filter which is good at the first is told from one that is good at all.
+/// Chosen: so that filters which are alike at the first differ at the others.
 pub const ELSEWHERE: [(f64, f64); 4] = [(0.0, 0.0), (1.0, 1.0), (1.5, 1.3), (2.0, 1.6)];
 /// The cut list of the shipped walking model.
 const CUTS: &str = include_str!("../../../models/cuts/walking.csv");
