@@ -6,6 +6,7 @@
 //! `mean + regression (z - z_mean)` and covariance `covariance`. Angles are independent of each
 //! other given z, so no covariance between angles is stored.
 
+use crate::cyclic::coupled::constants::UNUSUAL_SWING_SHARE;
 use crate::cyclic::saved_ranges::NUMBER;
 use crate::math::{abs, exp, max, sin_cos};
 use crate::numeric::semi_definite::{packed_index, packed_len};
@@ -21,10 +22,6 @@ const SLOPE: usize = 4;
 /// most 2^-23 of the root of both variances. Five times that on the diagonal of five rows keeps the
 /// matrix positive semi-definite.
 const ROUNDING: f32 = 5.0 / 8_388_608.0;
-
-/// Variance of the swing of an angle with an unusual offset, as a share of the squared offset.
-/// Chosen: such an angle's swing differs by about a sixth of its offset.
-const UNUSUAL_SWING_SHARE: f32 = 0.03;
 
 /// Direction in which an angle depends on its parts at a cycle position.
 ///

@@ -2,6 +2,7 @@
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::block::{AnglePrediction, Basis};
+use crate::cyclic::coupled::constants::GATE_SIGMAS;
 use crate::cyclic::coupled::evidence::{FrameInnovation, PhaseEvidence};
 use crate::cyclic::coupled::hypothesis::Hypothesis;
 use crate::cyclic::coupled::measurement_noise::MeasurementNoise;
@@ -10,9 +11,12 @@ use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::{max, sqrt, wrap_angle};
 
-/// Gate of a single angle, standard deviations. An angle beyond it does not inform the phase, and
-/// its offset is learned again. Chosen: short links that wind in a side view would drag the phase.
-pub(super) const GATE_SIGMAS: f32 = 4.0;
+/// Whether an angle's innovation of that variance, rad^2, lies beyond the gate. It does not inform
+/// the phase then, and its offset is learned again.
+#[inline(always)]
+pub(super) fn is_beyond_gate(residual: f32, variance: f32) -> bool {
+    residual * residual > GATE_SIGMAS * GATE_SIGMAS * variance && is_on(Part::AngleGate)
+}
 
 impl<const N: usize> Hypothesis<N> {
     /// The extended Kalman correction about the present position; returns the innovation.
@@ -35,7 +39,7 @@ impl<const N: usize> Hypothesis<N> {
             let Some(measured) = measurement.angle_rad(i) else { continue };
             let stated = measurement.std_rad()[i] * measurement.std_rad()[i];
             let noise = noises.scale(i) * stated;
-            let residual = wrap_angle(measured - pose[i] - self.blocks[i].deviation(&basis));
+            let residual = self.residual(i, measured - pose[i], &basis);
             let mut prediction = self.blocks[i].predict_angle(&basis, slope[i]);
             let given = prediction.variance + noise;
             let (total, informs_phase) = (given + self.pair.along(&prediction.gradient), winding.informs_phase(i));
@@ -50,7 +54,7 @@ impl<const N: usize> Hypothesis<N> {
             } else {
                 evidence.add_excluded(total, residual);
             }
-            if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total && is_on(Part::AngleGate) {
+            if is_beyond_gate(residual, total) {
                 self.blocks[i].inflate_offset(residual * residual);
                 prediction.inflate_offset(residual * residual);
             } else if informs_phase {
@@ -77,6 +81,12 @@ impl<const N: usize> Hypothesis<N> {
         }
         self.shift_by(model, shift);
         innovation
+    }
+
+    /// Innovation of the angle at `index`, which is measured `off_rad` from the mean pose.
+    #[inline(always)]
+    pub(super) fn residual(&self, index: usize, off_rad: f32, basis: &Basis) -> f32 {
+        wrap_angle(off_rad - self.blocks[index].deviation(basis))
     }
 
     /// Slope of the mean pose by the position, rad per cycle: the secant over one standard

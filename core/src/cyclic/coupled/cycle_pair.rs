@@ -1,14 +1,9 @@
 //! Covariance of cycle position and velocity (c, v) through prediction and correction.
 
+use crate::cyclic::coupled::constants::TEMPORAL_STD;
 use crate::cyclic::saved_ranges::VARIANCE;
 use crate::math::{clamp, ln, max, min, sqrt};
 use crate::saved_state::{SavedState, StateVisitor};
-
-/// Standard deviation of the temporal acceleration, cyclic (10), cycles per frame^2.
-///
-/// Chosen between measurements: below it the filter follows changes of speed less well. With 3e-4
-/// the cadence of an elderly walker is 1.8 % off (`docs/cyclic_coupled.md`).
-const TEMPORAL_STD: f32 = 2.0e-4;
 
 /// Covariance of (c, v), in cycles and frames.
 #[derive(Debug, Clone, Copy, PartialEq)]

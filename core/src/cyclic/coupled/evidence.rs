@@ -1,20 +1,11 @@
 //! Evidence of a frame's angles for (c, v) in the phase-coupled filter, and the frame's innovation.
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
+use crate::cyclic::coupled::constants::{TEMPERING, WINDING_SHAPE_STD_RAD};
 use crate::cyclic::coupled::cycle_pair::{CyclePair, Information};
 use crate::numeric::chi_square::{DEFAULT_GATE_SIGMAS, is_outlier};
 use crate::numeric::log_product::LogProduct;
 use core::f32::consts::TAU;
-
-/// Inflation of an angle's variance as evidence for the phase. Chosen: angles deviate together, so
-/// 13 of them carry less evidence than 13 independent ones.
-const TEMPERING: f32 = 2.5;
-/// Standard deviation of a person's cycle shape in a motion with a winding angle, rad: no angle
-/// informs the phase better.
-///
-/// Chosen: in an even circle an offset and a leading phase are the same. Without it circles are a
-/// third too slow.
-const WINDING_SHAPE_STD_RAD: f32 = 0.3;
 
 /// Innovations of the measured angles with their derivatives by (c, v).
 pub(super) struct PhaseEvidence {

@@ -6,6 +6,7 @@
 
 use crate::cyclic::CoupledModel;
 use crate::cyclic::coupled::block::{AngleBlock, PARTS, Spread};
+use crate::cyclic::coupled::constants::SPEED_SPREAD;
 use crate::cyclic::coupled::cycle_pair::CyclePair;
 use crate::cyclic::coupled::phase_grid::PhaseMode;
 use crate::cyclic::coupled::spread_scale::SpreadScale;
@@ -15,14 +16,6 @@ use crate::math::{clamp, max, round};
 use crate::numeric::rolled::rolled;
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::PI;
-
-/// Standard deviation of c, cycles, above which the linearisation does not hold and the filter
-/// searches by the grid. Chosen: about a sixth of a cycle, over which the mean pose is no straight
-/// line.
-pub(super) const LOST_STD: f32 = 0.15;
-/// Standard deviation of a person's speed, relative to the model's mean. Chosen: with a tenth a
-/// tempo of 1.4 is lost at much noise, with 0.3 joints far elsewhere are.
-const SPEED_SPREAD: f32 = 0.15;
 
 /// Place and speed in the cycle with their covariance, and each angle's deviation given them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,6 +34,8 @@ pub(super) struct Hypothesis<const N: usize> {
     /// cycle cancel where the velocity is right; over half a cycle the mean is half again as
     /// unsteady.
     drift: f32,
+    /// Number of this hypothesis in the run. One that moves elsewhere is another.
+    pub(super) number: u32,
 }
 
 impl<const N: usize> SavedState for Hypothesis<N> {
@@ -55,6 +50,7 @@ impl<const N: usize> SavedState for Hypothesis<N> {
         self.spread_scale.visit(visitor);
         visitor.reals(&mut self.last_innovation_rad, &(-1.01 * PI..=1.01 * PI));
         visitor.real(&mut self.drift, &(-1.0..=1.0));
+        visitor.word(&mut self.number);
     }
 }
 
@@ -70,6 +66,7 @@ impl<const N: usize> Hypothesis<N> {
             spread_scale: SpreadScale::zero(),
             last_innovation_rad: [0.0; N],
             drift: 0.0,
+            number: 0,
         }
     }
 
@@ -81,6 +78,7 @@ impl<const N: usize> Hypothesis<N> {
         self.pair =
             CyclePair { cc: 1.0e-5, cv: 0.0, vv: max(1.0e-6, SPEED_SPREAD * SPEED_SPREAD * velocity * velocity) };
         self.cycles = 0;
+        self.number = 0;
         self.forget_person(model);
     }
 
@@ -97,14 +95,16 @@ impl<const N: usize> Hypothesis<N> {
 
     /// Begins with an unknown person at the place and speed of `mode`, the shorter way from where
     /// `other` is.
-    pub(super) fn begin_at(&mut self, model: &CoupledModel<'_>, mode: &PhaseMode, other: &Self) {
+    pub(super) fn begin_at(&mut self, model: &CoupledModel<'_>, (mode, number): (&PhaseMode, u32), other: &Self) {
         self.forget_person(model);
         (self.cycles, self.position) = (other.cycles, other.position);
-        self.move_to(mode);
+        self.move_to(mode, number);
     }
 
-    /// Moves to the place and speed of `mode`. What was learned of the person stays.
-    pub(super) fn move_to(&mut self, mode: &PhaseMode) {
+    /// Moves to the place and speed of `mode`, as the hypothesis of that number. What was learned
+    /// of the person stays.
+    pub(super) fn move_to(&mut self, mode: &PhaseMode, number: u32) {
+        self.number = number;
         self.move_by(position_difference(mode.position, self.position));
         self.velocity = mode.velocity;
         self.drift = 0.0;

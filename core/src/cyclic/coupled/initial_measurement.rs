@@ -4,22 +4,14 @@
 //! the rest. A person or a joint placement may have offsets beyond the spread of the training.
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
+use crate::cyclic::coupled::constants::{MIN_STD_RAD, MIN_UNUSUAL_SIGMAS};
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::error::ParameterError;
 use crate::math::{max, min, sqrt, wrap_angle};
 use crate::numeric::rolled::rolled;
 
-/// Smallest standard deviation of an angle of the first row, rad. Chosen: the root of the Kalman
-/// filter's first variance (`KalmanOptions::angle_variance`, 1e-4 rad^2).
-const MIN_STD_RAD: f32 = 0.01;
 /// Median of chi-square with one degree of freedom (tables: 0.454936).
 const MEDIAN_CHI_SQUARE: f32 = 0.454_9;
-/// Noise that the spread between people hides, rad. Chosen: below it the stated noise is halved at
-/// most.
-const SMALL_STD_RAD: f32 = 0.025;
-/// Distance from the mean pose, standard deviations of spread and noise, from which an offset is
-/// unusual. Chosen: a limit of four finds no person of another source.
-const MIN_UNUSUAL_SIGMAS: f32 = 2.0;
 
 /// The first row with its noise and its unusual offsets.
 #[derive(Debug, Clone, Copy)]
@@ -34,9 +26,9 @@ pub(super) struct InitialMeasurement<const N: usize> {
 impl<const N: usize> InitialMeasurement<N> {
     /// The row `first` at cycle position `position`.
     ///
-    /// The noise is the distance from the mean pose beyond the spread between people. It is at most
-    /// the stated noise, and at least half of it where that is small. The median over the angles
-    /// decides, since noise moves all of them and an unusual offset only some.
+    /// The noise is the distance from the mean pose beyond the spread between people, at most the
+    /// stated noise. The median over the angles decides, since noise moves all of them and an
+    /// unusual offset only some.
     ///
     /// # Errors
     /// Those of [`AngleMeasurement::with_std`].
@@ -61,7 +53,7 @@ impl<const N: usize> InitialMeasurement<N> {
         let row_std_rad = if is_on(Part::FirstRowNoise) { sqrt(median(&excess)) } else { f32::MAX };
         let mut std_rad = *first.std_rad();
         for std in std_rad.iter_mut().take(rolled(N)) {
-            *std = max(min(*std, row_std_rad), max(min(0.5 * *std, SMALL_STD_RAD), MIN_STD_RAD));
+            *std = max(min(*std, row_std_rad), MIN_STD_RAD);
         }
         let within = MIN_UNUSUAL_SIGMAS * MIN_UNUSUAL_SIGMAS;
         for ((square, spread), std) in unusual_offset_rad2.iter_mut().zip(spread).zip(std_rad).take(rolled(N)) {

@@ -5,6 +5,7 @@
 
 use crate::cyclic::AngleMeasurement;
 use crate::cyclic::coupled::ablation::{Part, is_on};
+use crate::cyclic::coupled::constants::{MAX_INTERVAL_FRAMES, MAX_TURN_STD_RAD};
 use crate::math::{round_small, wrap_angle};
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::TAU;
@@ -12,13 +13,6 @@ use core::f32::consts::TAU;
 /// Steps of a turn in which a measured angle is stored. Chosen: one byte, whose wrapping difference
 /// is the shorter arc.
 const STEPS: f32 = 256.0;
-/// Largest standard deviation of a measurement that decides the direction, rad.
-///
-/// Chosen: half a turn is then 4.3 standard deviations of the difference of two measurements.
-const MAX_STD_RAD: f32 = 0.52;
-/// Longest interval between two measurements, frames. Chosen: beyond it the arc may exceed half a
-/// turn.
-const MAX_INTERVAL_FRAMES: f32 = 4.0;
 
 /// Last measurement of each angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,7 +56,7 @@ impl<const N: usize> MeasuredPath<N> {
         let (Some(measured_rad), Some(last)) = (measurement.angle_rad(index), self.last.get_mut(index)) else {
             return 0;
         };
-        let is_noisy = measurement.std_rad().get(index).is_none_or(|std_rad| *std_rad > MAX_STD_RAD);
+        let is_noisy = measurement.std_rad().get(index).is_none_or(|std_rad| *std_rad > MAX_TURN_STD_RAD);
         if is_noisy || measurement.step_frames() > MAX_INTERVAL_FRAMES || !is_on(Part::MeasuredPath) {
             return 0;
         }

@@ -13,27 +13,10 @@
 //! [`MeasurementNoise::band_scale`].
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
+use crate::cyclic::coupled::constants::{KEPT, MAX_SCALE, MAX_SQUARE, MIN_SCALE, SHARED_FRAMES, STATED_FRAMES};
 use crate::math::{clamp, exp, least_angle, ln, max, min, sqrt};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 use core::f32::consts::PI;
-
-/// Smallest scale that the gains use.
-///
-/// Chosen: half of the stated standard deviation. With less, the bands of slow noise hold half of
-/// the truth.
-const MIN_SCALE: f32 = 0.25;
-/// Largest scale. Chosen: four times the stated standard deviation.
-const MAX_SCALE: f32 = 16.0;
-/// Share of the sums that stays from frame to frame. Chosen: 200 frames, a few cycles.
-const KEPT: f32 = 0.995;
-/// Frames of an angle's own that weigh as much as the scale of all angles together. Chosen: a
-/// second, in which an angle's own scale is known to a fifth of itself.
-const SHARED_FRAMES: f32 = 60.0;
-/// Frames in which the noise was as stated, before the first one. Chosen: few, since each has many
-/// angles.
-const STATED_FRAMES: f32 = 2.0;
-/// Largest normalised square that an innovation counts with. Chosen: three standard deviations.
-const MAX_SQUARE: f32 = 9.0;
 
 /// Scale of the stated noise variance of each angle.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,6 +7,7 @@ pub mod ablation;
 mod ablation;
 mod all_places;
 pub mod block;
+mod constants;
 mod correct;
 mod cycle_pair;
 mod evidence;

@@ -1,13 +1,12 @@
 //! Moments of the phase-coupled filter and its linear step, for a smoother over a whole recording.
 
-use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::block::{AngleBlock, Basis, PARTS};
-use crate::cyclic::coupled::correct::GATE_SIGMAS;
+use crate::cyclic::coupled::correct::is_beyond_gate;
 use crate::cyclic::coupled::cycle_pair::CyclePair;
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::cycle_state::CycleState;
 use crate::cyclic::{AngleMeasurement, CoupledModel};
-use crate::math::{sqrt, wrap_angle};
+use crate::math::sqrt;
 
 /// How one angle's parts move on: parts <- map parts + noise.
 ///
@@ -82,11 +81,18 @@ impl<const N: usize> CoupledFilter<N> {
         &self.leader.blocks
     }
 
-    /// Number of changes of place, after each of which the phase is independent of the frames
-    /// before (wraps at 65536).
+    /// This filter, led by the hypothesis that leads in `next`, its state a frame later: its own
+    /// leader, or a rival that won then. `None` where that one began after this frame.
     #[must_use]
-    pub const fn relocks(&self) -> u16 {
-        self.relocks
+    pub fn led_as_in(&self, next: &Self) -> Option<Self> {
+        let mut led = *self;
+        if self.leader.number != next.leader.number {
+            if !self.rival.exists() || self.rival.hypothesis.number != next.leader.number {
+                return None;
+            }
+            led.lead_by_rival();
+        }
+        Some(led)
     }
 
     /// Covariance of the angles, rad^2, symmetric, with the variances of the estimate on its
@@ -103,9 +109,7 @@ impl<const N: usize> CoupledFilter<N> {
         let bands: [f32; N] = core::array::from_fn(|i| sqrt(self.band_scale(i)));
         let mut covariance_rad2 = [[0.0; N]; N];
         for i in 0..count {
-            let given =
-                self.band_scale(i) * (predictions[i].variance + self.leader.pair.along(&predictions[i].gradient));
-            covariance_rad2[i][i] = given;
+            covariance_rad2[i][i] = self.angle_variance_rad2(i, &predictions[i]);
             for j in 0..i {
                 let gradients = [&predictions[i].gradient, &predictions[j].gradient];
                 covariance_rad2[i][j] = bands[i] * bands[j] * self.leader.pair.between(gradients);
@@ -156,10 +160,10 @@ impl<const N: usize> CoupledFilter<N> {
         for i in 0..model.angle_count().min(N) {
             let Some(measured) = measurement.angle_rad(i) else { continue };
             let noise = self.noise.scale(i) * measurement.std_rad()[i] * measurement.std_rad()[i];
-            let residual = wrap_angle(measured - pose[i] - self.leader.blocks[i].deviation(&basis));
+            let residual = self.leader.residual(i, measured - pose[i], &basis);
             let prediction = self.leader.blocks[i].predict_angle(&basis, slope[i]);
             let total = prediction.variance + noise + self.leader.pair.along(&prediction.gradient);
-            if residual * residual > GATE_SIGMAS * GATE_SIGMAS * total && is_on(Part::AngleGate) {
+            if is_beyond_gate(residual, total) {
                 inflation_rad2[i] = residual * residual;
             }
         }
@@ -253,6 +257,6 @@ mod tests {
         corrected.correct(&model, &measurement);
         assert!(corrected.blocks()[4].covariance(0, 0) < opened[4]);
         assert!((corrected.blocks()[4].mean[0] - filter.blocks()[4].mean[0]).abs() > 1.0, "learned anew");
-        assert_eq!(corrected.relocks(), 0);
+        assert!(filter.led_as_in(&corrected).is_some());
     }
 }

@@ -4,6 +4,7 @@
 //! person, so it cannot follow a wrong phase with it. Histogram filter: Thrun, Burgard and Fox,
 //! Probabilistic Robotics (2005), section 4.1.
 
+use crate::cyclic::coupled::constants::{BLUR, GATE_SIGMAS, LINEAR_CYCLES, SPEED_CHANGE, TEMPERED_ANGLES, TEMPERING};
 use crate::cyclic::phase::{position_difference, wrap_position};
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::{abs, exp, exp_small, least_angle, max, min, round};
@@ -19,21 +20,6 @@ const LANES: usize = 8;
 /// in factors of about the root of 2.
 const SPEED_RATIOS: [f32; 6] = [0.0, 0.5, 0.7, 1.0, 1.4, 2.0];
 pub(super) const SPEEDS: usize = SPEED_RATIOS.len();
-/// Share of the weight that moves to each neighbouring speed in a frame. Chosen: speeds change
-/// over seconds, not frames. With 0.01 a walk after another motion is found later at much noise;
-/// 0.04 does as well.
-const SPEED_CHANGE: f32 = 0.02;
-/// Share of the weight that moves to each neighbouring position in a frame. Chosen: a person's
-/// speed lies between those of the grid.
-const BLUR: f32 = 0.05;
-/// Inflation of an angle's variance as evidence for the phase. Chosen: angles deviate together,
-/// and for many frames, so 13 of them carry less evidence than 13 independent ones.
-const TEMPERING: f32 = 2.5;
-/// Number of angles up to which [`TEMPERING`] holds; more of them carry no more evidence together.
-/// Chosen: the angles of the paper's figure.
-const TEMPERED_ANGLES: f32 = 13.0;
-/// Largest distance of a single angle, standard deviations. Chosen: as `GATE_SIGMAS` of the filter.
-const LIMIT_SIGMAS: f32 = 4.0;
 
 /// Weights of position and speed; their sum is one.
 ///
@@ -93,8 +79,8 @@ pub struct PhaseMode {
     pub covariance: [f32; 3],
 }
 
-/// Half the width of a mode, cycles. Chosen: the filter's `LOST_STD`.
-pub const MODE_REACH: f32 = 0.15;
+/// Half the width of a mode, cycles: as far as the filter's linearisation about a place holds.
+pub const MODE_REACH: f32 = LINEAR_CYCLES;
 /// Cells of one speed that may lie within it.
 const NEAR_CELLS: usize = 12;
 const _: () = assert!(MODE_REACH * (POSITIONS as f32) < 5.0 && TABLE == 2 * POSITIONS && TABLE.is_multiple_of(LANES));
@@ -304,7 +290,7 @@ fn likelihood_table<const N: usize>(model: &CoupledModel<'_>, measurement: &Angl
         let std = measurement.std_rad()[i];
         if seen(i).is_some() { 0.5 / (tempering * (spread[i] * spread[i] + std * std)) } else { 0.0 }
     });
-    let limit = 0.5 * LIMIT_SIGMAS * LIMIT_SIGMAS / tempering;
+    let limit = 0.5 * GATE_SIGMAS * GATE_SIGMAS / tempering;
     let mut scores = [0.0_f32; TABLE];
     let mut greatest = [f32::NEG_INFINITY; LANES];
     for (block, scores) in scores.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {

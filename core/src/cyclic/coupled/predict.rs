@@ -2,13 +2,11 @@
 
 use crate::cyclic::CoupledModel;
 use crate::cyclic::coupled::block::PARTS;
-use crate::cyclic::coupled::hypothesis::{Hypothesis, LOST_STD, spread};
+use crate::cyclic::coupled::constants::{FORGETTING, LINEAR_CYCLES};
+use crate::cyclic::coupled::hypothesis::{Hypothesis, spread};
 use crate::cyclic::substeps::Substeps;
 use crate::math::{abs, exp, max};
 
-/// Rate per cycle at which offset and swing are forgotten. Chosen: they hardly change within a
-/// person.
-const FORGETTING: f32 = 0.02;
 /// Most substeps of a step. Chosen: bounded work after a gap, with estimates nearly those of a step
 /// a frame.
 pub const MAX_SUBSTEPS: u8 = 5;
@@ -28,7 +26,7 @@ impl<const N: usize> Hypothesis<N> {
         let (map, rest) = self.pair.advance(step);
         let phase = step * max(abs(self.velocity), 0.1 * model.mean_cycle_velocity());
         let memory = exp(-FORGETTING * phase);
-        let lost = self.pair.cc > LOST_STD * LOST_STD;
+        let lost = self.pair.cc > LINEAR_CYCLES * LINEAR_CYCLES;
         for i in 0..model.angle_count().min(N) {
             if lost {
                 // The linearisation by (c, v) does not hold.

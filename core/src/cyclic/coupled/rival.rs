@@ -6,6 +6,7 @@
 //! What a rival has to learn of the person counts against it, as in a Bayes factor.
 
 use crate::cyclic::CoupledModel;
+use crate::cyclic::coupled::constants::{MIN_DIFFERENCE_CYCLES, MIN_LOG_ODDS};
 use crate::cyclic::coupled::evidence::FrameInnovation;
 use crate::cyclic::coupled::hypothesis::Hypothesis;
 use crate::cyclic::coupled::phase_grid::PhaseMode;
@@ -13,13 +14,6 @@ use crate::cyclic::phase::position_difference;
 use crate::math::{abs, clamp};
 use crate::saved_state::{SavedState, StateVisitor};
 
-/// Phase difference from which two places are not the same, cycles. Chosen: below
-/// [`crate::cyclic::coupled::hypothesis::LOST_STD`], where the linearisation ends. 0.1 and 0.15 do
-/// as well.
-const MIN_DIFFERENCE_CYCLES: f32 = 0.12;
-/// ln of the likelihood ratio from which the rival leads. Chosen: 150 to one. 3 loses three times
-/// as many runs at much noise, 7 and 10 do as well.
-const MIN_LOG_ODDS: f32 = 5.0;
 /// Largest ln of the ratio that is kept, either way. Chosen: beyond any that frames give.
 const MAX_LOG_ODDS: f32 = 1.0e6;
 
@@ -67,12 +61,14 @@ impl<const N: usize> Rival<N> {
         self.exists = false;
     }
 
-    /// Begins at the grid's `mode` with an unknown person, or goes on where it is there already.
-    pub(super) fn stand_at(&mut self, model: &CoupledModel<'_>, mode: &PhaseMode, leader: &Hypothesis<N>) {
-        if self.exists && !is_elsewhere(mode.position, self.hypothesis.position) {
-            return;
-        }
-        self.hypothesis.begin_at(model, mode, leader);
+    /// Whether it is at the grid's `mode` already.
+    pub(super) fn is_at(&self, mode: &PhaseMode) -> bool {
+        self.exists && !is_elsewhere(mode.position, self.hypothesis.position)
+    }
+
+    /// Begins at the grid's mode with an unknown person, as the hypothesis of that number.
+    pub(super) fn begin_at(&mut self, model: &CoupledModel<'_>, at: (&PhaseMode, u32), leader: &Hypothesis<N>) {
+        self.hypothesis.begin_at(model, at, leader);
         (self.exists, self.log_odds) = (true, 0.0);
     }
 

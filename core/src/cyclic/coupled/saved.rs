@@ -19,9 +19,7 @@ impl<const N: usize> SavedState for CoupledFilter<N> {
         }
         self.winding.visit(visitor);
         self.path.visit(visitor);
-        let mut relocks = u32::from(self.relocks);
-        visitor.word(&mut relocks);
-        self.relocks = relocks as u16;
+        visitor.word(&mut self.hypotheses);
     }
 }
 

@@ -12,34 +12,11 @@
 //! section 5.4, with the covariance matching of Mehra 1972.
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
+use crate::cyclic::coupled::constants::{
+    FORGETTING, GATE_SIGMAS, GROWTH, MAX_DEFENDED_SCALE, MAX_FITTING_SCALE, MAX_SCALE, MAX_SQUARE,
+};
 use crate::math::{clamp, max, min, sqrt};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
-
-/// Largest normalised square and product that an angle counts with. Chosen: three standard
-/// deviations.
-const MAX_SQUARE: f32 = 9.0;
-/// Gate of the mean product, standard deviations under whiteness.
-///
-/// Chosen: one of 144 long walks of the training source gets beyond it, and runners do in their
-/// first two cycles. With 5 results stay within 2 %.
-const GATE_SIGMAS: f32 = 4.0;
-/// Rate per cycle at which the scale grows, relative to itself, by an excess of one. Chosen: an
-/// excess of a fifth trebles it in half a cycle. With 5 or 15 results stay within 1 %.
-const GROWTH: f32 = 10.0;
-/// Rate per cycle at which the scale returns to one. Chosen: as offset and swing are forgotten.
-const FORGETTING: f32 = 0.02;
-/// Largest scale. Chosen: four times the standard deviations of the training.
-const MAX_SCALE: f32 = 16.0;
-/// Scale above which the motion counts as another than the model's.
-///
-/// Measured at sigma 1.5 to 29 degrees: walkers of the training source reach 2.1, two of 72 with
-/// twice their deviation from the mean cycle 9, and jumps, traffic signs and basketball 16.
-const MAX_FITTING_SCALE: f32 = 9.0;
-/// Scale above which a hypothesis gives way to another place.
-///
-/// Chosen: above the 2.1 that walkers of the training source reach. 2 and 4 do as well, with 9 a
-/// walk after another motion is found later.
-const MAX_DEFENDED_SCALE: f32 = 3.0;
 
 /// Scale of the prior variances of a person's deviation, at least one.
 #[derive(Debug, Clone, Copy, PartialEq)]

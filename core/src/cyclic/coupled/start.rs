@@ -95,7 +95,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.turns = [0; N];
         self.winding = Winding::new();
         self.path = MeasuredPath::new();
-        self.relocks = 0;
+        self.hypotheses = 0;
         Ok(())
     }
 
@@ -109,7 +109,6 @@ impl<const N: usize> CoupledFilter<N> {
             *turns = round((first_rad - angle_rad) / TAU) as i32;
         }
         self.leader.cycles = 0;
-        self.relocks = 0;
         self.winding = Winding::new();
     }
 }

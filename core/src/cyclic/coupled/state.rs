@@ -53,8 +53,8 @@ pub struct CoupledFilter<const N: usize> {
     pub(super) turns: [i32; N],
     pub(super) winding: Winding<N>,
     pub(super) path: MeasuredPath<N>,
-    /// Number of changes of place.
-    pub(super) relocks: u16,
+    /// Number of hypotheses that began after the first.
+    pub(super) hypotheses: u32,
 }
 
 const _: () = assert!(size_of::<CoupledFilter<13>>() <= 4096, "the state has to fit 4 KiB");
@@ -76,7 +76,7 @@ impl<const N: usize> CoupledFilter<N> {
             turns: [0; N],
             winding: Winding::new(),
             path: MeasuredPath::new(),
-            relocks: 0,
+            hypotheses: 0,
         }
     }
 

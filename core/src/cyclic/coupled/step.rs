@@ -1,6 +1,6 @@
 //! A step of the phase-coupled filter: predict, update the grid, correct, estimate.
 
-use crate::cyclic::coupled::block::Basis;
+use crate::cyclic::coupled::block::{AnglePrediction, Basis};
 use crate::cyclic::coupled::evidence::FrameInnovation;
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::{AngleMeasurement, CoupledModel, CyclicEstimate};
@@ -77,8 +77,7 @@ impl<const N: usize> CoupledFilter<N> {
         let mut angle_variance_rad2 = [0.0; N];
         for i in 0..model.angle_count().min(N) {
             let prediction = self.leader.blocks[i].predict_angle(&basis, slope[i]);
-            angle_variance_rad2[i] =
-                self.band_scale(i) * (prediction.variance + self.leader.pair.along(&prediction.gradient));
+            angle_variance_rad2[i] = self.angle_variance_rad2(i, &prediction);
         }
         CyclicEstimate {
             angles_rad: self.angles_rad,
@@ -92,6 +91,12 @@ impl<const N: usize> CoupledFilter<N> {
             outlier,
             misfit: self.is_misfit(),
         }
+    }
+
+    /// Variance of the angle at `index`, rad^2, by the leader's prediction of it.
+    #[inline(always)]
+    pub(super) fn angle_variance_rad2(&self, index: usize, prediction: &AnglePrediction) -> f32 {
+        self.band_scale(index) * (prediction.variance + self.leader.pair.along(&prediction.gradient))
     }
 
     /// Whether the motion is another than the model's, or was within the last cycle.

@@ -229,7 +229,7 @@ fn a_steady_motion_is_never_relocked() {
     let first = core::array::from_fn(|i| Some(person(i, 0.0)));
     let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
     ways(&mut filter, &model, 3, &walked(3000, |_| 1.08));
-    assert_eq!(filter.relocks(), 0);
+    assert_eq!(filter.leader.number, 0);
 }
 
 #[test]
@@ -341,8 +341,36 @@ fn a_rival_at_the_right_place_leads_within_half_a_cycle() {
             let way = position_difference(estimate.cycle_position, wrap_position(position));
             assert!(frame < 33 || way.abs() < 0.08, "seed {seed}, frame {frame}: {way} off");
         }
-        assert!(filter.relocks() > 0 && !filter.rival.exists(), "seed {seed}");
+        assert!(filter.leader.number > 0 && !filter.rival.exists(), "seed {seed}");
     }
+}
+
+/// Going back from where the rival won, its states are those of one hypothesis, to its first frame.
+#[test]
+fn a_winning_rival_is_followed_back_to_where_it_began() {
+    let table = swinging();
+    let model = table.model().unwrap();
+    let mut followed = 0;
+    for seed in 1..=5 {
+        let mut filter = started_half_a_cycle_off(&model);
+        let mut stream = Stream::new(seed, 0, 0);
+        let mut states = vec![(filter, 0.0)];
+        for position in walked(130, |_| 1.0) {
+            let seen = core::array::from_fn(|i| Some(person(i % 12, position) + 0.7 * stream.normal()));
+            filter.step(&model, &AngleMeasurement::new(&seen, 0.7).unwrap());
+            states.push((filter, wrap_position(position)));
+        }
+        let won = states.iter().position(|(state, _)| state.leader.number > 0).unwrap();
+        let mut later = states[won].0;
+        for (state, position) in states[..won].iter().rev() {
+            let Some(led) = state.led_as_in(&later) else { break };
+            let way = position_difference(led.leader.position, *position);
+            assert!(way.abs() < 0.25 && led.leader.number == later.leader.number, "seed {seed}: {way} off");
+            (later, followed) = (led, followed + 1);
+        }
+        assert!(states[0].0.led_as_in(&later).is_none(), "seed {seed}: it began after the first frame");
+    }
+    assert!(followed > 4, "followed over {followed} frames");
 }
 
 #[test]
@@ -351,7 +379,7 @@ fn where_an_angle_winds_there_is_no_rival_and_the_leader_moves_to_the_grids_plac
     let model = table.model().unwrap();
     let mut filter = started_half_a_cycle_off(&model);
     let ways = ways(&mut filter, &model, 1, &walked(130, |_| 1.0));
-    assert!(!filter.rival.exists() && filter.relocks() > 0);
+    assert!(!filter.rival.exists() && filter.leader.number > 0);
     assert!(ways[100..].iter().all(|way| way.abs() < 0.2), "{:?}", &ways[100..]);
 }
 

@@ -2,7 +2,9 @@
 //! where a search ends and where a rival begins.
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
-use crate::cyclic::coupled::hypothesis::LOST_STD;
+use crate::cyclic::coupled::constants::{
+    GRID_INTERVAL_FRAMES, LINEAR_CYCLES, MAX_WINDING_DIFFERENCE_CYCLES, MIN_MODE_WEIGHT, MISFIT_CYCLES,
+};
 use crate::cyclic::coupled::phase_grid::{PhaseGrid, PhaseMode};
 use crate::cyclic::coupled::rival::is_elsewhere;
 use crate::cyclic::coupled::state::CoupledFilter;
@@ -11,21 +13,6 @@ use crate::cyclic::phase::position_difference;
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::abs;
 
-/// Frames between two updates of the grid while the filter is locked.
-///
-/// Chosen: the grid costs as much as the filter, and neighbouring frames carry nearly the same
-/// evidence.
-const GRID_INTERVAL_FRAMES: f32 = 3.0;
-/// Weight of a mode of the grid from which it counts as the only one. Chosen: nine to one. 0.8 and
-/// 0.95 do as well.
-const MIN_MODE_WEIGHT: f32 = 0.9;
-/// Phase difference from which the leader moves to the grid's place in a motion with a winding
-/// angle, cycles. Chosen: a quarter, half of the farthest.
-const MAX_WINDING_DIFFERENCE_CYCLES: f32 = 0.25;
-/// Cycles of the model for which the rows count as another motion after a leader has given way.
-/// Chosen: in one cycle the next leader shows whether it fits.
-const MISFIT_CYCLES: f32 = 1.0;
-
 impl<const N: usize> CoupledFilter<N> {
     /// Updates the grid by a measurement, and acts on its mode.
     ///
@@ -33,7 +20,7 @@ impl<const N: usize> CoupledFilter<N> {
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(super) fn watch(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> Option<PhaseMode> {
         let frames = self.unwatched_frames;
-        if self.leader.pair.cc > LOST_STD * LOST_STD {
+        if self.leader.pair.cc > LINEAR_CYCLES * LINEAR_CYCLES {
             self.searching = true;
             self.rival.end();
         }
@@ -73,7 +60,10 @@ impl<const N: usize> CoupledFilter<N> {
             self.rival.end();
             return;
         }
-        self.rival.stand_at(model, mode, &self.leader);
+        if !self.rival.is_at(mode) {
+            let number = self.next_number();
+            self.rival.begin_at(model, (mode, number), &self.leader);
+        }
         if self.leader.spread_scale.is_doubtful() && is_on(Part::GivingWay) {
             self.misfit_cycles = MISFIT_CYCLES;
             self.lead_by_rival();
@@ -90,9 +80,10 @@ impl<const N: usize> CoupledFilter<N> {
 
     /// The leader goes on from the place of `mode`.
     fn move_leader(&mut self, mode: &PhaseMode) {
-        self.leader.move_to(mode);
+        let number = self.next_number();
+        self.leader.move_to(mode, number);
         self.searching = false;
-        self.count_relock();
+        self.winding = Winding::new();
     }
 
     /// The rival leads from here on. They change places, since a copy would stand on the stack.
@@ -100,12 +91,12 @@ impl<const N: usize> CoupledFilter<N> {
     pub(super) fn lead_by_rival(&mut self) {
         core::mem::swap(&mut self.leader, &mut self.rival.hypothesis);
         self.rival.end();
-        self.count_relock();
+        self.winding = Winding::new();
     }
 
-    /// Counts that the leader's phase is independent of the frames before.
-    fn count_relock(&mut self) {
-        self.relocks = self.relocks.wrapping_add(1);
-        self.winding = Winding::new();
+    /// Number of the hypothesis that begins now.
+    const fn next_number(&mut self) -> u32 {
+        self.hypotheses = self.hypotheses.wrapping_add(1);
+        self.hypotheses
     }
 }

@@ -6,13 +6,10 @@
 //! turn does not inform the phase for [`EXCLUDED_CYCLES`] cycles.
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
+use crate::cyclic::coupled::constants::EXCLUDED_CYCLES;
 use crate::math::round_small;
 use crate::saved_state::{SavedState, StateVisitor};
 use core::f32::consts::TAU;
-
-/// Completed cycles for which an angle that gained or lost a turn does not inform the phase.
-/// Chosen: an angle that winds in one cycle often winds in the next.
-const EXCLUDED_CYCLES: u8 = 3;
 
 /// Turns of an angle relative to the mean cycle, and its exclusion, in one byte of the state.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -82,14 +82,14 @@ pub fn of_strangers(mocap: &Path) -> Result<[Vec<WalkAfter>; ELSEWHERE.len()]> {
 }
 
 /// Share of the frames that are off in the second second of the walks, and from then on; with noise
-/// of `sigma_deg` from each of the seeds.
+/// of `sigma_deg` from each of the seeds, by the filter alone or looking back over the recording.
 ///
 /// # Errors
 /// The filter refuses a recording.
-pub fn off_shares(walks: &[WalkAfter], (sigma_deg, seeds): (f64, &[u64])) -> Result<[f64; 2]> {
+pub fn off_shares(walks: &[WalkAfter], (sigma_deg, seeds): (f64, &[u64]), smooth: bool) -> Result<[f64; 2]> {
     let mut off = OffFrames::default();
     for walk in walks {
-        off.add(walk, (sigma_deg, seeds))?;
+        off.add(walk, (sigma_deg, seeds), smooth)?;
     }
     Ok(off.shares())
 }
@@ -116,12 +116,17 @@ struct OffFrames {
 impl OffFrames {
     /// Adds the frames of a walk, each time after something else: the positions with noise of
     /// `sigma_deg` against those of the walk alone without noise.
-    fn add(&mut self, WalkAfter { model, walk, befores }: &WalkAfter, (sigma_deg, seeds): (f64, &[u64])) -> Result<()> {
-        let wanted = positions(model, walk, None)?;
+    fn add(
+        &mut self,
+        WalkAfter { model, walk, befores }: &WalkAfter,
+        (sigma_deg, seeds): (f64, &[u64]),
+        smooth: bool,
+    ) -> Result<()> {
+        let wanted = positions(model, walk, None, false)?;
         for before in befores {
             let whole: Vec<AngleRow> = before.iter().chain(walk).cloned().collect();
             for &seed in seeds {
-                let found = positions(model, &whole, Some((sigma_deg, seed)))?;
+                let found = positions(model, &whole, Some((sigma_deg, seed)), smooth)?;
                 for (frame, (found, wanted)) in found[before.len()..].iter().zip(&wanted).enumerate() {
                     let way = found - wanted;
                     let is_off = usize::from((way - way.round()).abs() > OFF_CYCLES);
@@ -143,7 +148,7 @@ impl OffFrames {
 }
 
 /// Cycle position in each row of `rows`, numbered anew, with noise.
-fn positions(model: &CyclicModel, rows: &[AngleRow], noise: Option<(f64, u64)>) -> Result<Vec<f64>> {
+fn positions(model: &CyclicModel, rows: &[AngleRow], noise: Option<(f64, u64)>, smooth: bool) -> Result<Vec<f64>> {
     let numbered = rows.iter().zip(0..).map(|(row, frame)| AngleRow { frame, extra: Vec::new(), ..row.clone() });
     let truth = AngleTable::new(numbered.collect(), Vec::new())?;
     let (sigma_deg, seed) = noise.unwrap_or((1.0, 1));
@@ -151,7 +156,7 @@ fn positions(model: &CyclicModel, rows: &[AngleRow], noise: Option<(f64, u64)>) 
         Some(_) => measurements(&truth, Protocol::Noisy, sigma_deg.to_radians(), seed),
         None => truth,
     };
-    let options = TrackingOptions { sigma_rad: sigma_deg.to_radians(), ..TrackingOptions::default() };
+    let options = TrackingOptions { sigma_rad: sigma_deg.to_radians(), smooth, ..TrackingOptions::default() };
     let run = track(&table, model, &options)?;
     Ok(run.frames.iter().map(|frame| f64::from(frame.estimate.cycle_position)).collect())
 }

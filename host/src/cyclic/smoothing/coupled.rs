@@ -75,11 +75,15 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
         Moments { mean: self.mean(model), covariance: self.covariance(model) }
     }
 
+    fn led_as_in(&self, next: &Self) -> Option<Self> {
+        self.0.led_as_in(&next.0).map(Self)
+    }
+
     /// There is none where the position is searched for or was found anew. An angle whose constant
     /// was opened at the gate has that much more noise. So what is learned anew after it says
     /// nothing about what was before.
     fn link(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, next: &Self) -> Option<Link> {
-        if next.0.relocks() != self.0.relocks() || next.0.is_searching() {
+        if self.0.led_as_in(&next.0).is_none() || next.0.is_searching() {
             return None;
         }
         let size = Self::size(model);

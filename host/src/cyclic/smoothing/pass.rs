@@ -34,9 +34,15 @@ pub struct Smoothed<const N: usize> {
 }
 
 /// State of a filter after a frame, from which a smoother can go back.
-pub trait Smoothable<const N: usize> {
+pub trait Smoothable<const N: usize>: Copy {
     /// What the numbers of the state wrap around at: a turn, a cycle, or nothing.
     fn period(&self, model: &MotionModel<'_>, index: usize) -> Option<f64>;
+
+    /// This state, led by what leads in `next`, the state a frame later; `None` where that began
+    /// after this frame.
+    fn led_as_in(&self, _next: &Self) -> Option<Self> {
+        Some(*self)
+    }
 
     /// Mean and covariance given the measurements up to this frame.
     fn moments(&self, model: &MotionModel<'_>) -> Moments;
@@ -58,8 +64,10 @@ pub fn backward<const N: usize, S: Smoothable<N>>(
     measurements: &[AngleMeasurement<N>],
 ) -> Vec<Option<Smoothed<N>>> {
     let mut all = Vec::with_capacity(states.len());
-    let mut later: Option<(&S, Moments)> = None;
-    for (index, state) in states.iter().enumerate().rev() {
+    let mut later: Option<(S, Moments)> = None;
+    for (index, &forward) in states.iter().enumerate().rev() {
+        let led = later.as_ref().and_then(|(next, _)| forward.led_as_in(next));
+        let state = led.unwrap_or(forward);
         let filtered = state.moments(model);
         let linked = later.as_ref().and_then(|(next, moments)| {
             let link = state.link(model, measurements.get(index)?, next)?;

@@ -183,6 +183,18 @@ fn a_position_found_anew_does_not_drag_the_frames_before_it() {
     }
 }
 
+/// The place that wins later is that of the frames since its hypothesis began.
+#[test]
+fn a_place_that_wins_later_is_taken_back_to_where_it_began() {
+    let noisy = walk(240, 100, 0.5).with_noise(0.1, 2);
+    let off = |smooth| {
+        let run = tracked(&noisy, FilterName::Coupled, smooth, 60.0);
+        (100..240).filter(|frame| phase_error(&run, *frame, *frame as f64 / 60.0 + 0.5) > 0.1).count()
+    };
+    let [forward, back] = [false, true].map(off);
+    assert!(back > 0 && back + 4 < forward, "{back} instead of {forward} frames are off");
+}
+
 /// Across a second without a measurement the whole recording knows more than what came before.
 #[test]
 fn a_gap_is_bridged_from_both_sides() {
@@ -229,8 +241,12 @@ proptest! {
             for (f, b) in forward.frames.iter().zip(&back.frames).skip(1) {
                 let (one, other) = (&f.estimate, &b.estimate);
                 prop_assert!((0.0..=1.0).contains(&other.cycle_position));
-                prop_assert!(other.cycle_position_variance <= 1.000_1 * one.cycle_position_variance);
-                prop_assert!(other.cycle_velocity_variance <= 1.000_1 * one.cycle_velocity_variance);
+                let way = other.cycle_position - one.cycle_position;
+                // Elsewhere it is another hypothesis, which won later.
+                if (way - way.round()).abs() < 0.1 {
+                    prop_assert!(other.cycle_position_variance <= 1.000_1 * one.cycle_position_variance);
+                    prop_assert!(other.cycle_velocity_variance <= 1.000_1 * one.cycle_velocity_variance);
+                }
                 prop_assert!(other.angle_variance_rad2.iter().all(|variance| variance.is_finite() && *variance > 0.0));
                 prop_assert!(b.angles_rad.iter().all(|angle| angle.is_finite()));
                 if filter != FilterName::Coupled {
