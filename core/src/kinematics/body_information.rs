@@ -13,14 +13,11 @@ use crate::skeleton::Skeleton;
 /// Shifts and turns of a rigid body.
 const TWIST: usize = 6;
 
-/// Information about one bone's rigid motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct RigidInformation {
-    /// Sum of w [n; h x n] [n; h x n]', lower half.
-    matrix: [[f32; TWIST]; TWIST],
-    /// Sum of w r [n; h x n].
-    vector: [f32; TWIST],
-}
+/// Width of a row: its twist, its residual, and a zero that makes it whole vectors.
+const ROW: usize = 8;
+
+/// Information about one bone's rigid motion: rows of the sum of w [n; h x n] [n; h x n; r; 0]'.
+type RigidInformation = [[f32; ROW]; TWIST];
 
 /// Information about the motion of all bones of a pose.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,15 +31,12 @@ impl<const BONES: usize> BodyInformation<BONES> {
     /// No information, about the origin.
     #[must_use]
     pub const fn empty() -> Self {
-        let nothing = RigidInformation { matrix: [[0.0; TWIST]; TWIST], vector: [0.0; TWIST] };
-        Self { of_bone: [nothing; BONES], about_m: Vec3::new(0.0, 0.0, 0.0) }
+        Self { of_bone: [[[0.0; ROW]; TWIST]; BONES], about_m: Vec3::new(0.0, 0.0, 0.0) }
     }
 
     /// Becomes no information, about the root of `posture`.
     pub fn clear<const ANGLES: usize>(&mut self, posture: &Posture<BONES, ANGLES>) {
-        for bone in &mut self.of_bone {
-            (bone.matrix, bone.vector) = ([[0.0; TWIST]; TWIST], [0.0; TWIST]);
-        }
+        self.of_bone.as_flattened_mut().as_flattened_mut().fill(0.0);
         self.about_m = posture.joints.first().copied().unwrap_or_default();
     }
 
@@ -52,13 +46,12 @@ impl<const BONES: usize> BodyInformation<BONES> {
     pub fn add(&mut self, bone: usize, place_m: &Vec3, normal: &Vec3, residual_m: f32, weight: f32) {
         let Some(information) = self.of_bone.get_mut(bone) else { return };
         let moment = (place_m - self.about_m).cross(normal);
-        let row = [normal.x, normal.y, normal.z, moment.x, moment.y, moment.z];
-        for i in 0..TWIST {
+        let row = [normal.x, normal.y, normal.z, moment.x, moment.y, moment.z, residual_m, 0.0];
+        for (i, sums) in information.iter_mut().enumerate() {
             let weighted = weight * row[i];
-            for (entry, other) in information.matrix[i].iter_mut().zip(row).take(i + 1) {
-                *entry += weighted * other;
+            for (sum, entry) in sums.iter_mut().zip(row) {
+                *sum += weighted * entry;
             }
-            information.vector[i] += weighted * residual_m;
         }
     }
 
@@ -77,14 +70,13 @@ impl<const BONES: usize> BodyInformation<BONES> {
             let bone = skeleton.bone_of_angle(j);
             twists[j] = self.twist(skeleton, posture, j, bone);
             let Some(below) = self.of_bone.get(bone) else { continue };
-            let (mut push, mut of_row) = ([0.0; TWIST], [0.0; ANGLES]);
-            for a in 0..TWIST {
-                gradient[j] += twists[j][a] * below.vector[a];
-                for b in 0..TWIST {
-                    let entry = if a >= b { below.matrix[a][b] } else { below.matrix[b][a] };
-                    push[a] += entry * twists[j][b];
+            let (mut push, mut of_row) = ([0.0; ROW], [0.0; ANGLES]);
+            for (sums, twist) in below.iter().zip(twists[j]) {
+                for (push, sum) in push.iter_mut().zip(sums) {
+                    *push += sum * twist;
                 }
             }
+            gradient[j] += push[TWIST];
             for (i, (twist, row)) in twists.iter().zip(hessian.iter_mut()).enumerate().take(j + 1) {
                 if skeleton.angle_moves(i, bone) {
                     let sum = twist.iter().zip(push).fold(0.0, |sum, (twist, push)| sum + twist * push);
@@ -106,11 +98,8 @@ impl<const BONES: usize> BodyInformation<BONES> {
             };
             let own = self.of_bone[bone];
             let Some(sum) = self.of_bone.get_mut(parent) else { continue };
-            for i in 0..TWIST {
-                for (entry, own) in sum.matrix[i].iter_mut().zip(own.matrix[i]).take(i + 1) {
-                    *entry += own;
-                }
-                sum.vector[i] += own.vector[i];
+            for (sum, own) in sum.as_flattened_mut().iter_mut().zip(own.as_flattened()) {
+                *sum += own;
             }
         }
     }

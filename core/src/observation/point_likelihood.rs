@@ -164,7 +164,7 @@ pub(super) fn lower_to<const BONES: usize>(
 
 /// Whether loops over the points of a block run on vectors; where not, most of the work for a point
 /// can be left out.
-const HAS_VECTORS: bool = !cfg!(any(target_arch = "arm", target_arch = "riscv32"));
+pub(super) const HAS_VECTORS: bool = !cfg!(any(target_arch = "arm", target_arch = "riscv32"));
 /// Points farther from the axis than this times what can matter are left out.
 /// Chosen: a thousand times the rounding of the squared distance.
 const BEYOND_ROUNDING: f32 = 1.001;
@@ -222,20 +222,25 @@ fn lower_hidden_to<const BONES: usize>(
 }
 
 /// A point beside the axis of a capsule.
-struct NearAxis {
+pub(super) struct NearAxis {
     /// Where the nearest point of the axis lies: 0 at the start, 1 at the end.
-    t: f32,
+    pub(super) t: f32,
     /// From there to the point, metres.
-    off: [f32; 3],
+    pub(super) off: [f32; 3],
     /// Its square, square metres.
-    squared: f32,
+    pub(super) squared: f32,
     /// Its product with the way to the camera: negative on the hidden side.
-    towards: f32,
+    pub(super) towards: f32,
 }
 
 impl NearAxis {
     #[inline(always)]
-    fn of<const BONES: usize>(seen: &SeenCapsule, surface: &BodySurface<BONES>, block: &PointBlock, i: usize) -> Self {
+    pub(super) fn of<const BONES: usize>(
+        seen: &SeenCapsule,
+        surface: &BodySurface<BONES>,
+        block: &PointBlock,
+        i: usize,
+    ) -> Self {
         let (a, u, c) = (&seen.capsule.start_m, &seen.along_m, &surface.camera_m);
         let (x, y, z) = (block.x[i], block.y[i], block.z[i]);
         let share = ((x - a.x) * u.x + (y - a.y) * u.y + (z - a.z) * u.z) * seen.per_squared_length;
@@ -293,6 +298,12 @@ impl NearestSkin {
             }
         }
         nearest
+    }
+
+    /// The capsules that are the nearest to some point, a bit each.
+    #[inline]
+    pub(super) fn owners(&self) -> u32 {
+        self.capsule.iter().fold(0, |owners, &capsule| owners | 1_u32.checked_shl(u32::from(capsule)).unwrap_or(0))
     }
 }
 
