@@ -161,8 +161,8 @@ impl<const BONES: usize> ExpectedBody<BONES> {
     #[inline]
     fn groups_of(&self, near: &NearCapsules, surface: &BodySurface<BONES>) -> u32 {
         let mut groups = 0;
-        for &index in near.indices() {
-            if let Some(seen) = surface.capsules.get(usize::from(index)) {
+        for index in near.indices() {
+            if let Some(seen) = surface.capsules.get(index) {
                 groups |= 1 << self.limbs.group(seen.bone);
             }
         }
@@ -180,8 +180,8 @@ impl<const BONES: usize> ExpectedBody<BONES> {
         tau: f32,
     ) -> [f32; BLOCK_POINTS] {
         let mut own = [tau; BLOCK_POINTS];
-        for &index in near.indices() {
-            let Some(seen) = surface.capsules.get(usize::from(index)) else { continue };
+        for index in near.indices() {
+            let Some(seen) = surface.capsules.get(index) else { continue };
             if self.limbs.group(seen.bone) == group {
                 lower_to(&mut own, seen, surface, block);
             }

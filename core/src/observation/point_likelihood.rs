@@ -3,6 +3,7 @@
 use super::body_surface::{BodySurface, SeenCapsule};
 use super::point_cloud::{BLOCK_POINTS, PointBlock};
 use crate::math::{Vec3, max, min, sqrt_branch_free};
+use heapless::Vec;
 
 /// The robust metric and its scale.
 ///
@@ -55,8 +56,9 @@ impl PointLikelihood {
             let stretch = self.stretch(block);
             near.find(surface, block, self.outlier_m, stretch);
             let mut least = [tau; BLOCK_POINTS];
-            for &index in near.indices() {
-                if let Some(seen) = surface.capsules.get(usize::from(index)) {
+            for capsule in &near.found {
+                let seen = surface.capsules.get(usize::from(capsule.index));
+                if let Some(seen) = seen.filter(|_| capsule.lowers_any(&least)) {
                     lower_to_stretched(&mut least, seen, surface, block, stretch);
                 }
             }
@@ -287,13 +289,16 @@ impl NearestSkin {
         let mut near = NearCapsules::new();
         near.find(surface, block, outlier_m, stretch);
         let mut nearest = Self { squared_m: [outlier_m * outlier_m; BLOCK_POINTS], capsule: [u8::MAX; BLOCK_POINTS] };
-        for &index in near.indices() {
-            let Some(seen) = surface.capsules.get(usize::from(index)) else { continue };
+        for capsule in &near.found {
+            let Some(seen) = surface.capsules.get(usize::from(capsule.index)) else { continue };
             let before = nearest.squared_m;
+            if !capsule.lowers_any(&before) {
+                continue;
+            }
             lower_to_stretched(&mut nearest.squared_m, seen, surface, block, stretch);
             for i in 0..BLOCK_POINTS {
                 if nearest.squared_m[i] < before[i] {
-                    nearest.capsule[i] = index;
+                    nearest.capsule[i] = capsule.index;
                 }
             }
         }
@@ -308,21 +313,39 @@ impl NearestSkin {
 }
 
 /// Capsules that can be the nearest to some point of a block; 32 at most, as a skeleton's bones.
+/// The one that the block is nearest to comes first.
 #[derive(Debug)]
 pub(super) struct NearCapsules {
-    indices: [u8; 32],
-    count: usize,
+    found: Vec<NearCapsule, 32>,
+}
+
+/// A capsule near a block of points.
+#[derive(Debug, Clone, Copy)]
+struct NearCapsule {
+    /// Its place in the surface's list.
+    index: u8,
+    /// No squared distance of a point, as [`NearestSkin`] counts it, is less, square metres.
+    min_squared_m2: f32,
+}
+
+impl NearCapsule {
+    /// Whether a point can be nearer to this capsule than the root of its entry in `squared_m`.
+    #[inline(always)]
+    fn lowers_any(&self, squared_m: &[f32; BLOCK_POINTS]) -> bool {
+        // A word and no flag, so that the loop is one over vectors.
+        squared_m.iter().fold(0, |any, &squared| any | u32::from(squared > self.min_squared_m2)) != 0
+    }
 }
 
 impl NearCapsules {
     /// Room for all capsules.
     pub(super) const fn new() -> Self {
-        Self { indices: [0; 32], count: 0 }
+        Self { found: Vec::new() }
     }
 
-    /// Those found last.
-    pub(super) fn indices(&self) -> &[u8] {
-        self.indices.get(..self.count).unwrap_or(&[])
+    /// Places of those found last in the surface's list.
+    pub(super) fn indices(&self) -> impl Iterator<Item = usize> {
+        self.found.iter().map(|capsule| usize::from(capsule.index))
     }
 
     /// Finds the capsules that can lie nearest to a point of `block` and nearer than `outlier_m`.
@@ -334,21 +357,11 @@ impl NearCapsules {
         outlier_m: f32,
         stretch: f32,
     ) {
-        if stretch > 0.0 {
-            let bounds = surface.distance_bounds(&block.centre_m, block.radius_m);
-            let mut bound = outlier_m * outlier_m;
-            for &most in bounds.max_squared_m2.iter().take(surface.capsules.len()) {
-                bound = min(bound, most);
-            }
-            let bound = sqrt_branch_free(bound * (1.0 + stretch));
-            self.find_or_within(surface, block, outlier_m, |_| bound);
-        } else {
-            self.find_or_within(surface, block, outlier_m, |_| 0.0);
-        }
+        self.find_stretched(surface, block, (outlier_m, stretch), |_| 0.0);
     }
 
-    /// As [`Self::find`], and those that can come nearer to a point than `reach_m` of their bone,
-    /// metres.
+    /// As [`Self::find`] without stretch, and those that can come nearer to a point than `reach_m`
+    /// of their bone, metres.
     pub(super) fn find_or_within<const BONES: usize>(
         &mut self,
         surface: &BodySurface<BONES>,
@@ -356,23 +369,40 @@ impl NearCapsules {
         outlier_m: f32,
         reach_m: impl Fn(usize) -> f32,
     ) {
+        self.find_stretched(surface, block, (outlier_m, 0.0), reach_m);
+    }
+
+    #[inline(always)]
+    fn find_stretched<const BONES: usize>(
+        &mut self,
+        surface: &BodySurface<BONES>,
+        block: &PointBlock,
+        (outlier_m, stretch): (f32, f32),
+        reach_m: impl Fn(usize) -> f32,
+    ) {
         let bounds = surface.distance_bounds(&block.centre_m, block.radius_m);
-        let count = surface.capsules.len();
         let mut bound = outlier_m * outlier_m;
-        for &most in bounds.max_squared_m2.iter().take(count) {
+        for &most in bounds.max_squared_m2.iter().take(surface.capsules.len()) {
             bound = min(bound, most);
         }
-        let bound = sqrt_branch_free(bound);
-        self.count = 0;
-        for (index, (&least, seen)) in bounds.min_m.iter().zip(&surface.capsules).enumerate() {
+        let bound = sqrt_branch_free(bound * (1.0 + stretch));
+        let per_stretch = 1.0 / (1.0 + stretch);
+        self.found.clear();
+        let (mut nearest, mut nearest_m) = (0, f32::INFINITY);
+        for (index, (&min_m, seen)) in bounds.min_m.iter().zip(&surface.capsules).enumerate() {
             // Slightly wider, for rounding.
-            if least > max(bound, reach_m(seen.bone)) * 1.0001 + 1.0e-6 {
+            if min_m > max(bound, reach_m(seen.bone)) * 1.0001 + 1.0e-6 {
                 continue;
             }
-            if let Some(slot) = self.indices.get_mut(self.count) {
-                *slot = index as u8;
-                self.count += 1;
+            if min_m < nearest_m {
+                (nearest, nearest_m) = (self.found.len(), min_m);
             }
+            // Slightly less, for rounding.
+            let min_m = max(min_m * 0.9999 - 1.0e-5, 0.0);
+            let _ = self.found.push(NearCapsule { index: index as u8, min_squared_m2: min_m * min_m * per_stretch });
+        }
+        if nearest < self.found.len() {
+            self.found.swap(0, nearest);
         }
     }
 }
@@ -387,6 +417,7 @@ mod tests {
     use crate::skeleton::BodyMeasures;
     use crate::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BodySkeleton, body_radii_m, full_body};
     use proptest::prelude::*;
+    use std::vec::Vec;
 
     const LIKELIHOOD: PointLikelihood = PointLikelihood { std_m: 0.15, outlier_m: 0.25 };
 
