@@ -173,7 +173,6 @@ const BEYOND_ROUNDING: f32 = 1.001;
 
 /// As [`lower_to`], point by point: the same bits. A point whose axis is too far for its skin to be
 /// nearer than what is known is done after its distance from the axis.
-#[cfg_attr(target_arch = "x86_64", allow(dead_code, reason = "a test compares it"))]
 fn lower_one_by_one<const BONES: usize>(
     least: &mut [f32; BLOCK_POINTS],
     seen: &SeenCapsule,
