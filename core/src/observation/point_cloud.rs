@@ -180,33 +180,8 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
     ///
     /// Points that are not finite, beyond [`MAX_M`] or at the camera are left out. So are those
     /// beyond the capacity, the last given first. All are counted. No point at all is a frame
-    /// without evidence.
+    /// without evidence. It takes four bytes of stack a point.
     pub fn set(&mut self, points_m: &mut [Vec3], camera_m: &Vec3) -> LeftOut {
-        self.set_by(points_m, camera_m, |points_m| points_m.sort_unstable_by_key(morton_key))
-    }
-
-    /// As [`Self::set`], the same blocks, by a sort of which a linker can prove that it cannot
-    /// panic. It takes four bytes of stack a point.
-    ///
-    /// ```
-    /// use sinew_core::math::Vec3;
-    /// use sinew_core::observation::point_cloud::PointCloud;
-    ///
-    /// let points_m = core::array::from_fn::<Vec3, 40, _>(|i| Vec3::new(0.3 * (i as f32).sin(), 0.02 * i as f32, 2.0));
-    /// let (mut one, mut other) = (PointCloud::<3>::new(), PointCloud::<3>::new());
-    /// let _ = one.set(&mut points_m.clone(), &Vec3::zeros());
-    /// let _ = other.set_in_firmware(&mut points_m.clone(), &Vec3::zeros());
-    /// assert_eq!(one.blocks(), other.blocks());
-    /// ```
-    // Not inlined: the keys leave the stack before the points are looked at.
-    #[inline(never)]
-    pub fn set_in_firmware(&mut self, points_m: &mut [Vec3], camera_m: &Vec3) -> LeftOut {
-        let mut keys = [[0; BLOCK_POINTS]; BLOCKS];
-        self.set_by(points_m, camera_m, |points_m| heap_sort(points_m, keys.as_flattened_mut()))
-    }
-
-    #[inline(always)]
-    fn set_by(&mut self, points_m: &mut [Vec3], camera_m: &Vec3, sort: impl FnOnce(&mut [Vec3])) -> LeftOut {
         let mut left_out = LeftOut::default();
         let mut kept = 0;
         for i in 0..points_m.len() {
@@ -229,7 +204,7 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
             }
         }
         let points_m = points_m.get_mut(..kept).unwrap_or_default();
-        sort(points_m);
+        Self::sort(points_m);
         self.blocks.clear();
         self.points = kept;
         for chunk in points_m.chunks(BLOCK_POINTS) {
@@ -237,6 +212,13 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
             let _ = self.blocks.push(PointBlock::of(chunk));
         }
         left_out
+    }
+
+    // Not inlined: the keys leave the stack before the points are looked at.
+    #[inline(never)]
+    fn sort(points_m: &mut [Vec3]) {
+        let mut keys = [[0; BLOCK_POINTS]; BLOCKS];
+        heap_sort(points_m, keys.as_flattened_mut());
     }
 
     /// All points scatter by `along_std_m` metres along their lines of sight, beyond what they do
@@ -276,8 +258,10 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
     }
 }
 
-/// Sorts points by their Morton keys, in n log n steps at most and without a panic (J. W. J.
-/// Williams, Algorithm 232: heapsort, 1964). `keys` has one for each point; each is computed once.
+/// Sorts points by their Morton keys, in n log n steps at most and so that a linker can prove that
+/// it cannot panic (J. W. J. Williams, Algorithm 232: heapsort, 1964). `keys` has one for each
+/// point; each is computed once: of 2000 points this takes a quarter of the time of a sort that
+/// computes two for each comparison.
 fn heap_sort(points_m: &mut [Vec3], keys: &mut [u32]) {
     for (key, point_m) in keys.iter_mut().zip(&*points_m) {
         *key = morton_key(point_m).0;
@@ -391,17 +375,12 @@ mod tests {
     }
 
     #[test]
-    fn the_sort_of_firmware_gives_the_same_blocks() {
+    fn points_come_in_the_order_of_their_keys() {
         for count in [0, 1, 2, 3, 17, 500] {
-            let (mut one, mut other) = (cloud(count), cloud(count));
-            other.reverse();
-            let (mut a, mut b) = (PointCloud::<32>::new(), PointCloud::<32>::new());
-            assert_eq!(
-                a.set(&mut one, &Vec3::zeros()),
-                b.set_in_firmware(&mut other, &Vec3::zeros()),
-                "{count} points"
-            );
-            assert_eq!(a.blocks(), b.blocks(), "{count} points");
+            let (mut points, mut sorted) = (cloud(count), cloud(count));
+            let _ = PointCloud::<32>::new().set(&mut points, &Vec3::zeros());
+            sorted.sort_by_key(morton_key);
+            assert_eq!(points, sorted, "{count} points");
         }
     }
 

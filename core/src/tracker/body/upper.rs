@@ -234,7 +234,7 @@ impl UpperBodyTracker {
         dt_s: f32,
     ) -> Option<(BodyEstimate<UPPER_BONES, UPPER_ANGLES>, LeftOut)> {
         let (scene, goals, tracker) = (self.scene.get()?, self.goals.get()?, self.tracker.get_mut()?);
-        let left_out = self.cloud.set_in_firmware(points_m, &scene.camera_m);
+        let left_out = self.cloud.set(points_m, &scene.camera_m);
         let motion = GuidedMotion {
             process: goals,
             root: self.options.root(),
