@@ -185,12 +185,12 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         match self.kind {
             BodyModelKind::EndEffector => self.advance(&with_goals(&tuning, goal_std, &goals, root), &frame),
             BodyModelKind::Guided => {
-                let motion = self.guided(&goals, tuning.guided.solver_steps, tuning.pulling_blocks);
-                let motion = GuidedMotion { refining_steps: tuning.refining_steps, ..motion };
+                let steps = (tuning.guided.solver_steps, tuning.refining_steps);
+                let motion = self.guided(&goals, steps, tuning.pulling_blocks);
                 self.advance(&motion, &frame)
             }
             BodyModelKind::Modes => {
-                let motion = self.guided(&goals, tuning.modes.solver_steps, usize::MAX);
+                let motion = self.guided(&goals, (tuning.modes.solver_steps, 0), usize::MAX);
                 self.climb(&motion, &frame)
             }
             BodyModelKind::Angular => {
@@ -223,11 +223,12 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
         }
     }
 
-    /// The guided model with so many steps of the solver and blocks that pull.
+    /// The guided model with so many steps of the solver, then to the reported mode, and so many
+    /// blocks that pull.
     fn guided<'a>(
         &self,
         goals: &'a LinearGoals,
-        solver_steps: usize,
+        (solver_steps, refining_steps): (usize, usize),
         pulling_blocks: usize,
     ) -> GuidedMotion<'a, LinearGoals, ANGLES> {
         GuidedMotion {
@@ -237,7 +238,7 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
             angle_persistence: self.tuning.guided.angle_persistence,
             solver_steps,
             pulling_blocks,
-            refining_steps: 0,
+            refining_steps,
         }
     }
 
