@@ -135,7 +135,19 @@ pub struct GuidedDensity<'a, const BONES: usize, const ANGLES: usize> {
     pub reach: f32,
 }
 
-impl<const BONES: usize, const ANGLES: usize> GuidedDensity<'_, BONES, ANGLES> {
+impl<'a, const BONES: usize, const ANGLES: usize> GuidedDensity<'a, BONES, ANGLES> {
+    /// The density by every n-th of `blocks`, from the first on, so that at most `pulling_blocks`
+    /// pull.
+    pub(crate) fn of_some(
+        prior: PoseDensity<'a, BONES, ANGLES>,
+        scene: &'a BodyScene<BONES, ANGLES>,
+        blocks: &'a [PointBlock],
+        pulling_blocks: usize,
+    ) -> Self {
+        let stride = blocks.len().div_ceil(pulling_blocks.max(1)).max(1);
+        Self { prior, scene, blocks, stride, reach: 1.0 }
+    }
+
     /// The likelier of two modes: from the start, and from the pose after two coarse steps about
     /// `far_prior`. In coarse steps points reach twice as far. In fine steps no point pulls at
     /// a limb that moved farther than points reach.
@@ -163,8 +175,16 @@ impl<const BONES: usize, const ANGLES: usize> GuidedDensity<'_, BONES, ANGLES> {
     fn pull(&self, posture: &Posture<BONES, ANGLES>, information: &mut BodyInformation<BONES>) -> f32 {
         information.clear(posture);
         let surface = self.scene.surface(posture);
-        let pulling = self.blocks.iter().step_by(self.stride.max(1));
-        add_pull(&self.likelihood(), &surface, pulling, self.stride as f32, information)
+        add_pull(&self.likelihood(), &surface, self.pulling(), self.stride as f32, information)
+    }
+
+    fn pulling(&self) -> impl Iterator<Item = &PointBlock> {
+        self.blocks.iter().step_by(self.stride.max(1))
+    }
+
+    /// The log density, where `points` is the log-likelihood of the blocks that pull.
+    fn posterior(&self, angles_rad: &[f32; ANGLES], posture: &Posture<BONES, ANGLES>, points: f32) -> f32 {
+        self.prior.log_density(angles_rad, posture) + points * self.stride as f32
     }
 
     fn likelihood(&self) -> PointLikelihood {
@@ -192,8 +212,8 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
 
     fn log_density(&self, angles_rad: &[f32; ANGLES], posture: &Posture<BONES, ANGLES>) -> f32 {
         let surface = self.scene.surface(posture);
-        let points = self.likelihood().log_likelihood_of(&surface, self.blocks.iter().step_by(self.stride.max(1)));
-        self.prior.log_density(angles_rad, posture) + points * self.stride as f32
+        let points = self.likelihood().log_likelihood_of(&surface, self.pulling());
+        self.posterior(angles_rad, posture, points)
     }
 
     fn inform(
@@ -203,7 +223,7 @@ impl<const BONES: usize, const ANGLES: usize> PoseObjective<BONES, ANGLES> for G
         information: &mut BodyInformation<BONES>,
     ) -> f32 {
         let points = self.pull(posture, information);
-        self.prior.log_density(angles_rad, posture) + points * self.stride as f32
+        self.posterior(angles_rad, posture, points)
     }
 
     fn derivatives(
@@ -309,10 +329,8 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         let skeleton = &past.scene.skeleton;
         let prior = self.prior(past, ancestor, memory, stream);
         let prior = prior.density(skeleton);
-        let stride = past.blocks.len().div_ceil(self.pulling_blocks.max(1)).max(1);
-        let first = stream.below(stride as u32) as usize;
-        let pulling = past.blocks.get(first..).unwrap_or_default();
-        let density = GuidedDensity { prior, scene: past.scene, blocks: pulling, stride, reach: 1.0 };
+        let mut density = GuidedDensity::of_some(prior, past.scene, past.blocks, self.pulling_blocks);
+        density.blocks = past.blocks.get(stream.below(density.stride as u32) as usize..).unwrap_or_default();
         let mode = if self.is_any_loose(past) {
             density.mode_coarse_to_fine(&prior, self.solver_steps)
         } else {
@@ -342,7 +360,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         // Goals are expected without chance.
         let prior = self.prior(past, before, &mut before.memory.clone(), &mut Stream::new(0, 0, 0));
         let prior = prior.density(&past.scene.skeleton);
-        let density = GuidedDensity { prior, scene: past.scene, blocks: past.blocks, stride: 1, reach: 1.0 };
+        let density = GuidedDensity::of_some(prior, past.scene, past.blocks, usize::MAX);
         Some(density.solve_within(&[*mean_rad], self.refining_steps, &mut SolverMemory::new()).angles_rad)
     }
 }

@@ -95,8 +95,7 @@ impl RootAlignment {
             stiffness,
             held: 0,
         };
-        let stride = blocks.len().div_ceil(self.pulling_blocks.max(1)).max(1);
-        let density = GuidedDensity { prior, scene, blocks, stride, reach: 1.0 };
+        let density = GuidedDensity::of_some(prior, scene, blocks, self.pulling_blocks);
         if !self.coarse_to_fine {
             return density.mode(self.steps).angles_rad;
         }

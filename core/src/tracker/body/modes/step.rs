@@ -79,8 +79,7 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> ModeAdvance
     pub(super) fn climb_within(&self, start: &mut BodyMode<BONES, ANGLES>, memory: &mut SolverMemory<BONES, ANGLES>) {
         let Expected { prior, drawn_rad, is_loose } = self.expected(start);
         let prior = prior.density(&self.scene.skeleton);
-        let stride = self.blocks.len().div_ceil(self.motion.pulling_blocks.max(1)).max(1);
-        let density = GuidedDensity { prior, scene: self.scene, blocks: self.blocks, stride, reach: 1.0 };
+        let density = GuidedDensity::of_some(prior, self.scene, self.blocks, self.motion.pulling_blocks);
         // A limb begins where it was drawn; else coarse steps look for what is farther off than
         // points reach.
         let mut starts: Vec<[f32; ANGLES], 2> = Vec::new();
