@@ -44,11 +44,23 @@ pub fn tempo(recordings: &Path) -> Result<Rows> {
     Ok(rows)
 }
 
-/// Walks after something else: frames off in the second second, and from then on.
+/// Walks after something else: frames off in the second second, and from then on, by the filter and
+/// looking back.
 pub fn after(recordings: &Path) -> Result<Rows> {
     let walks = of_other_sources(&recordings.join("mocap"))?;
-    let shares = SIGMAS_DEG.map(|sigma_deg| off_shares(&walks, (sigma_deg, &AFTER_SEEDS)));
-    let shares = shares.into_iter().collect::<Result<Vec<_>>>()?;
-    let row = |name, index: usize| named(name, shares.iter().map(|of| format!("{:.0} %", 100.0 * of[index])));
-    Ok(vec![heading(), row("second second of walking", 0), row("from then on", 1)])
+    let mut rows = vec![heading()];
+    for (smooth, names) in [
+        (false, ["second second of walking", "from then on"]),
+        (true, ["second second, looking back", "from then on, looking back"]),
+    ] {
+        let shares = SIGMAS_DEG.map(|sigma_deg| off_shares(&walks, (sigma_deg, &AFTER_SEEDS), smooth));
+        let shares = shares.into_iter().collect::<Result<Vec<_>>>()?;
+        rows.extend(
+            names
+                .into_iter()
+                .enumerate()
+                .map(|(index, name)| named(name, shares.iter().map(|of| format!("{:.0} %", 100.0 * of[index])))),
+        );
+    }
+    Ok(rows)
 }

@@ -23,7 +23,7 @@ const HEADINGS: usize = 4;
 /// from there.
 const RIGHT_M: f32 = 0.15;
 /// Share of the starts that are right, of 24.
-const RIGHT_SHARE: std::ops::RangeInclusive<f32> = 0.85..=0.99;
+const RIGHT_SHARE: std::ops::RangeInclusive<f32> = 0.85..=1.0;
 
 /// Mean distances of the joints from the true ones, metres: in the first and the middle frame of a
 /// motion whose person is turned by `heading_rad`.
