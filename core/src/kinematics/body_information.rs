@@ -8,6 +8,7 @@
 
 use super::forward::Posture;
 use crate::math::Vec3;
+use crate::numeric::rolled::HAS_VECTORS;
 use crate::skeleton::Skeleton;
 
 /// Shifts and turns of a rigid body.
@@ -49,8 +50,12 @@ impl<const BONES: usize> BodyInformation<BONES> {
         let row = [normal.x, normal.y, normal.z, moment.x, moment.y, moment.z, residual_m, 0.0];
         for (i, sums) in information.iter_mut().enumerate() {
             let weighted = weight * row[i];
-            for (sum, entry) in sums.iter_mut().zip(row) {
+            // The upper half is mirrored, so that it need not be summed.
+            for (sum, entry) in sums.iter_mut().zip(row).take(if HAS_VECTORS { ROW } else { i + 1 }) {
                 *sum += weighted * entry;
+            }
+            if !HAS_VECTORS {
+                sums[TWIST] += weighted * residual_m;
             }
         }
     }
@@ -90,7 +95,7 @@ impl<const BONES: usize> BodyInformation<BONES> {
         }
     }
 
-    /// Adds each bone's sums to its parent's, leaves first.
+    /// Adds each bone's sums to its parent's, leaves first, and mirrors their lower halves.
     fn sum_subtrees<const ANGLES: usize>(&mut self, skeleton: &Skeleton<BONES, ANGLES>) {
         for bone in (0..BONES).rev() {
             let Some(parent) = skeleton.bones()[bone].parent.map(usize::from).filter(|&parent| parent < bone) else {
@@ -100,6 +105,13 @@ impl<const BONES: usize> BodyInformation<BONES> {
             let Some(sum) = self.of_bone.get_mut(parent) else { continue };
             for (sum, own) in sum.as_flattened_mut().iter_mut().zip(own.as_flattened()) {
                 *sum += own;
+            }
+        }
+        for sums in &mut self.of_bone {
+            for i in 0..TWIST {
+                for j in 0..i {
+                    sums[j][i] = sums[i][j];
+                }
             }
         }
     }

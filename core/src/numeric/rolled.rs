@@ -1,4 +1,8 @@
-//! Loops that stay loops, where flash is scarcer than time.
+//! Loops by the target: over vectors, or one by one, and rolled where flash is scarcer than time.
+
+/// Whether short loops over numbers run on vectors. Where not, what is not needed of them is left
+/// out.
+pub(crate) const HAS_VECTORS: bool = !cfg!(any(target_arch = "arm", target_arch = "riscv32"));
 
 /// `count`, which the compiler does not know on microcontrollers: a loop over so many is not
 /// written out for each of its rounds.

@@ -3,6 +3,7 @@
 use super::body_surface::{BodySurface, SeenCapsule};
 use super::point_cloud::{BLOCK_POINTS, PointBlock};
 use crate::math::{Vec3, max, min, sqrt_branch_free};
+use crate::numeric::rolled::HAS_VECTORS;
 use heapless::Vec;
 
 /// The robust metric and its scale.
@@ -164,9 +165,6 @@ pub(super) fn lower_to<const BONES: usize>(
     }
 }
 
-/// Whether loops over the points of a block run on vectors; where not, most of the work for a point
-/// can be left out.
-pub(super) const HAS_VECTORS: bool = !cfg!(any(target_arch = "arm", target_arch = "riscv32"));
 /// Points farther from the axis than this times what can matter are left out.
 /// Chosen: a thousand times the rounding of the squared distance.
 const BEYOND_ROUNDING: f32 = 1.001;

@@ -243,3 +243,22 @@ fn marks_of_tables_come_in_pairs_with_a_table_between() {
     }
     assert!(names.len() >= 15, "only {names:?}");
 }
+
+/// Names and values of the filter's chosen numbers, in the order of its file.
+#[test]
+fn the_book_has_each_constant_of_the_phase_coupled_filter() {
+    let read = |path: &str| fs::read_to_string(workspace_root().join(path)).unwrap();
+    let source = read("core/src/cyclic/coupled/constants.rs");
+    let declared = source.lines().filter_map(|line| {
+        let (name, value) = line.strip_prefix("pub(super) const ")?.strip_suffix(';')?.split_once(" = ")?;
+        Some((name.split_once(':')?.0.to_owned(), value.to_owned()))
+    });
+    let page = read("docs/cyclic_coupled_constants.md");
+    let told = page.lines().filter_map(|line| {
+        let (name, rest) = line.strip_prefix("| `")?.split_once("` | ")?;
+        Some((name.to_owned(), rest.split_once(" | ")?.0.to_owned()))
+    });
+    let declared: Vec<_> = declared.collect();
+    assert!(declared.len() > 20 && page.contains(&format!("{} numbers are", declared.len())));
+    assert_eq!(told.collect::<Vec<_>>(), declared);
+}
