@@ -251,7 +251,28 @@ mod tests {
     use crate::observation::point_cloud::PointCloud;
     use crate::random::Stream;
     use crate::skeleton::BodyMeasures;
-    use crate::skeleton::full_body::{BODY_ANGLES, body_radii_m, full_body};
+    use crate::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BodySkeleton, body_radii_m, full_body};
+
+    const LIKELIHOOD: PointLikelihood = PointLikelihood { std_m: 0.1, outlier_m: 0.3 };
+
+    /// A body three metres away.
+    struct Posed {
+        skeleton: BodySkeleton,
+        radii_m: [f32; BODY_BONES],
+        angles_rad: [f32; BODY_ANGLES],
+        surface: BodySurface<BODY_BONES>,
+    }
+
+    fn posed(stream: &mut Stream) -> Posed {
+        let measures = BodyMeasures::of_height(1.75).unwrap();
+        let (skeleton, radii_m) = (full_body(&measures).unwrap(), body_radii_m(&measures));
+        let mut angles_rad = [0.0; BODY_ANGLES];
+        angles_rad.iter_mut().for_each(|angle| *angle = 0.3 * stream.normal());
+        angles_rad[2] = 3.0;
+        let angles_rad = skeleton.clamp(angles_rad);
+        let surface = BodySurface::new(&posture(&skeleton, &Vec3::zeros(), &angles_rad), &radii_m, Vec3::zeros());
+        Posed { skeleton, radii_m, angles_rad, surface }
+    }
 
     #[test]
     fn the_pull_is_the_slope_of_the_likelihood() {
@@ -260,15 +281,8 @@ mod tests {
 
     #[test]
     fn lines_begin_at_the_nearest_visible_skin() {
-        let measures = BodyMeasures::of_height(1.75).unwrap();
-        let (skeleton, radii) = (full_body(&measures).unwrap(), body_radii_m(&measures));
-        let likelihood = PointLikelihood { std_m: 0.1, outlier_m: 0.3 };
         let mut stream = Stream::new(9, 0, 0);
-        let mut angles = [0.0; BODY_ANGLES];
-        angles.iter_mut().for_each(|angle| *angle = 0.3 * stream.normal());
-        angles[2] = 3.0;
-        let there = posture(&skeleton, &Vec3::zeros(), &skeleton.clamp(angles));
-        let surface = BodySurface::new(&there, &radii, Vec3::zeros());
+        let Posed { surface, .. } = posed(&mut stream);
         let mut points: Vec<Vec3> = (0..400)
             .map(|i| {
                 let seen = &surface.capsules[i % surface.capsules.len()];
@@ -278,7 +292,7 @@ mod tests {
         let mut cloud = PointCloud::<32>::new();
         let _ = cloud.set(&mut points, &Vec3::zeros());
         let mut hidden = 0;
-        for_each_pull(&likelihood, &surface, cloud.blocks().iter(), 1.0, |pull| {
+        for_each_pull(&LIKELIHOOD, &surface, cloud.blocks().iter(), 1.0, |pull| {
             let point = pull.skin_m + pull.normal * pull.residual_m;
             let seen = surface.capsules.iter().find(|seen| seen.bone == pull.bone).unwrap();
             let nearest = seen.capsule.nearest_visible(&Vec3::zeros(), &point);
@@ -299,16 +313,9 @@ mod tests {
 
     /// Points are off the skin by `off_m` on the mean and scatter by `along_std_m`, metres.
     fn the_pull_is_the_slope(along_std_m: f32, off_m: f32) {
-        let measures = BodyMeasures::of_height(1.75).unwrap();
-        let (skeleton, radii) = (full_body(&measures).unwrap(), body_radii_m(&measures));
-        let likelihood = PointLikelihood { std_m: 0.1, outlier_m: 0.3 };
         let mut stream = Stream::new(6, 0, 0);
-        let mut angles = [0.0; BODY_ANGLES];
-        angles.iter_mut().for_each(|angle| *angle = 0.3 * stream.normal());
-        angles[2] = 3.0;
-        let angles = skeleton.clamp(angles);
-        let there = posture(&skeleton, &Vec3::zeros(), &angles);
-        let surface = BodySurface::new(&there, &radii, Vec3::zeros());
+        let Posed { skeleton, radii_m, angles_rad, surface } = posed(&mut stream);
+        let there = posture(&skeleton, &Vec3::zeros(), &angles_rad);
         let mut points: Vec<Vec3> = (0..400)
             .map(|i| {
                 let seen = &surface.capsules[i % surface.capsules.len()];
@@ -324,19 +331,19 @@ mod tests {
         cloud.scatter_by(along_std_m);
         let mut information = BodyInformation::empty();
         information.clear(&there);
-        let pulled = add_pull(&likelihood, &surface, cloud.blocks().iter(), 1.0, &mut information);
-        assert_eq!(pulled, likelihood.log_likelihood(&surface, cloud.blocks()));
+        let pulled = add_pull(&LIKELIHOOD, &surface, cloud.blocks().iter(), 1.0, &mut information);
+        assert_eq!(pulled, LIKELIHOOD.log_likelihood(&surface, cloud.blocks()));
         let (mut gradient, mut hessian) = ([0.0; BODY_ANGLES], [[0.0; BODY_ANGLES]; BODY_ANGLES]);
         information.add_to(&skeleton, &there, &mut gradient, &mut hessian);
-        let log_likelihood = |angles: &[f32; BODY_ANGLES]| {
-            let there = posture(&skeleton, &Vec3::zeros(), angles);
-            likelihood.log_likelihood(&BodySurface::new(&there, &radii, Vec3::zeros()), cloud.blocks())
+        let log_likelihood = |angles_rad: &[f32; BODY_ANGLES]| {
+            let there = posture(&skeleton, &Vec3::zeros(), angles_rad);
+            LIKELIHOOD.log_likelihood(&BodySurface::new(&there, &radii_m, Vec3::zeros()), cloud.blocks())
         };
         // In units of each coordinate's own precision, where points inform it. Points that change
         // from one bone to another bend the slope a little.
         let (mut product, mut squares) = (0.0, [0.0; 2]);
         for i in (0..BODY_ANGLES).filter(|&i| hessian[i][i] > 1.0e-2) {
-            let (mut below, mut above) = (angles, angles);
+            let (mut below, mut above) = (angles_rad, angles_rad);
             below[i] -= 1.0e-3;
             above[i] += 1.0e-3;
             let slope = (log_likelihood(&above) - log_likelihood(&below)) / (2.0e-3 * hessian[i][i].sqrt());

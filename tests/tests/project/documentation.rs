@@ -254,11 +254,11 @@ fn the_book_has_each_constant_of_the_phase_coupled_filter() {
         Some((name.split_once(':')?.0.to_owned(), value.to_owned()))
     });
     let page = read("docs/cyclic_coupled_constants.md");
-    let told = page.lines().filter_map(|line| {
+    let listed = page.lines().filter_map(|line| {
         let (name, rest) = line.strip_prefix("| `")?.split_once("` | ")?;
         Some((name.to_owned(), rest.split_once(" | ")?.0.to_owned()))
     });
     let declared: Vec<_> = declared.collect();
     assert!(declared.len() > 20 && page.contains(&format!("{} numbers are", declared.len())));
-    assert_eq!(told.collect::<Vec<_>>(), declared);
+    assert_eq!(listed.collect::<Vec<_>>(), declared);
 }

@@ -1,6 +1,7 @@
 //! The PIK paper's experiments on simulated stereo views of real motion (section 7).
 
 pub mod figures;
+pub mod flagged;
 pub mod hidden_arm;
 pub mod motions;
 pub mod prediction;

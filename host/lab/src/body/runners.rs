@@ -8,8 +8,8 @@ use super::motions::ReadMotion;
 use super::trial::{SeenMotion, TrialResult, trial};
 use anyhow::Result;
 use rayon::prelude::*;
-use sinew::body::BodyPart;
 use sinew::body::tracking::{BodyModelKind, BodyTuning};
+use sinew::stereo::StereoOptions;
 
 /// Rows in the data split of the runners that are shown. They count as tuning: nothing was chosen
 /// on these clips, but their sources have clips on which numbers were.
@@ -25,7 +25,7 @@ pub struct Seeds {
 }
 
 /// The trials of one motion and model, cloud by cloud, in parallel; and PIK (35) of the truth,
-/// metres a frame.
+/// metres a frame. The camera has `patches` patches without points.
 ///
 /// # Errors
 /// A motion that makes no scene; a parameter of the tracker that broke a rule.
@@ -33,10 +33,10 @@ pub fn runs(
     motion: &ReadMotion,
     (model, particles): (BodyModelKind, usize),
     tuning: &BodyTuning,
-    seeds: Seeds,
+    (seeds, patches): (Seeds, u32),
 ) -> Result<(Vec<TrialResult>, f64)> {
-    let seen: Vec<SeenMotion> =
-        (1..=seeds.clouds).into_par_iter().map(|cloud| motion.seen(BodyPart::Whole, cloud)).collect::<Result<_>>()?;
+    let of_cloud = |cloud| motion.seen_as(StereoOptions { seed: cloud, patches, ..StereoOptions::default() });
+    let seen: Vec<SeenMotion> = (1..=seeds.clouds).into_par_iter().map(of_cloud).collect::<Result<_>>()?;
     let pairs: Vec<(&SeenMotion, u64)> =
         seen.iter().flat_map(|seen| (1..=seeds.trackers).map(move |seed| (seen, seed))).collect();
     let one = |&(seen, seed): &(&SeenMotion, u64)| Ok(trial(seen, model, tuning, particles, seed)?.0);

@@ -1,6 +1,7 @@
 //! One tracker on one motion: the PIK paper's measures, PIK (34) and PIK (35), and errors at the
 //! joints.
 
+use super::flagged::loses_unflagged;
 use anyhow::Result;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -113,6 +114,8 @@ pub struct NearErrors {
     pub joint_error_m: f64,
     /// Share of frames that have a joint more than 10 cm off.
     pub lost_joint_share: f64,
+    /// Share of frames that have such a joint on a limb that is neither unobserved nor ambiguous.
+    pub lost_unflagged_share: f64,
 }
 
 /// Measures of a pose over the frames of a trial, always together.
@@ -168,6 +171,7 @@ pub fn trial(
     let mut estimates = Vec::with_capacity(motion.clouds_m.len());
     let mut before_deadband: Vec<WholeBodyEstimate> = Vec::with_capacity(motion.clouds_m.len());
     let mut seconds = 0.0;
+    let (mut near, mut near_unflagged) = (BodyScore::default(), RunningMean::default());
     for (frame, points_m) in motion.clouds_m.iter().enumerate().skip(1) {
         let stick = motion.stick.get(frame).copied().unwrap_or(StickSight::Unseen);
         let mut points_m = points_m.clone();
@@ -177,17 +181,16 @@ pub fn trial(
         seconds += start.elapsed().as_secs_f64();
         let (angles_rad, ends_m) = filter.before_deadband();
         before_deadband.push(WholeBodyEstimate { angles_rad, ends_m, ..estimate });
+        let joints_m = &motion.joints_m[frame];
+        if joints_m[PELVIS].is_some_and(|pelvis_m| pelvis_m.norm() < NEAR_M) {
+            let _ = near.add(&filter, &estimate, joints_m, &[]);
+            near_unflagged.add(f64::from(u8::from(loses_unflagged(&filter, &estimate, joints_m))));
+        }
         estimates.push(estimate);
     }
     let frames = estimates.len().max(1) as f64;
     let (reported, before_deadband) =
         (measures(motion, &filter, &estimates), measures(motion, &filter, &before_deadband));
-    let mut near = BodyScore::default();
-    for (estimate, joints) in estimates.iter().zip(motion.joints_m.iter().skip(1)) {
-        if joints[PELVIS].is_some_and(|pelvis_m| pelvis_m.norm() < NEAR_M) {
-            let _ = near.add(&filter, estimate, joints, &[]);
-        }
-    }
     let mut recorded = BodyScore::default();
     for (estimate, markers) in estimates.iter().zip(motion.recorded_markers_m.iter().skip(1)) {
         let _ = recorded.add(&filter, estimate, &[None; BODY_BONES], markers);
@@ -197,7 +200,7 @@ pub fn trial(
         recorded_error_m: recorded.marker_m.mean(),
         joint_error_m: reported.joint_error_m,
         lost_joint_share: reported.lost_joint_share,
-        near: near_errors(&near),
+        near: near_errors(&near, &near_unflagged),
         smoothness_m: reported.smoothness_m,
         before_deadband,
         seconds_per_frame: seconds / frames,
@@ -221,8 +224,12 @@ fn measures(motion: &SeenMotion, filter: &BodyFilter, poses: &[WholeBodyEstimate
     }
 }
 
-fn near_errors(near: &BodyScore) -> Option<NearErrors> {
-    Some(NearErrors { joint_error_m: near.joint_m.mean()?, lost_joint_share: near.lost.mean()? })
+fn near_errors(near: &BodyScore, unflagged: &RunningMean) -> Option<NearErrors> {
+    Some(NearErrors {
+        joint_error_m: near.joint_m.mean()?,
+        lost_joint_share: near.lost.mean()?,
+        lost_unflagged_share: unflagged.mean()?,
+    })
 }
 
 /// Eq. (35) from the second frame on: the mean over bones of how far a_l, the bone's start, goes in

@@ -12,8 +12,9 @@ use std::path::Path;
 const SEEDS: Seeds = Seeds { clouds: 3, trackers: 2 };
 /// Particles of the guided model.
 const PARTICLES: usize = 30;
-/// Shares of the scatter along lines of sight, and the model's name with each.
-const SHARES: [(f32, &str); 2] = [(0.0, "guided, 30"), (0.5, "the same, `along_share = 0.5`")];
+/// A row's name, share of the scatter along lines of sight, and patches without points.
+const ROWS: [(&str, f32, u32); 3] =
+    [("guided, 30", 0.0, 4), ("the same, `along_share = 0.5`", 0.5, 4), ("guided, 30, no missing patches", 0.0, 0)];
 
 pub fn runners(recordings: &Path) -> Result<Rows> {
     let mut rows = vec![line([
@@ -23,15 +24,16 @@ pub fn runners(recordings: &Path) -> Result<Rows> {
         "lost, %",
         "nearer than 6 m: joints, cm",
         "lost, %",
+        "lost and not flagged, %",
         "(34), cm",
         "(35) over the truth's",
     ])];
     for choice in motions(recordings, TRACKER, Role::Tuning)? {
         let read = choice.read(None)?;
-        for (along_share, name) in SHARES {
+        for (name, along_share, patches) in ROWS {
             let mut tuning = BodyTuning::default();
             tuning.smoothing.along_share = along_share;
-            let (trials, truth_m) = runs(&read, (BodyModelKind::Guided, PARTICLES), &tuning, SEEDS)?;
+            let (trials, truth_m) = runs(&read, (BodyModelKind::Guided, PARTICLES), &tuning, (SEEDS, patches))?;
             rows.push(row(&choice.name(), name, &trials, truth_m));
         }
     }
@@ -54,6 +56,7 @@ fn row(clip: &str, model: &str, trials: &[TrialResult], truth_m: f64) -> Vec<Str
         format!("{:.0}", 100.0 * mean(&|trial| Some(trial.lost_joint_share))),
         format!("{:.1}", 100.0 * mean(&|trial| Some(trial.near?.joint_error_m))),
         format!("{:.0}", 100.0 * mean(&|trial| Some(trial.near?.lost_joint_share))),
+        format!("{:.1}", 100.0 * mean(&|trial| Some(trial.near?.lost_unflagged_share))),
         format!("{:.2}", 100.0 * mean(&|trial| Some(trial.error_m))),
         format!("{:.2}", mean(&|trial| Some(trial.smoothness_m)) / truth_m),
     ])

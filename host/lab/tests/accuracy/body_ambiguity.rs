@@ -19,7 +19,7 @@ const RUNNERS: [&str; 3] =
 const OTHERS: [&str; 3] =
     ["bandai/dataset-2_wave-both-hands_normal_001.bvh@0-4", "cmu-walk/02/02_01.amc", "cmu-exercise/13_29.amc@0-3.9"];
 /// Clouds of the camera for each motion.
-const CLOUDS: u64 = 6;
+const CLOUDS: u64 = 18;
 /// Particles of the guided model.
 const PARTICLES: usize = 30;
 
@@ -27,7 +27,7 @@ const PARTICLES: usize = 30;
 /// ones in it.
 type Row = (f32, [f64; 2]);
 
-const OF_RUNNERS: [Row; 4] = [(0.0, [0.003, 0.12]), (0.01, [0.06, 0.25]), (0.3, [0.28, 0.52]), (0.6, [0.6, 0.85])];
+const OF_RUNNERS: [Row; 4] = [(0.0, [0.01, 0.1]), (0.01, [0.06, 0.25]), (0.3, [0.28, 0.52]), (0.6, [0.6, 0.85])];
 /// Few joints of these are lost.
 const OF_OTHERS: [Row; 3] = [(0.0, [0.0, 0.005]), (0.01, [0.0, 0.1]), (0.3, [0.1, 0.6])];
 

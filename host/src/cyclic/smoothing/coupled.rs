@@ -79,11 +79,11 @@ impl<const N: usize> Smoothable<N> for CoupledState<N> {
         self.0.led_as_in(&next.0).map(Self)
     }
 
-    /// There is none where the position is searched for or was found anew. An angle whose constant
+    /// There is none where the position is searched for. An angle whose constant
     /// was opened at the gate has that much more noise. So what is learned anew after it says
     /// nothing about what was before.
     fn link(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, next: &Self) -> Option<Link> {
-        if self.0.led_as_in(&next.0).is_none() || next.0.is_searching() {
+        if next.0.is_searching() {
             return None;
         }
         let size = Self::size(model);

@@ -47,8 +47,8 @@ pub trait Smoothable<const N: usize>: Copy {
     /// Mean and covariance given the measurements up to this frame.
     fn moments(&self, model: &MotionModel<'_>) -> Moments;
 
-    /// The step to the state `next`, which came out of `measurement`; `None` where that one does
-    /// not follow from this.
+    /// The step to the state `next`, which came out of `measurement` and whose leader leads here,
+    /// too; `None` where that one does not follow from this.
     fn link(&self, model: &MotionModel<'_>, measurement: &AngleMeasurement<N>, next: &Self) -> Option<Link>;
 
     /// The estimate of the frame from moments of this kind of state, `None` where the forward one
@@ -69,7 +69,7 @@ pub fn backward<const N: usize, S: Smoothable<N>>(
         let led = later.as_ref().and_then(|(next, _)| forward.led_as_in(next));
         let state = led.unwrap_or(forward);
         let filtered = state.moments(model);
-        let linked = later.as_ref().and_then(|(next, moments)| {
+        let linked = later.as_ref().filter(|_| led.is_some()).and_then(|(next, moments)| {
             let link = state.link(model, measurements.get(index)?, next)?;
             let mut surprise = &moments.mean - &link.predicted_mean;
             for (i, value) in surprise.iter_mut().enumerate() {
