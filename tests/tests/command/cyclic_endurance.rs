@@ -1,7 +1,7 @@
 //! Ten million frames of `f32`: the covariances stay symmetric, finite and positive semi-definite.
 
 use nalgebra::DMatrix;
-use sinew_core::cyclic::coupled::block::PARTS;
+use sinew_core::cyclic::coupled::person::block::PARTS;
 use sinew_core::cyclic::model::table::HumanModelTable;
 use sinew_core::cyclic::{
     AngleMeasurement, CoupledFilter, CycleStart, CyclicEstimate, KalmanFilter, KalmanOptions, MotionModel,

@@ -38,8 +38,8 @@ pub enum Part {
     Rival,
     /// Giving way to it without a comparison, of a filter that does not fit.
     GivingWay,
-    /// The prior of an angle of the first row that is far from the mean pose.
-    UnusualOffset,
+    /// The wider prior of an angle that is far from the mean pose in the first row.
+    FirstRowOffset,
     /// The noise of the first row; without it, it is as stated.
     FirstRowNoise,
     /// The turns along the measured way.
@@ -59,7 +59,7 @@ impl Part {
         Self::Secant,
         Self::Rival,
         Self::GivingWay,
-        Self::UnusualOffset,
+        Self::FirstRowOffset,
         Self::FirstRowNoise,
         Self::MeasuredPath,
     ];

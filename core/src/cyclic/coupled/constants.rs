@@ -36,26 +36,11 @@ pub(super) const MAX_FITTING_SCALE: f32 = 9.0;
 /// motion is found later.
 pub(super) const MAX_DEFENDED_SCALE: f32 = 3.0;
 
-// The first row.
-
-/// Smallest standard deviation of an angle of the first row, rad. Chosen: the root of the Kalman
-/// filter's first variance (`KalmanOptions::angle_variance`, 1e-4 rad^2).
-pub(super) const MIN_STD_RAD: f32 = 0.01;
-/// Distance from the mean pose, standard deviations of spread and noise, from which an offset is
-/// unusual. Chosen: a limit of four finds no person of another source.
-pub(super) const MIN_UNUSUAL_SIGMAS: f32 = 2.0;
-/// Variance of the swing of an angle with an unusual offset, as a share of the squared offset.
-/// Chosen: a joint that lies elsewhere swings otherwise too. Without it bands of such joints are
-/// too narrow.
-pub(super) const UNUSUAL_SWING_SHARE: f32 = 0.03;
-
 // The noise.
 
 /// Largest normalised square or product that an innovation counts with. Chosen: three standard
 /// deviations.
 pub(super) const MAX_SQUARE: f32 = 9.0;
-/// Largest scale of noise and spread. Chosen: four times the standard deviation.
-pub(super) const MAX_SCALE: f32 = 16.0;
 /// Smallest scale of the noise that the gains use.
 ///
 /// Chosen: half of the stated standard deviation. With less, the bands of slow noise hold half of
@@ -88,13 +73,9 @@ pub(super) const LINEAR_CYCLES: f32 = 0.15;
 /// Phase difference from which two places are not the same, cycles. Chosen: below
 /// [`LINEAR_CYCLES`].
 pub(super) const MIN_DIFFERENCE_CYCLES: f32 = 0.12;
-/// Share of the grid's weight that moves to each neighbouring speed in a frame. Chosen: speeds
-/// change over seconds, not frames. With 0.01 a walk after another motion is found later at much
-/// noise.
-pub(super) const SPEED_CHANGE: f32 = 0.02;
-/// Share of the grid's weight that moves to each neighbouring position in a frame. Chosen: a
-/// person's speed lies between those of the grid.
-pub(super) const BLUR: f32 = 0.05;
+/// Share of the grid's weight that moves to each neighbouring position and speed in a frame.
+/// Chosen: speeds change over seconds, and a person's speed lies between those of the grid.
+pub(super) const GRID_DIFFUSION: f32 = 0.02;
 /// Frames between two updates of the grid while the filter is locked.
 ///
 /// Chosen: the grid costs as much as the filter, and neighbouring frames carry nearly the same
@@ -123,10 +104,6 @@ pub(super) const MAX_WINDING_DIFFERENCE_CYCLES: f32 = 0.25;
 /// Completed cycles for which an angle that gained or lost a turn does not inform the phase.
 /// Chosen: an angle that winds in one cycle often winds in the next.
 pub(super) const EXCLUDED_CYCLES: u8 = 3;
-/// Largest standard deviation of a measurement by which turns are counted, rad.
-///
-/// Chosen: half a turn is then 4.3 standard deviations of the difference of two measurements.
-pub(super) const MAX_TURN_STD_RAD: f32 = 0.52;
 /// Longest interval between two measurements by which turns are counted, frames. Chosen: beyond it
 /// the arc may exceed half a turn.
 pub(super) const MAX_INTERVAL_FRAMES: f32 = 4.0;

@@ -1,8 +1,8 @@
 //! Moments of the phase-coupled filter and its linear step, for a smoother over a whole recording.
 
-use crate::cyclic::coupled::block::{AngleBlock, Basis, PARTS};
-use crate::cyclic::coupled::correct::is_beyond_gate;
-use crate::cyclic::coupled::cycle_pair::CyclePair;
+use crate::cyclic::coupled::hypothesis::correct::is_beyond_gate;
+use crate::cyclic::coupled::person::block::{AngleBlock, Basis, PARTS};
+use crate::cyclic::coupled::phase::cycle_pair::CyclePair;
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::cycle_state::CycleState;
 use crate::cyclic::{AngleMeasurement, CoupledModel};

@@ -4,13 +4,13 @@
 use crate::angle::split_turns;
 use crate::cyclic::AngleMeasurement;
 use crate::cyclic::CoupledModel;
-use crate::cyclic::coupled::block::Basis;
 use crate::cyclic::coupled::hypothesis::Hypothesis;
-use crate::cyclic::coupled::measured_path::MeasuredPath;
-use crate::cyclic::coupled::measurement_noise::MeasurementNoise;
-use crate::cyclic::coupled::rival::Rival;
-use crate::cyclic::coupled::stored_grid::StoredGrid;
-use crate::cyclic::coupled::winding::Winding;
+use crate::cyclic::coupled::hypothesis::rival::Rival;
+use crate::cyclic::coupled::measurement::measured_path::MeasuredPath;
+use crate::cyclic::coupled::measurement::measurement_noise::MeasurementNoise;
+use crate::cyclic::coupled::measurement::winding::Winding;
+use crate::cyclic::coupled::person::block::Basis;
+use crate::cyclic::coupled::phase::stored_grid::StoredGrid;
 use crate::math::wrap_angle;
 
 /// State of the filter `coupled` for models of up to `N` angles.

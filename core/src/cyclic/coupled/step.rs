@@ -1,7 +1,7 @@
 //! A step of the phase-coupled filter: predict, update the grid, correct, estimate.
 
-use crate::cyclic::coupled::block::{AnglePrediction, Basis};
-use crate::cyclic::coupled::evidence::FrameInnovation;
+use crate::cyclic::coupled::person::block::{AnglePrediction, Basis};
+use crate::cyclic::coupled::phase::evidence::FrameInnovation;
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::{AngleMeasurement, CoupledModel, CyclicEstimate};
 use crate::math::max;
@@ -17,7 +17,7 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     /// Moves on by `step_frames`, in substeps of one frame, longer ones where that would be more
-    /// than [`MAX_SUBSTEPS`](crate::cyclic::coupled::predict::MAX_SUBSTEPS).
+    /// than [`MAX_SUBSTEPS`](crate::cyclic::coupled::hypothesis::predict::MAX_SUBSTEPS).
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub fn predict(&mut self, model: &CoupledModel<'_>, step_frames: f32) {
         self.leader.predict(model, step_frames);

@@ -5,10 +5,10 @@ use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::constants::{
     GRID_INTERVAL_FRAMES, LINEAR_CYCLES, MAX_WINDING_DIFFERENCE_CYCLES, MIN_MODE_WEIGHT, MISFIT_CYCLES,
 };
-use crate::cyclic::coupled::phase_grid::{PhaseGrid, PhaseMode};
-use crate::cyclic::coupled::rival::is_elsewhere;
+use crate::cyclic::coupled::hypothesis::rival::is_elsewhere;
+use crate::cyclic::coupled::measurement::winding::Winding;
+use crate::cyclic::coupled::phase::phase_grid::{PhaseGrid, PhaseMode};
 use crate::cyclic::coupled::state::CoupledFilter;
-use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::phase::position_difference;
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::abs;

@@ -11,4 +11,5 @@ mod saved;
 mod tests;
 
 pub use filter::KalmanFilter;
+pub(crate) use options::ANGLE_VARIANCE_RAD2;
 pub use options::{CovarianceScaling, GainReach, KalmanOptions};

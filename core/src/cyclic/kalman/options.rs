@@ -101,13 +101,16 @@ pub struct KalmanOptions {
     pub protect_from_outliers: bool,
 }
 
+/// First variance of an angle, rad^2. Chosen: the paper's first row is exact, so a small one.
+pub(crate) const ANGLE_VARIANCE_RAD2: f32 = 1.0e-4;
+
 impl Default for KalmanOptions {
     fn default() -> Self {
         Self {
             gain: GainReach::Full,
             scaling: CovarianceScaling::FourthPower,
             temporal_acceleration_std: 1.0e-4,
-            angle_variance: 1.0e-4,
+            angle_variance: ANGLE_VARIANCE_RAD2,
             velocity_variance: 1.0e-4,
             cycle_position_variance: 1.0e-5,
             cycle_velocity_variance: 1.0e-6,

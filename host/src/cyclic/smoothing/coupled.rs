@@ -3,7 +3,7 @@
 use super::pass::{Link, Smoothable, Smoothed};
 use super::recursion::Moments;
 use nalgebra::{DMatrix, DVector};
-use sinew_core::cyclic::coupled::block::{Basis, PARTS};
+use sinew_core::cyclic::coupled::person::block::{Basis, PARTS};
 use sinew_core::cyclic::{AngleMeasurement, CoupledFilter, MotionModel};
 use std::f64::consts::TAU;
 

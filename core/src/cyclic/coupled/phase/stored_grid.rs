@@ -1,14 +1,14 @@
 //! The phase grid as the filter stores it between two updates: weights in bfloat16.
 
 use crate::cyclic::CoupledModel;
-use crate::cyclic::coupled::phase_grid::{POSITIONS, PhaseGrid, PhaseMode, SPEEDS};
+use crate::cyclic::coupled::phase::phase_grid::{POSITIONS, PhaseGrid, PhaseMode, SPEEDS};
 use crate::cyclic::phase::POSITIONS_IN_CYCLE;
 use crate::numeric::bf16::Bf16;
 use crate::saved_state::{SavedState, StateVisitor};
 
 /// A [`PhaseGrid`] with its weights in [`Bf16`], so that the filter's state fits 4 KiB.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct StoredGrid {
+pub(crate) struct StoredGrid {
     weights: [[Bf16; POSITIONS]; SPEEDS],
     travelled: [f32; SPEEDS],
 }
@@ -31,20 +31,20 @@ impl SavedState for StoredGrid {
 
 impl StoredGrid {
     /// A grid before its first frame: zeros, which take less flash than weights.
-    pub(super) const fn empty() -> Self {
+    pub(crate) const fn empty() -> Self {
         Self { weights: [[Bf16::new(0.0); POSITIONS]; SPEEDS], travelled: [0.0; SPEEDS] }
     }
 
     /// Becomes [`PhaseGrid::uniform`], in place.
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.weights.as_flattened_mut().fill(Bf16::new(1.0 / (POSITIONS * SPEEDS) as f32));
         self.travelled = [0.0; SPEEDS];
     }
 
     /// The grid with weights in `f32`.
     #[inline]
-    pub(super) fn load(&self) -> PhaseGrid {
+    pub(crate) fn load(&self) -> PhaseGrid {
         let mut grid = PhaseGrid::uniform();
         self.load_into(&mut grid);
         grid
@@ -52,7 +52,7 @@ impl StoredGrid {
 
     /// The same, where it stays: one that is returned stands on the stack twice.
     #[inline]
-    pub(super) fn load_into(&self, grid: &mut PhaseGrid) {
+    pub(crate) fn load_into(&self, grid: &mut PhaseGrid) {
         grid.travelled = self.travelled;
         for (weight, short) in grid.weights.as_flattened_mut().iter_mut().zip(self.weights.as_flattened()) {
             *weight = short.get();
@@ -61,19 +61,19 @@ impl StoredGrid {
 
     /// The mode with the largest weight; the grid is loaded in a frame of its own.
     #[inline(never)]
-    pub(super) fn mode(&self, model: &CoupledModel<'_>) -> PhaseMode {
+    pub(crate) fn mode(&self, model: &CoupledModel<'_>) -> PhaseMode {
         self.load().mode(model)
     }
 
     /// Weight by position alone; the grid is loaded in a frame of its own.
     #[inline(never)]
-    pub(super) fn by_position(&self) -> [f32; POSITIONS] {
+    pub(crate) fn by_position(&self) -> [f32; POSITIONS] {
         self.load().by_position()
     }
 
     /// Stores `grid`.
     #[inline]
-    pub(super) fn store(&mut self, grid: &PhaseGrid) {
+    pub(crate) fn store(&mut self, grid: &PhaseGrid) {
         for (row, weights) in self.weights.iter_mut().zip(&grid.weights) {
             for (short, weight) in row.iter_mut().zip(weights) {
                 *short = Bf16::new(*weight);

@@ -5,18 +5,22 @@
 
 use crate::cyclic::AngleMeasurement;
 use crate::cyclic::coupled::ablation::{Part, is_on};
-use crate::cyclic::coupled::constants::{MAX_INTERVAL_FRAMES, MAX_TURN_STD_RAD};
+use crate::cyclic::coupled::constants::{GATE_SIGMAS, MAX_INTERVAL_FRAMES};
 use crate::math::{round_small, wrap_angle};
 use crate::saved_state::{SavedState, StateVisitor};
-use core::f32::consts::TAU;
+use core::f32::consts::{PI, SQRT_2, TAU};
 
 /// Steps of a turn in which a measured angle is stored. Chosen: one byte, whose wrapping difference
 /// is the shorter arc.
 const STEPS: f32 = 256.0;
 
+/// Largest standard deviation of a measurement by which turns are counted, rad: half a turn then
+/// lies at the gate of the difference of two measurements.
+const MAX_TURN_STD_RAD: f32 = PI / (GATE_SIGMAS * SQRT_2);
+
 /// Last measurement of each angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct MeasuredPath<const N: usize> {
+pub(crate) struct MeasuredPath<const N: usize> {
     /// Angle in steps of a turn, of which a turn has [`STEPS`].
     last: [i8; N],
     /// One bit for each angle measured in the last frame.
@@ -36,7 +40,7 @@ impl<const N: usize> SavedState for MeasuredPath<N> {
 
 impl<const N: usize> MeasuredPath<N> {
     /// Without measurements.
-    pub(super) const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self { last: [0; N], known: 0 }
     }
 
@@ -44,7 +48,7 @@ impl<const N: usize> MeasuredPath<N> {
     /// stays within half a turn of the measurements.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline)]
-    pub(super) fn turns(
+    pub(crate) fn turns(
         &mut self,
         index: usize,
         [from_rad, to_rad]: [f32; 2],

@@ -1,8 +1,8 @@
 //! The estimate while the phase is unknown: the mean over the grid.
 
-use crate::cyclic::coupled::block::Basis;
-use crate::cyclic::coupled::measured_path::MeasuredPath;
-use crate::cyclic::coupled::phase_grid::{POSITIONS, PhaseMode};
+use crate::cyclic::coupled::measurement::measured_path::MeasuredPath;
+use crate::cyclic::coupled::person::block::Basis;
+use crate::cyclic::coupled::phase::phase_grid::{POSITIONS, PhaseMode};
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::phase::position_difference;
 use crate::cyclic::{AngleMeasurement, CoupledModel, CyclicEstimate};
@@ -15,7 +15,7 @@ impl<const N: usize> CoupledFilter<N> {
     /// The mean pose over the grid's positions by weight, corrected angle by angle. `mode` is the
     /// grid's mode where it is known.
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    pub(super) fn estimate_of_all_places(
+    pub(crate) fn estimate_of_all_places(
         &mut self,
         model: &CoupledModel<'_>,
         measurement: &AngleMeasurement<N>,

@@ -13,14 +13,17 @@
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::constants::{
-    FORGETTING, GATE_SIGMAS, GROWTH, MAX_DEFENDED_SCALE, MAX_FITTING_SCALE, MAX_SCALE, MAX_SQUARE,
+    FORGETTING, GATE_SIGMAS, GROWTH, MAX_DEFENDED_SCALE, MAX_FITTING_SCALE, MAX_SQUARE,
 };
 use crate::math::{clamp, max, min, sqrt};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 
+/// Largest scale of spread and noise: the standard deviation is then as large as the gate.
+pub(crate) const MAX_SCALE: f32 = GATE_SIGMAS * GATE_SIGMAS;
+
 /// Scale of the prior variances of a person's deviation, at least one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct SpreadScale {
+pub(crate) struct SpreadScale {
     scale: f32,
     /// Frames with a measurement since the start.
     frames: f32,
@@ -33,7 +36,7 @@ pub(super) struct SpreadScale {
 }
 
 /// Sums over the angles of a frame.
-pub(super) struct FrameProducts {
+pub(crate) struct FrameProducts {
     squares: f32,
     products: f32,
     count: f32,
@@ -41,11 +44,11 @@ pub(super) struct FrameProducts {
 
 impl FrameProducts {
     /// Without angles.
-    pub(super) const NONE: Self = Self { squares: 0.0, products: 0.0, count: 0.0 };
+    pub(crate) const NONE: Self = Self { squares: 0.0, products: 0.0, count: 0.0 };
 
     /// Adds an angle's innovation in this frame and the last one, rad, with its variance, rad^2.
     #[inline]
-    pub(super) fn add(&mut self, [innovation_rad, last_rad]: [f32; 2], variance: f32) {
+    pub(crate) fn add(&mut self, [innovation_rad, last_rad]: [f32; 2], variance: f32) {
         let share = innovation_rad / variance;
         self.squares += min(share * innovation_rad, MAX_SQUARE);
         self.products += clamp(share * last_rad, -MAX_SQUARE, MAX_SQUARE);
@@ -65,33 +68,33 @@ impl SavedState for SpreadScale {
 
 impl SpreadScale {
     /// As in the training.
-    pub(super) const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self { scale: 1.0, ..Self::zero() }
     }
 
     /// Zeros, for a hypothesis that has not begun.
-    pub(super) const fn zero() -> Self {
+    pub(crate) const fn zero() -> Self {
         Self { scale: 0.0, frames: 0.0, nis_excess: 0.0, product: 0.0, product_variance: 0.0 }
     }
 
     /// Factor of the prior variances, in [1, [`MAX_SCALE`]].
-    pub(super) const fn scale(&self) -> f32 {
+    pub(crate) const fn scale(&self) -> f32 {
         self.scale
     }
 
     /// Whether the motion differs from the mean cycle by more than a person does.
-    pub(super) fn is_misfit(&self) -> bool {
+    pub(crate) fn is_misfit(&self) -> bool {
         self.scale > MAX_FITTING_SCALE
     }
 
     /// Whether the deviations are so free that they follow any motion.
-    pub(super) fn is_doubtful(&self) -> bool {
+    pub(crate) fn is_doubtful(&self) -> bool {
         self.scale > MAX_DEFENDED_SCALE
     }
 
     /// Adds a frame, `cycles` of the mean cycle after the last one. Returns the factor by which the
     /// scale grew.
-    pub(super) fn update(&mut self, frame: &FrameProducts, cycles: f32) -> f32 {
+    pub(crate) fn update(&mut self, frame: &FrameProducts, cycles: f32) -> f32 {
         if frame.count < 1.0 {
             return 1.0;
         }

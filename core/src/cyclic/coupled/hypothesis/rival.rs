@@ -7,9 +7,9 @@
 
 use crate::cyclic::CoupledModel;
 use crate::cyclic::coupled::constants::{MIN_DIFFERENCE_CYCLES, MIN_LOG_ODDS};
-use crate::cyclic::coupled::evidence::FrameInnovation;
 use crate::cyclic::coupled::hypothesis::Hypothesis;
-use crate::cyclic::coupled::phase_grid::PhaseMode;
+use crate::cyclic::coupled::phase::evidence::FrameInnovation;
+use crate::cyclic::coupled::phase::phase_grid::PhaseMode;
 use crate::cyclic::phase::position_difference;
 use crate::math::{abs, clamp};
 use crate::saved_state::{SavedState, StateVisitor};
@@ -18,14 +18,14 @@ use crate::saved_state::{SavedState, StateVisitor};
 const MAX_LOG_ODDS: f32 = 1.0e6;
 
 /// Whether two positions are different places in the cycle.
-pub(super) fn is_elsewhere(one: f32, other: f32) -> bool {
+pub(crate) fn is_elsewhere(one: f32, other: f32) -> bool {
     abs(position_difference(one, other)) > MIN_DIFFERENCE_CYCLES
 }
 
 /// The second hypothesis and what speaks for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rival<const N: usize> {
-    pub(super) hypothesis: Hypothesis<N>,
+pub(crate) struct Rival<const N: usize> {
+    pub(crate) hypothesis: Hypothesis<N>,
     exists: bool,
     /// ln of its likelihood over the leader's since it began.
     log_odds: f32,
@@ -41,40 +41,40 @@ impl<const N: usize> SavedState for Rival<N> {
 
 impl<const N: usize> Rival<N> {
     /// Without a rival.
-    pub(super) const fn none() -> Self {
+    pub(crate) const fn none() -> Self {
         Self { hypothesis: Hypothesis::empty(), exists: false, log_odds: 0.0 }
     }
 
     /// Whether there is one.
-    pub(super) const fn exists(&self) -> bool {
+    pub(crate) const fn exists(&self) -> bool {
         self.exists
     }
 
     /// Resets to no rival; what is left of one would be saved with the state.
-    pub(super) fn forget(&mut self, model: &CoupledModel<'_>) {
+    pub(crate) fn forget(&mut self, model: &CoupledModel<'_>) {
         self.hypothesis.forget(model);
         (self.exists, self.log_odds) = (false, 0.0);
     }
 
     /// Ends the rival.
-    pub(super) const fn end(&mut self) {
+    pub(crate) const fn end(&mut self) {
         self.exists = false;
     }
 
     /// Whether it is at the grid's `mode` already.
-    pub(super) fn is_at(&self, mode: &PhaseMode) -> bool {
+    pub(crate) fn is_at(&self, mode: &PhaseMode) -> bool {
         self.exists && !is_elsewhere(mode.position, self.hypothesis.position)
     }
 
     /// Begins at the grid's mode with an unknown person, as the hypothesis of that number.
-    pub(super) fn begin_at(&mut self, model: &CoupledModel<'_>, at: (&PhaseMode, u32), leader: &Hypothesis<N>) {
+    pub(crate) fn begin_at(&mut self, model: &CoupledModel<'_>, at: (&PhaseMode, u32), leader: &Hypothesis<N>) {
         self.hypothesis.begin_at(model, at, leader);
         (self.exists, self.log_odds) = (true, 0.0);
     }
 
     /// Adds a frame by the innovations of rival and leader; returns whether the rival leads from
     /// here on.
-    pub(super) fn beats(&mut self, own: &FrameInnovation, leaders: &FrameInnovation) -> bool {
+    pub(crate) fn beats(&mut self, own: &FrameInnovation, leaders: &FrameInnovation) -> bool {
         let more = own.log_likelihood - leaders.log_likelihood;
         self.log_odds = clamp(self.log_odds + more, -MAX_LOG_ODDS, MAX_LOG_ODDS);
         self.log_odds > MIN_LOG_ODDS

@@ -6,7 +6,6 @@
 //! `mean + regression (z - z_mean)` and covariance `covariance`. Angles are independent of each
 //! other given z, so no covariance between angles is stored.
 
-use crate::cyclic::coupled::constants::UNUSUAL_SWING_SHARE;
 use crate::cyclic::saved_ranges::NUMBER;
 use crate::math::{abs, exp, max, sin_cos};
 use crate::numeric::semi_definite::{packed_index, packed_len};
@@ -26,7 +25,7 @@ const ROUNDING: f32 = 5.0 / 8_388_608.0;
 /// Direction in which an angle depends on its parts at a cycle position.
 ///
 /// ```
-/// use sinew_core::cyclic::coupled::block::Basis;
+/// use sinew_core::cyclic::coupled::person::block::Basis;
 ///
 /// // An offset of 0.1 rad and a swing of 0.2 rad: they add up at a quarter of a cycle.
 /// let parts = [0.1, 0.0, 0.2, 0.0, 0.0];
@@ -60,21 +59,21 @@ impl Basis {
 
 /// Stationary spread of a block.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Spread {
+pub(crate) struct Spread {
     /// Variance of a, rad^2.
-    pub(super) offset: f32,
+    pub(crate) offset: f32,
     /// Variance of p and of q, rad^2.
-    pub(super) swing: f32,
+    pub(crate) swing: f32,
     /// Variance of d, rad^2.
-    pub(super) rest: f32,
+    pub(crate) rest: f32,
     /// Rate of d per cycle.
-    pub(super) rate: f32,
+    pub(crate) rate: f32,
 }
 
 impl Spread {
     /// With the variances multiplied by `factor`.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn scaled(&self, factor: f32) -> Self {
+    pub(crate) fn scaled(&self, factor: f32) -> Self {
         Self { offset: factor * self.offset, swing: factor * self.swing, rest: factor * self.rest, rate: self.rate }
     }
 
@@ -86,18 +85,18 @@ impl Spread {
 
 /// Prediction of a measured angle: its derivative by z and its covariances given z.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct AnglePrediction {
+pub(crate) struct AnglePrediction {
     /// Derivative of the angle by (c, v).
-    pub(super) gradient: [f32; 2],
+    pub(crate) gradient: [f32; 2],
     /// Covariance of the parts with the angle, given z.
-    pub(super) column: [f32; PARTS],
+    pub(crate) column: [f32; PARTS],
     /// Variance of the angle given z, rad^2.
-    pub(super) variance: f32,
+    pub(crate) variance: f32,
 }
 
 impl AnglePrediction {
     /// The same where the offset's variance is inflated by `variance`, rad^2.
-    pub(super) fn inflate_offset(&mut self, variance: f32) {
+    pub(crate) fn inflate_offset(&mut self, variance: f32) {
         self.column[0] += variance;
         self.variance += variance;
     }
@@ -170,7 +169,7 @@ impl AngleBlock {
     /// The prior: the spread between people.
     #[must_use]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    pub(super) fn unknown(spread: &Spread) -> Self {
+    pub(crate) fn unknown(spread: &Spread) -> Self {
         let mut covariance = [0.0; PACKED];
         for (i, variance) in spread.diagonal().into_iter().enumerate() {
             if let Some(entry) = covariance.get_mut(packed_index(i, i)) {
@@ -182,7 +181,7 @@ impl AngleBlock {
 
     /// No deviation, with zero covariance.
     #[must_use]
-    pub(super) const fn zero() -> Self {
+    pub(crate) const fn zero() -> Self {
         Self { mean: [0.0; PARTS], regression: [[0.0; 2]; PARTS], covariance: [0.0; PACKED] }
     }
 
@@ -201,28 +200,20 @@ impl AngleBlock {
 
     /// Multiplies all variances by `factor`.
     #[inline]
-    pub(super) fn inflate(&mut self, factor: f32) {
+    pub(crate) fn inflate(&mut self, factor: f32) {
         self.covariance.iter_mut().for_each(|value| *value *= factor);
     }
 
     /// Adds `variance`, rad^2, to that of the offset.
-    pub(super) fn inflate_offset(&mut self, variance: f32) {
+    pub(crate) fn inflate_offset(&mut self, variance: f32) {
         self.covariance[0] += variance;
-    }
-
-    /// Inflates the prior of an angle with an unusual offset by `square_rad2`: the offset by all of
-    /// it, the swing by a share.
-    pub(super) fn inflate_offset_prior(&mut self, square_rad2: f32) {
-        self.inflate_offset(square_rad2);
-        self.covariance[packed_index(1, 1)] += UNUSUAL_SWING_SHARE * square_rad2;
-        self.covariance[packed_index(2, 2)] += UNUSUAL_SWING_SHARE * square_rad2;
     }
 
     /// Propagates by `phase` cycles: a, p, q decay by `memory`, d follows its Matern process.
     /// `z_map` is the regression of the old z on the new one, `z_rest` (cc, cv, vv) its residual
     /// covariance.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn advance(
+    pub(crate) fn advance(
         &mut self,
         spread: &Spread,
         phase: f32,
@@ -315,7 +306,7 @@ impl AngleBlock {
     /// Prediction of the angle; `mean_slope` is that of the mean cycle, rad per cycle.
     #[inline]
     #[must_use]
-    pub(super) fn predict_angle(&self, basis: &Basis, mean_slope: f32) -> AnglePrediction {
+    pub(crate) fn predict_angle(&self, basis: &Basis, mean_slope: f32) -> AnglePrediction {
         let own_slope = mean_slope + (basis.slope[1] * self.mean[1] + basis.slope[2] * self.mean[2]);
         let own = self.regression.map(|[own, _]| own);
         let other = self.regression.map(|[_, other]| other);
@@ -326,7 +317,7 @@ impl AngleBlock {
 
     /// Kalman update by an angle with innovation `residual`, rad; `shift` is the update of z.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn correct(
+    pub(crate) fn correct(
         &mut self,
         prediction: &AnglePrediction,
         noise_variance: f32,
@@ -353,7 +344,7 @@ impl AngleBlock {
 
     /// Moves the means by their regression on the update `shift` of z.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn follow(&mut self, shift: [f32; 2]) {
+    pub(crate) fn follow(&mut self, shift: [f32; 2]) {
         for i in 0..PARTS {
             self.mean[i] += self.regression[i][0] * shift[0] + self.regression[i][1] * shift[1];
         }

@@ -1,9 +1,9 @@
 //! Prediction of the phase-coupled filter over a step of any length.
 
 use crate::cyclic::CoupledModel;
-use crate::cyclic::coupled::block::PARTS;
 use crate::cyclic::coupled::constants::{FORGETTING, LINEAR_CYCLES};
 use crate::cyclic::coupled::hypothesis::{Hypothesis, spread};
+use crate::cyclic::coupled::person::block::PARTS;
 use crate::cyclic::substeps::Substeps;
 use crate::math::{abs, exp, max};
 
@@ -15,7 +15,7 @@ impl<const N: usize> Hypothesis<N> {
     /// Moves on by `step_frames`, in substeps of one frame, longer ones where that would be more
     /// than [`MAX_SUBSTEPS`].
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn predict(&mut self, model: &CoupledModel<'_>, step_frames: f32) {
+    pub(crate) fn predict(&mut self, model: &CoupledModel<'_>, step_frames: f32) {
         for step in Substeps::few(step_frames, MAX_SUBSTEPS) {
             self.advance(model, step);
         }

@@ -1,11 +1,11 @@
 //! Start of the phase-coupled filter: at the first row, or anywhere in the cycle.
 
-use crate::cyclic::coupled::initial_measurement::InitialMeasurement;
-use crate::cyclic::coupled::measured_path::MeasuredPath;
-use crate::cyclic::coupled::measurement_noise::MeasurementNoise;
-use crate::cyclic::coupled::phase_grid::PhaseGrid;
+use crate::cyclic::coupled::measurement::measured_path::MeasuredPath;
+use crate::cyclic::coupled::measurement::measurement_noise::MeasurementNoise;
+use crate::cyclic::coupled::measurement::winding::Winding;
+use crate::cyclic::coupled::phase::phase_grid::PhaseGrid;
+use crate::cyclic::coupled::start::initial_measurement::InitialMeasurement;
 use crate::cyclic::coupled::state::CoupledFilter;
-use crate::cyclic::coupled::winding::Winding;
 use crate::cyclic::phase::wrap_position;
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::error::{ParameterError, Rule, finite, within};
@@ -53,8 +53,8 @@ impl<const N: usize> CoupledFilter<N> {
         self.leader.position = position;
         self.leader.velocity = velocity;
         self.grid.store(&PhaseGrid::near(position));
-        for (block, unusual_offset_rad2) in self.leader.blocks.iter_mut().zip(row.unusual_offset_rad2).take(rolled(N)) {
-            block.inflate_offset_prior(unusual_offset_rad2);
+        for (block, excess_rad2) in self.leader.blocks.iter_mut().zip(row.offset_excess_rad2).take(rolled(N)) {
+            block.inflate_offset(excess_rad2);
         }
         self.leader.correct(model, &row.measurement, &self.winding, (&mut self.noise, false));
         self.update_angles(model, &row.measurement);

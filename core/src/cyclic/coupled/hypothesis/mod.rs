@@ -4,12 +4,16 @@
 //! the angles are taken as independent of each other, and each has a block of five numbers. All
 //! together inform (c, v), and (c, v) informs each.
 
+pub(crate) mod correct;
+pub mod predict;
+pub(crate) mod rival;
+
 use crate::cyclic::CoupledModel;
-use crate::cyclic::coupled::block::{AngleBlock, PARTS, Spread};
 use crate::cyclic::coupled::constants::SPEED_SPREAD;
-use crate::cyclic::coupled::cycle_pair::CyclePair;
-use crate::cyclic::coupled::phase_grid::PhaseMode;
-use crate::cyclic::coupled::spread_scale::SpreadScale;
+use crate::cyclic::coupled::person::block::{AngleBlock, PARTS, Spread};
+use crate::cyclic::coupled::person::spread_scale::SpreadScale;
+use crate::cyclic::coupled::phase::cycle_pair::CyclePair;
+use crate::cyclic::coupled::phase::phase_grid::PhaseMode;
 use crate::cyclic::phase::{POSITIONS_IN_CYCLE, position_difference, wrap_position};
 use crate::cyclic::start::MAX_CYCLE_VELOCITY;
 use crate::math::{clamp, max, round};
@@ -19,23 +23,23 @@ use core::f32::consts::PI;
 
 /// Place and speed in the cycle with their covariance, and each angle's deviation given them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Hypothesis<const N: usize> {
-    pub(super) blocks: [AngleBlock; N],
-    pub(super) position: f32,
-    pub(super) velocity: f32,
+pub(crate) struct Hypothesis<const N: usize> {
+    pub(crate) blocks: [AngleBlock; N],
+    pub(crate) position: f32,
+    pub(crate) velocity: f32,
     /// Covariance of position and velocity.
-    pub(super) pair: CyclePair,
+    pub(crate) pair: CyclePair,
     /// Whole cycles since the start.
-    pub(super) cycles: i32,
-    pub(super) spread_scale: SpreadScale,
+    pub(crate) cycles: i32,
+    pub(crate) spread_scale: SpreadScale,
     /// Innovation of each angle in the last frame that had it, rad.
-    pub(super) last_innovation_rad: [f32; N],
+    pub(crate) last_innovation_rad: [f32; N],
     /// Mean correction of the position in a frame over about a cycle, cycles. Corrections within a
     /// cycle cancel where the velocity is right; over half a cycle the mean is half again as
     /// unsteady.
     drift: f32,
     /// Number of this hypothesis in the run. One that moves elsewhere is another.
-    pub(super) number: u32,
+    pub(crate) number: u32,
 }
 
 impl<const N: usize> SavedState for Hypothesis<N> {
@@ -56,7 +60,7 @@ impl<const N: usize> SavedState for Hypothesis<N> {
 
 impl<const N: usize> Hypothesis<N> {
     /// Zeros, before [`Self::forget`]: they need neither flash nor stack.
-    pub(super) const fn empty() -> Self {
+    pub(crate) const fn empty() -> Self {
         Self {
             blocks: [AngleBlock::zero(); N],
             position: 0.0,
@@ -71,7 +75,7 @@ impl<const N: usize> Hypothesis<N> {
     }
 
     /// Resets to position 0, the model's mean speed and an unknown person.
-    pub(super) fn forget(&mut self, model: &CoupledModel<'_>) {
+    pub(crate) fn forget(&mut self, model: &CoupledModel<'_>) {
         let velocity = model.mean_cycle_velocity();
         self.position = 0.0;
         self.velocity = velocity;
@@ -95,7 +99,7 @@ impl<const N: usize> Hypothesis<N> {
 
     /// Begins with an unknown person at the place and speed of `mode`, the shorter way from where
     /// `other` is.
-    pub(super) fn begin_at(&mut self, model: &CoupledModel<'_>, (mode, number): (&PhaseMode, u32), other: &Self) {
+    pub(crate) fn begin_at(&mut self, model: &CoupledModel<'_>, (mode, number): (&PhaseMode, u32), other: &Self) {
         self.forget_person(model);
         (self.cycles, self.position) = (other.cycles, other.position);
         self.move_to(mode, number);
@@ -103,7 +107,7 @@ impl<const N: usize> Hypothesis<N> {
 
     /// Moves to the place and speed of `mode`, as the hypothesis of that number. What was learned
     /// of the person stays.
-    pub(super) fn move_to(&mut self, mode: &PhaseMode, number: u32) {
+    pub(crate) fn move_to(&mut self, mode: &PhaseMode, number: u32) {
         self.number = number;
         self.move_by(position_difference(mode.position, self.position));
         self.velocity = mode.velocity;
@@ -116,7 +120,7 @@ impl<const N: usize> Hypothesis<N> {
     }
 
     /// Corrects position and velocity by `shift`, and averages the position's corrections.
-    pub(super) fn shift_by(&mut self, model: &CoupledModel<'_>, shift: [f32; 2]) {
+    pub(crate) fn shift_by(&mut self, model: &CoupledModel<'_>, shift: [f32; 2]) {
         let way = clamp(shift[0], -0.5, 0.5);
         self.velocity = clamp(self.velocity + shift[1], -0.5, 0.5);
         self.drift += model.mean_cycle_velocity() * (way - self.drift);
@@ -128,11 +132,11 @@ impl<const N: usize> Hypothesis<N> {
     /// A person whom the model does not fit moves position and velocity by corrections that do not
     /// cancel over a cycle, so the velocity alone is not the rate of the cycles. Where an angle
     /// winds, it is: corrections there are few and large.
-    pub(super) fn travelled_velocity(&self, model: &CoupledModel<'_>) -> f32 {
+    pub(crate) fn travelled_velocity(&self, model: &CoupledModel<'_>) -> f32 {
         if model.winds() { self.velocity } else { self.velocity + self.drift }
     }
 
-    pub(super) fn move_by(&mut self, way: f32) {
+    pub(crate) fn move_by(&mut self, way: f32) {
         let position = self.position + way;
         let wrapped = wrap_position(position);
         self.cycles = self.cycles.saturating_add(round(position - wrapped) as i32);
@@ -142,7 +146,7 @@ impl<const N: usize> Hypothesis<N> {
 
 /// Stationary spread of an angle's parts.
 #[cfg_attr(target_arch = "x86_64", inline(always))]
-pub(super) fn spread(model: &CoupledModel<'_>, index: usize) -> Spread {
+pub(crate) fn spread(model: &CoupledModel<'_>, index: usize) -> Spread {
     let deviation = &model.parts().deviation;
     let at = |values: &[f32]| values.get(index).copied().unwrap_or(1.0);
     let square = |std: f32| std * std;

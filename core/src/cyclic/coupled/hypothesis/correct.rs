@@ -1,20 +1,20 @@
 //! Correction of the phase-coupled filter: an extended Kalman update of phase and angles.
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
-use crate::cyclic::coupled::block::{AnglePrediction, Basis};
 use crate::cyclic::coupled::constants::GATE_SIGMAS;
-use crate::cyclic::coupled::evidence::{FrameInnovation, PhaseEvidence};
 use crate::cyclic::coupled::hypothesis::Hypothesis;
-use crate::cyclic::coupled::measurement_noise::MeasurementNoise;
-use crate::cyclic::coupled::spread_scale::FrameProducts;
-use crate::cyclic::coupled::winding::Winding;
+use crate::cyclic::coupled::measurement::measurement_noise::MeasurementNoise;
+use crate::cyclic::coupled::measurement::winding::Winding;
+use crate::cyclic::coupled::person::block::{AnglePrediction, Basis};
+use crate::cyclic::coupled::person::spread_scale::FrameProducts;
+use crate::cyclic::coupled::phase::evidence::{FrameInnovation, PhaseEvidence};
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::{max, sqrt, wrap_angle};
 
 /// Whether an angle's innovation of that variance, rad^2, lies beyond the gate. It does not inform
 /// the phase then, and its offset is learned again.
 #[inline(always)]
-pub(super) fn is_beyond_gate(residual: f32, variance: f32) -> bool {
+pub(crate) fn is_beyond_gate(residual: f32, variance: f32) -> bool {
     residual * residual > GATE_SIGMAS * GATE_SIGMAS * variance && is_on(Part::AngleGate)
 }
 
@@ -22,7 +22,7 @@ impl<const N: usize> Hypothesis<N> {
     /// The extended Kalman correction about the present position; returns the innovation.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
-    pub(super) fn correct(
+    pub(crate) fn correct(
         &mut self,
         model: &CoupledModel<'_>,
         measurement: &AngleMeasurement<N>,
@@ -85,7 +85,7 @@ impl<const N: usize> Hypothesis<N> {
 
     /// Innovation of the angle at `index`, which is measured `off_rad` from the mean pose.
     #[inline(always)]
-    pub(super) fn residual(&self, index: usize, off_rad: f32, basis: &Basis) -> f32 {
+    pub(crate) fn residual(&self, index: usize, off_rad: f32, basis: &Basis) -> f32 {
         wrap_angle(off_rad - self.blocks[index].deviation(basis))
     }
 
@@ -93,7 +93,7 @@ impl<const N: usize> Hypothesis<N> {
     /// deviation of c to either side (statistical linearisation). A tangent would hold the position
     /// at a jump.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn pose_slope(&self, model: &CoupledModel<'_>) -> [f32; N] {
+    pub(crate) fn pose_slope(&self, model: &CoupledModel<'_>) -> [f32; N] {
         let half_width = if is_on(Part::Secant) { sqrt(self.pair.cc) } else { 0.0 };
         model.mean_pose_secant(self.position, half_width)
     }

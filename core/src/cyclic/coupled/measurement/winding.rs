@@ -37,7 +37,7 @@ impl TurnOffset {
 /// Turns of each angle relative to the mean cycle, and the angles excluded from the phase's
 /// evidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Winding<const N: usize> {
+pub(crate) struct Winding<const N: usize> {
     turn_offsets: [TurnOffset; N],
     /// Number of the last cycle, modulo 256.
     cycle: i8,
@@ -63,19 +63,19 @@ impl<const N: usize> SavedState for Winding<N> {
 
 impl<const N: usize> Winding<N> {
     /// Before the first frame: every angle informs the phase.
-    pub(super) const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self { turn_offsets: [TurnOffset(0); N], cycle: 0, initialised: false }
     }
 
     /// Whether the angle at `index` winds like the mean cycle and so informs the phase.
     #[inline]
-    pub(super) fn informs_phase(&self, index: usize) -> bool {
+    pub(crate) fn informs_phase(&self, index: usize) -> bool {
         !is_on(Part::WindingExclusion)
             || self.turn_offsets.get(index).is_none_or(|turn_offset| turn_offset.excluded_cycles() == 0)
     }
 
     /// Updates the exclusions by the number of completed cycles.
-    pub(super) fn count_cycles(&mut self, cycles: i32) {
+    pub(crate) fn count_cycles(&mut self, cycles: i32) {
         if (cycles as i8).wrapping_sub(self.cycle) > 0 {
             self.turn_offsets = self.turn_offsets.map(|turn_offset| {
                 TurnOffset::new(turn_offset.turns(), turn_offset.excluded_cycles().saturating_sub(1))
@@ -87,7 +87,7 @@ impl<const N: usize> Winding<N> {
     /// Updates the angle at `index`, which is `turns` whole turns and `ahead_rad` ahead of the mean
     /// cycle.
     #[inline]
-    pub(super) fn update(&mut self, index: usize, turns: i32, ahead_rad: f32) {
+    pub(crate) fn update(&mut self, index: usize, turns: i32, ahead_rad: f32) {
         let turns =
             turns.wrapping_add(round_small(ahead_rad / TAU) as i32).rem_euclid(i32::from(TurnOffset::TURNS)) as u8;
         if let Some(turn_offset) = self.turn_offsets.get_mut(index) {
@@ -98,7 +98,7 @@ impl<const N: usize> Winding<N> {
     }
 
     /// Marks the turn offsets as initialised: from here on a change excludes an angle.
-    pub(super) const fn initialise(&mut self) {
+    pub(crate) const fn initialise(&mut self) {
         self.initialised = true;
     }
 }

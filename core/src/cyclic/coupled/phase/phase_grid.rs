@@ -4,7 +4,7 @@
 //! person, so it cannot follow a wrong phase with it. Histogram filter: Thrun, Burgard and Fox,
 //! Probabilistic Robotics (2005), section 4.1.
 
-use crate::cyclic::coupled::constants::{BLUR, GATE_SIGMAS, LINEAR_CYCLES, SPEED_CHANGE, TEMPERED_ANGLES, TEMPERING};
+use crate::cyclic::coupled::constants::{GATE_SIGMAS, GRID_DIFFUSION, LINEAR_CYCLES, TEMPERED_ANGLES, TEMPERING};
 use crate::cyclic::phase::{position_difference, wrap_position};
 use crate::cyclic::{AngleMeasurement, CoupledModel};
 use crate::math::{abs, exp, exp_small, least_angle, max, min, round};
@@ -19,7 +19,7 @@ const LANES: usize = 8;
 /// Speeds of the grid, relative to the model's mean speed. Chosen: from standing to twice the mean,
 /// in factors of about the root of 2.
 const SPEED_RATIOS: [f32; 6] = [0.0, 0.5, 0.7, 1.0, 1.4, 2.0];
-pub(super) const SPEEDS: usize = SPEED_RATIOS.len();
+pub(crate) const SPEEDS: usize = SPEED_RATIOS.len();
 
 /// Weights of position and speed; their sum is one.
 ///
@@ -27,7 +27,7 @@ pub(super) const SPEEDS: usize = SPEED_RATIOS.len();
 /// # #[cfg(feature = "walking-model")] {
 /// use sinew_core::cyclic::AngleMeasurement;
 /// use sinew_core::cyclic::model::walking::WALKING;
-/// use sinew_core::cyclic::coupled::phase_grid::PhaseGrid;
+/// use sinew_core::cyclic::coupled::phase::phase_grid::PhaseGrid;
 ///
 /// // An unknown person walks on from position 0.7: the grid's weight gathers at one position.
 /// let model = WALKING.model()?;
@@ -45,9 +45,9 @@ pub(super) const SPEEDS: usize = SPEED_RATIOS.len();
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhaseGrid {
-    pub(super) weights: [[f32; POSITIONS]; SPEEDS],
+    pub(crate) weights: [[f32; POSITIONS]; SPEEDS],
     /// Way of each speed's grid since the start, cycles, [0, 1).
-    pub(super) travelled: [f32; SPEEDS],
+    pub(crate) travelled: [f32; SPEEDS],
 }
 
 /// A mode of the grid: means and covariance of position and velocity.
@@ -56,7 +56,7 @@ pub struct PhaseGrid {
 /// # #[cfg(feature = "walking-model")] {
 /// use sinew_core::cyclic::model::walking::WALKING;
 /// use sinew_core::cyclic::phase::position_difference;
-/// use sinew_core::cyclic::coupled::phase_grid::PhaseGrid;
+/// use sinew_core::cyclic::coupled::phase::phase_grid::PhaseGrid;
 ///
 /// // Known to a twentieth of a cycle, at about the mean speed.
 /// let model = WALKING.model()?;
@@ -127,25 +127,24 @@ impl PhaseGrid {
         for (travelled, ratio) in self.travelled.iter_mut().zip(SPEED_RATIOS) {
             *travelled = wrap_position(*travelled + ratio * model.mean_cycle_velocity() * step_frames);
         }
-        let change = min(SPEED_CHANGE * step_frames, 0.3);
-        let blur = min(BLUR * step_frames, 0.3);
+        let moved = min(GRID_DIFFUSION * step_frames, 0.3);
         let old = self.weights;
         for speed in 0..SPEEDS {
             let others = [speed.checked_sub(1), (speed + 1 < SPEEDS).then_some(speed + 1)];
-            let stay = 1.0 - change * others.iter().flatten().count() as f32;
+            let stay = 1.0 - moved * others.iter().flatten().count() as f32;
             let mut row = old[speed].map(|weight| stay * weight);
             for other in others.into_iter().flatten() {
                 let (Some(from), Some(travelled)) = (old.get(other), self.travelled.get(other)) else { continue };
                 let shift = round((self.travelled[speed] - travelled) * POSITIONS as f32) as i32;
                 let shift = shift.rem_euclid(POSITIONS as i32) as usize;
                 for (weight, from) in row.iter_mut().zip(twice(from).iter().skip(shift)) {
-                    *weight += change * from;
+                    *weight += moved * from;
                 }
             }
             let around: [f32; POSITIONS + 2] = core::array::from_fn(|i| row[(i + POSITIONS - 1) % POSITIONS]);
             let neighbours = around.iter().zip(&around[1..]).zip(&around[2..]);
             for (weight, ((before, here), after)) in self.weights[speed].iter_mut().zip(neighbours) {
-                *weight = here + blur * (after + before - 2.0 * here);
+                *weight = here + moved * (after + before - 2.0 * here);
             }
         }
     }

@@ -7,13 +7,13 @@ use crate::saved_state::{SavedState, StateVisitor};
 
 /// Covariance of (c, v), in cycles and frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct CyclePair {
+pub(crate) struct CyclePair {
     /// Variance of c.
-    pub(super) cc: f32,
+    pub(crate) cc: f32,
     /// Covariance of c and v.
-    pub(super) cv: f32,
+    pub(crate) cv: f32,
     /// Variance of v.
-    pub(super) vv: f32,
+    pub(crate) vv: f32,
 }
 
 impl SavedState for CyclePair {
@@ -28,7 +28,7 @@ impl SavedState for CyclePair {
 
 /// Information on (c, v): the normal equations of the innovations.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Information {
+pub(crate) struct Information {
     /// Matrix: cc, cv, vv.
     matrix: [f32; 3],
     vector: [f32; 2],
@@ -36,11 +36,11 @@ pub(super) struct Information {
 
 impl Information {
     /// No information.
-    pub(super) const NONE: Self = Self { matrix: [0.0; 3], vector: [0.0; 2] };
+    pub(crate) const NONE: Self = Self { matrix: [0.0; 3], vector: [0.0; 2] };
 
     /// Adds a residual with derivatives `gradient` by (c, v).
     #[inline]
-    pub(super) fn add(&mut self, gradient: &[f32; 2], weight: f32, residual: f32) {
+    pub(crate) fn add(&mut self, gradient: &[f32; 2], weight: f32, residual: f32) {
         let [g, h] = *gradient;
         self.matrix[0] += weight * g * g;
         self.matrix[1] += weight * g * h;
@@ -54,7 +54,7 @@ impl CyclePair {
     /// Propagates by `step` frames, cyclic (4), cyclic (5) and cyclic (10). Returns the regression
     /// of the old (c, v) on the new one, and its residual covariance (cc, cv, vv).
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn advance(&mut self, step: f32) -> ([[f32; 2]; 2], [f32; 3]) {
+    pub(crate) fn advance(&mut self, step: f32) -> ([[f32; 2]; 2], [f32; 3]) {
         let Self { cc, cv, vv } = *self;
         let noise = TEMPORAL_STD * TEMPORAL_STD * step;
         let square = step * step;
@@ -75,7 +75,7 @@ impl CyclePair {
 
     /// Updates by `information`; returns the shift of (c, v).
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn correct(&mut self, information: &Information) -> [f32; 2] {
+    pub(crate) fn correct(&mut self, information: &Information) -> [f32; 2] {
         let [x, y] = information.vector;
         *self = self.with(information);
         [self.cc * x + self.cv * y, self.cv * x + self.vv * y]
@@ -95,7 +95,7 @@ impl CyclePair {
     /// innovations.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
-    pub(super) fn explained(&self, information: &Information) -> (f32, f32) {
+    pub(crate) fn explained(&self, information: &Information) -> (f32, f32) {
         let [x, y] = information.vector;
         let after = self.with(information);
         let explained = x * (after.cc * x + after.cv * y) + y * (after.cv * x + after.vv * y);
@@ -106,21 +106,21 @@ impl CyclePair {
     /// Variance along a gradient.
     #[inline]
     #[must_use]
-    pub(super) fn along(&self, gradient: &[f32; 2]) -> f32 {
+    pub(crate) fn along(&self, gradient: &[f32; 2]) -> f32 {
         let [g, h] = *gradient;
         max(g * g * self.cc + 2.0 * g * h * self.cv + h * h * self.vv, 0.0)
     }
 
     /// Covariance of two quantities with the given `gradients` by (c, v).
     #[must_use]
-    pub(super) fn between(&self, [[g, h], [k, l]]: [&[f32; 2]; 2]) -> f32 {
+    pub(crate) fn between(&self, [[g, h], [k, l]]: [&[f32; 2]; 2]) -> f32 {
         g * k * self.cc + (g * l + h * k) * self.cv + h * l * self.vv
     }
 
     /// Inverse (cc, cv, vv); the correlation is clamped to 0.999 so that it exists.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[must_use]
-    pub(super) fn inverse(&self) -> [f32; 3] {
+    pub(crate) fn inverse(&self) -> [f32; 3] {
         let (cc, vv) = (max(self.cc, 1.0e-14), max(self.vv, 1.0e-14));
         let root = sqrt(cc * vv);
         let correlation = clamp(self.cv / root, -0.999, 0.999);

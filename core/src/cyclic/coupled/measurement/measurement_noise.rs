@@ -13,14 +13,15 @@
 //! [`MeasurementNoise::band_scale`].
 
 use crate::cyclic::coupled::ablation::{Part, is_on};
-use crate::cyclic::coupled::constants::{KEPT, MAX_SCALE, MAX_SQUARE, MIN_SCALE, SHARED_FRAMES, STATED_FRAMES};
+use crate::cyclic::coupled::constants::{KEPT, MAX_SQUARE, MIN_SCALE, SHARED_FRAMES, STATED_FRAMES};
+use crate::cyclic::coupled::person::spread_scale::MAX_SCALE;
 use crate::math::{clamp, exp, least_angle, ln, max, min, sqrt};
 use crate::saved_state::{NOT_NEGATIVE, SavedState, StateVisitor};
 use core::f32::consts::PI;
 
 /// Scale of the stated noise variance of each angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct MeasurementNoise<const N: usize> {
+pub(crate) struct MeasurementNoise<const N: usize> {
     /// Weighted sum of what the innovations' squares have beyond the prediction's variance, in
     /// stated variances.
     sums: [f32; N],
@@ -42,19 +43,19 @@ impl<const N: usize> SavedState for MeasurementNoise<N> {
 
 impl<const N: usize> MeasurementNoise<N> {
     /// Noise as stated.
-    pub(super) const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self { shared: 1.0, ..Self::zero() }
     }
 
     /// Zeros, for a filter that has not begun.
-    pub(super) const fn zero() -> Self {
+    pub(crate) const fn zero() -> Self {
         Self { sums: [0.0; N], frames: [0.0; N], shared: 0.0 }
     }
 
     /// Factor of the stated variance of the angle at `index` for the gains, in [[`MIN_SCALE`],
     /// [`MAX_SCALE`]]: between its own and that of all angles together.
     #[inline]
-    pub(super) fn scale(&self, index: usize) -> f32 {
+    pub(crate) fn scale(&self, index: usize) -> f32 {
         if !is_on(Part::NoiseScale) {
             return 1.0;
         }
@@ -67,7 +68,7 @@ impl<const N: usize> MeasurementNoise<N> {
     /// Factor of the variance of the angle at `index` for the bands: the inverse of a scale below
     /// one.
     #[inline]
-    pub(super) fn band_scale(&self, index: usize) -> f32 {
+    pub(crate) fn band_scale(&self, index: usize) -> f32 {
         1.0 / min(self.scale(index), 1.0)
     }
 
@@ -75,7 +76,7 @@ impl<const N: usize> MeasurementNoise<N> {
     /// with the variances of stated noise, scaled noise and prediction, rad^2.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     #[cfg_attr(not(target_arch = "x86_64"), inline)]
-    pub(super) fn add(&mut self, index: usize, [stated, noise, predicted]: [f32; 3], innovations_rad: [f32; 2]) {
+    pub(crate) fn add(&mut self, index: usize, [stated, noise, predicted]: [f32; 3], innovations_rad: [f32; 2]) {
         let (Some(sum), Some(frames)) = (self.sums.get_mut(index), self.frames.get_mut(index)) else { return };
         let variance = predicted + noise;
         let share = noise / variance;
@@ -89,7 +90,7 @@ impl<const N: usize> MeasurementNoise<N> {
 
     /// Estimates the scale of all angles together, their geometric mean.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    pub(super) fn update(&mut self) {
+    pub(crate) fn update(&mut self) {
         let (mut logarithms, mut count) = (0.0, 0.0);
         for (sum, frames) in self.sums.iter().zip(&self.frames) {
             if *frames > 0.0 {
