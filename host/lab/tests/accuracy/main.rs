@@ -6,6 +6,7 @@ mod body;
 mod body_ambiguity;
 mod body_first_pose;
 mod body_foresight;
+mod body_runners;
 mod body_size;
 mod cadence_of_windows;
 mod circles;

@@ -186,13 +186,15 @@ fn a_position_found_anew_does_not_drag_the_frames_before_it() {
 /// The place that wins later is that of the frames since its hypothesis began.
 #[test]
 fn a_place_that_wins_later_is_taken_back_to_where_it_began() {
-    let noisy = walk(240, 100, 0.5).with_noise(0.1, 2);
-    let off = |smooth| {
-        let run = tracked(&noisy, FilterName::Coupled, smooth, 60.0);
-        (100..240).filter(|frame| phase_error(&run, *frame, *frame as f64 / 60.0 + 0.5) > 0.1).count()
+    let off = |smooth| -> usize {
+        let of_seed = |seed| {
+            let run = tracked(&walk(240, 100, 0.5).with_noise(0.7, seed), FilterName::Coupled, smooth, 60.0);
+            (100..240).filter(|frame| phase_error(&run, *frame, *frame as f64 / 60.0 + 0.5) > 0.1).count()
+        };
+        (1..=4).map(of_seed).sum()
     };
     let [forward, back] = [false, true].map(off);
-    assert!(back > 0 && back + 4 < forward, "{back} instead of {forward} frames are off");
+    assert!(back > 0 && 10 * back < 9 * forward, "{back} instead of {forward} frames are off");
 }
 
 /// Across a second without a measurement the whole recording knows more than what came before.
