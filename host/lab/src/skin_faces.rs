@@ -3,8 +3,9 @@
 use anyhow::Result;
 use image::RgbImage;
 use sinew::person::{FaceDetector, FoundFace, PersonSkin};
+use sinew::signal::median::median;
 use sinew::skin::BitImage;
-use sinew::skin::confusion::{Confusion, median};
+use sinew::skin::confusion::Confusion;
 use sinew_core::vision::frame::segment;
 use sinew_core::vision::objects::head::{HeadBox, is_head};
 
@@ -60,7 +61,8 @@ fn clear_head(bits: &mut BitImage, head: HeadBox) -> Result<()> {
 pub fn skin_lightness(image: &RgbImage, truth: &BitImage) -> Result<Option<f64>> {
     let truth = truth.view()?;
     let of_skin = image.enumerate_pixels().filter(|(u, v, _)| truth.get(*u as usize, *v as usize));
-    Ok(median(of_skin.map(|(_, _, pixel)| luminance(pixel.0)).collect()).map(lightness))
+    let mut luminances: Vec<f64> = of_skin.map(|(_, _, pixel)| luminance(pixel.0)).collect();
+    Ok(median(&mut luminances).map(lightness))
 }
 
 /// Relative luminance of a colour: IEC 61966-2-1.

@@ -6,8 +6,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use sinew::resume::Cells;
+use sinew::signal::median::median;
 use sinew::skin::SkinModel;
-use sinew::skin::confusion::{Confusion, median};
+use sinew::skin::confusion::Confusion;
 use sinew::skin::folds;
 use sinew::skin::pairs::{Pair, PairList};
 use sinew::skin::training::{TrainingOptions, pairs_set, train};
@@ -187,7 +188,8 @@ pub fn by_folder(list: &PairList, judged: &Judged, faces: bool) -> Result<Vec<Fo
 /// The scores of a part of some images; `None` where it has none.
 fn of_part(name: &str, part: Part, images: &[JudgedImage]) -> Option<FolderScores> {
     let images: Vec<&JudgedImage> = images.iter().filter(|image| part.has(image)).collect();
-    let median_image_f1 = median(images.iter().map(|image| image.pixels.scores().f1).collect())?;
+    let mut f1: Vec<f64> = images.iter().map(|image| image.pixels.scores().f1).collect();
+    let median_image_f1 = median(&mut f1)?;
     let pooled = |of: fn(&JudgedImage) -> Option<Confusion>| {
         let mut pooled = Confusion::default();
         images.iter().try_for_each(|image| of(image).map(|counts| pooled.merge(&counts))).map(|()| pooled.scores())

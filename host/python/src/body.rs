@@ -9,9 +9,11 @@ use sinew::body::pose_file::{inside_limits, pose_from_json, read_pose};
 use sinew::body::run::measures_source::{measures_from_json, measures_of_height, read_measures};
 use sinew::body::run::tuning_file;
 use sinew::body::tracking::filter::WholeBodyEstimate;
+use sinew::body::tracking::size_from_frames::{size_frames, size_from_frames, sizing_options};
 use sinew::body::tracking::stream::stick_at;
 use sinew::body::tracking::{BodyModelKind, BodyStream, BodyStreamOptions, BodyTuning, FrameTime, StreamedFrame};
 use sinew::body::{BodyFile, BodyPart};
+use sinew::cloud::PointCloud;
 use sinew::error::Result;
 use sinew::stereo::stick_wave::StickEnds;
 use sinew_core::math::Vec3;
@@ -105,6 +107,37 @@ impl Body {
         let stream = &mut self.stream;
         let answer = py.detach(|| stream.update(points.iter().copied().map(Vec3::from), when, stick));
         self.answer(py, &answer.map_err(|error| exception(&error))?)
+    }
+
+    /// How many clouds with points `estimated_measures` looks at.
+    #[getter]
+    fn size_frames(&self) -> usize {
+        size_frames(self.stream.options().rate_hz)
+    }
+
+    /// Measures of the person whom these numbered clouds show, as `body.json` has them.
+    fn estimated_measures(
+        &self,
+        py: Python<'_>,
+        clouds: Vec<(u64, PyReadonlyArray2<'_, f32>)>,
+    ) -> PyResult<Option<String>> {
+        if self.stream.frame().is_some() {
+            return Err(wrong("estimate_measures", "is for a tracker that answered no frame: make a new one"));
+        }
+        let points = |array: &PyReadonlyArray2<'_, f32>| -> PyResult<Vec<Vec3>> {
+            Ok(array.as_slice()?.as_chunks::<3>().0.iter().copied().map(Vec3::from).collect())
+        };
+        let clouds: Vec<(u64, Vec<Vec3>)> =
+            clouds.iter().map(|(frame, array)| Ok((*frame, points(array)?))).collect::<PyResult<_>>()?;
+        let found = py.detach(|| {
+            let (options, start, first_rad) = (self.stream.options(), *self.stream.size(), self.stream.first_rad());
+            let sizing = BodyStream::new(sizing_options(options), start, first_rad)?;
+            let seen =
+                clouds.into_iter().map(|(at, points_m)| (at, sizing.seen(PointCloud::from_points(points_m), at)));
+            let frames: Vec<_> = seen.filter(|(_, seen)| !seen.points_m.is_empty()).collect();
+            size_from_frames(options, &start, first_rad, &frames)
+        });
+        found.map_err(|error| exception(&error))?.map(|size| json_of_measures(&BodyFile::from(&size))).transpose()
     }
 
     #[getter]

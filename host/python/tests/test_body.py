@@ -109,6 +109,35 @@ def test_a_start_in_the_points_and_frames_without_a_file(tmp_path, command):
     assert estimates[-1].points == 20000 and estimates[-1].points_over_cap > 0
 
 
+@pytest.mark.parametrize("knows_first_pose", [False, True])
+def test_estimated_measures_are_the_commands(tmp_path, command, scene, knows_first_pose):
+    folder, out = tmp_path / "scene", tmp_path / "run"
+    command("simulate", "stereo", "--motion", "stick-wave", "--rate", 2, "--points", POINTS, "--out", folder)
+    if not knows_first_pose:
+        (folder / "first_pose.json").unlink()
+    given = ["--height", 1.6, "--size", "estimated"]
+    (folder / "body.json").unlink()
+    run = command("track", "body", folder, *given, "--out", out)["run"]
+    first = {"first_pose": scene.first_pose} if knows_first_pose else {}
+    person = sinew.BodyTracker(height_m=1.6, rate_hz=2.0, **first)
+    measures = person.estimate_measures(iter(scene.clouds))
+    assert measures == run["body"] != person.measures
+    assert person.frame is None, "the tracker stays as it is"
+    tracker = sinew.BodyTracker(measures=measures, rate_hz=2.0, **first)
+    same_as_table([tracker.update(cloud) for cloud in scene.clouds], out / "track.csv")
+    assert tracker.state_crc32 == run["state_crc32"]
+
+
+def test_measures_are_estimated_before_the_first_frame_and_from_points(scene):
+    tracker = tracker_of(scene)
+    assert tracker.estimate_measures([None, np.zeros((0, 3), np.float32)]) is None
+    with pytest.raises(ValueError, match="`clouds`"):
+        tracker.estimate_measures([np.zeros((4, 2))])
+    tracker.update(scene.clouds[0])
+    with pytest.raises(ValueError, match="`estimate_measures` is for a tracker that answered no frame"):
+        tracker.estimate_measures(scene.clouds)
+
+
 def test_shapes_and_types(scene):
     tracker = tracker_of(scene)
     assert tracker.frame is None and tracker.measures == scene.measures

@@ -7,7 +7,7 @@ use crate::config::Config;
 use crate::motion::{ArmSide, reach};
 use crate::output::OutputDir;
 use crate::scene::{Scene, SceneOptions, Sides};
-use crate::skin::confusion::median;
+use crate::signal::median::median;
 use crate::track::{RunOutcome, TrackOptions, TrackRun};
 use anyhow::{Result, bail};
 use clap::Args;
@@ -133,7 +133,7 @@ fn compare(scene: &Scene, outcome: &RunOutcome) -> Result<DemoError> {
         let true_px = truth.hand_px(&camera)?;
         Some((error_m, sample.hand_px.map_or(width_px, |pixel| f64::from(pixel.distance_px(true_px)))))
     });
-    let (errors_m, errors_px): (Vec<f64>, Vec<f64>) = errors.unzip();
+    let (mut errors_m, mut errors_px): (Vec<f64>, Vec<f64>) = errors.unzip();
     let sure = outcome.samples.iter().enumerate().filter_map(|(frame, sample)| {
         let truth = scene.truth(frame).sides.into_iter().next()?;
         let true_px = truth.hand_px(&camera).filter(|_| truth.hand_visible && sample.status == Status::Tracking)?;
@@ -145,9 +145,9 @@ fn compare(scene: &Scene, outcome: &RunOutcome) -> Result<DemoError> {
         first_frame: FIRST_SCORED_FRAME,
         last_frame: scene.len() - 1,
         mean_error_m: mean(&errors_m).ok_or_else(nothing)?,
-        median_error_m: median(errors_m).ok_or_else(nothing)?,
+        median_error_m: median(&mut errors_m).ok_or_else(nothing)?,
         mean_error_px: mean(&errors_px).ok_or_else(nothing)?,
-        median_error_px: median(errors_px).ok_or_else(nothing)?,
+        median_error_px: median(&mut errors_px).ok_or_else(nothing)?,
         tracking_frames: sure_px.len(),
         wrong_frames: sure_px.iter().filter(|error_px| **error_px > WRONG_PX).count(),
     })

@@ -34,5 +34,7 @@ mod tests {
         assert_eq!(smoothed(&[1.0, 9.0, 8.0, 1.0, 1.0], 5.0), [1.0, 8.0, 1.0, 1.0, 1.0]);
         assert_eq!(smoothed(&[4.0, 2.0], 0.1), [4.0, 2.0]);
         assert_eq!((median(&mut [3.0, 1.0]), median(&mut [])), (Some(2.0), None));
+        assert_eq!(median(&mut [3.0, 1.0, 2.0, 10.0]), Some(2.5));
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), Some(2.0));
     }
 }

@@ -68,18 +68,6 @@ impl Confusion {
     }
 }
 
-/// Middle value of `values` (mean of the two middle ones), `None` for an empty list.
-#[must_use]
-pub fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match values.len() {
-        0 => None,
-        odd if odd % 2 == 1 => Some(values[middle]),
-        _ => Some(0.5 * (values[middle - 1] + values[middle])),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -101,12 +89,5 @@ mod tests {
         assert_eq!(Confusion::default().scores().f1, 1.0);
         let alarm = Confusion { false_positive: 2.0, ..Confusion::default() };
         assert_eq!(alarm.scores().f1, 0.0);
-    }
-
-    #[test]
-    fn the_median_of_an_even_count_is_between() {
-        assert_eq!(median(vec![3.0, 1.0, 2.0, 10.0]), Some(2.5));
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), Some(2.0));
-        assert_eq!(median(vec![]), None);
     }
 }

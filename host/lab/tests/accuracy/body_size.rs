@@ -5,7 +5,7 @@ use crate::shared_data;
 
 use rayon::prelude::*;
 use sinew::body::BodySize;
-use sinew::body::tracking::size_from_frames::{SIZE_SECONDS, size_from_frames, sizing_options};
+use sinew::body::tracking::size_from_frames::{size_frames, size_from_frames, sizing_options};
 use sinew::body::tracking::{BodyStream, BodyStreamOptions, FrameTime};
 use sinew::cloud::PointCloud;
 use sinew::stereo::{SceneErrors, StereoOptions, StereoScene, StereoSource};
@@ -37,7 +37,7 @@ fn error_cm(scene: &StereoScene, clouds_m: &[Vec<sinew_core::math::Vec3>], is_es
         .map(|(at, cloud)| (at, sizing.seen(PointCloud::from_points(cloud.iter().copied()), at)))
         .collect();
     if is_estimated {
-        let looked_at = frames.len().min((SIZE_SECONDS * options.rate_hz) as usize);
+        let looked_at = frames.len().min(size_frames(options.rate_hz));
         let found = size_from_frames(&options, &size, Some(first), &frames[..looked_at]).unwrap();
         size = found.unwrap_or(size);
     }

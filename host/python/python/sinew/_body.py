@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ class BodyTracker:
     ----------
     height_m : float, optional
         Height of a person who is not measured, metres; 1.75 where neither this nor ``measures`` is
-        given, which is noted.
+        given, which is noted. :meth:`estimate_measures` finds more.
     measures : path or dict, optional
         The person: a ``body.json`` or what it holds, or a motion or skeleton file to measure.
     part : {"whole", "upper"}
@@ -132,6 +133,44 @@ class BodyTracker:
         time = None if time_s is None else number(time_s, "time_s")
         answer = native.update(cloud, time, None if stick is None else self._ends(stick))
         return BodyEstimate(part=native.part, **answer) if "pose" in answer else None
+
+    def estimate_measures(self, clouds: Iterable[npt.ArrayLike | None]) -> dict[str, Any] | None:
+        """Estimate the measures of a person from their first three seconds.
+
+        The tracker's own measures are where it begins; the tracker stays as it is. A tracker with
+        the measures found gives the answers of ``sinew track body --size estimated``.
+
+        Parameters
+        ----------
+        clouds : iterable of array_like of shape (n, 3), or None
+            Points of the first frames, as :meth:`update` takes them. No more of them are read than
+            hold three seconds with points.
+
+        Returns
+        -------
+        dict or None
+            Measures as a ``body.json`` has them; None where no others make the points likelier.
+
+        Raises
+        ------
+        ValueError
+            A parameter breaks its rule, or the tracker has answered a frame.
+
+        Examples
+        --------
+        >>> scene = sinew.simulate_stereo(rate_hz=4.0, points=300)
+        >>> person = sinew.BodyTracker(rate_hz=scene.rate_hz)
+        >>> measures = person.estimate_measures(scene.clouds)
+        >>> tracker = sinew.BodyTracker(rate_hz=scene.rate_hz, measures=measures or person.measures)
+        """
+        seen: list[tuple[int, npt.NDArray[np.float32]]] = []
+        for frame, cloud in enumerate(clouds):
+            if cloud is not None and len(points := points32(cloud, "clouds")) > 0:
+                seen.append((frame, points))
+                if len(seen) == self._native.size_frames:
+                    break
+        found = self._native.estimated_measures(seen)
+        return None if found is None else json.loads(found)
 
     def _ends(self, stick: npt.ArrayLike) -> list[list[float]]:
         if self.model != "stick":

@@ -8,7 +8,7 @@ use super::report::{BodyRunReport, SkippedCloud};
 use super::resume;
 use super::score::{BodyScore, RunningMean};
 use super::{particles, table};
-use crate::body::tracking::size_from_frames::{SIZE_SECONDS, size_from_frames, sizing_options};
+use crate::body::tracking::size_from_frames::{size_frames, size_from_frames, sizing_options};
 use crate::body::tracking::{BodyStream, BodyStreamOptions, FrameTime, SeenPoints};
 use crate::cloud::{CloudError, CloudFrame, CloudSource, MAX_POINTS};
 use crate::error::{Context, Result, WriteContext, bail};
@@ -320,7 +320,7 @@ fn sized(inputs: &mut BodyInputs, options: BodyStreamOptions) -> Result<BodyStre
         let cloud = read_cloud(frame, &inputs.source, &sizing).ok()?.ok()?;
         (!cloud.seen.points_m.is_empty()).then_some((frame.frame, cloud.seen))
     };
-    let most = (SIZE_SECONDS * inputs.rate_hz).ceil().max(1.0) as usize;
+    let most = size_frames(inputs.rate_hz);
     let clouds = &inputs.clouds.frames[..inputs.clouds.frames.len().min(START_CLOUDS + most)];
     let mut frames: Vec<(u64, SeenPoints)> = sizing.install(|| clouds.par_iter().filter_map(seen).collect());
     frames.truncate(most);

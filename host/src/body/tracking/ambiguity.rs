@@ -42,7 +42,8 @@ pub fn elsewhere_share<const BONES: usize, const ANGLES: usize>(
         let is_elsewhere = |end_m: Vec3| (end_m - ends_m[bone]).norm_squared() > LOST_JOINT_M * LOST_JOINT_M;
         let weighed = particles.iter().zip(weights);
         let there = weighed.filter(|(particle, _)| is_elsewhere(particle.ends_m[bone]));
-        let share = there.map(|(_, weight)| weight).sum::<f32>() / total;
+        // A sum of no numbers would be -0.
+        let share = there.fold(0.0, |sum, (_, weight)| sum + weight) / total;
         if share.is_finite() { share.min(1.0) } else { 1.0 }
     })
 }

@@ -13,9 +13,15 @@ use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::skeleton::full_body::BODY_ANGLES;
 
 /// How much of a recording is looked at, seconds. Chosen: some strides of a walk.
-pub const SIZE_SECONDS: f32 = 3.0;
+const SIZE_SECONDS: f32 = 3.0;
 /// How often it is tracked, each time with the size found before.
 const PASSES: usize = 2;
+
+/// How many frames with points are looked at, of `rate_hz` in a second.
+#[must_use]
+pub fn size_frames(rate_hz: f32) -> usize {
+    (SIZE_SECONDS * rate_hz).ceil().max(1.0) as usize
+}
 
 /// The options under which a size is estimated: those of `options` with the guided model, whose
 /// mean is taken. A mode fits a wrong size as well as it can, and says less of the true one.

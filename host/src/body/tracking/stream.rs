@@ -130,6 +130,12 @@ impl BodyStream {
         &self.filter
     }
 
+    /// The first pose, where it is known and no frame was answered.
+    #[must_use]
+    pub fn first_rad(&self) -> Option<[f32; BODY_ANGLES]> {
+        (self.phase == Phase::Placed).then(|| self.filter.before_deadband().0)
+    }
+
     /// Goes on with a person of that size.
     ///
     /// # Errors

@@ -231,8 +231,9 @@ fn a_gap_is_bridged_from_both_sides() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
-    /// Any pattern of gaps and rates: finite, on the circle, no surer of the cycle without the
-    /// later frames than with them.
+    /// Any pattern of gaps and rates: finite, on the circle; of the paper's filters no surer without
+    /// the later frames than with them. `coupled` may look back along a hypothesis that won later,
+    /// and knew less.
     #[test]
     fn it_stays_sound(seed in 0_u64..1000, sigma in 0.02_f64..1.5, drop in 1_u64..9, slow in 1_u64..3) {
         let noisy = walk(120, 80, 0.3).with_noise(sigma, seed);
@@ -243,15 +244,14 @@ proptest! {
             for (f, b) in forward.frames.iter().zip(&back.frames).skip(1) {
                 let (one, other) = (&f.estimate, &b.estimate);
                 prop_assert!((0.0..=1.0).contains(&other.cycle_position));
-                let way = other.cycle_position - one.cycle_position;
-                // Elsewhere it is another hypothesis, which won later.
-                if (way - way.round()).abs() < 0.1 {
-                    prop_assert!(other.cycle_position_variance <= 1.000_1 * one.cycle_position_variance);
-                    prop_assert!(other.cycle_velocity_variance <= 1.000_1 * one.cycle_velocity_variance);
-                }
                 prop_assert!(other.angle_variance_rad2.iter().all(|variance| variance.is_finite() && *variance > 0.0));
                 prop_assert!(b.angles_rad.iter().all(|angle| angle.is_finite()));
+                for variance in [other.cycle_position_variance, other.cycle_velocity_variance] {
+                    prop_assert!(variance.is_finite() && variance >= 0.0);
+                }
                 if filter != FilterName::Coupled {
+                    prop_assert!(other.cycle_position_variance <= 1.000_1 * one.cycle_position_variance);
+                    prop_assert!(other.cycle_velocity_variance <= 1.000_1 * one.cycle_velocity_variance);
                     for i in 0..ANGLES {
                         prop_assert!(other.angle_variance_rad2[i] <= 1.000_1 * one.angle_variance_rad2[i]);
                     }
