@@ -231,9 +231,9 @@ fn a_gap_is_bridged_from_both_sides() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
-    /// Any pattern of gaps and rates: finite, on the circle; of the paper's filters no surer without
-    /// the later frames than with them. `coupled` may look back along a hypothesis that won later,
-    /// and knew less.
+    /// Any pattern of gaps and rates: finite, on the circle; of the paper's filters no surer
+    /// without the later frames than with them. `coupled` may look back along a hypothesis that
+    /// won later, and knew less.
     #[test]
     fn it_stays_sound(seed in 0_u64..1000, sigma in 0.02_f64..1.5, drop in 1_u64..9, slow in 1_u64..3) {
         let noisy = walk(120, 80, 0.3).with_noise(sigma, seed);
