@@ -140,7 +140,7 @@ pub const TABLES: [Table; 22] = [
     Table {
         name: "cyclic-errors",
         page: "measurements_cyclic.md",
-        cost: Cost::Long,
+        cost: Cost::Cheap,
         recordings: Some("cyclic-walking"),
         rows: cyclic::errors,
     },
