@@ -28,8 +28,12 @@ pub struct DeviationNumbers {
     pub shrinkage: f32,
     /// See [`Deviation::offset_std_rad`].
     pub offset_std_rad: Vec<f32>,
-    /// See [`Deviation::swing_std_rad`].
-    pub swing_std_rad: Vec<f32>,
+    /// See [`Deviation::cosine_std_rad`].
+    #[serde(alias = "swing_std_rad")]
+    pub cosine_std_rad: Vec<f32>,
+    /// See [`Deviation::sine_std_rad`].
+    #[serde(default)]
+    pub sine_std_rad: Vec<f32>,
     /// See [`Deviation::rest_std_rad`].
     pub rest_std_rad: Vec<f32>,
     /// See [`Deviation::rest_rate_per_cycle`].
@@ -77,7 +81,8 @@ impl ModelNumbers {
             rate_hz: self.rate_hz,
             deviation: self.deviation.as_ref().map_or_else(Deviation::default, |deviation| Deviation {
                 offset_std_rad: &deviation.offset_std_rad,
-                swing_std_rad: &deviation.swing_std_rad,
+                cosine_std_rad: &deviation.cosine_std_rad,
+                sine_std_rad: &deviation.sine_std_rad,
                 rest_std_rad: &deviation.rest_std_rad,
                 rest_rate_per_cycle: &deviation.rest_rate_per_cycle,
             }),
@@ -103,7 +108,8 @@ impl ModelNumbers {
             add(&[deviation.inflation, deviation.shrinkage]);
             [
                 &deviation.offset_std_rad,
-                &deviation.swing_std_rad,
+                &deviation.cosine_std_rad,
+                &deviation.sine_std_rad,
                 &deviation.rest_std_rad,
                 &deviation.rest_rate_per_cycle,
             ]

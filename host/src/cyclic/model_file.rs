@@ -150,7 +150,14 @@ pub fn parse(text: &str) -> Result<CyclicModel> {
     let n = if file.angles.len() > ANGLES { 2 * ANGLES } else { ANGLES };
     let wanted = angle_names(n);
     ensure!(file.angles == wanted, "its field `angles` has to be {}", wanted.join(", "));
-    if let Some(DeviationNumbers { inflation, shrinkage, .. }) = file.deviation {
+    let mut deviation = file.deviation;
+    if let Some(DeviationNumbers { cosine_std_rad, sine_std_rad, .. }) = &mut deviation
+        && sine_std_rad.is_empty()
+    {
+        // Sinew 0.2 has one number for both.
+        sine_std_rad.clone_from(cosine_std_rad);
+    }
+    if let Some(DeviationNumbers { inflation, shrinkage, .. }) = deviation {
         for (name, value) in [("inflation", inflation), ("shrinkage", shrinkage)] {
             ensure!(value.is_finite(), "`deviation.{name}` has to be a finite number");
         }
@@ -172,7 +179,7 @@ pub fn parse(text: &str) -> Result<CyclicModel> {
         turns_per_cycle: file.turns_per_cycle,
         mean_duration_frames: file.mean_duration_frames,
         rate_hz: file.rate_hz,
-        deviation: file.deviation,
+        deviation,
     };
     Ok(CyclicModel::new(numbers, file.trained_on)?)
 }
@@ -212,6 +219,18 @@ mod tests {
         let text = walking_json();
         assert!(text.len() < 300 * 1024, "{} bytes", text.len());
         assert_eq!(to_json(&parse(&text).unwrap()).unwrap(), text);
+    }
+
+    #[test]
+    fn one_spread_of_the_swing_serves_cosine_and_sine() {
+        let mut value: Value = serde_json::from_str(&walking_json()).unwrap();
+        let deviation = value["deviation"].as_object_mut().unwrap();
+        let swing = deviation.remove("cosine_std_rad").unwrap();
+        deviation.remove("sine_std_rad");
+        deviation.insert("swing_std_rad".into(), swing);
+        let deviation = parse(&value.to_string()).unwrap().numbers().deviation.clone().unwrap();
+        assert_eq!(deviation.cosine_std_rad, deviation.sine_std_rad);
+        assert!(!deviation.sine_std_rad.is_empty());
     }
 
     #[test]

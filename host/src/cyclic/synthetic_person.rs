@@ -40,7 +40,7 @@ impl<'m> SyntheticPerson<'m> {
         let pace = 1.0 + DURATION_SPREAD * (2.0 * f64::from(stream.uniform()) - 1.0);
         let parts_rad = std::array::from_fn(|i| {
             let mut draw = |std: f32| f64::from(std) / narrow * f64::from(stream.normal());
-            [draw(spread.offset_std_rad[i]), draw(spread.swing_std_rad[i]), draw(spread.swing_std_rad[i])]
+            [draw(spread.offset_std_rad[i]), draw(spread.cosine_std_rad[i]), draw(spread.sine_std_rad[i])]
         });
         Ok(Self { model: view, cycle_frames: (mean_frames * pace).round().max(2.0), rate_hz, parts_rad })
     }

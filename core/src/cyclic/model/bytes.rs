@@ -11,7 +11,7 @@
 //! | 4, 5 | mean duration, frames; frames per second |
 //! | 6 | CRC-32 of words 1 to 5 and all after word 6 |
 //! | then | mean acceleration (l n), covariance (l n (n + 1) / 2), mean pose (l n), mean velocity (l n) |
-//! | then | spread of offset, swing and rest, rate of the rest (n each) |
+//! | then | spread of offset, cosine, sine and rest, rate of the rest (n each) |
 //! | last | turns per cycle, a signed byte each, filled with zeros to a whole word |
 //!
 //! A model for the phase-coupled filter alone begins with [`COUPLED_MAGIC`]. It has neither
@@ -21,7 +21,7 @@ use crate::checksum::Crc32;
 use crate::cyclic::model::coupled_model::{CoupledModel, CoupledParts, MAX_ANGLES, ModelError};
 use crate::cyclic::model::coupled_table::CoupledTable;
 use crate::cyclic::model::deviation::Deviation;
-use crate::cyclic::model::motion_model::{ModelParts, MotionModel};
+use crate::cyclic::model::motion_model::MotionModel;
 use crate::cyclic::model::table::ModelTable;
 use crate::error::{ParameterError, Rule};
 use crate::numeric::semi_definite::packed_len;
@@ -32,7 +32,7 @@ pub const MAGIC: u32 = u32::from_le_bytes(*b"SNWM");
 /// First word of a model for the phase-coupled filter alone: `SNWC`.
 pub const COUPLED_MAGIC: u32 = u32::from_le_bytes(*b"SNWC");
 /// Version of the layout.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 /// Bytes before the numbers.
 pub const HEADER_BYTES: usize = 28;
 /// Most positions of a model in this form.
@@ -240,7 +240,7 @@ impl ModelHeader {
     #[must_use]
     pub const fn number_count(&self) -> usize {
         let (n, l) = (self.angle_count, self.position_count);
-        self.first_pose() + l * n + self.velocity_count() + 4 * n
+        self.first_pose() + l * n + self.velocity_count() + 5 * n
     }
 
     /// Numbers before the mean pose.
@@ -273,7 +273,6 @@ impl ModelHeader {
     /// Those of [`MotionModel::new`]; lengths other than the header's among them, and a model for
     /// the phase-coupled filter alone.
     pub fn lend<'a>(&self, numbers: &'a [f32], turns_per_cycle: &'a [i8]) -> Result<MotionModel<'a>, ModelError> {
-        let coupled = self.coupled_parts(numbers, turns_per_cycle);
         let (n, l) = (self.angle_count, self.position_count);
         let (mean_acceleration, rest) = part(numbers, l * n);
         let (acceleration_covariance, _) = part(rest, l * packed_len(n));
@@ -281,17 +280,8 @@ impl ModelHeader {
         if self.form == ModelForm::Coupled {
             return Err(ModelError::of_all(ParameterError::new("mean_acceleration", Rule::NotEmpty)));
         }
-        MotionModel::new(ModelParts {
-            angle_count: n,
-            mean_acceleration,
-            acceleration_covariance,
-            mean_pose_rad: coupled.mean_pose_rad,
-            mean_velocity: part(rest, l * n).0,
-            deviation: coupled.deviation,
-            turns_per_cycle,
-            mean_duration_frames: self.mean_duration_frames,
-            rate_hz: self.rate_hz,
-        })
+        let coupled = self.lend_coupled(numbers, turns_per_cycle)?;
+        MotionModel::of_coupled(coupled, mean_acceleration, acceleration_covariance, part(rest, l * n).0)
     }
 
     /// Lends them as a model for the phase-coupled filter, in either form; of the other numbers
@@ -313,13 +303,14 @@ impl ModelHeader {
         let (mean_pose_rad, rest) = part(rest, self.position_count * n);
         let (_, rest) = part(rest, self.velocity_count());
         let (offset_std_rad, rest) = part(rest, n);
-        let (swing_std_rad, rest) = part(rest, n);
+        let (cosine_std_rad, rest) = part(rest, n);
+        let (sine_std_rad, rest) = part(rest, n);
         let (rest_std_rad, rest) = part(rest, n);
         let (rest_rate_per_cycle, _) = part(rest, n);
         CoupledParts {
             angle_count: n,
             mean_pose_rad,
-            deviation: Deviation { offset_std_rad, swing_std_rad, rest_std_rad, rest_rate_per_cycle },
+            deviation: Deviation { offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad, rest_rate_per_cycle },
             turns_per_cycle,
             mean_duration_frames: self.mean_duration_frames,
             rate_hz: self.rate_hz,
@@ -373,8 +364,8 @@ pub fn write(model: &MotionModel<'_>, bytes: &mut [u8]) -> Option<usize> {
 /// ```
 pub fn write_coupled(model: &CoupledModel<'_>, bytes: &mut [u8]) -> Option<usize> {
     let parts = model.parts();
-    let Deviation { offset_std_rad, swing_std_rad, rest_std_rad, rest_rate_per_cycle } = parts.deviation;
-    let tables = [parts.mean_pose_rad, offset_std_rad, swing_std_rad, rest_std_rad, rest_rate_per_cycle];
+    let Deviation { offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad, rest_rate_per_cycle } = parts.deviation;
+    let tables = [parts.mean_pose_rad, offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad, rest_rate_per_cycle];
     write_numbers(&ModelHeader::of_coupled(model), &tables, model, bytes)
 }
 
@@ -439,17 +430,19 @@ impl<const POSITIONS: usize, const ANGLES: usize> CoupledTable<POSITIONS, ANGLES
         let pose = HEADER_BYTES / 4 + header.first_pose();
         let deviation = pose + POSITIONS * ANGLES + header.velocity_count();
         let mut turns_per_cycle = [0; ANGLES];
-        let [offset_std_rad, swing_std_rad, rest_std_rad, rest_rate_per_cycle] = rows::<ANGLES, 4>(bytes, deviation);
+        let [offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad, rest_rate_per_cycle] =
+            rows::<ANGLES, 5>(bytes, deviation);
         let mut angle = 0;
         while angle < ANGLES {
-            let turns = word(bytes, deviation + 4 * ANGLES + angle / 4);
+            let turns = word(bytes, deviation + 5 * ANGLES + angle / 4);
             turns_per_cycle[angle] = turns.to_le_bytes()[angle % 4].cast_signed();
             angle += 1;
         }
         Ok(Self {
             mean_pose_rad: rows(bytes, pose),
             offset_std_rad,
-            swing_std_rad,
+            cosine_std_rad,
+            sine_std_rad,
             rest_std_rad,
             rest_rate_per_cycle,
             turns_per_cycle,
@@ -488,7 +481,8 @@ impl<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> ModelTabl
             mean_pose_rad: coupled.mean_pose_rad,
             mean_velocity: rows(bytes, velocity),
             offset_std_rad: coupled.offset_std_rad,
-            swing_std_rad: coupled.swing_std_rad,
+            cosine_std_rad: coupled.cosine_std_rad,
+            sine_std_rad: coupled.sine_std_rad,
             rest_std_rad: coupled.rest_std_rad,
             rest_rate_per_cycle: coupled.rest_rate_per_cycle,
             turns_per_cycle: coupled.turns_per_cycle,

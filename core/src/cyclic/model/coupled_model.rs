@@ -73,7 +73,8 @@ impl core::error::Error for ModelError {}
 ///     rate_hz: 20.0,
 ///     deviation: Deviation {
 ///         offset_std_rad: &[0.08],
-///         swing_std_rad: &[0.05],
+///         cosine_std_rad: &[0.05],
+///         sine_std_rad: &[0.05],
 ///         rest_std_rad: &[0.03],
 ///         rest_rate_per_cycle: &[6.0],
 ///     },
@@ -153,7 +154,8 @@ impl<'a> CoupledModel<'a> {
         if !parts.deviation.is_absent() {
             let deviation = &parts.deviation;
             check_rows("deviation.offset_std_rad", deviation.offset_std_rad, 1, n, positive)?;
-            check_rows("deviation.swing_std_rad", deviation.swing_std_rad, 1, n, positive)?;
+            check_rows("deviation.cosine_std_rad", deviation.cosine_std_rad, 1, n, positive)?;
+            check_rows("deviation.sine_std_rad", deviation.sine_std_rad, 1, n, positive)?;
             check_rows("deviation.rest_std_rad", deviation.rest_std_rad, 1, n, positive)?;
             check_rows("deviation.rest_rate_per_cycle", deviation.rest_rate_per_cycle, 1, n, positive)?;
         }
@@ -224,7 +226,8 @@ impl<'a> CoupledModel<'a> {
             &[parts.mean_duration_frames, parts.rate_hz],
             parts.mean_pose_rad,
             deviation.offset_std_rad,
-            deviation.swing_std_rad,
+            deviation.cosine_std_rad,
+            deviation.sine_std_rad,
             deviation.rest_std_rad,
             deviation.rest_rate_per_cycle,
         ];

@@ -15,7 +15,8 @@ use crate::skeleton::stick_figure::HUMAN_ANGLES;
 /// static SWING: CoupledTable<4, 1> = CoupledTable {
 ///     mean_pose_rad: [[0.0], [0.5], [0.0], [-0.5]],
 ///     offset_std_rad: [0.08],
-///     swing_std_rad: [0.05],
+///     cosine_std_rad: [0.05],
+///     sine_std_rad: [0.05],
 ///     rest_std_rad: [0.03],
 ///     rest_rate_per_cycle: [6.0],
 ///     turns_per_cycle: [0],
@@ -32,8 +33,10 @@ pub struct CoupledTable<const POSITIONS: usize, const ANGLES: usize> {
     pub mean_pose_rad: [[f32; ANGLES]; POSITIONS],
     /// See [`Deviation::offset_std_rad`].
     pub offset_std_rad: [f32; ANGLES],
-    /// See [`Deviation::swing_std_rad`].
-    pub swing_std_rad: [f32; ANGLES],
+    /// See [`Deviation::cosine_std_rad`].
+    pub cosine_std_rad: [f32; ANGLES],
+    /// See [`Deviation::sine_std_rad`].
+    pub sine_std_rad: [f32; ANGLES],
     /// See [`Deviation::rest_std_rad`].
     pub rest_std_rad: [f32; ANGLES],
     /// See [`Deviation::rest_rate_per_cycle`].
@@ -76,7 +79,8 @@ impl<const POSITIONS: usize, const ANGLES: usize> CoupledTable<POSITIONS, ANGLES
             rate_hz: self.rate_hz,
             deviation: Deviation {
                 offset_std_rad: &self.offset_std_rad,
-                swing_std_rad: &self.swing_std_rad,
+                cosine_std_rad: &self.cosine_std_rad,
+                sine_std_rad: &self.sine_std_rad,
                 rest_std_rad: &self.rest_std_rad,
                 rest_rate_per_cycle: &self.rest_rate_per_cycle,
             },

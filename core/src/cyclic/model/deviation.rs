@@ -19,7 +19,8 @@
 /// // One angle: offsets of about 5 degrees between people, and a swing that differs by 3 degrees.
 /// let deviation = Deviation {
 ///     offset_std_rad: &[0.08],
-///     swing_std_rad: &[0.05],
+///     cosine_std_rad: &[0.05],
+///     sine_std_rad: &[0.05],
 ///     rest_std_rad: &[0.03],
 ///     rest_rate_per_cycle: &[6.0],
 /// };
@@ -32,8 +33,10 @@
 pub struct Deviation<'a> {
     /// Standard deviation of the constant a, radians.
     pub offset_std_rad: &'a [f32],
-    /// Standard deviation of p, and of q, radians.
-    pub swing_std_rad: &'a [f32],
+    /// Standard deviation of p, radians.
+    pub cosine_std_rad: &'a [f32],
+    /// Standard deviation of q, radians.
+    pub sine_std_rad: &'a [f32],
     /// Standard deviation of the rest d, radians.
     pub rest_std_rad: &'a [f32],
     /// Rate of the rest per cycle: its correlation after a part x of a cycle is (1 + rate x)
@@ -46,7 +49,8 @@ impl Deviation<'_> {
     #[must_use]
     pub const fn is_absent(&self) -> bool {
         self.offset_std_rad.is_empty()
-            && self.swing_std_rad.is_empty()
+            && self.cosine_std_rad.is_empty()
+            && self.sine_std_rad.is_empty()
             && self.rest_std_rad.is_empty()
             && self.rest_rate_per_cycle.is_empty()
     }

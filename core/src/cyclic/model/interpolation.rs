@@ -76,17 +76,16 @@ impl CoupledModel<'_> {
         pose
     }
 
-    /// Standard deviation of each angle about the mean cycle, radians, the same along the cycle;
-    /// zero where the model has none.
+    /// Standard deviation of each angle about the mean cycle, radians, its mean square over
+    /// the cycle; zero where the model has none.
     #[must_use]
     pub fn deviation_std_rad<const N: usize>(&self) -> [f32; N] {
         let deviation = &self.parts().deviation;
         let mut std = [0.0; N];
         for (i, value) in std.iter_mut().enumerate() {
             let part = |parts: &[f32]| parts.get(i).map_or(0.0, |part| part * part);
-            let variance =
-                part(deviation.offset_std_rad) + part(deviation.swing_std_rad) + part(deviation.rest_std_rad);
-            *value = sqrt(variance);
+            let swing = 0.5 * (part(deviation.cosine_std_rad) + part(deviation.sine_std_rad));
+            *value = sqrt(part(deviation.offset_std_rad) + swing + part(deviation.rest_std_rad));
         }
         std
     }
@@ -114,9 +113,10 @@ impl CoupledModel<'_> {
         let mut std = [0.0; N];
         for (i, value) in std.iter_mut().enumerate() {
             let part = |parts: &[f32]| parts.get(i).copied().unwrap_or(0.0);
-            let swing = TAU * part(deviation.swing_std_rad);
+            let (cosine, sine) = (part(deviation.cosine_std_rad), part(deviation.sine_std_rad));
+            let swing2 = 0.5 * TAU * TAU * (cosine * cosine + sine * sine);
             let rest = part(deviation.rest_rate_per_cycle) * part(deviation.rest_std_rad);
-            *value = self.mean_cycle_velocity() * sqrt(swing * swing + rest * rest);
+            *value = self.mean_cycle_velocity() * sqrt(swing2 + rest * rest);
         }
         std
     }

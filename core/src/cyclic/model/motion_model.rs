@@ -75,15 +75,17 @@ impl<'a> ModelParts<'a> {
     /// All tables of real numbers, those of the cycle first; the order is that of
     /// [`crate::cyclic::model::bytes`].
     #[must_use]
-    pub const fn tables(&self) -> [&'a [f32]; 8] {
-        let Deviation { offset_std_rad, swing_std_rad, rest_std_rad, rest_rate_per_cycle } = self.deviation;
+    pub const fn tables(&self) -> [&'a [f32]; 9] {
+        let Deviation { offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad, rest_rate_per_cycle } =
+            self.deviation;
         [
             self.mean_acceleration,
             self.acceleration_covariance,
             self.mean_pose_rad,
             self.mean_velocity,
             offset_std_rad,
-            swing_std_rad,
+            cosine_std_rad,
+            sine_std_rad,
             rest_std_rad,
             rest_rate_per_cycle,
         ]
@@ -126,11 +128,20 @@ impl<'a> MotionModel<'a> {
     /// as poses, and finite numbers. No covariance has a negative eigenvalue.
     pub fn new(parts: ModelParts<'a>) -> Result<Self, ModelError> {
         let coupled = CoupledModel::new(parts.coupled())?;
+        Self::of_coupled(coupled, parts.mean_acceleration, parts.acceleration_covariance, parts.mean_velocity)
+    }
+
+    /// As [`Self::new`], of a checked part and the numbers that it does not have.
+    pub(crate) fn of_coupled(
+        coupled: CoupledModel<'a>,
+        mean_acceleration: &'a [f32],
+        acceleration_covariance: &'a [f32],
+        mean_velocity: &'a [f32],
+    ) -> Result<Self, ModelError> {
         let (l, n) = (coupled.position_count(), coupled.angle_count());
-        check_rows("mean_acceleration", parts.mean_acceleration, l, n, finite)?;
-        check_rows("mean_velocity", parts.mean_velocity, l, n, finite)?;
-        check_covariances(parts.acceleration_covariance, l, n)?;
-        let ModelParts { mean_acceleration, acceleration_covariance, mean_velocity, .. } = parts;
+        check_rows("mean_acceleration", mean_acceleration, l, n, finite)?;
+        check_rows("mean_velocity", mean_velocity, l, n, finite)?;
+        check_covariances(acceleration_covariance, l, n)?;
         Ok(Self { coupled, mean_acceleration, acceleration_covariance, mean_velocity })
     }
 
@@ -204,7 +215,8 @@ mod tests {
 
     const DEVIATION: Deviation<'static> = Deviation {
         offset_std_rad: &[0.1; 2],
-        swing_std_rad: &[0.1; 2],
+        cosine_std_rad: &[0.1; 2],
+        sine_std_rad: &[0.1; 2],
         rest_std_rad: &[0.05; 2],
         rest_rate_per_cycle: &[9.0, 8.0],
     };
@@ -255,7 +267,7 @@ mod tests {
         covariance[0] = f32::INFINITY;
         let error = MotionModel::new(ModelParts { acceleration_covariance: &covariance, ..parts() }).unwrap_err();
         assert_eq!(error.error.rule, Rule::Finite);
-        let negative = Deviation { swing_std_rad: &[0.1, -0.1], ..DEVIATION };
+        let negative = Deviation { sine_std_rad: &[0.1, -0.1], ..DEVIATION };
         let error = MotionModel::new(ModelParts { deviation: negative, ..parts() }).unwrap_err();
         assert_eq!((error.error.rule, error.angle), (Rule::Positive, Some(1)));
     }

@@ -22,7 +22,8 @@ pub const PAPER_POSITIONS: usize = 100;
 ///     mean_pose_rad: [[0.0], [0.5], [0.0], [-0.5]],
 ///     mean_velocity: [[0.5], [0.0], [-0.5], [0.0]],
 ///     offset_std_rad: [0.08],
-///     swing_std_rad: [0.05],
+///     cosine_std_rad: [0.05],
+///     sine_std_rad: [0.05],
 ///     rest_std_rad: [0.03],
 ///     rest_rate_per_cycle: [6.0],
 ///     turns_per_cycle: [0],
@@ -45,8 +46,10 @@ pub struct ModelTable<const POSITIONS: usize, const ANGLES: usize, const PACKED:
     pub mean_velocity: [[f32; ANGLES]; POSITIONS],
     /// See [`Deviation::offset_std_rad`].
     pub offset_std_rad: [f32; ANGLES],
-    /// See [`Deviation::swing_std_rad`].
-    pub swing_std_rad: [f32; ANGLES],
+    /// See [`Deviation::cosine_std_rad`].
+    pub cosine_std_rad: [f32; ANGLES],
+    /// See [`Deviation::sine_std_rad`].
+    pub sine_std_rad: [f32; ANGLES],
     /// See [`Deviation::rest_std_rad`].
     pub rest_std_rad: [f32; ANGLES],
     /// See [`Deviation::rest_rate_per_cycle`].
@@ -94,7 +97,8 @@ impl<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> ModelTabl
             rate_hz: self.rate_hz,
             deviation: Deviation {
                 offset_std_rad: &self.offset_std_rad,
-                swing_std_rad: &self.swing_std_rad,
+                cosine_std_rad: &self.cosine_std_rad,
+                sine_std_rad: &self.sine_std_rad,
                 rest_std_rad: &self.rest_std_rad,
                 rest_rate_per_cycle: &self.rest_rate_per_cycle,
             },
@@ -114,7 +118,8 @@ mod tests {
             mean_pose_rad: [[0.5]; 5],
             mean_velocity: [[0.0]; 5],
             offset_std_rad: [0.1],
-            swing_std_rad: [0.1],
+            cosine_std_rad: [0.1],
+            sine_std_rad: [0.1],
             rest_std_rad: [0.1],
             rest_rate_per_cycle: [12.0],
             turns_per_cycle: [0],

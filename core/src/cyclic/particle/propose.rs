@@ -368,7 +368,8 @@ mod tests {
         let unknown = of(Deviation::default());
         let known = of(Deviation {
             offset_std_rad: &[0.1; 13],
-            swing_std_rad: &[0.2; 13],
+            cosine_std_rad: &[0.2; 13],
+            sine_std_rad: &[0.2; 13],
             rest_std_rad: &[0.05; 13],
             rest_rate_per_cycle: &[20.0; 13],
         });

@@ -1,11 +1,11 @@
 //! How people differ from the mean cycle, learned from a few cycles of a few people (see
 //! [`sinew_core::cyclic::Deviation`]).
 //!
-//! Each cycle's deviation from the mean is split into a constant, a swing with the cycle's own
-//! period, and a rest. Variances are taken from pairs of cycles: half the squared difference of two
-//! is an unbiased estimate. Two cycles of one person say little about the next one, so pairs of
-//! different people are used, each person with the same weight. Where it is not known whose cycle
-//! it is, the half of the pairs that differ most is used.
+//! Each cycle's deviation from the mean is split into a constant, a cosine and a sine with the
+//! cycle's own period, and a rest. Variances are taken from pairs of cycles: half the squared
+//! difference of two is an unbiased estimate. Two cycles of one person say little about the next
+//! one, so pairs of different people are used, each person with the same weight. Where it is not
+//! known whose cycle it is, the half of the pairs that differ most is used.
 
 use super::cycle::TrainingCycle;
 use super::statistics::{angle_count, mean_pose};
@@ -13,12 +13,14 @@ use crate::cyclic::model::DeviationNumbers;
 use crate::cyclic::turns::wrapped;
 use std::f64::consts::TAU;
 
-/// Factor of the variances of constant and swing, where it is not known whose cycle it is.
+/// Factor of the variances of constant, cosine and sine, where it is not known whose cycle it is.
 ///
 /// Chosen: they come from about three people. The spread of a new person is that of a t
 /// distribution with few degrees of freedom, and the mean cycle is as uncertain.
 const INFLATION: f64 = 4.0;
-/// Part of the variance of constant and swing that is replaced by the mean over the angles.
+/// So many people have no variance of their t distribution.
+const FEW_PEOPLE: usize = 3;
+/// Part of the variance of constant, cosine and sine that is replaced by the mean over the angles.
 const SHRINKAGE: f64 = 0.2;
 /// The same for the rest, which differs from cycle to cycle as well and is known from more than a
 /// few cycles.
@@ -59,8 +61,8 @@ pub fn of_cycles(cycles: &[TrainingCycle], length: usize) -> DeviationNumbers {
         let of_angle = |angle| over_pairs(&|a, b| half_square(a.coefficients[which] - b.coefficients[which]), angle);
         (0..count).map(of_angle).collect()
     };
-    let (offset, cosine, sine) = (coefficient(0), coefficient(1), coefficient(2));
-    let swing: Vec<f64> = cosine.iter().zip(&sine).map(|(cosine, sine)| 0.5 * (cosine + sine)).collect();
+    let offset = coefficient(0);
+    let (cosine, sine) = swing(coefficient(1), coefficient(2), people);
     let rest: Vec<f64> = (0..count).map(|angle| over_pairs(&rest_variance, angle)).collect();
     let rate = |angle: usize| {
         let slope = over_pairs(&slope_variance, angle);
@@ -70,7 +72,8 @@ pub fn of_cycles(cycles: &[TrainingCycle], length: usize) -> DeviationNumbers {
         inflation: inflation as f32,
         shrinkage: SHRINKAGE as f32,
         offset_std_rad: stds(&offset, inflation, SHRINKAGE),
-        swing_std_rad: stds(&swing, inflation, SHRINKAGE),
+        cosine_std_rad: stds(&cosine, inflation, SHRINKAGE),
+        sine_std_rad: stds(&sine, inflation, SHRINKAGE),
         rest_std_rad: stds(&rest, rest_inflation, REST_SHRINKAGE),
         rest_rate_per_cycle: (0..count).map(|angle| rate(angle) as f32).collect(),
     }
@@ -93,6 +96,16 @@ fn split(cycle: &TrainingCycle, angle: usize, poses: &[Vec<f64>], length: usize)
     Parts { coefficients, rest: deviation }
 }
 
+/// Variances of cosine and sine, rad^2. Few people do not show which of them differs more, so that
+/// both have their mean.
+fn swing(cosine: Vec<f64>, sine: Vec<f64>, people: usize) -> (Vec<f64>, Vec<f64>) {
+    if people > FEW_PEOPLE {
+        return (cosine, sine);
+    }
+    let mean: Vec<f64> = cosine.iter().zip(&sine).map(|(cosine, sine)| 0.5 * (cosine + sine)).collect();
+    (mean.clone(), mean)
+}
+
 /// Number of people; 0 where it is not known whose cycles these are.
 fn people(cycles: &[TrainingCycle]) -> usize {
     let mut people: Vec<_> = cycles.iter().filter_map(TrainingCycle::person).collect();
@@ -106,7 +119,7 @@ fn people(cycles: &[TrainingCycle]) -> usize {
 /// one part in `people`. At most that of unknown people, which few people would exceed.
 fn new_person_factor(people: usize) -> f64 {
     let n = people as f64;
-    if people <= 3 { INFLATION } else { ((1.0 + 1.0 / n) * (n - 1.0) / (n - 3.0)).min(INFLATION) }
+    if people <= FEW_PEOPLE { INFLATION } else { ((1.0 + 1.0 / n) * (n - 1.0) / (n - 3.0)).min(INFLATION) }
 }
 
 /// Two cycles, and the weight of what they differ by.
@@ -196,7 +209,8 @@ mod tests {
         assert!((numbers.offset_std_rad[0] - pooled(offset, offset)).abs() < 1.0e-3);
         assert!((numbers.offset_std_rad[1] - pooled(0.0, offset)).abs() < 1.0e-3);
         let swing = 0.5 * half_square(0.3);
-        assert!((numbers.swing_std_rad[1] - pooled(swing, swing)).abs() < 1.0e-3);
+        assert!((numbers.cosine_std_rad[1] - pooled(swing, swing)).abs() < 1.0e-3);
+        assert_eq!(numbers.cosine_std_rad, numbers.sine_std_rad, "one pair does not show which differs more");
         let rest = 0.5 * half_square(0.2);
         let wanted = (REST_INFLATION * part(rest, rest, REST_SHRINKAGE)).sqrt() as f32;
         assert!((numbers.rest_std_rad[2] - wanted).abs() < 1.0e-3);
@@ -235,6 +249,15 @@ mod tests {
         let variance = (2.0 * 0.15_f64.powi(2) + 2.0 * 0.05_f64.powi(2)) / 3.0;
         let wanted = (new_person_factor(4) * variance * (0.8 + 0.2 / ANGLES as f64)).sqrt();
         assert!((f64::from(numbers.offset_std_rad[0]) - wanted).abs() < 1.0e-3, "{numbers:?} {wanted}");
+    }
+
+    #[test]
+    fn cosine_and_sine_differ_as_they_do_between_people() {
+        let swings = [("a", -0.15), ("b", -0.05), ("c", 0.05), ("d", 0.15)];
+        let cycles: Vec<_> = swings.iter().map(|&(person, swing)| cycle(0.0, swing, 0.0).of_person(person)).collect();
+        let numbers = of_cycles(&cycles, 100);
+        assert!(numbers.cosine_std_rad[1] > 0.2, "{numbers:?}");
+        assert!(numbers.sine_std_rad.iter().all(|&std| f64::from(std) < 1.01 * MIN_STD_RAD), "{numbers:?}");
     }
 
     #[test]

@@ -152,7 +152,8 @@ pub(crate) fn spread(model: &CoupledModel<'_>, index: usize) -> Spread {
     let square = |std: f32| std * std;
     Spread {
         offset: square(at(deviation.offset_std_rad)),
-        swing: square(at(deviation.swing_std_rad)),
+        cosine: square(at(deviation.cosine_std_rad)),
+        sine: square(at(deviation.sine_std_rad)),
         rest: square(at(deviation.rest_std_rad)),
         rate: at(deviation.rest_rate_per_cycle),
     }

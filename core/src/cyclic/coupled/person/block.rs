@@ -62,8 +62,10 @@ impl Basis {
 pub(crate) struct Spread {
     /// Variance of a, rad^2.
     pub(crate) offset: f32,
-    /// Variance of p and of q, rad^2.
-    pub(crate) swing: f32,
+    /// Variance of p, rad^2.
+    pub(crate) cosine: f32,
+    /// Variance of q, rad^2.
+    pub(crate) sine: f32,
     /// Variance of d, rad^2.
     pub(crate) rest: f32,
     /// Rate of d per cycle.
@@ -74,12 +76,18 @@ impl Spread {
     /// With the variances multiplied by `factor`.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     pub(crate) fn scaled(&self, factor: f32) -> Self {
-        Self { offset: factor * self.offset, swing: factor * self.swing, rest: factor * self.rest, rate: self.rate }
+        Self {
+            offset: factor * self.offset,
+            cosine: factor * self.cosine,
+            sine: factor * self.sine,
+            rest: factor * self.rest,
+            rate: self.rate,
+        }
     }
 
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn diagonal(&self) -> [f32; PARTS] {
-        [self.offset, self.swing, self.swing, self.rest, self.rest * self.rate * self.rate]
+        [self.offset, self.cosine, self.sine, self.rest, self.rest * self.rate * self.rate]
     }
 }
 
