@@ -144,9 +144,9 @@ pub struct ModelHeader {
     pub angle_count: usize,
     /// Number l of positions.
     pub position_count: usize,
-    /// See [`ModelParts::mean_duration_frames`].
+    /// See [`CoupledParts::mean_duration_frames`].
     pub mean_duration_frames: f32,
-    /// See [`ModelParts::rate_hz`].
+    /// See [`CoupledParts::rate_hz`].
     pub rate_hz: f32,
 }
 
