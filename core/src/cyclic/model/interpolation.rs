@@ -76,8 +76,8 @@ impl CoupledModel<'_> {
         pose
     }
 
-    /// Standard deviation of each angle about the mean cycle, radians, its mean square over
-    /// the cycle; zero where the model has none.
+    /// Root mean square over the cycle of each angle's standard deviation about the mean cycle,
+    /// radians; zero where the model has none.
     #[must_use]
     pub fn deviation_std_rad<const N: usize>(&self) -> [f32; N] {
         let deviation = &self.parts().deviation;
