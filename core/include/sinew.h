@@ -1111,7 +1111,7 @@ size_t sinew_cyclic_align(void);
  *
  * `model` is a motion model in bytes (the command `sinew export` makes one), aligned to four,
  * which has to stay where it is as long as the tracker is used. The form for the coupled filter
- * suffices (`--form coupled-c`, 5.4 KB); of the form for all filters the rest is not read. Null
+ * suffices (`--form coupled-c`, 5.5 KB); of the form for all filters the rest is not read. Null
  * and zero bytes stand for the walking model that the library was built with. All numbers that the
  * tracker reads are checked once, here.
  *

@@ -112,7 +112,7 @@ pub struct CoupledParts<'a> {
 /// use sinew_core::cyclic::model::walking::WALKING_COUPLED;
 /// use sinew_core::tracker::cyclic::{CoupledTracker, FirstPhase};
 ///
-/// // What firmware links: 5.4 KB in place of 52.
+/// // What firmware links: 5.5 KB in place of 52.
 /// let model = WALKING_COUPLED.model()?;
 /// let seen = AngleMeasurement::new(&model.mean_pose_rad::<13>(model.point(0.3)).map(Some), 0.1)?;
 /// let tracker = CoupledTracker::new(&model, &seen, FirstPhase::default())?;

@@ -27,7 +27,7 @@ pub static WALKING: HumanModelTable = match HumanModelTable::from_bytes(BYTES) {
     Err(_) => panic!("{}", REMEDY),
 };
 
-/// The walking model for the phase-coupled filter, 5.4 KB.
+/// The walking model for the phase-coupled filter, 5.5 KB.
 ///
 /// ```
 /// use sinew_core::cyclic::model::walking::{WALKING, WALKING_COUPLED};
