@@ -93,7 +93,7 @@ impl Spread {
 }
 
 /// How the parts move along the cycle: a, p and q are slowly forgotten, the rest is a Matern
-/// process of order 3/2 as a state space (Hartikainen and Sarkka 2010, section 3.1).
+/// process of order 3/2 as a state space (Hartikainen and Sarkka 2010).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Transition {
     /// Part of a, p and q that is kept.
