@@ -43,7 +43,7 @@ pub fn swing_table() -> ModelTable<POSITIONS, 2, 3> {
         cosine_std_rad: [0.05; 2],
         sine_std_rad: [0.05; 2],
         rest_std_rad: [0.03; 2],
-        rest_rate_per_cycle: 6.0,
+        rest_rate_per_cycle: [6.0; 2],
         turns_per_cycle: [0; 2],
         mean_duration_frames: 60.0,
         rate_hz: 60.0,

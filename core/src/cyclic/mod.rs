@@ -18,7 +18,7 @@
 //!     cosine_std_rad: [0.05; 2],
 //!     sine_std_rad: [0.05; 2],
 //!     rest_std_rad: [0.03; 2],
-//!     rest_rate_per_cycle: 6.0,
+//!     rest_rate_per_cycle: [6.0; 2],
 //!     turns_per_cycle: [0; 2],
 //!     mean_duration_frames: 60.0,
 //!     rate_hz: 60.0,

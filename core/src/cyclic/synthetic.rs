@@ -36,7 +36,7 @@ pub fn table(noise: f32, rank: usize) -> Box<HumanModelTable> {
         cosine_std_rad: [0.05; ANGLES],
         sine_std_rad: [0.05; ANGLES],
         rest_std_rad: [0.03; ANGLES],
-        rest_rate_per_cycle: 6.0,
+        rest_rate_per_cycle: [6.0; ANGLES],
         turns_per_cycle: core::array::from_fn(|i| i8::from(i == 12)),
         mean_duration_frames: 65.0,
         rate_hz: 60.0,

@@ -1,9 +1,7 @@
 //! A motion model that owns its numbers, and lends them to the core's filters.
 
 use self_cell::self_cell;
-use serde::de::Error;
-use serde::{Deserialize, Deserializer, Serialize};
-use serde_json::Value;
+use serde::{Deserialize, Serialize};
 use sinew_core::cyclic::model::bytes::{self, ModelHeader};
 use sinew_core::cyclic::{Deviation, ModelError, ModelParts, MotionModel};
 
@@ -39,20 +37,7 @@ pub struct DeviationNumbers {
     /// See [`Deviation::rest_std_rad`].
     pub rest_std_rad: Vec<f32>,
     /// See [`Deviation::rest_rate_per_cycle`].
-    #[serde(deserialize_with = "mean_of_one_or_many")]
-    pub rest_rate_per_cycle: f32,
-}
-
-/// Models of version 0.2 have a rate for each angle.
-fn mean_of_one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f32, D::Error> {
-    let value = Value::deserialize(deserializer)?;
-    let rates: serde_json::Result<Vec<f32>> = if value.is_array() {
-        serde_json::from_value(value)
-    } else {
-        serde_json::from_value(value).map(|rate| vec![rate])
-    };
-    let rates = rates.map_err(D::Error::custom)?;
-    Ok(rates.iter().sum::<f32>() / rates.len() as f32)
+    pub rest_rate_per_cycle: Vec<f32>,
 }
 
 /// The numbers of a model: see [`ModelParts`] for each field.
@@ -99,7 +84,7 @@ impl ModelNumbers {
                 cosine_std_rad: &deviation.cosine_std_rad,
                 sine_std_rad: &deviation.sine_std_rad,
                 rest_std_rad: &deviation.rest_std_rad,
-                rest_rate_per_cycle: deviation.rest_rate_per_cycle,
+                rest_rate_per_cycle: &deviation.rest_rate_per_cycle,
             }),
         })
     }
@@ -120,10 +105,16 @@ impl ModelNumbers {
             .into_iter()
             .for_each(|values| add(values));
         if let Some(deviation) = &self.deviation {
-            add(&[deviation.inflation, deviation.shrinkage, deviation.rest_rate_per_cycle]);
-            [&deviation.offset_std_rad, &deviation.cosine_std_rad, &deviation.sine_std_rad, &deviation.rest_std_rad]
-                .into_iter()
-                .for_each(|values| add(values));
+            add(&[deviation.inflation, deviation.shrinkage]);
+            [
+                &deviation.offset_std_rad,
+                &deviation.cosine_std_rad,
+                &deviation.sine_std_rad,
+                &deviation.rest_std_rad,
+                &deviation.rest_rate_per_cycle,
+            ]
+            .into_iter()
+            .for_each(|values| add(values));
         }
         hasher.finalize()
     }

@@ -222,17 +222,15 @@ mod tests {
     }
 
     #[test]
-    fn a_model_of_version_0_2_has_one_spread_of_the_swing_and_many_rates() {
+    fn one_spread_of_the_swing_serves_cosine_and_sine() {
         let mut value: Value = serde_json::from_str(&walking_json()).unwrap();
         let deviation = value["deviation"].as_object_mut().unwrap();
         let swing = deviation.remove("cosine_std_rad").unwrap();
         deviation.remove("sine_std_rad");
         deviation.insert("swing_std_rad".into(), swing);
-        deviation.insert("rest_rate_per_cycle".into(), vec![10.0, 20.0, 30.0].into());
         let deviation = parse(&value.to_string()).unwrap().numbers().deviation.clone().unwrap();
         assert_eq!(deviation.cosine_std_rad, deviation.sine_std_rad);
         assert!(!deviation.sine_std_rad.is_empty());
-        assert_eq!(deviation.rest_rate_per_cycle, 20.0);
     }
 
     #[test]

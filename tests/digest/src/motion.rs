@@ -52,7 +52,7 @@ pub fn table(seed: u64) -> Table {
         cosine_std_rad: [0.05; HUMAN_ANGLES],
         sine_std_rad: [0.05; HUMAN_ANGLES],
         rest_std_rad: [0.03; HUMAN_ANGLES],
-        rest_rate_per_cycle: 6.0,
+        rest_rate_per_cycle: [6.0; HUMAN_ANGLES],
         turns_per_cycle: from_fn(|i| i8::from(i == HUMAN_ANGLES - 1)),
         mean_duration_frames: MEAN_DURATION,
         rate_hz: 60.0,

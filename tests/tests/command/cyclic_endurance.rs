@@ -25,7 +25,7 @@ fn model_table() -> Box<HumanModelTable> {
         cosine_std_rad: [0.05; N],
         sine_std_rad: [0.05; N],
         rest_std_rad: [0.03; N],
-        rest_rate_per_cycle: 6.0,
+        rest_rate_per_cycle: [6.0; N],
         turns_per_cycle: [0; N],
         mean_duration_frames: 65.0,
         rate_hz: 60.0,

@@ -11,7 +11,7 @@
 //! | 4, 5 | mean duration, frames; frames per second |
 //! | 6 | CRC-32 of words 1 to 5 and all after word 6 |
 //! | then | mean acceleration (l n), covariance (l n (n + 1) / 2), mean pose (l n), mean velocity (l n) |
-//! | then | spread of offset, cosine, sine and rest (n each), rate of the rest |
+//! | then | spread of offset, cosine, sine and rest, rate of the rest (n each) |
 //! | last | turns per cycle, a signed byte each, filled with zeros to a whole word |
 //!
 //! A model for the phase-coupled filter alone begins with [`COUPLED_MAGIC`]. It has neither
@@ -240,7 +240,7 @@ impl ModelHeader {
     #[must_use]
     pub const fn number_count(&self) -> usize {
         let (n, l) = (self.angle_count, self.position_count);
-        self.first_pose() + l * n + self.velocity_count() + 4 * n + 1
+        self.first_pose() + l * n + self.velocity_count() + 5 * n
     }
 
     /// Numbers before the mean pose.
@@ -306,7 +306,7 @@ impl ModelHeader {
         let (cosine_std_rad, rest) = part(rest, n);
         let (sine_std_rad, rest) = part(rest, n);
         let (rest_std_rad, rest) = part(rest, n);
-        let rest_rate_per_cycle = rest.first().copied().unwrap_or_default();
+        let (rest_rate_per_cycle, _) = part(rest, n);
         CoupledParts {
             angle_count: n,
             mean_pose_rad,
@@ -364,8 +364,8 @@ pub fn write(model: &MotionModel<'_>, bytes: &mut [u8]) -> Option<usize> {
 /// ```
 pub fn write_coupled(model: &CoupledModel<'_>, bytes: &mut [u8]) -> Option<usize> {
     let parts = model.parts();
-    let Deviation { offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad, .. } = parts.deviation;
-    let tables = [parts.mean_pose_rad, offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad];
+    let Deviation { offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad, rest_rate_per_cycle } = parts.deviation;
+    let tables = [parts.mean_pose_rad, offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad, rest_rate_per_cycle];
     write_numbers(&ModelHeader::of_coupled(model), &tables, model, bytes)
 }
 
@@ -382,8 +382,7 @@ fn write_numbers(header: &ModelHeader, tables: &[&[f32]], model: &CoupledModel<'
         header.rate_hz.to_bits(),
         0,
     ];
-    let numbers = tables.iter().copied().flatten().chain([&parts.deviation.rest_rate_per_cycle]);
-    let words = first.into_iter().chain(numbers.map(|number| number.to_bits()));
+    let words = first.into_iter().chain(tables.iter().copied().flatten().map(|number| number.to_bits()));
     for (slot, word) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(words) {
         *slot = word.to_le_bytes();
     }
@@ -431,11 +430,11 @@ impl<const POSITIONS: usize, const ANGLES: usize> CoupledTable<POSITIONS, ANGLES
         let pose = HEADER_BYTES / 4 + header.first_pose();
         let deviation = pose + POSITIONS * ANGLES + header.velocity_count();
         let mut turns_per_cycle = [0; ANGLES];
-        let [offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad] = rows::<ANGLES, 4>(bytes, deviation);
-        let rate = deviation + 4 * ANGLES;
+        let [offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad, rest_rate_per_cycle] =
+            rows::<ANGLES, 5>(bytes, deviation);
         let mut angle = 0;
         while angle < ANGLES {
-            let turns = word(bytes, rate + 1 + angle / 4);
+            let turns = word(bytes, deviation + 5 * ANGLES + angle / 4);
             turns_per_cycle[angle] = turns.to_le_bytes()[angle % 4].cast_signed();
             angle += 1;
         }
@@ -445,7 +444,7 @@ impl<const POSITIONS: usize, const ANGLES: usize> CoupledTable<POSITIONS, ANGLES
             cosine_std_rad,
             sine_std_rad,
             rest_std_rad,
-            rest_rate_per_cycle: f32::from_bits(word(bytes, rate)),
+            rest_rate_per_cycle,
             turns_per_cycle,
             mean_duration_frames: header.mean_duration_frames,
             rate_hz: header.rate_hz,

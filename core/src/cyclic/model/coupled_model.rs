@@ -76,7 +76,7 @@ impl core::error::Error for ModelError {}
 ///         cosine_std_rad: &[0.05],
 ///         sine_std_rad: &[0.05],
 ///         rest_std_rad: &[0.03],
-///         rest_rate_per_cycle: 6.0,
+///         rest_rate_per_cycle: &[6.0],
 ///     },
 /// };
 /// assert_eq!(CoupledModel::new(parts)?.mean_cycle_velocity(), 0.05);
@@ -157,7 +157,7 @@ impl<'a> CoupledModel<'a> {
             check_rows("deviation.cosine_std_rad", deviation.cosine_std_rad, 1, n, positive)?;
             check_rows("deviation.sine_std_rad", deviation.sine_std_rad, 1, n, positive)?;
             check_rows("deviation.rest_std_rad", deviation.rest_std_rad, 1, n, positive)?;
-            positive("deviation.rest_rate_per_cycle", deviation.rest_rate_per_cycle).map_err(ModelError::of_all)?;
+            check_rows("deviation.rest_rate_per_cycle", deviation.rest_rate_per_cycle, 1, n, positive)?;
         }
         Ok(Self { parts, position_count: l })
     }
@@ -229,7 +229,7 @@ impl<'a> CoupledModel<'a> {
             deviation.cosine_std_rad,
             deviation.sine_std_rad,
             deviation.rest_std_rad,
-            &[deviation.rest_rate_per_cycle],
+            deviation.rest_rate_per_cycle,
         ];
         let numbers = numbers.into_iter().flatten().fold(Crc32::new(), |sum, number| sum.and_word(number.to_bits()));
         parts.turns_per_cycle.iter().fold(numbers, |sum, turns| sum.and(turns.to_le_bytes()[0])).value()

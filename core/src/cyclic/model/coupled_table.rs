@@ -18,7 +18,7 @@ use crate::skeleton::stick_figure::HUMAN_ANGLES;
 ///     cosine_std_rad: [0.05],
 ///     sine_std_rad: [0.05],
 ///     rest_std_rad: [0.03],
-///     rest_rate_per_cycle: 6.0,
+///     rest_rate_per_cycle: [6.0],
 ///     turns_per_cycle: [0],
 ///     mean_duration_frames: 20.0,
 ///     rate_hz: 20.0,
@@ -40,7 +40,7 @@ pub struct CoupledTable<const POSITIONS: usize, const ANGLES: usize> {
     /// See [`Deviation::rest_std_rad`].
     pub rest_std_rad: [f32; ANGLES],
     /// See [`Deviation::rest_rate_per_cycle`].
-    pub rest_rate_per_cycle: f32,
+    pub rest_rate_per_cycle: [f32; ANGLES],
     /// See [`CoupledParts::turns_per_cycle`].
     pub turns_per_cycle: [i8; ANGLES],
     /// See [`CoupledParts::mean_duration_frames`].
@@ -82,7 +82,7 @@ impl<const POSITIONS: usize, const ANGLES: usize> CoupledTable<POSITIONS, ANGLES
                 cosine_std_rad: &self.cosine_std_rad,
                 sine_std_rad: &self.sine_std_rad,
                 rest_std_rad: &self.rest_std_rad,
-                rest_rate_per_cycle: self.rest_rate_per_cycle,
+                rest_rate_per_cycle: &self.rest_rate_per_cycle,
             },
         })
     }

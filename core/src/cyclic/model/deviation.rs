@@ -8,7 +8,7 @@
 //! Learning, (4.17)).
 
 /// Spread of the deviation's parts, for the phase-coupled filter. Borrowed, like the whole model; n
-/// numbers each, and one rate.
+/// numbers each.
 ///
 /// A model without it (empty slices) serves the other filters only.
 ///
@@ -22,11 +22,11 @@
 ///     cosine_std_rad: &[0.05],
 ///     sine_std_rad: &[0.05],
 ///     rest_std_rad: &[0.03],
-///     rest_rate_per_cycle: 6.0,
+///     rest_rate_per_cycle: &[6.0],
 /// };
 /// assert!(!deviation.is_absent() && Deviation::default().is_absent());
 /// // The residual's correlation is about a half after a quarter of a cycle.
-/// let scaled = deviation.rest_rate_per_cycle * 0.25;
+/// let scaled = deviation.rest_rate_per_cycle[0] * 0.25;
 /// assert!(((1.0 + scaled) * exp(-scaled) - 0.56).abs() < 0.01);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -39,9 +39,9 @@ pub struct Deviation<'a> {
     pub sine_std_rad: &'a [f32],
     /// Standard deviation of the rest d, radians.
     pub rest_std_rad: &'a [f32],
-    /// Rate of every angle's rest per cycle: its correlation after a part x of a cycle is (1 + rate
-    /// x) exp(-rate x).
-    pub rest_rate_per_cycle: f32,
+    /// Rate of the rest per cycle: its correlation after a part x of a cycle is (1 + rate x)
+    /// exp(-rate x).
+    pub rest_rate_per_cycle: &'a [f32],
 }
 
 impl Deviation<'_> {
@@ -52,5 +52,6 @@ impl Deviation<'_> {
             && self.cosine_std_rad.is_empty()
             && self.sine_std_rad.is_empty()
             && self.rest_std_rad.is_empty()
+            && self.rest_rate_per_cycle.is_empty()
     }
 }

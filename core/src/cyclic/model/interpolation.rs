@@ -115,7 +115,7 @@ impl CoupledModel<'_> {
             let part = |parts: &[f32]| parts.get(i).copied().unwrap_or(0.0);
             let (cosine, sine) = (part(deviation.cosine_std_rad), part(deviation.sine_std_rad));
             let swing2 = 0.5 * TAU * TAU * (cosine * cosine + sine * sine);
-            let rest = deviation.rest_rate_per_cycle * part(deviation.rest_std_rad);
+            let rest = part(deviation.rest_rate_per_cycle) * part(deviation.rest_std_rad);
             *value = self.mean_cycle_velocity() * sqrt(swing2 + rest * rest);
         }
         std

@@ -75,8 +75,9 @@ impl<'a> ModelParts<'a> {
     /// All tables of real numbers, those of the cycle first; the order is that of
     /// [`crate::cyclic::model::bytes`].
     #[must_use]
-    pub const fn tables(&self) -> [&'a [f32]; 8] {
-        let Deviation { offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad, .. } = self.deviation;
+    pub const fn tables(&self) -> [&'a [f32]; 9] {
+        let Deviation { offset_std_rad, cosine_std_rad, sine_std_rad, rest_std_rad, rest_rate_per_cycle } =
+            self.deviation;
         [
             self.mean_acceleration,
             self.acceleration_covariance,
@@ -86,6 +87,7 @@ impl<'a> ModelParts<'a> {
             cosine_std_rad,
             sine_std_rad,
             rest_std_rad,
+            rest_rate_per_cycle,
         ]
     }
 }
@@ -216,7 +218,7 @@ mod tests {
         cosine_std_rad: &[0.1; 2],
         sine_std_rad: &[0.1; 2],
         rest_std_rad: &[0.05; 2],
-        rest_rate_per_cycle: 9.0,
+        rest_rate_per_cycle: &[9.0, 8.0],
     };
 
     fn parts() -> ModelParts<'static> {

@@ -25,7 +25,7 @@ pub const PAPER_POSITIONS: usize = 100;
 ///     cosine_std_rad: [0.05],
 ///     sine_std_rad: [0.05],
 ///     rest_std_rad: [0.03],
-///     rest_rate_per_cycle: 6.0,
+///     rest_rate_per_cycle: [6.0],
 ///     turns_per_cycle: [0],
 ///     mean_duration_frames: 20.0,
 ///     rate_hz: 20.0,
@@ -53,7 +53,7 @@ pub struct ModelTable<const POSITIONS: usize, const ANGLES: usize, const PACKED:
     /// See [`Deviation::rest_std_rad`].
     pub rest_std_rad: [f32; ANGLES],
     /// See [`Deviation::rest_rate_per_cycle`].
-    pub rest_rate_per_cycle: f32,
+    pub rest_rate_per_cycle: [f32; ANGLES],
     /// See [`ModelParts::turns_per_cycle`].
     pub turns_per_cycle: [i8; ANGLES],
     /// See [`ModelParts::mean_duration_frames`].
@@ -100,7 +100,7 @@ impl<const POSITIONS: usize, const ANGLES: usize, const PACKED: usize> ModelTabl
                 cosine_std_rad: &self.cosine_std_rad,
                 sine_std_rad: &self.sine_std_rad,
                 rest_std_rad: &self.rest_std_rad,
-                rest_rate_per_cycle: self.rest_rate_per_cycle,
+                rest_rate_per_cycle: &self.rest_rate_per_cycle,
             },
         })
     }
@@ -121,7 +121,7 @@ mod tests {
             cosine_std_rad: [0.1],
             sine_std_rad: [0.1],
             rest_std_rad: [0.1],
-            rest_rate_per_cycle: 12.0,
+            rest_rate_per_cycle: [12.0],
             turns_per_cycle: [0],
             mean_duration_frames: 60.0,
             rate_hz: 60.0,

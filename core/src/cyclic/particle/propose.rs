@@ -371,7 +371,7 @@ mod tests {
             cosine_std_rad: &[0.2; 13],
             sine_std_rad: &[0.2; 13],
             rest_std_rad: &[0.05; 13],
-            rest_rate_per_cycle: 20.0,
+            rest_rate_per_cycle: &[20.0; 13],
         });
         // A swing of 0.2 rad moves by 1.26 rad in a cycle, the rest by 1; a person's velocity by
         // six tenths of both.

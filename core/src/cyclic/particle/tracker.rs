@@ -71,7 +71,7 @@ pub struct ParticleTables<'a> {
 /// let tables = ParticleTables { factors: &factors, positions: &[] };
 /// let pose_rad = |frame: u8| model.mean_pose_rad::<13>(model.point(f32::from(frame) * model.mean_cycle_velocity()));
 /// let start = CycleStart::standard(&model, &pose_rad(0).map(Some), Some(0.0), None)?;
-/// let mut tracker = ParticleTracker::<13, 500>::new(&model, tables, ParticleOptions::default(), &start, 1);
+/// let mut tracker = ParticleTracker::<13, 200>::new(&model, tables, ParticleOptions::default(), &start, 1);
 /// let mut estimate = start.estimate();
 /// for frame in 1..=30 {
 ///     estimate = tracker.step(&model, tables, &AngleMeasurement::new(&pose_rad(frame).map(Some), 0.1)?);

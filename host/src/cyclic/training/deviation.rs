@@ -18,16 +18,17 @@ use std::f64::consts::TAU;
 /// Chosen: they come from about three people. The spread of a new person is that of a t
 /// distribution with few degrees of freedom, and the mean cycle is as uncertain.
 const INFLATION: f64 = 4.0;
-/// At most so much of the rest's variance: it differs from cycle to cycle as well and is known from
-/// more than a few cycles.
-const REST_INFLATION: f64 = 2.0;
 /// So many people have no variance of their t distribution.
 const FEW_PEOPLE: usize = 3;
-/// Part of each variance that is replaced by the mean over the angles.
-///
-/// Chosen: walkers of the training, each by a model of the others, with their joints where the
-/// training has them and elsewhere. More serves the second and costs the first.
-const SHRINKAGE: f64 = 0.3;
+/// Part of the variance of constant, cosine and sine that is replaced by the mean over the angles.
+const SHRINKAGE: f64 = 0.2;
+/// The same for the rest, which differs from cycle to cycle as well and is known from more than a
+/// few cycles.
+const REST_INFLATION: f64 = 2.0;
+/// The same part of the rest's variance. It is more, since how much of an angle's fine movement is
+/// a person's own depends on how the joints were placed. For short links that differs most between
+/// sources.
+const REST_SHRINKAGE: f64 = 0.35;
 /// Smallest standard deviation, radians (a third of a degree): labels are no better.
 const MIN_STD_RAD: f64 = 0.006;
 /// Bounds of the rest's rate per cycle: slower is a swing, faster is noise.
@@ -46,9 +47,11 @@ pub fn of_cycles(cycles: &[TrainingCycle], length: usize) -> DeviationNumbers {
     let parts: Vec<Vec<Parts>> =
         cycles.iter().map(|cycle| (0..count).map(|angle| split(cycle, angle, &poses, length)).collect()).collect();
     let people = people(cycles);
-    let (pairs, inflation) = match people {
-        0 | 1 => (far_pairs(&parts), INFLATION),
-        _ => (pairs_of_people(cycles), new_person_factor(people)),
+    let (pairs, inflation, rest_inflation) = if people < 2 {
+        (far_pairs(&parts), INFLATION, REST_INFLATION)
+    } else {
+        let factor = new_person_factor(people);
+        (pairs_of_people(cycles), factor, factor.min(REST_INFLATION))
     };
     let total: f64 = pairs.iter().map(|(_, weight)| weight).sum();
     let over_pairs = |value: &dyn Fn(&Parts, &Parts) -> f64, angle: usize| {
@@ -60,18 +63,19 @@ pub fn of_cycles(cycles: &[TrainingCycle], length: usize) -> DeviationNumbers {
     };
     let offset = coefficient(0);
     let (cosine, sine) = swing(coefficient(1), coefficient(2), people);
-    let of_rest =
-        |value: fn(&Parts, &Parts) -> f64| -> Vec<f64> { (0..count).map(|angle| over_pairs(&value, angle)).collect() };
-    let (rest, slope) = (of_rest(rest_variance), of_rest(slope_variance));
-    let rate = (slope.iter().sum::<f64>() / rest.iter().sum::<f64>().max(f64::MIN_POSITIVE)).sqrt();
+    let rest: Vec<f64> = (0..count).map(|angle| over_pairs(&rest_variance, angle)).collect();
+    let rate = |angle: usize| {
+        let slope = over_pairs(&slope_variance, angle);
+        (slope / rest[angle].max(f64::MIN_POSITIVE)).sqrt().clamp(RATE_PER_CYCLE.0, RATE_PER_CYCLE.1)
+    };
     DeviationNumbers {
         inflation: inflation as f32,
         shrinkage: SHRINKAGE as f32,
-        offset_std_rad: stds(&offset, inflation),
-        cosine_std_rad: stds(&cosine, inflation),
-        sine_std_rad: stds(&sine, inflation),
-        rest_std_rad: stds(&rest, inflation.min(REST_INFLATION)),
-        rest_rate_per_cycle: rate.clamp(RATE_PER_CYCLE.0, RATE_PER_CYCLE.1) as f32,
+        offset_std_rad: stds(&offset, inflation, SHRINKAGE),
+        cosine_std_rad: stds(&cosine, inflation, SHRINKAGE),
+        sine_std_rad: stds(&sine, inflation, SHRINKAGE),
+        rest_std_rad: stds(&rest, rest_inflation, REST_SHRINKAGE),
+        rest_rate_per_cycle: (0..count).map(|angle| rate(angle) as f32).collect(),
     }
 }
 
@@ -165,11 +169,11 @@ fn slope_variance(a: &Parts, b: &Parts) -> f64 {
     difference.windows(3).map(slope).sum::<f64>() / (length - 2) as f64
 }
 
-/// Standard deviations of variances, moved by the part [`SHRINKAGE`] to their mean and multiplied
-/// by `factor`.
-fn stds(variances: &[f64], factor: f64) -> Vec<f32> {
+/// Standard deviations of variances, moved by the part `shrinkage` to their mean and multiplied by
+/// `factor`.
+fn stds(variances: &[f64], factor: f64, shrinkage: f64) -> Vec<f32> {
     let mean = variances.iter().sum::<f64>() / variances.len() as f64;
-    let std = |variance: &f64| (factor * ((1.0 - SHRINKAGE) * variance + SHRINKAGE * mean)).sqrt().max(MIN_STD_RAD);
+    let std = |variance: &f64| (factor * ((1.0 - shrinkage) * variance + shrinkage * mean)).sqrt().max(MIN_STD_RAD);
     variances.iter().map(|variance| std(variance) as f32).collect()
 }
 
@@ -199,8 +203,8 @@ mod tests {
     #[test]
     fn each_part_goes_where_it_belongs() {
         let numbers = of_cycles(&[cycle(0.0, 0.0, 0.0), cycle(0.4, 0.3, 0.2)], 100);
-        let part = |own: f64, of: f64| (1.0 - SHRINKAGE) * own + SHRINKAGE * of / ANGLES as f64;
-        let pooled = |own: f64, of: f64| (INFLATION * part(own, of)).sqrt() as f32;
+        let part = |own: f64, of: f64, share: f64| (1.0 - share) * own + share * of / ANGLES as f64;
+        let pooled = |own: f64, of: f64| (INFLATION * part(own, of, SHRINKAGE)).sqrt() as f32;
         let offset = half_square(0.4);
         assert!((numbers.offset_std_rad[0] - pooled(offset, offset)).abs() < 1.0e-3);
         assert!((numbers.offset_std_rad[1] - pooled(0.0, offset)).abs() < 1.0e-3);
@@ -208,9 +212,9 @@ mod tests {
         assert!((numbers.cosine_std_rad[1] - pooled(swing, swing)).abs() < 1.0e-3);
         assert_eq!(numbers.cosine_std_rad, numbers.sine_std_rad, "one pair does not show which differs more");
         let rest = 0.5 * half_square(0.2);
-        let wanted = (REST_INFLATION * part(rest, rest)).sqrt() as f32;
+        let wanted = (REST_INFLATION * part(rest, rest, REST_SHRINKAGE)).sqrt() as f32;
         assert!((numbers.rest_std_rad[2] - wanted).abs() < 1.0e-3);
-        assert!((f64::from(numbers.rest_rate_per_cycle) - 3.0 * TAU).abs() < 0.5, "a sine has its own rate");
+        assert!((f64::from(numbers.rest_rate_per_cycle[2]) - 3.0 * TAU).abs() < 0.5, "a sine has its own rate");
     }
 
     /// Three cycles of one person and one of another: the pairs of both people count, those of one
@@ -220,7 +224,7 @@ mod tests {
         let cycles = [cycle(0.0, 0.0, 0.0), cycle(0.01, 0.0, 0.0), cycle(0.02, 0.0, 0.0), cycle(0.8, 0.0, 0.0)];
         let numbers = of_cycles(&cycles, 100);
         let mean = (half_square(0.8) + half_square(0.79) + half_square(0.78)) / 3.0;
-        let wanted = (INFLATION * mean * (1.0 - SHRINKAGE + SHRINKAGE / ANGLES as f64)).sqrt();
+        let wanted = (INFLATION * mean * (0.8 + 0.2 / ANGLES as f64)).sqrt();
         assert!((f64::from(numbers.offset_std_rad[0]) - wanted).abs() < 0.02, "{numbers:?}");
     }
 
@@ -243,7 +247,7 @@ mod tests {
         crate::cyclic::training::cycle::weigh_people(&mut cycles);
         let numbers = of_cycles(&cycles, 100);
         let variance = (2.0 * 0.15_f64.powi(2) + 2.0 * 0.05_f64.powi(2)) / 3.0;
-        let wanted = (new_person_factor(4) * variance * (1.0 - SHRINKAGE + SHRINKAGE / ANGLES as f64)).sqrt();
+        let wanted = (new_person_factor(4) * variance * (0.8 + 0.2 / ANGLES as f64)).sqrt();
         assert!((f64::from(numbers.offset_std_rad[0]) - wanted).abs() < 1.0e-3, "{numbers:?} {wanted}");
     }
 
@@ -260,6 +264,6 @@ mod tests {
     fn equal_cycles_still_leave_some_doubt() {
         let numbers = of_cycles(&[cycle(0.1, 0.0, 0.0), cycle(0.1, 0.0, 0.0)], 100);
         assert!(numbers.offset_std_rad.iter().all(|&std| f64::from(std) >= 0.99 * MIN_STD_RAD && std < 0.01));
-        assert!((6.0..=60.0).contains(&numbers.rest_rate_per_cycle));
+        assert!(numbers.rest_rate_per_cycle.iter().all(|rate| (6.0..=60.0).contains(rate)));
     }
 }

@@ -155,6 +155,6 @@ pub(crate) fn spread(model: &CoupledModel<'_>, index: usize) -> Spread {
         cosine: square(at(deviation.cosine_std_rad)),
         sine: square(at(deviation.sine_std_rad)),
         rest: square(at(deviation.rest_std_rad)),
-        rate: deviation.rest_rate_per_cycle,
+        rate: at(deviation.rest_rate_per_cycle),
     }
 }

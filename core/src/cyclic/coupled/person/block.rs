@@ -6,7 +6,6 @@
 //! `mean + regression (z - z_mean)` and covariance `covariance`. Angles are independent of each
 //! other given z, so no covariance between angles is stored.
 
-use crate::cyclic::coupled::constants::FORGETTING;
 use crate::cyclic::saved_ranges::NUMBER;
 use crate::math::{abs, exp, max, sin_cos};
 use crate::numeric::semi_definite::{packed_index, packed_len};
@@ -89,35 +88,6 @@ impl Spread {
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn diagonal(&self) -> [f32; PARTS] {
         [self.offset, self.cosine, self.sine, self.rest, self.rest * self.rate * self.rate]
-    }
-}
-
-/// How the parts move along the cycle: a, p and q are slowly forgotten, the rest is a Matern
-/// process of order 3/2 as a state space (Hartikainen and Sarkka 2010).
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Transition {
-    /// Part of a, p and q that is kept.
-    memory: f32,
-    /// Matrix of the rest and its slope.
-    rest: [[f32; 2]; 2],
-}
-
-impl Transition {
-    /// Over `phase` cycles, of a rest of that rate.
-    pub(crate) fn over(phase: f32, rate_per_cycle: f32) -> Self {
-        let scaled = rate_per_cycle * phase;
-        let decay = exp(-scaled);
-        Self {
-            memory: exp(-FORGETTING * phase),
-            rest: [[decay * (1.0 + scaled), decay * phase], [-decay * rate_per_cycle * scaled, decay * (1.0 - scaled)]],
-        }
-    }
-
-    #[inline(always)]
-    fn apply(&self, parts: [f32; PARTS]) -> [f32; PARTS] {
-        let Self { memory, rest: [[a, b], [c, d]] } = *self;
-        let [offset, cosine, sine, rest, slope] = parts;
-        [memory * offset, memory * cosine, memory * sine, a * rest + b * slope, c * rest + d * slope]
     }
 }
 
@@ -254,17 +224,31 @@ impl AngleBlock {
     pub(crate) fn advance(
         &mut self,
         spread: &Spread,
-        transition: &Transition,
+        phase: f32,
+        memory: f32,
         z_map: &[[f32; 2]; 2],
         z_rest: &[f32; 3],
     ) {
+        let scaled = spread.rate * phase;
+        let decay = exp(-scaled);
+        let rest_map =
+            [[decay * (1.0 + scaled), decay * phase], [-decay * spread.rate * scaled, decay * (1.0 - scaled)]];
+        let apply = |v: [f32; PARTS]| -> [f32; PARTS] {
+            [
+                memory * v[0],
+                memory * v[1],
+                memory * v[2],
+                rest_map[0][0] * v[REST] + rest_map[0][1] * v[SLOPE],
+                rest_map[1][0] * v[REST] + rest_map[1][1] * v[SLOPE],
+            ]
+        };
         self.add_unexplained(z_rest);
-        self.propagate_covariance(transition);
-        self.add_process_noise(spread, transition);
-        self.mean = transition.apply(self.mean);
+        self.propagate_covariance(memory, &rest_map);
+        self.add_process_noise(spread, memory, &rest_map);
+        self.mean = apply(self.mean);
         let b = &self.regression;
         let column = |k: usize| -> [f32; PARTS] { core::array::from_fn(|i| b[i][k]) };
-        let moved = [transition.apply(column(0)), transition.apply(column(1))];
+        let moved = [apply(column(0)), apply(column(1))];
         self.regression =
             core::array::from_fn(|i| core::array::from_fn(|k| moved[0][i] * z_map[0][k] + moved[1][i] * z_map[1][k]));
     }
@@ -286,8 +270,8 @@ impl AngleBlock {
     /// Phi C Phi' for the lower triangle: the first three coefficients are scaled, d and its slope
     /// mixed.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    fn propagate_covariance(&mut self, transition: &Transition) {
-        let Transition { memory, rest: [[a, b], [c, d]] } = *transition;
+    fn propagate_covariance(&mut self, memory: f32, rest_map: &[[f32; 2]; 2]) {
+        let [[a, b], [c, d]] = *rest_map;
         self.covariance.iter_mut().take(packed_len(REST)).for_each(|entry| *entry *= memory * memory);
         for i in 0..REST {
             let (rest, slope) = (memory * self.covariance(REST, i), memory * self.covariance(SLOPE, i));
@@ -303,14 +287,14 @@ impl AngleBlock {
 
     /// Adds the process noise that keeps the spread stationary.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
-    fn add_process_noise(&mut self, spread: &Spread, transition: &Transition) {
+    fn add_process_noise(&mut self, spread: &Spread, memory: f32, rest_map: &[[f32; 2]; 2]) {
         let stationary = spread.diagonal();
-        let Transition { memory, rest: m } = *transition;
         let forget = 1.0 - memory * memory;
         for i in 0..REST {
             self.covariance[packed_index(i, i)] += forget * stationary[i];
         }
         let (p, r) = (stationary[REST], stationary[SLOPE]);
+        let m = rest_map;
         let kept = |i: usize, j: usize| m[i][0] * m[j][0] * p + m[i][1] * m[j][1] * r;
         self.covariance[packed_index(REST, REST)] += max(p - kept(0, 0), 0.0);
         self.covariance[packed_index(SLOPE, REST)] -= kept(0, 1);
