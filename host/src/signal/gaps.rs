@@ -36,6 +36,23 @@ pub fn filled(piece: &[Option<f64>]) -> Vec<f64> {
     piece.iter().enumerate().map(|(sample, value)| value.unwrap_or_else(|| put_in(sample))).collect()
 }
 
+/// For each sample the last and the next one with a value, itself where it has one: their number and
+/// value.
+#[must_use]
+pub fn beside(series: &[Option<f64>]) -> Vec<[Option<(usize, f64)>; 2]> {
+    let mut beside = vec![[None; 2]; series.len()];
+    let known = |sample: usize| series[sample].map(|value| (sample, value));
+    let (mut last, mut next) = (None, None);
+    for sample in 0..series.len() {
+        last = known(sample).or(last);
+        beside[sample][0] = last;
+        let from_end = series.len() - 1 - sample;
+        next = known(from_end).or(next);
+        beside[from_end][1] = next;
+    }
+    beside
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -47,6 +64,14 @@ mod tests {
         assert_eq!(pieces(&series, 0), [2..3, 4..6, 8..10, 13..14]);
         assert_eq!(pieces(&[None, None], 9), []);
         assert_eq!((longest_filled(0.2, 30.0), longest_filled(0.1, 25.0), longest_filled(0.0, 60.0)), (6, 2, 0));
+    }
+
+    #[test]
+    fn neighbours_of_a_gap_are_on_both_sides() {
+        let [one, two] = [Some((1, 5.0)), Some((3, 7.0))];
+        let found = beside(&[None, Some(5.0), None, Some(7.0), None]);
+        assert_eq!(found, [[None, one], [one, one], [one, two], [two, two], [two, None]]);
+        assert_eq!(beside(&[None]), [[None, None]]);
     }
 
     #[test]

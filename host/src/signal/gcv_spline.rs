@@ -21,12 +21,22 @@ const NARROWINGS: usize = 5;
 /// Samples below which there is nothing to validate: the least that SciPy takes.
 const MIN_SAMPLES: usize = 5;
 
+/// A smoothing spline at the samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spline {
+    /// Its values.
+    pub values: Vec<f64>,
+    /// What a change of each sample changes the value there by: 1 where nothing is smoothed. The
+    /// value's variance is that of the noise times this (Wahba 1983).
+    pub leverages: Vec<f64>,
+}
+
 /// The smoothing spline with the least score, at the samples: even steps over all lambdas, then
 /// ninths of the two steps about the best.
 #[must_use]
-pub fn smoothed(values: &[f64]) -> Vec<f64> {
+pub fn smoothed(values: &[f64]) -> Spline {
     if values.len() < MIN_SAMPLES {
-        return values.to_vec();
+        return Spline { values: values.to_vec(), leverages: vec![1.0; values.len()] };
     }
     let bends = bends(values);
     let mut rows = Vec::with_capacity(bends.len());
@@ -45,7 +55,8 @@ pub fn smoothed(values: &[f64]) -> Vec<f64> {
         width = (high - low) / (LANES + 1) as f64;
         best = best_of(std::array::from_fn(|lane| low + width * (lane + 1) as f64));
     }
-    spline(values, lambda(best.log_lambda), &rows, best.lane)
+    let lambda = lambda(best.log_lambda);
+    Spline { values: spline(values, lambda, &rows, best.lane), leverages: leverages(lambda, &rows, best.lane) }
 }
 
 /// A lambda with its score, and its lane among those that were tried with it.
@@ -82,6 +93,27 @@ fn spline(values: &[f64], lambda: f64, rows: &[Row], lane: usize) -> Vec<f64> {
     }
     let change = |around: &[f64]| lambda * (around[0] - 2.0 * around[1] + around[2]);
     values.iter().zip(gamma.windows(3)).map(|(value, around)| value - change(around)).collect()
+}
+
+/// The diagonal of the matrix A that maps samples to the spline of one lambda: 1 - lambda Q (R +
+/// lambda Q'Q)^-1 Q', by the five middle bands of the inverse.
+fn leverages(lambda: f64, rows: &[Row], lane: usize) -> Vec<f64> {
+    // Of each row, the inverse on the diagonal, one beside it and two beside it; two rows of zeros
+    // before the first and two behind the last.
+    let mut bands = vec![[0.0; 3]; rows.len() + 4];
+    for (index, row) in rows.iter().enumerate().rev() {
+        let [inverse_pivot, below, second_below] =
+            [&row.inverse_pivot, &row.below, &row.second_below].map(|all| all.as_array()[lane]);
+        let ([next, beside, _], [second, ..]) = (bands[index + 3], bands[index + 4]);
+        let to_next = -(below * next + second_below * beside);
+        let to_second = -(below * beside + second_below * second);
+        bands[index + 2] = [inverse_pivot - below * to_next - second_below * to_second, to_next, to_second];
+    }
+    let leverage = |three: &[[f64; 3]]| {
+        let [a, b, c] = [three[0], three[1], three[2]];
+        1.0 - lambda * (a[0] + 4.0 * b[0] + c[0] - 4.0 * (a[1] + b[1]) + 2.0 * a[2])
+    };
+    bands.windows(3).map(leverage).collect()
 }
 
 /// Scores of several lambdas. Lambda itself cancels in the score of Q gamma and the trace of
@@ -177,7 +209,7 @@ mod tests {
     #[test]
     fn the_least_score_is_found() {
         check(
-            &smoothed(&rough()),
+            &smoothed(&rough()).values,
             [0.098295763818, 0.371486225541, 0.707204399315, -0.667989173010, 0.964192583704, 1.068915739137],
             1.0e-5,
         );
@@ -186,7 +218,24 @@ mod tests {
     #[test]
     fn a_line_stays_and_a_short_series_too() {
         let line: Vec<f64> = (0..50).map(|i| 2.0 - 0.1 * f64::from(i)).collect();
-        assert!(smoothed(&line).iter().zip(&line).all(|(value, wanted)| (value - wanted).abs() < 1.0e-6));
-        assert_eq!(smoothed(&[1.0, 9.0, 1.0, 9.0]), [1.0, 9.0, 1.0, 9.0]);
+        assert!(smoothed(&line).values.iter().zip(&line).all(|(value, wanted)| (value - wanted).abs() < 1.0e-6));
+        let short = smoothed(&[1.0, 9.0, 1.0, 9.0]);
+        assert_eq!((short.values, short.leverages), (vec![1.0, 9.0, 1.0, 9.0], vec![1.0; 4]));
+    }
+
+    /// A spline is linear in its samples.
+    #[test]
+    fn a_leverage_is_what_a_sample_changes_its_own_value_by() {
+        for lambda in [0.01, 2.0, 500.0] {
+            let mut rows = Vec::new();
+            for sample in 0..24 {
+                let mut unit = vec![0.0; 24];
+                unit[sample] = 1.0;
+                eliminate(&bends(&unit), f64x8::splat(lambda), &mut rows);
+                let (changed, leverages) = (spline(&unit, lambda, &rows, 3)[sample], leverages(lambda, &rows, 3));
+                assert!((leverages[sample] - changed).abs() < 1.0e-9, "{lambda}, {sample}: {leverages:?}");
+                assert_eq!(leverages.len(), 24);
+            }
+        }
     }
 }

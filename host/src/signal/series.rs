@@ -48,7 +48,7 @@ fn smoothed(values: &[f64], rate_hz: f64, filter: FilterKind) -> Vec<f64> {
         FilterKind::Gaussian { cutoff_hz } => gaussian::smoothed(values, cutoff_hz / rate_hz),
         FilterKind::Median { window_s } => median::smoothed(values, window_s * rate_hz),
         FilterKind::Loess { cutoff_hz } => loess::smoothed(values, cutoff_hz / rate_hz),
-        FilterKind::GcvSpline => gcv_spline::smoothed(values),
+        FilterKind::GcvSpline => gcv_spline::smoothed(values).values,
         FilterKind::None => values.to_vec(),
     }
 }

@@ -9,7 +9,7 @@ use sinew::cyclic::angle_table::ANGLES;
 use sinew::cyclic::export::trc::{joint_positions, standard_lengths_m};
 use sinew::cyclic::own_cycle::{finish, noise};
 use sinew::cyclic::recording::{RecordingOptions, angles};
-use sinew::cyclic::tracking::{TrackingOptions, track};
+use sinew::cyclic::tracking::{Tracked, TrackingOptions, track};
 use sinew::cyclic::turns::wrapped;
 use sinew::cyclic::{AngleTable, CyclicModel};
 use sinew::signal::{FilterOptions, filtered_angles};
@@ -30,8 +30,13 @@ const NOISE: [(f64, [f64; 3]); 4] =
 /// Gaps in seconds, and the error of knees and elbows in them of both walks: bridged by
 /// splines and Butterworth, finished.
 const GAPS: [(f64, [[f64; 2]; 2]); 2] = [(0.3, [[10.02, 6.42], [8.95, 3.92]]), (1.0, [[47.38, 9.78], [28.67, 4.69]])];
+/// Share of the forearms and shins in gaps inside their 90 % band.
+const INSIDE_GAPS: [f64; 2] = [0.8, 1.0];
 /// Noise of the recordings with gaps, pixels.
 const GAPS_NOISE_PX: f64 = 2.0;
+/// Noise of the keypoints, pixels, and the share of all angles inside their 90 % band of each walk.
+const BAND_NOISES_PX: [f64; 3] = [1.0, 3.0, 6.0];
+const INSIDE: [[f64; 3]; 2] = [[0.92, 0.90, 0.88], [0.92, 0.92, 0.89]];
 /// Gaps before this are not looked at: the person's own cycle is not known yet, seconds.
 const SETTLED_S: f64 = 4.0;
 /// Relative room of these numbers.
@@ -79,13 +84,32 @@ fn butterworth(poses: &Poses) -> Poses {
     smooth
 }
 
-fn finished(poses: &Poses) -> Poses {
+fn tracked(poses: &Poses) -> Tracked {
     let table = AngleTable::from_angles(0, poses).unwrap().at_rate(Some(RATE_HZ));
     let model = CyclicModel::from_option("walking").unwrap();
     let options = TrackingOptions { rate_hz: Some(RATE_HZ), ..TrackingOptions::default() };
     let options = noise::with_noise_of(&table, options);
-    let tracked = finish(&table, &model, track(&table, &model, &options).unwrap(), &options).unwrap();
-    tracked.frames.iter().map(|frame| frame.angles_rad.map(Some)).collect()
+    finish(&table, &model, track(&table, &model, &options).unwrap(), &options).unwrap()
+}
+
+fn finished(poses: &Poses) -> Poses {
+    tracked(poses).frames.iter().map(|frame| frame.angles_rad.map(Some)).collect()
+}
+
+/// Share of the angles at the place `is_looked_at` (frame, angle) that lie inside their 90 % band.
+fn inside_90(tracked: &Tracked, truth: &Poses, is_looked_at: impl Fn(usize, usize) -> bool) -> f64 {
+    /// Half the width of a normal density that holds 90 %, standard deviations.
+    const HALF_WIDTH_STDS: f64 = 1.645;
+    let places = (0..truth.len()).flat_map(|frame| (0..ANGLES).map(move |angle| (frame, angle)));
+    let is_inside: Vec<bool> = places
+        .filter(|&(frame, angle)| is_looked_at(frame, angle))
+        .map(|(frame, angle)| {
+            let row = &tracked.frames[frame];
+            let std_rad = f64::from(row.estimate.angle_variance_rad2[angle]).sqrt();
+            wrapped(row.angles_rad[angle] - truth[frame][angle].unwrap()).abs() < HALF_WIDTH_STDS * std_rad
+        })
+        .collect();
+    is_inside.iter().filter(|inside| **inside).count() as f64 / is_inside.len() as f64
 }
 
 /// Root mean square error of flexion angles over the frames that `is_looked_at`, degrees.
@@ -124,6 +148,16 @@ fn what_was_measured_is_not_made_worse() {
 }
 
 #[test]
+fn bands_hold_what_they_say() {
+    for ((walk, name), stated) in WALKS.into_iter().zip(INSIDE) {
+        let Some(truth) = truth(walk) else { return };
+        let found =
+            BAND_NOISES_PX.map(|noise_px| inside_90(&tracked(&measured(&truth, noise_px)), &truth, |_, _| true));
+        holds(&found, &stated, &format!("{name}, inside the 90 % band"));
+    }
+}
+
+#[test]
 fn gaps_are_filled_from_the_persons_own_cycle() {
     for (gap_s, stated) in GAPS {
         for ((walk, name), stated) in WALKS.into_iter().zip(stated) {
@@ -141,9 +175,13 @@ fn gaps_are_filled_from_the_persons_own_cycle() {
             }
             let settled = (SETTLED_S * RATE_HZ) as usize;
             let is_looked_at = |frame: usize| frame >= settled && is_missing(frame);
-            let found = [butterworth(&poses), finished(&poses)]
+            let run = tracked(&poses);
+            let found = [butterworth(&poses), run.frames.iter().map(|frame| frame.angles_rad.map(Some)).collect()]
                 .map(|poses| error_deg(&poses, &truth, KNEES_AND_ELBOWS, is_looked_at));
             holds(&found, &stated, &format!("{name}, gaps of {gap_s} s"));
+            let inside = inside_90(&run, &truth, |frame, angle| is_looked_at(frame) && GAPPED.contains(&angle));
+            println!("{name}, gaps of {gap_s} s: {inside:.2} inside the 90 % band");
+            assert!((INSIDE_GAPS[0]..=INSIDE_GAPS[1]).contains(&inside), "{inside}");
         }
     }
 }

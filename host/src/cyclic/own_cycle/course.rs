@@ -1,11 +1,11 @@
 //! The course of one angle over a finished recording.
 
 use super::fill::filled;
-use super::noise;
+use super::noise::{self, MIN_NOISE_RAD};
 use super::phase::Phased;
 use super::seen::Seen;
-use crate::error::Result;
-use crate::signal::{FilterKind, FilterOptions, filtered, hampel};
+use crate::signal::gaps::{beside, pieces};
+use crate::signal::{gcv_spline, hampel};
 
 /// What makes a row an outlier is at least so far off, radians. Three degrees are seen in no angle
 /// that people read, though Hampel's identifier rejects less where nothing else is noisy.
@@ -19,7 +19,8 @@ const OUTLIER_STDS: f64 = 4.5;
 pub struct Course {
     /// What was measured, filtered; where nothing was, from the person's own cycle. Radians.
     pub angles_rad: Vec<f64>,
-    /// Standard deviations: that of the measurements, or in a gap that of the person's cycles.
+    /// Standard deviations: what smoothing leaves of the measurements' noise. In a gap that of the
+    /// frames beside it, and the person's distance from their own cycle.
     pub std_rad: Vec<f64>,
     /// Whether the measurement was left out and far from what was taken in its place.
     pub is_outlier: Vec<bool>,
@@ -27,39 +28,57 @@ pub struct Course {
 
 impl Course {
     /// The course of `angle`; frames that are not `is_known` get the person's own cycle.
-    ///
-    /// # Errors
-    /// None: the filter fits any rate.
-    pub fn new<const N: usize>(
-        seen: &Seen<N>,
-        angle: usize,
-        phased: &Phased<N>,
-        is_known: &[bool],
-        rate_hz: f64,
-    ) -> Result<Self> {
+    #[must_use]
+    pub fn new<const N: usize>(seen: &Seen<N>, angle: usize, phased: &Phased<N>, is_known: &[bool]) -> Self {
         let raw = seen.series(angle);
         let mut measured = raw.clone();
         let rejected = hampel::reject(&mut measured);
         // Gaps stay: what is beside them is smooth already where the own cycle joins it.
-        let smooth = filtered(&measured, rate_hz, &FILTER)?;
-        let bridged = filled(phased, angle, &smooth);
+        let smooth = splines(&measured);
+        let bridged = filled(phased, angle, &smooth.angles_rad);
         let whole: Vec<Option<f64>> = (0..measured.len())
             .map(|frame| is_known[frame].then(|| measured[frame].unwrap_or(bridged[frame])))
             .collect();
         // Without a gap that was the whole course.
-        let smooth = if whole == measured { smooth } else { filtered(&whole, rate_hz, &FILTER)? };
+        let smooth = if whole == measured { smooth } else { splines(&whole) };
         let noise_rad = noise::of_angle(seen, angle).unwrap_or(phased.std_rad[angle]);
-        let angles_rad = (0..measured.len()).map(|frame| smooth[frame].unwrap_or(bridged[frame])).collect();
+        let angles_rad = (0..measured.len()).map(|frame| smooth.angles_rad[frame].unwrap_or(bridged[frame])).collect();
         let is_outlier = (0..raw.len()).map(|frame| {
-            let off = raw[frame].zip(smooth[frame]).map_or(0.0, |(raw, smooth)| (raw - smooth).abs());
+            let off = raw[frame].zip(smooth.angles_rad[frame]).map_or(0.0, |(raw, smooth)| (raw - smooth).abs());
             rejected[frame] && off > MIN_OUTLIER_RAD.max(OUTLIER_STDS * noise_rad)
         });
         let is_outlier = is_outlier.collect();
-        let std_rad = measured.iter().map(|value| if value.is_some() { noise_rad } else { phased.std_rad[angle] });
-        Ok(Self { angles_rad, std_rad: std_rad.collect(), is_outlier })
+        let leverages = measured.iter().zip(smooth.leverages).map(|(value, leverage)| value.and(leverage));
+        let beside = beside(&leverages.collect::<Vec<_>>());
+        // The measured angles' distance from the person's cycle has their noise in it.
+        let of_cycle_rad2 = (phased.std_rad[angle].powi(2) - noise_rad.powi(2)).max(MIN_NOISE_RAD.powi(2));
+        let std_rad = (0..measured.len()).map(|frame| {
+            let [last, next] = beside[frame];
+            let [last, next] = [last.or(next), next.or(last)].map(|side| side.map_or(1.0, |(_, leverage)| leverage));
+            let of_gap_rad2 = if measured[frame].is_some() { 0.0 } else { of_cycle_rad2 };
+            (noise_rad.powi(2) * 0.5 * (last + next) + of_gap_rad2).sqrt()
+        });
+        Self { angles_rad, std_rad: std_rad.collect(), is_outlier }
     }
 }
 
-/// The filter: a smoothing spline finds how much noise there is, and leaves a clean recording as it
-/// is, which no fixed cut-off does. Gaps and outliers are dealt with before it.
-const FILTER: FilterOptions = FilterOptions { filter: FilterKind::GcvSpline, hampel: false, gap_limit_s: 0.0 };
+/// Splines of one angle, with their leverages; nothing in gaps.
+struct Splines {
+    angles_rad: Vec<Option<f64>>,
+    leverages: Vec<Option<f64>>,
+}
+
+/// A smoothing spline of each stretch without a gap. It finds how much noise there is, and leaves a
+/// clean recording as it is, which no fixed cut-off does.
+fn splines(series: &[Option<f64>]) -> Splines {
+    let mut splines = Splines { angles_rad: vec![None; series.len()], leverages: vec![None; series.len()] };
+    for piece in pieces(series, 0) {
+        let values: Vec<f64> = series[piece.clone()].iter().copied().flatten().collect();
+        let spline = gcv_spline::smoothed(&values);
+        for (sample, (value, leverage)) in piece.zip(spline.values.into_iter().zip(spline.leverages)) {
+            splines.angles_rad[sample] = Some(value);
+            splines.leverages[sample] = Some(leverage);
+        }
+    }
+    splines
+}

@@ -2,6 +2,7 @@
 
 use super::phase::Phased;
 use crate::cyclic::turns::least_angle;
+use crate::signal::gaps::beside;
 
 /// How fast a deviation from the own cycle is forgotten where it was last seen on one side only. It
 /// falls by e in so many cycles. Chosen: what differs from cycle to cycle lasts about a quarter of
@@ -13,22 +14,14 @@ const FADE_CYCLES: f64 = 0.25;
 #[must_use]
 pub fn filled<const N: usize>(phased: &Phased<N>, angle: usize, measured: &[Option<f64>]) -> Vec<f64> {
     let own: Vec<f64> = phased.expected.iter().map(|(pose, _)| pose[angle]).collect();
-    let off = |frame: usize| measured[frame].map(|angle_rad| angle_rad - own[frame]);
-    // The last and the next frame with the angle.
-    let mut last = vec![None; own.len()];
-    let mut next = vec![None; own.len()];
-    for frame in 0..own.len() {
-        last[frame] = off(frame).map(|off| (frame, off)).or(if frame > 0 { last[frame - 1] } else { None });
-    }
-    for frame in (0..own.len()).rev() {
-        next[frame] = off(frame).map(|off| (frame, off)).or(next.get(frame + 1).copied().flatten());
-    }
+    let off: Vec<Option<f64>> = (0..own.len()).map(|frame| Some(measured[frame]? - own[frame])).collect();
+    let beside = beside(&off);
     let fade = |frame: usize, (at, off): (usize, f64)| {
         let turns = off - least_angle(off);
         turns + least_angle(off) * (-(phased.phases[frame] - phased.phases[at]).abs() / FADE_CYCLES).exp()
     };
     let angle_rad = |frame: usize| {
-        let off_rad = match (last[frame], next[frame]) {
+        let off_rad = match beside[frame].into() {
             (Some((a, a_off)), Some((b, b_off))) if b > a => {
                 // The own cycle winds as often as the angle does, or the angle was seen too seldom.
                 let b_off = a_off + least_angle(b_off - a_off);

@@ -21,7 +21,7 @@ const LONGEST_BRIDGE_CYCLES: f64 = 1.0;
 /// say so.
 ///
 /// # Errors
-/// A filter of the measured angles that does not fit the rate.
+/// Frame numbers that jump too far.
 pub fn finish(table: &AngleTable, model: &CyclicModel, tracked: Tracked, options: &TrackingOptions) -> Result<Tracked> {
     let finish =
         if model.numbers().angle_count > ANGLES { finish_angles::<SPACE_ANGLES> } else { finish_angles::<ANGLES> };
@@ -43,8 +43,8 @@ fn finish_angles<const N: usize>(
     let stretches = seen.stretches(LONGEST_BRIDGE_CYCLES * cycle_frames);
     let mut is_known = vec![false; seen.angles_rad.len()];
     stretches.iter().for_each(|[first, last]| is_known[*first..=*last].fill(true));
-    let course = |angle| Course::new(&seen, angle, &phased, &is_known, tracked.rate_hz);
-    let courses: Vec<Course> = (0..N).into_par_iter().map(course).collect::<Result<_>>()?;
+    let course = |angle| Course::new(&seen, angle, &phased, &is_known);
+    let courses: Vec<Course> = (0..N).into_par_iter().map(course).collect();
     let origin = phased.phases[0];
     for row in &mut tracked.frames {
         let frame = (row.frame - seen.first_frame) as usize;

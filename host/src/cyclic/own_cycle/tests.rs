@@ -62,6 +62,26 @@ fn phases_and_angles_are_those_of_the_person() {
     }
 }
 
+/// Smoothing leaves a part of the noise, and the band says how much.
+#[test]
+fn nine_of_ten_angles_are_inside_their_band() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    let (mut inside, mut count) = (0, 0);
+    for seed in 1..4 {
+        let (person, table) = recorded(&model, 6, seed);
+        for frame in &finished(&model, &table).frames {
+            let truth = person.pose_rad(frame.frame as f64);
+            for (angle, truth_rad) in truth.into_iter().enumerate() {
+                let std_rad = f64::from(frame.estimate.angle_variance_rad2[angle]).sqrt();
+                inside += usize::from(least_angle(frame.angles_rad[angle] - truth_rad).abs() < 1.645 * std_rad);
+                count += 1;
+            }
+        }
+    }
+    let share = inside as f64 / count as f64;
+    assert!((0.85..0.95).contains(&share), "{share}");
+}
+
 #[test]
 fn a_gap_has_the_persons_own_knee() {
     let model = CyclicModel::from_option("walking").unwrap();
