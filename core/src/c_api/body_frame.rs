@@ -12,7 +12,7 @@ pub const SINEW_BODY_BONES: usize = 9;
 /// of the head, then elevation, deviation and axial rotation of the shoulder and flexion of the
 /// elbow, left and right.
 pub const SINEW_BODY_COORDINATES: usize = 17;
-/// Most points of a frame; others are left out.
+/// Most points of a frame that are used.
 pub const SINEW_BODY_POINTS: usize = 512;
 /// The frame had no usable point: the pose is a prediction.
 pub const SINEW_BODY_PREDICTED: u32 = 0;
@@ -33,7 +33,8 @@ pub struct SinewBodyFrame {
     /// sight. They are brought into another order. A point at the camera, or with a NaN, is a
     /// hole. Not looked at if `point_count` is zero.
     pub points_m: *mut [f32; 3],
-    /// Number of points, at most 65535; those beyond `SINEW_BODY_POINTS` usable ones are left out.
+    /// Number of points, at most 65535; of more than `SINEW_BODY_POINTS` usable ones so many are
+    /// taken evenly through the list.
     pub point_count: u32,
     /// Zero.
     pub reserved: u32,

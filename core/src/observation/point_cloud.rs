@@ -178,12 +178,14 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
     /// Becomes the cloud of `points_m`, which are brought into Morton order in place (those left
     /// out come last).
     ///
-    /// Points that are not finite, beyond [`MAX_M`] or at the camera are left out. So are those
-    /// beyond the capacity, the last given first. All are counted. No point at all is a frame
-    /// without evidence. It takes four bytes of stack a point.
+    /// Points that are not finite, beyond [`MAX_M`] or at the camera are left out. Of others beyond
+    /// the capacity, as many as it holds are taken evenly through the list. All are counted. No
+    /// point at all is a frame without evidence. It takes four bytes of stack a point.
     pub fn set(&mut self, points_m: &mut [Vec3], camera_m: &Vec3) -> LeftOut {
         let mut left_out = LeftOut::default();
-        let mut kept = 0;
+        let (mut kept, mut usable) = (0, 0);
+        let capacity = BLOCKS * BLOCK_POINTS;
+        let usable_count = if points_m.len() > capacity { Self::usable_count(points_m, camera_m) } else { capacity };
         for i in 0..points_m.len() {
             let Some(&point) = points_m.get(i) else { break };
             let distance = length(&(point - camera_m));
@@ -191,9 +193,13 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
                 left_out.not_finite += 1;
             } else if distance < MIN_RANGE_M {
                 left_out.at_camera += 1;
-            } else if kept == BLOCKS * BLOCK_POINTS {
-                left_out.over_capacity += 1;
             } else {
+                usable += 1;
+                // The first so many of n points hold as large a part of those that are kept.
+                if kept >= capacity || kept * usable_count >= usable * capacity {
+                    left_out.over_capacity += 1;
+                    continue;
+                }
                 if let Some(place) = points_m.get_mut(kept) {
                     let other = core::mem::replace(place, point);
                     if let Some(place) = points_m.get_mut(i) {
@@ -212,6 +218,12 @@ impl<const BLOCKS: usize> PointCloud<BLOCKS> {
             let _ = self.blocks.push(PointBlock::of(chunk));
         }
         left_out
+    }
+
+    #[inline(never)]
+    fn usable_count(points_m: &[Vec3], camera_m: &Vec3) -> usize {
+        let is_usable = |point: &&Vec3| (MIN_RANGE_M..=MAX_M).contains(&length(&(*point - camera_m)));
+        points_m.iter().filter(is_usable).count().max(BLOCKS * BLOCK_POINTS)
     }
 
     // Not inlined: the keys leave the stack before the points are looked at.
@@ -371,6 +383,19 @@ mod tests {
         let mut blocks = PointCloud::<2>::new();
         let left_out = blocks.set(&mut cloud(40), &Vec3::zeros());
         assert_eq!((left_out.over_capacity, blocks.len()), (8, 2 * BLOCK_POINTS));
+    }
+
+    /// A depth image is given row by row: its first rows alone are a head.
+    #[test]
+    fn of_too_many_points_those_evenly_through_the_list_are_taken() {
+        let x_m = |i: u32| if i.is_multiple_of(3) { f32::NAN } else { 0.01 * i as f32 };
+        let mut points: std::vec::Vec<Vec3> = (0..480).map(|i| Vec3::new(x_m(i), 0.0, 2.0)).collect();
+        let left_out = PointCloud::<2>::new().set(&mut points, &Vec3::zeros());
+        assert_eq!(left_out, LeftOut { not_finite: 160, at_camera: 0, over_capacity: 288 });
+        for part in 0..8 {
+            let is_in = |point: &&Vec3| (point.x / 0.6) as u32 == part;
+            assert_eq!(points[..32].iter().filter(is_in).count(), 4, "part {part}");
+        }
     }
 
     #[test]

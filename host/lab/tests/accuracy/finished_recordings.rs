@@ -31,7 +31,7 @@ const NOISE: [(f64, [f64; 3]); 4] =
 /// splines and Butterworth, finished.
 const GAPS: [(f64, [[f64; 2]; 2]); 2] = [(0.3, [[10.02, 6.42], [8.95, 3.92]]), (1.0, [[47.38, 9.78], [28.67, 4.69]])];
 /// Share of the forearms and shins in gaps inside their 90 % band.
-const INSIDE_GAPS: [f64; 2] = [0.8, 1.0];
+const INSIDE_GAPS: [f64; 2] = [0.84, 0.97];
 /// Noise of the recordings with gaps, pixels.
 const GAPS_NOISE_PX: f64 = 2.0;
 /// Noise of the keypoints, pixels, and the share of all angles inside their 90 % band of each walk.

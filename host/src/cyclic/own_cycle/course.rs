@@ -4,6 +4,7 @@ use super::fill::filled;
 use super::noise::{self, MIN_NOISE_RAD};
 use super::phase::Phased;
 use super::seen::Seen;
+use super::shape;
 use crate::signal::gaps::{beside, pieces};
 use crate::signal::{gcv_spline, hampel};
 
@@ -27,9 +28,15 @@ pub struct Course {
 }
 
 impl Course {
-    /// The course of `angle`; frames that are not `is_known` get the person's own cycle.
+    /// The course of `angle`, measured so often in a second; frames that are not `is_known` get the
+    /// person's own cycle.
     #[must_use]
-    pub fn new<const N: usize>(seen: &Seen<N>, angle: usize, phased: &Phased<N>, is_known: &[bool]) -> Self {
+    pub fn new<const N: usize>(
+        seen: &Seen<N>,
+        angle: usize,
+        phased: &Phased<N>,
+        (is_known, rate_hz): (&[bool], f64),
+    ) -> Self {
         let raw = seen.series(angle);
         let mut measured = raw.clone();
         let rejected = hampel::reject(&mut measured);
@@ -41,7 +48,7 @@ impl Course {
             .collect();
         // Without a gap that was the whole course.
         let smooth = if whole == measured { smooth } else { splines(&whole) };
-        let noise_rad = noise::of_angle(seen, angle).unwrap_or(phased.std_rad[angle]);
+        let noise_rad = noise::of_angle(seen, angle, rate_hz).unwrap_or(phased.std_rad[angle]);
         let angles_rad = (0..measured.len()).map(|frame| smooth.angles_rad[frame].unwrap_or(bridged[frame])).collect();
         let is_outlier = (0..raw.len()).map(|frame| {
             let off = raw[frame].zip(smooth.angles_rad[frame]).map_or(0.0, |(raw, smooth)| (raw - smooth).abs());
@@ -50,16 +57,24 @@ impl Course {
         let is_outlier = is_outlier.collect();
         let leverages = measured.iter().zip(smooth.leverages).map(|(value, leverage)| value.and(leverage));
         let beside = beside(&leverages.collect::<Vec<_>>());
-        // The measured angles' distance from the person's cycle has their noise in it.
-        let of_cycle_rad2 = (phased.std_rad[angle].powi(2) - noise_rad.powi(2)).max(MIN_NOISE_RAD.powi(2));
+        let gaps_rad2 = gap_variances_rad2(seen, angle, phased, noise_rad);
         let std_rad = (0..measured.len()).map(|frame| {
             let [last, next] = beside[frame];
             let [last, next] = [last.or(next), next.or(last)].map(|side| side.map_or(1.0, |(_, leverage)| leverage));
-            let of_gap_rad2 = if measured[frame].is_some() { 0.0 } else { of_cycle_rad2 };
-            (noise_rad.powi(2) * 0.5 * (last + next) + of_gap_rad2).sqrt()
+            let gap_rad2 = if measured[frame].is_some() { 0.0 } else { gaps_rad2[frame] };
+            (noise_rad.powi(2) * 0.5 * (last + next) + gap_rad2).sqrt()
         });
         Self { angles_rad, std_rad: std_rad.collect(), is_outlier }
     }
+}
+
+/// Variance of the person about their own cycle in each frame, as far as it is known, radians squared.
+fn gap_variances_rad2<const N: usize>(seen: &Seen<N>, angle: usize, phased: &Phased<N>, noise_rad: f64) -> Vec<f64> {
+    let over_fitted = shape::distances_over_fitted(seen, &phased.phases, angle);
+    let fitted_rad2 = phased.std_rad[angle].powi(2);
+    // The measured angles' distance from the person's cycle has their noise in it.
+    let variance_rad2 = |over: f64| (over * fitted_rad2 - noise_rad.powi(2)).max(MIN_NOISE_RAD.powi(2));
+    over_fitted.into_iter().map(variance_rad2).collect()
 }
 
 /// Splines of one angle, with their leverages; nothing in gaps.

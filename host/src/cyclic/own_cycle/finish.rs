@@ -1,20 +1,17 @@
 //! A recording that has been tracked, as an estimate that has seen all of it.
 
 use super::course::Course;
-use super::phase::{self, Phased};
+use super::phase::{self, Unevenness};
 use super::seen::Seen;
 use super::shape::Shape;
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
+use crate::cyclic::tracking::summary::LONGEST_BRIDGE_CYCLES;
 use crate::cyclic::tracking::{Tracked, TrackedFrame, TrackingOptions};
 use crate::cyclic::turns::least_angle;
 use crate::cyclic::{AngleTable, CyclicModel};
 use crate::error::{Context, Result};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-
-/// Longest time without any measurement that is bridged, cycles. Beyond it the person may have
-/// stopped: nothing is said, and the cycles on both sides are counted apart.
-const LONGEST_BRIDGE_CYCLES: f64 = 1.0;
 
 /// The run of a filter over a table with angles and phases of the whole recording. The angles are
 /// what was measured, filtered, and in gaps the person's own cycle. Rows in which nothing is known
@@ -43,15 +40,15 @@ fn finish_angles<const N: usize>(
     let stretches = seen.stretches(LONGEST_BRIDGE_CYCLES * cycle_frames);
     let mut is_known = vec![false; seen.angles_rad.len()];
     stretches.iter().for_each(|[first, last]| is_known[*first..=*last].fill(true));
-    let course = |angle| Course::new(&seen, angle, &phased, &is_known);
+    let course = |angle| Course::new(&seen, angle, &phased, (&is_known, tracked.rate_hz));
     let courses: Vec<Course> = (0..N).into_par_iter().map(course).collect();
-    let origin = phased.phases[0];
+    let (origin, uneven) = (phased.phases[0], phase::unevenness(&phased.phases));
     for row in &mut tracked.frames {
         let frame = (row.frame - seen.first_frame) as usize;
         row.is_known = is_known[frame];
         row.estimate.outlier = courses.iter().any(|course| course.is_outlier[frame]);
         set_angles(row, &courses, frame);
-        set_phase(row, &phased, frame, tracked.step_frames);
+        set_phase(row, &phased.phases, frame, (tracked.step_frames, uneven.as_ref().map(|uneven| uneven[frame])));
         row.cycles = phased.phases[frame] - origin;
     }
     Ok(tracked)
@@ -91,10 +88,12 @@ fn set_angles(row: &mut TrackedFrame, courses: &[Course], frame: usize) {
     }
 }
 
-fn set_phase<const N: usize>(row: &mut TrackedFrame, phased: &Phased<N>, frame: usize, step_frames: f64) {
-    let phases = &phased.phases;
-    let (before, after) = (frame.saturating_sub(1), (frame + 1).min(phases.len() - 1));
-    let velocity = (phases[after] - phases[before]) / (after - before).max(1) as f64;
-    row.estimate.cycle_position = phases[frame].rem_euclid(1.0) as f32;
-    row.estimate.cycle_velocity_per_frame = (velocity / step_frames) as f32;
+fn set_phase(row: &mut TrackedFrame, phases: &[f64], frame: usize, (step_frames, uneven): (f64, Option<Unevenness>)) {
+    let estimate = &mut row.estimate;
+    estimate.cycle_position = phases[frame].rem_euclid(1.0) as f32;
+    estimate.cycle_velocity_per_frame = (phase::velocity(phases, frame) / step_frames) as f32;
+    if let Some(uneven) = uneven {
+        estimate.cycle_position_variance = uneven.position_std.powi(2) as f32;
+        estimate.cycle_velocity_variance = (uneven.velocity_std_per_frame / step_frames).powi(2) as f32;
+    }
 }

@@ -11,14 +11,17 @@ use sinew_core::skeleton::stick_figure::HUMAN;
 /// pixels. A recording without noise still differs from every model.
 pub(super) const MIN_NOISE_RAD: f64 = 0.0087;
 
-/// Standard deviation of a measured angle, radians: the median over the long segments. `None` where
-/// too few successive frames were seen.
+/// Frames in a second between which differences are taken.
+const DIFFERENCES_HZ: f64 = 30.0;
+
+/// Standard deviation of an angle measured so often in a second, radians: the median over the long
+/// segments. `None` where too few frames were seen at even distances.
 #[must_use]
-pub fn of_table(table: &AngleTable, updates: &Updates) -> Option<f64> {
+pub fn of_table(table: &AngleTable, updates: &Updates, rate_hz: f64) -> Option<f64> {
     let seen = Seen::<ANGLES>::of_table(table, updates)?;
     let is_long = |name: &str| name != "l_shoulder" && name != "r_shoulder" && name != "l_hip" && name != "r_hip";
     let long = HUMAN.angle_names().enumerate().filter(|(_, name)| is_long(name));
-    let mut stds_rad: Vec<f64> = long.filter_map(|(angle, _)| of_angle(&seen, angle)).collect();
+    let mut stds_rad: Vec<f64> = long.filter_map(|(angle, _)| of_angle(&seen, angle, rate_hz)).collect();
     stds_rad.sort_by(f64::total_cmp);
     stds_rad.get(stds_rad.len() / 2).map(|std_rad| std_rad.max(MIN_NOISE_RAD))
 }
@@ -26,16 +29,18 @@ pub fn of_table(table: &AngleTable, updates: &Updates) -> Option<f64> {
 /// The options with the noise of `table` in place of their own, where the table shows it.
 #[must_use]
 pub fn with_noise_of(table: &AngleTable, options: TrackingOptions) -> TrackingOptions {
-    let sigma_rad = of_table(table, &options.updates).unwrap_or(options.sigma_rad);
+    let rate_hz = options.rate_hz.or_else(|| table.rate_hz()).unwrap_or(DIFFERENCES_HZ);
+    let sigma_rad = of_table(table, &options.updates, rate_hz).unwrap_or(options.sigma_rad);
     TrackingOptions { sigma_rad, ..options }
 }
 
-/// Standard deviation of measured angles, radians, by the median of fourth differences. Those of a
-/// limb's motion are below half a degree at 30 frames a second.
+/// Standard deviation of measured angles, radians, by the median of fourth differences between
+/// frames a thirtieth of a second apart. Those of a limb's motion are below half a degree. In a
+/// table that was interpolated from fewer frames, differences between neighbours are not the noise's.
 ///
-/// `None` where too few successive frames were seen.
+/// `None` where too few frames were seen at such distances.
 #[must_use]
-pub fn of_angle<const N: usize>(seen: &Seen<N>, angle: usize) -> Option<f64> {
+pub fn of_angle<const N: usize>(seen: &Seen<N>, angle: usize, rate_hz: f64) -> Option<f64> {
     /// Standard deviation of the fourth difference of independent numbers: the root of
     /// 1 + 16 + 36 + 16 + 1.
     const DIFFERENCE_STD: f64 = 8.366_600_265_340_756;
@@ -43,10 +48,12 @@ pub fn of_angle<const N: usize>(seen: &Seen<N>, angle: usize) -> Option<f64> {
     /// in nineteen of twenty cases.
     const MIN_DIFFERENCES: usize = 20;
     let series = seen.series(angle);
+    let stride = ((rate_hz / DIFFERENCES_HZ).round() as usize).max(1);
     let difference = |frames: &[Option<f64>]| {
-        Some((frames[0]? - 4.0 * frames[1]? + 6.0 * frames[2]? - 4.0 * frames[3]? + frames[4]?).abs())
+        let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|index| frames[index * stride]);
+        Some((a? - 4.0 * b? + 6.0 * c? - 4.0 * d? + e?).abs())
     };
-    let mut sizes: Vec<f64> = series.windows(5).filter_map(difference).collect();
+    let mut sizes: Vec<f64> = series.windows(4 * stride + 1).filter_map(difference).collect();
     if sizes.len() < MIN_DIFFERENCES {
         return None;
     }

@@ -48,6 +48,53 @@ pub fn fitted<const N: usize>(seen: &Seen<N>, mut phases: Vec<f64>, prior: &Shap
     Phased { phases, expected, std_rad }
 }
 
+/// Cycles from frame to frame at a frame.
+#[must_use]
+pub fn velocity(phases: &[f64], frame: usize) -> f64 {
+    let (before, after) = (frame.saturating_sub(1), (frame + 1).min(phases.len() - 1));
+    (phases[after] - phases[before]) / (after - before).max(1) as f64
+}
+
+/// How far phases are from even progress, standard deviations. What goes unevenly in each cycle is
+/// the shape, so the rest is the phases' error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unevenness {
+    /// Of the phase, cycles.
+    pub position_std: f64,
+    /// Of what is passed from frame to frame, cycles.
+    pub velocity_std_per_frame: f64,
+}
+
+/// The unevenness of a recording's phases in each frame, against the mean progress in the cycle
+/// around it. The first and the last half cycle have one of their own, against the nearest whole
+/// cycle: they are fitted from one side. `None` for less than a cycle.
+#[must_use]
+pub fn unevenness(phases: &[f64]) -> Option<Vec<Unevenness>> {
+    let half = (0.5 / median_step(phases)).round().max(1.0) as usize;
+    let last = phases.len().checked_sub(half + 1).filter(|last| *last >= half)?;
+    let is_end = |frame: usize| frame < half || frame > last;
+    let off = |frame: usize| {
+        let middle = frame.clamp(half, last);
+        let around = &phases[middle - half..=middle + half];
+        let mean = around.iter().sum::<f64>() / around.len() as f64;
+        let mean_velocity = (around[2 * half] - around[0]) / (2 * half) as f64;
+        let even = mean + mean_velocity * (frame as f64 - middle as f64);
+        [phases[frame] - even, velocity(phases, frame) - mean_velocity]
+    };
+    let of = |is_of_ends: bool| {
+        let frames = (0..phases.len()).filter(|frame| is_end(*frame) == is_of_ends);
+        let (mut count, mut squares) = (0.0, [0.0; 2]);
+        for off in frames.map(off) {
+            squares.iter_mut().zip(off).for_each(|(sum, off)| *sum += off * off);
+            count += 1.0;
+        }
+        let [position_std, velocity_std_per_frame] = squares.map(|sum: f64| (sum / count).sqrt());
+        Unevenness { position_std, velocity_std_per_frame }
+    };
+    let [inside, ends] = [false, true].map(of);
+    Some((0..phases.len()).map(|frame| if is_end(frame) { ends } else { inside }).collect())
+}
+
 /// Median of the cycles passed from frame to frame.
 fn median_step(phases: &[f64]) -> f64 {
     /// Least velocity, cycles per frame: an hour a cycle.

@@ -92,33 +92,68 @@ impl<const N: usize> Shape<N> {
     /// This shape, as a prior, moved to what was seen at these phases; where nothing was, it stays.
     #[must_use]
     pub fn fitted(&self, seen: &Seen<N>, phases: &[f64]) -> Self {
-        let cycles = (phases[phases.len() - 1] - phases[0]).abs().max(1.0);
         let poses: Vec<[f64; N]> = phases.iter().map(|phase| self.at(*phase).0).collect();
-        let parts: Vec<f64> = phases.iter().map(|phase| phase.rem_euclid(1.0)).collect();
         // Angles that were seen in the same frames share a fit.
         let mut shared: Option<(Vec<(f64, f64)>, Fit)> = None;
         let terms = (0..N).map(|angle| {
-            let mut bins = [(0.0, 0.0, 0.0); BINS];
-            for ((frame, part), pose) in seen.angles_rad.iter().zip(&parts).zip(&poses) {
-                let Some(angle_rad) = frame[angle] else { continue };
-                let bin = &mut bins[((part * BINS as f64) as usize).min(BINS - 1)];
-                *bin = (bin.0 + 1.0, bin.1 + part, bin.2 + least_angle(angle_rad - pose[angle]));
-            }
-            let filled = || bins.iter().filter(|bin| bin.0 > 0.0);
-            let places: Vec<(f64, f64)> = filled().map(|(count, part, _)| (part / count, *count)).collect();
+            let bins = bins(seen, phases, angle, |frame, angle_rad| least_angle(angle_rad - poses[frame][angle]));
+            let places = places(&bins);
             let (_, fit) = match shared.take().filter(|(before, _)| *before == places) {
                 Some(same) => shared.insert(same),
                 None => {
-                    let count: f64 = bins.iter().map(|bin| bin.0).sum();
-                    let fit = Fit::new(PRIOR_CYCLES * (count / cycles).max(1.0), &places);
+                    let fit = Fit::of_seen(phases, &places);
                     shared.insert((places, fit))
                 }
             };
-            let change = fit.solved(filled().map(|(count, _, off)| off / count));
+            let change = fit.solved(bins.iter().map(|(count, _, off)| off / count));
             std::array::from_fn(|term| self.terms[angle][term] + change[term])
         });
         Self::new(self.turns, terms.collect())
     }
+}
+
+/// Squared distance of one more measurement from the fitted shape in each frame, over the mean of
+/// those that it was fitted to: n / (n - p) (1 + b' G^-1 b), for n measurements that determine p
+/// terms, with the harmonics b of the frame's phase and the normal matrix G. It is large where few
+/// were seen near that phase.
+#[must_use]
+pub fn distances_over_fitted<const N: usize>(seen: &Seen<N>, phases: &[f64], angle: usize) -> Vec<f64> {
+    let places = places(&bins(seen, phases, angle, |_, _| 0.0));
+    let count: f64 = places.iter().map(|(_, weight)| weight).sum();
+    let fit = Fit::of_seen(phases, &places);
+    let leverage = |phase: f64| fit.leverage(&DVector::from_column_slice(&bases(phase).0));
+    let determined: f64 = places.iter().map(|(phase, weight)| weight * leverage(*phase)).sum();
+    let left = (count - determined).max(1.0);
+    let over_bins: Vec<f64> = (0..BINS).map(|bin| 1.0 + leverage((bin as f64 + 0.5) / BINS as f64)).collect();
+    phases.iter().map(|phase| count / left * over_bins[bin_of(*phase)]).collect()
+}
+
+/// The part of the cycle that a phase lies in.
+fn bin_of(phase: f64) -> usize {
+    ((phase.rem_euclid(1.0) * BINS as f64) as usize).min(BINS - 1)
+}
+
+/// Measurements of an angle in each part of the cycle that has any: their number, and the sums of
+/// their phases and of a number of each.
+fn bins<const N: usize>(
+    seen: &Seen<N>,
+    phases: &[f64],
+    angle: usize,
+    number: impl Fn(usize, f64) -> f64,
+) -> Vec<(f64, f64, f64)> {
+    let mut bins = vec![(0.0, 0.0, 0.0); BINS];
+    for (frame, (pose, phase)) in seen.angles_rad.iter().zip(phases).enumerate() {
+        let Some(angle_rad) = pose[angle] else { continue };
+        let bin = &mut bins[bin_of(*phase)];
+        *bin = (bin.0 + 1.0, bin.1 + phase.rem_euclid(1.0), bin.2 + number(frame, angle_rad));
+    }
+    bins.retain(|bin| bin.0 > 0.0);
+    bins
+}
+
+/// Mean phase of each part, and its number of measurements.
+fn places(bins: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
+    bins.iter().map(|(count, phase, _)| (phase / count, *count)).collect()
 }
 
 /// Values of the harmonics at a phase, and their slopes.
@@ -150,6 +185,18 @@ impl Fit {
         let mut gram = DMatrix::from_diagonal(&DVector::from_fn(TERMS, |term, _| pull(term)));
         bases.iter().for_each(|(basis, weight)| gram.ger(*weight, basis, basis, 1.0));
         Self { bases, factor: gram.cholesky() }
+    }
+
+    /// With the prior, of what was seen at these places in a recording of these phases.
+    fn of_seen(phases: &[f64], places: &[(f64, f64)]) -> Self {
+        let cycles = (phases[phases.len() - 1] - phases[0]).abs().max(1.0);
+        let count: f64 = places.iter().map(|(_, weight)| weight).sum();
+        Self::new(PRIOR_CYCLES * (count / cycles).max(1.0), places)
+    }
+
+    /// Variance of the fit at a phase with these harmonics, over that of a measurement.
+    fn leverage(&self, basis: &DVector<f64>) -> f64 {
+        self.factor.as_ref().map_or(f64::INFINITY, |factor| basis.dot(&factor.solve(basis)))
     }
 
     /// The harmonics of a value at each phase; zero where there is none.

@@ -1,11 +1,12 @@
 //! A synthetic person with their own cycle, whose recording is finished.
 
-use super::{Seen, Shape, finish};
+use super::{Seen, Shape, finish, noise};
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::tracking::{Tracked, TrackingOptions, Updates, track};
 use crate::cyclic::turns::least_angle;
 use crate::cyclic::{AngleRow, AngleTable, CyclicModel, SyntheticPerson};
 use proptest::prelude::*;
+use sinew_core::random::Stream;
 
 /// A person at 30 frames a second, and `cycles` of theirs with noise of a degree.
 fn recorded(model: &CyclicModel, cycles: u32, seed: u64) -> (SyntheticPerson<'_>, AngleTable) {
@@ -62,24 +63,82 @@ fn phases_and_angles_are_those_of_the_person() {
     }
 }
 
+/// Share of the angles at these places (frame, angle) that lie inside their 90 % band.
+fn inside_90(run: &Tracked, person: &SyntheticPerson<'_>, is_looked_at: impl Fn(u64, usize) -> bool) -> f64 {
+    let (mut inside, mut count) = (0, 0);
+    for frame in &run.frames {
+        let truth = person.pose_rad(frame.frame as f64);
+        for angle in (0..ANGLES).filter(|angle| is_looked_at(frame.frame, *angle)) {
+            let std_rad = f64::from(frame.estimate.angle_variance_rad2[angle]).sqrt();
+            inside += usize::from(least_angle(frame.angles_rad[angle] - truth[angle]).abs() < 1.645 * std_rad);
+            count += 1;
+        }
+    }
+    f64::from(inside as u32) / f64::from(count)
+}
+
 /// Smoothing leaves a part of the noise, and the band says how much.
 #[test]
 fn nine_of_ten_angles_are_inside_their_band() {
     let model = CyclicModel::from_option("walking").unwrap();
-    let (mut inside, mut count) = (0, 0);
     for seed in 1..4 {
         let (person, table) = recorded(&model, 6, seed);
-        for frame in &finished(&model, &table).frames {
-            let truth = person.pose_rad(frame.frame as f64);
-            for (angle, truth_rad) in truth.into_iter().enumerate() {
-                let std_rad = f64::from(frame.estimate.angle_variance_rad2[angle]).sqrt();
-                inside += usize::from(least_angle(frame.angles_rad[angle] - truth_rad).abs() < 1.645 * std_rad);
-                count += 1;
-            }
+        let share = inside_90(&finished(&model, &table), &person, |_, _| true);
+        assert!((0.85..0.95).contains(&share), "seed {seed}: {share}");
+    }
+}
+
+/// Three quarters of the angles are missing, one by one: few determine the person's cycle.
+#[test]
+fn bands_know_how_little_the_cycle_was_fitted_to() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    let is_missing = |frame: u64, angle: usize| Stream::new(frame, 0, angle as u32).uniform() < 0.75;
+    let mut shares = Vec::new();
+    for seed in 1..4 {
+        let (person, table) = recorded(&model, 6, seed);
+        let sparse = with(&table, |row| {
+            let frame = row.frame;
+            (0..ANGLES).filter(|angle| is_missing(frame, *angle)).for_each(|angle| row.angles_rad[angle] = None);
+        });
+        shares.push(inside_90(&finished(&model, &sparse), &person, is_missing));
+    }
+    assert!(shares.iter().all(|share| (0.8..0.98).contains(share)), "{shares:?}");
+}
+
+/// In a table of twice as many rows, each between two measured ones.
+#[test]
+fn noise_is_found_between_interpolated_rows() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    let (_, table) = recorded(&model, 6, 1);
+    let rows = table.rows();
+    let between = |frame: usize, angle: usize| {
+        let [before, after] = [frame / 2, frame.div_ceil(2)].map(|row| rows[row].angles_rad[angle].unwrap());
+        Some(before + 0.5 * least_angle(after - before) * (frame % 2) as f64)
+    };
+    let twice: Vec<[Option<f64>; ANGLES]> =
+        (0..2 * rows.len() - 1).map(|frame| std::array::from_fn(|angle| between(frame, angle))).collect();
+    let twice = AngleTable::from_angles(0, &twice).unwrap();
+    let found_deg = noise::of_table(&twice, &Updates::All, 60.0).unwrap().to_degrees();
+    assert!((0.5..1.1).contains(&found_deg), "{found_deg} instead of 1");
+}
+
+/// At a steady cadence what a row's differs by is its error.
+#[test]
+fn a_rows_cadence_has_its_own_standard_deviation() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    let (mut squares, mut count) = (0.0, 0.0);
+    for seed in 1..9 {
+        let (person, table) = recorded(&model, 8, seed);
+        let run = finished(&model, &table);
+        for frame in &run.frames {
+            let velocity = f64::from(frame.estimate.cycle_velocity_per_frame) * run.step_frames;
+            let std = f64::from(frame.estimate.cycle_velocity_variance).sqrt() * run.step_frames;
+            squares += ((velocity - 1.0 / person.cycle_frames()) / std).powi(2);
+            count += 1.0;
         }
     }
-    let share = inside as f64 / count as f64;
-    assert!((0.85..0.95).contains(&share), "{share}");
+    let over_stated = f64::sqrt(squares / count);
+    assert!((0.7..1.4).contains(&over_stated), "{over_stated}");
 }
 
 #[test]

@@ -10,6 +10,10 @@ use sinew_core::saved_state::{SavedState, StateVisitor};
 /// cannot be seen.
 pub const MIN_CYCLES: f64 = 2.0;
 
+/// Longest time without any measurement that is bridged, cycles. Beyond it the person may have
+/// stopped: nothing is said, and the cycles on both sides are counted apart.
+pub const LONGEST_BRIDGE_CYCLES: f64 = 1.0;
+
 /// Summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
@@ -131,7 +135,9 @@ impl RunningSummary {
 
     /// Adds the row after the last one.
     pub fn add(&mut self, row: &TrackedFrame) {
-        if self.is_known && row.is_known {
+        // Rows that the table leaves out are not there to say that nothing is known.
+        let is_bridged = (row.cycles - self.cycles).abs() <= LONGEST_BRIDGE_CYCLES;
+        if self.is_known && row.is_known && is_bridged {
             self.pass(row);
         } else {
             self.times.lose(self.origin + row.cycles);
@@ -277,6 +283,16 @@ mod tests {
         assert_eq!(cadence(&[0.25, 0.75, 1.25, 1.75, 2.25]), Some(60.0));
         assert_eq!(cadence(&[0.25, 0.75, 1.25, 1.75]), None);
         assert_eq!(cadence(&[2.5, 1.5, 0.5]), Some(-120.0));
+    }
+
+    #[test]
+    fn what_the_table_leaves_out_is_not_seen() {
+        let mut tracked = run(&[0.0, 0.5, 1.0, 1.5, 2.0, 22.0, 22.5, 23.0, 23.5, 24.0]);
+        tracked.frames[5..].iter_mut().for_each(|row| row.frame += 40);
+        let summary = Summary::of(&tracked);
+        assert_eq!((summary.cycles, summary.seen_s, summary.duration_s), (4.0, 4.0, 24.5));
+        assert_eq!(summary.whole_cycles_s, [[1.0, 2.0], [23.5, 24.5]]);
+        assert_eq!(summary.cadence_per_min, Some(60.0));
     }
 
     #[test]
