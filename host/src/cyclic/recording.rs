@@ -15,6 +15,8 @@ use crate::motion::{self, ReadOptions};
 use crate::registry::{Kind, MOTION, choice, described, find};
 use std::path::{Path, PathBuf};
 
+mod space_doubts;
+
 /// How to turn a recording into an angle table.
 #[derive(Debug, Clone, Default)]
 pub struct RecordingOptions {
@@ -163,13 +165,14 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
             );
         }
     }
+    let size = space_doubts::leg_length(covered, path).filter(|_| !motion.is_scale_assumed);
     let seen = plane.project_with_feet(covered, &sources.feet_of_motion(&motion));
     let facing = options.facing.unwrap_or(Facing::Right);
     let table = if options.view == View::Space {
         in_space(&seen, &plane.from_before().project(covered), recorded_hz, options)?
     } else {
-        // Places without a scale would pass for metres.
-        let is_bare = options.view == View::Front || motion.is_scale_assumed;
+        // Places without a scale, or of a wrong one, would pass for metres.
+        let is_bare = options.view == View::Front || motion.is_scale_assumed || size.is_some();
         let extra = if is_bare { ExtraColumns::None } else { ExtraColumns::RootAndLengths { facing } };
         finished(&seen, Some(recorded_hz), options, facing, extra)?
     };
@@ -178,7 +181,7 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
         table: table.at_rate(rate_hz),
         rate_hz,
         notes,
-        doubts: Vec::new(),
+        doubts: size.into_iter().collect(),
         facing: None,
         image_size_px: None,
         layout: None,
