@@ -17,6 +17,10 @@ use std::path::{Path, PathBuf};
 
 mod space_doubts;
 
+/// A user's rate may be this far from that of the file, as a share of it. Chosen: 29.97 is called
+/// 30.
+const MAX_RATE_DIFFERENCE: f64 = 0.05;
+
 /// How to turn a recording into an angle table.
 #[derive(Debug, Clone, Default)]
 pub struct RecordingOptions {
@@ -181,7 +185,7 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
         table: table.at_rate(rate_hz),
         rate_hz,
         notes,
-        doubts: size.into_iter().collect(),
+        doubts: size.into_iter().chain(space_doubts::rate(&motion, path)).collect(),
         facing: None,
         image_size_px: None,
         layout: None,
@@ -271,11 +275,9 @@ pub fn of_detections(detections: &Detections, path: &Path, options: &RecordingOp
 
 /// Frames per second of keypoints: what their times say, else what the user says.
 fn input_rate(detections: &Detections, options: &RecordingOptions, path: &Path) -> Result<Option<f64>> {
-    /// A user's rate may be this far from that of the file's times. Chosen: 29.97 is called 30.
-    const MAX_DIFFERENCE: f64 = 0.05;
     if let (Some(given), Some(found)) = (options.input_rate_hz, detections.rate_hz) {
         ensure!(
-            (given / found - 1.0).abs() <= MAX_DIFFERENCE,
+            (given / found - 1.0).abs() <= MAX_RATE_DIFFERENCE,
             "`--input-rate {given}`: the times in `{}` say {found:.2} frames per second; leave the option out, or remove the column of times",
             path.display()
         );

@@ -1,6 +1,8 @@
 //! What cannot be right about a motion in space.
 
+use super::MAX_RATE_DIFFERENCE;
 use crate::motion::joint_names::SpatialJoints;
+use crate::motion::markers::MarkerMotion;
 use crate::signal::median::median;
 use std::path::Path;
 
@@ -31,6 +33,17 @@ pub(super) fn leg_length(frames: &[SpatialJoints], path: &Path) -> Option<String
     })
 }
 
+/// The user's rate is not the file's.
+pub(super) fn rate(motion: &MarkerMotion, path: &Path) -> Option<String> {
+    let (given, found) = (f64::from(motion.frames_per_second), f64::from(motion.replaced_rate_hz?));
+    ((given / found - 1.0).abs() > MAX_RATE_DIFFERENCE).then(|| {
+        format!(
+            "`--input-rate {given}` replaces the {found:.2} frames per second of `{}`: times, cadence and speeds follow it; leave the option out, unless the file is wrong",
+            path.display()
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -50,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn legs_of_nobody_are_doubted_with_file_length_and_remedy() {
+    fn legs_of_no_person_are_doubted_with_file_length_and_remedy() {
         for leg_m in [0.21, 0.85, 1.4] {
             assert_eq!(leg_length(&legs(leg_m), Path::new("walk.trc")), None, "{leg_m}");
         }
@@ -60,5 +73,16 @@ mod tests {
             assert!(doubt.contains(words) && doubt.contains("`Units` of a TRC"), "{doubt}");
         }
         assert_eq!(leg_length(&[[None; JOINTS]], Path::new("walk.trc")), None, "no legs");
+    }
+
+    #[test]
+    fn a_rate_that_is_not_the_files_is_doubted_with_both() {
+        let of = |given: f32, found: Option<f32>| {
+            let motion = MarkerMotion { frames_per_second: given, replaced_rate_hz: found, ..MarkerMotion::default() };
+            rate(&motion, Path::new("walk.trc"))
+        };
+        let doubt = of(30.0, Some(100.0)).unwrap();
+        assert!(doubt.starts_with("`--input-rate 30` replaces the 100.00 frames per second of `walk.trc`"), "{doubt}");
+        assert_eq!([of(30.0, Some(29.97)), of(30.0, None)], [None, None]);
     }
 }
