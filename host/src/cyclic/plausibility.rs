@@ -18,23 +18,19 @@ const MAX_RANGE_DEG: f64 = 170.0;
 /// Angles whose range has a limit: all but the shoulders.
 const LIMITED: [&str; 4] = ["trunk_lean", "elbow_flexion", "hip_flexion", "knee_flexion"];
 
+/// Largest mean of the trunk's lean in a walk or a run, degrees. Chosen: who bends far forward has
+/// 45, and a picture that is turned has 90.
+const MAX_LEAN_DEG: f64 = 60.0;
+
+/// Models of people who are upright.
+const UPRIGHT: [&str; 2] = ["walking", "running"];
+
 /// Doubts about a run, one sentence each, with the remedy.
 #[must_use]
 pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel, gait: Option<&Gait>) -> Vec<String> {
-    let mut doubts = Vec::new();
-    if summary.cycles < 0.0 {
-        doubts.push(format!(
-            "the motion runs backwards ({:.1} cycles): the person faces the other way, or the camera moves with them; see --facing of `sinew angles`",
-            summary.cycles
-        ));
-    } else if summary.cycles < MIN_CYCLES {
-        doubts.push(format!(
-            "{:.1} cycles were seen: with less than {MIN_CYCLES} there is no cadence; record longer",
-            summary.cycles
-        ));
-    }
     let mean_per_min = 60.0 * f64::from(model.numbers().rate_hz) / f64::from(model.numbers().mean_duration_frames);
     let [low, high] = CADENCE_RANGE.map(|share| share * mean_per_min);
+    let mut doubts: Vec<String> = few_cycles(summary, low).into_iter().collect();
     if let Some(cadence) = summary.cadence_per_min.filter(|cadence| *cadence > 0.0 && !(low..=high).contains(cadence)) {
         doubts.push(format!(
             "{cadence:.1} cycles a minute: this motion has {low:.0} to {high:.0}; is the rate right (--input-rate)?"
@@ -42,6 +38,9 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
     }
     if model.numbers().turns_per_cycle.iter().all(|turns| *turns == 0) {
         doubts.extend(wide_ranges(series));
+    }
+    if UPRIGHT.iter().any(|name| is_shipped(model, name)) {
+        doubts.extend(lying_trunk(series));
     }
     match gait.map(|gait| gait.is_running) {
         Some(true) if is_shipped(model, "walking") => {
@@ -53,6 +52,44 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
         _ => {}
     }
     doubts
+}
+
+/// Less than two cycles, or cycles backwards. `low_per_min` is the slowest cadence of the motion.
+///
+/// Rows that do not fit the model are no doubt: real walks have up to 92 % of them.
+fn few_cycles(summary: &Summary, low_per_min: f64) -> Option<String> {
+    let Summary { cycles, seen_s, .. } = *summary;
+    if cycles < 0.0 {
+        return Some(format!(
+            "the motion runs backwards ({cycles:.1} cycles): the person faces the other way, or the camera moves with them; see --facing of `sinew angles`"
+        ));
+    }
+    let least = low_per_min * seen_s / 60.0;
+    (cycles < MIN_CYCLES).then(|| {
+        if least < MIN_CYCLES {
+            format!(
+                "{cycles:.1} cycles were seen: with less than {MIN_CYCLES} there is no cadence; record longer"
+            )
+        } else {
+            format!(
+                "{cycles:.1} cycles were seen in {seen_s:.0} s, in which this motion has {least:.0} or more: is it this motion (`--model`), and is the rate right (--input-rate)?"
+            )
+        }
+    })
+}
+
+/// The trunk lies: the picture is turned.
+fn lying_trunk(series: &AnatomicalSeries) -> Option<String> {
+    let lean = ANATOMICAL_ANGLES.iter().position(|name| *name == "trunk_lean")?;
+    // A series goes on over whole turns, which do not change how the trunk lies.
+    let within_turn = |deg: f64| (deg + 180.0).rem_euclid(360.0) - 180.0;
+    let leans_deg: Vec<f64> = series.angles_deg.iter().filter_map(|pose| pose[lean]).map(within_turn).collect();
+    let mean_deg = leans_deg.iter().sum::<f64>() / leans_deg.len() as f64;
+    (mean_deg.abs() > MAX_LEAN_DEG).then(|| {
+        format!(
+            "trunk lean is {mean_deg:.0} degrees in the mean, and who walks or runs is upright: the picture is turned; turn the video, or choose the motion's `--model`"
+        )
+    })
 }
 
 /// Whether a model is the one that ships under this name.
@@ -72,4 +109,62 @@ fn wide_ranges(series: &AnatomicalSeries) -> Vec<String> {
         Some(format!("{name} ranges over {range:.0} degrees, more than a body can: wrong keypoints, or the wrong ones"))
     });
     wide.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn summary(cycles: f64, seen_s: f64) -> Summary {
+        Summary {
+            frames: 100,
+            skipped_frames: 0,
+            duration_s: seen_s,
+            seen_s,
+            cycles,
+            cadence_per_min: None,
+            cadence_std_per_min: None,
+            last_cadence_per_min: 0.0,
+            last_cadence_std_per_min: 0.0,
+            outliers: 0,
+            misfits: 0,
+            log_likelihood: 0.0,
+            cycle_starts_s: Vec::new(),
+            whole_cycles_s: Vec::new(),
+        }
+    }
+
+    /// A trunk at these angles, degrees; the last row does not see it.
+    fn leaning(leans_deg: &[f64]) -> AnatomicalSeries {
+        let pose = |lean: Option<f64>| std::array::from_fn(|angle| lean.filter(|_| angle == 0));
+        let leans = leans_deg.iter().map(|lean| Some(*lean)).chain([None]);
+        let angles_deg: Vec<_> = leans.map(pose).collect();
+        AnatomicalSeries { frames: (0..angles_deg.len() as u64).collect(), angles_deg, rate_hz: 30.0 }
+    }
+
+    fn of(summary: &Summary, leans_deg: &[f64], model: &str) -> Vec<String> {
+        doubts(summary, &leaning(leans_deg), model_file::shipped(model).unwrap(), None)
+    }
+
+    #[test]
+    fn a_trunk_that_lies_is_doubted_in_walks_and_runs_only() {
+        let seen = summary(5.0, 6.0);
+        for model in ["walking", "running"] {
+            assert_eq!(of(&seen, &[45.0, 62.0], model), [""; 0]);
+            assert_eq!(of(&seen, &[350.0, 365.0], model), [""; 0], "a turn too many");
+            let turned = of(&seen, &[-85.0, -91.0], model);
+            assert!(turned.len() == 1 && turned[0].starts_with("trunk lean is -88 degrees"), "{turned:?}");
+        }
+        assert_eq!(of(&seen, &[-85.0, -91.0], "arm-circles"), [""; 0], "swimmers lie");
+        assert_eq!(of(&seen, &[], "walking"), [""; 0], "a trunk that is not seen");
+    }
+
+    #[test]
+    fn few_cycles_of_a_long_recording_are_of_another_motion() {
+        let only = |summary: &Summary| of(summary, &[0.0], "walking").join("; ");
+        assert!(only(&summary(0.6, 30.0)).starts_with("0.6 cycles were seen in 30 s, in which this motion has 10 or"));
+        assert!(only(&summary(0.6, 3.0)).ends_with("record longer"));
+        assert!(only(&summary(-3.0, 30.0)).starts_with("the motion runs backwards (-3.0 cycles)"));
+        assert_eq!(only(&summary(20.0, 30.0)), "");
+    }
 }

@@ -15,6 +15,12 @@ use crate::motion::{self, ReadOptions};
 use crate::registry::{Kind, MOTION, choice, described, find};
 use std::path::{Path, PathBuf};
 
+mod space_doubts;
+
+/// A user's rate may be this far from that of the file, as a share of it. Chosen: 29.97 is called
+/// 30.
+const MAX_RATE_DIFFERENCE: f64 = 0.05;
+
 /// How to turn a recording into an angle table.
 #[derive(Debug, Clone, Default)]
 pub struct RecordingOptions {
@@ -163,13 +169,14 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
             );
         }
     }
+    let size = space_doubts::leg_length(covered, path).filter(|_| !motion.is_scale_assumed);
     let seen = plane.project_with_feet(covered, &sources.feet_of_motion(&motion));
     let facing = options.facing.unwrap_or(Facing::Right);
     let table = if options.view == View::Space {
         in_space(&seen, &plane.from_before().project(covered), recorded_hz, options)?
     } else {
-        // Places without a scale would pass for metres.
-        let is_bare = options.view == View::Front || motion.is_scale_assumed;
+        // Places without a scale, or of a wrong one, would pass for metres.
+        let is_bare = options.view == View::Front || motion.is_scale_assumed || size.is_some();
         let extra = if is_bare { ExtraColumns::None } else { ExtraColumns::RootAndLengths { facing } };
         finished(&seen, Some(recorded_hz), options, facing, extra)?
     };
@@ -178,7 +185,7 @@ fn from_space(path: &Path, options: &RecordingOptions) -> Result<RecordedAngles>
         table: table.at_rate(rate_hz),
         rate_hz,
         notes,
-        doubts: Vec::new(),
+        doubts: size.into_iter().chain(space_doubts::rate(&motion, path)).collect(),
         facing: None,
         image_size_px: None,
         layout: None,
@@ -268,11 +275,9 @@ pub fn of_detections(detections: &Detections, path: &Path, options: &RecordingOp
 
 /// Frames per second of keypoints: what their times say, else what the user says.
 fn input_rate(detections: &Detections, options: &RecordingOptions, path: &Path) -> Result<Option<f64>> {
-    /// A user's rate may be this far from that of the file's times. Chosen: 29.97 is called 30.
-    const MAX_DIFFERENCE: f64 = 0.05;
     if let (Some(given), Some(found)) = (options.input_rate_hz, detections.rate_hz) {
         ensure!(
-            (given / found - 1.0).abs() <= MAX_DIFFERENCE,
+            (given / found - 1.0).abs() <= MAX_RATE_DIFFERENCE,
             "`--input-rate {given}`: the times in `{}` say {found:.2} frames per second; leave the option out, or remove the column of times",
             path.display()
         );

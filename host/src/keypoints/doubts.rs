@@ -24,6 +24,19 @@ const MIN_BELOW_TRUNKS: f64 = 0.3;
 const MAX_BELOW_SHARE: f64 = 0.1;
 /// Fewest frames for shares of them. Chosen.
 const MIN_FRAMES: usize = 10;
+/// How near each other the middles and the ends of both limbs are where one limb was found twice,
+/// in lengths of the limb. Chosen: noise of 1.5 % of the limb on each point is below it, and a
+/// camera at 4 m shows two ankles that stand side by side 9 % apart.
+const MAX_TWIN_SHARE: f64 = 0.05;
+/// Share of the frames from which they are doubtful. Chosen: legs that pass each other are that
+/// near in a tenth of a walk.
+const MIN_TWIN_FRAMES: f64 = 0.5;
+/// How far the end of a limb travels under its root for its motion to be doubted, in lengths of the
+/// limb. Chosen: who stands does less, and a squat is beyond it.
+const MIN_TWIN_TRAVEL: f64 = 0.2;
+/// Limbs with the root, the middle and the end of the left and the right one.
+const LIMBS: [(&str, &str, [[usize; 3]; 2]); 2] =
+    [("leg", "knees and ankles", [[8, 9, 10], [11, 12, 13]]), ("arm", "elbows and wrists", [[2, 3, 4], [5, 6, 7]])];
 /// Thighs and shanks by the joints at their ends.
 const SEGMENTS: [(&str, usize, usize); 4] =
     [("left thigh", 8, 9), ("left shank", 9, 10), ("right thigh", 11, 12), ("right shank", 12, 13)];
@@ -52,7 +65,7 @@ pub fn find(followed: &Followed) -> Vec<String> {
         lengths(followed),
         jumps(followed, trunk_px),
     ];
-    doubts.into_iter().flatten().collect()
+    doubts.into_iter().flatten().chain(LIMBS.iter().filter_map(|limb| twins(followed, *limb))).collect()
 }
 
 /// The person moves away from where they face: the camera pans, or they walk backwards.
@@ -134,7 +147,6 @@ fn below(followed: &Followed, trunk_px: f64) -> Option<String> {
 
 /// A thigh or shank changes its length, measured in trunks.
 fn lengths(followed: &Followed) -> Option<String> {
-    let apart = |a: Point, b: Point| (a[0] - b[0]).hypot(a[1] - b[1]);
     let ratio = |&(name, start, end): &(&'static str, usize, usize)| {
         let mut lengths: Vec<f64> = followed
             .joints
@@ -154,6 +166,49 @@ fn lengths(followed: &Followed) -> Option<String> {
     Some(format!(
         "the {name} is {short:.2} to {long:.2} trunks long: it is not seen from the side, or points are wrong; film square to the way, or look at an overlay"
     ))
+}
+
+/// Both limbs move, and the left one lies on the right one.
+fn twins(followed: &Followed, (limb, names, sides): (&str, &str, [[usize; 3]; 2])) -> Option<String> {
+    // Of both limbs from their roots: whether they are twins, and the left end in lengths of the limb.
+    let seen: Vec<(bool, Point)> = followed
+        .joints
+        .frames
+        .iter()
+        .filter_map(|frame| {
+            let [left, right] = sides.map(|side| side.map(|joint| frame.joints[joint]));
+            let (left, right) = (all(left)?, all(right)?);
+            let length_px = apart(left[0], left[1]) + apart(left[1], left[2]);
+            let is_twin = (1..3).all(|joint| apart(left[joint], right[joint]) <= MAX_TWIN_SHARE * length_px);
+            let end = [0, 1].map(|axis| (left[2][axis] - left[0][axis]) / length_px);
+            Some((is_twin, end)).filter(|_| length_px > 0.0)
+        })
+        .collect();
+    let travel = |axis: usize| {
+        let mut places: Vec<f64> = seen.iter().map(|(_, end)| end[axis]).collect();
+        places.sort_by(f64::total_cmp);
+        let outer = (places.len() as f64 * OUTER_SHARE) as usize;
+        places[places.len() - 1 - outer] - places[outer]
+    };
+    let count = seen.iter().filter(|(is_twin, _)| *is_twin).count();
+    let is_most = seen.len() >= MIN_FRAMES && count as f64 > MIN_TWIN_FRAMES * seen.len() as f64;
+    (is_most && travel(0).max(travel(1)) > MIN_TWIN_TRAVEL).then(|| {
+        format!(
+            "left and right {names} lie within {:.0} % of the {limb}'s length of each other in {count} of {} frames: one {limb} was found twice, or both move together; look at an overlay, and compare no sides",
+            100.0 * MAX_TWIN_SHARE,
+            seen.len()
+        )
+    })
+}
+
+/// The points, if all are seen.
+fn all(points: [Option<Point>; 3]) -> Option<[Point; 3]> {
+    let [Some(a), Some(b), Some(c)] = points else { return None };
+    Some([a, b, c])
+}
+
+fn apart(a: Point, b: Point) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// The root makes steps that are far from the usual ones.

@@ -10,6 +10,8 @@ use sinew_core::math::{Vec3, abs, ln};
 pub struct MarkerMotion {
     /// Frames in a second.
     pub frames_per_second: f32,
+    /// Frames in a second that the file gives, where [`Self::frames_per_second`] replaces them.
+    pub replaced_rate_hz: Option<f32>,
     /// Names, in the file's order.
     pub names: Vec<String>,
     /// Place of each point's parent among them, `None` of a root; empty where the file has no

@@ -33,7 +33,8 @@ pub fn read(path: &Path, options: &ReadOptions<'_>) -> Result<Motion, MotionErro
 
 /// Reads a motion in space: markers, or the joints of the whole body.
 ///
-/// `options.frames_per_second` also replaces the rate of a file that gives one.
+/// `options.frames_per_second` also replaces the rate of a file that gives one, and
+/// [`MarkerMotion::replaced_rate_hz`] keeps that.
 ///
 /// # Errors
 /// Names the file, the line and the rule that it broke.
@@ -46,6 +47,7 @@ pub fn read_space(path: &Path, options: &ReadOptions<'_>) -> Result<MarkerMotion
         _ => MarkerMotion::from(&read(path, options)?),
     };
     if let Some(rate) = options.frames_per_second {
+        motion.replaced_rate_hz = gives_rate(path).then_some(motion.frames_per_second);
         motion.frames_per_second = rate;
     }
     if let Some(names) = options.names {
@@ -66,6 +68,15 @@ pub fn needs_skeleton(path: &Path) -> bool {
 pub fn has_skin_markers(path: &Path) -> bool {
     let reader = find(path, &[Kind::MarkerMotion]).map(|format| format.reader);
     matches!(reader, Some(Reader::Markers(reader)) if reader.is_on_skin)
+}
+
+/// Whether the motion at `path` gives its rate.
+fn gives_rate(path: &Path) -> bool {
+    match find(path, MOTION).map(|format| format.reader) {
+        Some(Reader::Joints(reader)) => reader.has_rate,
+        Some(Reader::Markers(_)) => true,
+        _ => false,
+    }
 }
 
 /// The endings of motions that do not give their rate: `.amc, .txt`.

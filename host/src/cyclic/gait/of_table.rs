@@ -1,6 +1,7 @@
 //! Gait from an angle table.
 
 use super::events::{FootEvents, GaitEvents};
+use super::extrema::is_whole;
 use super::foot_paths::{FootPaths, hips_path};
 use super::means::FootMeans;
 use super::scale::{LegLengths, Scale};
@@ -8,11 +9,10 @@ use super::strides::{self, Foot, FootData, Stride, Units};
 use crate::cyclic::angle_table::AngleTable;
 use crate::cyclic::even_rows::EvenRows;
 use crate::cyclic::place_columns::PlaceColumns;
-use crate::signal::median::median;
 use serde::Serialize;
 
 /// When in a foot's stride the other foot may strike, as a share of it. Chosen: 0.5 is even, a bad
-/// limp has 0.4; a jump or a squat has 0 or 1.
+/// limp has 0.4; a jump or a squat has 0 and 1.
 const ALTERNATION: [f64; 2] = [0.2, 0.8];
 
 /// Events, strides and their means.
@@ -56,7 +56,7 @@ pub fn of_table(table: &AngleTable, rate_hz: f64, scale: Scale) -> Option<Gait> 
     let units = Units { rate_hz, metres, hips: hips.as_deref() };
     let mut left_strides = strides::strides(Foot::Left, left, right, units);
     let mut right_strides = strides::strides(Foot::Right, right, left, units);
-    if !takes_turns(&left_strides, &right_strides, rate_hz) {
+    if !takes_turns([&left_strides, &right_strides], &paths, rate_hz) {
         return None;
     }
     let first = even.first_frame as f64;
@@ -75,9 +75,30 @@ pub fn of_table(table: &AngleTable, rate_hz: f64, scale: Scale) -> Option<Gait> 
     Some(Gait { events, is_running: 2 * flights > strides.len(), strides, left, right })
 }
 
-/// Whether the other foot strikes between two strikes of a foot, in most strides.
-fn takes_turns(left: &[Stride], right: &[Stride], rate_hz: f64) -> bool {
-    let share = |stride: &Stride| Some(1.0 - stride.step_time_s? * rate_hz / (stride.next_strike - stride.strike));
-    let mut shares: Vec<f64> = left.iter().chain(right).filter_map(share).collect();
-    median(&mut shares).is_some_and(|share| (ALTERNATION[0]..=ALTERNATION[1]).contains(&share))
+/// Whether the feet take turns in more than half of the strides in which both are seen.
+fn takes_turns([left, right]: [&[Stride]; 2], paths: &[FootPaths; 2], rate_hz: f64) -> bool {
+    let [left_path, right_path] = paths.each_ref().map(|paths| paths.ankle.as_slice());
+    let of_left = left.iter().filter_map(|stride| alternates(stride, [left_path, right_path], rate_hz));
+    let of_right = right.iter().filter_map(|stride| alternates(stride, [right_path, left_path], rate_hz));
+    let turns: Vec<bool> = of_left.chain(of_right).collect();
+    2 * turns.iter().filter(|takes_turn| **takes_turn).count() > turns.len()
+}
+
+/// Whether the other foot strikes well inside a stride, and the ankles travel against each other in
+/// it. `None` where the other foot's strike is not found and its ankle is not seen all along.
+fn alternates(stride: &Stride, [own, other]: [&[Option<f64>]; 2], rate_hz: f64) -> Option<bool> {
+    let Stride { strike, next_strike, .. } = *stride;
+    let Some(step_time_s) = stride.step_time_s else {
+        return is_whole(other, strike, next_strike).then_some(false);
+    };
+    let share = 1.0 - step_time_s * rate_hz / (next_strike - strike);
+    let frames = strike.ceil() as usize..=next_strike.floor() as usize;
+    let places: Vec<[f64; 2]> = frames.filter_map(|frame| Some([(*own.get(frame)?)?, (*other.get(frame)?)?])).collect();
+    Some((ALTERNATION[0]..=ALTERNATION[1]).contains(&share) && covariance(&places) < 0.0)
+}
+
+/// Sum of the products of two series' distances from their means.
+fn covariance(pairs: &[[f64; 2]]) -> f64 {
+    let mean = [0, 1].map(|side| pairs.iter().map(|pair| pair[side]).sum::<f64>() / pairs.len() as f64);
+    pairs.iter().map(|pair| (pair[0] - mean[0]) * (pair[1] - mean[1])).sum()
 }

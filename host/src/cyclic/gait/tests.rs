@@ -80,6 +80,22 @@ fn who_stands_or_jumps_has_no_gait() {
     assert_eq!(of_table(&swinging(0..3, 0.4, 0.5), 60.0, Scale::default()), None);
 }
 
+/// Both legs swing together, and noise lets either foot strike first: shares lie at 0 and at 1, and
+/// their median anywhere.
+#[test]
+fn feet_that_strike_together_in_either_order_take_no_turns() {
+    let late = |frame: u64| if (frame / 80).is_multiple_of(2) { 0.04 } else { -0.04 };
+    let row = |frame: u64| {
+        let leg = |lag: f64| Some(FRAC_PI_2 - 0.4 * (TAU * (frame as f64 / 40.0 - lag)).cos());
+        let mut angles_rad = [Some(FRAC_PI_2); ANGLES];
+        (angles_rad[8], angles_rad[9]) = (leg(0.0), leg(0.0));
+        (angles_rad[11], angles_rad[12]) = (leg(late(frame)), leg(late(frame)));
+        AngleRow { frame, angles_rad, extra: Vec::new() }
+    };
+    let table = AngleTable::new((0..640).map(row).collect(), Vec::new()).unwrap();
+    assert_eq!(of_table(&table, 60.0, Scale::default()), None);
+}
+
 /// Mean of how far events are from a reference, and of the absolute value, milliseconds.
 fn off_ms(found: &[f64], reference: &[f64], rate_hz: f64) -> [f64; 2] {
     let nearest = |event: f64| {

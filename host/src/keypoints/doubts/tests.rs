@@ -28,6 +28,35 @@ fn doubts(of: impl Fn(f64) -> (Point, f64, f64)) -> Vec<String> {
     find(&Followed { joints: &joints, people: &people, facing, rate_hz: Some(30.0) })
 }
 
+/// Legs (or arms) of 200 px below hips (or shoulders) at one place, whose left and right angle at
+/// each time are the numbers, radians; 100 frames.
+fn limb_doubts(limb: usize, of: impl Fn(f64) -> [f64; 2]) -> Option<String> {
+    let frame = |frame: u64| {
+        let mut joints = [None; crate::motion::joint_names::JOINTS];
+        for (side, angle_rad) in LIMBS[limb].2.iter().zip(of(frame as f64)) {
+            for (place, joint) in side.iter().enumerate() {
+                let reach_px = 100.0 * place as f64;
+                joints[*joint] = Some([500.0 + reach_px * angle_rad.sin(), 300.0 + reach_px * angle_rad.cos()]);
+            }
+        }
+        JointFrame { frame, joints, feet: Default::default() }
+    };
+    let joints = ImageJoints { frames: (0..100).map(frame).collect(), unit: "px" };
+    twins(&Followed { joints: &joints, people: &[], facing: None, rate_hz: None }, LIMBS[limb])
+}
+
+#[test]
+fn a_limb_that_was_found_twice_is_doubted_and_one_that_passes_or_rests_is_not() {
+    let swing = |t: f64| 0.5 * (t / 5.0).sin();
+    for (limb, words) in [(0, "right knees and ankles lie within 5 % of the leg's"), (1, "right elbows and wrists")] {
+        let twice = limb_doubts(limb, |t| [swing(t), swing(t) + 0.02 * (1.7 * t).sin()]).unwrap();
+        assert!(twice.contains(words) && twice.contains("in 100 of 100 frames"), "{twice}");
+        assert_eq!(limb_doubts(limb, |t| [swing(t), -swing(t)]), None, "a walk");
+        assert_eq!(limb_doubts(limb, |t| [swing(t), swing(t - 3.0)]), None, "a lag of a tenth");
+        assert_eq!(limb_doubts(limb, |t| [0.02 * t.sin(), 0.02 * t.cos()]), None, "who stands");
+    }
+}
+
 fn only(doubts: &[String], words: &str) {
     assert!(doubts.len() == 1 && doubts[0].contains(words), "{words}: {doubts:?}");
 }
