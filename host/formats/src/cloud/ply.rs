@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn other_types_properties_and_elements_do_no_harm() {
         let cloud = parse(ASCII.as_bytes()).unwrap();
-        assert_eq!(cloud, PointCloud { points_m: vec![Vec3::new(1.25, -2.0, 3.5)], skipped: 2, outside: 0 });
+        assert_eq!(cloud, PointCloud { points_m: vec![Vec3::new(1.25, -2.0, 3.5)], skipped: 2, far: 0, outside: 0 });
         assert_eq!(parse(ASCII.replace('\n', "\r\n").as_bytes()).unwrap(), cloud);
     }
 
