@@ -2,7 +2,7 @@
 
 use super::BodySize;
 use crate::error::{Context, Result, ensure};
-use crate::json_file::read_json;
+use crate::file::read_text;
 use serde::{Deserialize, Serialize};
 use sinew_core::math::Vec3;
 use sinew_core::skeleton::BodyMeasures;
@@ -109,7 +109,9 @@ impl BodyFile {
     /// # Errors
     /// Names the file and what is wrong in it.
     pub fn read(path: &Path) -> Result<BodySize> {
-        let inner = || -> Result<BodySize> { read_json::<Self>(path)?.size() };
+        let text = read_text(path)
+            .with_context(|| format!("`{}` cannot be read; check the path and who may read it", path.display()))?;
+        let inner = || -> Result<BodySize> { serde_json::from_str::<Self>(&text)?.size() };
         inner().with_context(|| format!("`{}` is no body.json", path.display()))
     }
 }

@@ -91,14 +91,28 @@ pub fn run(args: &ExportArgs, console: &Console) -> Result<()> {
     console.answer_beside(&args.out, &report, &json)
 }
 
+/// Words of C and C++ that name nothing, and the types of `stdint.h` that the source uses.
+///
+/// Chosen: the keywords of C23 and C++20 without those that begin with an underscore and a capital.
+const RESERVED: &str = "\
+    alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t \
+    char32_t char8_t class co_await co_return co_yield compl concept const const_cast consteval \
+    constexpr constinit continue decltype default delete do double dynamic_cast else enum \
+    explicit export extern false float for friend goto if inline int long mutable namespace new \
+    noexcept not not_eq nullptr operator or or_eq private protected public register \
+    reinterpret_cast requires restrict return short signed sizeof static static_assert \
+    static_cast struct switch template this thread_local throw true try typedef typeid typename \
+    typeof typeof_unqual uint32_t union unsigned using virtual void volatile wchar_t while xor \
+    xor_eq";
+
 /// The file's name without its ending, which has to be a name in C.
 fn array_name(out: &Path) -> Result<String> {
     let name = out.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let is_name =
         name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric()) && !name.starts_with(|c: char| c.is_ascii_digit());
     ensure!(
-        is_name && !name.is_empty(),
-        "`{name}` cannot name an array in C; give `--out` a file name of letters, digits and underscores, such as running_model.c"
+        is_name && !name.is_empty() && !RESERVED.split(' ').any(|word| word == name),
+        "`{name}` cannot name an array in C; give `--out` a file name of letters, digits and underscores that is no word of the language, such as running_model.c"
     );
     Ok(name)
 }

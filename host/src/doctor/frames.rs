@@ -5,6 +5,7 @@ use crate::cloud::frame_number::frame_numbers;
 use crate::images::load_rgb;
 use crate::skin::SkinModel;
 use crate::skin::model::DEFAULT_SKIN;
+use crate::track::gaps::{FrameFile, with_gaps};
 use image::RgbImage;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -55,8 +56,13 @@ fn numbering(diagnosis: &mut Diagnosis, files: &[PathBuf]) {
         return;
     };
     let (first, last) = (numbers[0], numbers[numbers.len() - 1]);
+    let is_missing = |frame: &&FrameFile| matches!(frame, FrameFile::Missing(_));
+    let predicted = with_gaps(files.to_vec()).iter().filter(is_missing).count();
     let missing = last - first - (numbers.len() as u64 - 1);
-    if missing > 0 {
+    if predicted > 0 {
+        let text = format!("{predicted} pictures between {first} and {last} are missing; their frames are predictions");
+        diagnosis.add(Severity::Warning, text);
+    } else if missing > 0 {
         let text = format!(
             "{missing} numbers between {first} and {last} have no image; frames are taken as evenly spaced, give --rate accordingly"
         );

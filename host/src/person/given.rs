@@ -18,6 +18,10 @@ use std::path::Path;
 const HAND_COLUMNS: &str = "frame,u_px,v_px,size_px,probability and, if it is known, side (left or right)";
 /// Columns of a table of faces.
 const FACE_COLUMNS: &str = "frame,u_px,v_px,size_px";
+/// A table all of whose places lie this near to the upper left corner, in both coordinates, is one
+/// of shares of the picture. Chosen: detectors guess places up to half a picture outside of it, and
+/// no hand or face keeps within two pixels of the corner.
+const MAX_SHARE: f32 = 1.5;
 
 #[derive(Debug, Deserialize)]
 struct HandRow {
@@ -124,10 +128,12 @@ impl HandTable {
     /// probability is that it is a hand, 0 to 1, and the side is left, right or empty.
     ///
     /// # Errors
-    /// Names the file, the row and the rule that it broke.
+    /// Names the file, the row and the rule that it broke. Places are shares of the picture.
     pub fn read(path: &Path) -> Result<Self> {
         let mut table = Self { has_sides: false, frames: BTreeMap::new() };
-        for row in rows::<HandRow>(path, "hands", HAND_COLUMNS)? {
+        let rows = rows::<HandRow>(path, "hands", HAND_COLUMNS)?;
+        refuse_shares(rows.iter().map(|row| [row.u_px, row.v_px]), path, "hands")?;
+        for row in rows {
             let name = || format!("hands `{}`, frame {}", path.display(), row.frame);
             let side = row.side.map(|side| if side == GivenSide::Left { Side::Left } else { Side::Right });
             let (centre, size_px, probability) = (Pixel::new(row.u_px, row.v_px), row.size_px, row.probability);
@@ -136,6 +142,14 @@ impl HandTable {
             table.frames.entry(row.frame).or_default().push((side, candidate));
         }
         Ok(table)
+    }
+
+    /// Refuses rows of frames that a run over `frames` frames does not have; `path` is the file.
+    ///
+    /// # Errors
+    /// Names the file and the frame.
+    pub fn check_frames(&self, frames: usize, path: &Path) -> Result<()> {
+        check_last(self.frames.keys().next_back(), frames, path, "hands")
     }
 
     /// The hands of a frame.
@@ -152,16 +166,29 @@ pub struct FaceTable(BTreeMap<usize, HeadBox>);
 
 impl FaceTable {
     /// Reads a table with the columns frame (from 0), u_px, v_px (the middle of the face), size_px
-    /// (the width of its box). Of two rows of a frame the last one counts.
+    /// (the width of its box). A frame has one row at most.
     ///
     /// # Errors
-    /// Names the file, the row and the rule that it broke.
+    /// Names the file, the row and the rule that it broke. Places are shares of the picture.
     pub fn read(path: &Path) -> Result<Self> {
-        let faces = rows::<FaceRow>(path, "head", FACE_COLUMNS)?.into_iter().map(|row| {
+        let rows = rows::<FaceRow>(path, "head", FACE_COLUMNS)?;
+        refuse_shares(rows.iter().map(|row| [row.u_px, row.v_px]), path, "head")?;
+        let mut faces = BTreeMap::new();
+        for row in rows {
             let name = || format!("head `{}`, frame {}", path.display(), row.frame);
-            Ok((row.frame, given_head(Pixel::new(row.u_px, row.v_px), row.size_px, &name)?))
-        });
-        Ok(Self(faces.collect::<Result<_>>()?))
+            let head = given_head(Pixel::new(row.u_px, row.v_px), row.size_px, &name)?;
+            let is_only = faces.insert(row.frame, head).is_none();
+            ensure!(is_only, "{}: it has several rows; keep that of the person who is tracked", name());
+        }
+        Ok(Self(faces))
+    }
+
+    /// Refuses rows of frames that a run over `frames` frames does not have; `path` is the file.
+    ///
+    /// # Errors
+    /// Names the file and the frame.
+    pub fn check_frames(&self, frames: usize, path: &Path) -> Result<()> {
+        check_last(self.0.keys().next_back(), frames, path, "head")
     }
 
     /// The face of a frame.
@@ -180,6 +207,30 @@ fn rows<R: DeserializeOwned>(path: &Path, what: &str, columns: &str) -> Result<V
     })?;
     ensure!(!rows.is_empty(), "{what} `{}` has no row; give the columns {columns}", path.display());
     Ok(rows)
+}
+
+/// Refuses a table in shares of the picture, whose places would all be in its corner.
+fn refuse_shares(mut places: impl Iterator<Item = [f32; 2]>, path: &Path, what: &str) -> Result<()> {
+    let are_shares = places.all(|place| place.iter().all(|coordinate| coordinate.abs() <= MAX_SHARE));
+    ensure!(
+        !are_shares,
+        "{what} `{}` holds shares of the picture (no place is beyond {MAX_SHARE}), and pixels are wanted; multiply \
+         `u_px` and `size_px` by the picture's width, `v_px` by its height",
+        path.display()
+    );
+    Ok(())
+}
+
+fn check_last(last: Option<&usize>, frames: usize, path: &Path, what: &str) -> Result<()> {
+    ensure!(
+        last.is_none_or(|last| *last < frames),
+        "{what} `{}` has a row for frame {}, and the last of {frames} frames is {}; count frames from 0, and take rows \
+         of other frames out",
+        path.display(),
+        last.copied().unwrap_or_default(),
+        frames.saturating_sub(1)
+    );
+    Ok(())
 }
 
 fn check(centre: Pixel, size_px: f32, name: &dyn Fn() -> String) -> Result<()> {
@@ -225,6 +276,35 @@ mod tests {
         refused("0,inf,2,3,1", "(inf, 2) is no place near a picture");
         refused("-1,1,2,3,1", "frame,u_px,v_px,size_px,probability");
         refused("", "has no row");
+        refused("0,0.66,0.98,0.09,1\n1,1.2,-0.1,0.09,1", "multiply `u_px` and `size_px` by the picture's width");
         assert!(hands("frame,u_px\n0,1\n").unwrap_err().to_string().contains("size_px"));
+    }
+
+    #[test]
+    fn rows_have_frames_of_the_run() {
+        let table = hands("frame,u_px,v_px,size_px,probability\n11,10,20,8,0.9\n3,0.5,0.5,8,0.4\n").unwrap();
+        let path = Path::new("hands.csv");
+        table.check_frames(12, path).unwrap();
+        let message = table.check_frames(11, path).unwrap_err().to_string();
+        assert!(message.contains("`hands.csv` has a row for frame 11, and the last of 11 frames is 10"), "{message}");
+    }
+
+    #[test]
+    fn a_frame_has_one_face() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("head.csv");
+        let read = |rows: &str| {
+            std::fs::write(&path, format!("frame,u_px,v_px,size_px\n{rows}")).unwrap();
+            FaceTable::read(&path)
+        };
+        read("0,200,100,50\n2,200,100,50\n").unwrap().check_frames(3, &path).unwrap();
+        for (rows, part) in [
+            ("0,200,100,50\n0,300,100,50\n", "frame 0: it has several rows"),
+            ("0,0.5,0.25,0.1\n", "multiply `u_px` and `size_px`"),
+        ] {
+            let message = read(rows).unwrap_err().to_string();
+            assert!(message.contains(part) && message.contains("head.csv"), "{message}");
+        }
+        assert!(read("3,200,100,50\n").unwrap().check_frames(3, &path).is_err());
     }
 }

@@ -81,7 +81,7 @@ fn tell_what_was_run(run: &mut Run, folder: &mut RunFolder, report: &Value) {
     let items: Vec<String> = skipped
         .map(|one| format!("frame {}, {}: {}", text(&one["frame"]), text(&one["file"]), text(&one["reason"])))
         .collect();
-    let what = format!("{} images could not be read; their frames are predictions", items.len());
+    let what = format!("{} images are missing or could not be read; their frames are predictions", items.len());
     folder.notice_of(Level::Skipped, what, items);
 }
 

@@ -136,6 +136,9 @@ fn tell_what_was_left_out(folder: &mut RunFolder, report: &Value) {
             folder.notice(Level::Warning, format!("{count} {what}"));
         }
     }
+    for warning in report["warnings"].as_array().into_iter().flatten() {
+        folder.notice(Level::Warning, text(warning));
+    }
     for note in report["notes"].as_array().into_iter().flatten() {
         folder.notice(Level::Note, text(note));
     }

@@ -1,14 +1,16 @@
 //! The frames of a run: one folder of images of one size, checked before anything is tracked.
 
+use super::gaps::{FrameFile, with_gaps};
 use crate::error::{Result, bail};
 use crate::images::{ImageFileError, list_images, load_rgb, size_by_header};
 use crate::reading_again::read_again;
 use image::RgbImage;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// An image that could not be read; the frame counts as missing.
+/// An image that is missing or could not be read; the frame has no measurement.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SkippedImage {
     /// Number of the frame, from 0.
@@ -19,10 +21,13 @@ pub struct SkippedImage {
     pub reason: String,
 }
 
-/// A folder of frames of one size, at least one of which can be read.
+/// A folder of frames of one size, at least one of which can be read. A number that is missing
+/// between those of two pictures is a frame whose picture cannot be read.
 #[derive(Debug, Clone)]
 pub struct FrameFolder {
     files: Vec<PathBuf>,
+    /// Frames whose picture is missing.
+    missing: BTreeSet<usize>,
     size_px: (u32, u32),
     first: (usize, RgbImage),
 }
@@ -32,9 +37,20 @@ impl FrameFolder {
     ///
     /// # Errors
     /// The folder is missing or holds no image, no image can be read, or two differ in size (the
-    /// first odd one is named). With `strict`, one cannot be read.
+    /// first odd one is named). With `strict`, one is missing or cannot be read.
     pub fn open(folder: &Path, strict: bool) -> Result<Self> {
-        let files = list_images(folder)?;
+        let frames = with_gaps(list_images(folder)?);
+        let is_missing = |frame: &usize| matches!(frames[*frame], FrameFile::Missing(_));
+        let missing: BTreeSet<usize> = (0..frames.len()).filter(is_missing).collect();
+        let files: Vec<PathBuf> = frames.iter().map(|frame| frame.path().to_path_buf()).collect();
+        if let Some(first) = missing.first().filter(|_| strict) {
+            bail!(
+                "`{}` is missing; {} frame numbers have no picture, and --strict was given (without it they are frames \
+                 without a measurement)",
+                files[*first].display(),
+                missing.len()
+            );
+        }
         let sizes: Vec<Option<(u32, u32)>> = files.par_iter().map(|file| size_by_header(file)).collect();
         check_sizes(&files, &sizes)?;
         if strict {
@@ -48,9 +64,9 @@ impl FrameFolder {
             }
         }
         let mut reason = None;
-        for (index, file) in files.iter().enumerate() {
+        for (index, file) in files.iter().enumerate().filter(|(index, _)| !missing.contains(index)) {
             match load_rgb(file) {
-                Ok(image) => return Ok(Self { files, size_px: image.dimensions(), first: (index, image) }),
+                Ok(image) => return Ok(Self { files, missing, size_px: image.dimensions(), first: (index, image) }),
                 Err(error) => reason = reason.or(Some(error)),
             }
         }
@@ -61,7 +77,8 @@ impl FrameFolder {
         )
     }
 
-    /// The files, in natural order.
+    /// The files of all frames, in natural order; where a picture is missing, the name that it
+    /// would have.
     #[must_use]
     pub fn files(&self) -> &[PathBuf] {
         &self.files
@@ -92,6 +109,9 @@ impl FrameFolder {
     /// The operating system refuses the file.
     pub fn load(&self, frame: usize) -> Result<Result<RgbImage, SkippedImage>> {
         let skipped = |reason: String| SkippedImage { frame, file: self.name(frame), reason };
+        if self.missing.contains(&frame) {
+            return Ok(Err(skipped("it is missing: names before and after it are there".to_owned())));
+        }
         let image = match read_again(|| load_rgb(&self.files[frame]), ImageFileError::is_io)? {
             Ok(image) => image,
             Err(error) => return Ok(Err(skipped(error.reason))),
@@ -120,4 +140,24 @@ fn check_sizes(files: &[PathBuf], sizes: &[Option<(u32, u32)>]) -> Result<()> {
         );
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_picture_is_a_frame_without_one() {
+        let folder = tempfile::tempdir().unwrap();
+        for number in (0..6).chain(8..13) {
+            RgbImage::new(4, 3).save(folder.path().join(format!("f_{number:02}.png"))).unwrap();
+        }
+        let frames = FrameFolder::open(folder.path(), false).unwrap();
+        assert_eq!((frames.files().len(), frames.name(12).as_str()), (13, "f_12.png"));
+        let skipped = frames.load(7).unwrap().unwrap_err();
+        assert_eq!((skipped.frame, skipped.file.as_str()), (7, "f_07.png"));
+        assert!(frames.load(8).unwrap().is_ok());
+        let message = FrameFolder::open(folder.path(), true).unwrap_err().to_string();
+        assert!(message.contains("f_06.png` is missing; 2 frame numbers have no picture"), "{message}");
+    }
 }

@@ -2,6 +2,7 @@
 
 mod arms;
 mod finish;
+pub(crate) mod gaps;
 mod input;
 mod last_picture;
 mod options;

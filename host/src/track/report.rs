@@ -47,7 +47,7 @@ pub struct RunReport {
     pub seed: u64,
     /// Whether every frame was tracked and every output written.
     pub complete: bool,
-    /// Number of frames in the folder.
+    /// Number of frames of the folder, with those whose picture is missing.
     pub frames: usize,
     /// Number of frames in the table.
     pub frames_finished: usize,
@@ -65,7 +65,7 @@ pub struct RunReport {
     /// What a user should know of how far the results go: a side that was not surely seen in most
     /// frames, and the likeliest cause.
     pub warnings: Vec<String>,
-    /// Images that could not be read.
+    /// Images that are missing or could not be read.
     pub skipped: Vec<SkippedImage>,
     /// All options, with the configuration that they led to.
     pub options: TrackOptions,
@@ -137,7 +137,11 @@ impl RunReport {
             let _ = writeln!(text, "  {side} arm: {}", words.join(", "));
         }
         if !self.skipped.is_empty() {
-            let _ = writeln!(text, "  {} images could not be read and were skipped", self.skipped.len());
+            let _ = writeln!(
+                text,
+                "  {} images are missing or could not be read; their rows are predictions",
+                self.skipped.len()
+            );
         }
         for warning in &self.warnings {
             let _ = writeln!(text, "  warning: {warning}");

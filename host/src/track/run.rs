@@ -1,7 +1,7 @@
 //! One run over an image folder or a video: load, read, step, record, frame by frame.
 
 use super::input::SkippedImage;
-use super::options::{FrontEnd, TrackOptions, check_rate};
+use super::options::{FaceSource, FrontEnd, TrackOptions, check_rate};
 use super::particles::{PARTICLE_HEADER, particle_rows};
 use super::pictures::{Pictures, Shot};
 use super::report::RunReport;
@@ -86,10 +86,12 @@ impl TrackRun {
                 frames.files()[0].display()
             );
         }
-        let mut stream = ArmStream::new(options.stream()?, trained, frames.size_px())?;
+        let chosen = options.stream()?;
+        let hands = options.hands.as_deref().map(HandTable::read).transpose()?;
+        check_tables(&options, hands.as_ref(), &chosen.face, &frames)?;
+        let mut stream = ArmStream::new(chosen, trained, frames.size_px())?;
         stream.begin(frames.first().1)?;
         let camera = *stream.camera();
-        let hands = options.hands.as_deref().map(HandTable::read).transpose()?;
         refuse_output_in_input(&options.folder, out)?;
         let out = OutputDir::create(out)?;
         let lock = OutputLock::of_folder(out.path(), resume::COMMAND)?;
@@ -263,6 +265,23 @@ impl TrackRun {
     fn timestamp_us(&self, frame: usize) -> u64 {
         (frame as f64 * 1.0e6 / self.report.options.rate_hz).round() as u64
     }
+}
+
+/// Refuses tables with rows of frames that a folder does not have.
+fn check_tables(
+    options: &TrackOptions,
+    hands: Option<&HandTable>,
+    face: &FaceSource,
+    frames: &FrameSource,
+) -> Result<()> {
+    let Some(count) = frames.certain_count() else { return Ok(()) };
+    if let (Some(table), Some(path)) = (hands, &options.hands) {
+        table.check_frames(count, path)?;
+    }
+    if let (FaceSource::Given(table), Some(path)) = (face, &options.head) {
+        table.check_frames(count, path)?;
+    }
+    Ok(())
 }
 
 /// Pictures among the frames would be frames of the next run, and overlays could replace the frames

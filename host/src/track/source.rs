@@ -60,6 +60,15 @@ impl FrameSource {
         }
     }
 
+    /// Number of frames where it is certain: a video may have fewer or more than it says.
+    #[must_use]
+    pub fn certain_count(&self) -> Option<usize> {
+        match self {
+            Self::Folder(_) => Some(self.count()),
+            Self::Video(_) => None,
+        }
+    }
+
     /// The files of a folder; none of a video.
     #[must_use]
     pub fn files(&self) -> &[PathBuf] {

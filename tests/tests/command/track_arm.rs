@@ -161,7 +161,7 @@ fn a_truncated_image_among_others_is_a_missing_frame() {
     truncate(&input.join("f_2.png"));
     fs::write(input.join("f_4.png"), "no image").unwrap();
     let named = contains("f_2.png").and(contains("f_4.png"));
-    let counted = contains("2 images could not be read");
+    let counted = contains("2 images are missing or could not be read");
     track(&input, &out).arg("--overlay").assert().success().stderr(named).stdout(counted);
     let blob_counts = column(&out, "blob_count");
     assert_eq!(blob_counts.len(), 6);

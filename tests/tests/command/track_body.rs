@@ -243,6 +243,38 @@ fn frames_without_evidence_are_predicted() {
 }
 
 #[test]
+fn points_in_other_units_or_axes_are_refused_with_the_remedy() {
+    let changes = [
+        ([100.0, 100.0, 100.0], "m from the camera, and 30 m is the most"),
+        ([1000.0, 1000.0, 1000.0], "farther than 1000 m"),
+        ([1.0, -1.0, -1.0], "100 % of the first points of `in/points` are behind the camera"),
+    ];
+    for (factors, part) in changes {
+        let scene = Scene::new("stick-wave");
+        for frame in 0..FRAMES {
+            let points_m = sinew::cloud::read(&scene.cloud(frame)).unwrap().points_m;
+            let line = |point: &sinew_core::math::Vec3| {
+                format!("{} {} {}", factors[0] * point.x, factors[1] * point.y, factors[2] * point.z)
+            };
+            let lines: Vec<String> = points_m.iter().map(line).collect();
+            scene.points(frame, &lines.iter().map(String::as_str).collect::<Vec<_>>());
+        }
+        scene.refuses(&[], &[part]);
+    }
+}
+
+#[test]
+fn ends_that_most_frames_do_not_show_are_warned_of() {
+    let scene = Scene::new("stick-wave");
+    (2..FRAMES).for_each(|frame| scene.points(frame, &[]));
+    let output = scene.track("out", &[]);
+    let summary = String::from_utf8_lossy(&output.stdout);
+    assert!(summary.contains("warning: head, hands and feet were each observed in fewer than half"), "{summary}");
+    let report = scene.report("out");
+    assert_eq!((report["warnings"].as_array().unwrap().len(), &report["observed_frames"]["head"]), (1, &2.into()));
+}
+
+#[test]
 fn a_gap_in_the_numbers_is_time_that_passes() {
     let scene = Scene::new("stick-wave");
     scene.tracks("whole", &[]);

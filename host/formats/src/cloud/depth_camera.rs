@@ -63,8 +63,10 @@ impl DepthCamera {
 fn pinhole(file: &Map<String, Value>) -> Result<([f32; 2], [f32; 2]), String> {
     let named = |names: &[&str]| number(file, names);
     let four = if let Some(k) = matrix(file, "K")? {
+        check_layout("K", "row by row", [k[6], k[7]])?;
         [k[0], k[4], k[2], k[5]]
     } else if let Some(k) = matrix(file, "intrinsic_matrix")? {
+        check_layout("intrinsic_matrix", "column by column", [k[2], k[5]])?;
         [k[0], k[4], k[6], k[7]]
     } else {
         let [fx, fy, cx, cy] = [named(&["fx"])?, named(&["fy"])?, named(&["cx", "ppx"])?, named(&["cy", "ppy"])?];
@@ -80,6 +82,15 @@ fn pinhole(file: &Map<String, Value>) -> Result<([f32; 2], [f32; 2]), String> {
         ));
     }
     Ok(([fx, fy], [cx, cy]))
+}
+
+/// The matrix by this name is no transposed one, which has its centre where a camera has zeros.
+fn check_layout(name: &str, order: &str, zeros: [f32; 2]) -> Result<(), String> {
+    if zeros == [0.0, 0.0] {
+        return Ok(());
+    }
+    let [a, b] = zeros;
+    Err(format!("`{name}` has to be {order}, and {a} and {b} stand where a camera has zeros; transpose it"))
 }
 
 /// Images have to be undistorted.
@@ -142,6 +153,8 @@ mod tests {
             (r#"{"fx": "500", "fy": 500, "cx": 320, "cy": 1}"#, "`fx` has to be a number"),
             (r#"{"fx": 0, "fy": 500, "cx": 320, "cy": 1}"#, "greater than zero"),
             (r#"{"K": [1, 2]}"#, "`K` has to be nine numbers"),
+            (r#"{"K": [580, 0, 0, 0, 570, 0, 320, 240, 1]}"#, "`K` has to be row by row, and 320 and 240 stand"),
+            (r#"{"intrinsic_matrix": [580, 0, 320, 0, 570, 240, 0, 0, 1]}"#, "`intrinsic_matrix` has to be column"),
             (r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 1, "depth_scale": -1}"#, "depth_scale has to be"),
             (r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 1, "coeffs": [0.1]}"#, "undistort them"),
         ] {

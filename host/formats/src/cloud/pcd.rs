@@ -154,7 +154,10 @@ mod tests {
     fn points_that_were_not_measured_are_counted() {
         let points = [Vec3::new(f32::NAN, f32::NAN, f32::NAN), Vec3::zeros(), Vec3::new(0.0, 0.0, 1.0)];
         for bytes in [ascii(&points), binary(&points), compressed(&points)] {
-            assert_eq!(parse(&bytes).unwrap(), PointCloud { points_m: vec![points[2]], skipped: 2, outside: 0 });
+            assert_eq!(
+                parse(&bytes).unwrap(),
+                PointCloud { points_m: vec![points[2]], skipped: 2, far: 0, outside: 0 }
+            );
         }
     }
 

@@ -96,8 +96,14 @@ fn check_header(header: &Header, bytes: usize) -> Result<(), String> {
     })
 }
 
+/// The parser's sentence, without the structure that it prints behind it.
 fn one_line(error: &ParseError) -> String {
-    error.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+    let text = error.to_string();
+    let sentence = match text.split_once("Error: ") {
+        Some((sentence, cause)) if cause.contains('{') => sentence,
+        _ => &text,
+    };
+    sentence.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// Writes points in metres as a PLY file: little endian, `float` x, y and z.
@@ -135,7 +141,7 @@ mod tests {
     #[test]
     fn other_types_properties_and_elements_do_no_harm() {
         let cloud = parse(ASCII.as_bytes()).unwrap();
-        assert_eq!(cloud, PointCloud { points_m: vec![Vec3::new(1.25, -2.0, 3.5)], skipped: 2, outside: 0 });
+        assert_eq!(cloud, PointCloud { points_m: vec![Vec3::new(1.25, -2.0, 3.5)], skipped: 2, far: 0, outside: 0 });
         assert_eq!(parse(ASCII.replace('\n', "\r\n").as_bytes()).unwrap(), cloud);
     }
 
@@ -160,10 +166,11 @@ mod tests {
             ("vertex 3", "vertex 9", "Line"),
             ("3.5 255", "three 255", "three"),
             ("nan 0 1 1", "nan 0 1", "Line"),
+            ("property float x", "property real x", "Couldn't parse line. String: 'property real x"),
         ];
         for (from, to, message) in changes {
             let found = parse(ASCII.replacen(from, to, 1).as_bytes()).unwrap_err();
-            assert!(found.contains(message) && !found.contains('\n'), "{found} does not contain {message}");
+            assert!(found.contains(message) && !found.contains(['\n', '{']), "{found} does not contain {message}");
         }
     }
 }

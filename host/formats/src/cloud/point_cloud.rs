@@ -21,6 +21,8 @@ pub struct PointCloud {
     pub points_m: Vec<Vec3>,
     /// Number of points of the file that were left out as unusable.
     pub skipped: usize,
+    /// Of these, the number beyond [`MAX_DISTANCE_M`].
+    pub far: usize,
     /// Number of points that were left out since they are outside of the region that counts.
     pub outside: usize,
 }
@@ -43,6 +45,7 @@ impl PointCloud {
             self.points_m.push(point_m);
         } else {
             self.skipped += 1;
+            self.far += usize::from(distance_m > MAX_DISTANCE_M && distance_m.is_finite());
         }
     }
 }

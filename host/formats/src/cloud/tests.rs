@@ -40,7 +40,7 @@ fn points_that_cannot_be_are_left_out_and_counted() {
     let at = |x: f32| Vec3::new(x, 0.0, 0.0);
     let points = [at(f32::NAN), at(f32::INFINITY), at(0.0), at(0.0099), at(0.0101), at(-999.0), at(1001.0), at(3.0e38)];
     let cloud = PointCloud::from_points(points);
-    assert_eq!(cloud, PointCloud { points_m: vec![at(0.0101), at(-999.0)], skipped: 6, outside: 0 });
+    assert_eq!(cloud, PointCloud { points_m: vec![at(0.0101), at(-999.0)], skipped: 6, far: 1, outside: 0 });
 }
 
 #[test]

@@ -50,6 +50,7 @@ impl BodyTrackRun {
         self.report.effective_share = self.effective_share.mean().unwrap_or(0.0);
         (self.report.error_m, self.report.joint_error_m) = (self.score.marker_m.mean(), self.score.joint_m.mean());
         self.report.lost_joint_share = self.score.lost.mean();
+        self.report.warn();
         self.report.state_crc32 = self.stream.state_crc32()?;
         let mut files = self.motion_files()?;
         files.push(finished_table(self.table)?);

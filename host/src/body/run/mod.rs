@@ -1,6 +1,7 @@
 //! `sinew track body`: a folder of point clouds becomes a table, an animation and a report.
 
 mod answer;
+mod cloud_check;
 mod finish;
 pub mod inputs;
 pub mod measures_source;

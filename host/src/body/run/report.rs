@@ -2,8 +2,14 @@
 
 use super::inputs::{BodyInputs, InputFiles};
 use super::options::BodyTrackOptions;
+use super::table::end_effectors;
+use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::body::{BodyFile, BodyPart};
+use crate::wording::side_name;
 use serde::{Deserialize, Serialize};
+use sinew_core::skeleton::Side;
+use sinew_core::skeleton::full_body::BODY_JOINT_NAMES;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Version of the form of `run.json`.
@@ -78,6 +84,11 @@ pub struct BodyRunReport {
     pub lost_joint_share: Option<f64>,
     /// How many points there were.
     pub points: PointCounts,
+    /// Frames in which the points show each end effector.
+    pub observed_frames: BTreeMap<&'static str, usize>,
+    /// What a user should know of how far the results go: end effectors that most frames do not
+    /// show.
+    pub warnings: Vec<String>,
     /// Clouds that could not be read; their rows are predictions.
     pub skipped: Vec<SkippedCloud>,
     /// What was chosen where inputs said nothing.
@@ -114,6 +125,8 @@ impl BodyRunReport {
             joint_error_m: None,
             lost_joint_share: None,
             points: PointCounts::default(),
+            observed_frames: end_effectors(inputs.part).map(|bone| (BODY_JOINT_NAMES[bone], 0)).collect(),
+            warnings: Vec::new(),
             skipped: Vec::new(),
             notes: inputs.notes.clone(),
             inputs: inputs.files.clone(),
@@ -121,6 +134,19 @@ impl BodyRunReport {
             body: BodyFile::from(&inputs.size),
             options,
         }
+    }
+
+    /// Counts the end effectors that the points of a frame show.
+    pub(super) fn count_observed(&mut self, estimate: &WholeBodyEstimate) {
+        for bone in end_effectors(self.part) {
+            let frames = self.observed_frames.entry(BODY_JOINT_NAMES[bone]).or_default();
+            *frames += usize::from(estimate.observed[bone]);
+        }
+    }
+
+    /// Says of each end effector whether fewer than half of the frames show it.
+    pub(super) fn warn(&mut self) {
+        self.warnings = unobserved(&self.observed_frames, self.frames_finished);
     }
 
     /// A few lines for a person.
@@ -158,6 +184,52 @@ impl BodyRunReport {
         if let Some(share) = self.lost_joint_share {
             let _ = writeln!(text, "  frames with a joint more than 10 cm off: {:.1} %", 100.0 * share);
         }
+        for warning in &self.warnings {
+            let _ = writeln!(text, "  warning: {warning}");
+        }
         text
+    }
+}
+
+/// A warning for each end effector that fewer than half of `all` frames show; one for all of them
+/// together.
+fn unobserved(observed_frames: &BTreeMap<&'static str, usize>, all: usize) -> Vec<String> {
+    let few = || observed_frames.iter().filter(|(_, frames)| 2 * **frames < all);
+    let count = few().count();
+    if count > 0 && count == observed_frames.len() {
+        return vec![format!(
+            "head, hands and feet were each observed in fewer than half of {all} frames; give points of one person in \
+             metres, x to the right, y down, z forward, and cut off what is behind (--inside, --above-plane)"
+        )];
+    }
+    let warning = |(name, frames): (&&str, &usize)| {
+        let name = in_words(name);
+        format!("the {name} was observed in {frames} of {all} frames; in the others its place is a prediction")
+    };
+    few().map(warning).collect()
+}
+
+/// A joint's name as a person says it.
+fn in_words(name: &str) -> String {
+    let side = |prefix: &str, side: Side| Some(format!("{} {}", side_name(side), name.strip_prefix(prefix)?));
+    side("l_", Side::Left).or_else(|| side("r_", Side::Right)).unwrap_or_else(|| name.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_that_most_frames_do_not_show_are_warned_of() {
+        let of = |head, wrist| unobserved(&BTreeMap::from([("head", head), ("l_wrist", wrist)]), 90);
+        assert_eq!(of(45, 90), Vec::<String>::new());
+        let wrist = of(90, 44);
+        assert!(
+            wrist.len() == 1 && wrist[0].starts_with("the left wrist was observed in 44 of 90 frames"),
+            "{wrist:?}"
+        );
+        let all = of(3, 0);
+        assert!(all.len() == 1 && all[0].contains("fewer than half of 90 frames"), "{all:?}");
+        assert!(unobserved(&BTreeMap::from([("head", 0)]), 0).is_empty());
     }
 }

@@ -1,6 +1,7 @@
 //! One run over a folder of clouds: read, step, record, frame by frame.
 
 use super::answer::Answer;
+use super::cloud_check::check_points;
 use super::inputs::BodyInputs;
 use super::options::{BodyTrackOptions, DEPTH_POINTS};
 use super::pictures::BodyPictures;
@@ -100,6 +101,7 @@ impl BodyTrackRun {
         options.check()?;
         let mut inputs = BodyInputs::read(&options)?;
         check_readable(&inputs)?;
+        check_points(&inputs, START_CLOUDS)?;
         let mut stream = BodyStream::new(stream_options(&options, &inputs), inputs.size, inputs.first_rad)?;
         if inputs.estimates_size {
             stream = sized(&mut inputs, stream.options().clone())?;
@@ -252,6 +254,7 @@ impl BodyTrackRun {
         }
         self.report.frames_finished += 1;
         self.report.degenerate_frames += usize::from(estimate.is_degenerate);
+        self.report.count_observed(estimate);
         self.effective_share.add(f64::from(estimate.effective_sample_size) / self.report.options.particles as f64);
         self.answers.push(answer);
     }
