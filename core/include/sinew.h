@@ -153,7 +153,7 @@
 #define SINEW_BODY_COORDINATES 17
 
 /**
- * Most points of a frame; others are left out.
+ * Most points of a frame that are used.
  */
 #define SINEW_BODY_POINTS 512
 
@@ -866,7 +866,8 @@ typedef struct SinewBodyFrame {
    */
   float (*points_m)[3];
   /**
-   * Number of points, at most 65535; those beyond `SINEW_BODY_POINTS` usable ones are left out.
+   * Number of points, at most 65535; of more than `SINEW_BODY_POINTS` usable ones so many are
+   * taken evenly through the list.
    */
   uint32_t point_count;
   /**

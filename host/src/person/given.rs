@@ -144,12 +144,13 @@ impl HandTable {
         Ok(table)
     }
 
-    /// Refuses rows of frames that a run over `frames` frames does not have; `path` is the file.
+    /// Refuses a table that counts the frames of a run over `frames` of them from 1; `path` is the
+    /// file.
     ///
     /// # Errors
-    /// Names the file and the frame.
+    /// Names the file and the frames.
     pub fn check_frames(&self, frames: usize, path: &Path) -> Result<()> {
-        check_last(self.frames.keys().next_back(), frames, path, "hands")
+        check_origin(&self.frames, frames, path, "hands")
     }
 
     /// The hands of a frame.
@@ -183,12 +184,13 @@ impl FaceTable {
         Ok(Self(faces))
     }
 
-    /// Refuses rows of frames that a run over `frames` frames does not have; `path` is the file.
+    /// Refuses a table that counts the frames of a run over `frames` of them from 1; `path` is the
+    /// file.
     ///
     /// # Errors
-    /// Names the file and the frame.
+    /// Names the file and the frames.
     pub fn check_frames(&self, frames: usize, path: &Path) -> Result<()> {
-        check_last(self.0.keys().next_back(), frames, path, "head")
+        check_origin(&self.0, frames, path, "head")
     }
 
     /// The face of a frame.
@@ -221,13 +223,14 @@ fn refuse_shares(mut places: impl Iterator<Item = [f32; 2]>, path: &Path, what: 
     Ok(())
 }
 
-fn check_last(last: Option<&usize>, frames: usize, path: &Path, what: &str) -> Result<()> {
+/// A table whose first row is not of frame 0, and whose last is of the frame behind the last one,
+/// counts from 1. Rows farther behind are of a longer recording, and are not used.
+fn check_origin<T>(table: &BTreeMap<usize, T>, frames: usize, path: &Path, what: &str) -> Result<()> {
+    let [first, last] = [table.keys().next(), table.keys().next_back()].map(|frame| frame.copied().unwrap_or(0));
     ensure!(
-        last.is_none_or(|last| *last < frames),
-        "{what} `{}` has a row for frame {}, and the last of {frames} frames is {}; count frames from 0, and take rows \
-         of other frames out",
+        first == 0 || last != frames,
+        "{what} `{}` has rows for frames {first} to {last}, and the last of {frames} frames is {}; count frames from 0",
         path.display(),
-        last.copied().unwrap_or_default(),
         frames.saturating_sub(1)
     );
     Ok(())
@@ -281,12 +284,16 @@ mod tests {
     }
 
     #[test]
-    fn rows_have_frames_of_the_run() {
+    fn frames_count_from_0() {
         let table = hands("frame,u_px,v_px,size_px,probability\n11,10,20,8,0.9\n3,0.5,0.5,8,0.4\n").unwrap();
         let path = Path::new("hands.csv");
         table.check_frames(12, path).unwrap();
+        table.check_frames(5, path).unwrap();
         let message = table.check_frames(11, path).unwrap_err().to_string();
-        assert!(message.contains("`hands.csv` has a row for frame 11, and the last of 11 frames is 10"), "{message}");
+        assert!(
+            message.contains("`hands.csv` has rows for frames 3 to 11, and the last of 11 frames is 10"),
+            "{message}"
+        );
     }
 
     #[test]

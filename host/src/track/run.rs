@@ -267,7 +267,7 @@ impl TrackRun {
     }
 }
 
-/// Refuses tables with rows of frames that a folder does not have.
+/// Refuses tables that count the frames of a folder from 1.
 fn check_tables(
     options: &TrackOptions,
     hands: Option<&HandTable>,

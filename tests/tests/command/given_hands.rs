@@ -118,8 +118,8 @@ fn a_table_that_cannot_be_used_is_refused_and_one_that_misses_frames_is_noticed(
     hands("frame,u_px,v_px,size_px,probability\n0,0.25,0.5,0.1,1\n");
     refused(65, "hands `hands.csv` holds shares of the picture");
     hands("frame,u_px,v_px,size_px,probability\n40,100,200,60,1\n");
-    refused(65, "hands `hands.csv` has a row for frame 40, and the last of 40 frames is 39; count frames from 0");
-    hands("frame,u_px,v_px,size_px,probability\n39,100,200,60,1\n");
+    refused(65, "hands `hands.csv` has rows for frames 40 to 40, and the last of 40 frames is 39; count frames from 0");
+    hands("frame,u_px,v_px,size_px,probability\n4001,100,200,60,1\n");
     let text = succeeds(root.path(), &format!("{TRACK} --out run"));
-    assert!(text.contains("--hands has a row for 1 of 40 frames; does it count them from 0?"), "{text}");
+    assert!(text.contains("--hands has a row for 0 of 40 frames; does it count them from 0?"), "{text}");
 }
