@@ -170,7 +170,7 @@ fn lengths(followed: &Followed) -> Option<String> {
 
 /// Both limbs move, and the left one lies on the right one.
 fn twins(followed: &Followed, (limb, names, sides): (&str, &str, [[usize; 3]; 2])) -> Option<String> {
-    // Of both limbs from their roots: whether they are twins, and the left end in lengths of the limb.
+    // Of both limbs from their roots: whether they are twins, and the left end in limb lengths.
     let seen: Vec<(bool, Point)> = followed
         .joints
         .frames

@@ -36,8 +36,8 @@ pub fn filled(piece: &[Option<f64>]) -> Vec<f64> {
     piece.iter().enumerate().map(|(sample, value)| value.unwrap_or_else(|| put_in(sample))).collect()
 }
 
-/// For each sample the last and the next one with a value, itself where it has one: their number and
-/// value.
+/// For each sample the last and the next one with a value, itself where it has one: their number
+/// and value.
 #[must_use]
 pub fn beside(series: &[Option<f64>]) -> Vec<[Option<(usize, f64)>; 2]> {
     let mut beside = vec![[None; 2]; series.len()];

@@ -68,7 +68,7 @@ impl Course {
     }
 }
 
-/// Variance of the person about their own cycle in each frame, as far as it is known, radians squared.
+/// Variance of the person about their own cycle in each frame, as far as it is known, rad^2.
 fn gap_variances_rad2<const N: usize>(seen: &Seen<N>, angle: usize, phased: &Phased<N>, noise_rad: f64) -> Vec<f64> {
     let over_fitted = shape::distances_over_fitted(seen, &phased.phases, angle);
     let fitted_rad2 = phased.std_rad[angle].powi(2);

@@ -36,7 +36,7 @@ pub fn with_noise_of(table: &AngleTable, options: TrackingOptions) -> TrackingOp
 
 /// Standard deviation of measured angles, radians, by the median of fourth differences between
 /// frames a thirtieth of a second apart. Those of a limb's motion are below half a degree. In a
-/// table that was interpolated from fewer frames, differences between neighbours are not the noise's.
+/// table that was interpolated from fewer frames, neighbours differ by less than the noise.
 ///
 /// `None` where too few frames were seen at such distances.
 #[must_use]
