@@ -14,14 +14,14 @@ pub(super) const MIN_NOISE_RAD: f64 = 0.0087;
 /// Frames in a second between which differences are taken.
 const DIFFERENCES_HZ: f64 = 30.0;
 
-/// Standard deviation of an angle measured so often in a second, radians: the median over the long
-/// segments. `None` where too few frames were seen at even distances.
+/// Standard deviation of a measured angle, radians: the median over the long segments, between
+/// neighbouring frames. `None` where too few successive frames were seen.
 #[must_use]
-pub fn of_table(table: &AngleTable, updates: &Updates, rate_hz: f64) -> Option<f64> {
+pub fn of_table(table: &AngleTable, updates: &Updates) -> Option<f64> {
     let seen = Seen::<ANGLES>::of_table(table, updates)?;
     let is_long = |name: &str| name != "l_shoulder" && name != "r_shoulder" && name != "l_hip" && name != "r_hip";
     let long = HUMAN.angle_names().enumerate().filter(|(_, name)| is_long(name));
-    let mut stds_rad: Vec<f64> = long.filter_map(|(angle, _)| of_angle(&seen, angle, rate_hz)).collect();
+    let mut stds_rad: Vec<f64> = long.filter_map(|(angle, _)| of_angle(&seen, angle, DIFFERENCES_HZ)).collect();
     stds_rad.sort_by(f64::total_cmp);
     stds_rad.get(stds_rad.len() / 2).map(|std_rad| std_rad.max(MIN_NOISE_RAD))
 }
@@ -29,8 +29,7 @@ pub fn of_table(table: &AngleTable, updates: &Updates, rate_hz: f64) -> Option<f
 /// The options with the noise of `table` in place of their own, where the table shows it.
 #[must_use]
 pub fn with_noise_of(table: &AngleTable, options: TrackingOptions) -> TrackingOptions {
-    let rate_hz = options.rate_hz.or_else(|| table.rate_hz()).unwrap_or(DIFFERENCES_HZ);
-    let sigma_rad = of_table(table, &options.updates, rate_hz).unwrap_or(options.sigma_rad);
+    let sigma_rad = of_table(table, &options.updates).unwrap_or(options.sigma_rad);
     TrackingOptions { sigma_rad, ..options }
 }
 

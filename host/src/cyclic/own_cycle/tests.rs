@@ -118,8 +118,12 @@ fn noise_is_found_between_interpolated_rows() {
     let twice: Vec<[Option<f64>; ANGLES]> =
         (0..2 * rows.len() - 1).map(|frame| std::array::from_fn(|angle| between(frame, angle))).collect();
     let twice = AngleTable::from_angles(0, &twice).unwrap();
-    let found_deg = noise::of_table(&twice, &Updates::All, 60.0).unwrap().to_degrees();
-    assert!((0.5..1.1).contains(&found_deg), "{found_deg} instead of 1");
+    let seen = Seen::<ANGLES>::of_table(&twice, &Updates::All).unwrap();
+    let of_rate_deg =
+        |rate_hz| (0..ANGLES).filter_map(|angle| noise::of_angle(&seen, angle, rate_hz)).sum::<f64>().to_degrees();
+    let [neighbours_deg, thirtieths_deg] = [30.0, 60.0].map(|rate_hz| of_rate_deg(rate_hz) / ANGLES as f64);
+    assert!(neighbours_deg < 0.5, "{neighbours_deg} between neighbours");
+    assert!((0.5..1.1).contains(&thirtieths_deg), "{thirtieths_deg} instead of 1");
 }
 
 /// At a steady cadence what a row's differs by is its error.
