@@ -157,10 +157,8 @@ fn lengths(followed: &Followed) -> Option<String> {
                 Some(apart(frame.joints[start]?, frame.joints[end]?) / trunk).filter(|ratio| ratio.is_finite())
             })
             .collect();
-        lengths.sort_by(f64::total_cmp);
-        let outer = (lengths.len() as f64 * OUTER_SHARE) as usize;
-        let (short, long) = (lengths.get(outer)?, lengths.get(lengths.len().checked_sub(1 + outer)?)?);
-        (lengths.len() >= MIN_FRAMES && *long > MAX_LENGTH_RATIO * short).then_some((name, *short, *long))
+        let [short, long] = inner_range(&mut lengths)?;
+        (lengths.len() >= MIN_FRAMES && long > MAX_LENGTH_RATIO * short).then_some((name, short, long))
     };
     let (name, short, long) = SEGMENTS.iter().filter_map(ratio).max_by(|a, b| (a.2 / a.1).total_cmp(&(b.2 / b.1)))?;
     Some(format!(
@@ -186,9 +184,7 @@ fn twins(followed: &Followed, (limb, names, sides): (&str, &str, [[usize; 3]; 2]
         .collect();
     let travel = |axis: usize| {
         let mut places: Vec<f64> = seen.iter().map(|(_, end)| end[axis]).collect();
-        places.sort_by(f64::total_cmp);
-        let outer = (places.len() as f64 * OUTER_SHARE) as usize;
-        places[places.len() - 1 - outer] - places[outer]
+        inner_range(&mut places).map_or(0.0, |[low, high]| high - low)
     };
     let count = seen.iter().filter(|(is_twin, _)| *is_twin).count();
     let is_most = seen.len() >= MIN_FRAMES && count as f64 > MIN_TWIN_FRAMES * seen.len() as f64;
@@ -199,6 +195,13 @@ fn twins(followed: &Followed, (limb, names, sides): (&str, &str, [[usize; 3]; 2]
             seen.len()
         )
     })
+}
+
+/// Smallest and largest of the numbers without the outer ones on both sides.
+fn inner_range(numbers: &mut [f64]) -> Option<[f64; 2]> {
+    numbers.sort_by(f64::total_cmp);
+    let outer = (numbers.len() as f64 * OUTER_SHARE) as usize;
+    Some([*numbers.get(outer)?, *numbers.get(numbers.len().checked_sub(1 + outer)?)?])
 }
 
 /// The points, if all are seen.

@@ -48,7 +48,7 @@ impl Course {
             .collect();
         // Without a gap that was the whole course.
         let smooth = if whole == measured { smooth } else { splines(&whole) };
-        let noise_rad = noise::of_angle(seen, angle, rate_hz).unwrap_or(phased.std_rad[angle]);
+        let noise_rad = noise::of_angle(seen, angle, noise::thirtieth_frames(rate_hz)).unwrap_or(phased.std_rad[angle]);
         let angles_rad = (0..measured.len()).map(|frame| smooth.angles_rad[frame].unwrap_or(bridged[frame])).collect();
         let is_outlier = (0..raw.len()).map(|frame| {
             let off = raw[frame].zip(smooth.angles_rad[frame]).map_or(0.0, |(raw, smooth)| (raw - smooth).abs());
@@ -57,7 +57,8 @@ impl Course {
         let is_outlier = is_outlier.collect();
         let leverages = measured.iter().zip(smooth.leverages).map(|(value, leverage)| value.and(leverage));
         let beside = beside(&leverages.collect::<Vec<_>>());
-        let gaps_rad2 = gap_variances_rad2(seen, angle, phased, noise_rad);
+        let has_gap = measured.iter().any(Option::is_none);
+        let gaps_rad2 = if has_gap { gap_variances_rad2(seen, angle, phased, noise_rad) } else { Vec::new() };
         let std_rad = (0..measured.len()).map(|frame| {
             let [last, next] = beside[frame];
             let [last, next] = [last.or(next), next.or(last)].map(|side| side.map_or(1.0, |(_, leverage)| leverage));

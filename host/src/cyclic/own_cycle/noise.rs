@@ -11,9 +11,6 @@ use sinew_core::skeleton::stick_figure::HUMAN;
 /// pixels. A recording without noise still differs from every model.
 pub(super) const MIN_NOISE_RAD: f64 = 0.0087;
 
-/// Frames in a second between which differences are taken.
-const DIFFERENCES_HZ: f64 = 30.0;
-
 /// Standard deviation of a measured angle, radians: the median over the long segments, between
 /// neighbouring frames. `None` where too few successive frames were seen.
 #[must_use]
@@ -21,7 +18,7 @@ pub fn of_table(table: &AngleTable, updates: &Updates) -> Option<f64> {
     let seen = Seen::<ANGLES>::of_table(table, updates)?;
     let is_long = |name: &str| name != "l_shoulder" && name != "r_shoulder" && name != "l_hip" && name != "r_hip";
     let long = HUMAN.angle_names().enumerate().filter(|(_, name)| is_long(name));
-    let mut stds_rad: Vec<f64> = long.filter_map(|(angle, _)| of_angle(&seen, angle, DIFFERENCES_HZ)).collect();
+    let mut stds_rad: Vec<f64> = long.filter_map(|(angle, _)| of_angle(&seen, angle, 1)).collect();
     stds_rad.sort_by(f64::total_cmp);
     stds_rad.get(stds_rad.len() / 2).map(|std_rad| std_rad.max(MIN_NOISE_RAD))
 }
@@ -33,13 +30,18 @@ pub fn with_noise_of(table: &AngleTable, options: TrackingOptions) -> TrackingOp
     TrackingOptions { sigma_rad, ..options }
 }
 
-/// Standard deviation of measured angles, radians, by the median of fourth differences between
-/// frames a thirtieth of a second apart. Those of a limb's motion are below half a degree. In a
-/// table that was interpolated from fewer frames, neighbours differ by less than the noise.
-///
-/// `None` where too few frames were seen at such distances.
+/// Frames in a thirtieth of a second. Fourth differences of a limb's motion are below half a degree
+/// at that distance. In a table that was interpolated from fewer frames, neighbours differ by less
+/// than the noise.
 #[must_use]
-pub fn of_angle<const N: usize>(seen: &Seen<N>, angle: usize, rate_hz: f64) -> Option<f64> {
+pub fn thirtieth_frames(rate_hz: f64) -> usize {
+    ((rate_hz / 30.0).round() as usize).max(1)
+}
+
+/// Standard deviation of measured angles, radians, by the median of fourth differences between
+/// frames that are `stride` apart. `None` where too few were seen at such distances.
+#[must_use]
+pub fn of_angle<const N: usize>(seen: &Seen<N>, angle: usize, stride: usize) -> Option<f64> {
     /// Standard deviation of the fourth difference of independent numbers: the root of
     /// 1 + 16 + 36 + 16 + 1.
     const DIFFERENCE_STD: f64 = 8.366_600_265_340_756;
@@ -47,7 +49,6 @@ pub fn of_angle<const N: usize>(seen: &Seen<N>, angle: usize, rate_hz: f64) -> O
     /// in nineteen of twenty cases.
     const MIN_DIFFERENCES: usize = 20;
     let series = seen.series(angle);
-    let stride = ((rate_hz / DIFFERENCES_HZ).round() as usize).max(1);
     let difference = |frames: &[Option<f64>]| {
         let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|index| frames[index * stride]);
         Some((a? - 4.0 * b? + 6.0 * c? - 4.0 * d? + e?).abs())

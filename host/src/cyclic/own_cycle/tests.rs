@@ -119,9 +119,10 @@ fn noise_is_found_between_interpolated_rows() {
         (0..2 * rows.len() - 1).map(|frame| std::array::from_fn(|angle| between(frame, angle))).collect();
     let twice = AngleTable::from_angles(0, &twice).unwrap();
     let seen = Seen::<ANGLES>::of_table(&twice, &Updates::All).unwrap();
-    let of_rate_deg =
-        |rate_hz| (0..ANGLES).filter_map(|angle| noise::of_angle(&seen, angle, rate_hz)).sum::<f64>().to_degrees();
-    let [neighbours_deg, thirtieths_deg] = [30.0, 60.0].map(|rate_hz| of_rate_deg(rate_hz) / ANGLES as f64);
+    let found_deg =
+        |stride| (0..ANGLES).filter_map(|angle| noise::of_angle(&seen, angle, stride)).sum::<f64>().to_degrees();
+    let [neighbours_deg, thirtieths_deg] =
+        [1, noise::thirtieth_frames(60.0)].map(|stride| found_deg(stride) / ANGLES as f64);
     assert!(neighbours_deg < 0.5, "{neighbours_deg} between neighbours");
     assert!((0.5..1.1).contains(&thirtieths_deg), "{thirtieths_deg} instead of 1");
 }
