@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn recovery_needs_three_small_errors_on_end_soon_enough() {
-        let frame = |error_px| FrameError { error_m: 0.0, error_px };
+        let frame = |error_px| FrameError { error_px, ..FrameError::default() };
         let mut errors = vec![frame(100.0); AWAY.end + 15];
         assert!(!recovered(&errors, 640));
         for error in &mut errors[AWAY.end + 4..AWAY.end + 7] {

@@ -7,19 +7,23 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 use sinew::resume::Cells;
 use sinew::track::ArmSet;
-use sinew_core::tracker::arm::ArmOptions;
+use sinew_core::tracker::arm::{ArmOptions, Status};
 use statrs::statistics::{Data, OrderStatistics};
 
 /// First frame that counts: the paper looks at its trackers after 100 frames.
 pub const FIRST_SCORED_FRAME: usize = 100;
 
 /// Error of one frame.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct FrameError {
     /// Distance of the estimated hand from the true one, metres.
     pub error_m: f64,
     /// The same in the image, pixels.
     pub error_px: f64,
+    /// The standard deviation that the estimate says of its hand, metres an axis.
+    pub hand_std_m: f64,
+    /// How the estimate came about.
+    pub status: Status,
 }
 
 /// Mean errors of one run.
@@ -65,7 +69,12 @@ pub fn track(scene: &ObservedScene, tracker: &ArmOptions, seed: u64) -> Result<V
         let estimate = arms.step(frame as u64 * scene.frame_us, Some(view))[0].estimate;
         let hand = estimate.joints.hand_m;
         let error_px = camera.project(&hand).map_or(diagonal, |pixel| f64::from(pixel.distance_px(truth.hand_px)));
-        FrameError { error_m: f64::from((hand - truth.hand_m).norm()), error_px: error_px.min(diagonal) }
+        FrameError {
+            error_m: f64::from((hand - truth.hand_m).norm()),
+            error_px: error_px.min(diagonal),
+            hand_std_m: f64::from(estimate.hand_std_m),
+            status: estimate.status,
+        }
     });
     Ok(errors.collect())
 }

@@ -6,7 +6,7 @@ use super::options::EstimateRule;
 use super::particle::Particle;
 use crate::angle::CircularSum;
 use crate::kinematics::inverse::{Goal, PoseDensity, PoseObjective, Solve};
-use crate::math::{Mat3, Vec3, max, sqrt};
+use crate::math::{Mat3, Vec3, max};
 use crate::skeleton::Side;
 use crate::skeleton::arm::{ARM_ANGLES, ArmAngles, FOREARM, UPPER_ARM};
 
@@ -111,7 +111,8 @@ pub struct ArmEstimate {
     pub joints: ArmJoints,
     /// Angles of the estimated pose, inside the limits.
     pub angles_rad: ArmAngles,
-    /// Standard deviation of the hand in the cluster, metres: root of the mean over the three axes.
+    /// Standard deviation of the hand, metres an axis: how far the particles' hands, those of other
+    /// clusters too, are from the estimated one, and how far a hand goes while no blob carries it.
     pub hand_std_m: f32,
     /// Effective sample size of all weights.
     pub effective_sample_size: f32,
@@ -133,7 +134,8 @@ pub(super) struct Cluster {
     pub candidate: Option<usize>,
     pub angles_rad: ArmAngles,
     pub joints: ArmJoints,
-    pub hand_std_m: f32,
+    /// Mean square distance of all particles' hands from the cluster's, square metres an axis.
+    pub hand_variance_m2: f32,
     /// Share of the weights at each candidate.
     pub masses: [f32; MAX_CANDIDATES],
 }
@@ -168,6 +170,9 @@ impl FrameContext<'_> {
         let candidate = (heaviest < MAX_CANDIDATES).then_some(heaviest);
         let mut cluster = self.mean_pose(members.map(|(p, w)| (p, *w)), candidate);
         cluster.masses.copy_from_slice(&masses[..MAX_CANDIDATES]);
+        let hand_m = cluster.joints.hand_m;
+        let square_m2 = particles.iter().zip(weights).map(|(p, w)| w * (p.hand_m - hand_m).norm_squared());
+        cluster.hand_variance_m2 = square_m2.sum::<f32>() / 3.0;
         cluster
     }
 
@@ -195,15 +200,11 @@ impl FrameContext<'_> {
     }
 
     /// Circular mean of the angles, then the pose next to it whose hand is the mean hand.
-    fn mean_pose<'p>(
-        &self,
-        members: impl Iterator<Item = (&'p Particle, f32)> + Clone,
-        candidate: Option<usize>,
-    ) -> Cluster {
+    fn mean_pose<'p>(&self, members: impl Iterator<Item = (&'p Particle, f32)>, candidate: Option<usize>) -> Cluster {
         let mut mass = 0.0;
         let mut hand = Vec3::zeros();
         let mut sums = [CircularSum::default(); ARM_ANGLES];
-        for (particle, weight) in members.clone() {
+        for (particle, weight) in members {
             mass += weight;
             hand += particle.hand_m * weight;
             for (sum, angle) in sums.iter_mut().zip(particle.angles_rad) {
@@ -212,7 +213,6 @@ impl FrameContext<'_> {
         }
         let mass = if mass > 0.0 { mass } else { 1.0 };
         let hand = hand / mass;
-        let variance: f32 = members.map(|(p, w)| w * (p.hand_m - hand).norm_squared()).sum::<f32>() / (3.0 * mass);
         let mut mean_rad = self.model.waiting_pose();
         for (angle, sum) in mean_rad.iter_mut().zip(&sums) {
             *angle = sum.mean_rad().unwrap_or(*angle);
@@ -230,6 +230,6 @@ impl FrameContext<'_> {
         let there = density.posture(&angles_rad);
         let joints =
             ArmJoints { shoulder_m: self.shoulder_m, elbow_m: there.ends[UPPER_ARM], hand_m: there.ends[FOREARM] };
-        Cluster { candidate, angles_rad, joints, hand_std_m: sqrt(variance), masses: [0.0; MAX_CANDIDATES] }
+        Cluster { candidate, angles_rad, joints, hand_variance_m2: 0.0, masses: [0.0; MAX_CANDIDATES] }
     }
 }

@@ -4,9 +4,10 @@ use super::estimate::ArmJoints;
 use super::limbs::{LimbDensities, LimbRoom};
 use super::memory::BlobMemory;
 use super::model::ArmModel;
+use super::options::DEFAULT_GATE;
 use super::particle::Particle;
 use crate::error::ParameterError;
-use crate::math::{Vec3, clamp};
+use crate::math::{Vec3, clamp, min};
 use crate::observation::orientation::OrientationDensity;
 use crate::particle::Weights;
 use crate::random::Stream;
@@ -172,8 +173,17 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         if !self.knows_hand(model) {
             return (model.elbow_and_hand(&self.estimate.shoulder_m, &model.waiting_pose()).1, WAITING_STD_M);
         }
-        let std_m = options.hand_std_m_per_sqrt_s * crate::math::sqrt(dt_s + self.unseen_s);
+        let (drift_m, path_m) =
+            (options.hand_std_m_per_sqrt_s * crate::math::sqrt(dt_s), self.unseen_path_std_m(model));
+        let std_m = crate::math::sqrt(drift_m * drift_m + path_m * path_m);
         (self.extrapolated_hand_m(model, dt_s), std_m)
+    }
+
+    /// How far a hand goes while no blob carries the estimate (standard deviation, metres an axis):
+    /// at the speed that the gate allows a hand that is not seen, until it may be anywhere. The
+    /// particles alone spread too little, since they keep a pose.
+    pub(super) fn unseen_path_std_m(&self, model: &ArmModel) -> f32 {
+        min(model.options().gate.unwrap_or(DEFAULT_GATE).growth_m_per_s * self.unseen_s, WAITING_STD_M)
     }
 
     /// Whether a blob carried the estimate so recently that it still says where the hand is.

@@ -9,7 +9,7 @@ use super::resample::select_ancestors;
 use super::state::ArmTracker;
 use crate::camera::Ray;
 use crate::correction::allocation::allot;
-use crate::math::{Vec3, clamp, exp, length, max};
+use crate::math::{Vec3, clamp, exp, length, max, sqrt};
 use crate::random::Stream;
 use crate::ranges::is_place;
 use crate::vision::candidate::HandCandidate;
@@ -53,12 +53,13 @@ impl<const CAPACITY: usize> ArmTracker<CAPACITY> {
         self.frame += 1;
         self.timestamp_us = Some(frame.timestamp_us);
         let carrier = cluster.candidate.and_then(|index| context.candidates.get(index));
+        let path_std_m = self.unseen_path_std_m(model);
         ArmEstimate {
             side: model.side(),
             status,
             joints: cluster.joints,
             angles_rad: cluster.angles_rad,
-            hand_std_m: cluster.hand_std_m,
+            hand_std_m: sqrt(cluster.hand_variance_m2 + path_std_m * path_std_m),
             effective_sample_size: self.weights.effective_sample_size(),
             log_evidence,
             degenerate,

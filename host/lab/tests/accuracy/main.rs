@@ -2,6 +2,7 @@
 //! what the book states.
 
 mod arm;
+mod arm_spread;
 mod body;
 mod body_ambiguity;
 mod body_first_pose;
