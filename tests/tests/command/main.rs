@@ -43,5 +43,6 @@ mod track_motions;
 mod track_upper_body;
 mod train_cyclic;
 mod train_skin;
+mod two_arms;
 mod video;
 mod walking_model;
