@@ -71,6 +71,13 @@ impl Capsule {
         crate::math::abs(length(&(point_m - near_m)) - self.radius_m)
     }
 
+    /// Whether `point_m` is inside.
+    #[must_use]
+    pub fn holds(&self, point_m: &Vec3) -> bool {
+        let away_m = point_m - self.nearest_on_axis(point_m).0;
+        away_m.dot(&away_m) <= self.radius_m * self.radius_m
+    }
+
     /// Penetration depth of two capsules, metres: the sum of their radii less the distance of their
     /// segments.
     ///

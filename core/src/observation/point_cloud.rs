@@ -76,6 +76,14 @@ impl PointBlock {
             && (0.0..=MAX_M).contains(&self.along_std_m)
     }
 
+    /// The block of those of its points that `keeps` wants; none where it wants none.
+    #[must_use]
+    pub fn retained(&self, keeps: impl Fn(&Vec3) -> bool) -> Option<Self> {
+        let all = (0..usize::from(self.count)).map(|index| self.point_m(index));
+        let kept: Vec<Vec3, BLOCK_POINTS> = all.filter(keeps).take(BLOCK_POINTS).collect();
+        (!kept.is_empty()).then(|| Self { along_std_m: self.along_std_m, ..Self::of(&kept) })
+    }
+
     fn of(points_m: &[Vec3]) -> Self {
         let mut block = Self {
             x: [0.0; BLOCK_POINTS],

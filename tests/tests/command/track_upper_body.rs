@@ -50,6 +50,18 @@ fn columns(root: &Path, out: &str) -> Vec<String> {
 }
 
 #[test]
+fn legs_in_view_do_not_draw_an_upper_body_away() {
+    let root = tempfile::tempdir().unwrap();
+    let mut simulate = sinew(root.path());
+    simulate.args(["simulate", "stereo", "--motion", "stick-wave", "--points", "1000", "--out", "in"]);
+    simulate.assert().success();
+    let mut track = sinew(root.path());
+    track.args(["track", "body", "in", "--body", "upper", "--out", "run"]).assert().success();
+    let error_m = report(root.path(), "run")["joint_error_m"].as_f64().unwrap();
+    assert!(error_m > 0.003 && error_m < 0.03, "{error_m}");
+}
+
+#[test]
 fn an_upper_body_is_tracked_where_the_scene_says_so() {
     let scene = scene();
     let root = scene.path();

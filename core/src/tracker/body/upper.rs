@@ -6,6 +6,7 @@
 
 use super::estimate::BodyEstimate;
 use super::frame::BodyFrame;
+use super::legs::Legs;
 use super::modes::{DEFAULT_MODE_OPTIONS, ModeOptions, SingleModeTracker};
 use super::pace::SpeedScaledNoise;
 use crate::error::{ParameterError, Rule, within};
@@ -227,14 +228,16 @@ impl UpperBodyTracker {
     }
 
     /// One frame, `dt_s` seconds after the one before: `points_m` in camera axes, metres, which are
-    /// brought into another order; those beyond 512 are left out. `None` before [`Self::begin`].
+    /// brought into another order. Those of the [legs](Legs), and those beyond 512, are left out.
+    /// `None` before [`Self::begin`].
     pub fn step(
         &mut self,
         points_m: &mut [Vec3],
         dt_s: f32,
     ) -> Option<(BodyEstimate<UPPER_BONES, UPPER_ANGLES>, LeftOut)> {
         let (scene, goals, tracker) = (self.scene.get()?, self.goals.get()?, self.tracker.get_mut()?);
-        let left_out = self.cloud.set(points_m, &scene.camera_m);
+        let legs = Legs::of(&tracker.pose().ends_m, &scene.radii_m, self.options.outlier_m);
+        let left_out = self.cloud.set(legs.leave_out(points_m), &scene.camera_m);
         let motion = GuidedMotion {
             process: goals,
             root: self.options.root(),

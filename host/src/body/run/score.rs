@@ -1,10 +1,12 @@
 //! How far a track is from the truth: on the skin by PIK (34), at the joints, and lost joints.
 
-use crate::body::BodyJoints;
 use crate::body::tracking::BodyFilter;
 use crate::body::tracking::ambiguity::LOST_JOINT_M;
 use crate::body::tracking::filter::WholeBodyEstimate;
+use crate::body::{BodyJoints, BodyPart};
 use sinew_core::math::Vec3;
+use sinew_core::skeleton::upper_body::UPPER_BONES;
+use sinew_core::tracker::body::Legs;
 
 /// A mean that grows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -49,7 +51,8 @@ impl BodyScore {
         markers_m: &[Option<Vec3>],
     ) -> Option<f64> {
         let surface = filter.scene().surface(&filter.scene().posture(&estimate.angles_rad));
-        for marker_m in markers_m.iter().flatten() {
+        let legs = untracked_legs(filter, joints_m);
+        for marker_m in markers_m.iter().flatten().filter(|marker_m| !legs.is_some_and(|legs| legs.hold(marker_m))) {
             self.marker_m.add(f64::from(surface.skin_distance_m(marker_m)));
         }
         let (mut frame, mut farthest_m) = (RunningMean::default(), None);
@@ -66,4 +69,17 @@ impl BodyScore {
         }
         frame.mean()
     }
+}
+
+/// The true legs where only the upper body is tracked.
+fn untracked_legs(filter: &BodyFilter, joints_m: &BodyJoints) -> Option<Legs> {
+    if filter.part() == BodyPart::Whole {
+        return None;
+    }
+    let mut ends_m = [Vec3::zeros(); UPPER_BONES];
+    for (end_m, joint_m) in ends_m.iter_mut().zip(joints_m) {
+        *end_m = (*joint_m)?;
+    }
+    let scene = filter.scene();
+    Some(Legs::of(&ends_m, &std::array::from_fn(|bone| scene.radii_m[bone]), scene.likelihood.outlier_m))
 }

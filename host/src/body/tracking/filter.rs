@@ -22,7 +22,7 @@ use sinew_core::skeleton::upper_body::{
     UPPER_ANGLES, UPPER_BONES, UPPER_COORDINATES, upper_body, upper_coordinates, upper_radii_m,
 };
 use sinew_core::skeleton::{BodyMeasures, Joint};
-use sinew_core::tracker::body::{BodyEstimate, BodyFrame, angles_of_rotation};
+use sinew_core::tracker::body::{BodyEstimate, BodyFrame, Legs, angles_of_rotation};
 use std::sync::OnceLock;
 
 /// A whole body's estimate. Of an upper body the legs hang, are not observed and have no spread.
@@ -219,14 +219,19 @@ impl BodyFilter {
     }
 
     /// One frame, `dt_s` seconds after the one before; `stick` is what is known of the stick, which
-    /// only the stick model asks.
+    /// only the stick model asks. Points of an upper body's [legs](Legs) are left out.
     pub fn step(&mut self, blocks: &[PointBlock], dt_s: f32, stick: StickSight) -> WholeBodyEstimate {
-        let seen = SeenFrame { frame: BodyFrame { dt_s, blocks }, stick, floor_y_m: self.floor_y_m };
+        let floor_y_m = self.floor_y_m;
+        let seen = |blocks| SeenFrame { frame: BodyFrame { dt_s, blocks }, stick, floor_y_m };
         match &mut self.tracked {
-            Sizes::Whole(filter) => filter.step(&seen),
+            Sizes::Whole(filter) => filter.step(&seen(blocks)),
             Sizes::Upper(filter) => {
                 self.completed = OnceLock::new();
-                let estimate = filter.step(&seen);
+                let radii_m = std::array::from_fn(|bone| self.scene.radii_m[bone]);
+                let legs = Legs::of(&filter.mean().ends_m, &radii_m, self.scene.likelihood.outlier_m);
+                let blocks: Vec<PointBlock> =
+                    blocks.iter().filter_map(|block| block.retained(|point_m| !legs.hold(point_m))).collect();
+                let estimate = filter.step(&seen(&blocks));
                 whole_estimate(&self.scene, &estimate)
             }
         }

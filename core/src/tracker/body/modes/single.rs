@@ -80,6 +80,12 @@ impl<const BONES: usize, const ANGLES: usize> SingleModeTracker<BONES, ANGLES> {
         })
     }
 
+    /// Its pose after the last frame, before the deadband.
+    #[must_use]
+    pub const fn pose(&self) -> &BodyParticle<BONES, ANGLES> {
+        &self.mode.pose
+    }
+
     /// One frame.
     pub fn step<P: GoalProcess<BONES>>(
         &mut self,
