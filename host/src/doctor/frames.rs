@@ -2,6 +2,7 @@
 
 use super::diagnosis::{Diagnosis, Severity};
 use crate::images::load_rgb;
+use crate::pixels::{GREY, is_grey};
 use crate::skin::SkinModel;
 use crate::skin::model::DEFAULT_SKIN;
 use crate::track::gaps::Numbering;
@@ -81,6 +82,10 @@ fn pixels(diagnosis: &mut Diagnosis, files: &[PathBuf]) {
     let Ok(model) = SkinModel::from_option(DEFAULT_SKIN) else { return };
     let share = mean(images.iter().filter_map(|image| skin_share(&model, image)).collect());
     let percent = 100.0 * share;
+    if images.iter().all(is_grey) {
+        diagnosis.add(Severity::Warning, format!("the images are grey; {GREY}"));
+        return;
+    }
     let [least, most] = SKIN_SHARES;
     let remedy = "show the tracker skin by --calibrate X,Y,W,H, or train a model (docs/skin.md)";
     if share < least {
