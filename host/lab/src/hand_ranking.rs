@@ -73,7 +73,7 @@ impl BlobScores {
 ///
 /// # Errors
 /// As [`FrameReader::read`].
-pub fn blob_scores(frames: &[RgbImage], boxes: &[ReferenceBox], skin: &SkinModel) -> Result<BlobScores> {
+pub fn blob_scores(frames: &[Option<RgbImage>], boxes: &[ReferenceBox], skin: &SkinModel) -> Result<BlobScores> {
     let form = |form, weights| HandLikelihood::new(form, weights, DEFAULT_AREA_FRACTIONS, DEFAULT_SCALE);
     let filled = HandLikelihood::default();
     let paper = form(LikelihoodForm::Paper, DEFAULT_WEIGHTS)?;
@@ -81,6 +81,7 @@ pub fn blob_scores(frames: &[RgbImage], boxes: &[ReferenceBox], skin: &SkinModel
     let mut reader = FrameReader::new(filled, EdgeDetector::default())?;
     let mut found = BlobScores::default();
     for (index, frame) in frames.iter().enumerate() {
+        let Some(frame) = frame else { continue };
         let image_area_px = (frame.width() * frame.height()) as f32;
         let blobs = reader.read(frame, &*skin.for_image(frame)?)?.blobs;
         let scores =
@@ -102,7 +103,7 @@ pub fn blob_scores(frames: &[RgbImage], boxes: &[ReferenceBox], skin: &SkinModel
 ///
 /// # Errors
 /// As [`blob_scores`].
-pub fn rank(frames: &[RgbImage], boxes: &[ReferenceBox], skin: &SkinModel) -> Result<HandRanking> {
+pub fn rank(frames: &[Option<RgbImage>], boxes: &[ReferenceBox], skin: &SkinModel) -> Result<HandRanking> {
     Ok(blob_scores(frames, boxes, skin)?.ranking())
 }
 

@@ -1,18 +1,18 @@
 //! Both hands on real frames with reference boxes: are the tracked hands in the boxes, and do the
 //! sides keep apart?
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use image::{RgbImage, imageops};
 use serde::{Deserialize, Serialize};
 use sinew::cli::data_error;
 use sinew::config::Config;
 use sinew::frames::FrameReader;
-use sinew::images::folder::{list_images, load_rgb};
+use sinew::images::folder::load_rgb;
 use sinew::skin::SkinModel;
-use sinew::track::{ArmSet, SideChoice};
+use sinew::track::{ArmSet, FrameFolder, SideChoice};
 use sinew_core::camera::Pixel;
 use sinew_core::tracker::arm::Status;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A reference box, pixels from the top left corner.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
@@ -80,25 +80,21 @@ pub fn read_boxes(path: &Path) -> Result<Vec<ReferenceBox>> {
     Ok(boxes)
 }
 
-/// The frames of a folder in natural order, all of one size.
+/// The frames of a folder as `sinew track arm` counts them, all of one size: a number that is
+/// missing between those of two pictures is a frame without a picture.
 ///
 /// # Errors
 /// A picture that cannot be read or has another size, by name.
-pub fn load_frames(folder: &Path) -> Result<Vec<RgbImage>> {
-    let mut frames: Vec<RgbImage> = Vec::new();
-    for path in list_images(folder)? {
-        let frame = load_rgb(&path)?;
-        if let Some(first) = frames.first().filter(|first| first.dimensions() != frame.dimensions()) {
-            let ((width, height), (first_width, first_height)) = (frame.dimensions(), first.dimensions());
-            return Err(data_error(format!(
-                "`{}` has {width} x {height} pixels, the frames before it {first_width} x {first_height}; \
-                 give frames of one size",
-                path.display()
-            )));
-        }
-        frames.push(frame);
-    }
-    Ok(frames)
+pub fn load_frames(folder: &Path) -> Result<Vec<Option<RgbImage>>> {
+    let folder = FrameFolder::open(folder, false)?;
+    let load = |(frame, file): (usize, &PathBuf)| (!folder.is_missing(frame)).then(|| load_rgb(file)).transpose();
+    Ok(folder.files().iter().enumerate().map(load).collect::<Result<_, _>>()?)
+}
+
+/// Width and height of the first picture of `frames`, pixels; zero where there is none.
+#[must_use]
+pub fn size_px(frames: &[Option<RgbImage>]) -> (u32, u32) {
+    frames.iter().flatten().next().map_or((0, 0), RgbImage::dimensions)
 }
 
 /// A window that moves over the frames, so that no constant answer can do well.
@@ -149,15 +145,14 @@ pub struct HandScores {
 /// # Errors
 /// As [`ArmSet::new`] and [`FrameReader::read`].
 pub fn score(
-    frames: &[RgbImage],
+    frames: &[Option<RgbImage>],
     boxes: &[ReferenceBox],
     window: Option<MovingWindow>,
     config: &Config,
     skin: &SkinModel,
     (rate_hz, seed): (f64, u64),
 ) -> Result<HandScores> {
-    let Some(first) = frames.first() else { bail!("there is no frame") };
-    let whole = first.dimensions();
+    let whole = size_px(frames);
     let size = window.map_or(whole, |window| window.size_px);
     let mut arms = ArmSet::new(config, size, SideChoice::Both, seed)?;
     let mut reader = FrameReader::new(config.likelihood.build()?, config.edges.build()?)?;
@@ -165,10 +160,18 @@ pub fn score(
     let mut answers = Vec::new();
     for (index, frame) in frames.iter().enumerate() {
         let corner = window.map_or((0, 0), |window| window.corner(index, frames.len(), whole));
-        let seen = imageops::crop_imm(frame, corner.0, corner.1, size.0, size.1).to_image();
-        let view = reader.read(&seen, &*skin.for_image(&seen)?)?;
+        let view = match frame {
+            Some(frame) => {
+                let seen = imageops::crop_imm(frame, corner.0, corner.1, size.0, size.1).to_image();
+                Some(reader.read(&seen, &*skin.for_image(&seen)?)?)
+            }
+            None => {
+                reader.forget_last_frame();
+                None
+            }
+        };
         let timestamp_us = (index as f64 * 1.0e6 / rate_hz) as u64;
-        let arm_views = arms.step(timestamp_us, Some(&view));
+        let arm_views = arms.step(timestamp_us, view.as_ref());
         let hand = |arm: usize| {
             let estimate = &arm_views[arm].estimate;
             if estimate.status == Status::Lost { None } else { camera.project(&estimate.joints.hand_m) }

@@ -118,7 +118,7 @@ pub struct HandsReport {
 /// # Errors
 /// As [`score`] and [`Cells::cell`]; zero seeds.
 pub fn report(
-    frames: &[RgbImage],
+    frames: &[Option<RgbImage>],
     boxes: &[ReferenceBox],
     options: HandsOptions,
     config: &Config,

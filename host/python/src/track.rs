@@ -65,10 +65,11 @@ impl How {
         };
         options.check()?;
         let table = recording.table;
-        let is_noise_found = self.sigma_deg.is_none() && self.smooth;
+        let given_rad = self.sigma_deg.map(f64::to_radians);
+        let is_noise_found = given_rad.is_none() && self.smooth;
         let options = if is_noise_found { noise::with_noise_of(table, options) } else { options };
         let filtered = track(table, model, &options)?;
-        let tracked = if self.smooth { finish(table, model, filtered, &options)? } else { filtered };
+        let tracked = if self.smooth { finish(table, model, filtered, &options, given_rad)? } else { filtered };
         let report = Report::new(table, &tracked, &options, None);
         let of_run = plausibility::doubts(&report.summary, &report.series, model, report.gait.as_ref());
         let doubts = recording.doubts.iter().cloned().chain(of_run).map(|doubt| in_python(&doubt)).collect();

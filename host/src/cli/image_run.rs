@@ -4,7 +4,8 @@ use super::console::Console;
 use super::data_error;
 use super::skin_args::SkinArgs;
 use crate::error::Error;
-use crate::images::{ImageFileError, ImageInput, VideoError, VideoFacts, VideoFrames, load_rgb};
+use crate::images::{ImageFileError, ImageInput, VideoFacts, VideoFrames, load_rgb};
+use crate::pixels::{GREY, is_grey};
 use crate::reading_again::read_again;
 use crate::skin::SkinModel;
 use anyhow::Result;
@@ -20,14 +21,18 @@ pub struct Skipped {
     strict: bool,
     console: Console,
     reasons: Vec<String>,
-    broken: Option<VideoError>,
+    /// The first failure after which what was read is still written.
+    failure: Option<Error>,
+    /// Pictures that were read, and those without colours among them.
+    read: usize,
+    grey: usize,
 }
 
 impl Skipped {
     /// None so far; `strict` makes the first one an error.
     #[must_use]
     pub fn new(strict: bool, console: Console) -> Self {
-        Self { strict, console, reasons: Vec::new(), broken: None }
+        Self { strict, console, reasons: Vec::new(), failure: None, read: 0, grey: 0 }
     }
 
     /// How many.
@@ -42,13 +47,27 @@ impl Skipped {
         &self.reasons
     }
 
-    /// After what was read is written: why a video ended before its end.
+    /// After what was read is written: why a video ended before its end, or which file the
+    /// operating system refused.
     ///
     /// # Errors
     /// It did.
     pub fn whole(self) -> Result<()> {
-        let kept = "what came before is written".to_owned();
-        self.broken.map_or(Ok(()), |broken| Err(Error::Unfinished { error: Box::new(broken.into()), kept }.into()))
+        let kept = "what could be read is written".to_owned();
+        self.failure.map_or(Ok(()), |failure| Err(Error::Unfinished { error: Box::new(failure), kept }.into()))
+    }
+
+    /// Counts a picture that was read.
+    fn count_read(&mut self, image: &RgbImage) {
+        self.read += 1;
+        self.grey += usize::from(is_grey(image));
+    }
+
+    /// Says so if pictures have no colours.
+    fn tell_of_grey(&self) {
+        if self.grey > 0 {
+            self.console.note(format!("{} of {} pictures are grey; {GREY}", self.grey, self.read));
+        }
     }
 
     fn add(&mut self, reason: String) -> Result<()> {
@@ -67,8 +86,8 @@ impl Skipped {
 /// The model is calibrated on the first one, if that was asked for; it then has to be readable.
 ///
 /// # Errors
-/// Whatever `take` refuses; an image that is none if strict or if all are; a file that the
-/// operating system refuses; a bad calibration; no ffmpeg for a video.
+/// Whatever `take` refuses; an image that cannot be read if strict, or if all cannot; a bad
+/// calibration; no ffmpeg for a video.
 pub fn load_each(
     input: &ImageInput,
     skin: &SkinArgs,
@@ -100,16 +119,18 @@ fn load_video(
             Ok(Some(image)) => image,
             Ok(None) => break,
             Err(broken) => {
-                skipped.broken = Some(broken);
+                skipped.failure = Some(broken.into());
                 break;
             }
         };
         if let (0, Some(rectangle)) = (index, skin.calibrate) {
             *model = model.calibrated(&image, rectangle)?;
         }
+        skipped.count_read(&image);
         take(model, index, &image)?;
     }
     bar.finish_and_clear();
+    skipped.tell_of_grey();
     Ok(())
 }
 
@@ -121,30 +142,69 @@ fn load_files(
     take: Take<'_>,
 ) -> Result<()> {
     let bar = skipped.console.bar(files.len() as u64, BAR)?;
+    let mut was_refused = false;
     for (index, file) in files.iter().enumerate() {
         bar.set_position(index as u64);
-        let image = match read_again(|| load_rgb(file), ImageFileError::is_io)? {
-            Ok(image) => image,
-            Err(error) if files.len() == 1 => return Err(error.into()),
-            Err(error) if index == 0 && skin.calibrate.is_some() => {
+        let loaded = load(file, was_refused);
+        was_refused = loaded.is_err();
+        let image = match loaded {
+            Ok(Ok(image)) => image,
+            Ok(Err(error)) if files.len() == 1 => return Err(error.into()),
+            Ok(Err(error)) if index == 0 && skin.calibrate.is_some() => {
                 return Err(data_error(format!("{error}; --calibrate needs the first image")));
             }
-            Err(error) => {
+            Ok(Err(error)) => {
                 bar.suspend(|| skipped.add(error.to_string()))?;
+                continue;
+            }
+            Err(refusal) if files.len() == 1 || skipped.strict || (index == 0 && skin.calibrate.is_some()) => {
+                return Err(refusal.into());
+            }
+            Err(refusal) => {
+                bar.suspend(|| skipped.add(refusal.to_string()))?;
+                skipped.failure.get_or_insert(refusal);
                 continue;
             }
         };
         if let (0, Some(rectangle)) = (index, skin.calibrate) {
             *model = model.calibrated(&image, rectangle)?;
         }
+        skipped.count_read(&image);
         take(model, index, &image)?;
     }
     bar.finish_and_clear();
     if skipped.count() == files.len() {
-        return Err(data_error(format!("none of the {} images can be read", files.len())));
+        let none = || data_error(format!("none of the {} images can be read", files.len()));
+        return Err(skipped.failure.take().map_or_else(none, Into::into));
     }
+    skipped.tell_of_grey();
     if skipped.count() > 0 {
         skipped.console.note(format!("{} of {} images were skipped", skipped.count(), files.len()));
     }
     Ok(())
+}
+
+/// Reads a file, again for a second where the operating system refuses it, unless the file before
+/// `was_refused`, too: a folder that is gone does not take a second for each of its files.
+fn load(file: &Path, was_refused: bool) -> Result<Result<RgbImage, ImageFileError>, Error> {
+    match read_again(|| load_rgb(file), |error| !was_refused && error.is_io())? {
+        Err(error) if error.is_io() => Err(Error::Unreadable(error.to_string())),
+        loaded => Ok(loaded),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_after_a_refused_one_is_tried_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let gone = folder.path().join("gone.png");
+        let start = std::time::Instant::now();
+        assert!(matches!(load(&gone, true), Err(Error::Unreadable(text)) if text.contains("gone.png")));
+        assert!(start.elapsed().as_millis() < 500, "it was tried again");
+        std::fs::write(&gone, "no picture").unwrap();
+        assert!(load(&gone, true).unwrap().is_err(), "its content is none");
+    }
 }

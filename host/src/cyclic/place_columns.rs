@@ -72,10 +72,10 @@ impl PlaceColumns {
         Some([toe[0] - heel[0], toe[1] - heel[1]])
     }
 
-    /// Length of a segment.
+    /// Length of a segment; `None` where it is missing or zero, which is no length.
     #[must_use]
     pub fn length(&self, row: &AngleRow, angle: usize) -> Option<f64> {
-        number(row, self.lengths[angle]?)
+        number(row, self.lengths[angle]?).filter(|length| *length > 0.0)
     }
 
     /// A point, forward and down: x is turned for a person who faced left.

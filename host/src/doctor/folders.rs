@@ -63,17 +63,18 @@ fn run(path: &Path) -> Diagnosis {
     diagnosis
 }
 
-/// The frames of a folder of clouds, or of depth images beside their camera.
-fn frames_of(path: &Path) -> Result<CloudFolder, CloudError> {
+/// The frames of a folder of clouds, or of depth images beside their camera, and notes on that.
+fn frames_of(path: &Path) -> Result<(CloudFolder, Vec<String>), CloudError> {
     let found = FoundSource::find(path, None, Region::default())?;
-    found.source.open(&found.folder)
+    Ok((found.source.open(&found.folder)?, found.notes))
 }
 
 /// A folder that `sinew track body` takes.
 fn clouds(path: &Path) -> Diagnosis {
     let mut diagnosis = Diagnosis::new(path, "folder of point clouds");
     match frames_of(path) {
-        Ok(clouds) => {
+        Ok((clouds, notes)) => {
+            notes.into_iter().for_each(|note| diagnosis.add(Severity::Warning, note));
             diagnosis.add(Severity::Good, format!("{} clouds", clouds.frames.len()));
             if clouds.missing() > 0 {
                 let text = format!("{} frame numbers have no cloud; the time steps there are longer", clouds.missing());

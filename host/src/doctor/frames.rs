@@ -1,11 +1,11 @@
 //! A folder of video frames, as `sinew track arm` takes it.
 
 use super::diagnosis::{Diagnosis, Severity};
-use crate::cloud::frame_number::frame_numbers;
 use crate::images::load_rgb;
+use crate::pixels::{GREY, is_grey};
 use crate::skin::SkinModel;
 use crate::skin::model::DEFAULT_SKIN;
-use crate::track::gaps::{FrameFile, with_gaps};
+use crate::track::gaps::Numbering;
 use image::RgbImage;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -48,17 +48,11 @@ pub(super) fn examine(path: &Path, files: &[PathBuf]) -> Diagnosis {
 
 /// Gaps in the numbers of the names.
 fn numbering(diagnosis: &mut Diagnosis, files: &[PathBuf]) {
-    let stems: Vec<String> =
-        files.iter().map(|file| file.file_stem().unwrap_or_default().to_string_lossy().into_owned()).collect();
-    let stems: Vec<&str> = stems.iter().map(String::as_str).collect();
-    let Some(numbers) = frame_numbers(&stems) else {
+    let Some(numbering) = Numbering::of(files) else {
         diagnosis.add(Severity::Warning, "the names do not number the frames; see that their order is that of time");
         return;
     };
-    let (first, last) = (numbers[0], numbers[numbers.len() - 1]);
-    let is_missing = |frame: &&FrameFile| matches!(frame, FrameFile::Missing(_));
-    let predicted = with_gaps(files.to_vec()).iter().filter(is_missing).count();
-    let missing = last - first - (numbers.len() as u64 - 1);
+    let ([first, last], predicted, missing) = (numbering.ends(), numbering.missing(), numbering.unused());
     if predicted > 0 {
         let text = format!("{predicted} pictures between {first} and {last} are missing; their frames are predictions");
         diagnosis.add(Severity::Warning, text);
@@ -88,6 +82,10 @@ fn pixels(diagnosis: &mut Diagnosis, files: &[PathBuf]) {
     let Ok(model) = SkinModel::from_option(DEFAULT_SKIN) else { return };
     let share = mean(images.iter().filter_map(|image| skin_share(&model, image)).collect());
     let percent = 100.0 * share;
+    if images.iter().all(is_grey) {
+        diagnosis.add(Severity::Warning, format!("the images are grey; {GREY}"));
+        return;
+    }
     let [least, most] = SKIN_SHARES;
     let remedy = "show the tracker skin by --calibrate X,Y,W,H, or train a model (docs/skin.md)";
     if share < least {

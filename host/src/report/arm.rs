@@ -25,7 +25,7 @@ pub fn arm_run(mut folder: RunFolder, pictures: &mut Pictures) -> Run {
         folder.check_version("run.json", &report, u64::from(REPORT_VERSION));
         tell_what_was_run(&mut run, &mut folder, &report);
     }
-    let track = folder.table("track.csv", "Hand, elbow and shoulder of each frame and side");
+    let track = folder.table_of_all_frames("track.csv", "Hand, elbow and shoulder of each frame and side");
     if let Some(track) = track {
         for column in PLOTTED.iter().filter(|column| !track.has(column)) {
             folder

@@ -99,8 +99,31 @@ impl RunFolder {
         if self.has(name) { self.table(name, title) } else { None }
     }
 
+    /// Reads the CSV file `name`, which such a run has with a row for each frame, and says so where
+    /// frames have none.
+    pub fn table_of_all_frames(&mut self, name: &str, title: &str) -> Option<Table> {
+        if !self.has(name) {
+            return self.table(name, title);
+        }
+        let read = self.read_at(&self.path.join(name), name, title)?;
+        let gaps = read.0.frame_gaps();
+        let items = gaps.iter().map(|[first, last]| match last - first {
+            0 => format!("frame {first}"),
+            _ => format!("frames {first} to {last}"),
+        });
+        let what = format!("doubt: {name} jumps over frames, which are drawn as gaps; the file is not the whole track");
+        self.notice_of(Level::Warning, what, items.collect());
+        Some(self.shortened(read))
+    }
+
     /// Reads a CSV file that may lie elsewhere, as the table `name`.
     pub fn table_at(&mut self, path: &Path, name: &str, title: &str) -> Option<Table> {
+        let read = self.read_at(path, name, title)?;
+        Some(self.shortened(read))
+    }
+
+    /// The table with the length of its text, bytes.
+    fn read_at(&mut self, path: &Path, name: &str, title: &str) -> Option<(Table, usize)> {
         let bytes = match read_regular(path) {
             Ok(bytes) => bytes,
             Err(reason) => {
@@ -108,7 +131,7 @@ impl RunFolder {
                 return None;
             }
         };
-        let (mut table, odd) = Table::parse(name, title, &bytes);
+        let (table, odd) = Table::parse(name, title, &bytes);
         if odd.not_text {
             self.notice(Level::Warning, format!("{name} holds bytes that are no UTF-8; they are shown as \u{fffd}"));
         }
@@ -123,13 +146,19 @@ impl RunFolder {
             self.notice(Level::Missing, format!("{name} has no rows"));
             return None;
         }
-        let every = bytes.len().div_ceil(TABLE_BYTES);
+        Some((table, bytes.len()))
+    }
+
+    /// The table, or of a long one every n-th frame.
+    fn shortened(&mut self, (mut table, bytes): (Table, usize)) -> Table {
+        let every = bytes.div_ceil(TABLE_BYTES);
         if every > 1 {
             table.thin(every);
+            let name = &table.name;
             let text = format!("{name} is long; the page shows one frame of {every}, the file holds them all");
             self.notice(Level::Note, text);
         }
-        Some(table)
+        table
     }
 
     /// Where a path of a run's record leads: as it stands, or as seen from a folder above the run

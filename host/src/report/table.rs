@@ -89,6 +89,18 @@ impl Table {
         cells.filter(|cell| seen.insert(cell.as_str())).cloned().collect()
     }
 
+    /// First and last number of the frames that the table jumps over, in each place where it does
+    /// so by more than the usual step.
+    #[must_use]
+    pub fn frame_gaps(&self) -> Vec<[u64; 2]> {
+        let frames: Vec<u64> = self.distinct("frame").iter().filter_map(|frame| frame.trim().parse().ok()).collect();
+        let pairs = || frames.windows(2).filter(|pair| pair[1] > pair[0]);
+        let mut steps: Vec<u64> = pairs().map(|pair| pair[1] - pair[0]).collect();
+        steps.sort_unstable();
+        let Some(&usual) = steps.get(steps.len() / 2) else { return Vec::new() };
+        pairs().filter(|pair| pair[1] - pair[0] > usual).map(|pair| [pair[0] + 1, pair[1] - 1]).collect()
+    }
+
     /// Keeps the rows of every `every`-th of the different cells of the first column.
     pub fn thin(&mut self, every: usize) {
         let mut before: Option<String> = None;
@@ -156,6 +168,13 @@ mod tests {
         table.thin(2);
         assert_eq!(table.to_csv(), "frame,side\n0,left\n0,right\n2,left\n2,right\n");
         assert_eq!(table.distinct("frame"), ["0", "2"]);
+    }
+
+    #[test]
+    fn frames_that_are_jumped_over_are_gaps() {
+        let gaps = |frames: &str| Table::parse("t.csv", "", format!("frame\n{frames}").as_bytes()).0.frame_gaps();
+        assert_eq!(gaps("0\n0\n1\n2\n4\n5\n9\n"), [[3, 3], [6, 8]]);
+        assert!(gaps("0\n5\n10\n").is_empty() && gaps("4\n").is_empty() && gaps("x\n").is_empty());
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Pictures that are missing from a folder, by the frame numbers in the names of the others.
 
-use crate::cloud::frame_number::frame_numbers;
+use crate::cloud::frame_number::{FrameNumber, frame_numbers};
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// A folder has gaps where more than these many of so many steps from number to number are alike.
@@ -27,32 +28,71 @@ impl FrameFile {
     }
 }
 
+/// The numbers in the names of a folder's pictures.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Numbering {
+    /// The number of each file.
+    numbers: Vec<FrameNumber>,
+    /// The step that nearly all numbers grow by; none where missing numbers are no gaps.
+    step: Option<u64>,
+}
+
+impl Numbering {
+    /// Of `files` in natural order; `None` where the names do not number them.
+    pub fn of(files: &[PathBuf]) -> Option<Self> {
+        let stems: Vec<_> = files.iter().map(|file| file.file_stem().unwrap_or_default().to_string_lossy()).collect();
+        let stems: Vec<&str> = stems.iter().map(AsRef::as_ref).collect();
+        let numbers = frame_numbers(&stems)?;
+        let step = regular_step(&numbers);
+        Some(Self { numbers, step })
+    }
+
+    /// The first and the last number.
+    pub fn ends(&self) -> [u64; 2] {
+        [self.numbers.first(), self.numbers.last()].map(|end| end.map_or(0, |end| end.number))
+    }
+
+    /// How many numbers between the first and the last one have no picture.
+    pub fn unused(&self) -> u64 {
+        let [first, last] = self.ends();
+        last - first - (self.numbers.len() as u64 - 1)
+    }
+
+    /// The numbers of missing pictures that follow the picture at `index`.
+    fn missing_after(&self, index: usize) -> impl Iterator<Item = u64> {
+        let number = self.numbers[index].number;
+        let next = self.numbers.get(index + 1).map_or(number, |next| next.number);
+        let step = self.step.unwrap_or(next - number).max(1);
+        (number.saturating_add(step)..next).step_by(step as usize)
+    }
+
+    /// How many pictures are missing, whose frames get a prediction.
+    pub fn missing(&self) -> usize {
+        (0..self.numbers.len()).map(|index| self.missing_after(index).count()).sum()
+    }
+}
+
 /// A frame for each of `files`, and for each number that is missing between two of them. Numbers
 /// grow by the step that nearly all have, whichever that is. There are no gaps where names have no
 /// numbers, steps are uneven, or more pictures would be missing than there are.
 pub(crate) fn with_gaps(files: Vec<PathBuf>) -> Vec<FrameFile> {
-    let Some((numbers, step)) = regular_numbers(&files) else {
+    let Some(numbering) = Numbering::of(&files) else {
         return files.into_iter().map(FrameFile::Present).collect();
     };
     let mut frames = Vec::with_capacity(files.len());
     for (index, file) in files.into_iter().enumerate() {
-        let number = numbers[index];
-        let next = numbers.get(index + 1).copied().unwrap_or(number);
-        let missing = (number.saturating_add(step)..next).step_by(step as usize);
-        let names: Vec<PathBuf> = missing.map(|missing| renumbered(&file, number, missing)).collect();
+        let digits = &numbering.numbers[index].digits;
+        let name = |missing| FrameFile::Missing(renumbered(&file, digits, missing));
+        let names: Vec<FrameFile> = numbering.missing_after(index).map(name).collect();
         frames.push(FrameFile::Present(file));
-        frames.extend(names.into_iter().map(FrameFile::Missing));
+        frames.extend(names);
     }
     frames
 }
 
-/// The number of each file and the step of nearly all; none where numbers are missing that are no
-/// gaps.
-fn regular_numbers(files: &[PathBuf]) -> Option<(Vec<u64>, u64)> {
-    let stems: Vec<_> = files.iter().map(|file| file.file_stem().unwrap_or_default().to_string_lossy()).collect();
-    let stems: Vec<&str> = stems.iter().map(AsRef::as_ref).collect();
-    let numbers = frame_numbers(&stems)?;
-    let steps: Vec<u64> = numbers.windows(2).map(|pair| pair[1] - pair[0]).collect();
+/// The step of nearly all `numbers`; none where numbers are missing that are no gaps.
+fn regular_step(numbers: &[FrameNumber]) -> Option<u64> {
+    let steps: Vec<u64> = numbers.windows(2).map(|pair| pair[1].number - pair[0].number).collect();
     let mut uses: BTreeMap<u64, usize> = BTreeMap::new();
     for step in &steps {
         *uses.entry(*step).or_default() += 1;
@@ -61,27 +101,14 @@ fn regular_numbers(files: &[PathBuf]) -> Option<(Vec<u64>, u64)> {
     let [part, of] = REGULAR_STEPS;
     let is_regular = of * count > part * steps.len() && steps.iter().all(|other| other % step == 0);
     let missing = steps.iter().fold(0_u64, |sum, other| sum.saturating_add(other / step - 1));
-    (is_regular && missing < files.len() as u64).then_some((numbers, step))
+    (is_regular && missing < numbers.len() as u64).then_some(step)
 }
 
-/// The name of `file` with `wanted` in place of its last `number`, as many digits wide.
-fn renumbered(file: &Path, number: u64, wanted: u64) -> PathBuf {
-    let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
-    let (name, stem) = (part(file.file_name()), part(file.file_stem()));
-    let mut rest = stem.as_str();
-    loop {
-        rest = rest.trim_end_matches(|c: char| !c.is_ascii_digit());
-        let before = rest.trim_end_matches(|c: char| c.is_ascii_digit());
-        let (begin, end) = (before.len(), rest.len());
-        if rest[begin..].parse() == Ok(number) {
-            let width = end - begin;
-            return file.with_file_name(format!("{before}{wanted:0width$}{}", &name[end..]));
-        }
-        if rest.is_empty() {
-            return file.to_path_buf();
-        }
-        rest = before;
-    }
+/// The name of `file` with `wanted` in place of its `digits`, as many wide.
+fn renumbered(file: &Path, digits: &Range<usize>, wanted: u64) -> PathBuf {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let width = digits.len();
+    file.with_file_name(format!("{}{wanted:0width$}{}", &name[..digits.start], &name[digits.end..]))
 }
 
 #[cfg(test)]

@@ -91,6 +91,12 @@ impl FrameFolder {
         name.unwrap_or_default().to_string_lossy().into_owned()
     }
 
+    /// Whether the picture of one frame is missing between others.
+    #[must_use]
+    pub fn is_missing(&self, frame: usize) -> bool {
+        self.missing.contains(&frame)
+    }
+
     /// Width and height of every frame, pixels.
     #[must_use]
     pub fn size_px(&self) -> (u32, u32) {
@@ -109,7 +115,7 @@ impl FrameFolder {
     /// The operating system refuses the file.
     pub fn load(&self, frame: usize) -> Result<Result<RgbImage, SkippedImage>> {
         let skipped = |reason: String| SkippedImage { frame, file: self.name(frame), reason };
-        if self.missing.contains(&frame) {
+        if self.is_missing(frame) {
             return Ok(Err(skipped("it is missing: names before and after it are there".to_owned())));
         }
         let image = match read_again(|| load_rgb(&self.files[frame]), ImageFileError::is_io)? {

@@ -14,6 +14,7 @@ use crate::error::{Result, WriteContext, bail};
 use crate::frames::FrameView;
 use crate::output::{OutputDir, OutputLock, PendingFile};
 use crate::person::HandTable;
+use crate::pixels::is_grey;
 use crate::resume::{Begun, Checkpoints, PARTICLE_TABLE, TRACK_TABLE};
 use crate::skin::SkinModel;
 use image::RgbImage;
@@ -207,8 +208,8 @@ impl TrackRun {
             hands: self.hands.as_ref().filter(|_| image.is_some()).map(|hands| hands.at(frame)),
             head: None,
         })?;
-        if let Some(view) = &view {
-            self.report.seen.count(view, knows_face, self.stream.arms());
+        if let (Some(view), Some(image)) = (&view, &image) {
+            self.report.seen.count(view, is_grey(image), knows_face, self.stream.arms());
         }
         for arm in &arms {
             let row = TrackRow {

@@ -2,6 +2,7 @@
 
 use super::arms::ArmSet;
 use crate::frames::FrameView;
+use crate::pixels::GREY;
 use serde::{Deserialize, Serialize};
 
 /// How many frames showed what a tracker needs.
@@ -9,7 +10,9 @@ use serde::{Deserialize, Serialize};
 pub struct SeenCounts {
     /// Frames that could be read.
     pub frames: usize,
-    /// Of these, those in which the person's face was known.
+    /// Of these, those without colours.
+    pub grey: usize,
+    /// Those in which the person's face was known.
     pub with_face: usize,
     /// Those with something that may be a hand: skin, or a row of `--hands`.
     pub with_candidates: usize,
@@ -21,9 +24,10 @@ pub struct SeenCounts {
 
 impl SeenCounts {
     /// Counts a frame.
-    pub(super) fn count(&mut self, view: &FrameView, is_face_known: bool, arms: &ArmSet) {
+    pub(super) fn count(&mut self, view: &FrameView, is_grey: bool, is_face_known: bool, arms: &ArmSet) {
         let is_within_reach = view.candidates.iter().any(|candidate| arms.reach(candidate.centre));
         self.frames += 1;
+        self.grey += usize::from(is_grey);
         self.with_face += usize::from(is_face_known);
         self.with_candidates += usize::from(!view.candidates.is_empty());
         self.within_reach += usize::from(is_within_reach);
@@ -38,9 +42,11 @@ impl SeenCounts {
         if 2 * sure >= all {
             return None;
         }
-        let Self { frames, with_face, with_candidates, within_reach, with_motion } = *self;
+        let Self { frames, grey, with_face, with_candidates, within_reach, with_motion } = *self;
         let cause = if 2 * with_candidates < frames && has_table {
             format!("--hands has a row for {with_candidates} of {frames} frames; does it count them from 0?")
+        } else if 2 * grey > frames && !has_table {
+            format!("{grey} of {frames} frames are grey; {GREY}, or the hands with --hands")
         } else if 2 * with_candidates < frames {
             format!("skin was found in {with_candidates} of {frames} frames; more light helps, or --calibrate")
         } else if 2 * within_reach < with_candidates {
@@ -66,7 +72,7 @@ mod tests {
     use super::*;
 
     const ALL: SeenCounts =
-        SeenCounts { frames: 100, with_face: 100, with_candidates: 100, within_reach: 100, with_motion: 100 };
+        SeenCounts { frames: 100, grey: 0, with_face: 100, with_candidates: 100, within_reach: 100, with_motion: 100 };
     const UNSURE: [usize; 2] = [10, 100];
 
     #[test]
@@ -82,6 +88,10 @@ mod tests {
             let cause = seen.cause(UNSURE, true, false).unwrap();
             assert!(cause.contains(part), "{cause}");
         };
+        named(
+            SeenCounts { grey: 60, with_candidates: 0, ..ALL },
+            "60 of 100 frames are grey; skin is found by its colour",
+        );
         named(SeenCounts { with_candidates: 20, ..ALL }, "skin was found in 20 of 100 frames");
         named(SeenCounts { within_reach: 30, ..ALL }, "let the face be seen, or give shoulders");
         named(SeenCounts { with_motion: 3, ..ALL }, "something moved in 3 of 100 frames only");

@@ -4,6 +4,7 @@ use assert_cmd::Command;
 use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use sinew::cyclic::CutList;
+use sinew_core::random::Stream;
 use sinew_tests::{shared_data, sinew_command};
 use std::fs;
 use std::path::Path;
@@ -63,6 +64,48 @@ fn long_walks_are_cut_without_a_break() {
         assert!(cuts.windows(2).all(|pair| pair[0].end_frame == pair[1].start_frame), "{file}: {cuts:?}");
         assert_eq!(cuts[0].file, "t.csv");
     }
+}
+
+/// Places of a squat from the side: forward and down, pixels. Hips and shoulders are four wide.
+fn squatting(depth: f64, side: f64) -> [(&'static str, [f64; 2]); 6] {
+    let [shank, thigh, trunk] = [-0.5, 1.6, 0.7].map(|most: f64| most * depth);
+    let up = |[x, y]: [f64; 2], length: f64, lean: f64| [x + length * lean.sin(), y - length * lean.cos()];
+    let ankle = [400.0 + 3.0 * side, 500.0];
+    let knee = up(ankle, 85.0, -shank);
+    let hip = up(knee, 85.0, -thigh);
+    let shoulder = up([hip[0] - side, hip[1]], 100.0, trunk);
+    let elbow = up(shoulder, 60.0, 2.4);
+    let wrist = up(elbow, 50.0, 1.2);
+    [("ankle", ankle), ("knee", knee), ("hip", hip), ("shoulder", shoulder), ("elbow", elbow), ("wrist", wrist)]
+}
+
+/// Keypoints with three pixels of noise of a person who squats every three seconds and rests
+/// between two squats.
+#[test]
+fn a_squat_from_the_side_is_cut() {
+    let root = tempfile::tempdir().unwrap();
+    let sides = [("l", 2.0), ("r", -2.0)];
+    let mut text = "frame".to_owned();
+    for (side, (joint, _)) in sides.iter().flat_map(|(side, _)| squatting(0.0, 0.0).map(|joint| (side, joint))) {
+        text.push_str(&format!(",{side}_{joint}_x_px,{side}_{joint}_y_px"));
+    }
+    for frame in 0..630_u64 {
+        let phase = (frame % 90) as f64 / 90.0;
+        let depth = if phase < 0.3 { 0.0 } else { 0.5 - 0.5 * (std::f64::consts::TAU * (phase - 0.3) / 0.7).cos() };
+        text.push_str(&format!("\n{frame}"));
+        let places = sides.iter().flat_map(|(_, side)| squatting(depth, *side)).flat_map(|(_, place)| place);
+        for (number, place) in (0..).zip(places) {
+            text.push_str(&format!(",{:.2}", place + 3.0 * f64::from(Stream::new(frame, 0, number).normal())));
+        }
+    }
+    fs::write(root.path().join("squat.csv"), text + "\n").unwrap();
+    let mut angles = Command::from_std(sinew_command());
+    angles.current_dir(root.path()).args(["angles", "squat.csv", "--input-rate", "30", "--out", "t.csv"]);
+    angles.assert().success();
+    sinew(root.path()).args(["t.csv", "--out", "c.csv"]).assert().success();
+    let list = CutList::read(&root.path().join("c.csv")).unwrap();
+    let is_squat = list.cuts().iter().all(|cut| cut.duration_frames().abs_diff(90) <= 4);
+    assert!(list.cuts().len() >= 5 && is_squat, "{:?}", list.cuts());
 }
 
 #[test]

@@ -15,8 +15,12 @@ fn sinew(words: &[&str]) -> Command {
 
 /// A folder of six rendered frames.
 fn frames(root: &Path) -> PathBuf {
+    rendered(root, "6")
+}
+
+fn rendered(root: &Path, count: &str) -> PathBuf {
     let scene = root.join("scene");
-    let mut simulate = sinew(&["simulate", "arm", "--motion", "builtin", "--frames", "6", "--side", "both", "--out"]);
+    let mut simulate = sinew(&["simulate", "arm", "--motion", "builtin", "--frames", count, "--side", "both", "--out"]);
     simulate.arg(&scene).assert().success();
     scene.join("frames")
 }
@@ -45,6 +49,20 @@ fn hands_are_scored_and_floors_are_required() {
     fs::write(&boxes, "frame,x,y,w,h\n5,0,0,1,1\n").unwrap();
     hands(&folder, &boxes).assert().success();
     hands(&folder, &boxes).arg("--require").assert().code(65).stderr(contains("misses the floors"));
+}
+
+/// Boxes keep their frames where a picture is missing before them, as in `sinew track arm`.
+#[test]
+fn a_missing_picture_is_a_frame_of_hands() {
+    let root = tempfile::tempdir().unwrap();
+    let (folder, boxes, out) = (rendered(root.path(), "10"), root.path().join("boxes.csv"), root.path().join("hands"));
+    let mut files: Vec<PathBuf> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    fs::remove_file(&files[4]).unwrap();
+    fs::write(&boxes, "frame,x,y,w,h\n9,0,0,640,480\n").unwrap();
+    hands(&folder, &boxes).arg("--out").arg(&out).assert().success().stdout(contains("(1 boxes)"));
+    let report: serde_json::Value = serde_json::from_slice(&fs::read(out.join("hands.json")).unwrap()).unwrap();
+    assert_eq!((&report["frames"], &report["ranking"]["hands"]), (&10.into(), &1.into()));
 }
 
 #[test]

@@ -179,6 +179,20 @@ fn a_run_of_500_frames_stays_below_25_megabytes() {
 }
 
 #[test]
+fn frames_without_a_row_are_a_doubt() {
+    let folder = tempfile::tempdir().unwrap();
+    copy_of_demo(folder.path());
+    let path = folder.path().join("track.csv");
+    let track = fs::read_to_string(&path).unwrap();
+    let is_kept = |line: &&str| !["40,", "41,", "42,", "90,"].iter().any(|frame| line.starts_with(frame));
+    fs::write(&path, track.lines().filter(is_kept).map(|line| format!("{line}\n")).collect::<String>()).unwrap();
+    let page = Page::of(&[folder.path()]);
+    assert!(page.notices().contains("warning: doubt: track.csv jumps over frames"), "{}", page.notices());
+    let items = page.run(0)["notices"].to_string();
+    assert!(items.contains("\"frames 40 to 42\",\"frame 90\""), "{items}");
+}
+
+#[test]
 fn two_runs_stand_side_by_side() {
     let folder = tempfile::tempdir().unwrap();
     copy_of_demo(folder.path());

@@ -72,6 +72,51 @@ fn unreadable_images_are_skipped_named_and_counted() {
     run(&input.join("b.png"), &[]).code(65).stderr(contains("b.png"));
 }
 
+/// A file that the operating system opens and does not let be read.
+#[cfg(target_os = "linux")]
+fn unreadable(path: &Path) {
+    std::os::unix::fs::symlink("/proc/self/mem", path).unwrap();
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_that_the_system_refuses_loses_no_other() {
+    let root = tempfile::tempdir().unwrap();
+    let (input, out) = (root.path().join("in"), root.path().join("out"));
+    fs::create_dir(&input).unwrap();
+    for name in ["a.png", "c.png"] {
+        picture(50, 40).save(input.join(name)).unwrap();
+    }
+    unreadable(&input.join("b.png"));
+    let run = |command: &str, more: &[&str]| {
+        sinew().arg(command).arg(&input).arg("--out").arg(out.join(command)).args(more).assert()
+    };
+    let named = || contains("b.png").and(contains("what could be read is written"));
+    run("segment", &[]).code(74).stderr(named()).stdout(contains("2 masks written"));
+    assert_eq!(["a.png", "c.png"].map(|name| skin_pixels(&out.join("segment").join(name))), [400, 400]);
+    run("blobs", &[]).code(74).stderr(named());
+    let table = fs::read_to_string(out.join("blobs")).unwrap();
+    assert!(table.contains("\na.png,") && table.contains("\nc.png,"), "{table}");
+    run("segment", &["--strict"]).code(74).stderr(contains("b.png"));
+}
+
+#[test]
+fn grey_pictures_are_called_grey() {
+    let root = tempfile::tempdir().unwrap();
+    let (input, out) = (root.path().join("in"), root.path().join("out"));
+    fs::create_dir(&input).unwrap();
+    for number in 0..8 {
+        image::DynamicImage::from(picture(64, 64)).into_luma8().save(input.join(format!("f_{number}.png"))).unwrap();
+    }
+    for command in ["segment", "blobs"] {
+        let run = sinew().arg(command).arg(&input).arg("--out").arg(out.join(command)).assert().success();
+        run.stderr(contains("8 of 8 pictures are grey; skin is found by its colour; give pictures"));
+    }
+    let run = sinew().args(["track", "arm"]).arg(&input).arg("--out").arg(out.join("arm")).assert().success();
+    run.stdout(contains("8 of 8 frames are grey; skin is found by its colour"));
+    sinew().arg("doctor").arg(&input).assert().stdout(contains("the images are grey"));
+}
+
 #[test]
 fn bad_input_is_refused_with_the_reason() {
     let root = tempfile::tempdir().unwrap();

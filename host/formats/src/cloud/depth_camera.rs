@@ -32,11 +32,16 @@ impl DepthCamera {
     /// # Errors
     /// Names the file, the rule that it broke, and the remedy.
     pub fn read(path: &Path) -> Result<Self, CloudError> {
+        Self::read_noting(path).map(|(camera, _)| camera)
+    }
+
+    /// As [`Self::read`], and what a user should know of keys that are not read.
+    pub(super) fn read_noting(path: &Path) -> Result<(Self, Option<String>), CloudError> {
         let bytes = read_bytes(path, MAX_FILE_BYTES).map_err(|error| CloudError::of_file(path, error))?;
         Self::parse(&bytes).map_err(|rule| CloudError::Camera { path: path.to_path_buf(), rule })
     }
 
-    fn parse(bytes: &[u8]) -> Result<Self, String> {
+    fn parse(bytes: &[u8]) -> Result<(Self, Option<String>), String> {
         let value: Value = serde_json::from_slice(bytes).map_err(|error| error.to_string())?;
         let file = value.as_object().ok_or("it is no JSON object")?;
         let (focal_px, centre_px) = pinhole(file)?;
@@ -47,7 +52,8 @@ impl DepthCamera {
         }
         let unit_m = if scale < 1.0 { scale } else { 1.0 / scale };
         let side = |name: &str| file.get(name).and_then(Value::as_u64).and_then(|side| u32::try_from(side).ok());
-        Ok(Self { focal_px, centre_px, unit_m, size_px: side("width").zip(side("height")).map(|(w, h)| [w, h]) })
+        let size_px = side("width").zip(side("height")).map(|(w, h)| [w, h]);
+        Ok((Self { focal_px, centre_px, unit_m, size_px }, unread_keys(file)))
     }
 
     /// The point that is seen `depth` units away by the pixel of column `u` and row `v`, metres.
@@ -93,15 +99,65 @@ fn check_layout(name: &str, order: &str, zeros: [f32; 2]) -> Result<(), String> 
     Err(format!("`{name}` has to be {order}, and {a} and {b} stand where a camera has zeros; transpose it"))
 }
 
+/// Keys that are read.
+const READ: [&str; 11] =
+    ["K", "intrinsic_matrix", "fx", "fy", "cx", "cy", "ppx", "ppy", "depth_scale", "width", "height"];
+/// Keys of a lens' coefficients, in small letters without underscores: those of RealSense, ROS,
+/// OpenCV, Kalibr, Pose2Sim, and Kinect.
+const COEFFICIENTS: [&str; 16] = [
+    "coeffs",
+    "d",
+    "dist",
+    "distcoeffs",
+    "distortion",
+    "distortions",
+    "distortioncoeffs",
+    "distortioncoefficients",
+    "k1",
+    "k2",
+    "k3",
+    "k4",
+    "k5",
+    "k6",
+    "p1",
+    "p2",
+];
+/// Keys of what a lens is called; its coefficients say whether it distorts.
+const LENS_NAMES: [&str; 2] = ["model", "distortion_model"];
+
+fn is_of_coefficients(key: &str) -> bool {
+    COEFFICIENTS.contains(&key.replace('_', "").to_lowercase().as_str())
+}
+
 /// Images have to be undistorted.
 fn check_distortion(file: &Map<String, Value>) -> Result<(), String> {
-    let is_zero = |value: &Value| value.as_f64() == Some(0.0);
-    for name in ["coeffs", "D", "distortion"] {
-        if file.get(name).and_then(Value::as_array).is_some_and(|all| !all.iter().all(is_zero)) {
-            return Err(format!("`{name}` says that its images are distorted; undistort them, or take `{name}` out"));
-        }
+    match file.iter().find(|(key, value)| is_of_coefficients(key) && !is_zero(value)) {
+        Some((key, _)) => Err(format!(
+            "`{key}` says that its images are distorted, and they are taken as those of a pinhole; undistort the \
+             images and take `{key}` out"
+        )),
+        None => Ok(()),
     }
-    Ok(())
+}
+
+/// Whether all numbers of a value are zero, as those of a lens that does not distort.
+fn is_zero(value: &Value) -> bool {
+    match value {
+        Value::Array(all) => all.iter().all(is_zero),
+        // A matrix of OpenCV has its size beside its numbers.
+        Value::Object(all) => all.get("data").map_or_else(|| all.values().all(is_zero), is_zero),
+        one => one.is_null() || one.as_f64() == Some(0.0),
+    }
+}
+
+/// What a user should know of keys that are not read.
+fn unread_keys(file: &Map<String, Value>) -> Option<String> {
+    let has_coefficients = file.keys().any(|key| is_of_coefficients(key));
+    let is_known =
+        |key: &str| READ.contains(&key) || is_of_coefficients(key) || (has_coefficients && LENS_NAMES.contains(&key));
+    let unread: Vec<String> = file.keys().filter(|key| !is_known(key)).map(|key| format!("`{key}`")).collect();
+    let read = READ.join(", ");
+    (!unread.is_empty()).then(|| format!("keys that are not read: {}; those that are: {read}", unread.join(", ")))
 }
 
 /// The number by one of these names.
@@ -135,13 +191,27 @@ mod tests {
             r#"{"K": [[580, 0, 320], [0, 570, 240.5], [0, 0, 1]]}"#,
             r#"{"intrinsic_matrix": [580, 0, 0, 0, 570, 0, 320, 240.5, 1], "depth_scale": 1000.0}"#,
         ];
-        let cameras = forms.map(|form| DepthCamera::parse(form.as_bytes()).unwrap());
+        let cameras = forms.map(|form| DepthCamera::parse(form.as_bytes()).unwrap()).map(|(camera, note)| {
+            assert_eq!(note, None);
+            camera
+        });
         for camera in cameras {
             assert_eq!(camera, cameras[0]);
             assert_eq!((camera.centre_px, camera.size_px), ([320.0, 240.5], None));
         }
         let point_m = cameras[0].point_m((610, 0), 2000);
         assert!((point_m - Vec3::new(1.0, -0.843_86, 2.0)).norm() < 1.0e-4, "{point_m}");
+    }
+
+    #[test]
+    fn keys_that_are_not_read_are_named() {
+        let note = |keys: &str| {
+            let text = format!(r#"{{"fx": 5, "fy": 5, "cx": 3, "cy": 1, {keys}}}"#);
+            DepthCamera::parse(text.as_bytes()).unwrap().1
+        };
+        assert_eq!(note(r#""model": "brown_conrady", "distCoeffs": {"rows": 1, "data": [0, 0]}, "k1": 0"#), None);
+        let found = note(r#""model": "fisheye", "dept_scale": 0.001"#).unwrap();
+        assert!(found.starts_with("keys that are not read: `dept_scale`, `model`; those that are: K,"), "{found}");
     }
 
     #[test]
@@ -156,7 +226,10 @@ mod tests {
             (r#"{"K": [580, 0, 0, 0, 570, 0, 320, 240, 1]}"#, "`K` has to be row by row, and 320 and 240 stand"),
             (r#"{"intrinsic_matrix": [580, 0, 320, 0, 570, 240, 0, 0, 1]}"#, "`intrinsic_matrix` has to be column"),
             (r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 1, "depth_scale": -1}"#, "depth_scale has to be"),
-            (r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 1, "coeffs": [0.1]}"#, "undistort them"),
+            (r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 1, "coeffs": [0.1]}"#, "undistort the images"),
+            (r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 1, "k1": -0.2}"#, "`k1` says that its images are distorted"),
+            (r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 1, "dist_coeffs": [[0, 0.1]]}"#, "`dist_coeffs` says"),
+            (r#"{"fx": 5, "fy": 5, "cx": 3, "cy": 1, "distortion_coefficients": {"rows": 1, "data": [0.1]}}"#, "says"),
         ] {
             let found = DepthCamera::parse(form.as_bytes()).unwrap_err();
             assert!(found.contains(message), "{found} does not contain {message}");

@@ -58,7 +58,8 @@ impl CloudFolder {
         let stems: Vec<String> = files.iter().map(|file| text(file.file_stem())).collect();
         let stems: Vec<&str> = stems.iter().map(String::as_str).collect();
         let numbers = frame_numbers(&stems).ok_or_else(|| no_frame_number(folder, &stems))?;
-        let frames = numbers.into_iter().zip(files).map(|(frame, path)| CloudFrame { frame, path }).collect();
+        let frames =
+            numbers.into_iter().zip(files).map(|(found, path)| CloudFrame { frame: found.number, path }).collect();
         Ok(Self { frames })
     }
 

@@ -28,6 +28,8 @@ pub struct FoundSource {
     pub folder: PathBuf,
     /// The file of the camera.
     pub camera: Option<PathBuf>,
+    /// What a user should know of the camera.
+    pub notes: Vec<String>,
 }
 
 impl FoundSource {
@@ -41,10 +43,12 @@ impl FoundSource {
         let has_clouds = || points.is_dir() || CloudFolder::open(folder).is_ok();
         let beside = || Some(folder.join("camera.json")).filter(|path| path.is_file() && !has_clouds());
         let file = camera.map(Path::to_path_buf).or_else(beside);
-        let camera = file.as_deref().map(DepthCamera::read).transpose()?;
+        let (camera, note) = file.as_deref().map(DepthCamera::read_noting).transpose()?.unzip();
+        let notes =
+            file.iter().zip(note.flatten()).map(|(file, note)| format!("`{}`: {note}", file.display())).collect();
         let inside = if camera.is_some() { folder.join("depth") } else { points };
         let folder = if inside.is_dir() { inside } else { folder.to_path_buf() };
-        Ok(Self { source: CloudSource { camera, region }, folder, camera: file })
+        Ok(Self { source: CloudSource { camera, region }, folder, camera: file, notes })
     }
 }
 

@@ -1,7 +1,7 @@
 //! `sinew evaluate hands`: both hands on real frames with reference boxes.
 
 use super::{cells_in, until_signal};
-use crate::hands::{ReferenceBox, load_frames, read_boxes};
+use crate::hands::{ReferenceBox, load_frames, read_boxes, size_px};
 use crate::hands_report::{HandsOptions, report};
 use anyhow::{Result, ensure};
 use clap::Args;
@@ -115,8 +115,8 @@ fn begun(args: &EvaluateHandsArgs, skin: &SkinModel) -> Result<Begun> {
 }
 
 /// Do window and boxes fit the frames?
-fn check(args: &EvaluateHandsArgs, frames: &[RgbImage], boxes: &[ReferenceBox]) -> Result<()> {
-    let (width, height) = frames.first().map_or((0, 0), RgbImage::dimensions);
+fn check(args: &EvaluateHandsArgs, frames: &[Option<RgbImage>], boxes: &[ReferenceBox]) -> Result<()> {
+    let (width, height) = size_px(frames);
     let (window_width, window_height) = args.window;
     ensure!(
         window_width <= width && window_height <= height,

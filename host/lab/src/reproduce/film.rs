@@ -3,7 +3,7 @@
 use super::arm_figures::Panel;
 use crate::hands::{ReferenceBox, load_frames, read_boxes};
 use crate::observed::{Footage, FrontEnd, Reading};
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use sinew::config::Config;
 use sinew::frames::FrameView;
 use sinew::skin::SkinModel;
@@ -30,6 +30,8 @@ impl Film {
     /// Pictures or boxes that cannot be read, by name.
     pub fn read(folder: &Path, boxes: &Path, skin: &SkinModel) -> Result<Self> {
         let (frames, config) = (load_frames(folder)?, crate::experiments::printed_base());
+        let frames: Option<Vec<_>> = frames.into_iter().collect();
+        let frames = frames.with_context(|| format!("`{}` lacks pictures between others", folder.display()))?;
         let size_px = frames.first().map_or((0, 0), |first| first.dimensions());
         ensure!(!frames.is_empty(), "`{}` holds no picture; give a folder of a clip's frames", folder.display());
         let front_end = FrontEnd { config: &config, skin, reading: Reading::Alone };

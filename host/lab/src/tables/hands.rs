@@ -15,7 +15,7 @@ use std::path::Path;
 /// The sequences.
 const SEQUENCES: [&str; 2] = ["hand1", "hand2"];
 
-fn sequence(recordings: &Path, name: &str) -> Result<(Vec<RgbImage>, Vec<ReferenceBox>)> {
+fn sequence(recordings: &Path, name: &str) -> Result<(Vec<Option<RgbImage>>, Vec<ReferenceBox>)> {
     let folder = recordings.join("video/handtracking");
     Ok((load_frames(&folder.join(name))?, read_boxes(&folder.join(format!("{name}_boxes.csv")))?))
 }

@@ -34,7 +34,8 @@ fn cadence(poses: &[Pose]) -> Option<f64> {
     let model = CyclicModel::from_option("walking").unwrap();
     let options = TrackingOptions { rate_hz: Some(RATE_HZ), ..TrackingOptions::default() };
     let options = noise::with_noise_of(&table, options);
-    Summary::of(&finish(&table, &model, track(&table, &model, &options).unwrap(), &options).unwrap()).cadence_per_min
+    Summary::of(&finish(&table, &model, track(&table, &model, &options).unwrap(), &options, None).unwrap())
+        .cadence_per_min
 }
 
 /// Cycles per minute after which the window is most like itself, by no model. They follow from the

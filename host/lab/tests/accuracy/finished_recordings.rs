@@ -89,7 +89,7 @@ fn tracked(poses: &Poses) -> Tracked {
     let model = CyclicModel::from_option("walking").unwrap();
     let options = TrackingOptions { rate_hz: Some(RATE_HZ), ..TrackingOptions::default() };
     let options = noise::with_noise_of(&table, options);
-    finish(&table, &model, track(&table, &model, &options).unwrap(), &options).unwrap()
+    finish(&table, &model, track(&table, &model, &options).unwrap(), &options, None).unwrap()
 }
 
 fn finished(poses: &Poses) -> Poses {

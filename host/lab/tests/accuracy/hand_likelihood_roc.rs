@@ -1,10 +1,9 @@
 //! Do hands rank above other blobs on real webcam sequences? Runs where `../shared/data` is at
 //! hand, and says so where not.
 
-use sinew::images::folder::{list_images, load_rgb};
 use sinew::skin::SkinModel;
 use sinew::skin::model::DEFAULT_SKIN;
-use sinew_lab::{hand_ranking, hands::read_boxes};
+use sinew_lab::{hand_ranking, hands::load_frames, hands::read_boxes};
 use std::path::{Path, PathBuf};
 
 fn data() -> Option<PathBuf> {
@@ -20,8 +19,7 @@ fn the_default_form_ranks_hands_above_other_blobs() {
     };
     let skin = SkinModel::from_option(DEFAULT_SKIN).unwrap();
     for sequence in ["hand1", "hand2"] {
-        let files = list_images(&folder.join(sequence)).unwrap();
-        let frames: Vec<_> = files.iter().map(|file| load_rgb(file).unwrap()).collect();
+        let frames = load_frames(&folder.join(sequence)).unwrap();
         let boxes = read_boxes(&folder.join(format!("{sequence}_boxes.csv"))).unwrap();
         let ranking = hand_ranking::rank(&frames, &boxes, &skin).unwrap();
         println!("{sequence}: {ranking:?}");

@@ -87,10 +87,9 @@ impl BodyInputs {
     /// Names the file or option, the rule it broke, and the remedy.
     pub fn read(options: &BodyTrackOptions) -> Result<Self> {
         let beside = |name: &str| Some(options.folder.join(name)).filter(|path| path.is_file());
-        let FoundSource { source, folder: clouds_folder, camera } =
+        let FoundSource { source, folder: clouds_folder, camera, mut notes } =
             FoundSource::find(&options.folder, options.camera.as_deref(), options.region())?;
         let clouds = source.open(&clouds_folder)?;
-        let mut notes = Vec::new();
         let scene_file = beside("run.json");
         let scene = scene_file.as_deref().map_or_else(|| Ok(SceneReport::default()), read_scene)?;
         notes.extend(scene.notes);

@@ -126,7 +126,8 @@ impl Shown<'_> {
         let Self { args, angles, options, .. } = self;
         let (tracked, motions) = run.answered()?;
         let is_finished = is_complete && args.is_finished();
-        let tracked = if is_finished { finish(angles, &self.models[0], tracked, options)? } else { tracked };
+        let given_rad = args.sigma_deg.map(f64::to_radians);
+        let tracked = if is_finished { finish(angles, &self.models[0], tracked, options, given_rad)? } else { tracked };
         let motions = motions.map(|motions| motion_cells(&args.model, &motions));
         table::write(&tracked, motions.as_ref(), &args.out)?;
         let interrupted =

@@ -1,7 +1,9 @@
 //! An angle table as signals that can be compared: cosine and sine of each angle that moves, about
 //! their means.
 
-use crate::cyclic::angle_table::{ANGLES, AngleTable};
+use crate::cyclic::angle_table::{ANGLES, AngleRow, AngleTable};
+use crate::cyclic::place_columns::PlaceColumns;
+use crate::signal::median::median;
 
 /// Smallest standard deviation of a signal that is used: about three degrees.
 const MIN_STD_RAD: f64 = 0.05;
@@ -12,15 +14,21 @@ const MIN_SHARE: f64 = 0.2;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channels {
     signals: Vec<Vec<f64>>,
+    /// What each signal counts in a correlation.
+    weights: Vec<f64>,
     frames: usize,
 }
 
 impl Channels {
-    /// The signals of `table`, from its first to its last frame; `None` if no angle moves.
+    /// The signals of `table`, from its first to its last frame; `None` if no angle moves. Each is
+    /// weighted by how well its segment's length lets the angle be known. Noise of s pixels at both
+    /// ends of a segment of L pixels is noise of sqrt(2) s / L radians in its angle, and the weight
+    /// is inverse to that variance.
     #[must_use]
     pub fn of(table: &AngleTable) -> Option<Self> {
         let frames = (table.end_frame() - table.first_frame()) as usize;
-        let mut signals = Vec::new();
+        let lengths = length_shares(table);
+        let (mut signals, mut weights) = (Vec::new(), Vec::new());
         for angle in 0..ANGLES {
             for part in [f64::cos, f64::sin] {
                 let mut signal = vec![f64::NAN; frames];
@@ -29,10 +37,13 @@ impl Channels {
                         signal[(row.frame - table.first_frame()) as usize] = part(angle);
                     }
                 }
-                signals.extend(centred(signal));
+                if let Some(signal) = centred(signal) {
+                    signals.push(signal);
+                    weights.push(lengths[angle] * lengths[angle]);
+                }
             }
         }
-        (!signals.is_empty()).then_some(Self { signals, frames })
+        (!signals.is_empty()).then_some(Self { signals, weights, frames })
     }
 
     /// The same signals, ready to be compared over `period` frames. Each is taken about its mean
@@ -49,7 +60,9 @@ impl Channels {
             let weight = 1.0 / (spread + MIN_STD_RAD * MIN_STD_RAD).sqrt();
             level.into_iter().map(|value| weight * value).collect()
         };
-        Self { signals: self.signals.iter().map(weighed).collect(), frames: self.frames }
+        // Noise does not repeat either, so lengths count in this already.
+        let (signals, weights) = (self.signals.iter().map(weighed).collect(), vec![1.0; self.weights.len()]);
+        Self { signals, weights, frames: self.frames }
     }
 
     /// The signals, each as long as the recording.
@@ -70,20 +83,20 @@ impl Channels {
         self.frames == 0
     }
 
-    /// Correlation of the frames of `at` with those `lag` later, over all signals, from -1 to 1;
-    /// `None` where less than half of the values are there twice.
+    /// Weighted correlation of the frames of `at` with those `lag` later, over all signals, from -1
+    /// to 1; `None` where less than half of the values are there twice.
     #[must_use]
     pub fn correlation(&self, at: std::ops::Range<usize>, lag: usize) -> Option<f64> {
         let (mut product, mut here, mut there, mut count) = (0.0, 0.0, 0.0, 0_usize);
         let (mut known, wanted) = (0_usize, at.len() * self.signals.len());
-        for signal in &self.signals {
+        for (signal, weight) in self.signals.iter().zip(&self.weights) {
             for frame in at.clone() {
                 let (a, b) = (signal[frame], signal.get(frame + lag).copied().unwrap_or(f64::NAN));
                 known += usize::from(!a.is_nan());
                 if !a.is_nan() && !b.is_nan() {
-                    product += a * b;
-                    here += a * a;
-                    there += b * b;
+                    product += weight * a * b;
+                    here += weight * a * a;
+                    there += weight * b * b;
                     count += 1;
                 }
             }
@@ -108,6 +121,18 @@ impl Channels {
         }
         (count > 0).then(|| sum / count as f64)
     }
+}
+
+/// Median length of each segment as a share of the longest one; 1 where the table has none.
+fn length_shares(table: &AngleTable) -> [f64; ANGLES] {
+    let columns = PlaceColumns::find(table);
+    let usual = |angle: usize| {
+        let length = |row: &AngleRow| columns.as_ref()?.length(row, angle);
+        median(&mut table.rows().iter().filter_map(length).collect::<Vec<f64>>())
+    };
+    let lengths: [Option<f64>; ANGLES] = std::array::from_fn(usual);
+    let longest = lengths.iter().flatten().copied().fold(0.0, f64::max);
+    lengths.map(|length| length.map_or(1.0, |length| length / longest))
 }
 
 /// Each value less the mean of those known in the window of `period` frames round it, which is

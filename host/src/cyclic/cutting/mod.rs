@@ -84,6 +84,7 @@ pub fn cycles(table: &AngleTable, file: &str, options: CuttingOptions) -> Result
 mod tests {
     use super::*;
     use crate::cyclic::angle_table::ANGLES;
+    use sinew_core::random::Stream;
     use std::f64::consts::TAU;
 
     /// Arms and legs swing against each other with harmonics; `noise` is a deterministic jitter.
@@ -113,6 +114,32 @@ mod tests {
             assert!((mean / period - 1.0).abs() < 0.01, "{period}: {mean}");
             assert!(cuts[0].start_frame >= 5 && cuts[cuts.len() - 1].end_frame <= 605);
         }
+    }
+
+    /// Hips and shoulders of a person from the side are a few pixels long, and their angles noise.
+    #[test]
+    fn short_segments_do_not_outvote_long_ones() {
+        let is_short = |angle: usize| [1, 4, 7, 10].contains(&angle);
+        let names = crate::cyclic::angle_table::COLUMNS[1..].iter().map(|name| name.trim_end_matches("_rad"));
+        let lengths: Vec<String> = names.map(|name| format!("{name}_length_px")).collect();
+        let root = ["hip_center_u_px", "hip_center_v_px"].map(str::to_owned);
+        let columns = || root.iter().chain(&lengths).cloned().collect::<Vec<String>>();
+        let mut rows = walk(60.0, 400, 0.02).rows().to_vec();
+        for row in &mut rows {
+            for (angle, value) in row.angles_rad.iter_mut().enumerate() {
+                let random = Stream::new(row.frame, 0, angle as u32).uniform();
+                *value =
+                    if is_short(angle) { Some(TAU * f64::from(random)) } else { Some(0.4 * (value.unwrap() - 1.5)) };
+            }
+        }
+        let unknown = refusal(&AngleTable::new(rows.clone(), Vec::new()).unwrap());
+        assert!(unknown.contains("nothing comes back"), "{unknown}");
+        for row in &mut rows {
+            let length = |angle: usize| if is_short(angle) { "3" } else { "80" }.to_owned();
+            row.extra = (0..2).map(|_| "0".to_owned()).chain((0..ANGLES).map(length)).collect();
+        }
+        let cuts = cycles(&AngleTable::new(rows, columns()).unwrap(), "t.csv", CuttingOptions::default()).unwrap();
+        assert!(cuts.len() >= 5 && cuts.iter().all(|cut| cut.duration_frames().abs_diff(60) <= 2), "{cuts:?}");
     }
 
     #[test]

@@ -29,7 +29,7 @@ impl LegLengths {
     pub fn find(even: &EvenRows<'_>, columns: Option<&PlaceColumns>) -> [Self; 2] {
         let length = |segment: usize| {
             let columns = columns?;
-            let series = even.series(|row| columns.length(row, segment).filter(|length| *length > 0.0));
+            let series = even.series(|row| columns.length(row, segment));
             median(&mut series.into_iter().flatten().collect::<Vec<f64>>())
         };
         let [left, right] = LEGS.map(|[thigh, shank]| Some([length(thigh)?, length(shank)?]));

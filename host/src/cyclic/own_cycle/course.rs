@@ -1,7 +1,7 @@
 //! The course of one angle over a finished recording.
 
 use super::fill::filled;
-use super::noise::{self, MIN_NOISE_RAD};
+use super::noise::MIN_NOISE_RAD;
 use super::phase::Phased;
 use super::seen::Seen;
 use super::shape;
@@ -28,14 +28,14 @@ pub struct Course {
 }
 
 impl Course {
-    /// The course of `angle`, measured so often in a second; frames that are not `is_known` get the
+    /// The course of `angle`, measured with this noise; frames that are not `is_known` get the
     /// person's own cycle.
     #[must_use]
     pub fn new<const N: usize>(
         seen: &Seen<N>,
         angle: usize,
         phased: &Phased<N>,
-        (is_known, rate_hz): (&[bool], f64),
+        (is_known, noise_rad): (&[bool], f64),
     ) -> Self {
         let raw = seen.series(angle);
         let mut measured = raw.clone();
@@ -48,7 +48,6 @@ impl Course {
             .collect();
         // Without a gap that was the whole course.
         let smooth = if whole == measured { smooth } else { splines(&whole) };
-        let noise_rad = noise::of_angle(seen, angle, noise::thirtieth_frames(rate_hz)).unwrap_or(phased.std_rad[angle]);
         let angles_rad = (0..measured.len()).map(|frame| smooth.angles_rad[frame].unwrap_or(bridged[frame])).collect();
         let is_outlier = (0..raw.len()).map(|frame| {
             let off = raw[frame].zip(smooth.angles_rad[frame]).map_or(0.0, |(raw, smooth)| (raw - smooth).abs());

@@ -1,6 +1,7 @@
 //! A recording that has been tracked, as an estimate that has seen all of it.
 
 use super::course::Course;
+use super::noise;
 use super::phase::{self, Unevenness};
 use super::seen::Seen;
 use super::shape::Shape;
@@ -15,14 +16,21 @@ use std::f64::consts::TAU;
 
 /// The run of a filter over a table with angles and phases of the whole recording. The angles are
 /// what was measured, filtered, and in gaps the person's own cycle. Rows in which nothing is known
-/// say so.
+/// say so. `noise_rad` is the standard deviation of a measured angle where it is known from
+/// elsewhere; else each angle shows its own.
 ///
 /// # Errors
 /// Frame numbers that jump too far.
-pub fn finish(table: &AngleTable, model: &CyclicModel, tracked: Tracked, options: &TrackingOptions) -> Result<Tracked> {
+pub fn finish(
+    table: &AngleTable,
+    model: &CyclicModel,
+    tracked: Tracked,
+    options: &TrackingOptions,
+    noise_rad: Option<f64>,
+) -> Result<Tracked> {
     let finish =
         if model.numbers().angle_count > ANGLES { finish_angles::<SPACE_ANGLES> } else { finish_angles::<ANGLES> };
-    finish(table, model, tracked, options)
+    finish(table, model, tracked, options, noise_rad)
 }
 
 fn finish_angles<const N: usize>(
@@ -30,6 +38,7 @@ fn finish_angles<const N: usize>(
     model: &CyclicModel,
     mut tracked: Tracked,
     options: &TrackingOptions,
+    noise_rad: Option<f64>,
 ) -> Result<Tracked> {
     let seen = Seen::<N>::of_table(table, &options.updates).context(
         "frame numbers jump over more than a hundred frames for each row; cut the recording where it jumps, or track it with --online",
@@ -40,7 +49,11 @@ fn finish_angles<const N: usize>(
     let stretches = seen.stretches(LONGEST_BRIDGE_CYCLES * cycle_frames);
     let mut is_known = vec![false; seen.angles_rad.len()];
     stretches.iter().for_each(|[first, last]| is_known[*first..=*last].fill(true));
-    let course = |angle| Course::new(&seen, angle, &phased, (&is_known, tracked.rate_hz));
+    let stride = noise::thirtieth_frames(tracked.rate_hz);
+    let course = |angle| {
+        let found_rad = || noise::of_angle(&seen, angle, stride).unwrap_or(phased.std_rad[angle]);
+        Course::new(&seen, angle, &phased, (&is_known, noise_rad.unwrap_or_else(found_rad)))
+    };
     let courses: Vec<Course> = (0..N).into_par_iter().map(course).collect();
     let (origin, uneven) = (phased.phases[0], phase::unevenness(&phased.phases));
     for row in &mut tracked.frames {

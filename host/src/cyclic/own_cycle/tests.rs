@@ -18,7 +18,7 @@ fn recorded(model: &CyclicModel, cycles: u32, seed: u64) -> (SyntheticPerson<'_>
 fn finished(model: &CyclicModel, table: &AngleTable) -> Tracked {
     let options =
         TrackingOptions { rate_hz: Some(30.0), sigma_rad: 1.0_f64.to_radians(), ..TrackingOptions::default() };
-    finish(table, model, track(table, model, &options).unwrap(), &options).unwrap()
+    finish(table, model, track(table, model, &options).unwrap(), &options, None).unwrap()
 }
 
 /// The table with `change` made to each row.
@@ -86,6 +86,25 @@ fn nine_of_ten_angles_are_inside_their_band() {
         let share = inside_90(&finished(&model, &table), &person, |_, _| true);
         assert!((0.85..0.95).contains(&share), "seed {seed}: {share}");
     }
+}
+
+/// A band of twice the noise that the recording shows, which is one degree, is twice as wide.
+#[test]
+fn a_given_noise_makes_the_bands() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    let (_, table) = recorded(&model, 6, 1);
+    let options = TrackingOptions { rate_hz: Some(30.0), ..TrackingOptions::default() };
+    let stds_rad = |noise_rad: Option<f64>| -> Vec<f64> {
+        let filtered = track(&table, &model, &options).unwrap();
+        let run = finish(&table, &model, filtered, &options, noise_rad).unwrap();
+        run.frames.iter().map(|row| f64::from(row.estimate.angle_variance_rad2[9]).sqrt()).collect()
+    };
+    let found = stds_rad(None);
+    let times: Vec<f64> = stds_rad(Some(2.0_f64.to_radians())).iter().zip(&found).map(|(a, b)| a / b).collect();
+    assert!((1.6..2.5).contains(&times[0]), "{}", times[0]);
+    // All but outliers, which are gaps.
+    let alike = times.iter().filter(|other| (*other / times[0] - 1.0).abs() < 1.0e-5).count();
+    assert!(20 * alike >= 19 * times.len(), "{times:?}");
 }
 
 /// Three quarters of the angles are missing, one by one: few determine the person's cycle.
@@ -217,7 +236,7 @@ fn frame_numbers_that_must_be_wrong_are_refused() {
         }
     });
     let options = TrackingOptions { rate_hz: Some(30.0), ..TrackingOptions::default() };
-    let error = finish(&far, &model, track(&far, &model, &options).unwrap(), &options).unwrap_err();
+    let error = finish(&far, &model, track(&far, &model, &options).unwrap(), &options, None).unwrap_err();
     assert!(error.to_string().contains("frame numbers jump"), "{error}");
     assert_eq!(Seen::<ANGLES>::of_table(&far, &Updates::All), None);
 }

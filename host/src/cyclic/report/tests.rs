@@ -113,6 +113,21 @@ fn a_body_in_pixels_gets_the_height_of_the_person() {
     assert!(body.is_in_pixels());
 }
 
+/// As in tables whose hips or feet were never apart.
+#[test]
+fn lengths_of_zero_are_those_of_an_adult() {
+    let table = keypoints(60, 0..0);
+    let rows = table.rows().iter().map(|row| AngleRow {
+        extra: row.extra.iter().map(|cell| if cell == "49" { "0.000".to_owned() } else { cell.clone() }).collect(),
+        ..row.clone()
+    });
+    let table = AngleTable::new(rows.collect(), table.extra_columns().to_vec()).unwrap();
+    let (report, tracked, options) = report(&table);
+    let body = body::Body::of_table(&table, 2.0);
+    assert!((body.lengths[8] * body.metres_per_unit - 0.245 * 2.0).abs() < 0.01, "{body:?}");
+    assert_eq!(joints::positions(&table, &tracked, &report, &body, options.sigma_rad).unwrap().len(), 60);
+}
+
 #[test]
 fn the_root_is_followed_through_a_short_gap_and_given_up_in_a_long_one() {
     let table = keypoints(150, 60..150);

@@ -47,13 +47,22 @@ function isThere(point) {
   return Number.isFinite(point.x) && Number.isFinite(point.y);
 }
 
-// Stretches without a gap or a jump of `breaks` and more.
+// The middle one of the steps from frame to frame.
+function usualStep(points) {
+  const steps = points.slice(1).map((point, index) => numberOf(point.frame) - numberOf(points[index].frame));
+  const known = steps.filter((step) => step > 0).sort((a, b) => a - b);
+  return known[Math.floor(known.length / 2)];
+}
+
+// Stretches without a gap, frames that have no row, or a jump of `breaks` and more.
 function stretches(points, breaks) {
+  const step = usualStep(points);
   const found = [];
   let current = [];
   for (const point of points) {
     const before = current[current.length - 1];
-    const jumps = before && breaks && Math.abs(point.y - before.y) >= breaks;
+    const leavesOut = before && numberOf(point.frame) - numberOf(before.frame) > step;
+    const jumps = leavesOut || (before && breaks && Math.abs(point.y - before.y) >= breaks);
     if ((!isThere(point) || jumps) && current.length) {
       found.push(current);
       current = [];
