@@ -3,9 +3,11 @@
 //! The period is where the motion of all angles resembles itself best ([`period`]). A cycle starts
 //! where the left thigh is farthest forward, in the swing of one period. The next one starts where
 //! the whole pose round that moment repeats ([`recurrence`]), which is steadier than the next peak.
+//! Where the tempo changes, that may be after several cycles ([`multiples`]).
 
 pub mod alignment;
 pub mod channels;
+pub mod multiples;
 pub mod period;
 pub mod recurrence;
 
@@ -63,7 +65,9 @@ pub fn cycles(table: &AngleTable, file: &str, options: CuttingOptions) -> Result
         Ok(period) => period,
         Err(reason) => return refuse(reason),
     };
-    let boundaries = recurrence::boundaries(table, &channels.over_period(period), period);
+    let over_period = channels.over_period(period);
+    let boundaries = recurrence::boundaries(table, &over_period, period);
+    let boundaries = multiples::split(&over_period, &boundaries, bounds[0]);
     let cuts: Vec<Cut> = boundaries
         .iter()
         .map(|&[start, end]| Cut {

@@ -6,7 +6,7 @@ use super::channels::Channels;
 const MIN_CORRELATION: f64 = 0.4;
 /// A shorter lag is the period if it is nearly as good as the best: multiples of the period are as
 /// good as it.
-const NEARLY: f64 = 0.8;
+pub(super) const NEARLY: f64 = 0.8;
 /// Share of the recording by which it may be shifted against itself: about a third has to overlap.
 const LONGEST_SHIFT: f64 = 0.67;
 
