@@ -110,7 +110,7 @@ pub fn fit_recording(skeleton: &BodySkeleton, recording: &BodyRecording) -> Vec<
 
 /// A person who stands with the pelvis at `place`, elbows and knees a little bent: there no
 /// direction of turning is lost.
-fn standing(place: Vec3) -> [f32; BODY_ANGLES] {
+pub(crate) fn standing(place: Vec3) -> [f32; BODY_ANGLES] {
     const BENT_RAD: f32 = 0.2;
     let mut angles = [0.0; BODY_ANGLES];
     angles[..3].copy_from_slice(place.as_slice());

@@ -159,6 +159,8 @@ pub fn run(args: &TrackBodyArgs, console: &Console) -> Result<()> {
         pictures: args.pictures,
         tuning: args.config.as_deref().map_or_else(|| Ok(BodyTuning::default()), tuning_file::load)?,
     };
+    // A signal while the first pose and the size are looked for leaves a run that can be resumed.
+    stop_flag()?;
     let run = if args.resume { BodyTrackRun::resume(options, out)? } else { BodyTrackRun::prepare(options, out)? };
     let run = run.checkpoint_every(args.checkpoint.interval());
     let report = console.resumable(run_with_progress(run, console))?;
@@ -177,6 +179,7 @@ fn run_with_progress(run: BodyTrackRun, console: &Console) -> Result<BodyRunRepo
     let print = |text: String| bar.suspend(|| console.note(text));
     let outcome = run.run(stop_flag()?, &mut |event| match event {
         BodyEvent::Note(note) => print(format!("note: {note}")),
+        BodyEvent::Warning(warning) => print(format!("warning: {warning}")),
         BodyEvent::Skipped(cloud) => print(format!("skipped frame {}: {}", cloud.frame, cloud.reason)),
         BodyEvent::OverCap { points, weighed } => print(format!(
             "note: a cloud has {points} points; {weighed} of them, drawn at random, are weighed, here and in all like it"

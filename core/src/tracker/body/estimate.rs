@@ -40,9 +40,10 @@ pub struct BodyEstimate<const BONES: usize, const ANGLES: usize> {
     pub observed: [bool; BONES],
     /// Effective number of particles; limb by limb that of the group with the fewest.
     pub effective_sample_size: f32,
-    /// ln of the mean weight of whole poses, a frame's part of the log evidence. Without points
-    /// only what a proposal owes its motion model is left in it: zero for models that draw from
-    /// themselves. Of a tracker by modes it is the log density at the leading mode.
+    /// ln of the mean weight of whole poses before tempering, a frame's part of the log evidence.
+    /// On the same points with the same likelihood it compares runs and motion models. Without
+    /// points only what a proposal owes its motion model is left in it: zero for models that draw
+    /// from themselves. Of a tracker by modes it is the log density at the leading mode.
     pub log_evidence: f32,
     /// Exponent that the weights of whole poses were flattened with; 1 where they were not.
     pub tempering: f32,

@@ -114,8 +114,7 @@ where
         let mut tempering = 1.0;
         // The trunk comes last: what belongs to the whole pose stays as it was weighed.
         for group in (0..weighed_limbs.count()).rev() {
-            tempering = self.weigh(group);
-            whole = self.weights.normalise();
+            (whole, tempering) = self.weigh(group);
             effective_sample_size = min(effective_sample_size, self.weights.effective_sample_size());
             let weighed = (self.particles.as_ref(), self.weights.normalised());
             mean_of_group(&scene.skeleton, weighed, (&weighed_limbs, group), &mut angles_rad);

@@ -36,7 +36,7 @@ fn starts_m(path: &Path, heading_rad: f32) -> [f32; 2] {
         let blocks = blocks_of(&mut points_m.clone(), tuning.range_smoothing().unwrap().as_ref());
         let points = &tuning.guided_points;
         let pose = pose_from_points(BodyPart::Whole, &seen.measures.into(), points, points_m, &blocks).unwrap();
-        let ends = posture(&full_body(&seen.measures).unwrap(), &Vec3::zeros(), &pose).ends;
+        let ends = posture(&full_body(&seen.measures).unwrap(), &Vec3::zeros(), &pose.angles_rad).ends;
         let off_m: Vec<f32> =
             (0..BODY_BONES).filter_map(|bone| Some((ends[bone] - seen.joints_m[frame][bone]?).norm())).collect();
         off_m.iter().sum::<f32>() / off_m.len() as f32

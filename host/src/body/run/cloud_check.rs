@@ -23,6 +23,11 @@ const MAX_NEAREST_M: f32 = 30.0;
 /// Chosen: no depth camera measures below. A person at 10 m is there in units of 100 m.
 const MIN_FARTHEST_M: f32 = 0.1;
 
+/// Share of the points that is left out at each end of an axis where extents are compared.
+///
+/// Chosen: outliers and a hand held out are no more.
+const END_SHARE: f64 = 0.1;
+
 /// Points of the first clouds that have some.
 #[derive(Debug, Default)]
 struct FirstPoints {
@@ -31,8 +36,9 @@ struct FirstPoints {
     beyond: usize,
 }
 
-/// Refuses clouds in other units or axes; looks at no more than `most` clouds.
-pub(super) fn check_points(inputs: &BodyInputs, most: usize) -> Result<()> {
+/// Refuses clouds in other units or axes; looks at no more than `most` clouds. Warns of a person
+/// who lies along the line of sight where an upright one is looked for.
+pub(super) fn check_points(inputs: &mut BodyInputs, most: usize) -> Result<()> {
     let (mut first, mut clouds) = (FirstPoints::default(), 0);
     for frame in inputs.clouds.frames.iter().take(most) {
         let Ok(cloud) = inputs.source.read_noting(&frame.path, |_| ()) else { continue };
@@ -47,7 +53,12 @@ pub(super) fn check_points(inputs: &BodyInputs, most: usize) -> Result<()> {
         Some(_) => "give `depth_scale` of the camera's file as metres of a unit, or units of a metre",
         None => "multiply them by the metres of their unit (0.001 for millimetres, 0.01 for centimetres)",
     };
-    first.check(&inputs.files.clouds.display().to_string(), remedy)
+    let folder = inputs.files.clouds.display().to_string();
+    first.check(&folder, remedy)?;
+    if inputs.first_rad.is_none() {
+        inputs.warnings.extend(first.lies_along_sight(&folder));
+    }
+    Ok(())
 }
 
 impl FirstPoints {
@@ -83,14 +94,36 @@ impl FirstPoints {
         Ok(())
     }
 
+    /// A warning where the points reach farther along the line of sight than from top to bottom.
+    fn lies_along_sight(&self, folder: &str) -> Option<String> {
+        let [height_m, depth_m] = [1, 2].map(|axis| {
+            let (low_m, high_m) = between(self.points_m.iter().map(|point_m| point_m[axis]), END_SHARE)?;
+            Some(high_m - low_m)
+        });
+        let (height_m, depth_m) = (height_m?, depth_m?);
+        (depth_m > height_m).then(|| {
+            format!(
+                "most of the first points of `{folder}` lie within {height_m:.1} m from top to bottom and {depth_m:.1} m \
+                 along the line of sight, and someone upright is looked for; axes have to be x to the right, y down, z \
+                 forward (from x right, y forward, z up, take x, -z, y); cut off what is behind (--inside), or give the \
+                 first pose (--init)"
+            )
+        })
+    }
+
     /// Distances between which all points but strays are, metres.
     fn range_m(&self) -> (f32, f32) {
-        let mut distances_m: Vec<f32> = self.points_m.iter().map(Vec3::norm).collect();
-        let last = distances_m.len() - 1;
-        let stray = (STRAY_SHARE * last as f64) as usize;
-        let mut at = |index: usize| *distances_m.select_nth_unstable_by(index, f32::total_cmp).1;
-        (at(stray), at(last - stray))
+        between(self.points_m.iter().map(Vec3::norm), STRAY_SHARE).unwrap_or_default()
     }
+}
+
+/// The numbers between which all are but a share at each end; `None` without any.
+fn between(numbers: impl Iterator<Item = f32>, end_share: f64) -> Option<(f32, f32)> {
+    let mut numbers: Vec<f32> = numbers.collect();
+    let last = numbers.len().checked_sub(1)?;
+    let left_out = (end_share * last as f64) as usize;
+    let mut at = |index: usize| *numbers.select_nth_unstable_by(index, f32::total_cmp).1;
+    Some((at(left_out), at(last - left_out)))
 }
 
 #[cfg(test)]
@@ -111,6 +144,20 @@ mod tests {
             assert_eq!(said(distance_m, |point| point), None);
         }
         assert_eq!(said(3.0, |point| if point.x > -0.2 { point * 100.0 } else { point }), None, "a far background");
+    }
+
+    #[test]
+    fn someone_who_lies_along_the_line_of_sight_is_warned_of() {
+        let warning = |change: fn(Vec3) -> Vec3| {
+            let grid = (0..400).map(|index| [(index % 20) as f32 / 19.0, (index / 20) as f32 / 19.0]);
+            let person = grid.map(|[x, y]| Vec3::new(0.5 * x - 0.25, 1.7 * y - 0.8, 3.0 + 0.3 * x));
+            FirstPoints { points_m: person.map(change).collect(), beyond: 0 }.lies_along_sight("points")
+        };
+        assert_eq!(warning(|point| point), None);
+        assert_eq!(warning(|point| Vec3::new(point.x, 0.4 * point.y, point.z)), None, "a trunk without legs");
+        let z_up = warning(|point| Vec3::new(point.x, point.z - 2.0, 3.0 - point.y)).unwrap();
+        assert!(z_up.contains("within 0.3 m from top to bottom and 1.5 m") && z_up.contains("--init"), "{z_up}");
+        assert_eq!(FirstPoints::default().lies_along_sight("points"), None);
     }
 
     #[test]

@@ -30,6 +30,9 @@ impl BodyTrackRun {
         for note in &self.report.notes {
             notify(BodyEvent::Note(note));
         }
+        for warning in &self.report.warnings {
+            notify(BodyEvent::Warning(warning));
+        }
         let tracked = self.track_all(stop, notify);
         let finished = self.report.frames_finished;
         let seconds = self.seconds + self.started.elapsed().as_secs_f64();

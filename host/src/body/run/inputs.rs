@@ -66,6 +66,8 @@ pub struct BodyInputs {
     pub files: InputFiles,
     /// What a user should know of how inputs were chosen.
     pub notes: Vec<String>,
+    /// Doubts about them.
+    pub warnings: Vec<String>,
 }
 
 /// The part of a scene's `run.json` that tracking needs.
@@ -138,6 +140,7 @@ impl BodyInputs {
                 scene: scene_file,
             },
             notes,
+            warnings: Vec::new(),
         })
     }
 }

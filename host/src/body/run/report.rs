@@ -40,7 +40,8 @@ pub struct PointCounts {
     pub over_cap: u64,
     /// Clouds that had more points than can be weighed.
     pub frames_over_cap: usize,
-    /// Frames without a point that could be weighed.
+    /// Frames without a point that could be weighed, those of clouds that could not be read among
+    /// them.
     pub frames_without_points: usize,
 }
 
@@ -86,8 +87,8 @@ pub struct BodyRunReport {
     pub points: PointCounts,
     /// Frames in which the points show each end effector.
     pub observed_frames: BTreeMap<&'static str, usize>,
-    /// What a user should know of how far the results go: end effectors that most frames do not
-    /// show.
+    /// What a user should know of how far the results go: doubts about the start, end effectors
+    /// that most frames do not show.
     pub warnings: Vec<String>,
     /// Clouds that could not be read; their rows are predictions.
     pub skipped: Vec<SkippedCloud>,
@@ -126,7 +127,7 @@ impl BodyRunReport {
             lost_joint_share: None,
             points: PointCounts::default(),
             observed_frames: end_effectors(inputs.part).map(|bone| (BODY_JOINT_NAMES[bone], 0)).collect(),
-            warnings: Vec::new(),
+            warnings: inputs.warnings.clone(),
             skipped: Vec::new(),
             notes: inputs.notes.clone(),
             inputs: inputs.files.clone(),
@@ -146,7 +147,7 @@ impl BodyRunReport {
 
     /// Says of each end effector whether fewer than half of the frames show it.
     pub(super) fn warn(&mut self) {
-        self.warnings = unobserved(&self.observed_frames, self.frames_finished);
+        self.warnings.extend(unobserved(&self.observed_frames, self.frames_finished));
     }
 
     /// A few lines for a person.
@@ -162,7 +163,7 @@ impl BodyRunReport {
         );
         let points = &self.points;
         let counts = [
-            (self.skipped.len() as u64, "clouds could not be read; their rows are predictions"),
+            (self.skipped.len() as u64, "clouds could not be read; they are frames without points"),
             (self.frames_missing, "frame numbers have no file and no row"),
             (points.frames_without_points as u64, "frames without points; their rows are predictions"),
             (points.skipped, "points were not finite, at the camera, or too far away"),

@@ -33,6 +33,8 @@ const START_CLOUDS: usize = 100;
 pub enum BodyEvent<'a> {
     /// Something that a user should know.
     Note(&'a str),
+    /// A doubt about the inputs.
+    Warning(&'a str),
     /// A cloud could not be read.
     Skipped(&'a SkippedCloud),
     /// The first cloud with more points than are weighed.
@@ -101,7 +103,7 @@ impl BodyTrackRun {
         options.check()?;
         let mut inputs = BodyInputs::read(&options)?;
         check_readable(&inputs)?;
-        check_points(&inputs, START_CLOUDS)?;
+        check_points(&mut inputs, START_CLOUDS)?;
         let mut stream = BodyStream::new(stream_options(&options, &inputs), inputs.size, inputs.first_rad)?;
         if inputs.estimates_size {
             stream = sized(&mut inputs, stream.options().clone())?;
@@ -199,6 +201,7 @@ impl BodyTrackRun {
             Err(skipped) => {
                 notify(BodyEvent::Skipped(&skipped));
                 self.report.skipped.push(skipped);
+                self.report.points.frames_without_points += 1;
                 return Ok(None);
             }
         };
@@ -348,16 +351,24 @@ fn find_start(inputs: &mut BodyInputs, stream: &mut BodyStream) -> Result<()> {
     let seen = |frame| Some(read_cloud(frame, &inputs.source, stream).ok()?.ok()?.seen);
     let mut readable = clouds.filter_map(|frame| Some((frame.frame, seen(frame)?)));
     let found = readable.find(|(_, seen)| !seen.points_m.is_empty());
-    stream.begin_from(found.as_ref().map_or(&[], |(_, seen)| &seen.points_m))?;
-    inputs.notes.push(match &found {
-        Some((frame, _)) => format!(
-            "no first pose is given; someone who stands or walks is fitted to the points of frame {frame} (--init)"
-        ),
-        None => {
+    let first = stream.begin_from(found.as_ref().map_or(&[], |(_, seen)| &seen.points_m))?;
+    let Some((frame, _)) = found else {
+        inputs.notes.push(
             "no first pose is given and the first clouds have no points; someone upright 3 m before the camera (--init)"
-                .to_owned()
-        }
-    });
+                .to_owned(),
+        );
+        return Ok(());
+    };
+    let facing = first.facing();
+    inputs.notes.push(format!(
+        "no first pose is given; someone who stands or walks is fitted to the points of frame {frame}, {facing} (--init)"
+    ));
+    if first.is_facing_doubtful() {
+        inputs.warnings.push(format!(
+            "the first pose may face the wrong way: the points of frame {frame} hardly separate the way that is taken, \
+             {facing}, from the opposite one; look at the result, and give the first pose (--init) if it is wrong"
+        ));
+    }
     Ok(())
 }
 

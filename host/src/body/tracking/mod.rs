@@ -16,6 +16,7 @@ pub mod start;
 pub mod stream;
 pub mod stream_options;
 pub mod tuning;
+mod turned_round;
 
 pub use by_joint::ByJoint;
 pub use end_effectors::MAX_BODY_PARTICLES;
@@ -24,6 +25,7 @@ pub use frame_time::FrameTime;
 pub use model_kind::BodyModelKind;
 pub use paper_tuning::{PaperRoot, PaperTuning};
 pub use seen_points::SeenPoints;
+pub use start::FirstPose;
 pub use stream::{BodyStream, StreamState, StreamedFrame};
 pub use stream_options::BodyStreamOptions;
 pub use tuning::BodyTuning;

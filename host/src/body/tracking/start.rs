@@ -2,8 +2,11 @@
 //! way, is fitted to them.
 
 use super::tuning::PointTuning;
+use super::turned_round::turned_round;
+use crate::body::fitting::standing;
 use crate::body::{BodyPart, BodySize};
 use crate::error::Result;
+use crate::wording::side_name;
 use rayon::prelude::*;
 use sinew_core::kinematics::inverse::{PoseDensity, Solve};
 use sinew_core::math::{Vec3, wrap_angle};
@@ -11,6 +14,7 @@ use sinew_core::observation::point_cloud::PointBlock;
 use sinew_core::observation::point_likelihood::PointLikelihood;
 use sinew_core::pik::guided::GuidedDensity;
 use sinew_core::pik::motion::BodyScene;
+use sinew_core::skeleton::Side;
 use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, BODY_BONES, full_body};
 use sinew_core::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
 use std::f32::consts::TAU;
@@ -21,8 +25,6 @@ const HALF_DEPTH_M: f32 = 0.1;
 const NO_POINTS_Z_M: f32 = 3.0;
 /// The middle of an upper body lies so much of the trunk above the pelvis.
 const UPPER_MIDDLE_SHARE: f32 = 0.7;
-/// Elbows and knees of a guess: a straight one has a direction in which it cannot turn.
-const BENT_RAD: f32 = 0.2;
 /// Ways that a guess faces. Chosen: with four instead of eight a quarter more starts are wrong.
 const HEADINGS: usize = 8;
 /// Elevation and deviation of both shoulders, radians: arms that hang, a T and an A.
@@ -35,15 +37,48 @@ const STAGES_M: [f32; 3] = [0.8, 0.45, 0.25];
 const SEARCH_STEPS: usize = 4;
 /// Steps from the best of them.
 const STEPS: usize = 25;
+/// Log likelihood of a point, on the mean, by which a pose has to be likelier than one that faces
+/// the other way. A mean over the points, since neighbours err alike.
+/// Chosen: of 756 starts of twelve tuning clips a third of those below it face the wrong way, an
+/// eighth of those above. From 400 points it is alike (docs/measurements_scenes.md).
+const MIN_FACING_MARGIN: f32 = 0.01;
 /// How far the root is from the guess, metres and radians, and how far the other angles.
 const SHIFT_STD_M: f32 = 0.5;
 const TURN_STD_RAD: f32 = 0.5;
 const ANGLE_STD_RAD: f32 = 0.4;
 
+/// A first pose, and how much likelier it is than one that faces the other way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FirstPose {
+    /// Coordinates inside the limits.
+    pub angles_rad: [f32; BODY_ANGLES],
+    /// Log likelihood of a point, on the mean, over that with the pose facing the other way. Not
+    /// below zero; zero without points.
+    pub facing_margin: f32,
+}
+
+impl FirstPose {
+    /// Whether the points do not decide which of two opposite ways the person faces.
+    #[must_use]
+    pub fn is_facing_doubtful(&self) -> bool {
+        self.facing_margin < MIN_FACING_MARGIN
+    }
+
+    /// How the person is turned, for a message.
+    #[must_use]
+    pub fn facing(&self) -> String {
+        let heading_deg = wrap_angle(self.angles_rad[SHIFTS]).to_degrees();
+        let side = if heading_deg < 0.0 { Side::Right } else { Side::Left };
+        format!("turned by {:.0} degrees to their {} from facing the camera", heading_deg.abs(), side_name(side))
+    }
+}
+
 /// The likeliest of the poses that are climbed to from guesses at the median of `points_m`: facing
 /// eight ways, arms hanging, in a T or an A, legs standing or in a stride. Each is the mode of
 /// PIK (12) times the likelihood of `blocks` of the same points, in stages of a narrowing robust
-/// metric. It finds a person who stands or walks; who sits, bends down or lies needs a first pose.
+/// metric. The best of them and its [`turned_round`] end with the same steps, and the likelier is
+/// the answer. It finds a person who stands or walks; who sits, bends down or lies needs a first
+/// pose.
 ///
 /// # Errors
 /// Measures that no body has.
@@ -53,7 +88,7 @@ pub fn pose_from_points(
     points: &PointTuning,
     points_m: &[Vec3],
     blocks: &[PointBlock],
-) -> Result<[f32; BODY_ANGLES]> {
+) -> Result<FirstPose> {
     let scene = BodyScene {
         skeleton: full_body(&size.measures)?,
         radii_m: part.fleshed(&size.radii_m),
@@ -65,18 +100,21 @@ pub fn pose_from_points(
     if part == BodyPart::Upper {
         pelvis_m.y += UPPER_MIDDLE_SHARE * size.measures.trunk_m;
     }
+    let climbed_by = |guess: &[f32; BODY_ANGLES], stages_m: &[f32], steps: usize| {
+        let pose = climb(&scene, blocks, guess, stages_m, steps);
+        (pose, scene.likelihood.log_likelihood(&scene.surface(&scene.posture(&pose)), blocks))
+    };
     let guesses = guesses(part, pelvis_m);
-    let climbed: Vec<([f32; BODY_ANGLES], f32)> = guesses
-        .par_iter()
-        .map(|guess| {
-            let pose = climb(&scene, blocks, guess, &STAGES_M, SEARCH_STEPS);
-            (pose, scene.likelihood.log_likelihood(&scene.surface(&scene.posture(&pose)), blocks))
-        })
-        .collect();
+    let climbed: Vec<([f32; BODY_ANGLES], f32)> =
+        guesses.par_iter().map(|guess| climbed_by(guess, &STAGES_M, SEARCH_STEPS)).collect();
     // The first of equals, which faces the camera.
     let best = climbed.iter().reduce(|best, next| if next.1 > best.1 { next } else { best });
-    let best_rad = best.map_or_else(|| upright(pelvis_m), |(pose, _)| *pose);
-    Ok(climb(&scene, blocks, &best_rad, &STAGES_M[2..], STEPS))
+    let best_rad = best.map_or_else(|| standing(pelvis_m), |(pose, _)| *pose);
+    let turned_rad = turned_round(&scene.skeleton, &best_rad);
+    let end = |pose: &[f32; BODY_ANGLES]| climbed_by(pose, &STAGES_M[2..], STEPS);
+    let (best, turned) = rayon::join(|| end(&best_rad), || end(&turned_rad));
+    let (likelier, other) = if turned.1 > best.1 { (turned, best) } else { (best, turned) };
+    Ok(FirstPose { angles_rad: likelier.0, facing_margin: (likelier.1 - other.1) / points_m.len().max(1) as f32 })
 }
 
 /// Upright poses with the pelvis at `pelvis_m`. Without legs nobody strides.
@@ -87,7 +125,7 @@ fn guesses(part: BodyPart, pelvis_m: Vec3) -> Vec<[f32; BODY_ANGLES]> {
         let turn_rad = wrap_angle(TAU * heading as f32 / HEADINGS as f32);
         for [elevation, deviation] in ARMS_RAD {
             for &[left, right] in legs {
-                let mut pose = upright(pelvis_m);
+                let mut pose = standing(pelvis_m);
                 pose[SHIFTS] = turn_rad;
                 for (angle, name) in pose.iter_mut().zip(BODY_ANGLE_NAMES) {
                     match name {
@@ -139,17 +177,6 @@ fn middle(points_m: &[Vec3]) -> Option<Vec3> {
     Some(place)
 }
 
-fn upright(pelvis_m: Vec3) -> [f32; BODY_ANGLES] {
-    let mut pose = [0.0; BODY_ANGLES];
-    pose[..SHIFTS].copy_from_slice(pelvis_m.as_slice());
-    for (angle, name) in pose.iter_mut().zip(BODY_ANGLE_NAMES) {
-        if name.ends_with("elbow_flexion") || name.ends_with("knee_flexion") {
-            *angle = BENT_RAD;
-        }
-    }
-    pose
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -173,7 +200,8 @@ mod tests {
         let tuning = BodyTuning::default().guided_points;
         let blocks = blocks_of(&mut scene.points_m(0), None);
         let pose = pose_from_points(BodyPart::Whole, &(*scene.measures()).into(), &tuning, &scene.points_m(0), &blocks)
-            .unwrap();
+            .unwrap()
+            .angles_rad;
         let skeleton = full_body(scene.measures()).unwrap();
         assert_eq!(skeleton.clamp(pose), pose);
         let ends = posture(&skeleton, &Vec3::zeros(), &pose).ends;
@@ -190,12 +218,24 @@ mod tests {
     }
 
     #[test]
+    fn facing_is_said_to_the_side_of_the_person() {
+        let of = |turn_rad: f32| {
+            let mut angles_rad = standing(Vec3::zeros());
+            angles_rad[SHIFTS] = turn_rad;
+            FirstPose { angles_rad, facing_margin: 0.0 }.facing()
+        };
+        assert_eq!(of(0.5 * TAU / 2.0), "turned by 90 degrees to their left from facing the camera");
+        assert_eq!(of(TAU - 0.1 * TAU), "turned by 36 degrees to their right from facing the camera");
+    }
+
+    #[test]
     fn no_points_and_one_point_are_starts_too() {
         let tuning = BodyTuning::default().guided_points;
         let measures = BodySize::from(BodyMeasures::of_height(1.75).unwrap());
         let pose = pose_from_points(BodyPart::Whole, &measures, &tuning, &[], &[]).unwrap();
-        assert_eq!(pose[..3], [0.0, 0.0, NO_POINTS_Z_M]);
+        assert_eq!(pose.angles_rad[..3], [0.0, 0.0, NO_POINTS_Z_M]);
+        assert!(pose.is_facing_doubtful(), "nothing shows where the person faces");
         let one = pose_from_points(BodyPart::Whole, &measures, &tuning, &[Vec3::new(1.0, 0.0, 4.0)], &[]).unwrap();
-        assert_eq!(one[0], 1.0);
+        assert_eq!(one.angles_rad[0], 1.0);
     }
 }

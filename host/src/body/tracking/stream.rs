@@ -5,7 +5,7 @@
 use super::filter::{BodyFilter, WholeBodyEstimate};
 use super::frame_time::{FrameTime, Moment};
 use super::seen_points::SeenPoints;
-use super::start::pose_from_points;
+use super::start::{FirstPose, pose_from_points};
 use super::stream_options::BodyStreamOptions;
 use crate::body::{BodyFile, BodySize};
 use crate::cloud::{MAX_DISTANCE_M, PointCloud, blocks_of};
@@ -165,17 +165,18 @@ impl BodyStream {
     }
 
     /// Finds the first pose in these points: someone who stands or walks is fitted to
-    /// them. Without points they stand 3 m before the camera.
+    /// them. Without points they stand 3 m before the camera. The answer has the pose, and whether
+    /// the points decide where the person faces.
     ///
     /// # Errors
     /// Numbers that broke a rule.
-    pub fn begin_from(&mut self, points_m: &[Vec3]) -> Result<()> {
+    pub fn begin_from(&mut self, points_m: &[Vec3]) -> Result<FirstPose> {
         let BodyStreamOptions { part, tuning, .. } = &self.options;
         let blocks = blocks_of(&mut points_m.to_vec(), tuning.range_smoothing()?.as_ref());
-        let pose = pose_from_points(*part, &self.size, &tuning.guided_points, points_m, &blocks)?;
-        self.filter = filter(&self.options, &self.size, pose)?;
+        let first = pose_from_points(*part, &self.size, &tuning.guided_points, points_m, &blocks)?;
+        self.filter = filter(&self.options, &self.size, first.angles_rad)?;
         self.phase = Phase::Placed;
-        Ok(())
+        Ok(first)
     }
 
     /// Answers a frame: prepares its points and steps.

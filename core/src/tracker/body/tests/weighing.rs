@@ -62,3 +62,20 @@ fn the_number_of_effective_particles_grows_with_the_root_of_theirs() {
         assert!((mean / effective - 1.0).abs() < 0.02, "{mean} of {count}");
     }
 }
+
+/// The first frame's particles are the same however weights are flattened.
+#[test]
+fn the_log_evidence_is_that_of_weights_before_tempering() {
+    let (scene, goals) = (scene(), goals());
+    let cloud = cloud(&scene, 1, &[]);
+    let first = |least_effective_share: f32, limb_by_limb: bool| {
+        let options = BodyOptions { least_effective_share, limb_by_limb, ..OPTIONS };
+        let frame = BodyFrame { dt_s: DT_S, blocks: cloud.blocks() };
+        tracker_of(&scene, 60, 4, options).step(&scene, &end_effector(&goals), &frame)
+    };
+    for limb_by_limb in [false, true] {
+        let (plain, tempered) = (first(0.0, limb_by_limb), first(0.5, limb_by_limb));
+        assert!(plain.tempering == 1.0 && tempered.tempering < 0.9, "{}", tempered.tempering);
+        assert_eq!(plain.log_evidence, tempered.log_evidence, "limb by limb: {limb_by_limb}");
+    }
+}
