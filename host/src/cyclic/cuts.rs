@@ -37,7 +37,8 @@ impl Cut {
 
 /// Cycles in the order of their list.
 ///
-/// Invariants: at least one cut; each ends after it starts; all have a person or none has.
+/// Invariants: at least one cut; each ends after it starts, and none overlaps another of its table;
+/// all have a person or none has.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CutList {
     /// Where the list lies, for messages and relative names.
@@ -81,7 +82,7 @@ impl CutList {
                 "the list is empty; give at least one row file,start_frame,end_frame",
             ));
         }
-        Ok(Self { path: path.to_path_buf(), cuts })
+        Self::of_cuts(cuts, path)
     }
 
     /// Cycles of tables that are in memory; `path` stands for them in messages.
@@ -98,6 +99,13 @@ impl CutList {
         }
         if let Some(cut) = cuts.iter().find(|cut| cut.person.is_some() != cuts[0].person.is_some()) {
             return Err(CyclicError::broken(path, cut.line, "either all cycles have a person or none"));
+        }
+        if let Some((cut, other)) = overlapping(&cuts) {
+            let rule = format!(
+                "the cycle overlaps that of frames {} to {} of the same table, and frames count once: take one of both out",
+                other.start_frame, other.end_frame
+            );
+            return Err(CyclicError::broken(path, cut.line, rule));
         }
         Ok(Self { path: path.to_path_buf(), cuts })
     }
@@ -119,6 +127,14 @@ impl CutList {
     pub fn table_path(&self, cut: &Cut) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(&cut.file)
     }
+}
+
+/// A cycle that begins before another one of its table ends, and that one.
+fn overlapping(cuts: &[Cut]) -> Option<(&Cut, &Cut)> {
+    let mut sorted: Vec<&Cut> = cuts.iter().collect();
+    sorted.sort_by(|a, b| (&a.file, a.start_frame).cmp(&(&b.file, b.start_frame)));
+    let mut pairs = sorted.windows(2).map(|pair| (pair[1], pair[0]));
+    pairs.find(|(next, before)| next.file == before.file && next.start_frame < before.end_frame)
 }
 
 fn cut(record: &csv::StringRecord, columns: usize, line: u64) -> Result<Cut, String> {
@@ -202,6 +218,7 @@ mod tests {
             ("t.csv,3,70\nt.csv,-3,70\n", "a/cuts.csv:3: `start_frame` has to be a whole number"),
             ("t.csv,70,70\n", "a/cuts.csv:2: `end_frame` 70 has to lie after"),
             (",3,70\n", "a/cuts.csv:2: `file` is empty"),
+            ("t.csv,3,70\nu.csv,3,70\nt.csv,60,90\n", "a/cuts.csv:4: the cycle overlaps that of frames 3 to 70"),
             ("t.csv,3,70,ann\n", "a/cuts.csv:2: a row needs 3 columns, as the header, found 4"),
             ("", "a/cuts.csv:1: the list is empty"),
         ];

@@ -11,6 +11,10 @@ use super::tracking::summary::MIN_CYCLES;
 /// elderly to a sprint, 40 to 220 strides a minute where the models have 50 to 90.
 const CADENCE_RANGE: [f64; 2] = [0.4, 2.5];
 
+/// Share of the cycles that the cadence gives in the time that was seen, below which the count is
+/// doubted. Chosen: who stands still for less than half of a recording is not doubted.
+const LEAST_COUNTED_SHARE: f64 = 0.5;
+
 /// Largest range of an angle in degrees. No hinge of a person goes farther, and in a side view no
 /// ball joint except about the shoulder.
 const MAX_RANGE_DEG: f64 = 170.0;
@@ -54,7 +58,7 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
     doubts
 }
 
-/// Less than two cycles, or cycles backwards. `low_per_min` is the slowest cadence of the motion.
+/// Less than two cycles, less than half of those of the cadence, or cycles backwards. `low_per_min` is the slowest cadence of the motion.
 ///
 /// Rows that do not fit the model are no doubt: real walks have up to 92 % of them.
 fn few_cycles(summary: &Summary, low_per_min: f64) -> Option<String> {
@@ -65,6 +69,12 @@ fn few_cycles(summary: &Summary, low_per_min: f64) -> Option<String> {
         ));
     }
     let least = low_per_min * seen_s / 60.0;
+    let by_cadence = summary.cadence_per_min.unwrap_or(0.0) * seen_s / 60.0;
+    if cycles >= MIN_CYCLES && cycles < LEAST_COUNTED_SHARE * by_cadence {
+        return Some(format!(
+            "{cycles:.1} cycles were counted in {seen_s:.0} s, in which the cadence gives {by_cadence:.0}: the person stood still for most of the time, or the motion was lost; look at `cycle_position` in the table"
+        ));
+    }
     (cycles < MIN_CYCLES).then(|| {
         if least < MIN_CYCLES {
             format!(
@@ -166,5 +176,7 @@ mod tests {
         assert!(only(&summary(0.6, 3.0)).ends_with("record longer"));
         assert!(only(&summary(-3.0, 30.0)).starts_with("the motion runs backwards (-3.0 cycles)"));
         assert_eq!(only(&summary(20.0, 30.0)), "");
+        let lost = Summary { cadence_per_min: Some(50.0), ..summary(8.0, 30.0) };
+        assert!(only(&lost).starts_with("8.0 cycles were counted in 30 s, in which the cadence gives 25"));
     }
 }

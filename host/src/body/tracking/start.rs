@@ -42,6 +42,9 @@ const STEPS: usize = 25;
 /// Chosen: of 756 starts of twelve tuning clips a third of those below it face the wrong way, an
 /// eighth of those above. From 400 points it is alike (docs/measurements_scenes.md).
 const MIN_FACING_MARGIN: f32 = 0.01;
+/// Share of the points that no skin of an upper body explains, from which on legs may be in view.
+/// Chosen: a tenth is as much as false matches make; legs are two fifths of a standing body.
+const MOST_UNEXPLAINED: f32 = 0.1;
 /// How far the root is from the guess, metres and radians, and how far the other angles.
 const SHIFT_STD_M: f32 = 0.5;
 const TURN_STD_RAD: f32 = 0.5;
@@ -78,7 +81,7 @@ impl FirstPose {
 /// PIK (12) times the likelihood of `blocks` of the same points, in stages of a narrowing robust
 /// metric. The best of them and its [`turned_round`] end with the same steps, and the likelier is
 /// the answer. It finds a person who stands or walks; who sits, bends down or lies needs a first
-/// pose.
+/// pose. An upper body whose legs are seen is looked for as a whole one.
 ///
 /// # Errors
 /// Measures that no body has.
@@ -89,6 +92,25 @@ pub fn pose_from_points(
     points_m: &[Vec3],
     blocks: &[PointBlock],
 ) -> Result<FirstPose> {
+    let (pose, unexplained) = pose_of_part(part, size, points, points_m, blocks)?;
+    if part == BodyPart::Upper && unexplained > MOST_UNEXPLAINED {
+        let (whole, unexplained_by_whole) = pose_of_part(BodyPart::Whole, size, points, points_m, blocks)?;
+        if unexplained_by_whole < unexplained {
+            return Ok(whole);
+        }
+    }
+    Ok(pose)
+}
+
+/// The pose of the part that is seen, and the share of the points that are farther from its skin
+/// than an outlier is.
+fn pose_of_part(
+    part: BodyPart,
+    size: &BodySize,
+    points: &PointTuning,
+    points_m: &[Vec3],
+    blocks: &[PointBlock],
+) -> Result<(FirstPose, f32)> {
     let scene = BodyScene {
         skeleton: full_body(&size.measures)?,
         radii_m: part.fleshed(&size.radii_m),
@@ -114,7 +136,11 @@ pub fn pose_from_points(
     let end = |pose: &[f32; BODY_ANGLES]| climbed_by(pose, &STAGES_M[2..], STEPS);
     let (best, turned) = rayon::join(|| end(&best_rad), || end(&turned_rad));
     let (likelier, other) = if turned.1 > best.1 { (turned, best) } else { (best, turned) };
-    Ok(FirstPose { angles_rad: likelier.0, facing_margin: (likelier.1 - other.1) / points_m.len().max(1) as f32 })
+    let count = points_m.len().max(1) as f32;
+    let surface = scene.surface(&scene.posture(&likelier.0));
+    let far = points_m.iter().filter(|point_m| surface.skin_distance_m(point_m) > points.outlier_m).count();
+    let pose = FirstPose { angles_rad: likelier.0, facing_margin: (likelier.1 - other.1) / count };
+    Ok((pose, far as f32 / count))
 }
 
 /// Upright poses with the pelvis at `pelvis_m`. Without legs nobody strides.
