@@ -76,6 +76,8 @@ fn few_cycles(summary: &Summary, low_per_min: f64) -> Option<String> {
         ));
     }
     (cycles < MIN_CYCLES).then(|| {
+        // 1.99 are no 2.0.
+        let cycles = (10.0 * cycles).floor() / 10.0;
         if least < MIN_CYCLES {
             format!(
                 "{cycles:.1} cycles were seen: with less than {MIN_CYCLES} there is no cadence; record longer"

@@ -6,6 +6,9 @@ use crate::cyclic::facing::Facing;
 use crate::cyclic::image_joints::{ImageJoints, Point};
 use crate::motion::joint_names::{HIP_CENTER, NECK};
 
+/// A way that turns more often turns with each cycle. Chosen: who walks to and fro before a camera
+/// is cut at each turn, and a rower turns twice a cycle.
+const MOST_TURNS: usize = 3;
 /// Rate of a recording that does not say it, frames per second. Chosen: that of most videos.
 const USUAL_RATE_HZ: f64 = 30.0;
 /// For how long a person has to face the other way to have turned (the half second).
@@ -115,18 +118,30 @@ fn turn(followed: &Followed, trunk_px: f64) -> Option<String> {
     ))
 }
 
-/// The person walks one way and back.
+/// The person walks one way and back. Who goes there and back with each cycle, as on a rowing
+/// machine, turns more often.
 fn turned_way(followed: &Followed, trunk_px: f64) -> Option<String> {
     let roots: Vec<(u64, f64)> =
         followed.joints.frames.iter().filter_map(|frame| Some((frame.frame, frame.joints[HIP_CENTER]?[0]))).collect();
-    let (first, last) = (roots.first()?.1, roots.last()?.1);
-    let far_px = TRAVEL_TRUNKS * trunk_px;
-    let turns = |sign: f64| {
-        let farthest = roots.iter().max_by(|a, b| (sign * a.1).total_cmp(&(sign * b.1)))?;
-        (sign * (farthest.1 - first) > far_px && sign * (farthest.1 - last) > far_px).then_some(farthest.0)
-    };
-    let frame = turns(1.0).or_else(|| turns(-1.0))?;
+    let turns = turning_frames(&roots, TRAVEL_TRUNKS * trunk_px);
+    let frame = turns.first().filter(|_| turns.len() <= MOST_TURNS)?;
     Some(format!("the person's way turns back at frame {frame}: cut the recording there into two, and read each alone"))
+}
+
+/// Frames at which a way that was `far` long goes back by as much.
+fn turning_frames(way: &[(u64, f64)], far: f64) -> Vec<u64> {
+    let (mut turns, mut sign) = (Vec::new(), 0.0);
+    let Some(&(mut farthest)) = way.first() else { return turns };
+    for &(frame, place) in way {
+        let ahead = place - farthest.1;
+        if sign == 0.0 && ahead.abs() > far || sign * ahead > 0.0 {
+            (sign, farthest) = (ahead.signum(), (frame, place));
+        } else if -sign * ahead > far {
+            turns.push(farthest.0);
+            (sign, farthest) = (-sign, (frame, place));
+        }
+    }
+    turns
 }
 
 fn below(followed: &Followed, trunk_px: f64) -> Option<String> {
