@@ -3,6 +3,7 @@
 use super::angles::PAIRS;
 use super::curves::{CycleCurves, POINTS};
 use super::repetition::{Range, Repetition};
+use crate::cyclic::turns::least_angle;
 use serde::Serialize;
 
 /// How alike the two sides of one joint move.
@@ -19,9 +20,10 @@ pub struct Symmetry {
     pub symmetry_index_percent: Option<f64>,
     /// By how much of a cycle the right side follows the left, in [0, 1): 0.5 for walking, 0 for
     /// sides that move together. The shift at which the mean curves about their means are most
-    /// alike.
+    /// alike, or the directions of a winding joint. `None` where one side winds otherwise than the
+    /// other.
     pub right_lag_cycles: Option<f64>,
-    /// Root mean square difference of the mean curves at that shift, degrees.
+    /// Root mean square difference of the mean curves at that shift, degrees; at most 180.
     pub curve_difference_deg: Option<f64>,
 }
 
@@ -73,16 +75,24 @@ fn mean_range(repetitions: &[Repetition], angle: usize) -> Option<f64> {
     (!ranges.is_empty()).then(|| ranges.iter().sum::<f64>() / ranges.len() as f64)
 }
 
-/// The shift of `right` in cycles that makes it most like `left` when both are taken about their
-/// means. Also the root mean square difference there with the means left in.
+/// The shift of `right` in cycles that makes it most like `left`, and the root mean square
+/// difference there. Curves that come back to their start are compared about their means. For
+/// winding ones a shift is a constant, so their directions are compared.
 fn best_shift(left: &[Option<f64>], right: &[Option<f64>]) -> Option<(f64, f64)> {
     const PERCENTS: usize = POINTS - 1;
     let known = |curve: &[Option<f64>]| curve.iter().take(PERCENTS).copied().collect::<Option<Vec<f64>>>();
     let (left, right) = (known(left)?, known(right)?);
+    let turns = |curve: &[f64]| ((curve[PERCENTS - 1] - curve[0]) / 360.0).round();
+    if turns(&left) != turns(&right) {
+        return None;
+    }
     let mean = |curve: &[f64]| curve.iter().sum::<f64>() / PERCENTS as f64;
-    let offset = mean(&left) - mean(&right);
+    let offset = if turns(&left) == 0.0 { mean(&left) - mean(&right) } else { 0.0 };
     let difference = |shift: usize, offset: f64| {
-        let square = |i: usize| (left[i] - right[(i + shift) % PERCENTS] - offset).powi(2);
+        let square = |i: usize| {
+            let off = left[i] - right[(i + shift) % PERCENTS] - offset;
+            least_angle(off.to_radians()).to_degrees().powi(2)
+        };
         (0..PERCENTS).map(square).sum::<f64>() / PERCENTS as f64
     };
     let best = (0..PERCENTS).min_by(|a, b| difference(*a, offset).total_cmp(&difference(*b, offset)))?;
@@ -122,5 +132,33 @@ mod tests {
         assert!((knee.curve_difference_deg.unwrap() - 10.0 / 2.0_f64.sqrt()).abs() < 0.05, "{knee:?}");
         assert!(by_name("shoulder_flexion").symmetry_index_percent.is_none());
         assert_eq!(to_csv(&found).lines().count(), 5);
+    }
+    /// Lag and difference of arms that wind `turns` times in a cycle, with a swing of 12 degrees on
+    /// top.
+    fn of_circling_arms(turns: [f64; 2], lag: f64) -> (Option<f64>, Option<f64>) {
+        let angle = |turns: f64, phase: f64| 40.0 + 360.0 * turns * phase + 12.0 * (TAU * phase).sin();
+        let pose = |frame: u64| {
+            let phase = frame as f64 / 60.0;
+            let mut pose = [Some(0.0); COUNT];
+            (pose[1], pose[5]) = (Some(angle(turns[0], phase)), Some(angle(turns[1], phase - lag)));
+            pose
+        };
+        let series =
+            AnatomicalSeries { frames: (0..200).collect(), angles_deg: (0..200).map(pose).collect(), rate_hz: 60.0 };
+        let cycles = [[0.0, 60.0], [60.0, 120.0], [120.0, 180.0]];
+        let found = symmetries(&repetitions(&series, &cycles), &CycleCurves::new(&series, &cycles));
+        (found[0].right_lag_cycles, found[0].curve_difference_deg)
+    }
+
+    #[test]
+    fn winding_arms_have_the_lag_of_their_directions() {
+        for turns in [1.0, -1.0] {
+            for lag in [0.0, 0.25, 0.5, 0.6] {
+                let (found, difference_deg) = of_circling_arms([turns; 2], lag);
+                assert!((found.unwrap() - lag).abs() < 1.0e-9, "{found:?} instead of {lag}");
+                assert!(difference_deg.unwrap() < 1.0, "{difference_deg:?} degrees at a lag of {lag}");
+            }
+        }
+        assert_eq!(of_circling_arms([1.0, -1.0], 0.0), (None, None), "arms that wind against each other");
     }
 }
