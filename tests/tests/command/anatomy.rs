@@ -18,7 +18,7 @@ fn walking_has_the_ranges_of_healthy_gait() {
         let cycles = [[cut.start_frame as f64, cut.end_frame as f64]];
         let found = repetitions(&series, &cycles);
         assert!((40.0..70.0).contains(&found[0].tempo_per_min), "{cut:?}");
-        for symmetry in symmetries(&found, &CycleCurves::new(&series, &cycles)) {
+        for symmetry in symmetries(&found, &CycleCurves::new(&series, &cycles), 0.0) {
             let bounds = match symmetry.angle {
                 "knee_flexion" => 45.0..80.0,
                 "hip_flexion" => 35.0..72.0,

@@ -280,7 +280,10 @@ fn summary(report: &Report) -> String {
     let mut text = summary_line(&report.summary);
     for joint in &report.symmetries {
         if let (Some(left), Some(right)) = (joint.left_range_deg, joint.right_range_deg) {
-            let index = joint.symmetry_index_percent.map_or_else(String::new, |index| format!(", index {index:+.0} %"));
+            let index = joint.symmetry_index_percent.map_or_else(
+                || ", too little against the noise for an index".to_owned(),
+                |index| format!(", index {index:+.0} %"),
+            );
             let name = joint.angle.replace('_', " ");
             text.push_str(&format!("{name}: range left {left:.1}, right {right:.1} degrees{index}\n"));
         }

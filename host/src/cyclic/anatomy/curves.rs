@@ -1,6 +1,7 @@
 //! Curves over the cycle, 0 to 100 %: mean and spread over all cycles.
 
 use super::angles::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT, Place};
+use crate::cyclic::turns::circular_mean;
 use serde::Serialize;
 
 /// Points of a curve: each whole percent, both ends included.
@@ -26,8 +27,8 @@ pub struct CycleCurves {
 }
 
 impl CycleCurves {
-    /// Curves of `series` over the frames `[start, end]` of each cycle. A winding angle is counted
-    /// from the turn in which the cycle starts.
+    /// Curves of `series` over the frames `[start, end]` of each cycle. Whole turns are taken from
+    /// a winding angle in each cycle, so that all cycles start near the same angle.
     #[must_use]
     pub fn new(series: &AnatomicalSeries, cycles: &[[f64; 2]]) -> Self {
         let places: Vec<Vec<Option<Place>>> = (0..POINTS)
@@ -37,8 +38,13 @@ impl CycleCurves {
             })
             .collect();
         let curve = |angle: usize| {
-            let turns_deg = |&[start, end]: &[f64; 2]| Some(whole_turns_deg(first_in(series, angle, start, end)?));
-            let turns_deg: Vec<Option<f64>> = cycles.iter().map(turns_deg).collect();
+            let starts_deg: Vec<Option<f64>> =
+                cycles.iter().map(|&[start, end]| first_in(series, angle, start, end)).collect();
+            let directions: Vec<(f64, f64)> =
+                starts_deg.iter().flatten().map(|start_deg| (start_deg.to_radians(), 1.0)).collect();
+            let mean_deg = circular_mean(&directions).map_or(0.0, f64::to_degrees);
+            let turns_deg = |start_deg: Option<f64>| Some(whole_turns_deg(start_deg? - mean_deg));
+            let turns_deg: Vec<Option<f64>> = starts_deg.into_iter().map(turns_deg).collect();
             places.iter().map(|places| point(series, angle, places, &turns_deg)).collect()
         };
         Self { curves: (0..COUNT).map(curve).collect() }
@@ -131,5 +137,18 @@ mod tests {
         let csv = curves.to_csv();
         assert_eq!(csv.lines().count(), 102);
         assert!(csv.lines().all(|line| line.split(',').count() == 1 + 3 * COUNT));
+    }
+
+    /// Cycles of an arm that circle from a degree before and after the top.
+    #[test]
+    fn a_winding_angle_starts_near_half_a_turn() {
+        let start_deg = |cycle: u64| if cycle % 2 == 0 { 179.0 } else { 181.0 };
+        let pose = |frame: u64| [Some(start_deg(frame / 50) + 7.2 * frame as f64); COUNT];
+        let series =
+            AnatomicalSeries { frames: (0..200).collect(), angles_deg: (0..200).map(pose).collect(), rate_hz: 60.0 };
+        let cycles = [0.0, 50.0, 100.0, 150.0].map(|start| [start, start + 49.0]);
+        let middle = CycleCurves::new(&series, &cycles).curves[1][50];
+        let off_deg = (middle.mean_deg.unwrap() - 180.0 - 24.5 * 7.2).rem_euclid(360.0);
+        assert!(off_deg.min(360.0 - off_deg) < 1.0e-6 && middle.std_deg.unwrap() < 1.2, "{middle:?}");
     }
 }

@@ -1,10 +1,11 @@
 //! The course of one angle over a finished recording.
 
-use super::fill::filled;
+use super::fill::{filled, wind_in_gaps};
 use super::noise::MIN_NOISE_RAD;
 use super::phase::Phased;
 use super::seen::Seen;
 use super::shape;
+use crate::cyclic::turns::least_angle;
 use crate::signal::gaps::{beside, pieces};
 use crate::signal::{gcv_spline, hampel};
 
@@ -40,6 +41,7 @@ impl Course {
         let raw = seen.series(angle);
         let mut measured = raw.clone();
         let rejected = hampel::reject(&mut measured);
+        wind_in_gaps(phased, angle, &mut measured);
         // Gaps stay: what is beside them is smooth already where the own cycle joins it.
         let smooth = splines(&measured);
         let bridged = filled(phased, angle, &smooth.angles_rad);
@@ -50,7 +52,8 @@ impl Course {
         let smooth = if whole == measured { smooth } else { splines(&whole) };
         let angles_rad = (0..measured.len()).map(|frame| smooth.angles_rad[frame].unwrap_or(bridged[frame])).collect();
         let is_outlier = (0..raw.len()).map(|frame| {
-            let off = raw[frame].zip(smooth.angles_rad[frame]).map_or(0.0, |(raw, smooth)| (raw - smooth).abs());
+            let off =
+                raw[frame].zip(smooth.angles_rad[frame]).map_or(0.0, |(raw, smooth)| least_angle(raw - smooth).abs());
             rejected[frame] && off > MIN_OUTLIER_RAD.max(OUTLIER_STDS * noise_rad)
         });
         let is_outlier = is_outlier.collect();

@@ -9,7 +9,7 @@ use sinew_core::skeleton::stick_figure::HUMAN;
 
 /// Least noise, radians: half a degree, what annotators of keypoints differ by at a limb of 100
 /// pixels. A recording without noise still differs from every model.
-pub(super) const MIN_NOISE_RAD: f64 = 0.0087;
+pub const MIN_NOISE_RAD: f64 = 0.0087;
 
 /// Standard deviation of a measured angle, radians: the median over the long segments, between
 /// neighbouring frames. `None` where too few successive frames were seen.

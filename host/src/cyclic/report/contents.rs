@@ -8,6 +8,7 @@ use crate::cyclic::anatomy::symmetry::{Symmetry, symmetries};
 use crate::cyclic::anatomy::{AnatomicalSeries, CycleCurves};
 use crate::cyclic::angle_table::ANGLES;
 use crate::cyclic::gait::{self, Gait, Scale};
+use crate::cyclic::own_cycle::noise;
 use crate::cyclic::tracking::table::MotionCells;
 use crate::cyclic::tracking::{Summary, Tracked, TrackingOptions};
 use serde::Serialize;
@@ -78,7 +79,8 @@ impl Report {
         let cycles: Vec<[f64; 2]> = summary.whole_cycles_s.iter().map(in_frames).collect();
         let repetitions = repetitions(&series, &cycles);
         let curves = CycleCurves::new(&series, &cycles);
-        let symmetries = symmetries(&repetitions, &curves);
+        let noise_rad = noise::of_table(table, &options.updates).unwrap_or(noise::MIN_NOISE_RAD);
+        let symmetries = symmetries(&repetitions, &curves, noise_rad);
         let gait = gait::of_table(table, tracked.rate_hz, Scale { height_m });
         Self { summary, measured_shares, series, cycles, repetitions, curves, symmetries, gait }
     }
