@@ -61,10 +61,18 @@ impl Job {
             let mut named = row.folders.iter().map(|folder| folder.join(&value));
             if let Some(file) = named.find(|file| file.is_file()) {
                 hash.update(content::of(&file)?);
+                hash.update(content::of_skeleton_beside(&file)?);
                 *value = file.to_string_lossy().into_owned();
             }
         }
+        hash.update(content::ending(&row.input));
         hash.update(content::of(&row.input)?);
+        if !options.contains_key("skeleton") {
+            hash.update(content::of_skeleton_beside(&row.input)?);
+        }
+        if KINDS[kind].1[0].0 == "track cyclic" {
+            hash.update(content::of_about_beside(&row.input)?);
+        }
         Ok(Self { key: format!("{:x}", hash.finalize()), input: row.input.clone(), kind, options })
     }
 
@@ -171,5 +179,43 @@ mod tests {
         let with_model = key(&[("model", "m.json")]);
         std::fs::write(folder.path().join("m.json"), "2").unwrap();
         assert_ne!(with_model, key(&[("model", "m.json")]));
+    }
+
+    #[test]
+    fn a_key_is_that_of_the_ending_and_of_what_is_read_beside() {
+        let folder = tempfile::tempdir().unwrap();
+        let put = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        let key = |name: &str, kind: &str, options: &[(&str, &str)]| {
+            let row = row(folder.path(), options);
+            let row = Row { input: folder.path().join(name), kind: Some(kind.to_owned()), ..row };
+            Job::of(&row).unwrap().key
+        };
+        for name in ["a.csv", "b.CSV", "a.txt", "m.amc"] {
+            put(name, "1\n");
+        }
+        let all = || {
+            let skeleton = [("skeleton", "given.asf")];
+            [
+                key("a.csv", "cyclic", &[]),
+                key("a.csv", "angles", &[]),
+                key("m.amc", "angles", &[]),
+                key("m.amc", "angles", &skeleton),
+                key("a.csv", "body", &[("skeleton", "m.amc")]),
+            ]
+        };
+        assert_eq!(key("a.csv", "angles", &[]), key("b.CSV", "angles", &[]));
+        assert_ne!(key("a.csv", "angles", &[]), key("a.txt", "angles", &[]));
+        let mut before = all();
+        for (name, text, are_other) in [
+            ("a.about.json", "1", [true, false, false, false, false]),
+            ("a.about.json", "2", [true, false, false, false, false]),
+            ("02.asf", "1", [false, false, true, false, true]),
+            ("02.asf", "2", [false, false, true, false, true]),
+        ] {
+            put(name, text);
+            let now = all();
+            assert_eq!(std::array::from_fn(|index| now[index] != before[index]), are_other, "{name} {text}");
+            before = now;
+        }
     }
 }
