@@ -3,9 +3,11 @@
 use super::content;
 use super::manifest::Row;
 use crate::cli::Cli;
+use crate::cyclic::CyclicError;
 use crate::cyclic::angle_table::AngleRows;
 use crate::error::{Result, bail, ensure};
 use clap::{ArgAction, CommandFactory, Parser};
+use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -106,6 +108,19 @@ impl Job {
         }
         Ok(lines)
     }
+
+    /// Checks what the command before the last answered: angles without a rate cannot be tracked.
+    ///
+    /// # Errors
+    /// Names the input and the option that gives its rate.
+    pub fn check_rate(&self, answer: &Value) -> Result<()> {
+        if answer["rate_hz"].is_null() && !self.options.contains_key("rate") {
+            let rule = "does not say how many frames a second it has; give --set input-rate=30 with your number, \
+                or a column `input-rate`";
+            return Err(CyclicError::unusable(&self.input, rule).into());
+        }
+        Ok(())
+    }
 }
 
 /// A cell of an option that is on or off.
@@ -167,6 +182,19 @@ mod tests {
         assert!(Job::of(&row(folder.path(), &[("out", "x")])).unwrap_err().to_string().contains("batch's own"));
         let wrong = Job::of(&row(folder.path(), &[("input-rate", "fast")])).unwrap();
         assert!(wrong.command_lines(Path::new("out")).unwrap_err().to_string().contains("fast"));
+    }
+
+    #[test]
+    fn angles_without_a_rate_are_refused_by_the_name_of_the_input() {
+        let folder = tempfile::tempdir().unwrap();
+        let checked = |options: &[(&str, &str)], answer: Value| {
+            let job = Job::of(&row(folder.path(), options)).unwrap();
+            job.check_rate(&answer).map_err(|error| error.to_string())
+        };
+        let message = checked(&[], serde_json::json!({ "rate_hz": null })).unwrap_err();
+        assert!(message.contains("walk.csv") && message.contains("--set input-rate=30"), "{message}");
+        assert_eq!(checked(&[], serde_json::json!({ "rate_hz": 30.0 })), Ok(()));
+        assert_eq!(checked(&[("rate", "30")], serde_json::json!({ "rate_hz": null })), Ok(()));
     }
 
     #[test]
