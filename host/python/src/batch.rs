@@ -42,7 +42,7 @@ pub fn batch_rows(
     let rows = py.detach(|| {
         let mut rows = match text {
             Some(text) => manifest::of_lines(text, "manifest", &[folder.unwrap_or_default(), PathBuf::new()]),
-            None => manifest::read(&manifest, folder.as_deref()),
+            None => manifest::read(&manifest, folder.as_deref()).map(|manifest| manifest.rows),
         }?;
         rows.iter_mut().for_each(|row| row.set(&set));
         Ok(rows.into_iter().map(|row| (row.id.clone(), row.kind.clone(), row.to_json())).collect())

@@ -58,7 +58,16 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
     doubts
 }
 
-/// Less than two cycles, less than half of those of the cadence, or cycles backwards. `low_per_min` is the slowest cadence of the motion.
+/// The doubt about a recording of which no row shows the motion of any of the models `names`.
+#[must_use]
+pub fn no_motion(names: &str) -> String {
+    format!(
+        "no frame shows one of the motions {names}: it is another motion, or less than a cycle of it; give --model of that motion, your own by `sinew train cyclic`"
+    )
+}
+
+/// Less than two cycles, less than half of those of the cadence, or cycles backwards.
+/// `low_per_min` is the slowest cadence of the motion.
 ///
 /// Rows that do not fit the model are no doubt: real walks have up to 92 % of them.
 fn few_cycles(summary: &Summary, low_per_min: f64) -> Option<String> {

@@ -186,9 +186,15 @@ fn random_angles_are_none_and_the_estimate_stays_whole() {
     again
         .assert()
         .success()
-        .stdout(contains("motion: walking in 0, running in 0, arm-circles in 0, none in 200 frames"));
+        .stdout(contains("motion: walking in 0, running in 0, arm-circles in 0, none in 200 frames"))
+        .stdout(contains("doubt: no frame shows one of the motions walking, running, arm-circles"));
     let json = fs::read_to_string(root.path().join("run/summary.json")).unwrap();
     assert!(json.contains("walking, running, arm-circles"));
+    let summary: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((summary["cycles"].as_f64(), summary["cadence_per_min"].as_f64()), (Some(0.0), None));
+    let mut strict = sinew(root.path());
+    strict.args(["track", "cyclic", "noisy.csv", "--out", "est.csv", "--strict"]).args(BANK);
+    strict.assert().code(65).stderr(contains("no frame shows"));
 }
 
 /// The columns of a single model do not depend on the bank; a bank of a model with itself gives
@@ -221,7 +227,7 @@ fn one_model_has_no_motion_and_unlike_models_are_refused() {
     let mut other: serde_json::Value = serde_json::from_str(&other).unwrap();
     other["rate_hz"] = 50.0.into();
     fs::write(root.path().join("slow.json"), other.to_string()).unwrap();
-    track(&["walking", "slow.json"]).code(65).stderr(contains("models of one rate"));
+    track(&["walking", "slow.json"]).code(65).stderr(contains("of 60 and 50 frames a second"));
     track(&["walking", "wlaking"]).code(65).stderr(contains("--model wlaking"));
     track(&[]).code(64).stderr(contains("--model"));
 }

@@ -17,7 +17,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum InputError {
     /// Nothing is there.
-    #[error("`{}`: there is no such folder or file; give a folder of images ({})", .0.display(), extension_list())]
+    #[error("`{}`: there is no such folder or file; give a folder of images ({}) or a video ({})", .0.display(), extension_list(), extensions(&[Kind::Video]))]
     Missing(PathBuf),
     /// A file stands where a folder was needed.
     #[error("`{}` is not a folder; give the folder that holds the images", .0.display())]

@@ -1,6 +1,8 @@
 //! The contents of inputs, and the cells of a manifest.
 
+use crate::cyclic::about::About;
 use crate::error::{Context, Result};
+use crate::motion::{asf, needs_skeleton};
 use sha2::{Digest, Sha256};
 use std::fs::{self, File};
 use std::io;
@@ -21,6 +23,30 @@ pub fn of(path: &Path) -> Result<String> {
     let mut hash = Sha256::new();
     File::open(path).and_then(|mut file| io::copy(&mut file, &mut hash)).with_context(|| cannot_read(path))?;
     Ok(format!("{:x}", hash.finalize()))
+}
+
+/// The ending of a file's name, which decides how it is read, in lower case; nothing of a folder.
+pub fn ending(path: &Path) -> String {
+    let ending = path.extension().filter(|_| !path.is_dir()).unwrap_or_default();
+    format!(".{}\0", ending.to_string_lossy().to_ascii_lowercase())
+}
+
+/// As [`of`] the skeleton in the folder of `motion` that is read with it; nothing where none is.
+///
+/// # Errors
+/// As [`of`].
+pub fn of_skeleton_beside(motion: &Path) -> Result<String> {
+    let skeleton = if needs_skeleton(motion) { asf::beside(motion).ok() } else { None };
+    skeleton.map_or_else(|| Ok(String::new()), |skeleton| of(&skeleton))
+}
+
+/// As [`of`] what `sinew angles` wrote beside `table`; nothing where that is not there.
+///
+/// # Errors
+/// As [`of`].
+pub fn of_about_beside(table: &Path) -> Result<String> {
+    let about = About::path_beside(table).filter(|about| about.is_file());
+    about.map_or_else(|| Ok(String::new()), |about| of(&about))
 }
 
 /// Names of what is in `folder`, sorted.

@@ -3,9 +3,11 @@
 use super::content;
 use super::manifest::Row;
 use crate::cli::Cli;
+use crate::cyclic::CyclicError;
 use crate::cyclic::angle_table::AngleRows;
 use crate::error::{Result, bail, ensure};
 use clap::{ArgAction, CommandFactory, Parser};
+use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -61,10 +63,18 @@ impl Job {
             let mut named = row.folders.iter().map(|folder| folder.join(&value));
             if let Some(file) = named.find(|file| file.is_file()) {
                 hash.update(content::of(&file)?);
+                hash.update(content::of_skeleton_beside(&file)?);
                 *value = file.to_string_lossy().into_owned();
             }
         }
+        hash.update(content::ending(&row.input));
         hash.update(content::of(&row.input)?);
+        if !options.contains_key("skeleton") {
+            hash.update(content::of_skeleton_beside(&row.input)?);
+        }
+        if KINDS[kind].1[0].0 == "track cyclic" {
+            hash.update(content::of_about_beside(&row.input)?);
+        }
         Ok(Self { key: format!("{:x}", hash.finalize()), input: row.input.clone(), kind, options })
     }
 
@@ -97,6 +107,19 @@ impl Job {
             input = output;
         }
         Ok(lines)
+    }
+
+    /// Checks what the command before the last answered: angles without a rate cannot be tracked.
+    ///
+    /// # Errors
+    /// Names the input and the option that gives its rate.
+    pub fn check_rate(&self, answer: &Value) -> Result<()> {
+        if answer["rate_hz"].is_null() && !self.options.contains_key("rate") {
+            let rule = "does not say how many frames a second it has; give --set input-rate=30 with your number, \
+                or a column `input-rate`";
+            return Err(CyclicError::unusable(&self.input, rule).into());
+        }
+        Ok(())
     }
 }
 
@@ -162,6 +185,19 @@ mod tests {
     }
 
     #[test]
+    fn angles_without_a_rate_are_refused_by_the_name_of_the_input() {
+        let folder = tempfile::tempdir().unwrap();
+        let checked = |options: &[(&str, &str)], answer: Value| {
+            let job = Job::of(&row(folder.path(), options)).unwrap();
+            job.check_rate(&answer).map_err(|error| error.to_string())
+        };
+        let message = checked(&[], serde_json::json!({ "rate_hz": null })).unwrap_err();
+        assert!(message.contains("walk.csv") && message.contains("--set input-rate=30"), "{message}");
+        assert_eq!(checked(&[], serde_json::json!({ "rate_hz": 30.0 })), Ok(()));
+        assert_eq!(checked(&[("rate", "30")], serde_json::json!({ "rate_hz": null })), Ok(()));
+    }
+
+    #[test]
     fn a_key_is_that_of_contents_and_options() {
         let folder = tempfile::tempdir().unwrap();
         let key = |options: &[(&str, &str)]| Job::of(&row(folder.path(), options)).unwrap().key;
@@ -171,5 +207,43 @@ mod tests {
         let with_model = key(&[("model", "m.json")]);
         std::fs::write(folder.path().join("m.json"), "2").unwrap();
         assert_ne!(with_model, key(&[("model", "m.json")]));
+    }
+
+    #[test]
+    fn a_key_is_that_of_the_ending_and_of_what_is_read_beside() {
+        let folder = tempfile::tempdir().unwrap();
+        let put = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        let key = |name: &str, kind: &str, options: &[(&str, &str)]| {
+            let row = row(folder.path(), options);
+            let row = Row { input: folder.path().join(name), kind: Some(kind.to_owned()), ..row };
+            Job::of(&row).unwrap().key
+        };
+        for name in ["a.csv", "b.CSV", "a.txt", "m.amc"] {
+            put(name, "1\n");
+        }
+        let all = || {
+            let skeleton = [("skeleton", "given.asf")];
+            [
+                key("a.csv", "cyclic", &[]),
+                key("a.csv", "angles", &[]),
+                key("m.amc", "angles", &[]),
+                key("m.amc", "angles", &skeleton),
+                key("a.csv", "body", &[("skeleton", "m.amc")]),
+            ]
+        };
+        assert_eq!(key("a.csv", "angles", &[]), key("b.CSV", "angles", &[]));
+        assert_ne!(key("a.csv", "angles", &[]), key("a.txt", "angles", &[]));
+        let mut before = all();
+        for (name, text, are_other) in [
+            ("a.about.json", "1", [true, false, false, false, false]),
+            ("a.about.json", "2", [true, false, false, false, false]),
+            ("02.asf", "1", [false, false, true, false, true]),
+            ("02.asf", "2", [false, false, true, false, true]),
+        ] {
+            put(name, text);
+            let now = all();
+            assert_eq!(std::array::from_fn(|index| now[index] != before[index]), are_other, "{name} {text}");
+            before = now;
+        }
     }
 }

@@ -3,7 +3,9 @@
 use super::content::{Cells, cannot_read, names_in};
 use crate::cli::data_error;
 use crate::csv_text::headed_reader;
+use crate::cyclic::angle_table::AngleRows;
 use crate::file::{FileError, STANDARD_INPUT, read_lines};
+use crate::registry::{Kind, extensions, find};
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
@@ -12,6 +14,8 @@ use std::path::{Path, PathBuf};
 const OWN: [&str; 3] = ["id", "input", "kind"];
 /// How the names of files end that lie beside angle tables.
 const ABOUT: &str = ".about.json";
+/// What a file of a folder may hold to count as a recording; a video has its error in the tables.
+const RECORDINGS: [Kind; 4] = [Kind::JointMotion, Kind::MarkerMotion, Kind::Keypoints, Kind::Video];
 
 /// One recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -49,13 +53,22 @@ impl Row {
     }
 }
 
-/// The recordings of a manifest, or everything in a folder. Inputs are relative to `folder`, else
+/// The recordings of a manifest or a folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Manifest {
+    /// Never empty.
+    pub rows: Vec<Row>,
+    /// Files of the folder that no reader knows, which are no rows.
+    pub skipped: usize,
+}
+
+/// The recordings of a manifest, or all in a folder. Inputs are relative to `folder`, else
 /// to the manifest's own.
 ///
 /// # Errors
 /// The line and the rule that it broke: a column `id` or `input` that is missing or empty, an id
 /// that comes twice; a folder with nothing in it.
-pub fn read(path: &Path, folder: Option<&Path>) -> anyhow::Result<Vec<Row>> {
+pub fn read(path: &Path, folder: Option<&Path>) -> anyhow::Result<Manifest> {
     let is_standard = path.as_os_str() == STANDARD_INPUT;
     if path.is_dir() && !is_standard {
         return everything_in(path);
@@ -64,8 +77,9 @@ pub fn read(path: &Path, folder: Option<&Path>) -> anyhow::Result<Vec<Row>> {
     let extension = path.extension().and_then(|extension| extension.to_str());
     let own = path.parent().unwrap_or(Path::new(""));
     let folders = [folder.unwrap_or(own).to_path_buf(), PathBuf::new()];
+    let listed = |rows: Vec<Row>| Manifest { rows, skipped: 0 };
     if extension == Some("parquet") {
-        return rows_of(super::parquet::cells(path)?, &name, &folders);
+        return rows_of(super::parquet::cells(path)?, &name, &folders).map(listed);
     }
     let text = read_lines(path).map_err(|error| match error {
         FileError::Io(reason) => anyhow::Error::new(reason).context(cannot_read(path)),
@@ -75,7 +89,8 @@ pub fn read(path: &Path, folder: Option<&Path>) -> anyhow::Result<Vec<Row>> {
         Some(extension) => matches!(extension, "jsonl" | "ndjson"),
         None => is_standard && text.trim_start().starts_with('{'),
     };
-    if is_json { of_lines(&text, &name, &folders) } else { rows_of(table(&text), &name, &folders) }
+    let rows = if is_json { of_lines(&text, &name, &folders) } else { rows_of(table(&text), &name, &folders) };
+    rows.map(listed)
 }
 
 /// The recordings of JSON lines; `name` is what messages call the text.
@@ -106,10 +121,13 @@ fn rows_of(cells: Cells, name: &str, folders: &[PathBuf; 2]) -> anyhow::Result<V
     Ok(rows)
 }
 
-/// One recording for each file and folder in `folder`, named by it.
-fn everything_in(folder: &Path) -> anyhow::Result<Vec<Row>> {
+/// One recording for each folder and each file that a reader knows in `folder`, named by it.
+fn everything_in(folder: &Path) -> anyhow::Result<Manifest> {
     let mut names = names_in(folder)?;
     names.retain(|name| !name.starts_with('.') && !name.ends_with(ABOUT));
+    let before = names.len();
+    names.retain(|name| is_recording(&folder.join(name)));
+    let skipped = before - names.len();
     let row = |(index, name): (usize, String)| {
         let id = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem).to_owned();
         let folders = [folder.to_path_buf(), PathBuf::new()];
@@ -117,14 +135,23 @@ fn everything_in(folder: &Path) -> anyhow::Result<Vec<Row>> {
     };
     let mut rows: Vec<Row> = names.into_iter().enumerate().map(row).collect();
     if rows.is_empty() {
-        return Err(data_error(format!("`{}` is empty; give a folder of recordings, or a manifest", folder.display())));
+        let found = match skipped {
+            0 => "is empty".to_owned(),
+            _ => format!("holds no recording ({}), but other files", extensions(&RECORDINGS)),
+        };
+        return Err(data_error(format!("`{}` {found}; give a folder of recordings, or a manifest", folder.display())));
     }
     let of_one_stem: Vec<String> =
         rows.windows(2).filter(|pair| pair[0].id == pair[1].id).map(|pair| pair[0].id.clone()).collect();
     for row in rows.iter_mut().filter(|row| of_one_stem.contains(&row.id)) {
         row.id = row.input.file_name().unwrap_or_default().to_string_lossy().into_owned();
     }
-    Ok(rows)
+    Ok(Manifest { rows, skipped })
+}
+
+/// Whether a reader knows what is at `path`: a folder, a file of a known ending, an angle table.
+fn is_recording(path: &Path) -> bool {
+    path.is_dir() || find(path, &RECORDINGS).is_some() || AngleRows::open(path).is_ok()
 }
 
 fn table(text: &str) -> Cells {
@@ -166,7 +193,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
         fs::write(&path, text).unwrap();
-        let rows = read(&path, None).map_err(|error| error.to_string())?;
+        let rows = read(&path, None).map_err(|error| error.to_string())?.rows;
         let short = |row: Row| Row { input: row.input.file_name().unwrap().into(), folders: Default::default(), ..row };
         Ok(rows.into_iter().map(short).collect())
     }
@@ -186,13 +213,19 @@ mod tests {
     #[test]
     fn a_folder_is_a_manifest_of_what_is_in_it() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["b.csv", "b.json", "a.trc", ".hidden", "a.about.json"] {
+        for name in ["b.csv", "b.json", "a.trc", ".hidden", "a.about.json", "README", "notes.md", "02.asf", "f.png"] {
             fs::write(folder.path().join(name), "1").unwrap();
         }
-        let ids: Vec<String> = read(folder.path(), None).unwrap().into_iter().map(|row| row.id).collect();
-        assert_eq!(ids, ["a", "b.csv", "b.json"]);
+        let angles = crate::cyclic::angle_table::COLUMNS.join(",") + "\n";
+        fs::write(folder.path().join("table.data"), angles).unwrap();
+        let found = read(folder.path(), None).unwrap();
+        let ids: Vec<String> = found.rows.into_iter().map(|row| row.id).collect();
+        assert_eq!((ids.join(" ").as_str(), found.skipped), ("a b.csv b.json table", 4));
+        let refusal = |folder: &Path| read(folder, None).unwrap_err().to_string();
         let empty = tempfile::tempdir().unwrap();
-        assert!(read(empty.path(), None).unwrap_err().to_string().contains("is empty"));
+        assert!(refusal(empty.path()).contains("is empty"));
+        fs::write(empty.path().join("README"), "1").unwrap();
+        assert!(refusal(empty.path()).contains("holds no recording (.bvh, "), "{}", refusal(empty.path()));
     }
 
     #[test]

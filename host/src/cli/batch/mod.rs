@@ -20,6 +20,7 @@ use crate::output::OutputLock;
 use crate::resume::Interrupted;
 use anyhow::{Result, ensure};
 use clap::Args;
+use manifest::Manifest;
 use progress::Progress;
 use serde_json::json;
 use std::path::PathBuf;
@@ -116,7 +117,8 @@ fn default_jobs() -> usize {
 /// # Errors
 /// As [`run`].
 pub fn run_until(args: &BatchArgs, console: &Console, stop: &AtomicBool) -> Result<()> {
-    let all = manifest::read(&args.manifest, args.folder.as_deref())?.into_iter().enumerate();
+    let Manifest { rows, skipped } = manifest::read(&args.manifest, args.folder.as_deref())?;
+    let all = rows.into_iter().enumerate();
     let mut rows: Vec<_> = all.filter(|(index, _)| args.is_mine(*index)).map(|(_, row)| row).collect();
     rows.iter_mut().for_each(|row| row.set(&args.set));
     ensure!(!rows.is_empty(), "--shard: the manifest has fewer recordings than shards; nothing is left for this one");
@@ -138,6 +140,9 @@ pub fn run_until(args: &BatchArgs, console: &Console, stop: &AtomicBool) -> Resu
     if args.parquet {
         parquet::write(&lines, &status.with_extension("parquet"), &summary.with_extension("parquet"))?;
     }
+    if skipped > 0 {
+        console.note(format!("skipped {skipped} of the folder's files: no reader of recordings knows their endings"));
+    }
     let Counts { recordings, good, from_before, failed, open } = Counts::of(&lines);
     let text = format!(
         "{recordings} recordings: {good} with a result, {from_before} of these from before; {failed} failed, {open} open\n\
@@ -151,6 +156,7 @@ pub fn run_until(args: &BatchArgs, console: &Console, stop: &AtomicBool) -> Resu
         "from_before": from_before,
         "failed": failed,
         "open": open,
+        "skipped": skipped,
         "status": status,
         "summary": summary,
     });

@@ -169,7 +169,10 @@ fn tried(job: &Job, store: &Store, stop: &AtomicBool) -> Result<Option<Ended>> {
 /// Runs the commands of `job`; what the last one answers.
 fn done(job: &Job, folder: &Path) -> Result<Value> {
     let mut answer = Value::Null;
-    for line in job.command_lines(folder)? {
+    for (index, line) in job.command_lines(folder)?.into_iter().enumerate() {
+        if index > 0 {
+            job.check_rate(&answer)?;
+        }
         let line = Cli { console: Console { quiet: true, json: true }, ..line };
         let (ended, text) = captured(|| catch_unwind(AssertUnwindSafe(|| run(&line))));
         ended.unwrap_or_else(|_| Err(Error::Invalid("a fault of the program; please report it".into()).into()))?;

@@ -1,6 +1,7 @@
 //! `sinew track cyclic`: angles, phase and cadence from an angle table.
 
 mod args;
+mod motions;
 mod place;
 mod stream;
 mod summary_line;

@@ -2,6 +2,7 @@
 //! motions, smoothing.
 
 use super::args::TrackCyclicArgs;
+use super::motions::Motions;
 use super::place::Place;
 use super::summary_line::summary_line;
 use crate::cli::console::Console;
@@ -12,8 +13,8 @@ use crate::cyclic::plausibility;
 use crate::cyclic::report::body::Body;
 use crate::cyclic::report::joints::figures;
 use crate::cyclic::report::{Origin, OverlayOrigin, Report};
-use crate::cyclic::tracking::table::{self, MotionCells, NO_MOTION};
-use crate::cyclic::tracking::{NamedMotion, TableRun, Tracked, TrackingOptions};
+use crate::cyclic::tracking::table;
+use crate::cyclic::tracking::{TableRun, Tracked, TrackingOptions};
 use crate::cyclic::{AngleTable, CyclicModel};
 use crate::error::Error;
 use crate::output::OutputDir;
@@ -128,21 +129,22 @@ impl Shown<'_> {
         let is_finished = is_complete && args.is_finished();
         let given_rad = args.sigma_deg.map(f64::to_radians);
         let tracked = if is_finished { finish(angles, &self.models[0], tracked, options, given_rad)? } else { tracked };
-        let motions = motions.map(|motions| motion_cells(&args.model, &motions));
-        table::write(&tracked, motions.as_ref(), &args.out)?;
+        let motions = motions.map(|motions| Motions::new(&args.model, &motions));
+        let motions = motions.as_ref();
+        table::write(&tracked, motions.map(|motions| &motions.cells), &args.out)?;
         let interrupted =
             || Interrupted { finished: run.finished(), all: Some(run.rows()), unit: "rows", out: args.out.clone() };
         ensure!(is_complete, interrupted());
-        let report = Report::new(angles, &tracked, options, args.height);
+        let is_of_none = motions.is_some_and(|motions| motions.leading().is_none());
+        let new_report = if is_of_none { Report::without_cycles } else { Report::new };
+        let report = new_report(angles, &tracked, options, args.height);
         let mut text = summary(&report);
-        if let Some(motions) = &motions {
-            text.push_str(&told_motions(&args.model, motions));
-        }
-        let doubts = self.doubts(&report);
+        text.extend(motions.map(Motions::line));
+        let doubts = self.doubts(&report, motions);
         text.extend(doubts.iter().map(|doubt| format!("doubt: {doubt}\n")));
         text.push_str(&format!("wrote {}\n", args.out.display()));
         if let Some(output) = &self.output {
-            self.write_report(&report, &tracked, motions.as_ref(), &doubts, output)?;
+            self.write_report(&report, &tracked, motions, &doubts, output)?;
             text.push_str(&format!("report: {}\n", output.path().display()));
         }
         if self.overlay.is_some() || args.animation.is_some() {
@@ -156,7 +158,7 @@ impl Shown<'_> {
         let json = json!({
             "summary": report.summary,
             "symmetries": report.symmetries,
-            "motion_frames": motions.as_ref().map(|motions| motion_counts(&args.model, motions)),
+            "motion_frames": motions.map(Motions::counts),
             "doubts": doubts,
             "out": args.out,
             "report": args.report,
@@ -170,12 +172,14 @@ impl Shown<'_> {
     }
 
     /// What speaks against the recording or the result.
-    fn doubts(&self, report: &Report) -> Vec<String> {
+    fn doubts(&self, report: &Report, motions: Option<&Motions<'_>>) -> Vec<String> {
         let of_recording = self.about.iter().flat_map(|about| about.doubts.clone());
-        let model = &self.models[0];
-        let of_run = match self.models.len() {
-            1 => plausibility::doubts(&report.summary, &report.series, model, report.gait.as_ref()),
-            _ => Vec::new(),
+        // The feet of several motions are those of each of them for a while.
+        let gait = report.gait.as_ref().filter(|_| motions.is_none_or(|motions| !motions.are_several()));
+        let of_run = match motions.map(|motions| motions.leading().ok_or(motions)) {
+            Some(Err(motions)) => vec![plausibility::no_motion(&motions.choice())],
+            Some(Ok(leading)) => plausibility::doubts(&report.summary, &report.series, &self.models[leading], gait),
+            None => plausibility::doubts(&report.summary, &report.series, &self.models[0], gait),
         };
         of_recording.chain(of_run).collect()
     }
@@ -184,7 +188,7 @@ impl Shown<'_> {
         &self,
         report: &Report,
         tracked: &Tracked,
-        motions: Option<&MotionCells>,
+        motions: Option<&Motions<'_>>,
         doubts: &[String],
         output: &OutputDir,
     ) -> Result<()> {
@@ -198,7 +202,7 @@ impl Shown<'_> {
             model: &args.model.join(", "),
             options: self.options,
             height_m: args.height_m(),
-            motions,
+            motions: motions.map(|motions| &motions.cells),
             overlay: drawn.as_ref(),
             is_finished: args.is_finished(),
             about: self.about.as_ref(),
@@ -235,23 +239,6 @@ impl Shown<'_> {
         }
         Ok(text)
     }
-}
-
-fn motion_cells(names: &[String], motions: &[NamedMotion]) -> MotionCells {
-    let name = |motion: &NamedMotion| motion.motion.map_or_else(|| NO_MOTION.to_owned(), |index| names[index].clone());
-    motions.iter().map(|motion| (name(motion), motion.probability)).collect()
-}
-
-/// In how many frames each motion was named, in the order of the options, none of them last.
-fn motion_counts<'a>(names: &'a [String], motions: &MotionCells) -> Vec<(&'a str, usize)> {
-    let count = |name: &str| motions.iter().filter(|(other, _)| other == name).count();
-    names.iter().map(String::as_str).chain([NO_MOTION]).map(|name| (name, count(name))).collect()
-}
-
-fn told_motions(names: &[String], motions: &MotionCells) -> String {
-    let counts = motion_counts(names, motions);
-    let counts: Vec<String> = counts.iter().map(|(name, count)| format!("{name} in {count}")).collect();
-    format!("motion: {} frames\n", counts.join(", "))
 }
 
 /// The frames with the folder of their overlays; of a video as many a second as the table has.

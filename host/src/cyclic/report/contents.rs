@@ -71,7 +71,28 @@ impl Report {
     /// Derives everything from a run over `table`.
     #[must_use]
     pub fn new(table: &AngleTable, tracked: &Tracked, options: &TrackingOptions, height_m: Option<f64>) -> Self {
-        let summary = Summary::of(tracked);
+        Self::of(Summary::of(tracked), table, tracked, options, height_m)
+    }
+
+    /// As [`Report::new`], of a recording that shows none of the models' motions: what is derived
+    /// from cycles is left out.
+    #[must_use]
+    pub fn without_cycles(
+        table: &AngleTable,
+        tracked: &Tracked,
+        options: &TrackingOptions,
+        height_m: Option<f64>,
+    ) -> Self {
+        Self::of(Summary::of(tracked).without_cycles(), table, tracked, options, height_m)
+    }
+
+    fn of(
+        summary: Summary,
+        table: &AngleTable,
+        tracked: &Tracked,
+        options: &TrackingOptions,
+        height_m: Option<f64>,
+    ) -> Self {
         let measured_shares = series::measured_shares(table, &options.updates);
         let series = series::estimated(tracked, &summary, &measured_shares);
         let first = tracked.frames[0].frame as f64;

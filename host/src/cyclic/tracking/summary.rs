@@ -62,6 +62,21 @@ impl Summary {
         tracked.frames[1..].iter().for_each(|frame| running.add(frame));
         running.summary()
     }
+
+    /// The same without any cycle or cadence, for a recording that is not of the model's motion.
+    #[must_use]
+    pub fn without_cycles(self) -> Self {
+        Self {
+            cycles: 0.0,
+            cadence_per_min: None,
+            cadence_std_per_min: None,
+            last_cadence_per_min: 0.0,
+            last_cadence_std_per_min: 0.0,
+            cycle_starts_s: Vec::new(),
+            whole_cycles_s: Vec::new(),
+            ..self
+        }
+    }
 }
 
 /// Cycles per minute at the row `index` and their standard deviation.

@@ -5,8 +5,9 @@ use super::kept::Kept;
 use super::options::TrackingOptions;
 use super::run::{Tracked, check_angles, is_spatial};
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
+use crate::cyclic::model_file::{shipped, shipped_names};
 use crate::cyclic::{AngleTable, CyclicModel};
-use crate::error::{Result, ensure};
+use crate::error::{Result, bail, ensure};
 use crate::resume::{REMEDY, from_text, to_text};
 use sinew_core::saved_state::{SavedState, StateKind, StateVisitor};
 
@@ -19,6 +20,31 @@ pub fn track(table: &AngleTable, model: &CyclicModel, options: &TrackingOptions)
     let mut run = TableRun::begin(table, std::slice::from_ref(model), options)?;
     run.run(&|| false, &mut |_| ())?;
     Ok(run.answered()?.0)
+}
+
+/// Checks that all models have one rate and one number of angles.
+fn check_alike(models: &[CyclicModel]) -> Result<()> {
+    let first = models[0].numbers();
+    if let Some(other) = models.iter().map(CyclicModel::numbers).find(|other| other.rate_hz != first.rate_hz) {
+        let shipped_hz = shipped_names().into_iter().filter_map(shipped).map(|model| model.numbers().rate_hz);
+        let rates_hz = [first.rate_hz, other.rate_hz];
+        let wanted_hz = shipped_hz.into_iter().find(|rate| rates_hz.contains(rate)).unwrap_or(first.rate_hz);
+        bail!(
+            "`--model`: these models are of {} and {} frames a second, and motions can be told apart at one rate only; \
+             make the tables of your own model by `sinew angles --rate {wanted_hz}`, then cut and train it anew",
+            first.rate_hz,
+            other.rate_hz
+        );
+    }
+    if let Some(other) = models.iter().map(CyclicModel::numbers).find(|other| other.angle_count != first.angle_count) {
+        bail!(
+            "`--model`: these models have {} and {} angles, and motions can be told apart by models of one number of \
+             angles only; train them alike, all with `sinew angles --view space` or all without",
+            first.angle_count,
+            other.angle_count
+        );
+    }
+    Ok(())
 }
 
 /// The filters of all models over one table, row by row.
@@ -54,11 +80,7 @@ impl<'a> TableRun<'a> {
             "`--model`: 1 to {MAX_MOTIONS} motions can be told apart, not {}",
             models.len()
         );
-        let kind = |model: &CyclicModel| (model.numbers().angle_count, model.numbers().rate_hz);
-        ensure!(
-            models.iter().all(|model| kind(model) == kind(&models[0])),
-            "`--model`: motions can be told apart by models of one rate and one number of angles; train them alike"
-        );
+        check_alike(models)?;
         check_angles(&models[0], table.angle_count() == SPACE_ANGLES)?;
         let (walks, rates) = if is_spatial(&models[0]) {
             let walks = walks(table, models, options)?;
