@@ -50,7 +50,7 @@ use heapless::Vec;
 /// Chosen: a blob of likelihood 0.1 at the prediction is about as likely.
 const NO_BLOB: f32 = 0.1;
 /// ln of how likely hands are crossed over how likely they are not: odds of 1 to 20. Chosen: in
-/// seven recorded motions they are in 1 % of the frames; who folds the arms crosses them more often.
+/// seven recorded motions they are in 1 % of the frames; who folds the arms crosses them longer.
 const LOG_CROSSED_ODDS: f32 = -3.0;
 /// What a blob at any distance from the prediction keeps of its nearness.
 /// Chosen: small, but a hand that jumps is not excluded.

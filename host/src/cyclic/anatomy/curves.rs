@@ -142,7 +142,7 @@ mod tests {
     /// Cycles of an arm that circle from a degree before and after the top.
     #[test]
     fn a_winding_angle_starts_near_half_a_turn() {
-        let start_deg = |cycle: u64| if cycle % 2 == 0 { 179.0 } else { 181.0 };
+        let start_deg = |cycle: u64| if cycle.is_multiple_of(2) { 179.0 } else { 181.0 };
         let pose = |frame: u64| [Some(start_deg(frame / 50) + 7.2 * frame as f64); COUNT];
         let series =
             AnatomicalSeries { frames: (0..200).collect(), angles_deg: (0..200).map(pose).collect(), rate_hz: 60.0 };
