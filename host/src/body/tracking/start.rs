@@ -77,11 +77,11 @@ impl FirstPose {
 }
 
 /// The likeliest of the poses that are climbed to from guesses at the median of `points_m`: facing
-/// eight ways, arms hanging, in a T or an A, legs standing or in a stride. Each is the mode of
-/// PIK (12) times the likelihood of `blocks` of the same points, in stages of a narrowing robust
-/// metric. The best of them and the same pose turned round end with the same steps, and the likelier
-/// is the answer. It finds a person who stands or walks; who sits, bends down or lies needs a first
-/// pose. An upper body whose legs are seen is looked for as a whole one.
+/// eight ways, arms hanging, in a T or an A, legs standing or in a stride. Each is the mode of PIK
+/// (12) times the likelihood of `blocks` of the same points, in stages of a narrowing robust
+/// metric. The best of them and the same pose turned round end with the same steps, and the
+/// likelier is the answer. It finds a person who stands or walks; who sits, bends down or lies
+/// needs a first pose. An upper body whose legs are seen is looked for as a whole one.
 ///
 /// # Errors
 /// Measures that no body has.
