@@ -4,6 +4,7 @@
 pub mod about;
 pub mod anatomy;
 pub mod angle_table;
+pub mod angle_units;
 pub mod cuts;
 pub mod cutting;
 pub mod error;

@@ -66,6 +66,19 @@ pub fn no_motion(names: &str) -> String {
     )
 }
 
+fn backwards(cycles: f64) -> String {
+    format!(
+        "the motion runs backwards ({cycles:.1} cycles): the person faces the other way, or the camera moves with them; see --facing of `sinew angles`"
+    )
+}
+
+/// The doubt about a finished recording, whose cycles are taken forwards, in which the filter
+/// counted `cycles` backwards.
+#[must_use]
+pub fn counted_backwards(cycles: f64) -> Option<String> {
+    (cycles <= -MIN_CYCLES).then(|| backwards(cycles))
+}
+
 /// Less than two cycles, less than half of those of the cadence, or cycles backwards.
 /// `low_per_min` is the slowest cadence of the motion.
 ///
@@ -73,9 +86,7 @@ pub fn no_motion(names: &str) -> String {
 fn few_cycles(summary: &Summary, low_per_min: f64) -> Option<String> {
     let Summary { cycles, seen_s, .. } = *summary;
     if cycles < 0.0 {
-        return Some(format!(
-            "the motion runs backwards ({cycles:.1} cycles): the person faces the other way, or the camera moves with them; see --facing of `sinew angles`"
-        ));
+        return Some(backwards(cycles));
     }
     let least = low_per_min * seen_s / 60.0;
     let by_cadence = summary.cadence_per_min.unwrap_or(0.0) * seen_s / 60.0;
@@ -187,6 +198,7 @@ mod tests {
         assert!(only(&summary(0.6, 3.0)).ends_with("record longer"));
         assert!(only(&summary(-3.0, 30.0)).starts_with("the motion runs backwards (-3.0 cycles)"));
         assert_eq!(only(&summary(20.0, 30.0)), "");
+        assert!(counted_backwards(-16.0).is_some() && counted_backwards(-0.4).is_none());
         let lost = Summary { cadence_per_min: Some(50.0), ..summary(8.0, 30.0) };
         assert!(only(&lost).starts_with("8.0 cycles were counted in 30 s, in which the cadence gives 25"));
     }

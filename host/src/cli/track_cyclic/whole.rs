@@ -7,6 +7,7 @@ use super::place::Place;
 use super::summary_line::summary_line;
 use crate::cli::console::Console;
 use crate::cyclic::about::About;
+use crate::cyclic::angle_units::in_degrees;
 use crate::cyclic::own_cycle::{finish, noise};
 use crate::cyclic::pictures::{Drawn, OverlayFrames, animation};
 use crate::cyclic::plausibility;
@@ -128,6 +129,7 @@ impl Shown<'_> {
         let (tracked, motions) = run.answered()?;
         let is_finished = is_complete && args.is_finished();
         let given_rad = args.sigma_deg.map(f64::to_radians);
+        let counted = tracked.frames.last().map_or(0.0, |frame| frame.cycles);
         let tracked = if is_finished { finish(angles, &self.models[0], tracked, options, given_rad)? } else { tracked };
         let motions = motions.map(|motions| Motions::new(&args.model, &motions));
         let motions = motions.as_ref();
@@ -140,7 +142,8 @@ impl Shown<'_> {
         let report = new_report(angles, &tracked, options, args.height);
         let mut text = summary(&report);
         text.extend(motions.map(Motions::line));
-        let doubts = self.doubts(&report, motions);
+        let mut doubts = self.doubts(&report, motions);
+        doubts.extend(plausibility::counted_backwards(counted).filter(|_| is_finished));
         text.extend(doubts.iter().map(|doubt| format!("doubt: {doubt}\n")));
         text.push_str(&format!("wrote {}\n", args.out.display()));
         if let Some(output) = &self.output {
@@ -181,7 +184,8 @@ impl Shown<'_> {
             Some(Ok(leading)) => plausibility::doubts(&report.summary, &report.series, &self.models[leading], gait),
             None => plausibility::doubts(&report.summary, &report.series, &self.models[0], gait),
         };
-        of_recording.chain(of_run).collect()
+        let of_units = in_degrees(self.angles, report.series.rate_hz);
+        of_units.into_iter().chain(of_recording).chain(of_run).collect()
     }
 
     fn write_report(
