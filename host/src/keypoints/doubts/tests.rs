@@ -74,7 +74,7 @@ fn each_kind_is_named_with_its_numbers() {
     let turned = |t: f64| if t < 30.0 { (4.0 * t, 20.0) } else { (120.0, -20.0) };
     only(&doubts(|t| ([turned(t).0, 300.0], turned(t).1, 80.0)), "right at first and left from about frame");
     only(&doubts(|t| ([300.0 - 10.0 * (t - 30.0).abs(), 300.0], 0.1, 80.0)), "turns back at frame 30");
-    let rower = |t: f64| 300.0 + 70.0 * (0.6 * t).sin();
+    let rower = |t: f64| 300.0 + 90.0 * (0.5 * t).sin();
     assert_eq!(doubts(|t| ([rower(t), 300.0], 0.1, 80.0)), [""; 0], "there and back with each cycle");
     only(&doubts(|t| ([4.0 * t, 300.0], 20.0, 40.0 + 40.0 * (t % 2.0))), "left thigh is 0.40 to 0.80 trunks");
     only(&doubts(|t| ([4.0 * t, if t == 20.0 { 370.0 } else { 300.0 }], 20.0, 80.0)), "in 2 frames, first in frame 20");
