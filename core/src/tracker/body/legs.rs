@@ -41,11 +41,12 @@ impl Legs {
     #[must_use]
     pub fn of(ends_m: &[Vec3; UPPER_BONES], radii_m: &[f32; UPPER_BONES], reach_m: f32) -> Self {
         let pelvis_m = ends_m[PELVIS];
-        let forearms = [0, 1].map(|side| Capsule {
-            start_m: ends_m[UPPER_ARMS[side]],
-            end_m: ends_m[FOREARMS[side]],
-            radius_m: radii_m[FOREARMS[side]] + reach_m,
-        });
+        let forearm = |start: usize, end: usize| Capsule {
+            start_m: ends_m.get(start).copied().unwrap_or(pelvis_m),
+            end_m: ends_m.get(end).copied().unwrap_or(pelvis_m),
+            radius_m: radii_m.get(end).copied().unwrap_or(0.0) + reach_m,
+        };
+        let forearms = [forearm(UPPER_ARMS[0], FOREARMS[0]), forearm(UPPER_ARMS[1], FOREARMS[1])];
         Self { pelvis_m, up: unit(ends_m[TRUNK] - pelvis_m).unwrap_or(-Vec3::y()), forearms }
     }
 
@@ -59,11 +60,14 @@ impl Legs {
     pub fn leave_out<'p>(&self, points_m: &'p mut [Vec3]) -> &'p mut [Vec3] {
         let mut kept = 0;
         for index in 0..points_m.len() {
-            if !self.hold(&points_m[index]) {
-                points_m.swap(kept, index);
-                kept += 1;
+            let Some(point_m) = points_m.get(index).copied().filter(|point_m| !self.hold(point_m)) else { continue };
+            let Some(slot) = points_m.get_mut(kept) else { continue };
+            let other_m = core::mem::replace(slot, point_m);
+            if let Some(slot) = points_m.get_mut(index) {
+                *slot = other_m;
             }
+            kept += 1;
         }
-        &mut points_m[..kept]
+        points_m.get_mut(..kept).unwrap_or_default()
     }
 }
