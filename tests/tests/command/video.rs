@@ -216,7 +216,7 @@ fn what_came_before_a_break_is_kept() {
     assert_eq!(report(&root.join("run"))["complete"], false);
     let output = sinew(root, "segment cut.mkv --out masks");
     assert!(
-        output.status.code() == Some(65) && stderr(&output).contains("what came before is written"),
+        output.status.code() == Some(65) && stderr(&output).contains("what could be read is written"),
         "{}",
         stderr(&output)
     );
@@ -264,7 +264,7 @@ fn a_run_whose_video_cannot_be_read_any_more_goes_on() {
     let segment = ["segment", "clip.mkv", "--out", "masks"];
     let output = sinew_command().current_dir(root).args(segment).env("PATH", path).output().unwrap();
     assert_eq!(output.status.code(), Some(74), "{}", stderr(&output));
-    assert!(stderr(&output).contains("what came before is written"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("what could be read is written"), "{}", stderr(&output));
 }
 
 #[test]
