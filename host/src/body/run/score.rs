@@ -5,7 +5,7 @@ use crate::body::tracking::ambiguity::LOST_JOINT_M;
 use crate::body::tracking::filter::WholeBodyEstimate;
 use crate::body::{BodyJoints, BodyPart};
 use sinew_core::math::Vec3;
-use sinew_core::skeleton::upper_body::UPPER_BONES;
+use sinew_core::skeleton::upper_body::{UPPER_BONES, upper_bones};
 use sinew_core::tracker::body::Legs;
 
 /// A mean that grows.
@@ -81,5 +81,5 @@ fn untracked_legs(filter: &BodyFilter, joints_m: &BodyJoints) -> Option<Legs> {
         *end_m = (*joint_m)?;
     }
     let scene = filter.scene();
-    Some(Legs::of(&ends_m, &std::array::from_fn(|bone| scene.radii_m[bone]), scene.likelihood.outlier_m))
+    Some(Legs::of(&ends_m, &upper_bones(&scene.radii_m), scene.likelihood.outlier_m))
 }

@@ -19,7 +19,7 @@ use sinew_core::saved_state::StateKind;
 use sinew_core::skeleton::full_body::{BODY_ANGLES, BODY_BONES, BodySkeleton, PELVIS, TRUNK, body_radii_m, full_body};
 use sinew_core::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
 use sinew_core::skeleton::upper_body::{
-    UPPER_ANGLES, UPPER_BONES, UPPER_COORDINATES, upper_body, upper_coordinates, upper_radii_m,
+    UPPER_ANGLES, UPPER_BONES, UPPER_COORDINATES, upper_body, upper_bones, upper_coordinates, upper_radii_m,
 };
 use sinew_core::skeleton::{BodyMeasures, Joint};
 use sinew_core::tracker::body::{BodyEstimate, BodyFrame, Legs, angles_of_rotation};
@@ -122,7 +122,7 @@ impl BodyFilter {
         self.completed = OnceLock::new();
         match &mut self.tracked {
             Sizes::Whole(filter) => filter.resize(full_body(measures)?, *radii_m),
-            Sizes::Upper(filter) => filter.resize(upper_body(measures)?, std::array::from_fn(|bone| radii_m[bone])),
+            Sizes::Upper(filter) => filter.resize(upper_body(measures)?, upper_bones(radii_m)),
         }
     }
 
@@ -165,7 +165,7 @@ impl BodyFilter {
         match &self.tracked {
             Sizes::Whole(filter) => filter.ambiguous(&estimate.ends_m),
             Sizes::Upper(filter) => {
-                let upper = filter.ambiguous(&std::array::from_fn(|bone| estimate.ends_m[bone]));
+                let upper = filter.ambiguous(&upper_bones(&estimate.ends_m));
                 std::array::from_fn(|bone| upper.get(bone).copied().unwrap_or(0.0))
             }
         }
@@ -227,7 +227,7 @@ impl BodyFilter {
             Sizes::Whole(filter) => filter.step(&seen(blocks)),
             Sizes::Upper(filter) => {
                 self.completed = OnceLock::new();
-                let radii_m = std::array::from_fn(|bone| self.scene.radii_m[bone]);
+                let radii_m = upper_bones(&self.scene.radii_m);
                 let legs = Legs::of(&filter.mean().ends_m, &radii_m, self.scene.likelihood.outlier_m);
                 let blocks: Vec<PointBlock> =
                     blocks.iter().filter_map(|block| block.retained(|point_m| !legs.hold(point_m))).collect();

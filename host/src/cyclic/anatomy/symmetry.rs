@@ -140,6 +140,7 @@ mod tests {
         assert!(by_name("shoulder_flexion").symmetry_index_percent.is_none());
         assert_eq!(to_csv(&found).lines().count(), 5);
     }
+
     /// Knees that swing by 2 and 1 degrees.
     #[test]
     fn a_joint_that_moves_no_farther_than_noise_has_no_index() {
