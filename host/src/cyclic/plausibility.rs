@@ -89,11 +89,16 @@ fn other_direction(direction: Direction, model: &CyclicModel) -> Option<String> 
     }
 }
 
-/// The doubt about a recording of which no row shows the motion of any of the models `names`.
+/// The doubt about a recording of which no row, or `rows` of less than a cycle, show the motion of
+/// any of the models `names`.
 #[must_use]
-pub fn no_motion(names: &str) -> String {
+pub fn no_motion(names: &str, rows: usize) -> String {
+    let shown = match rows {
+        0 => "no frame shows".to_owned(),
+        _ => format!("only {rows} frames, less than a cycle, show"),
+    };
     format!(
-        "no frame shows one of the motions {names}: it is another motion, or less than a cycle of it; give --model of that motion, your own by `sinew train cyclic`"
+        "{shown} one of the motions {names}: it is another motion, or less than a cycle of it; give --model of that motion, your own by `sinew train cyclic`"
     )
 }
 

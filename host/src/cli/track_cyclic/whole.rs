@@ -131,7 +131,7 @@ impl Shown<'_> {
         let given_rad = args.sigma_deg.map(f64::to_radians);
         let counted = tracked.frames.last().map_or(0.0, |frame| frame.cycles);
         let tracked = if is_finished { finish(angles, &self.models[0], tracked, options, given_rad)? } else { tracked };
-        let motions = motions.map(|motions| Motions::new(&args.model, &motions));
+        let motions = motions.map(|motions| Motions::new(&args.model, self.models, &motions, tracked.rate_hz));
         let motions = motions.as_ref();
         table::write(&tracked, motions.map(|motions| &motions.cells), &args.out)?;
         let interrupted =
@@ -183,7 +183,7 @@ impl Shown<'_> {
         // The feet of several motions are those of each of them for a while.
         let gait = report.gait.as_ref().ok().filter(|_| motions.is_none_or(|motions| !motions.are_several()));
         let of_run = match motions.map(|motions| motions.leading().ok_or(motions)) {
-            Some(Err(motions)) => vec![plausibility::no_motion(&motions.choice())],
+            Some(Err(motions)) => vec![plausibility::no_motion(&motions.choice(), motions.named_rows())],
             Some(Ok(leading)) => plausibility::doubts(&report.summary, &report.series, &self.models[leading], gait),
             None => plausibility::doubts(&report.summary, &report.series, &self.models[0], gait),
         };
