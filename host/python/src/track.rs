@@ -71,7 +71,7 @@ impl How {
         let filtered = track(table, model, &options)?;
         let tracked = if self.smooth { finish(table, model, filtered, &options, given_rad)? } else { filtered };
         let report = Report::new(table, &tracked, &options, None);
-        let of_run = plausibility::doubts(&report.summary, &report.series, model, report.gait.as_ref());
+        let of_run = plausibility::doubts(&report.summary, &report.series, model, report.gait.as_ref().ok());
         let doubts = recording.doubts.iter().cloned().chain(of_run).map(|doubt| in_python(&doubt)).collect();
         let covariance_rad2 = if self.covariance { Some(covariances(table, model, &options)?) } else { None };
         Ok(Found { tracked, report, options, doubts, covariance_rad2 })
@@ -162,7 +162,7 @@ fn answer<'py>(py: Python<'py>, found: &Found) -> PyResult<Bound<'py, PyDict>> {
     answer.set_item("flexion_deg", array_of_options(py, flexions(found).into_iter()))?;
     answer.set_item("sigma_deg", options.sigma_rad.to_degrees())?;
     answer.set_item("doubts", doubts)?;
-    let said = serde_json::to_string(&(&report.summary, &report.symmetries, &report.gait));
+    let said = serde_json::to_string(&(&report.summary, &report.symmetries, report.gait.as_ref().ok()));
     answer.set_item("json", said.map_err(|error| exception(&error.into()))?)?;
     Ok(answer)
 }

@@ -1,7 +1,7 @@
 //! What cannot be right about a tracked recording, in words.
 
 use super::anatomy::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT};
-use super::gait::Gait;
+use super::gait::{Direction, Gait, NoGait};
 use super::model::CyclicModel;
 use super::model_file;
 use super::tracking::Summary;
@@ -34,7 +34,10 @@ const UPRIGHT: [&str; 2] = ["walking", "running"];
 pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel, gait: Option<&Gait>) -> Vec<String> {
     let mean_per_min = 60.0 * f64::from(model.numbers().rate_hz) / f64::from(model.numbers().mean_duration_frames);
     let [low, high] = CADENCE_RANGE.map(|share| share * mean_per_min);
-    let mut doubts: Vec<String> = few_cycles(summary, low).into_iter().collect();
+    let direction = gait.map(|gait| gait.direction);
+    // Who walks backward has no cycles of a walk forward, whatever the rate.
+    let is_backward = direction == Some(Direction::Backward) && is_upright(model);
+    let mut doubts: Vec<String> = few_cycles(summary, low).filter(|_| !is_backward).into_iter().collect();
     if let Some(cadence) = summary.cadence_per_min.filter(|cadence| *cadence > 0.0 && !(low..=high).contains(cadence)) {
         doubts.push(format!(
             "{cadence:.1} cycles a minute: this motion has {low:.0} to {high:.0}; is the rate right (--input-rate)?"
@@ -43,9 +46,10 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
     if model.numbers().turns_per_cycle.iter().all(|turns| *turns == 0) {
         doubts.extend(wide_ranges(series));
     }
-    if UPRIGHT.iter().any(|name| is_shipped(model, name)) {
+    if is_upright(model) {
         doubts.extend(lying_trunk(series));
     }
+    doubts.extend(direction.and_then(|direction| other_direction(direction, model)));
     match gait.map(|gait| gait.is_running) {
         Some(true) if is_shipped(model, "walking") => {
             doubts.push("the feet run, and the model walks: use --model running".to_owned());
@@ -58,17 +62,49 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
     doubts
 }
 
-/// The doubt about a recording of which no row shows the motion of any of the models `names`.
+/// What a user should know of the feet, one sentence each; why there is no gait only if one of the
+/// models is that of a walk or a run.
 #[must_use]
-pub fn no_motion(names: &str) -> String {
+pub fn notes(models: &[CyclicModel], gait: &Result<Gait, NoGait>) -> Vec<String> {
+    let is_gait = || models.iter().any(is_upright);
+    let note = match gait {
+        Ok(gait) => gait.note(),
+        Err(reason) => is_gait().then(|| reason.to_string()),
+    };
+    note.into_iter().collect()
+}
+
+/// The doubt about feet that go another way than the model's, or none that shows.
+fn other_direction(direction: Direction, model: &CyclicModel) -> Option<String> {
+    match direction {
+        Direction::Backward if is_upright(model) => Some(
+            "the feet go backward, and those of the model forward: strikes, toe-offs and strides are those of a walk backward, cycles and cadence are of no use; does the person face the other way (--facing of `sinew angles`)?"
+                .to_owned(),
+        ),
+        Direction::Unknown => Some(
+            "the feet do not show whether they go forward or backward: strikes and toe-offs are those of a walk forward; look at an overlay"
+                .to_owned(),
+        ),
+        _ => None,
+    }
+}
+
+/// The doubt about a recording of which no row, or `rows` of less than a cycle, show the motion of
+/// any of the models `names`.
+#[must_use]
+pub fn no_motion(names: &str, rows: usize) -> String {
+    let shown = match rows {
+        0 => "no frame shows".to_owned(),
+        _ => format!("only {rows} frames, less than a cycle, show"),
+    };
     format!(
-        "no frame shows one of the motions {names}: it is another motion, or less than a cycle of it; give --model of that motion, your own by `sinew train cyclic`"
+        "{shown} one of the motions {names}: it is another motion, or less than a cycle of it; give --model of that motion, your own by `sinew train cyclic`"
     )
 }
 
 fn backwards(cycles: f64) -> String {
     format!(
-        "the motion runs backwards ({cycles:.1} cycles): the person faces the other way, or the camera moves with them; see --facing of `sinew angles`"
+        "the motion runs backwards ({cycles:.1} cycles): the person walks backward or faces the other way, or the camera moves with them; see --facing of `sinew angles`"
     )
 }
 
@@ -122,6 +158,11 @@ fn lying_trunk(series: &AnatomicalSeries) -> Option<String> {
             "trunk lean is {mean_deg:.0} degrees in the mean, and who walks or runs is upright: the picture is turned; turn the video, or choose the motion's `--model`"
         )
     })
+}
+
+/// Whether a model is a shipped one of people who are upright.
+fn is_upright(model: &CyclicModel) -> bool {
+    UPRIGHT.iter().any(|name| is_shipped(model, name))
 }
 
 /// Whether a model is the one that ships under this name.

@@ -7,20 +7,21 @@ use crate::motion::joint_names::{HIP_CENTER, JOINTS, NECK};
 
 /// Way across the image, in lengths of the trunk, beyond which travel decides.
 pub const TRAVEL_TRUNKS: f64 = 1.5;
-/// Mean of toes before heels, or of the nose before the neck, beyond which they decide, in lengths
-/// of the trunk. Chosen: a foot has half a trunk; who faces the camera has less than this.
+/// Mean of toes before heels, of the nose before the neck or of the knees before their legs, beyond
+/// which they decide, in lengths of the trunk. Chosen: a foot has half a trunk and the knees of a
+/// walk 0.13 or more; who faces the camera has less than this.
 pub const CLEAR_TRUNKS: f64 = 0.05;
 
 /// Toes before heels (or ankles) decide if they point clearly to a side, then the nose before the
-/// neck. Next comes travel if the person gets far enough: a camera that pans with the person may
-/// turn it round. Then come toes and nose that are less clear, and knees before the line from hip
-/// to ankle. `None` if none of these was seen.
+/// neck, then the knees before the line from hip to ankle. Next comes travel if the person gets far
+/// enough: who walks backward turns it round, and so may a camera that pans. Then come toes, nose
+/// and knees that are less clear. `None` if none of these was seen.
 #[must_use]
 pub fn find(joints: &ImageJoints, people: &[Option<&Vec<Keypoint>>]) -> Option<Facing> {
-    let [toes, nose] = [toes, nose].map(|hint| mean_over(people, hint));
+    let [toes, nose, knees] = [mean_over(people, toes), mean_over(people, nose), knees(joints)];
     let clear_px = trunk_px(joints).map_or(0.0, |trunk| CLEAR_TRUNKS * trunk);
     let clear = |hint: Option<f64>| hint.filter(|hint| hint.abs() > clear_px);
-    let hints = [clear(toes), clear(nose), travel(joints), toes, nose, knees(joints)];
+    let hints = [clear(toes), clear(nose), clear(knees), travel(joints), toes, nose, knees];
     side(hints.into_iter().flatten().find(|hint| *hint != 0.0)?)
 }
 
@@ -79,7 +80,7 @@ fn nose(person: &[Keypoint]) -> Option<f64> {
     Some(place(person, Part::Nose)? - place(person, Part::Joint(NECK)).or_else(shoulders)?)
 }
 
-/// How far the knees stand before the middle of hip and ankle.
+/// How far the knees stand before the line from hip to ankle, in the mean.
 fn knees(joints: &ImageJoints) -> Option<f64> {
     let leg = |joints: &[Option<Point>; JOINTS], hip: usize| {
         let (hip, knee, ankle) = (joints[hip]?, joints[hip + 1]?, joints[hip + 2]?);
@@ -88,7 +89,7 @@ fn knees(joints: &ImageJoints) -> Option<f64> {
     };
     let bends: Vec<f64> =
         joints.frames.iter().flat_map(|frame| [leg(&frame.joints, 8), leg(&frame.joints, 11)]).flatten().collect();
-    (!bends.is_empty()).then(|| bends.iter().sum())
+    (!bends.is_empty()).then(|| bends.iter().sum::<f64>() / bends.len() as f64)
 }
 
 #[cfg(test)]
@@ -114,15 +115,16 @@ mod tests {
     }
 
     #[test]
-    fn toes_count_before_nose_before_travel_before_knees() {
+    fn toes_count_before_nose_before_knees_before_travel() {
         let toes_left = vec![point(Part::Toe(Side::Left), 3.0), point(Part::Heel(Side::Left), 9.0)];
         let nose_right = [toes_left.clone(), vec![point(Part::Nose, 9.0), point(Part::Joint(NECK), 3.0)]].concat();
         assert_eq!(find(&joints(4.0, -5.0), &[Some(&nose_right)]), Some(Facing::Left));
         let nose_alone = nose_right[2..].to_vec();
         assert_eq!(find(&joints(-4.0, -5.0), &[Some(&nose_alone)]), Some(Facing::Right), "a camera that pans");
         let unclear = vec![point(Part::Nose, 9.0), point(Part::Joint(NECK), 8.0)];
-        assert_eq!(find(&joints(-4.0, 5.0), &[Some(&unclear)]), Some(Facing::Left));
-        assert_eq!(find(&joints(0.5, -5.0), &[Some(&unclear)]), Some(Facing::Right));
+        assert_eq!(find(&joints(-4.0, 5.0), &[Some(&unclear)]), Some(Facing::Right), "who walks backward");
+        assert_eq!(find(&joints(-4.0, 2.0), &[Some(&unclear)]), Some(Facing::Left), "knees that are not clear");
+        assert_eq!(find(&joints(0.5, -2.0), &[Some(&unclear)]), Some(Facing::Right));
         let nose_only = nose_right[2..].to_vec();
         assert_eq!(find(&joints(0.0, -5.0), &[None, Some(&nose_only)]), Some(Facing::Right));
         assert_eq!(find(&joints(0.0, -5.0), &[]), Some(Facing::Left));

@@ -82,6 +82,9 @@ fn tell_what_was_run(run: &mut Run, folder: &mut RunFolder, summary: &Value) {
     for doubt in summary["doubts"].as_array().into_iter().flatten().filter_map(Value::as_str) {
         folder.notice(Level::Warning, format!("doubt: {doubt}"));
     }
+    for note in summary["notes"].as_array().into_iter().flatten().filter_map(Value::as_str) {
+        folder.notice(Level::Note, note);
+    }
     run.highlights.extend(gait_facts(&summary["gait"]));
     if let Some(skipped) = summary["skipped_frames"].as_u64().filter(|count| *count > 0) {
         folder.notice(Level::Skipped, format!("the table leaves out {skipped} frames between its first and its last"));

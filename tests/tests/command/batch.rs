@@ -1,6 +1,7 @@
 //! `sinew batch` as a user types it: many recordings, each once, whatever happens in between.
 
 use assert_cmd::Command;
+use predicates::prelude::PredicateBooleanExt;
 use predicates::str::contains;
 use sinew_tests::sinew_command;
 use std::collections::BTreeMap;
@@ -66,6 +67,33 @@ fn a_recording_is_tracked_once_and_a_broken_one_stops_no_other() {
     sinew(root, "batch in --out runs").assert().success().stdout(contains("5 with a result"));
     // Another option touches what it concerns.
     sinew(root, "batch in --out runs --set sigma-deg=4").assert().success().stdout(contains("0 of these from before"));
+}
+
+/// Keypoints without times beside an angle table and notes: each gets what it is for.
+#[test]
+fn a_mixed_folder_is_tracked_with_one_option_for_keypoints() {
+    let folder = walks(1);
+    let root = folder.path();
+    sinew(root, "simulate keypoints --out timed.csv").assert().success();
+    let mut timed = csv::Reader::from_path(root.join("timed.csv")).unwrap();
+    let time = timed.headers().unwrap().iter().position(|name| name == "time_s").unwrap();
+    let without_time = |row: &csv::StringRecord| {
+        let cells = row.iter().enumerate().filter(|(column, _)| *column != time).map(|(_, cell)| cell);
+        cells.collect::<Vec<_>>().join(",") + "\n"
+    };
+    let header = without_time(timed.headers().unwrap());
+    let rows_of_it = timed.records().map(|row| without_time(&row.unwrap())).collect::<String>();
+    fs::write(root.join("in/anna.csv"), header + &rows_of_it).unwrap();
+    fs::write(root.join("in/notes.txt"), "Anna, in shoes\n").unwrap();
+    sinew(root, "batch in --out runs --set input-rate=30")
+        .assert()
+        .success()
+        .stdout(contains("2 recordings: 2 with a result"))
+        .stderr(
+            contains("skipped 1 of the folder's files").and(contains("--set input-rate: left out for 1 recording")),
+        );
+    fs::write(root.join("list.csv"), "id,input\nnotes,in/notes.txt\n").unwrap();
+    sinew(root, "batch list.csv --out named").assert().code(65).stdout(contains("1 failed"));
 }
 
 #[test]

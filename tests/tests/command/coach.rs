@@ -75,6 +75,44 @@ fn keypoints_become_cadence_and_joints_whichever_way_the_person_faces() {
     }
 }
 
+/// The keypoints in `text` with the last frame first, and without the points of some names.
+fn changed(text: &str, is_reversed: bool, left_out: &str) -> String {
+    let table: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let rows = 1..table.len();
+    let cell = |row: usize, column: usize| {
+        let is_point = !["frame", "time_s"].contains(&table[0][column]);
+        let from = if is_reversed && is_point && row > 0 { table.len() - row } else { row };
+        if row > 0 && !left_out.is_empty() && table[0][column].starts_with(left_out) { "" } else { table[from][column] }
+    };
+    let line = |row: usize| (0..table[0].len()).map(|column| cell(row, column)).collect::<Vec<_>>().join(",") + "\n";
+    std::iter::once(0).chain(rows).map(line).collect()
+}
+
+#[test]
+fn who_walks_backward_or_shows_one_leg_has_events() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path();
+    sinew(root, &["simulate", "keypoints", "--seconds", "8", "--out", "k.csv"]);
+    let text = fs::read_to_string(root.join("k.csv")).unwrap();
+    for (is_reversed, left_out, direction) in
+        [(false, "", "forward"), (true, "", "backward"), (false, "r_", "forward"), (true, "r_", "backward")]
+    {
+        fs::write(root.join("k.csv"), changed(&text, is_reversed, left_out)).unwrap();
+        sinew(root, &["angles", "k.csv", "--out", "a.csv"]);
+        sinew(root, &["track", "cyclic", "a.csv", "--model", "walking", "--out", "e.csv", "--report", "run"]);
+        let summary: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(root.join("run/summary.json")).unwrap()).unwrap();
+        let gait = &summary["gait"];
+        let stance = gait["left"]["stance_share"]["mean"].as_f64().unwrap();
+        assert!(gait["direction"] == direction && (0.5..0.7).contains(&stance), "{left_out} {gait}");
+        assert_eq!(gait["is_running"], false);
+        let is_noted = summary["notes"].to_string().contains("the right leg is not seen in any stride");
+        assert_eq!(is_noted, left_out == "r_", "{}", summary["notes"]);
+        let is_doubted = summary["doubts"].to_string().contains("the feet go backward");
+        assert_eq!(is_doubted, is_reversed, "{}", summary["doubts"]);
+    }
+}
+
 /// The commands of the page, without `sinew`.
 fn commands(page: &str) -> Vec<Vec<&str>> {
     page.lines().filter_map(|line| line.strip_prefix("    sinew ")).map(|line| line.split(' ').collect()).collect()

@@ -97,6 +97,13 @@ const WHOLE_BODY: [Joint; 25] = [
     cmu("Head", 18, 23, [0.0, 1.72, -0.22]),
 ];
 
+/// Whether a line, or its beginning, is of numbers with commas between them. Other texts have the
+/// same ending.
+#[must_use]
+pub fn is_row(line: &str) -> bool {
+    line.split_once(',').is_some_and(|(first, _)| first.trim().parse::<f32>().is_ok())
+}
+
 /// Reads a motion, recorded at `frames_per_second`.
 ///
 /// # Errors

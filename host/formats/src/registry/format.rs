@@ -65,6 +65,16 @@ impl Format {
         let holds = |sign: &Signature| bytes.get(sign.offset..).is_some_and(|rest| rest.starts_with(sign.bytes));
         self.signatures.iter().any(holds)
     }
+
+    /// What tells the first line of this format from other texts of its ending; `None` where the
+    /// ending is enough.
+    #[must_use]
+    pub const fn first_line_rule(&self) -> Option<fn(&str) -> bool> {
+        match self.reader {
+            Reader::Joints(JointReader { is_first_line, .. }) => is_first_line,
+            _ => None,
+        }
+    }
 }
 
 /// Bytes at a fixed place near a file's beginning.
@@ -110,6 +120,8 @@ pub struct JointReader {
     pub needs_skeleton: bool,
     /// Whether the file gives its frames per second.
     pub has_rate: bool,
+    /// Whether a line can be the first one of a file; `None` where the ending is enough.
+    pub is_first_line: Option<fn(&str) -> bool>,
 }
 
 /// Reader of markers over time.

@@ -2,10 +2,14 @@
 
 use super::format::{Format, Kind};
 use super::table::FORMATS;
+use crate::file::open;
+use std::io::Read;
 use std::path::Path;
 
 /// A motion in space: joints or markers.
 pub const MOTION: &[Kind] = &[Kind::JointMotion, Kind::MarkerMotion];
+/// How much of a file shows its first line. Chosen: three times the longest first number.
+const BEGINNING_BYTES: u64 = 64;
 /// What a person's segment lengths can be measured from.
 pub const MEASURABLE: &[Kind] = &[Kind::JointMotion, Kind::Skeleton, Kind::MarkerMotion];
 
@@ -32,6 +36,20 @@ pub fn sniff(content: &[u8], kinds: &[Kind]) -> Option<&'static Format> {
     formats(kinds).find(|format| format.begins(content))
 }
 
+/// The format of `kinds` that the ending of `path` stands for, if its first line may be of that,
+/// too: notes have the ending of a motion. A file that cannot be read may be of it.
+#[must_use]
+pub fn find_by_content(path: &Path, kinds: &[Kind]) -> Option<&'static Format> {
+    let may_be = |is_first_line: fn(&str) -> bool| {
+        let mut beginning = Vec::new();
+        let read = open(path).and_then(|file| file.take(BEGINNING_BYTES).read_to_end(&mut beginning));
+        let text = String::from_utf8_lossy(&beginning);
+        let mut lines = text.trim_start_matches('\u{feff}').lines();
+        read.is_err() || lines.find(|line| !line.trim().is_empty()).is_some_and(is_first_line)
+    };
+    find(path, kinds).filter(|format| format.first_line_rule().is_none_or(may_be))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,6 +70,21 @@ mod tests {
         }
         assert!(find(Path::new("bvh"), MOTION).is_none());
         assert!(find(Path::new("a.ply"), MOTION).is_none());
+    }
+
+    #[test]
+    fn a_text_without_numbers_is_no_motion() {
+        let folder = tempfile::tempdir().unwrap();
+        let is_found = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).unwrap();
+            find_by_content(&path, MOTION).is_some()
+        };
+        assert!(is_found("walk.txt", "\n0.5, -1.25,3\n") && is_found("walk.TXT", "\u{feff}1,"));
+        for notes in ["", "Anna, second trial\n", "12 trials\n", "2024-05-01, Anna\n"] {
+            assert!(!is_found("notes.txt", notes), "{notes}");
+        }
+        assert!(is_found("empty.bvh", ""), "its error says more");
     }
 
     #[test]

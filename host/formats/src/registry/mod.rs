@@ -9,6 +9,6 @@ mod table;
 mod text;
 
 pub use format::{Format, JointReader, Kind, MarkerReader, Reader, Signature};
-pub use lookup::{MEASURABLE, MOTION, endings, find, formats, sniff};
+pub use lookup::{MEASURABLE, MOTION, endings, find, find_by_content, formats, sniff};
 pub use table::FORMATS;
 pub use text::{choice, described, extensions};

@@ -17,6 +17,7 @@ pub static FORMATS: [Format; 27] = [
             read_whole_body: None,
             needs_skeleton: false,
             has_rate: true,
+            is_first_line: None,
         }),
     },
     Format {
@@ -29,6 +30,7 @@ pub static FORMATS: [Format; 27] = [
             read_whole_body: None,
             needs_skeleton: true,
             has_rate: false,
+            is_first_line: None,
         }),
     },
     Format { name: "ASF", extensions: &["asf"], note: "", signatures: &[at(0, b":version")], reader: Reader::Skeleton },
@@ -42,6 +44,7 @@ pub static FORMATS: [Format; 27] = [
             read_whole_body: Some(|path, options| exponential_map::read_whole_body(path, options.rate())),
             needs_skeleton: false,
             has_rate: false,
+            is_first_line: Some(exponential_map::is_row),
         }),
     },
     Format {

@@ -44,7 +44,8 @@ impl Part {
         let store = Store::open(&self.out, &format!("{PREFIX}{}", self.name))?;
         let plan = Plan { jobs: self.jobs, retry_failed: self.retry_failed };
         let quiet = Console { quiet: true, json: true };
-        let lines = work::all(&rows, &store, plan, &Progress::new(rows.len(), &quiet, false)?, stop)?;
+        let work::Done { lines, .. } =
+            work::all(&rows, &store, plan, &Progress::new(rows.len(), &quiet, false)?, stop)?;
         store.close();
         Ok(json_lines(&lines)?)
     }

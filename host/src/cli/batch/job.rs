@@ -34,6 +34,8 @@ pub struct Job {
     input: PathBuf,
     kind: usize,
     options: BTreeMap<String, String>,
+    /// Names of defaults that are for recordings of other kinds.
+    pub left_out: Vec<String>,
 }
 
 impl Job {
@@ -53,6 +55,15 @@ impl Job {
         let mut hash = Sha256::new();
         hash.update(format!("sinew {}\0{}\0", env!("CARGO_PKG_VERSION"), KINDS[kind].0));
         let mut options = row.options.clone();
+        let mut left_out = Vec::new();
+        for (name, value) in row.defaults.iter().filter(|(name, _)| !row.options.contains_key(*name)) {
+            // An option of no kind is refused below.
+            if is_of(kind, name) || !(0..KINDS.len()).any(|kind| is_of(kind, name)) {
+                options.insert(name.clone(), value.clone());
+            } else {
+                left_out.push(name.clone());
+            }
+        }
         if KINDS[kind].1.iter().any(|(command, _)| *command == "track cyclic") {
             options.entry("model".to_owned()).or_insert_with(|| DEFAULT_MODEL.to_owned());
         }
@@ -75,7 +86,7 @@ impl Job {
         if KINDS[kind].1[0].0 == "track cyclic" {
             hash.update(content::of_about_beside(&row.input)?);
         }
-        Ok(Self { key: format!("{:x}", hash.finalize()), input: row.input.clone(), kind, options })
+        Ok(Self { key: format!("{:x}", hash.finalize()), input: row.input.clone(), kind, options, left_out })
     }
 
     /// The command lines that put the result into `folder`.
@@ -147,14 +158,19 @@ static FLAGS: LazyLock<BTreeMap<&str, BTreeMap<String, bool>>> = LazyLock::new(|
     all
 });
 
+/// Whether recordings of a kind have an option.
+fn is_of(kind: usize, name: &str) -> bool {
+    KINDS[kind].1.iter().any(|(words, _)| FLAGS[words].contains_key(name))
+}
+
 fn check_option(kind: usize, name: &str) -> Result<()> {
     let (kind_name, commands) = KINDS[kind];
-    let known: Vec<&String> = commands.iter().flat_map(|(words, _)| FLAGS[words].keys()).collect();
     ensure!(!NOT_GIVEN.contains(&name), "`{name}` is the batch's own; remove the column");
-    if known.iter().any(|flag| *flag == name) {
+    if is_of(kind, name) {
         return Ok(());
     }
-    let similar = known.iter().map(|flag| (strsim::jaro(flag, name), flag)).max_by(|a, b| a.0.total_cmp(&b.0));
+    let known = commands.iter().flat_map(|(words, _)| FLAGS[words].keys());
+    let similar = known.map(|flag| (strsim::jaro(flag, name), flag)).max_by(|a, b| a.0.total_cmp(&b.0));
     let nearest = similar.map_or_else(String::new, |(_, flag)| format!("; the nearest is `{flag}`"));
     bail!("a `{kind_name}` has no option `{name}`{nearest}")
 }
@@ -167,7 +183,26 @@ mod tests {
         let input = folder.join("walk.csv");
         std::fs::write(&input, "l_knee_x,l_knee_y\n1,2\n").unwrap();
         let options = options.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
-        Row { line: 2, id: "a".into(), input, folders: [folder.to_path_buf(), PathBuf::new()], kind: None, options }
+        let (folders, defaults) = ([folder.to_path_buf(), PathBuf::new()], BTreeMap::new());
+        Row { line: 2, id: "a".into(), input, folders, kind: None, options, defaults }
+    }
+
+    #[test]
+    fn a_default_is_for_the_kinds_that_have_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let of = |kind: &str, own: &[(&str, &str)], name: &str| {
+            let mut row = Row { kind: Some(kind.to_owned()), ..row(folder.path(), own) };
+            row.set(&[(name.to_owned(), "30".to_owned())]);
+            Job::of(&row).map(|job| (job.options.get(name).cloned(), job.left_out)).map_err(|error| error.to_string())
+        };
+        let thirty = || Some("30".to_owned());
+        assert_eq!(of("recording", &[], "input-rate"), Ok((thirty(), vec![])));
+        assert_eq!(of("cyclic", &[], "input-rate"), Ok((None, vec!["input-rate".to_owned()])));
+        assert_eq!(of("recording", &[("input-rate", "60")], "input-rate"), Ok((Some("60".to_owned()), vec![])));
+        for (name, rule) in [("input-rat", "nearest is `"), ("out", "batch's own")] {
+            assert!(of("cyclic", &[], name).is_err_and(|error| error.contains(rule)), "{name}");
+        }
+        assert!(of("cyclic", &[("input-rate", "30")], "model").unwrap_err().contains("no option `input-rate`"));
     }
 
     #[test]

@@ -5,13 +5,15 @@ use crate::cli::data_error;
 use crate::csv_text::headed_reader;
 use crate::cyclic::angle_table::AngleRows;
 use crate::file::{FileError, STANDARD_INPUT, read_lines};
-use crate::registry::{Kind, extensions, find};
+use crate::registry::{Kind, extensions, find_by_content};
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 /// Columns that are no options.
-const OWN: [&str; 3] = ["id", "input", "kind"];
+const OWN: [&str; 4] = ["id", "input", "kind", DEFAULTS];
+/// Column of [`Row::defaults`], as a JSON object.
+const DEFAULTS: &str = "set";
 /// How the names of files end that lie beside angle tables.
 const ABOUT: &str = ".about.json";
 /// What a file of a folder may hold to count as a recording; a video has its error in the tables.
@@ -32,6 +34,8 @@ pub struct Row {
     pub kind: Option<String>,
     /// Values of options by the names of their flags.
     pub options: BTreeMap<String, String>,
+    /// Values for where `options` have none, of options that the row's kind has.
+    pub defaults: BTreeMap<String, String>,
 }
 
 impl Row {
@@ -41,14 +45,16 @@ impl Row {
         let own = [("id", Some(self.id.clone())), ("kind", self.kind.clone())];
         let own = own.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
         let input = ("input".to_owned(), self.input.to_string_lossy().into_owned());
-        let cells = own.chain([input]).chain(self.options.clone());
+        let defaults = serde_json::to_string(&self.defaults).ok().filter(|_| !self.defaults.is_empty());
+        let defaults = defaults.map(|text| (DEFAULTS.to_owned(), text));
+        let cells = own.chain([input]).chain(defaults).chain(self.options.clone());
         Value::Object(cells.map(|(name, value)| (name, Value::String(value))).collect::<Map<_, _>>()).to_string()
     }
 
-    /// Gives it each of `options` that it has not.
+    /// Gives it each of `options` for where it has no value of its own.
     pub fn set(&mut self, options: &[(String, String)]) {
         for (name, value) in options {
-            self.options.entry(name.clone()).or_insert_with(|| value.clone());
+            self.defaults.entry(name.clone()).or_insert_with(|| value.clone());
         }
     }
 }
@@ -107,13 +113,16 @@ fn rows_of(cells: Cells, name: &str, folders: &[PathBuf; 2]) -> anyhow::Result<V
     let mut rows = Vec::new();
     for (line, cells) in cells.map_err(|(line, rule)| broken(line, &rule))? {
         let mut options: BTreeMap<String, String> = cells.into_iter().filter(|(_, value)| !value.is_empty()).collect();
-        let [id, input, kind] = OWN.map(|name| options.remove(name));
+        let [id, input, kind, defaults] = OWN.map(|name| options.remove(name));
+        let defaults = defaults.map(|text| serde_json::from_str(&text)).transpose();
+        let defaults = defaults.map_err(|_| broken(line, "has a `set` that is no JSON object of texts"))?;
         let id = id.ok_or_else(|| broken(line, "needs an `id`, the name of the recording in all tables"))?;
         let input = input.ok_or_else(|| broken(line, "needs an `input`, a file or folder"))?;
         if let Some(before) = lines.insert(id.clone(), line) {
             return Err(broken(line, &format!("has the id `{id}` of line {before}; ids have to differ")));
         }
-        rows.push(Row { line, id, input: folders[0].join(input), folders: folders.clone(), kind, options });
+        let (input, folders, defaults) = (folders[0].join(input), folders.clone(), defaults.unwrap_or_default());
+        rows.push(Row { line, id, input, folders, kind, options, defaults });
     }
     if rows.is_empty() {
         return Err(broken(1, "names no recording; give a table with the columns `id` and `input`, a recording a row"));
@@ -131,7 +140,8 @@ fn everything_in(folder: &Path) -> anyhow::Result<Manifest> {
     let row = |(index, name): (usize, String)| {
         let id = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem).to_owned();
         let folders = [folder.to_path_buf(), PathBuf::new()];
-        Row { line: index + 1, id, input: folder.join(name), folders, kind: None, options: BTreeMap::new() }
+        let (options, defaults) = (BTreeMap::new(), BTreeMap::new());
+        Row { line: index + 1, id, input: folder.join(name), folders, kind: None, options, defaults }
     };
     let mut rows: Vec<Row> = names.into_iter().enumerate().map(row).collect();
     if rows.is_empty() {
@@ -149,9 +159,10 @@ fn everything_in(folder: &Path) -> anyhow::Result<Manifest> {
     Ok(Manifest { rows, skipped })
 }
 
-/// Whether a reader knows what is at `path`: a folder, a file of a known ending, an angle table.
+/// Whether a reader knows what is at `path`: a folder, an angle table, a file of a known ending
+/// unless it is a text without a table.
 fn is_recording(path: &Path) -> bool {
-    path.is_dir() || find(path, &RECORDINGS).is_some() || AngleRows::open(path).is_ok()
+    path.is_dir() || find_by_content(path, &RECORDINGS).is_some() || AngleRows::open(path).is_ok()
 }
 
 fn table(text: &str) -> Cells {
@@ -216,16 +227,28 @@ mod tests {
         for name in ["b.csv", "b.json", "a.trc", ".hidden", "a.about.json", "README", "notes.md", "02.asf", "f.png"] {
             fs::write(folder.path().join(name), "1").unwrap();
         }
+        fs::write(folder.path().join("session.txt"), "Anna, in shoes\n").unwrap();
+        fs::write(folder.path().join("run.txt"), "0.5,1\n").unwrap();
         let angles = crate::cyclic::angle_table::COLUMNS.join(",") + "\n";
         fs::write(folder.path().join("table.data"), angles).unwrap();
         let found = read(folder.path(), None).unwrap();
         let ids: Vec<String> = found.rows.into_iter().map(|row| row.id).collect();
-        assert_eq!((ids.join(" ").as_str(), found.skipped), ("a b.csv b.json table", 4));
+        assert_eq!((ids.join(" ").as_str(), found.skipped), ("a b.csv b.json run table", 5));
         let refusal = |folder: &Path| read(folder, None).unwrap_err().to_string();
         let empty = tempfile::tempdir().unwrap();
         assert!(refusal(empty.path()).contains("is empty"));
         fs::write(empty.path().join("README"), "1").unwrap();
         assert!(refusal(empty.path()).contains("holds no recording (.bvh, "), "{}", refusal(empty.path()));
+    }
+
+    #[test]
+    fn a_row_is_read_as_it_was_written() {
+        let set = [("model", "running"), ("rate", "30")].map(|(name, value)| (name.to_owned(), value.to_owned()));
+        let mut rows = read_text("m.csv", "id,input,model\na,1.csv,walking\n").unwrap();
+        rows[0].set(&set);
+        let read = of_lines(&rows[0].to_json(), "part", &Default::default()).unwrap();
+        assert_eq!((&read[0].options, &read[0].defaults), (&rows[0].options, &rows[0].defaults));
+        assert_eq!((read[0].options["model"].as_str(), read[0].defaults["rate"].as_str()), ("walking", "30"));
     }
 
     #[test]

@@ -23,6 +23,7 @@ use clap::Args;
 use manifest::Manifest;
 use progress::Progress;
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use store::Store;
@@ -52,7 +53,8 @@ pub struct BatchArgs {
     /// tables get the shard's name.
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub shard: Option<(usize, usize)>,
-    /// An option of all recordings whose row has none: `model=running`, `online=true`.
+    /// An option of all recordings whose row has none and whose kind has it: `model=running`,
+    /// `online=true`.
     #[arg(long, value_name = "NAME=VALUE", value_parser = pair)]
     pub set: Vec<(String, String)>,
     /// Try those again that failed before.
@@ -107,6 +109,18 @@ pub fn run(args: &BatchArgs, console: &Console) -> Result<()> {
     run_until(args, console, stop_flag()?)
 }
 
+/// Notes files of the folder that are no recordings, and how many recordings of another kind each
+/// value of `--set` is not for.
+fn note_left_out(console: &Console, skipped: usize, left_out: &BTreeMap<String, usize>) {
+    if skipped > 0 {
+        console.note(format!("skipped {skipped} of the folder's files: no reader of recordings knows them"));
+    }
+    for (name, count) in left_out {
+        let of = if *count == 1 { "1 recording".to_owned() } else { format!("{count} recordings") };
+        console.note(format!("--set {name}: left out for {of} of a kind that has no such option"));
+    }
+}
+
 /// One more than there are processors: a recording that is done waits for the disk.
 fn default_jobs() -> usize {
     1 + std::thread::available_parallelism().map_or(1, usize::from)
@@ -128,7 +142,8 @@ pub fn run_until(args: &BatchArgs, console: &Console, stop: &AtomicBool) -> Resu
     let store = Store::open(&args.out, &args.named("status"))?;
     let jobs = args.jobs.map_or_else(default_jobs, usize::from);
     let progress = Progress::new(rows.len(), console, args.progress)?;
-    let lines = work::all(&rows, &store, work::Plan { jobs, retry_failed: args.retry_failed }, &progress, stop)?;
+    let plan = work::Plan { jobs, retry_failed: args.retry_failed };
+    let work::Done { lines, left_out } = work::all(&rows, &store, plan, &progress, stop)?;
     progress.end();
     store.close();
     let summary = args.out.join(args.named("summary") + ".csv");
@@ -140,9 +155,7 @@ pub fn run_until(args: &BatchArgs, console: &Console, stop: &AtomicBool) -> Resu
     if args.parquet {
         parquet::write(&lines, &status.with_extension("parquet"), &summary.with_extension("parquet"))?;
     }
-    if skipped > 0 {
-        console.note(format!("skipped {skipped} of the folder's files: no reader of recordings knows their endings"));
-    }
+    note_left_out(console, skipped, &left_out);
     let Counts { recordings, good, from_before, failed, open } = Counts::of(&lines);
     let text = format!(
         "{recordings} recordings: {good} with a result, {from_before} of these from before; {failed} failed, {open} open\n\

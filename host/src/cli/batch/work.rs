@@ -11,7 +11,7 @@ use crate::cli::{Cli, interrupted, kind_of, run};
 use crate::error::{Error, ErrorKind};
 use anyhow::Result;
 use serde_json::Value;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -44,15 +44,26 @@ struct Work<'a> {
     first_of: Mutex<HashMap<String, usize>>,
     /// Rows that ask for the same as another, with that one.
     twins: Mutex<Vec<(usize, usize)>>,
+    /// Of each default how many rows are of a kind that does not have it.
+    left_out: Mutex<BTreeMap<String, usize>>,
     /// What ended the work as a whole.
     broken: Mutex<Option<anyhow::Error>>,
 }
 
-/// Does what is not done yet, and returns a line a row. Rows that ask for the same are done once.
+/// What the work came to.
+#[derive(Debug)]
+pub struct Done {
+    /// A line a row.
+    pub lines: Vec<Line>,
+    /// Of each default how many rows are of a kind that does not have it.
+    pub left_out: BTreeMap<String, usize>,
+}
+
+/// Does what is not done yet. Rows that ask for the same are done once.
 ///
 /// # Errors
 /// The store cannot be written.
-pub fn all(rows: &[Row], store: &Store, plan: Plan, progress: &Progress, stop: &AtomicBool) -> Result<Vec<Line>> {
+pub fn all(rows: &[Row], store: &Store, plan: Plan, progress: &Progress, stop: &AtomicBool) -> Result<Done> {
     let work = Work {
         rows,
         store,
@@ -62,6 +73,7 @@ pub fn all(rows: &[Row], store: &Store, plan: Plan, progress: &Progress, stop: &
         lines: Mutex::new(vec![None; rows.len()]),
         first_of: Mutex::default(),
         twins: Mutex::default(),
+        left_out: Mutex::default(),
         broken: Mutex::default(),
     };
     std::thread::scope(|scope| {
@@ -99,6 +111,9 @@ impl Work<'_> {
                 return Ok(());
             }
         };
+        for name in &job.left_out {
+            *locked(&self.left_out).entry(name.clone()).or_default() += 1;
+        }
         let first = *locked(&self.first_of).entry(job.key.clone()).or_insert(index);
         if first != index {
             locked(&self.twins).push((index, first));
@@ -113,8 +128,8 @@ impl Work<'_> {
         Ok(())
     }
 
-    fn done(self) -> Result<Vec<Line>> {
-        let Self { rows, lines, twins, broken, .. } = self;
+    fn done(self) -> Result<Done> {
+        let Self { rows, lines, twins, left_out, broken, .. } = self;
         if let Some(error) = inner(broken) {
             return Err(error);
         }
@@ -124,7 +139,7 @@ impl Work<'_> {
         for (twin, first) in inner(twins) {
             lines[twin] = Line { id: rows[twin].id.clone(), ..lines[first].clone() };
         }
-        Ok(lines)
+        Ok(Done { lines, left_out: inner(left_out) })
     }
 }
 

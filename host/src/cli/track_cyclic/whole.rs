@@ -131,7 +131,7 @@ impl Shown<'_> {
         let given_rad = args.sigma_deg.map(f64::to_radians);
         let counted = tracked.frames.last().map_or(0.0, |frame| frame.cycles);
         let tracked = if is_finished { finish(angles, &self.models[0], tracked, options, given_rad)? } else { tracked };
-        let motions = motions.map(|motions| Motions::new(&args.model, &motions));
+        let motions = motions.map(|motions| Motions::new(&args.model, self.models, &motions, tracked.rate_hz));
         let motions = motions.as_ref();
         table::write(&tracked, motions.map(|motions| &motions.cells), &args.out)?;
         let interrupted =
@@ -145,9 +145,11 @@ impl Shown<'_> {
         let mut doubts = self.doubts(&report, motions);
         doubts.extend(plausibility::counted_backwards(counted).filter(|_| is_finished));
         text.extend(doubts.iter().map(|doubt| format!("doubt: {doubt}\n")));
+        let notes = plausibility::notes(self.models, &report.gait);
+        notes.iter().filter(|_| self.output.is_some()).for_each(|note| console.note(note));
         text.push_str(&format!("wrote {}\n", args.out.display()));
         if let Some(output) = &self.output {
-            self.write_report(&report, &tracked, motions, &doubts, output)?;
+            self.write_report(&report, &tracked, motions, [&doubts, &notes], output)?;
             text.push_str(&format!("report: {}\n", output.path().display()));
         }
         if self.overlay.is_some() || args.animation.is_some() {
@@ -163,6 +165,7 @@ impl Shown<'_> {
             "symmetries": report.symmetries,
             "motion_frames": motions.map(Motions::counts),
             "doubts": doubts,
+            "notes": notes,
             "out": args.out,
             "report": args.report,
             "overlay": self.overlay.as_ref().map(|(_, folder)| folder.path()),
@@ -178,9 +181,9 @@ impl Shown<'_> {
     fn doubts(&self, report: &Report, motions: Option<&Motions<'_>>) -> Vec<String> {
         let of_recording = self.about.iter().flat_map(|about| about.doubts.clone());
         // The feet of several motions are those of each of them for a while.
-        let gait = report.gait.as_ref().filter(|_| motions.is_none_or(|motions| !motions.are_several()));
+        let gait = report.gait.as_ref().ok().filter(|_| motions.is_none_or(|motions| !motions.are_several()));
         let of_run = match motions.map(|motions| motions.leading().ok_or(motions)) {
-            Some(Err(motions)) => vec![plausibility::no_motion(&motions.choice())],
+            Some(Err(motions)) => vec![plausibility::no_motion(&motions.choice(), motions.named_rows())],
             Some(Ok(leading)) => plausibility::doubts(&report.summary, &report.series, &self.models[leading], gait),
             None => plausibility::doubts(&report.summary, &report.series, &self.models[0], gait),
         };
@@ -193,7 +196,7 @@ impl Shown<'_> {
         report: &Report,
         tracked: &Tracked,
         motions: Option<&Motions<'_>>,
-        doubts: &[String],
+        [doubts, notes]: [&[String]; 2],
         output: &OutputDir,
     ) -> Result<()> {
         let args = self.args;
@@ -211,6 +214,7 @@ impl Shown<'_> {
             is_finished: args.is_finished(),
             about: self.about.as_ref(),
             doubts,
+            notes,
         };
         Ok(report.write(&origin, self.angles, tracked, output)?)
     }

@@ -1,5 +1,6 @@
 //! Foot strikes and toe-offs.
 
+use super::direction::Direction;
 use super::extrema::{Way, maxima, slope, slope_reaches};
 use super::foot_paths::FootPaths;
 use crate::signal::median::median;
@@ -56,27 +57,32 @@ pub struct GaitEvents {
 }
 
 impl FootEvents {
-    /// Events of a foot whose leg is `leg` long; frames from the start of the paths.
-    pub(super) fn find(paths: &FootPaths, leg: f64, rate_hz: f64) -> Self {
-        let (ahead, strikes_from) =
-            paths.heel.as_ref().map_or((&paths.ankle, PointUsed::Ankle), |heel| (heel, PointUsed::Heel));
-        let (behind, toe_offs_from) =
-            paths.toe.as_ref().map_or((&paths.ankle, PointUsed::Ankle), |toe| (toe, PointUsed::Toe));
+    /// Events of a foot whose leg is `leg` long; frames from the start of the paths, which are
+    /// counted in the direction of the walk.
+    ///
+    /// Backward the foot strikes with the toe and leaves the ground with the heel, as in a walk
+    /// forward that runs backwards in time. Source: D. A. Winter, N. Pluck, J. F. Yang, Journal of
+    /// Motor Behavior 21, 1989.
+    pub(super) fn find(paths: &FootPaths, leg: f64, rate_hz: f64, direction: Direction) -> Self {
+        let heel = paths.heel.as_ref().map_or((&paths.ankle, PointUsed::Ankle), |heel| (heel, PointUsed::Heel));
+        let toe = paths.toe.as_ref().map_or((&paths.ankle, PointUsed::Ankle), |toe| (toe, PointUsed::Toe));
+        let is_backward = direction == Direction::Backward;
+        let [(ahead, strikes_from), (behind, toe_offs_from)] = if is_backward { [toe, heel] } else { [heel, toe] };
+        // An ankle is slow also while the foot still, or already, rolls over the toe.
+        let strikes_are_exact = !is_backward || strikes_from != PointUsed::Ankle;
+        let toe_offs_are_exact = is_backward || toe_offs_from != PointUsed::Ankle;
         let limit = MAX_DELAY_S * rate_hz;
-        let refined = |path: &[Option<f64>], moment: f64, way: Way| {
-            slope_reaches(path, moment, ground_slope(path), way, limit).unwrap_or(moment)
+        let refined = |moments: Vec<f64>, path: &[Option<f64>], way: Way, is_exact: bool| -> Vec<f64> {
+            let level = ground_slope(path);
+            let reached = |moment: f64| slope_reaches(path, moment, level, way, limit).unwrap_or(moment);
+            if is_exact { moments.into_iter().map(reached).collect() } else { moments }
         };
         let strikes = maxima(ahead, min_prominence(ahead, leg));
         let backwards: Vec<Option<f64>> = behind.iter().map(|value| value.map(|value| -value)).collect();
         let toe_offs = maxima(&backwards, min_prominence(behind, leg));
         Self {
-            strikes: strikes.into_iter().map(|moment| refined(ahead, moment, Way::Later)).collect(),
-            // An ankle is slow again while the foot still rolls over the toe.
-            toe_offs: if toe_offs_from == PointUsed::Toe {
-                toe_offs.into_iter().map(|moment| refined(behind, moment, Way::Earlier)).collect()
-            } else {
-                toe_offs
-            },
+            strikes: refined(strikes, ahead, Way::Later, strikes_are_exact),
+            toe_offs: refined(toe_offs, behind, Way::Earlier, toe_offs_are_exact),
             strikes_from,
             toe_offs_from,
         }

@@ -10,7 +10,7 @@ use crate::signal::{FilterOptions, filtered};
 const HIP_SEGMENTS: [usize; 2] = [7, 10];
 /// Share of the frames with an ankle in which a heel or toe has to be seen to be used. Chosen: a
 /// point that is missing more often would lose more events than it betters.
-const MIN_SEEN_SHARE: f64 = 0.5;
+pub const MIN_SEEN_SHARE: f64 = 0.5;
 
 /// Points of one foot, forward of the hips, smoothed, in the unit of the leg's lengths; one value a
 /// frame.
@@ -19,6 +19,8 @@ pub struct FootPaths {
     pub heel: Option<Vec<Option<f64>>>,
     pub toe: Option<Vec<Option<f64>>>,
     pub ankle: Vec<Option<f64>>,
+    /// How far the ankle is below the hips.
+    pub below: Vec<Option<f64>>,
 }
 
 impl FootPaths {
@@ -35,14 +37,17 @@ impl FootPaths {
         let (options, _) = FilterOptions::default().lowered_for(rate_hz);
         let [thigh, shank] = LEGS[side];
         let columns = columns.filter(|_| leg.is_measured);
-        let ankle = even.series(|row| {
-            let part = |segment: usize, usual: f64| {
-                let length = columns.and_then(|columns| columns.length(row, segment)).unwrap_or(usual);
-                Some(length * row.angles_rad[segment]?.cos())
-            };
-            let hip = part(HIP_SEGMENTS[side], 0.0).unwrap_or(0.0);
-            Some(hip + part(thigh, leg.segments[0])? + part(shank, leg.segments[1])?)
-        });
+        let ankle = |along: fn(f64) -> f64| {
+            even.series(|row| {
+                let part = |segment: usize, usual: f64| {
+                    let length = columns.and_then(|columns| columns.length(row, segment)).unwrap_or(usual);
+                    Some(length * along(row.angles_rad[segment]?))
+                };
+                let hip = part(HIP_SEGMENTS[side], 0.0).unwrap_or(0.0);
+                Some(hip + part(thigh, leg.segments[0])? + part(shank, leg.segments[1])?)
+            })
+        };
+        let (ankle, below) = (ankle(f64::cos), ankle(f64::sin));
         let ankles = ankle.iter().flatten().count() as f64;
         let point = |end: usize| -> Result<Option<Vec<Option<f64>>>> {
             let Some(columns) = columns else { return Ok(None) };
@@ -51,8 +56,21 @@ impl FootPaths {
             let is_used = seen > 0.0 && seen >= MIN_SEEN_SHARE * ankles;
             is_used.then(|| filtered(&path, rate_hz, &options)).transpose()
         };
-        Ok(Self { heel: point(0)?, toe: point(1)?, ankle: filtered(&ankle, rate_hz, &options)? })
+        let [ankle, below] = [ankle, below].map(|path| filtered(&path, rate_hz, &options));
+        Ok(Self { heel: point(0)?, toe: point(1)?, ankle: ankle?, below: below? })
     }
+
+    /// The same, counted backward of the hips.
+    pub fn turned(mut self) -> Self {
+        let paths = [Some(&mut self.ankle), self.heel.as_mut(), self.toe.as_mut()];
+        paths.into_iter().flatten().for_each(|path| turn(path));
+        self
+    }
+}
+
+/// Counts a path the other way.
+pub fn turn(path: &mut [Option<f64>]) {
+    path.iter_mut().flatten().for_each(|place| *place = -*place);
 }
 
 /// How far the hips are along the way, smoothed; `None` where the table does not say, or not in the

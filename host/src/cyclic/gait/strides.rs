@@ -26,6 +26,17 @@ pub enum Foot {
     Right,
 }
 
+impl Foot {
+    /// The name in tables and sentences.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+}
+
 /// One stride of one foot. Shares are of its time, in [0, 1]; frames may lie between two.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Stride {
@@ -165,7 +176,7 @@ pub(super) fn to_csv(strides: &[Stride], rate_hz: f64) -> String {
                     swing_share,double_support_share,flight_time_s,step_length_m,stride_length_m,speed_m_per_s\n"
         .to_owned();
     for stride in strides {
-        let foot = if stride.foot == Foot::Left { "left" } else { "right" };
+        let foot = stride.foot.name();
         let Stride { strike, toe_off, next_strike, .. } = stride;
         let cells = [
             Some(strike / rate_hz),

@@ -1,6 +1,6 @@
 //! Events and strides of walks whose timing is known.
 
-use super::{Gait, PointUsed, Scale, of_table};
+use super::{Direction, Foot, Gait, NoGait, PointUsed, Scale, of_table};
 use crate::cyclic::angle_table::{ANGLES, AngleRow, AngleTable};
 use crate::cyclic::recording::{RecordingOptions, angles};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -75,9 +75,10 @@ fn noise_moves_events_by_less_than_a_frame_and_adds_none() {
 
 #[test]
 fn who_stands_or_jumps_has_no_gait() {
-    assert_eq!(of_table(&swinging(0..300, 0.03, 0.5), 60.0, Scale::default()), None);
-    assert_eq!(of_table(&swinging(0..300, 0.4, 0.0), 60.0, Scale::default()), None, "both legs at once");
-    assert_eq!(of_table(&swinging(0..3, 0.4, 0.5), 60.0, Scale::default()), None);
+    assert_eq!(of_table(&swinging(0..300, 0.03, 0.5), 60.0, Scale::default()), Err(NoGait::NoStride));
+    let at_once = of_table(&swinging(0..300, 0.4, 0.0), 60.0, Scale::default());
+    assert_eq!(at_once, Err(NoGait::NoTurns), "both legs at once");
+    assert_eq!(of_table(&swinging(0..3, 0.4, 0.5), 60.0, Scale::default()), Err(NoGait::NoStride));
 }
 
 /// Both legs swing together, and noise lets either foot strike first: shares lie at 0 and at 1, and
@@ -93,7 +94,66 @@ fn feet_that_strike_together_in_either_order_take_no_turns() {
         AngleRow { frame, angles_rad, extra: Vec::new() }
     };
     let table = AngleTable::new((0..640).map(row).collect(), Vec::new()).unwrap();
-    assert_eq!(of_table(&table, 60.0, Scale::default()), None);
+    assert_eq!(of_table(&table, 60.0, Scale::default()), Err(NoGait::NoTurns));
+}
+
+/// A person whose thighs swing, and whose knee bends while its foot goes forward; `time` is 1, or
+/// -1 for a walk backward.
+fn stepping(frames: std::ops::Range<i64>, time: i64) -> AngleTable {
+    let row = |frame: i64| {
+        let leg = |lag: f64| {
+            let phase = TAU * ((time * frame) as f64 / 40.0 - lag);
+            let thigh = FRAC_PI_2 - 0.4 * phase.cos();
+            [thigh, thigh + 0.6 * (-phase.sin()).max(0.0)].map(Some)
+        };
+        let mut angles_rad = [Some(FRAC_PI_2); ANGLES];
+        ([angles_rad[8], angles_rad[9]], [angles_rad[11], angles_rad[12]]) = (leg(0.0), leg(0.5));
+        AngleRow { frame: frame as u64, angles_rad, extra: Vec::new() }
+    };
+    AngleTable::new(frames.map(row).collect(), Vec::new()).unwrap()
+}
+
+/// The table as if nothing of these angles had been seen.
+fn without(table: &AngleTable, angles: std::ops::Range<usize>) -> AngleTable {
+    let mut rows = table.rows().to_vec();
+    rows.iter_mut().for_each(|row| row.angles_rad[angles.clone()].fill(None));
+    AngleTable::new(rows, Vec::new()).unwrap()
+}
+
+#[test]
+fn a_walk_backward_is_one_forward_that_runs_backwards() {
+    let [ahead, back] = [1, -1].map(|time| of_table(&stepping(0..400, time), 60.0, Scale::default()).unwrap());
+    assert_eq!((ahead.direction, back.direction), (Direction::Forward, Direction::Backward));
+    assert!(!ahead.is_running && !back.is_running);
+    let [stance, stance_back] = [&ahead, &back].map(|gait| gait.left.stance_share.unwrap().mean);
+    assert!((stance - stance_back).abs() < 0.01, "{stance} {stance_back}");
+    // The frames of one are those of the other, counted from the end of a cycle.
+    let phase = |moment: f64| (moment / 40.0).rem_euclid(1.0);
+    let [strike, toe_off] = [ahead.events.left.strikes[1], ahead.events.left.toe_offs[1]].map(phase);
+    let [strike_back, toe_off_back] = [back.events.left.strikes[1], back.events.left.toe_offs[1]].map(phase);
+    assert!((phase(-40.0 * toe_off) - strike_back).abs() < 0.01, "{toe_off} {strike_back}");
+    assert!((phase(-40.0 * strike) - toe_off_back).abs() < 0.01, "{strike} {toe_off_back}");
+    let straight = of_table(&swinging(7..260, 0.4, 0.5), 60.0, Scale::default()).unwrap();
+    assert_eq!(straight.direction, Direction::Unknown, "straight legs are as high both ways");
+}
+
+#[test]
+fn one_leg_gives_its_own_events_and_says_what_is_missing() {
+    for (time, direction) in [(1, Direction::Forward), (-1, Direction::Backward)] {
+        let both = of_table(&stepping(0..400, time), 60.0, Scale::default()).unwrap();
+        let table = without(&stepping(0..400, time), 10..13);
+        let one = of_table(&table, 60.0, Scale { height_m: Some(1.8) }).unwrap();
+        assert_eq!((one.direction, one.unseen, one.is_running), (direction, Some(Foot::Right), false));
+        assert_eq!(one.events.left, both.events.left);
+        assert!(one.events.right.strikes.is_empty() && one.left.step_time_s.is_none());
+        assert!(one.note().is_some_and(|note| note.starts_with("the right leg is not seen in any stride")));
+        assert!(both.note().is_none() && both.unseen.is_none());
+    }
+    let of = |table: &AngleTable| of_table(table, 60.0, Scale::default()).unwrap_err();
+    assert_eq!(of(&without(&stepping(0..400, 1), 7..13)), NoGait::NoLeg);
+    let swinging = swinging(7..260, 0.4, 0.5);
+    assert_eq!(of(&without(&swinging, 7..10)), NoGait::Unseen(Foot::Left), "a leg that swings without a step");
+    assert!(of(&without(&swinging, 7..10)).to_string().contains("the left leg is not seen"));
 }
 
 /// Mean of how far events are from a reference, and of the absolute value, milliseconds.

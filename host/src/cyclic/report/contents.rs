@@ -7,7 +7,7 @@ use crate::cyclic::anatomy::repetition::{Repetition, repetitions};
 use crate::cyclic::anatomy::symmetry::{Symmetry, symmetries};
 use crate::cyclic::anatomy::{AnatomicalSeries, CycleCurves};
 use crate::cyclic::angle_table::ANGLES;
-use crate::cyclic::gait::{self, Gait, Scale};
+use crate::cyclic::gait::{self, Gait, NoGait, Scale};
 use crate::cyclic::own_cycle::noise;
 use crate::cyclic::tracking::table::MotionCells;
 use crate::cyclic::tracking::{Summary, Tracked, TrackingOptions};
@@ -43,6 +43,8 @@ pub struct Origin<'a> {
     pub about: Option<&'a About>,
     /// What speaks against the result, one sentence each.
     pub doubts: &'a [String],
+    /// What a user should know, one sentence each.
+    pub notes: &'a [String],
 }
 
 /// Everything that the folder holds, before it is written.
@@ -63,8 +65,8 @@ pub struct Report {
     pub curves: CycleCurves,
     /// Left against right.
     pub symmetries: Vec<Symmetry>,
-    /// Foot strikes, toe-offs and strides, if the person walks or runs.
-    pub gait: Option<Gait>,
+    /// Foot strikes, toe-offs and strides, if the person walks or runs; else why there are none.
+    pub gait: Result<Gait, NoGait>,
 }
 
 impl Report {

@@ -4,7 +4,7 @@ use super::contents::{Origin, OverlayOrigin, Report};
 use crate::cyclic::about::About;
 use crate::cyclic::anatomy::{ANATOMICAL_ANGLES, Range, Repetition, Symmetry};
 use crate::cyclic::angle_table::COLUMNS;
-use crate::cyclic::gait::{FootMeans, Gait};
+use crate::cyclic::gait::{Direction, Foot, FootMeans, Gait};
 use crate::cyclic::tracking::{FilterName, ScalingName, StartName, Summary, Tracked, Updates};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -111,6 +111,7 @@ pub struct Document<'a> {
     options: OptionsRecord,
     recording: Option<&'a About>,
     doubts: &'a [String],
+    notes: &'a [String],
     #[serde(flatten)]
     summary: &'a Summary,
     /// Share of the rows in which each angle was measured and used.
@@ -123,7 +124,9 @@ pub struct Document<'a> {
 /// Means over the strides.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct GaitRecord<'a> {
+    direction: Direction,
     is_running: bool,
+    unseen: Option<Foot>,
     strides: usize,
     left: &'a FootMeans,
     right: &'a FootMeans,
@@ -131,7 +134,8 @@ pub struct GaitRecord<'a> {
 
 impl<'a> GaitRecord<'a> {
     const fn new(gait: &'a Gait) -> Self {
-        Self { is_running: gait.is_running, strides: gait.strides.len(), left: &gait.left, right: &gait.right }
+        let Gait { direction, is_running, unseen, .. } = *gait;
+        Self { direction, is_running, unseen, strides: gait.strides.len(), left: &gait.left, right: &gait.right }
     }
 }
 
@@ -150,11 +154,12 @@ impl<'a> Document<'a> {
             options: OptionsRecord::new(origin, tracked.rate_hz),
             recording: origin.about,
             doubts: origin.doubts,
+            notes: origin.notes,
             summary: &report.summary,
             measured_shares: COLUMNS[1..].iter().copied().zip(report.measured_shares).collect(),
             repetitions: report.repetitions.iter().map(Into::into).collect(),
             symmetry: &report.symmetries,
-            gait: report.gait.as_ref().map(GaitRecord::new),
+            gait: report.gait.as_ref().ok().map(GaitRecord::new),
         }
     }
 }

@@ -38,7 +38,7 @@ impl Report {
         if let Ok(measured) = MeasuredAngles::of_table(table, tracked.rate_hz, &filter) {
             text("measured_anatomical.csv", measured.to_csv())?;
         }
-        if let Some(gait) = &self.gait {
+        if let Ok(gait) = &self.gait {
             text("events.csv", gait.events.to_csv(tracked.rate_hz))?;
             text("strides.csv", gait.strides_to_csv(tracked.rate_hz))?;
             text("gait_curves.csv", curves_from_strikes(&self.series, gait).to_csv())?;

@@ -69,6 +69,7 @@ fn the_folder_holds_every_file() {
         is_finished: false,
         about: None,
         doubts: &[],
+        notes: &[],
     };
     report.write(&origin, &table, &tracked, &output).unwrap();
     let mut names: Vec<String> =
