@@ -36,7 +36,7 @@ pub enum Part {
     Secant,
     /// The second hypothesis, where the grid names another place.
     Rival,
-    /// Giving way to it without a comparison, of a filter that does not fit.
+    /// Giving way to it without a comparison, of a filter that does not fit or stands.
     GivingWay,
     /// The wider prior of an angle that is far from the mean pose in the first row.
     FirstRowOffset,

@@ -176,6 +176,39 @@ fn swinging() -> Box<HumanModelTable> {
     swinging
 }
 
+/// Angle of a motion there and back, as of squats: its ways differ by a lag of some angles.
+fn there_and_back(index: usize, position: f32) -> f32 {
+    (0.2 + 0.05 * index as f32) * (TAU * (position + 0.004 * (index % 4) as f32)).cos()
+}
+
+/// At a deviation that follows each frame, a filter that stands would explain any motion.
+#[test]
+fn a_motion_there_and_back_is_found_again_after_a_stop_half_way() {
+    let mut table = swinging();
+    for (l, pose) in table.mean_pose_rad.iter_mut().enumerate() {
+        *pose = core::array::from_fn(|i| there_and_back(i, l as f32 / 100.0));
+    }
+    (table.rest_std_rad, table.rest_rate_per_cycle) = ([0.2; N], [60.0; N]);
+    let model = table.model().unwrap();
+    let mut found = 0;
+    for seed in 1..=12_u16 {
+        let angle =
+            |i: usize, position| there_and_back(i, position) + 0.1 * if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let first = core::array::from_fn(|i| Some(angle(i, 0.0)));
+        let mut filter = CoupledFilter::<N>::new(&model, &exact(&first), Some(0.0), None).unwrap();
+        let mut stream = Stream::new(u64::from(seed), 0, 0);
+        let mut way = 0.0;
+        let stop = 200 + 5 * seed..330 + 5 * seed;
+        for position in walked(700, |frame| if stop.contains(&frame) { 0.0 } else { 1.0 }) {
+            let seen = core::array::from_fn(|i| Some(angle(i, position) + 0.1 * stream.normal()));
+            let estimate = filter.step(&model, &AngleMeasurement::new(&seen, 0.1).unwrap());
+            way = position_difference(estimate.cycle_position, wrap_position(position));
+        }
+        found += i32::from(way.abs() < 0.1);
+    }
+    assert!(found >= 11, "{found} of 12");
+}
+
 /// Share of the 90 % bands that hold `person`, with true noise of 0.1 rad and stated noise of
 /// `stated` rad.
 fn inside_the_band(model: &CoupledModel<'_>, person: impl Fn(usize, f32) -> f32, stated: f32) -> f64 {

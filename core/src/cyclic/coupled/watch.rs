@@ -7,7 +7,7 @@ use crate::cyclic::coupled::constants::{
 };
 use crate::cyclic::coupled::hypothesis::rival::is_elsewhere;
 use crate::cyclic::coupled::measurement::winding::Winding;
-use crate::cyclic::coupled::phase::phase_grid::{PhaseGrid, PhaseMode};
+use crate::cyclic::coupled::phase::phase_grid::{PhaseGrid, PhaseMode, is_standing};
 use crate::cyclic::coupled::state::CoupledFilter;
 use crate::cyclic::phase::position_difference;
 use crate::cyclic::{AngleMeasurement, CoupledModel};
@@ -54,7 +54,8 @@ impl<const N: usize> CoupledFilter<N> {
     }
 
     /// A place other than the leader's is the rival's. A leader that does not fit gives way to it
-    /// at once: its deviations follow any motion, so its likelihood says nothing.
+    /// at once, and so does one that stands where the grid moves: its deviations follow any motion,
+    /// so its likelihood says nothing.
     fn compare(&mut self, model: &CoupledModel<'_>, mode: &PhaseMode) {
         if !is_elsewhere(mode.position, self.leader.position) || !is_on(Part::Rival) {
             self.rival.end();
@@ -64,8 +65,10 @@ impl<const N: usize> CoupledFilter<N> {
             let number = self.next_number();
             self.rival.begin_at(model, (mode, number), &self.leader);
         }
-        if self.leader.spread_scale.is_doubtful() && is_on(Part::GivingWay) {
-            self.misfit_cycles = MISFIT_CYCLES;
+        let misfits = self.leader.spread_scale.is_doubtful();
+        let stands = is_standing(model, self.leader.velocity) && !is_standing(model, mode.velocity);
+        if (misfits || stands) && is_on(Part::GivingWay) {
+            self.misfit_cycles = if misfits { MISFIT_CYCLES } else { self.misfit_cycles };
             self.lead_by_rival();
         }
     }

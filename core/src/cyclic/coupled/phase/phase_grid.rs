@@ -21,6 +21,12 @@ const LANES: usize = 8;
 const SPEED_RATIOS: [f32; 6] = [0.0, 0.5, 0.7, 1.0, 1.4, 2.0];
 pub(crate) const SPEEDS: usize = SPEED_RATIOS.len();
 
+/// Whether a velocity, cycles per frame, is nearer to standing than to the grid's slowest speed,
+/// forwards or backwards.
+pub(crate) fn is_standing(model: &CoupledModel<'_>, velocity: f32) -> bool {
+    abs(velocity) < 0.5 * SPEED_RATIOS[1] * model.mean_cycle_velocity()
+}
+
 /// Weights of position and speed; their sum is one.
 ///
 /// ```
