@@ -8,7 +8,7 @@ use sinew_lab::cyclic::stress::ELSEWHERE;
 
 /// Noise, degrees, with the greatest share of frames off in the second second of walking, and from
 /// then on.
-const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.07, 0.02), (6.0, 0.07, 0.01), (29.0, 0.18, 0.08)];
+const BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.05, 0.02), (6.0, 0.05, 0.01), (29.0, 0.1, 0.03)];
 /// The same looking back over the recording.
 const SMOOTHED_BOUNDS: [(f64, f64, f64); 3] = [(1.5, 0.03, 0.01), (6.0, 0.04, 0.01), (29.0, 0.11, 0.07)];
 /// The same for people of the training, by [`ELSEWHERE`].
