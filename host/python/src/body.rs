@@ -8,10 +8,14 @@ use pyo3::types::PyDict;
 use sinew::body::pose_file::{inside_limits, pose_from_json, read_pose};
 use sinew::body::run::measures_source::{measures_from_json, measures_of_height, read_measures};
 use sinew::body::run::tuning_file;
+use sinew::body::tracking::facing::begin_from_frames;
 use sinew::body::tracking::filter::WholeBodyEstimate;
+use sinew::body::tracking::frame_time::decision_frames;
 use sinew::body::tracking::size_from_frames::{size_frames, size_from_frames, sizing_options};
 use sinew::body::tracking::stream::stick_at;
-use sinew::body::tracking::{BodyModelKind, BodyStream, BodyStreamOptions, BodyTuning, FrameTime, StreamedFrame};
+use sinew::body::tracking::{
+    BodyModelKind, BodyStream, BodyStreamOptions, BodyTuning, FrameTime, SeenPoints, StreamedFrame,
+};
 use sinew::body::{BodyFile, BodyPart};
 use sinew::cloud::PointCloud;
 use sinew::error::Result;
@@ -106,7 +110,12 @@ impl Body {
         let stick = ends.and_then(stick_at).unwrap_or(StickSight::Unseen);
         let stream = &mut self.stream;
         let answer = py.detach(|| stream.update(points.iter().copied().map(Vec3::from), when, stick));
-        self.answer(py, &answer.map_err(|error| exception(&error))?)
+        let answer = answer.map_err(|error| exception(&error))?;
+        if self.stream.begun_anew() == Some(answer.frame) {
+            self.notes
+                .push(format!("frame {}: most points were away from the body; it was looked for anew", answer.frame));
+        }
+        self.answer(py, &answer)
     }
 
     /// How many clouds with points `estimated_measures` looks at.
@@ -124,20 +133,36 @@ impl Body {
         if self.stream.frame().is_some() {
             return Err(wrong("estimate_measures", "is for a tracker that answered no frame: make a new one"));
         }
-        let points = |array: &PyReadonlyArray2<'_, f32>| -> PyResult<Vec<Vec3>> {
-            Ok(array.as_slice()?.as_chunks::<3>().0.iter().copied().map(Vec3::from).collect())
-        };
-        let clouds: Vec<(u64, Vec<Vec3>)> =
-            clouds.iter().map(|(frame, array)| Ok((*frame, points(array)?))).collect::<PyResult<_>>()?;
+        let clouds = points_of(clouds)?;
         let found = py.detach(|| {
             let (options, start, first_rad) = (self.stream.options(), *self.stream.size(), self.stream.first_rad());
             let sizing = BodyStream::new(sizing_options(options), start, first_rad)?;
-            let seen =
-                clouds.into_iter().map(|(at, points_m)| (at, sizing.seen(PointCloud::from_points(points_m), at)));
-            let frames: Vec<_> = seen.filter(|(_, seen)| !seen.points_m.is_empty()).collect();
-            size_from_frames(options, &start, first_rad, &frames)
+            size_from_frames(options, &start, first_rad, &seen_frames(&sizing, clouds))
         });
         found.map_err(|error| exception(&error))?.map(|size| json_of_measures(&BodyFile::from(&size))).transpose()
+    }
+
+    /// How many clouds with points `found_first_pose` looks at.
+    #[getter]
+    fn decision_frames(&self) -> usize {
+        decision_frames(self.stream.options().rate_hz)
+    }
+
+    /// Pose of the person whom these numbered clouds show first, by how much a point is likelier
+    /// than with the opposite, and whether that is little.
+    fn found_first_pose(
+        &self,
+        py: Python<'_>,
+        clouds: Vec<(u64, PyReadonlyArray2<'_, f32>)>,
+    ) -> PyResult<(Vec<f32>, f32, bool)> {
+        let clouds = points_of(clouds)?;
+        let found = py.detach(|| {
+            let mut stream = BodyStream::new(self.stream.options().clone(), *self.stream.size(), None)?;
+            let frames = seen_frames(&stream, clouds);
+            begin_from_frames(&mut stream, &frames)
+        });
+        let first = found.map_err(|error| exception(&error))?;
+        Ok((first.angles_rad.to_vec(), first.facing_margin, first.is_facing_doubtful()))
     }
 
     #[getter]
@@ -190,6 +215,20 @@ impl Body {
         let stream = py.detach(|| BodyStream::restored(saved)).map_err(|error| exception(&error))?;
         Ok(Self { stream, notes })
     }
+}
+
+/// Numbered clouds, out of numpy's arrays.
+fn points_of(clouds: Vec<(u64, PyReadonlyArray2<'_, f32>)>) -> PyResult<Vec<(u64, Vec<Vec3>)>> {
+    let points = |array: &PyReadonlyArray2<'_, f32>| -> PyResult<Vec<Vec3>> {
+        Ok(array.as_slice()?.as_chunks::<3>().0.iter().copied().map(Vec3::from).collect())
+    };
+    clouds.iter().map(|(frame, array)| Ok((*frame, points(array)?))).collect()
+}
+
+/// Those in which the stream sees the points of a body.
+fn seen_frames(stream: &BodyStream, clouds: Vec<(u64, Vec<Vec3>)>) -> Vec<(u64, SeenPoints)> {
+    let seen = clouds.into_iter().map(|(at, points_m)| (at, stream.seen(PointCloud::from_points(points_m), at)));
+    seen.filter(|(_, seen)| seen.show_a_body()).collect()
 }
 
 impl Body {

@@ -138,6 +138,20 @@ def test_measures_are_estimated_before_the_first_frame_and_from_points(scene):
         tracker.estimate_measures(scene.clouds)
 
 
+def test_the_first_pose_is_the_commands(tmp_path, command, scene):
+    folder, out = tmp_path / "scene", tmp_path / "run"
+    command("simulate", "stereo", "--motion", "stick-wave", "--rate", 2, "--points", POINTS, "--out", folder)
+    (folder / "first_pose.json").unlink()
+    run = command("track", "body", folder, "--out", out)["run"]
+    person = sinew.BodyTracker(measures=scene.measures, rate_hz=scene.rate_hz)
+    first = person.find_first_pose(iter([None, *scene.clouds]))
+    assert person.frame is None, "the tracker stays as it is"
+    assert first.is_facing_doubtful == any("wrong way" in warning for warning in run["warnings"])
+    tracker = sinew.BodyTracker(measures=scene.measures, rate_hz=scene.rate_hz, first_pose=first.pose)
+    same_as_table([tracker.update(cloud) for cloud in scene.clouds], out / "track.csv")
+    assert person.find_first_pose([]).facing_margin == 0.0
+
+
 def test_shapes_and_types(scene):
     tracker = tracker_of(scene)
     assert tracker.frame is None and tracker.measures == scene.measures

@@ -18,7 +18,7 @@ from ._arm_estimate import ArmEstimate, ArmPair, ArmParticles
 from ._batch import BatchResult, batch
 from ._batch.sweep import SweepResult, sweep
 from ._body import BodyTracker
-from ._body_estimate import BodyEstimate
+from ._body_estimate import BodyEstimate, FirstPose
 from ._images import find_blobs, read_image, segment_skin
 from ._model import Model, models
 from ._motion import Motion, read_motion
@@ -55,6 +55,7 @@ __all__ = [
     "CyclicEstimate",
     "CyclicTrack",
     "CyclicTracker",
+    "FirstPose",
     "Model",
     "Motion",
     "SimulatedArm",

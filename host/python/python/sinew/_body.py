@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _sinew
 from ._arrays import is_path, number, positive, whole
-from ._body_estimate import BodyEstimate
+from ._body_estimate import BodyEstimate, FirstPose
 from ._points import points32
 
 Path = str | os.PathLike[str]
@@ -120,8 +120,8 @@ class BodyTracker:
         Returns
         -------
         BodyEstimate or None
-            None where no first pose is given and no point was seen yet. The first answer is the
-            first pose, with a look at the points from there.
+            None where no first pose is given and no cloud had 30 points yet. The first answer is
+            the first pose, with a look at the points from there.
 
         Raises
         ------
@@ -163,14 +163,40 @@ class BodyTracker:
         >>> measures = person.estimate_measures(scene.clouds)
         >>> tracker = sinew.BodyTracker(rate_hz=scene.rate_hz, measures=measures or person.measures)
         """
-        seen: list[tuple[int, npt.NDArray[np.float32]]] = []
-        for frame, cloud in enumerate(clouds):
-            if cloud is not None and len(points := points32(cloud, "clouds")) > 0:
-                seen.append((frame, points))
-                if len(seen) == self._native.size_frames:
-                    break
-        found = self._native.estimated_measures(seen)
+        found = self._native.estimated_measures(_with_points(clouds, self._native.size_frames))
         return None if found is None else json.loads(found)
+
+    def find_first_pose(self, clouds: Iterable[npt.ArrayLike | None]) -> FirstPose:
+        """Find a person's pose in their first cloud; the next half second says which way they face.
+
+        Someone who stands or walks is found. The tracker stays as it is; one that is given this
+        pose answers as ``sinew track body`` does without ``--init``. Without it a tracker begins
+        with the first cloud alone, and faces the wrong way twice as often.
+
+        Parameters
+        ----------
+        clouds : iterable of array_like of shape (n, 3), or None
+            Points of the first frames, as :meth:`update` takes them. No more of them are read than
+            hold half a second with points, and eight at least.
+
+        Returns
+        -------
+        FirstPose
+
+        Raises
+        ------
+        ValueError
+            A parameter breaks its rule.
+
+        Examples
+        --------
+        >>> scene = sinew.simulate_stereo(rate_hz=4.0, points=300)
+        >>> person = sinew.BodyTracker(measures=scene.measures)
+        >>> first = person.find_first_pose(scene.clouds)
+        >>> tracker = sinew.BodyTracker(measures=scene.measures, first_pose=first.pose)
+        """
+        pose, margin, is_doubtful = self._native.found_first_pose(_with_points(clouds, self._native.decision_frames))
+        return FirstPose(np.array(pose, np.float32), margin, is_doubtful)
 
     def _ends(self, stick: npt.ArrayLike) -> list[list[float]]:
         if self.model != "stick":
@@ -257,6 +283,18 @@ def _plain(value: Any) -> Any:
     if isinstance(value, (np.generic, np.ndarray)):
         return value.tolist()
     raise TypeError(f"{type(value).__name__} is none")
+
+
+def _with_points(clouds: Iterable[npt.ArrayLike | None], most: int) -> list[tuple[int, npt.NDArray[np.float32]]]:
+    """The first clouds that have as many points as a pose has numbers, with their numbers."""
+    seen: list[tuple[int, npt.NDArray[np.float32]]] = []
+    least = len(_sinew.BODY_COORDINATES)
+    for frame, cloud in enumerate(clouds):
+        if cloud is not None and len(points := points32(cloud, "clouds")) >= least:
+            seen.append((frame, points))
+            if len(seen) == most:
+                break
+    return seen
 
 
 def _named(pose: Any) -> Any:

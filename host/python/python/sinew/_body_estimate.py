@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,17 @@ from ._points import PointArray
 
 _SHIFTS = 3
 _COORDINATES = {"whole": list(range(30)), "upper": _sinew.UPPER_BODY_COORDINATES}
+
+
+class FirstPose(NamedTuple):
+    """The pose of a body in its first cloud, and how sure it is which way they face."""
+
+    pose: npt.NDArray[np.float32]
+    """Coordinates in the order of :data:`sinew.BODY_COORDINATE_NAMES`, (30,) metres and radians."""
+    facing_margin: float
+    """Log-likelihood of a point, on the mean, over that with the person facing the other way."""
+    is_facing_doubtful: bool
+    """Whether that is so little that the person may face the other way."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -71,6 +71,8 @@ pub struct BodyRunReport {
     pub seconds_per_step: f64,
     /// Frames in which no particle had a weight: they count as frames without points.
     pub degenerate_frames: usize,
+    /// Frames in which the body was looked for anew, and found elsewhere.
+    pub begun_anew: Vec<u64>,
     /// Mean share of effective particles.
     pub effective_share: f64,
     /// CRC-32 of the tracker's saved state after the last frame: the same for the same options,
@@ -120,6 +122,7 @@ impl BodyRunReport {
             frames_per_second: 0.0,
             seconds_per_step: 0.0,
             degenerate_frames: 0,
+            begun_anew: Vec::new(),
             effective_share: 0.0,
             state_crc32: 0,
             error_m: None,
@@ -145,8 +148,16 @@ impl BodyRunReport {
         }
     }
 
-    /// Says of each end effector whether fewer than half of the frames show it.
+    /// Says where the body was lost, and of each end effector whether fewer than half of the frames
+    /// show it.
     pub(super) fn warn(&mut self) {
+        if let Some(frame) = self.begun_anew.first() {
+            self.warnings.push(format!(
+                "for half a second most points were away from the body, so it was looked for anew in {} frames, first in \
+                 frame {frame} (`begun_anew` of run.json); the rows before are of another place",
+                self.begun_anew.len()
+            ));
+        }
         self.warnings.extend(unobserved(&self.observed_frames, self.frames_finished));
     }
 

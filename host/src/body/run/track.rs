@@ -9,6 +9,8 @@ use super::report::{BodyRunReport, SkippedCloud};
 use super::resume;
 use super::score::{BodyScore, RunningMean};
 use super::{particles, table};
+use crate::body::tracking::facing::{begin_from_frames, is_upside_down};
+use crate::body::tracking::frame_time::decision_frames;
 use crate::body::tracking::size_from_frames::{size_frames, size_from_frames, sizing_options};
 use crate::body::tracking::{BodyStream, BodyStreamOptions, FrameTime, SeenPoints};
 use crate::cloud::{CloudError, CloudFrame, CloudSource, MAX_POINTS};
@@ -231,6 +233,9 @@ impl BodyTrackRun {
         let estimate = self.stream.step(seen, FrameTime::Number(frame), stick)?;
         self.step_s += start.elapsed().as_secs_f64();
         let estimate = estimate.context("the tracker has no first pose")?;
+        if self.stream.begun_anew() == Some(frame) {
+            self.report.begun_anew.push(frame);
+        }
         let points_m = &seen.points_m;
         let ambiguous = self.stream.filter().ambiguous(&estimate);
         self.table
@@ -322,14 +327,7 @@ fn check_readable(inputs: &BodyInputs) -> Result<()> {
 /// A stream of the person whose size the first seconds with points show; notes it.
 fn sized(inputs: &mut BodyInputs, options: BodyStreamOptions) -> Result<BodyStream> {
     let sizing = BodyStream::new(sizing_options(&options), inputs.size, inputs.first_rad)?;
-    let seen = |frame: &CloudFrame| {
-        let cloud = read_cloud(frame, &inputs.source, &sizing).ok()?.ok()?;
-        (!cloud.seen.points_m.is_empty()).then_some((frame.frame, cloud.seen))
-    };
-    let most = size_frames(inputs.rate_hz);
-    let clouds = &inputs.clouds.frames[..inputs.clouds.frames.len().min(START_CLOUDS + most)];
-    let mut frames: Vec<(u64, SeenPoints)> = sizing.install(|| clouds.par_iter().filter_map(seen).collect());
-    frames.truncate(most);
+    let frames = first_clouds(inputs, &sizing, size_frames(inputs.rate_hz));
     let first_rad = inputs.first_rad;
     let found = size_from_frames(&options, &inputs.size, first_rad, &frames)?;
     let how = match found {
@@ -345,16 +343,31 @@ fn sized(inputs: &mut BodyInputs, options: BodyStreamOptions) -> Result<BodyStre
     BodyStream::new(options, inputs.size, first_rad)
 }
 
-/// Starts from the first cloud that has points, and notes it.
+/// The first clouds that have the points of a body, with their numbers, `most` at most.
+fn first_clouds(inputs: &BodyInputs, stream: &BodyStream, most: usize) -> Vec<(u64, SeenPoints)> {
+    let seen = |frame: &CloudFrame| {
+        let cloud = read_cloud(frame, &inputs.source, stream).ok()?.ok()?;
+        cloud.seen.show_a_body().then_some((frame.frame, cloud.seen))
+    };
+    let clouds = &inputs.clouds.frames[..inputs.clouds.frames.len().min(START_CLOUDS + most)];
+    let mut frames = Vec::new();
+    for some in clouds.chunks(most) {
+        if frames.len() >= most {
+            break;
+        }
+        frames.extend(stream.install(|| some.par_iter().filter_map(seen).collect::<Vec<_>>()));
+    }
+    frames.truncate(most);
+    frames
+}
+
+/// Starts from the first clouds that have the points of a body, and notes it.
 fn find_start(inputs: &mut BodyInputs, stream: &mut BodyStream) -> Result<()> {
-    let clouds = inputs.clouds.frames.iter().take(START_CLOUDS);
-    let seen = |frame| Some(read_cloud(frame, &inputs.source, stream).ok()?.ok()?.seen);
-    let mut readable = clouds.filter_map(|frame| Some((frame.frame, seen(frame)?)));
-    let found = readable.find(|(_, seen)| !seen.points_m.is_empty());
-    let first = stream.begin_from(found.as_ref().map_or(&[], |(_, seen)| &seen.points_m))?;
-    let Some((frame, _)) = found else {
+    let frames = first_clouds(inputs, stream, decision_frames(inputs.rate_hz));
+    let first = begin_from_frames(stream, &frames)?;
+    let Some((frame, _)) = frames.first() else {
         inputs.notes.push(
-            "no first pose is given and the first clouds have no points; someone upright 3 m before the camera (--init)"
+            "no first pose is given and the first clouds have too few points; someone upright 3 m before the camera (--init)"
                 .to_owned(),
         );
         return Ok(());
@@ -363,10 +376,20 @@ fn find_start(inputs: &mut BodyInputs, stream: &mut BodyStream) -> Result<()> {
     inputs.notes.push(format!(
         "no first pose is given; someone who stands or walks is fitted to the points of frame {frame}, {facing} (--init)"
     ));
+    if is_upside_down(stream, &first, &frames)? {
+        inputs.warnings.push(format!(
+            "the points of {} frames from {frame} on are likelier of someone upside down; axes have to be x to the right, y down, z \
+             forward: where y points up, change its sign, and that of x where it points to the left; give the first \
+             pose (--init) of someone who stands on their hands",
+            frames.len()
+        ));
+    }
     if first.is_facing_doubtful() {
         inputs.warnings.push(format!(
-            "the first pose may face the wrong way: the points of frame {frame} hardly separate the way that is taken, \
-             {facing}, from the opposite one; look at the result, and give the first pose (--init) if it is wrong"
+            "the first pose may face the wrong way: the points of {} frames from {frame} on hardly separate the way \
+             that is taken, {facing}, from the opposite one; look at the result, and give the first pose (--init) if \
+             it is wrong",
+            frames.len()
         ));
     }
     Ok(())

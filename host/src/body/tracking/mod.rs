@@ -4,6 +4,7 @@
 pub mod ambiguity;
 pub mod by_joint;
 pub mod end_effectors;
+pub mod facing;
 pub mod filter;
 pub mod frame_time;
 pub mod model_kind;

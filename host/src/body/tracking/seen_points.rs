@@ -4,6 +4,10 @@ use crate::cloud::{PointCloud, blocks_of};
 use sinew_core::math::Vec3;
 use sinew_core::observation::point_cloud::PointBlock;
 use sinew_core::observation::range_smoothing::RangeSmoothing;
+use sinew_core::skeleton::full_body::BODY_ANGLES;
+
+/// A cloud of fewer points shows no pose: a pose has as many numbers.
+const MIN_BODY_POINTS: usize = BODY_ANGLES;
 
 /// The points of a frame: what is weighed of them, and how many are not.
 #[derive(Debug, Clone, Default)]
@@ -34,5 +38,11 @@ impl SeenPoints {
         let blocks = blocks_of(&mut cloud.points_m.clone(), smoothing);
         let over_cap = before - cloud.points_m.len();
         Self { points_m: cloud.points_m, blocks, skipped: cloud.skipped, over_cap, outside: cloud.outside }
+    }
+
+    /// Whether there are enough points to look for a body in them.
+    #[must_use]
+    pub fn show_a_body(&self) -> bool {
+        self.points_m.len() >= MIN_BODY_POINTS
     }
 }

@@ -1,5 +1,6 @@
 //! A person's size from the first seconds of a recording, before it is tracked.
 
+use super::facing::begin_from_frames;
 use super::frame_time::FrameTime;
 use super::model_kind::BodyModelKind;
 use super::seen_points::SeenPoints;
@@ -45,6 +46,12 @@ pub fn size_from_frames(
     frames: &[(u64, SeenPoints)],
 ) -> Result<Option<BodySize>> {
     let options = sizing_options(options);
+    let first_rad = match first_rad {
+        None if !frames.is_empty() => {
+            Some(begin_from_frames(&mut BodyStream::new(options.clone(), *start, None)?, frames)?.angles_rad)
+        }
+        given => given,
+    };
     let mut estimate = SizeEstimate::new(*start);
     for _ in 0..PASSES {
         estimate.forget();

@@ -17,7 +17,7 @@ use sinew_core::pik::motion::BodyScene;
 use sinew_core::skeleton::Side;
 use sinew_core::skeleton::full_body::{BODY_ANGLE_NAMES, BODY_ANGLES, BODY_BONES, full_body};
 use sinew_core::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
-use std::f32::consts::TAU;
+use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// Points lie on the near skin, so the body's middle is as much behind theirs, metres.
 const HALF_DEPTH_M: f32 = 0.1;
@@ -39,8 +39,8 @@ const SEARCH_STEPS: usize = 4;
 const STEPS: usize = 25;
 /// Log likelihood of a point, on the mean, by which a pose has to be likelier than one that faces
 /// the other way. A mean over the points, since neighbours err alike.
-/// Chosen: of 756 starts of twelve tuning clips a third of those below it face the wrong way, an
-/// eighth of those above. From 400 points it is alike (docs/measurements_scenes.md).
+/// Chosen: of 207 starts of twelve tuning clips a third of those below it face the wrong way after
+/// half a second, a twentieth of those above (docs/measurements_scenes.md).
 const MIN_FACING_MARGIN: f32 = 0.01;
 /// Share of the points that no skin of an upper body explains, from which on legs may be in view.
 /// Chosen: a tenth is as much as false matches make; legs are two fifths of a standing body.
@@ -55,9 +55,15 @@ const ANGLE_STD_RAD: f32 = 0.4;
 pub struct FirstPose {
     /// Coordinates inside the limits.
     pub angles_rad: [f32; BODY_ANGLES],
-    /// Log likelihood of a point, on the mean, over that with the pose facing the other way. Not
-    /// below zero; zero without points.
+    /// The same person facing the other way.
+    pub opposite_rad: [f32; BODY_ANGLES],
+    /// Log likelihood of a point, on the mean, over that of the opposite. Not below zero; zero
+    /// without points.
     pub facing_margin: f32,
+    /// Log likelihood of all points, or their log evidence where they are of several frames.
+    pub log_evidence: f32,
+    /// Share of the points that are farther from the skin than an outlier is.
+    pub unexplained_share: f32,
 }
 
 impl FirstPose {
@@ -92,25 +98,37 @@ pub fn pose_from_points(
     points_m: &[Vec3],
     blocks: &[PointBlock],
 ) -> Result<FirstPose> {
-    let (pose, unexplained) = pose_of_part(part, size, points, points_m, blocks)?;
-    if part == BodyPart::Upper && unexplained > MOST_UNEXPLAINED {
-        let (whole, unexplained_by_whole) = pose_of_part(BodyPart::Whole, size, points, points_m, blocks)?;
-        if unexplained_by_whole < unexplained {
+    let pose = pose_of_part(part, size, points, points_m, blocks)?;
+    if part == BodyPart::Upper && pose.unexplained_share > MOST_UNEXPLAINED {
+        let whole = pose_of_part(BodyPart::Whole, size, points, points_m, blocks)?;
+        if whole.unexplained_share < pose.unexplained_share {
             return Ok(whole);
         }
     }
     Ok(pose)
 }
 
-/// The pose of the part that is seen, and the share of the points that are farther from its skin
-/// than an outlier is.
+/// Share of the points that are farther from the skin of this pose than an outlier is; zero without
+/// points.
+pub(super) fn unexplained_share(
+    scene: &BodyScene<BODY_BONES, BODY_ANGLES>,
+    pose_rad: &[f32; BODY_ANGLES],
+    points_m: &[Vec3],
+) -> f32 {
+    let surface = scene.surface(&scene.posture(pose_rad));
+    let outlier_m = scene.likelihood.outlier_m;
+    let away = points_m.iter().filter(|point_m| surface.skin_distance_m(point_m) > outlier_m).count();
+    away as f32 / points_m.len().max(1) as f32
+}
+
+/// The pose of the part that is seen.
 fn pose_of_part(
     part: BodyPart,
     size: &BodySize,
     points: &PointTuning,
     points_m: &[Vec3],
     blocks: &[PointBlock],
-) -> Result<(FirstPose, f32)> {
+) -> Result<FirstPose> {
     let scene = BodyScene {
         skeleton: full_body(&size.measures)?,
         radii_m: part.fleshed(&size.radii_m),
@@ -136,11 +154,16 @@ fn pose_of_part(
     let end = |pose: &[f32; BODY_ANGLES]| climbed_by(pose, &STAGES_M[2..], STEPS);
     let (best, turned) = rayon::join(|| end(&best_rad), || end(&turned_rad));
     let (likelier, other) = if turned.1 > best.1 { (turned, best) } else { (best, turned) };
-    let count = points_m.len().max(1) as f32;
-    let surface = scene.surface(&scene.posture(&likelier.0));
-    let far = points_m.iter().filter(|point_m| surface.skin_distance_m(point_m) > points.outlier_m).count();
-    let pose = FirstPose { angles_rad: likelier.0, facing_margin: (likelier.1 - other.1) / count };
-    Ok((pose, far as f32 / count))
+    // The climb can end where the other has begun.
+    let is_opposite = wrap_angle(other.0[SHIFTS] - likelier.0[SHIFTS]).abs() > FRAC_PI_2;
+    let opposite_rad = if is_opposite { other.0 } else { turned_round(&scene.skeleton, &likelier.0) };
+    Ok(FirstPose {
+        angles_rad: likelier.0,
+        opposite_rad,
+        facing_margin: (likelier.1 - other.1) / points_m.len().max(1) as f32,
+        log_evidence: likelier.1,
+        unexplained_share: unexplained_share(&scene, &likelier.0, points_m),
+    })
 }
 
 /// Upright poses with the pelvis at `pelvis_m`. Without legs nobody strides.
@@ -248,7 +271,8 @@ mod tests {
         let of = |turn_rad: f32| {
             let mut angles_rad = standing(Vec3::zeros());
             angles_rad[SHIFTS] = turn_rad;
-            FirstPose { angles_rad, facing_margin: 0.0 }.facing()
+            let (opposite_rad, facing_margin) = (angles_rad, 0.0);
+            FirstPose { angles_rad, opposite_rad, facing_margin, log_evidence: 0.0, unexplained_share: 0.0 }.facing()
         };
         assert_eq!(of(0.5 * TAU / 2.0), "turned by 90 degrees to their left from facing the camera");
         assert_eq!(of(TAU - 0.1 * TAU), "turned by 36 degrees to their right from facing the camera");
