@@ -2,6 +2,7 @@
 
 use crate::arrays::{Pose, array_of_options, poses};
 use crate::errors::{SinewError, exception, wrong};
+use crate::process::detached;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use sinew::cyclic::about::About;
@@ -140,7 +141,7 @@ impl Angles {
             self.recorded.table.write(&path)?;
             self.recorded.about(&self.source).write_beside(&path)
         };
-        py.detach(write).map_err(|error| exception(&error))
+        detached(py, write)?.map_err(|error| exception(&error))
     }
 }
 
@@ -189,7 +190,7 @@ pub fn angles_of_array(
         .map(|frame| frame.outer_iter().map(|point| [point[0], point[1], point[2]]).collect())
         .collect();
     let source = Path::new(ARRAY);
-    let recorded = py.detach(|| of_detections(&from_points(&points, layout, image_size_px)?, source, &options));
+    let recorded = detached(py, || of_detections(&from_points(&points, layout, image_size_px)?, source, &options))?;
     Ok(Angles { recorded: recorded.map_err(|error| exception(&error))?, source: source.to_path_buf() })
 }
 
@@ -205,6 +206,6 @@ pub fn angles_of_file(
     person: &str,
 ) -> PyResult<Angles> {
     let options = options(fps, image_size_px, min_confidence, facing, person)?;
-    let recorded = py.detach(|| angles(&path, &options)).map_err(|error| exception(&error))?;
+    let recorded = detached(py, || angles(&path, &options))?.map_err(|error| exception(&error))?;
     Ok(Angles { recorded, source: path })
 }

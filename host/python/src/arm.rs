@@ -4,7 +4,9 @@ use crate::arm_estimate::{estimate, particles};
 use crate::arm_options::{ArmSetup, json, saved_setup};
 use crate::errors::{exception, wrong};
 use crate::pictures::{Image, picture};
+use crate::process::detached;
 use numpy::PyReadonlyArray2;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sinew::person::{GivenHand, GivenHands, given_head};
@@ -13,6 +15,7 @@ use sinew_core::camera::Pixel;
 use sinew_core::skeleton::Side;
 use sinew_core::vision::objects::head::HeadBox;
 use std::path::PathBuf;
+use std::process::id;
 
 /// A tracker of one arm or both.
 #[pyclass(module = "sinew._sinew")]
@@ -25,6 +28,8 @@ pub struct ArmTracker {
     last_us: Option<u64>,
     /// Whether frames come with their times.
     is_timed: bool,
+    /// The process that answered the last frame.
+    process: u32,
 }
 
 #[pymethods]
@@ -50,7 +55,7 @@ impl ArmTracker {
         let rectangle = crate::pictures::rectangle(calibrate)?;
         let setup = ArmSetup::new([side, front_end, face], rate_hz, seed, rectangle, config)?;
         let setup = setup.with_skin(py, skin)?;
-        let mut tracker = Self { setup, stream: None, next: 0, last_us: None, is_timed: false };
+        let mut tracker = Self { setup, stream: None, next: 0, last_us: None, is_timed: false, process: id() };
         if let Some(size_px) = size_px {
             tracker.stream = Some(tracker.setup.stream(size_px)?);
         }
@@ -68,6 +73,7 @@ impl ArmTracker {
         head: Option<[f64; 3]>,
         time_s: Option<f64>,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        self.check_process()?;
         let timestamp_us = self.timestamp_us(time_s)?;
         let view = image.as_ref().map(picture).transpose()?;
         let hands = hands.map(|rows| given_hands(&rows, has_sides)).transpose()?;
@@ -90,9 +96,10 @@ impl ArmTracker {
         };
         let frame = StreamFrame { number: self.next, timestamp_us, image: view.as_ref(), hands, head };
         let answer =
-            py.detach(|| stream.step(frame)).map_err(|error| exception(&crate::pictures::calibration(error)))?;
+            detached(py, || stream.step(frame))?.map_err(|error| exception(&crate::pictures::calibration(error)))?;
         self.is_timed = time_s.is_some();
         self.last_us = Some(timestamp_us);
+        self.process = id();
         let number = self.next;
         self.next += 1;
         let time_s = time_s.unwrap_or(number as f64 / self.setup.options.rate_hz);
@@ -113,8 +120,10 @@ impl ArmTracker {
 
     #[getter]
     fn state_crc32(&mut self, py: Python<'_>) -> PyResult<Option<u32>> {
-        let crc = self.stream.as_mut().map(|stream| py.detach(|| stream.state_crc32()));
-        crc.transpose().map_err(|error| exception(&error))
+        self.check_process()?;
+        let stream = &mut self.stream;
+        let crc = detached(py, || stream.as_mut().map(ArmStream::state_crc32).transpose())?;
+        crc.map_err(|error| exception(&error))
     }
 
     #[getter]
@@ -145,9 +154,10 @@ impl ArmTracker {
 
     /// Everything as text, which `restored` takes.
     fn saved(&mut self, py: Python<'_>) -> PyResult<String> {
-        let Self { setup, stream, next, last_us, is_timed } = self;
+        self.check_process()?;
+        let Self { setup, stream, next, last_us, is_timed, .. } = self;
         let state =
-            py.detach(|| stream.as_mut().map(ArmStream::saved).transpose()).map_err(|error| exception(&error))?;
+            detached(py, || stream.as_mut().map(ArmStream::saved).transpose())?.map_err(|error| exception(&error))?;
         let size_px = stream.as_ref().map(ArmStream::size_px);
         let frames = (*next, *last_us, *is_timed);
         saved_setup(setup, size_px, state.as_deref(), frames).map_err(|error| exception(&error))
@@ -164,14 +174,26 @@ impl ArmTracker {
         let state = json["state"].as_str();
         let options = setup.options.clone();
         let restored = || size_px.zip(state).map(|(size_px, state)| ArmStream::restored(options, size_px, state));
-        let stream = py.detach(restored).transpose().map_err(|error| exception(&error))?;
+        let stream = detached(py, restored)?.transpose().map_err(|error| exception(&error))?;
         let next = json["next"].as_u64().and_then(|next| usize::try_from(next).ok()).unwrap_or_default();
         let is_timed = json["is_timed"].as_bool().unwrap_or_default();
-        Ok(Self { setup, stream, next, last_us: json["last_us"].as_u64(), is_timed })
+        Ok(Self { setup, stream, next, last_us: json["last_us"].as_u64(), is_timed, process: id() })
     }
 }
 
 impl ArmTracker {
+    /// A look for the face may be under way on a thread of the process that answered the last
+    /// frame.
+    fn check_process(&self) -> PyResult<()> {
+        if self.next == 0 || self.process == id() {
+            return Ok(());
+        }
+        Err(PyValueError::new_err(
+            "the tracker is in use in the process that this one was forked from: pickle it there and unpickle it \
+             here, or make a new one",
+        ))
+    }
+
     /// When the next frame is, microseconds.
     fn timestamp_us(&self, time_s: Option<f64>) -> PyResult<u64> {
         if self.next > 0 && time_s.is_some() != self.is_timed {

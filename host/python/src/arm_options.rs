@@ -1,6 +1,7 @@
 //! How an arm tracker is set up, and that as text.
 
 use crate::errors::{exception, wrong};
+use crate::process::detached;
 use pyo3::prelude::*;
 use serde_json::Value;
 use sinew::config::{Config, MAX_PARTICLES};
@@ -52,7 +53,7 @@ impl ArmSetup {
 
     /// With the skin model of a name or file.
     pub fn with_skin(self, py: Python<'_>, skin: &str) -> PyResult<Self> {
-        let skin = py.detach(|| SkinModel::from_option(skin)).map_err(|error| exception(&error))?;
+        let skin = detached(py, || SkinModel::from_option(skin))?.map_err(|error| exception(&error))?;
         Ok(Self { skin: Some(skin), ..self })
     }
 

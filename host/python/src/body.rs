@@ -2,6 +2,7 @@
 
 use crate::arrays::points_array;
 use crate::errors::{exception, wrong};
+use crate::process::detached;
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -19,6 +20,7 @@ use sinew::stereo::stick_wave::StickEnds;
 use sinew_core::math::Vec3;
 use sinew_core::pik::processes::stick::StickSight;
 use std::path::{Path, PathBuf};
+use std::process::id;
 
 /// A file, or what would stand in it as JSON, which Python gives as bytes.
 #[derive(Debug, FromPyObject)]
@@ -44,6 +46,8 @@ pub struct Body {
     stream: BodyStream,
     #[pyo3(get)]
     notes: Vec<String>,
+    /// The process that has the stream's threads.
+    process: u32,
 }
 
 #[pymethods]
@@ -88,7 +92,7 @@ impl Body {
             BodyStream::new(options, measures, first.transpose()?)
         };
         let stream = make().map_err(|error| exception(&error))?;
-        Ok(Self { stream, notes })
+        Ok(Self { stream, notes, process: id() })
     }
 
     /// The estimate as a dictionary; `None` in the place of what is not known yet.
@@ -105,7 +109,11 @@ impl Body {
         let ends: Option<StickEnds> = stick.map(|ends| ends.map(Vec3::from));
         let stick = ends.and_then(stick_at).unwrap_or(StickSight::Unseen);
         let stream = &mut self.stream;
-        let answer = py.detach(|| stream.update(points.iter().copied().map(Vec3::from), when, stick));
+        if self.process != id() {
+            stream.renew_threads().map_err(|error| exception(&error))?;
+            self.process = id();
+        }
+        let answer = detached(py, || stream.update(points.iter().copied().map(Vec3::from), when, stick))?;
         self.answer(py, &answer.map_err(|error| exception(&error))?)
     }
 
@@ -129,14 +137,14 @@ impl Body {
         };
         let clouds: Vec<(u64, Vec<Vec3>)> =
             clouds.iter().map(|(frame, array)| Ok((*frame, points(array)?))).collect::<PyResult<_>>()?;
-        let found = py.detach(|| {
+        let found = detached(py, || {
             let (options, start, first_rad) = (self.stream.options(), *self.stream.size(), self.stream.first_rad());
             let sizing = BodyStream::new(sizing_options(options), start, first_rad)?;
             let seen =
                 clouds.into_iter().map(|(at, points_m)| (at, sizing.seen(PointCloud::from_points(points_m), at)));
             let frames: Vec<_> = seen.filter(|(_, seen)| !seen.points_m.is_empty()).collect();
             size_from_frames(options, &start, first_rad, &frames)
-        });
+        })?;
         found.map_err(|error| exception(&error))?.map(|size| json_of_measures(&BodyFile::from(&size))).transpose()
     }
 
@@ -187,8 +195,8 @@ impl Body {
 
     #[staticmethod]
     fn restored(py: Python<'_>, saved: &str, notes: Vec<String>) -> PyResult<Self> {
-        let stream = py.detach(|| BodyStream::restored(saved)).map_err(|error| exception(&error))?;
-        Ok(Self { stream, notes })
+        let stream = detached(py, || BodyStream::restored(saved))?.map_err(|error| exception(&error))?;
+        Ok(Self { stream, notes, process: id() })
     }
 }
 
