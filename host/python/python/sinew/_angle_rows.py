@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from . import _sinew
 from ._arrays import FloatArray, floats
+from ._columns import by_name
 
 
 def angle_rows(
@@ -21,7 +22,7 @@ def angle_rows(
     ValueError
         Shape, numbers, times or rate break a rule; the message names it.
     """
-    rows = floats(angles, name)
+    rows = floats(by_name(angles, _sinew.ANGLES, name, "_rad"), name)
     if rows.ndim != 2 or rows.shape[1] != 13:
         raise ValueError(f"`{name}` has to have the shape (n, 13), not {rows.shape}")
     if len(rows) == 0:

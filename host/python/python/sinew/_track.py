@@ -36,7 +36,8 @@ def track_cyclic(
     ----------
     angles : Angles, array_like of shape (n, 13), or path
         What :func:`angles` returns; or radians in the order of :data:`sinew.ANGLE_NAMES`, one row a
-        frame, NaN where one is missing; or the path of an angle table.
+        frame, NaN where one is missing; or the path of an angle table. The columns of a data frame
+        are found by name.
     model : str, path or Model
         A name of :func:`models`, a file that ``sinew train cyclic`` wrote, or what
         :func:`train_cyclic` returns.
