@@ -9,7 +9,7 @@ use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sinew::person::{GivenHand, GivenHands, given_head};
+use sinew::person::{GivenHand, GivenHands, given_head, refuse_shares};
 use sinew::track::{ArmStream, FrontEnd, StreamFrame};
 use sinew_core::camera::Pixel;
 use sinew_core::skeleton::Side;
@@ -28,6 +28,8 @@ pub struct ArmTracker {
     last_us: Option<u64>,
     /// Whether frames come with their times.
     is_timed: bool,
+    /// Whether a hand and a face were given whose places can only be in pixels.
+    has_pixels: [bool; 2],
     /// The process that answered the last frame.
     process: u32,
 }
@@ -55,7 +57,15 @@ impl ArmTracker {
         let rectangle = crate::pictures::rectangle(calibrate)?;
         let setup = ArmSetup::new([side, front_end, face], rate_hz, seed, rectangle, config)?;
         let setup = setup.with_skin(py, skin)?;
-        let mut tracker = Self { setup, stream: None, next: 0, last_us: None, is_timed: false, process: id() };
+        let mut tracker = Self {
+            setup,
+            stream: None,
+            next: 0,
+            last_us: None,
+            is_timed: false,
+            has_pixels: [false; 2],
+            process: id(),
+        };
         if let Some(size_px) = size_px {
             tracker.stream = Some(tracker.setup.stream(size_px)?);
         }
@@ -76,8 +86,13 @@ impl ArmTracker {
         self.check_process()?;
         let timestamp_us = self.timestamp_us(time_s)?;
         let view = image.as_ref().map(picture).transpose()?;
+        let rows = hands.as_ref().map(|rows| rows.as_array());
+        let places: Vec<_> = rows.iter().flat_map(|rows| rows.outer_iter()).map(|row| [row[0], row[1]]).collect();
+        let face = head.map(|[u_px, v_px, _]| [u_px, v_px]);
         let hands = hands.map(|rows| given_hands(&rows, has_sides)).transpose()?;
         let head = head.map(|head| self.given_head(head, view.is_some())).transpose()?;
+        self.refuse_shares(0, "`hands`", &places)?;
+        self.refuse_shares(1, "`head`", face.as_slice())?;
         if hands.is_some() && self.setup.options.front_end == FrontEnd::Lines {
             return Err(wrong("hands", "take the place of what is seen, and front_end=\"lines\" is a way to see"));
         }
@@ -155,11 +170,11 @@ impl ArmTracker {
     /// Everything as text, which `restored` takes.
     fn saved(&mut self, py: Python<'_>) -> PyResult<String> {
         self.check_process()?;
-        let Self { setup, stream, next, last_us, is_timed, .. } = self;
+        let Self { setup, stream, next, last_us, is_timed, has_pixels, .. } = self;
         let state =
             detached(py, || stream.as_mut().map(ArmStream::saved).transpose())?.map_err(|error| exception(&error))?;
         let size_px = stream.as_ref().map(ArmStream::size_px);
-        let frames = (*next, *last_us, *is_timed);
+        let frames = (*next, *last_us, *is_timed, *has_pixels);
         saved_setup(setup, size_px, state.as_deref(), frames).map_err(|error| exception(&error))
     }
 
@@ -177,7 +192,8 @@ impl ArmTracker {
         let stream = detached(py, restored)?.transpose().map_err(|error| exception(&error))?;
         let next = json["next"].as_u64().and_then(|next| usize::try_from(next).ok()).unwrap_or_default();
         let is_timed = json["is_timed"].as_bool().unwrap_or_default();
-        Ok(Self { setup, stream, next, last_us: json["last_us"].as_u64(), is_timed, process: id() })
+        let has_pixels = [0, 1].map(|of| json["has_pixels"][of].as_bool().unwrap_or_default());
+        Ok(Self { setup, stream, next, last_us: json["last_us"].as_u64(), is_timed, has_pixels, process: id() })
     }
 }
 
@@ -214,6 +230,17 @@ impl ArmTracker {
             }
             _ => Ok(timestamp_us),
         }
+    }
+
+    /// Refuses hands or faces whose places are shares of the picture. Once one can only be in
+    /// pixels, the others are, too.
+    fn refuse_shares(&mut self, of: usize, what: &str, places: &[[f64; 2]]) -> PyResult<()> {
+        if !self.has_pixels[of] && !places.is_empty() {
+            let places = places.iter().map(|place| place.map(|coordinate| coordinate as f32));
+            refuse_shares(places, what).map_err(|error| exception(&crate::pictures::calibration(error)))?;
+            self.has_pixels[of] = true;
+        }
+        Ok(())
     }
 
     fn given_head(&self, [u_px, v_px, size_px]: [f64; 3], has_image: bool) -> PyResult<HeadBox> {

@@ -234,6 +234,22 @@ def test_hands_come_in_any_form(filmed):
     assert tracker.update().blob_count is None
 
 
+def test_shares_of_the_picture_are_refused_as_the_command_refuses_them(filmed):
+    image, inside, corner = filmed.frames[0], (300.0, 200.0, 60.0, 0.9), (0.5, 0.4, 60.0, 0.9)
+    wanted = sinew.ArmTracker()
+    wanted.update(image, hands=[inside], head=(320.0, 120.0, 90.0))
+    tracker = sinew.ArmTracker()
+    remedy = "multiply `u_px` and `size_px` by the picture's width, `v_px` by its height"
+    for name, places in (("hands", {"hands": [corner, (1.2, -0.1, 0.08, 0.9)]}), ("head", {"head": (0.5, 0.3, 0.12)})):
+        with pytest.raises(ValueError, match=f"`{name}` holds shares of the picture.*{remedy}"):
+            tracker.update(image, **places)
+    tracker.update(image, hands=[inside], head=(320.0, 120.0, 90.0))
+    assert tracker.state_crc32 == wanted.state_crc32, "refused frames do not count"
+    # Pixels are known by now: these are of a hand in the corner.
+    tracker = pickle.loads(pickle.dumps(tracker))
+    assert tracker.update(image, hands=[corner]).blob_count == 1
+
+
 def test_missing_frames_are_predicted_and_then_lost(filmed):
     tracker = sinew.ArmTracker(config=filmed.config)
     with pytest.raises(ValueError, match="`size_px`"):
