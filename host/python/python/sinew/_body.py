@@ -128,7 +128,8 @@ class BodyTracker:
         Raises
         ------
         ValueError
-            A parameter breaks its rule; the message names both.
+            A parameter breaks its rule; the message names both. So do first points in other units
+            or axes.
         """
         native = self._native
         cloud = None if points is None else points32(points, "points")
