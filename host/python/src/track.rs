@@ -125,7 +125,7 @@ pub fn track_file<'py>(
         let (notes, doubts) =
             About::read_beside(&path)?.map_or_else(Default::default, |about| (about.notes, about.doubts));
         let recording = Recording { table: &table, rate_hz, doubts: &doubts };
-        Ok((how.track(&recording, model.model)?, notes))
+        Ok((how.track(&recording, model.model)?, notes.iter().map(|note| in_python(note)).collect()))
     })?;
     let (found, notes) = found.map_err(|error| exception(&error))?;
     Ok((answer(py, &found)?, notes))

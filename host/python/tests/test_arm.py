@@ -201,6 +201,7 @@ def test_any_layout_of_an_image_gives_the_same(filmed):
         np.asfortranarray,
         within,
         frozen,
+        lambda image: image.tolist(),
         lambda image: np.ascontiguousarray(image[::-1, ::-1])[::-1, ::-1],
         lambda image: np.ascontiguousarray(image[..., ::-1])[..., ::-1],
     ]
@@ -301,7 +302,8 @@ IMAGE = np.zeros((48, 64, 3), dtype=np.uint8)
         ({"image": np.zeros((3, 48, 64), np.uint8)}, "`image`.*shape"),
         ({"image": IMAGE.astype(np.float32)}, "`image`.*uint8.*float32"),
         ({"image": np.full((48, 64, 3), np.nan)}, "`image`.*uint8.*float64"),
-        ({"image": IMAGE.astype(np.int64).tolist()}, "`image`.*uint8"),
+        ({"image": (IMAGE + np.int64(256)).tolist()}, "`image`.*uint8"),
+        ({"image": IMAGE.astype(np.int64)}, "`image`.*uint8"),
         ({"image": [[1], [1, 2]]}, "`image`"),
         ({"image": "picture.png"}, "`image`.*shape"),
         ({"image": np.zeros((0, 64, 3), np.uint8)}, "`image`.*1 to 8192.*64x0"),

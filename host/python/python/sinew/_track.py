@@ -44,8 +44,8 @@ def track_cyclic(
     rate_hz : float, optional
         Frames per second. Needed for an array unless ``time_s`` is given.
     time_s : array_like, shape (n,), optional
-        When each row of an array was seen, seconds. Frames have to be even in time; some may be
-        left out.
+        When each row of an array was seen, seconds. Frames have to be even in time but for jitter;
+        some may be left out.
     sigma_deg : float, optional
         Standard deviation of a measured angle, degrees. By default the recording shows it; 6 where
         it does not, or with ``smooth=False``.
