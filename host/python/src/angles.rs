@@ -1,7 +1,8 @@
 //! Angles of recordings: keypoints in memory, and files.
 
 use crate::arrays::{Pose, array_of_options, poses};
-use crate::errors::{SinewError, exception, wrong};
+use crate::errors::{SinewError, exception, in_python, of_array, wrong};
+use crate::process::detached;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use sinew::cyclic::about::About;
@@ -65,12 +66,12 @@ impl Angles {
 
     #[getter]
     fn notes(&self) -> Vec<String> {
-        self.recorded.notes.clone()
+        self.recorded.notes.iter().map(|note| in_python(note)).collect()
     }
 
     #[getter]
     fn doubts(&self) -> Vec<String> {
-        self.recorded.doubts.clone()
+        self.recorded.doubts.iter().map(|doubt| in_python(doubt)).collect()
     }
 
     /// Angles in memory; `frames` are the numbers of the rows.
@@ -140,7 +141,7 @@ impl Angles {
             self.recorded.table.write(&path)?;
             self.recorded.about(&self.source).write_beside(&path)
         };
-        py.detach(write).map_err(|error| exception(&error))
+        detached(py, write)?.map_err(|error| exception(&error))
     }
 }
 
@@ -189,8 +190,10 @@ pub fn angles_of_array(
         .map(|frame| frame.outer_iter().map(|point| [point[0], point[1], point[2]]).collect())
         .collect();
     let source = Path::new(ARRAY);
-    let recorded = py.detach(|| of_detections(&from_points(&points, layout, image_size_px)?, source, &options));
-    Ok(Angles { recorded: recorded.map_err(|error| exception(&error))?, source: source.to_path_buf() })
+    let recorded = detached(py, || of_detections(&from_points(&points, layout, image_size_px)?, source, &options))?;
+    let recorded = recorded.map_err(|error| exception(&error))?;
+    let (notes, doubts) = (of_array(&recorded.notes), of_array(&recorded.doubts));
+    Ok(Angles { recorded: RecordedAngles { notes, doubts, ..recorded }, source: source.to_path_buf() })
 }
 
 /// Angles of a file or folder, as the command `sinew angles` reads it.
@@ -205,6 +208,6 @@ pub fn angles_of_file(
     person: &str,
 ) -> PyResult<Angles> {
     let options = options(fps, image_size_px, min_confidence, facing, person)?;
-    let recorded = py.detach(|| angles(&path, &options)).map_err(|error| exception(&error))?;
+    let recorded = detached(py, || angles(&path, &options))?.map_err(|error| exception(&error))?;
     Ok(Angles { recorded, source: path })
 }

@@ -4,15 +4,18 @@ use crate::arm_estimate::{estimate, particles};
 use crate::arm_options::{ArmSetup, json, saved_setup};
 use crate::errors::{exception, wrong};
 use crate::pictures::{Image, picture};
+use crate::process::detached;
 use numpy::PyReadonlyArray2;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use sinew::person::{GivenHand, GivenHands, given_head};
+use sinew::person::{GivenHand, GivenHands, given_head, refuse_shares};
 use sinew::track::{ArmStream, FrontEnd, StreamFrame};
 use sinew_core::camera::Pixel;
 use sinew_core::skeleton::Side;
 use sinew_core::vision::objects::head::HeadBox;
 use std::path::PathBuf;
+use std::process::id;
 
 /// A tracker of one arm or both.
 #[pyclass(module = "sinew._sinew")]
@@ -25,6 +28,10 @@ pub struct ArmTracker {
     last_us: Option<u64>,
     /// Whether frames come with their times.
     is_timed: bool,
+    /// Whether a hand and a face were given whose places can only be in pixels.
+    has_pixels: [bool; 2],
+    /// The process that answered the last frame.
+    process: u32,
 }
 
 #[pymethods]
@@ -50,7 +57,15 @@ impl ArmTracker {
         let rectangle = crate::pictures::rectangle(calibrate)?;
         let setup = ArmSetup::new([side, front_end, face], rate_hz, seed, rectangle, config)?;
         let setup = setup.with_skin(py, skin)?;
-        let mut tracker = Self { setup, stream: None, next: 0, last_us: None, is_timed: false };
+        let mut tracker = Self {
+            setup,
+            stream: None,
+            next: 0,
+            last_us: None,
+            is_timed: false,
+            has_pixels: [false; 2],
+            process: id(),
+        };
         if let Some(size_px) = size_px {
             tracker.stream = Some(tracker.setup.stream(size_px)?);
         }
@@ -68,10 +83,16 @@ impl ArmTracker {
         head: Option<[f64; 3]>,
         time_s: Option<f64>,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        self.check_process()?;
         let timestamp_us = self.timestamp_us(time_s)?;
         let view = image.as_ref().map(picture).transpose()?;
+        let rows = hands.as_ref().map(|rows| rows.as_array());
+        let places: Vec<_> = rows.iter().flat_map(|rows| rows.outer_iter()).map(|row| [row[0], row[1]]).collect();
+        let face = head.map(|[u_px, v_px, _]| [u_px, v_px]);
         let hands = hands.map(|rows| given_hands(&rows, has_sides)).transpose()?;
         let head = head.map(|head| self.given_head(head, view.is_some())).transpose()?;
+        self.refuse_shares(0, "`hands`", &places)?;
+        self.refuse_shares(1, "`head`", face.as_slice())?;
         if hands.is_some() && self.setup.options.front_end == FrontEnd::Lines {
             return Err(wrong("hands", "take the place of what is seen, and front_end=\"lines\" is a way to see"));
         }
@@ -90,9 +111,10 @@ impl ArmTracker {
         };
         let frame = StreamFrame { number: self.next, timestamp_us, image: view.as_ref(), hands, head };
         let answer =
-            py.detach(|| stream.step(frame)).map_err(|error| exception(&crate::pictures::calibration(error)))?;
+            detached(py, || stream.step(frame))?.map_err(|error| exception(&crate::pictures::calibration(error)))?;
         self.is_timed = time_s.is_some();
         self.last_us = Some(timestamp_us);
+        self.process = id();
         let number = self.next;
         self.next += 1;
         let time_s = time_s.unwrap_or(number as f64 / self.setup.options.rate_hz);
@@ -113,8 +135,10 @@ impl ArmTracker {
 
     #[getter]
     fn state_crc32(&mut self, py: Python<'_>) -> PyResult<Option<u32>> {
-        let crc = self.stream.as_mut().map(|stream| py.detach(|| stream.state_crc32()));
-        crc.transpose().map_err(|error| exception(&error))
+        self.check_process()?;
+        let stream = &mut self.stream;
+        let crc = detached(py, || stream.as_mut().map(ArmStream::state_crc32).transpose())?;
+        crc.map_err(|error| exception(&error))
     }
 
     #[getter]
@@ -145,11 +169,12 @@ impl ArmTracker {
 
     /// Everything as text, which `restored` takes.
     fn saved(&mut self, py: Python<'_>) -> PyResult<String> {
-        let Self { setup, stream, next, last_us, is_timed } = self;
+        self.check_process()?;
+        let Self { setup, stream, next, last_us, is_timed, has_pixels, .. } = self;
         let state =
-            py.detach(|| stream.as_mut().map(ArmStream::saved).transpose()).map_err(|error| exception(&error))?;
+            detached(py, || stream.as_mut().map(ArmStream::saved).transpose())?.map_err(|error| exception(&error))?;
         let size_px = stream.as_ref().map(ArmStream::size_px);
-        let frames = (*next, *last_us, *is_timed);
+        let frames = (*next, *last_us, *is_timed, *has_pixels);
         saved_setup(setup, size_px, state.as_deref(), frames).map_err(|error| exception(&error))
     }
 
@@ -164,14 +189,27 @@ impl ArmTracker {
         let state = json["state"].as_str();
         let options = setup.options.clone();
         let restored = || size_px.zip(state).map(|(size_px, state)| ArmStream::restored(options, size_px, state));
-        let stream = py.detach(restored).transpose().map_err(|error| exception(&error))?;
+        let stream = detached(py, restored)?.transpose().map_err(|error| exception(&error))?;
         let next = json["next"].as_u64().and_then(|next| usize::try_from(next).ok()).unwrap_or_default();
         let is_timed = json["is_timed"].as_bool().unwrap_or_default();
-        Ok(Self { setup, stream, next, last_us: json["last_us"].as_u64(), is_timed })
+        let has_pixels = [0, 1].map(|of| json["has_pixels"][of].as_bool().unwrap_or_default());
+        Ok(Self { setup, stream, next, last_us: json["last_us"].as_u64(), is_timed, has_pixels, process: id() })
     }
 }
 
 impl ArmTracker {
+    /// A look for the face may be under way on a thread of the process that answered the last
+    /// frame.
+    fn check_process(&self) -> PyResult<()> {
+        if self.next == 0 || self.process == id() {
+            return Ok(());
+        }
+        Err(PyValueError::new_err(
+            "the tracker is in use in the process that this one was forked from: pickle it there and unpickle it \
+             here, or make a new one",
+        ))
+    }
+
     /// When the next frame is, microseconds.
     fn timestamp_us(&self, time_s: Option<f64>) -> PyResult<u64> {
         if self.next > 0 && time_s.is_some() != self.is_timed {
@@ -192,6 +230,17 @@ impl ArmTracker {
             }
             _ => Ok(timestamp_us),
         }
+    }
+
+    /// Refuses hands or faces whose places are shares of the picture. Once one can only be in
+    /// pixels, the others are, too.
+    fn refuse_shares(&mut self, of: usize, what: &str, places: &[[f64; 2]]) -> PyResult<()> {
+        if !self.has_pixels[of] && !places.is_empty() {
+            let places = places.iter().map(|place| place.map(|coordinate| coordinate as f32));
+            refuse_shares(places, what).map_err(|error| exception(&crate::pictures::calibration(error)))?;
+            self.has_pixels[of] = true;
+        }
+        Ok(())
     }
 
     fn given_head(&self, [u_px, v_px, size_px]: [f64; 3], has_image: bool) -> PyResult<HeadBox> {

@@ -1,6 +1,7 @@
 //! How an arm tracker is set up, and that as text.
 
 use crate::errors::{exception, wrong};
+use crate::process::detached;
 use pyo3::prelude::*;
 use serde_json::Value;
 use sinew::config::{Config, MAX_PARTICLES};
@@ -52,7 +53,7 @@ impl ArmSetup {
 
     /// With the skin model of a name or file.
     pub fn with_skin(self, py: Python<'_>, skin: &str) -> PyResult<Self> {
-        let skin = py.detach(|| SkinModel::from_option(skin)).map_err(|error| exception(&error))?;
+        let skin = detached(py, || SkinModel::from_option(skin))?.map_err(|error| exception(&error))?;
         Ok(Self { skin: Some(skin), ..self })
     }
 
@@ -123,12 +124,12 @@ pub fn json(text: &str) -> PyResult<Value> {
 }
 
 /// The set-up with the state of the stream: next frame, time of the last one, whether there are
-/// times.
+/// times, and whether hands and faces are known to be in pixels.
 pub fn saved_setup(
     setup: &ArmSetup,
     size_px: Option<(u32, u32)>,
     state: Option<&str>,
-    (next, last_us, is_timed): (usize, Option<u64>, bool),
+    (next, last_us, is_timed, has_pixels): (usize, Option<u64>, bool, [bool; 2]),
 ) -> Result<String> {
     let options = &setup.options;
     let skin = setup.skin.as_ref().map(model_file::to_json).transpose()?;
@@ -146,6 +147,7 @@ pub fn saved_setup(
         "next": next,
         "last_us": last_us,
         "is_timed": is_timed,
+        "has_pixels": has_pixels,
     });
     Ok(json.to_string())
 }

@@ -1,10 +1,13 @@
 //! A body tracked frame by frame.
 
 use crate::arrays::points_array;
-use crate::errors::{exception, wrong};
+use crate::errors::{exception, in_python, wrong};
+use crate::process::detached;
 use numpy::{IntoPyArray, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use sinew::body::first_points::{FirstPoints, UNIT_REMEDY};
 use sinew::body::pose_file::{inside_limits, pose_from_json, read_pose};
 use sinew::body::run::measures_source::{measures_from_json, measures_of_height, read_measures};
 use sinew::body::run::tuning_file;
@@ -23,6 +26,7 @@ use sinew::stereo::stick_wave::StickEnds;
 use sinew_core::math::Vec3;
 use sinew_core::pik::processes::stick::StickSight;
 use std::path::{Path, PathBuf};
+use std::process::id;
 
 /// A file, or what would stand in it as JSON, which Python gives as bytes.
 #[derive(Debug, FromPyObject)]
@@ -48,6 +52,12 @@ pub struct Body {
     stream: BodyStream,
     #[pyo3(get)]
     notes: Vec<String>,
+    /// Points of the first clouds, while their units and axes are checked.
+    first: Option<FirstPoints>,
+    /// Whether a first pose is given.
+    is_placed: bool,
+    /// The process that has the stream's threads.
+    process: u32,
 }
 
 #[pymethods]
@@ -92,7 +102,9 @@ impl Body {
             BodyStream::new(options, measures, first.transpose()?)
         };
         let stream = make().map_err(|error| exception(&error))?;
-        Ok(Self { stream, notes })
+        let is_placed = first_pose.is_some();
+        let notes = notes.iter().map(|note| in_python(note)).collect();
+        Ok(Self { stream, notes, first: Some(FirstPoints::default()), is_placed, process: id() })
     }
 
     /// The estimate as a dictionary; `None` in the place of what is not known yet.
@@ -108,8 +120,13 @@ impl Body {
         let when = time_s.map_or(FrameTime::Next, FrameTime::Seconds);
         let ends: Option<StickEnds> = stick.map(|ends| ends.map(Vec3::from));
         let stick = ends.and_then(stick_at).unwrap_or(StickSight::Unseen);
+        self.check_first(points)?;
         let stream = &mut self.stream;
-        let answer = py.detach(|| stream.update(points.iter().copied().map(Vec3::from), when, stick));
+        if self.process != id() {
+            stream.renew_threads().map_err(|error| exception(&error))?;
+            self.process = id();
+        }
+        let answer = detached(py, || stream.update(points.iter().copied().map(Vec3::from), when, stick))?;
         let answer = answer.map_err(|error| exception(&error))?;
         if self.stream.begun_anew() == Some(answer.frame) {
             self.notes
@@ -133,12 +150,12 @@ impl Body {
         if self.stream.frame().is_some() {
             return Err(wrong("estimate_measures", "is for a tracker that answered no frame: make a new one"));
         }
-        let clouds = points_of(clouds)?;
-        let found = py.detach(|| {
+        let clouds = checked_points_of(clouds)?;
+        let found = detached(py, || {
             let (options, start, first_rad) = (self.stream.options(), *self.stream.size(), self.stream.first_rad());
             let sizing = BodyStream::new(sizing_options(options), start, first_rad)?;
             size_from_frames(options, &start, first_rad, &seen_frames(&sizing, clouds))
-        });
+        })?;
         found.map_err(|error| exception(&error))?.map(|size| json_of_measures(&BodyFile::from(&size))).transpose()
     }
 
@@ -155,12 +172,12 @@ impl Body {
         py: Python<'_>,
         clouds: Vec<(u64, PyReadonlyArray2<'_, f32>)>,
     ) -> PyResult<(Vec<f32>, f32, bool)> {
-        let clouds = points_of(clouds)?;
-        let found = py.detach(|| {
+        let clouds = checked_points_of(clouds)?;
+        let found = detached(py, || {
             let mut stream = BodyStream::new(self.stream.options().clone(), *self.stream.size(), None)?;
             let frames = seen_frames(&stream, clouds);
             begin_from_frames(&mut stream, &frames)
-        });
+        })?;
         let first = found.map_err(|error| exception(&error))?;
         Ok((first.angles_rad.to_vec(), first.facing_margin, first.is_facing_doubtful()))
     }
@@ -212,17 +229,27 @@ impl Body {
 
     #[staticmethod]
     fn restored(py: Python<'_>, saved: &str, notes: Vec<String>) -> PyResult<Self> {
-        let stream = py.detach(|| BodyStream::restored(saved)).map_err(|error| exception(&error))?;
-        Ok(Self { stream, notes })
+        let stream = detached(py, || BodyStream::restored(saved))?.map_err(|error| exception(&error))?;
+        let first = stream.frame().is_none().then(FirstPoints::default);
+        let is_placed = stream.first_rad().is_some();
+        Ok(Self { stream, notes, first, is_placed, process: id() })
     }
 }
 
-/// Numbered clouds, out of numpy's arrays.
-fn points_of(clouds: Vec<(u64, PyReadonlyArray2<'_, f32>)>) -> PyResult<Vec<(u64, Vec<Vec3>)>> {
+/// Numbered clouds, out of numpy's arrays; other units or axes are refused.
+fn checked_points_of(clouds: Vec<(u64, PyReadonlyArray2<'_, f32>)>) -> PyResult<Vec<(u64, Vec<Vec3>)>> {
     let points = |array: &PyReadonlyArray2<'_, f32>| -> PyResult<Vec<Vec3>> {
         Ok(array.as_slice()?.as_chunks::<3>().0.iter().copied().map(Vec3::from).collect())
     };
-    clouds.iter().map(|(frame, array)| Ok((*frame, points(array)?))).collect()
+    let clouds = clouds.iter().map(|(frame, array)| Ok((*frame, points(array)?))).collect::<PyResult<Vec<_>>>()?;
+    let mut first = FirstPoints::default();
+    for (_, points_m) in &clouds {
+        if !first.is_complete() {
+            first.add(PointCloud::from_points(points_m.iter().copied()));
+        }
+    }
+    refuse_other_units(&first, "clouds")?;
+    Ok(clouds)
 }
 
 /// Those in which the stream sees the points of a body.
@@ -232,6 +259,25 @@ fn seen_frames(stream: &BodyStream, clouds: Vec<(u64, Vec<Vec3>)>) -> Vec<(u64, 
 }
 
 impl Body {
+    /// Refuses first points in other units or axes, as the command does.
+    fn check_first(&mut self, points: &[[f32; 3]]) -> PyResult<()> {
+        let Some(first) = &mut self.first else { return Ok(()) };
+        first.add(PointCloud::from_points(points.iter().copied().map(Vec3::from)));
+        if !first.can_be_checked() {
+            return Ok(());
+        }
+        if let Err(error) = refuse_other_units(first, "points") {
+            *first = FirstPoints::default();
+            return Err(error);
+        }
+        if first.is_complete() {
+            let doubt = first.lies_along_sight("").filter(|_| !self.is_placed);
+            self.notes.extend(doubt.map(|doubt| in_python(&doubt)));
+            self.first = None;
+        }
+        Ok(())
+    }
+
     fn answer<'py>(&self, py: Python<'py>, answer: &StreamedFrame) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
         named.set_item("frame", answer.frame)?;
@@ -263,6 +309,11 @@ impl Body {
         named.set_item("tempering", estimate.tempering)?;
         named.set_item("is_degenerate", estimate.is_degenerate)
     }
+}
+
+/// Refuses first points in other units or axes.
+fn refuse_other_units(first: &FirstPoints, parameter: &str) -> PyResult<()> {
+    first.check("", UNIT_REMEDY).map_err(|error| PyValueError::new_err(format!("`{parameter}`: {error}")))
 }
 
 /// Measures as `body.json` has them.

@@ -21,7 +21,7 @@ create_exception!(
 const NAMES: [(&str, &str); 29] = [
     ("`sinew angles --min-confidence`", "`min_confidence` of `sinew.angles`"),
     ("`sinew angles --input-rate HZ`", "`fps` of `sinew.angles`"),
-    ("`sinew angles` with --input-rate HZ", "`sinew.angles` with fps=HZ"),
+    ("`sinew angles` with --input-rate ", "`sinew.angles` with fps="),
     ("`--image-size WIDTH,HEIGHT`", "`image_size_px=(WIDTH, HEIGHT)`"),
     ("`--input-rate HZ`", "`fps`"),
     ("`--input-rate ", "`fps="),
@@ -60,6 +60,19 @@ const BATCH_NAMES: [(&str, &str); 4] = [
     ("--retry-failed", "retry_failed=True"),
     ("give the same command again", "call it again"),
 ];
+
+/// Sentences about keypoints of a file, and what they are of an array, which has one person.
+const OF_ARRAY: [(&str, &str); 3] = [
+    ("choose with --person, or cut there", "cut there"),
+    ("y points up in this file (", "y points up ("),
+    ("minus the file's", "minus the array's"),
+];
+
+/// Sentences about keypoints of a file as they are of an array.
+pub fn of_array(sentences: &[String]) -> Vec<String> {
+    let plain = |text: &String| OF_ARRAY.iter().fold(text.clone(), |text, (file, array)| text.replace(file, array));
+    sentences.iter().map(plain).collect()
+}
 
 /// A message of the library with the names of Python's parameters.
 pub fn in_python(message: &str) -> String {

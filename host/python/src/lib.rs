@@ -18,6 +18,7 @@ mod motion;
 mod names_of_body;
 mod online;
 mod pictures;
+mod process;
 mod simulate;
 mod simulate_arm;
 mod stereo;
@@ -64,6 +65,7 @@ mod _sinew {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::process::remember_process();
         module.add("BLOB_COLUMNS", crate::pictures::blob_columns().to_vec())?;
         module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
         module.add("FLEXIONS", sinew::cyclic::anatomy::ANATOMICAL_ANGLES.to_vec())?;

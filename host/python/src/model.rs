@@ -1,6 +1,7 @@
 //! Motion models.
 
 use crate::errors::{exception, in_python};
+use crate::process::detached;
 use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyFileNotFoundError;
@@ -78,7 +79,7 @@ impl Model {
             let json = to_json(self.model)?;
             write_atomically(&path, |writer| Ok(writer.write_all(json.as_bytes())?))
         };
-        py.detach(write).map_err(|error| exception(&error))
+        detached(py, write)?.map_err(|error| exception(&error))
     }
 
     #[getter]

@@ -2,6 +2,7 @@
 
 use crate::arrays::{frames_array, points_array};
 use crate::errors::{exception, wrong};
+use crate::process::detached;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -18,7 +19,7 @@ pub fn read_cloud(py: Python<'_>, path: PathBuf, camera: Option<PathBuf>) -> PyR
         let camera = camera.as_deref().map(DepthCamera::read).transpose()?;
         CloudSource { camera, ..CloudSource::default() }.read_noting(&path, |_| ())
     };
-    let cloud = py.detach(read).map_err(|error| exception(&error.into()))?;
+    let cloud = detached(py, read)?.map_err(|error| exception(&error.into()))?;
     Ok(points_array(py, &cloud.points_m))
 }
 
@@ -41,7 +42,7 @@ pub fn read_motion<'py>(
         names: names.as_deref(),
     };
     let read = || read_space(&path, &options).map(|motion| (up_of(&motion, &path).ok(), motion));
-    let (up, motion) = py.detach(read).map_err(|error| exception(&error.into()))?;
+    let (up, motion) = detached(py, read)?.map_err(|error| exception(&error.into()))?;
     let said = motion.shortfall.map(|shortfall| shortfall.to_string());
     let notes: Vec<String> = motion.notes.iter().cloned().chain(said).collect();
     let parents: Option<Vec<i64>> = (!motion.parents.is_empty())

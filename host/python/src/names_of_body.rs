@@ -2,7 +2,7 @@
 //! them.
 
 /// Longer ones are first.
-pub const OF_BODY: [(&str, &str); 22] = [
+pub const OF_BODY: [(&str, &str); 23] = [
     ("`sinew track body --print-config` writes one", "docs/track_body.md says what it holds"),
     (" (`sinew track body --print-config` lists all keys)", ""),
     ("(`sinew track body --print-config` lists all)", "(docs/track_body.md)"),
@@ -27,5 +27,6 @@ pub const OF_BODY: [(&str, &str); 22] = [
     ("--model modes", "model=\"modes\""),
     ("--model pelvic-lift", "model=\"pelvic-lift\""),
     (" (--init)", " (`first_pose`)"),
+    (" (--inside)", ""),
     ("another --out", "another folder"),
 ];

@@ -1,6 +1,7 @@
 //! Images: arrays of lines, pixels and red, green and blue.
 
 use crate::errors::{exception, wrong};
+use crate::process::detached;
 use numpy::ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyReadonlyArray3};
 use pyo3::prelude::*;
@@ -40,7 +41,7 @@ pub fn rectangle(calibrate: Option<[u32; 4]>) -> PyResult<Option<Rectangle>> {
 /// The pixels of an image file.
 #[pyfunction]
 pub fn read_image(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyArray3<u8>>> {
-    let image = py.detach(|| load_rgb(&path)).map_err(|error| exception(&error.into()))?;
+    let image = detached(py, || load_rgb(&path))?.map_err(|error| exception(&error.into()))?;
     let shape = (image.height() as usize, image.width() as usize, 3);
     // As many bytes as the image has.
     Ok(Array3::from_shape_vec(shape, image.into_raw()).unwrap_or_default().into_pyarray(py))
@@ -63,7 +64,7 @@ pub fn segment_skin<'py>(
         }
         Ok(mask)
     };
-    let mask = py.detach(mask).map_err(|error| exception(&error))?;
+    let mask = detached(py, mask)?.map_err(|error| exception(&error))?;
     let (width, height) = (picture.width() as usize, picture.height() as usize);
     let rows = mask.words().chunks_exact(mask.words().len() / height);
     let bits = |row: &[u32]| -> Vec<bool> { (0..width).map(|u| row[u / 32] >> (u % 32) & 1 == 1).collect() };
@@ -95,7 +96,7 @@ pub fn find_blobs<'py>(
         let rows = blobs.map(|(number, blob)| BlobRow::new(("", number), blob, likelihood, area_px).numbers());
         Ok((rows.collect(), view.dropped_blobs))
     };
-    let (rows, dropped) = py.detach(rows).map_err(|error| exception(&error))?;
+    let (rows, dropped) = detached(py, rows)?.map_err(|error| exception(&error))?;
     Ok((crate::arrays::array(py, rows.into_iter()), dropped))
 }
 

@@ -2,6 +2,7 @@
 
 use crate::errors::{exception, wrong};
 use crate::model::Model;
+use crate::process::detached;
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray3};
 use pyo3::prelude::*;
@@ -32,11 +33,11 @@ pub fn simulate_keypoints<'py>(
     let like = Filming { frames: 0, rate_hz, height_px, facing, noise_px: sigma_px, missing_share: missing, seed };
     let filming = Filming::lasting(seconds, like).map_err(|error| exception(&error.into()))?;
     let person = SyntheticPerson::draw(model.model, rate_hz, seed).map_err(|error| exception(&error))?;
-    let (filmed, found) = py.detach(|| {
+    let (filmed, found) = detached(py, || {
         let filmed = FilmedPerson::film(&person, &filming);
         let found = filmed.detected(&filming);
         (filmed, found)
-    });
+    })?;
     let shape = (found.len(), JOINTS, 3);
     let values: Vec<f64> = found.into_iter().flatten().flat_map(|point| point.unwrap_or([f64::NAN; 3])).collect();
     let keypoints = Array3::from_shape_vec(shape, values).unwrap_or_default().into_pyarray(py);

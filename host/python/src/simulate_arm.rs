@@ -1,6 +1,7 @@
 //! A made-up person before a camera.
 
 use crate::errors::{exception, wrong};
+use crate::process::detached;
 use numpy::ndarray::Array4;
 use numpy::{IntoPyArray, PyArray2, PyArray4};
 use pyo3::prelude::*;
@@ -68,7 +69,7 @@ pub fn simulate_arm<'py>(
         let notes: Vec<String> = shortfall.iter().map(ToString::to_string).collect();
         Ok((scene.pixels(), truth(&scene), config, notes, scene.len()))
     };
-    let (pixels, truth, config, notes, count) = py.detach(film).map_err(|error| exception(&error))?;
+    let (pixels, truth, config, notes, count) = detached(py, film)?.map_err(|error| exception(&error))?;
     let (width, height) = (SceneOptions::default().width_px as usize, SceneOptions::default().height_px as usize);
     let pixels = Array4::from_shape_vec((count, height, width, 3), pixels).unwrap_or_default();
     Ok((pixels.into_pyarray(py), crate::arrays::array(py, truth.into_iter()), config, notes))

@@ -2,7 +2,8 @@
 
 use crate::arrays::{frames_array, points_array};
 use crate::body::json_of_measures;
-use crate::errors::{exception, wrong};
+use crate::errors::{exception, in_python, wrong};
+use crate::process::detached;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -64,7 +65,7 @@ pub fn simulate_stereo<'py>(
         StereoSource { motion, skeleton, motion_rate_hz, between_s, partial, distance_m, heading_deg, rate_hz, seed };
     let errors = if hard { SceneErrors::HARD } else { SceneErrors::default() };
     let options = StereoOptions { part, points, outliers, patches, hidden, errors, seed, ..StereoOptions::default() };
-    let made = py.detach(|| make(&source, options)).map_err(|error| exception(&error))?;
+    let made = detached(py, || make(&source, options))?.map_err(|error| exception(&error))?;
     answer(py, &made)
 }
 
@@ -86,6 +87,6 @@ fn answer<'py>(py: Python<'py>, made: &Made) -> PyResult<Bound<'py, PyDict>> {
     let camera = serde_json::to_string(&scene.options().camera).map_err(|error| exception(&error.into()))?;
     named.set_item("camera_json", camera)?;
     named.set_item("floor_y_m", floor_y_m)?;
-    named.set_item("notes", notes)?;
+    named.set_item("notes", notes.iter().map(|note| in_python(note)).collect::<Vec<_>>())?;
     Ok(named)
 }

@@ -4,6 +4,7 @@ use crate::angles::Angles;
 use crate::arrays::{array, array_of_options};
 use crate::errors::{exception, in_python};
 use crate::model::Model;
+use crate::process::detached;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -102,11 +103,11 @@ pub fn covariance(run: &OnlineRun<'_>) -> Covariance {
 #[pyfunction]
 pub fn track_angles<'py>(py: Python<'py>, angles: &Angles, model: &Model, how: How) -> PyResult<Bound<'py, PyDict>> {
     let recorded = &angles.recorded;
-    let found = py.detach(|| {
+    let found = detached(py, || {
         let rate_hz = rate::of_recording(Path::new("angles"), recorded.rate_hz, how.rate_hz)?;
         let recording = Recording { table: &recorded.table, rate_hz, doubts: &recorded.doubts };
         how.track(&recording, model.model)
-    });
+    })?;
     answer(py, &found.map_err(|error| exception(&error))?)
 }
 
@@ -118,14 +119,14 @@ pub fn track_file<'py>(
     model: &Model,
     how: How,
 ) -> PyResult<(Bound<'py, PyDict>, Vec<String>)> {
-    let found = py.detach(|| {
+    let found = detached(py, || {
         let table = AngleTable::read(&path)?;
         let rate_hz = rate::of_recording(&path, table.rate_hz(), how.rate_hz)?;
         let (notes, doubts) =
             About::read_beside(&path)?.map_or_else(Default::default, |about| (about.notes, about.doubts));
         let recording = Recording { table: &table, rate_hz, doubts: &doubts };
-        Ok((how.track(&recording, model.model)?, notes))
-    });
+        Ok((how.track(&recording, model.model)?, notes.iter().map(|note| in_python(note)).collect()))
+    })?;
     let (found, notes) = found.map_err(|error| exception(&error))?;
     Ok((answer(py, &found)?, notes))
 }

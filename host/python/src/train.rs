@@ -3,6 +3,7 @@
 use crate::angles::Angles;
 use crate::errors::exception;
 use crate::model::Model;
+use crate::process::detached;
 use pyo3::prelude::*;
 use sinew::cyclic::cuts::{Cut, CutList};
 use sinew::cyclic::cutting::{CuttingOptions, cycles};
@@ -18,10 +19,10 @@ const RECORDINGS: &str = "recordings";
 #[pyfunction]
 pub fn train_file(py: Python<'_>, cuts: PathBuf, length: usize, rate_hz: Option<f64>, mirror: bool) -> PyResult<Model> {
     let options = TrainingOptions { length, rate_hz, mirror };
-    let trained = py.detach(|| {
+    let trained = detached(py, || {
         let list = CutList::read(&cuts)?;
         Ok(train_on(&read_cycles(&list, mirror)?, &list, options)?)
-    });
+    })?;
     Ok(Model::of(trained.map_err(|error| exception(&error))?))
 }
 
@@ -43,13 +44,13 @@ pub fn train_angles(
         tables.push(angles.recorded.table.clone());
         all.push((frames, person));
     }
-    let trained = py.detach(|| {
+    let trained = detached(py, || {
         let mut cuts = Vec::new();
         for (index, ((frames, person), table)) in all.into_iter().zip(&tables).enumerate() {
             cuts.extend(cuts_of(index, table, frames, person, rate_hz)?);
         }
         trained(&tables, cuts, options)
-    });
+    })?;
     Ok(Model::of(trained.map_err(|error| exception(&error))?))
 }
 

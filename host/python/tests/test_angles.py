@@ -56,6 +56,19 @@ def test_shares_need_a_size(keypoints, walk):
     np.testing.assert_allclose(found.angles_rad, walk.angles_rad, atol=1.0e-6)
 
 
+def test_sentences_about_an_array_speak_of_it(keypoints, walk):
+    points = keypoints.keypoints.copy()
+    points[:, :, 1] = 1000.0 - points[:, :, 1]
+    points[90:, :, 0] += 500.0
+    found = sinew.angles(points, keypoints.layout, fps=30.0)
+    assert any(note.startswith("y points up (") and note.endswith("minus the array's") for note in found.notes)
+    assert any(doubt.endswith("another person, or a cut; cut there") for doubt in found.doubts)
+    for said in [*found.notes, *found.doubts, *sinew.track_cyclic(found).doubts]:
+        assert "file" not in said and "person," not in said.split(";")[-1] and "--" not in said, said
+    with pytest.raises(ValueError, match="make the table anew by `sinew.angles` with fps=60"):
+        sinew.track_cyclic(walk, rate_hz=60.0)
+
+
 @pytest.mark.parametrize(
     ("points", "options", "words"),
     [

@@ -201,6 +201,7 @@ def test_any_layout_of_an_image_gives_the_same(filmed):
         np.asfortranarray,
         within,
         frozen,
+        lambda image: image.tolist(),
         lambda image: np.ascontiguousarray(image[::-1, ::-1])[::-1, ::-1],
         lambda image: np.ascontiguousarray(image[..., ::-1])[..., ::-1],
     ]
@@ -232,6 +233,22 @@ def test_hands_come_in_any_form(filmed):
     np.testing.assert_allclose(estimate.hand_px, [288.0, 200.0], atol=15.0)
     assert tracker.update(hands=[]).blob_count == 0
     assert tracker.update().blob_count is None
+
+
+def test_shares_of_the_picture_are_refused_as_the_command_refuses_them(filmed):
+    image, inside, corner = filmed.frames[0], (300.0, 200.0, 60.0, 0.9), (0.5, 0.4, 60.0, 0.9)
+    wanted = sinew.ArmTracker()
+    wanted.update(image, hands=[inside], head=(320.0, 120.0, 90.0))
+    tracker = sinew.ArmTracker()
+    remedy = "multiply `u_px` and `size_px` by the picture's width, `v_px` by its height"
+    for name, places in (("hands", {"hands": [corner, (1.2, -0.1, 0.08, 0.9)]}), ("head", {"head": (0.5, 0.3, 0.12)})):
+        with pytest.raises(ValueError, match=f"`{name}` holds shares of the picture.*{remedy}"):
+            tracker.update(image, **places)
+    tracker.update(image, hands=[inside], head=(320.0, 120.0, 90.0))
+    assert tracker.state_crc32 == wanted.state_crc32, "refused frames do not count"
+    # Pixels are known by now: these are of a hand in the corner.
+    tracker = pickle.loads(pickle.dumps(tracker))
+    assert tracker.update(image, hands=[corner]).blob_count == 1
 
 
 def test_missing_frames_are_predicted_and_then_lost(filmed):
@@ -285,7 +302,8 @@ IMAGE = np.zeros((48, 64, 3), dtype=np.uint8)
         ({"image": np.zeros((3, 48, 64), np.uint8)}, "`image`.*shape"),
         ({"image": IMAGE.astype(np.float32)}, "`image`.*uint8.*float32"),
         ({"image": np.full((48, 64, 3), np.nan)}, "`image`.*uint8.*float64"),
-        ({"image": IMAGE.astype(np.int64).tolist()}, "`image`.*uint8"),
+        ({"image": (IMAGE + np.int64(256)).tolist()}, "`image`.*uint8"),
+        ({"image": IMAGE.astype(np.int64)}, "`image`.*uint8"),
         ({"image": [[1], [1, 2]]}, "`image`"),
         ({"image": "picture.png"}, "`image`.*shape"),
         ({"image": np.zeros((0, 64, 3), np.uint8)}, "`image`.*1 to 8192.*64x0"),

@@ -248,6 +248,42 @@ def test_wrong_points_are_named(scene, points, words):
     assert tracker.frame is None
 
 
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda cloud: 100.0 * cloud, r"`points`: the first points begin \d+ m .*multiply them by .*0.01 for centi"),
+        (lambda cloud: 1000.0 * cloud, "`points`: the points are farther than 1000 m.*0.001 for millimetres"),
+        (lambda cloud: 0.01 * cloud, r"`points`: the first points end 0.0\d+ m from the camera"),
+        (lambda cloud: cloud * [1, -1, -1], "`points`: .* behind the camera .*change the signs of y and z"),
+    ],
+    ids=["centimetres", "millimetres", "hectometres", "y up, z backward"],
+)
+def test_first_points_in_other_units_or_axes_are_refused(scene, change, words):
+    tracker = tracker_of(scene)
+    # All points may be too far in a first dark picture: five are looked at.
+    with pytest.raises(ValueError, match=words):
+        for cloud in scene.clouds[:5]:
+            tracker.update(change(cloud))
+    with pytest.raises(ValueError, match=words.replace("points`", "clouds`")):
+        tracker_of(scene).estimate_measures([change(cloud) for cloud in scene.clouds])
+    same = tracker_of(scene)
+    for _ in range(0 if tracker.frame is None else tracker.frame + 1):
+        same.update(None)
+    for cloud in scene.clouds[:6]:
+        same_estimates(tracker.update(cloud), same.update(cloud))
+    same.update(change(scene.clouds[6]))
+
+
+def test_notes_speak_of_parameters(scene):
+    unknown = sinew.BodyTracker(rate_hz=scene.rate_hz)
+    assert any("(`height_m`, `measures`)" in note for note in unknown.notes), unknown.notes
+    z_up = tracker_of(scene, first_pose=None)
+    for cloud in scene.clouds[:5]:
+        z_up.update(cloud[:, [0, 2, 1]] * [1.0, -1.0, -1.0] + [0.0, 2.0, 3.0])
+    assert any("along the line of sight" in note and "(`first_pose`)" in note for note in z_up.notes), z_up.notes
+    assert "--" not in " ".join(unknown.notes + z_up.notes)
+
+
 @pytest.mark.parametrize("time_s", [np.nan, np.inf, "x", 4.0, 3.9])
 def test_wrong_times_are_named(scene, time_s):
     tracker = tracker_of(scene)

@@ -102,6 +102,37 @@ def test_times_give_frames_and_rate(walk, track):
     assert found.summary["skipped_frames"] == 5
 
 
+@pytest.mark.parametrize("rate_hz", [None, 30.0])
+def test_times_may_have_jitter_and_gaps(walk, rate_hz):
+    rows = len(walk)
+    for seed in range(20):
+        draws = np.random.default_rng(seed)
+        jitter_s = draws.normal(0.0, 0.005, rows)
+        time_s = np.arange(rows) / 30.0 + jitter_s
+        found = sinew.track_cyclic(walk.angles_rad, time_s=time_s, rate_hz=rate_hz, smooth=False)
+        np.testing.assert_array_equal(found.frame, np.arange(rows))
+        assert found.rate_hz == pytest.approx(30.0, rel=1.0e-3)
+        kept = np.flatnonzero(draws.random(rows) < 0.8)
+        time_s = np.arange(rows) / 30.0 + 0.5 * jitter_s
+        found = sinew.track_cyclic(walk.angles_rad[kept], time_s=time_s[kept], rate_hz=rate_hz, smooth=False)
+        np.testing.assert_array_equal(found.frame, kept - kept[0])
+
+
+def test_times_of_two_decimals_are_even(walk):
+    time_s = np.round(np.arange(len(walk)) / 60.0, 2)
+    found = sinew.track_cyclic(walk.angles_rad, time_s=time_s, smooth=False)
+    np.testing.assert_array_equal(found.frame, np.arange(len(walk)))
+    assert found.rate_hz == pytest.approx(60.0, rel=2.0e-3)
+
+
+@pytest.mark.parametrize("rate_hz", [None, 30.0])
+def test_uneven_times_are_refused(walk, rate_hz):
+    for seed in range(20):
+        time_s = np.cumsum(np.random.default_rng(seed).uniform(0.007, 0.06, len(walk)))
+        with pytest.raises(ValueError, match="`time_s` has to be even: .* of a frame|`time_s` says"):
+            sinew.track_cyclic(walk.angles_rad, time_s=time_s, rate_hz=rate_hz)
+
+
 def test_frames_without_a_person_are_not_known(walk):
     angles = walk.angles_rad.copy()
     angles[60:150] = np.nan
@@ -133,6 +164,7 @@ def test_frames_without_a_person_are_not_known(walk):
         (np.zeros((5, 13)), {"rate_hz": 30, "model": 3}, "`model`"),
         (np.zeros((5, 13)), {"time_s": [0, 1, 2]}, "`time_s`.*shape \\(5,\\)"),
         (np.zeros((3, 13)), {"time_s": [0, 2, 1]}, "`time_s`.*rise"),
+        (np.zeros((3, 13)), {"time_s": [0, 33, 67]}, "`time_s` has to be in seconds, .*33 s.* by 1000"),
         (np.zeros((3, 13)), {"time_s": [0, 0.1, np.nan]}, "`time_s`.*finite"),
         (np.zeros((3, 13)), {"time_s": [0, 0.1, 0.2], "rate_hz": 7}, "`time_s` says 10"),
         (np.zeros((5, 13)), {"time_s": [0, 0.1, 0.2, 0.3, 0.37]}, None),

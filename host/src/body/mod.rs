@@ -5,6 +5,7 @@ pub mod body_file;
 pub mod body_size;
 pub mod camera_axes;
 pub mod export;
+pub mod first_points;
 pub mod fitting;
 pub mod joints;
 pub mod measuring;

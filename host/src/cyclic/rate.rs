@@ -21,7 +21,7 @@ pub fn of_recording(table: &Path, of_table: Option<f64>, given: Option<f64>) -> 
         (Some(given), Some(of_table)) if !is_same(given, of_table) => Err(CyclicError::unusable(
             table,
             format!(
-                "its times say {of_table} frames a second, not the {given} of --rate; leave --rate out, or make the table anew by `sinew angles --input-rate {given}`"
+                "its times say {of_table} frames a second, not the {given} of --rate; leave --rate out, or make the table anew by `sinew angles` with --input-rate {given}"
             ),
         )),
         (Some(rate), _) | (None, Some(rate)) => Ok(rate),

@@ -99,8 +99,11 @@ fn header_rows(
 fn no_points(columns: &Columns) -> String {
     let unlike = columns.names.iter().find(|name| name.len() > 2 && name.to_lowercase().contains(['x', 'u']));
     let proposal = unlike.map_or_else(String::new, |name| {
-        let stem = name.trim_end_matches(|letter: char| "xyuvp_.".contains(letter));
-        format!("; the nearest to `{name}` is `{}_x_px`", nearest(stem))
+        let part = nearest(name.trim_end_matches(|letter: char| "xyuvp_.".contains(letter)));
+        match format!("{part}_x_px") {
+            wanted if wanted == *name => format!("; `{name}` needs `{part}_y_px` beside it"),
+            wanted => format!("; the nearest to `{name}` is `{wanted}`"),
+        }
     });
     format!("no column is a known joint's x and y (such as `l_knee_x_px`, `l_knee_y_px`, or `left_knee_x`){proposal}")
 }
@@ -297,6 +300,17 @@ mod tests {
         for (text, message) in cases {
             let found = parsed(text).unwrap_err();
             assert!(found.starts_with(message), "{found}");
+        }
+    }
+
+    #[test]
+    fn a_name_that_is_none_has_a_proposal() {
+        for (text, proposal) in [
+            ("frame,l_hip_x_px\n0,1\n", "; `l_hip_x_px` needs `l_hip_y_px` beside it"),
+            ("l_sholder_x,l_sholder_y\n1,2\n", "; the nearest to `l_sholder_x` is `l_shoulder_x_px`"),
+        ] {
+            let found = parsed(text).unwrap_err();
+            assert!(found.ends_with(proposal), "{found}");
         }
     }
 }

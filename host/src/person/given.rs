@@ -132,7 +132,7 @@ impl HandTable {
     pub fn read(path: &Path) -> Result<Self> {
         let mut table = Self { has_sides: false, frames: BTreeMap::new() };
         let rows = rows::<HandRow>(path, "hands", HAND_COLUMNS)?;
-        refuse_shares(rows.iter().map(|row| [row.u_px, row.v_px]), path, "hands")?;
+        refuse_shares(rows.iter().map(|row| [row.u_px, row.v_px]), &format!("hands `{}`", path.display()))?;
         for row in rows {
             let name = || format!("hands `{}`, frame {}", path.display(), row.frame);
             let side = row.side.map(|side| if side == GivenSide::Left { Side::Left } else { Side::Right });
@@ -173,7 +173,7 @@ impl FaceTable {
     /// Names the file, the row and the rule that it broke. Places are shares of the picture.
     pub fn read(path: &Path) -> Result<Self> {
         let rows = rows::<FaceRow>(path, "head", FACE_COLUMNS)?;
-        refuse_shares(rows.iter().map(|row| [row.u_px, row.v_px]), path, "head")?;
+        refuse_shares(rows.iter().map(|row| [row.u_px, row.v_px]), &format!("head `{}`", path.display()))?;
         let mut faces = BTreeMap::new();
         for row in rows {
             let name = || format!("head `{}`, frame {}", path.display(), row.frame);
@@ -211,14 +211,16 @@ fn rows<R: DeserializeOwned>(path: &Path, what: &str, columns: &str) -> Result<V
     Ok(rows)
 }
 
-/// Refuses a table in shares of the picture, whose places would all be in its corner.
-fn refuse_shares(mut places: impl Iterator<Item = [f32; 2]>, path: &Path, what: &str) -> Result<()> {
+/// Refuses places that are shares of the picture: in pixels all would be in its corner.
+///
+/// # Errors
+/// They are; the message begins with `what`.
+pub fn refuse_shares(mut places: impl Iterator<Item = [f32; 2]>, what: &str) -> Result<()> {
     let are_shares = places.all(|place| place.iter().all(|coordinate| coordinate.abs() <= MAX_SHARE));
     ensure!(
         !are_shares,
-        "{what} `{}` holds shares of the picture (no place is beyond {MAX_SHARE}), and pixels are wanted; multiply \
-         `u_px` and `size_px` by the picture's width, `v_px` by its height",
-        path.display()
+        "{what} holds shares of the picture (no place is beyond {MAX_SHARE}), and pixels are wanted; multiply \
+         `u_px` and `size_px` by the picture's width, `v_px` by its height"
     );
     Ok(())
 }

@@ -7,6 +7,6 @@ mod lines_finder;
 
 pub use faces::FaceLooks;
 pub use finder::{PersonFinder, PersonView};
-pub use given::{FaceTable, GivenHand, GivenHands, HandTable, given_head};
+pub use given::{FaceTable, GivenHand, GivenHands, HandTable, given_head, refuse_shares};
 pub use lines_finder::LinesFinder;
 pub use sinew_face::{FaceDetector, FoundFace, PersonSkin};

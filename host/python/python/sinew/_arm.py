@@ -126,7 +126,8 @@ class ArmTracker:
         hands : array_like or list of dict, optional
             Hands that any detector found, in place of blobs: a structured array or dictionaries
             with ``u_px``, ``v_px`` (middle), ``size_px`` (diameter), ``probability`` and where it
-            is known ``side``; or an array (n, 4), or (n, 5) with 0 for left, 1 for right and NaN.
+            is known ``side``, or a data frame with these columns; or an array (n, 4), or (n, 5)
+            with 0 for left, 1 for right and NaN.
         head : array_like of shape (3,) or dict, optional
             The person's face that any detector found: ``u_px``, ``v_px``, and ``size_px``, the
             width of its box.

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import _sinew
 from ._arrays import is_path, number, positive, whole
 from ._body_estimate import BodyEstimate, FirstPose
+from ._columns import entries
 from ._points import points32
 
 Path = str | os.PathLike[str]
@@ -109,7 +110,8 @@ class BodyTracker:
             Points in metres, camera axes: x right, y down, z forward. None or no row is a frame in
             which nothing is seen; its answer is a prediction. Rows that are not finite, at the
             camera or farther than 1 km are left out, and so are all beyond 20,000, drawn by the
-            seed. float32 in C order is not copied before it is checked.
+            seed. float32 in C order is not copied before it is checked. Columns x, y, z of a data
+            frame are found by name.
         time_s : float, optional
             When the frame was taken, seconds, on any clock; it has to rise from frame to frame.
             One frame after the last one where not given.
@@ -126,7 +128,8 @@ class BodyTracker:
         Raises
         ------
         ValueError
-            A parameter breaks its rule; the message names both.
+            A parameter breaks its rule; the message names both. So do first points in other units
+            or axes.
         """
         native = self._native
         cloud = None if points is None else points32(points, "points")
@@ -301,6 +304,8 @@ def _named(pose: Any) -> Any:
     """A pose that is an array by the names of its coordinates."""
     if pose is None or is_path(pose) or isinstance(pose, dict):
         return pose
+    if (rows := entries(pose)) is not None and len(rows) == 1:
+        return rows[0]
     row = points32(pose, "first_pose", shape=(30,))
     return dict(zip(_sinew.BODY_COORDINATES, row.tolist()))
 

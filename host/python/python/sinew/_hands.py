@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ._arrays import FloatArray, floats
+from ._columns import entries, labels
 
 _COLUMNS = ("u_px", "v_px", "size_px", "probability")
 _SIDES = {"left": 0.0, "right": 1.0, "": np.nan}
@@ -23,12 +24,14 @@ def hand_rows(hands: Any) -> tuple[FloatArray, bool]:
     """
     if isinstance(hands, np.ndarray) and hands.dtype.names is not None:
         names = hands.dtype.names
-        entries = [dict(zip(names, row.tolist())) for row in hands.reshape(-1)]
-        return _of_mappings(entries, "side" in names)
+        found = [dict(zip(names, row.tolist())) for row in hands.reshape(-1)]
+        return _of_mappings(found, "side" in names)
     if isinstance(hands, (list, tuple)) and any(isinstance(hand, Mapping) for hand in hands):
         if not all(isinstance(hand, Mapping) for hand in hands):
             raise ValueError("`hands` has to hold dictionaries alone, or none")
         return _of_mappings(list(hands), any(hand.get("side") is not None for hand in hands))
+    if (names := labels(hands)) is not None:
+        return _of_mappings(entries(hands) or [], "side" in names)
     rows = floats(hands, "hands")
     if rows.size == 0 and rows.ndim <= 2:
         return np.empty((0, 5)), rows.shape[-1:] == (5,)
@@ -82,6 +85,8 @@ def head_box(head: Any) -> tuple[float, float, float]:
     """
     if isinstance(head, np.void) and head.dtype.names is not None:
         head = dict(zip(head.dtype.names, head.tolist()))
+    if (of_frame := entries(head)) is not None and len(of_frame) == 1:
+        head = of_frame[0]
     if isinstance(head, Mapping):
         u_px, v_px, size_px = (_number(head, name, "head") for name in _COLUMNS[:3])
         return u_px, v_px, size_px

@@ -33,6 +33,9 @@ def rgb(value: Any, name: str = "image") -> ImageArray:
     if array.ndim != 3 or array.shape[2] != 3:
         remedy = "; np.stack([grey] * 3, axis=2) makes it of a grey one" if array.ndim == 2 else ""
         raise ValueError(f"`{name}` has to have the shape (height, width, 3), not {array.shape}{remedy}")
+    # Numbers of lists have no type of their own.
+    if isinstance(value, (list, tuple)) and array.dtype == np.int64 and ((array >= 0) & (array <= 255)).all():
+        array = array.astype(np.uint8)
     if array.dtype != np.uint8:
         raise ValueError(f"`{name}` has to hold uint8 (0 to 255), not {array.dtype}")
     height, width = array.shape[:2]

@@ -8,6 +8,7 @@ from typing import Any
 
 from . import _sinew
 from ._arrays import MAX_WHOLE, FloatArray, floats, positive, whole
+from ._columns import by_name
 from ._model import Model, native_model
 
 
@@ -75,7 +76,7 @@ class CyclicTracker:
         Parameters
         ----------
         z : array_like, shape (13,)
-            Measured angles, radians; NaN where one is missing.
+            Measured angles, radians; NaN where one is missing. A series is read by its names.
         dt_frames : int
             Frames since the last call; more than 1 where some were left out.
 
@@ -84,7 +85,7 @@ class CyclicTracker:
         CyclicEstimate or None
             None before the first frame with an angle.
         """
-        row = floats(z, "z")
+        row = floats(by_name(z, _sinew.ANGLES, "z", "_rad"), "z")
         if row.shape != (13,):
             raise ValueError(f"`z` has to have the shape (13,), not {row.shape}")
         answer = self._native.update(row, whole(dt_frames, "dt_frames", 1, MAX_WHOLE))

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _sinew
+from ._columns import by_name
 
 PointArray = npt.NDArray[np.float32]
 
@@ -24,7 +25,7 @@ def points32(value: Any, name: str, shape: tuple[int, ...] | None = None) -> Poi
     if type(value) is np.ndarray and value.dtype == np.float32 and value.flags.carray:
         array = value
     else:
-        array = _plain_array(value, name)
+        array = _plain_array(by_name(value, "xyz", name, "_m"), name)
     wanted = shape or (array.shape[0] if array.ndim else 0, 3)
     if shape is None and array.shape == (0,):
         return np.empty((0, 3), dtype=np.float32)

@@ -36,15 +36,16 @@ def track_cyclic(
     ----------
     angles : Angles, array_like of shape (n, 13), or path
         What :func:`angles` returns; or radians in the order of :data:`sinew.ANGLE_NAMES`, one row a
-        frame, NaN where one is missing; or the path of an angle table.
+        frame, NaN where one is missing; or the path of an angle table. The columns of a data frame
+        are found by name.
     model : str, path or Model
         A name of :func:`models`, a file that ``sinew train cyclic`` wrote, or what
         :func:`train_cyclic` returns.
     rate_hz : float, optional
         Frames per second. Needed for an array unless ``time_s`` is given.
     time_s : array_like, shape (n,), optional
-        When each row of an array was seen, seconds. Frames have to be even in time; some may be
-        left out.
+        When each row of an array was seen, seconds. Frames have to be even in time but for jitter;
+        some may be left out.
     sigma_deg : float, optional
         Standard deviation of a measured angle, degrees. By default the recording shows it; 6 where
         it does not, or with ``smooth=False``.

@@ -117,10 +117,7 @@ impl BodyStream {
         options.check()?;
         let size = size.into();
         let filter = filter(&options, &size, first_rad.unwrap_or([0.0; BODY_ANGLES]))?;
-        let threads = ThreadPoolBuilder::new()
-            .num_threads(options.threads.unwrap_or(0))
-            .build()
-            .context("the threads cannot be started; give --threads a smaller number")?;
+        let threads = threads(&options)?;
         let phase = if first_rad.is_some() { Phase::Placed } else { Phase::Waiting };
         Ok(Self { options, size, filter, threads, phase, last: None, away_frames: 0, begun_anew: None })
     }
@@ -163,6 +160,16 @@ impl BodyStream {
     #[must_use]
     pub fn frame(&self) -> Option<u64> {
         self.last.map(|last| last.frame)
+    }
+
+    /// Starts the threads anew, in a process that was forked from the one in which they run.
+    ///
+    /// # Errors
+    /// The system starts no more threads.
+    pub fn renew_threads(&mut self) -> Result<()> {
+        // Threads that are not there cannot be told to end.
+        std::mem::forget(std::mem::replace(&mut self.threads, threads(&self.options)?));
+        Ok(())
     }
 
     /// Runs `work` on the threads of the stream.
@@ -340,6 +347,13 @@ impl BodyStream {
     pub fn state_crc32(&mut self) -> Result<u32> {
         Ok(text_crc32(&self.filter.saved()?))
     }
+}
+
+fn threads(options: &BodyStreamOptions) -> Result<ThreadPool> {
+    ThreadPoolBuilder::new()
+        .num_threads(options.threads.unwrap_or(0))
+        .build()
+        .context("the threads cannot be started; give --threads a smaller number")
 }
 
 /// A filter that begins at `first_rad`.
