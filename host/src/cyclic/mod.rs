@@ -31,6 +31,7 @@ pub mod report;
 pub mod resample;
 pub mod smoothing;
 pub mod spline;
+pub mod stops;
 pub mod synthetic_keypoints;
 pub mod synthetic_person;
 pub mod tracking;

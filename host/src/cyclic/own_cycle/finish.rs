@@ -6,7 +6,7 @@ use super::phase::{self, Unevenness};
 use super::seen::Seen;
 use super::shape::Shape;
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
-use crate::cyclic::tracking::summary::LONGEST_BRIDGE_CYCLES;
+use crate::cyclic::stops::LONGEST_BRIDGE_CYCLES;
 use crate::cyclic::tracking::{Tracked, TrackedFrame, TrackingOptions};
 use crate::cyclic::turns::least_angle;
 use crate::cyclic::{AngleTable, CyclicModel};
