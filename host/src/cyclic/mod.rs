@@ -17,6 +17,7 @@ pub mod heading;
 pub mod image_joints;
 pub mod model;
 pub mod model_file;
+pub mod model_range;
 pub mod noise;
 pub mod own_cycle;
 #[cfg(feature = "plots")]
