@@ -17,6 +17,7 @@ pub mod heading;
 pub mod image_joints;
 pub mod model;
 pub mod model_file;
+pub mod model_range;
 pub mod noise;
 pub mod own_cycle;
 #[cfg(feature = "plots")]
@@ -31,6 +32,7 @@ pub mod report;
 pub mod resample;
 pub mod smoothing;
 pub mod spline;
+pub mod stops;
 pub mod synthetic_keypoints;
 pub mod synthetic_person;
 pub mod tracking;

@@ -4,6 +4,7 @@ use super::anatomy::{ANATOMICAL_ANGLES, AnatomicalSeries, COUNT};
 use super::gait::{Direction, Gait, NoGait};
 use super::model::CyclicModel;
 use super::model_file;
+use super::model_range::share_of_model;
 use super::tracking::Summary;
 use super::tracking::summary::MIN_CYCLES;
 
@@ -37,10 +38,11 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
     let direction = gait.map(|gait| gait.direction);
     // Who walks backward has no cycles of a walk forward, whatever the rate.
     let is_backward = direction == Some(Direction::Backward) && is_upright(model);
-    let mut doubts: Vec<String> = few_cycles(summary, low).filter(|_| !is_backward).into_iter().collect();
+    let range = small_range(series, model).unwrap_or_default();
+    let mut doubts: Vec<String> = few_cycles(summary, low, &range).filter(|_| !is_backward).into_iter().collect();
     if let Some(cadence) = summary.cadence_per_min.filter(|cadence| *cadence > 0.0 && !(low..=high).contains(cadence)) {
         doubts.push(format!(
-            "{cadence:.1} cycles a minute: this motion has {low:.0} to {high:.0}; is the rate right (--input-rate)?"
+            "{cadence:.1} cycles a minute: this motion has {low:.0} to {high:.0}; is the rate right (--input-rate)?{range}"
         ));
     }
     if model.numbers().turns_per_cycle.iter().all(|turns| *turns == 0) {
@@ -60,6 +62,16 @@ pub fn doubts(summary: &Summary, series: &AnatomicalSeries, model: &CyclicModel,
         _ => {}
     }
     doubts
+}
+
+/// What a doubt about cycles adds where joints move less far than in the model's mean cycle.
+fn small_range(series: &AnatomicalSeries, model: &CyclicModel) -> Option<String> {
+    let percent = (100.0 * share_of_model(series, model)?).round();
+    (percent < 100.0).then(|| {
+        format!(
+            "; the joints move {percent:.0} % as far as the model's: for a much smaller range train your own by `sinew train cyclic`"
+        )
+    })
 }
 
 /// What a user should know of the feet, one sentence each; why there is no gait only if one of the
@@ -116,10 +128,10 @@ pub fn counted_backwards(cycles: f64) -> Option<String> {
 }
 
 /// Less than two cycles, less than half of those of the cadence, or cycles backwards.
-/// `low_per_min` is the slowest cadence of the motion.
+/// `low_per_min` is the slowest cadence of the motion, `range` what is to be said of a small range.
 ///
 /// Rows that do not fit the model are no doubt: real walks have up to 92 % of them.
-fn few_cycles(summary: &Summary, low_per_min: f64) -> Option<String> {
+fn few_cycles(summary: &Summary, low_per_min: f64, range: &str) -> Option<String> {
     let Summary { cycles, seen_s, .. } = *summary;
     if cycles < 0.0 {
         return Some(backwards(cycles));
@@ -140,7 +152,7 @@ fn few_cycles(summary: &Summary, low_per_min: f64) -> Option<String> {
             )
         } else {
             format!(
-                "{cycles:.1} cycles were seen in {seen_s:.0} s, in which this motion has {least:.0} or more: is it this motion (`--model`), and is the rate right (--input-rate)?"
+                "{cycles:.1} cycles were seen in {seen_s:.0} s, in which this motion has {least:.0} or more: is it this motion (`--model`), and is the rate right (--input-rate)?{range}"
             )
         }
     })
@@ -230,6 +242,20 @@ mod tests {
         }
         assert_eq!(of(&seen, &[-85.0, -91.0], "arm-circles"), [""; 0], "swimmers lie");
         assert_eq!(of(&seen, &[], "walking"), [""; 0], "a trunk that is not seen");
+    }
+
+    #[test]
+    fn few_cycles_of_joints_that_move_less_far_name_the_range() {
+        let knee = |range_deg: f64| {
+            let pose = |row: u32| {
+                std::array::from_fn(|angle| Some(f64::from(u8::from(angle == 4 && row % 2 == 0)) * range_deg))
+            };
+            let angles_deg = (0..100).map(pose).collect();
+            let series = AnatomicalSeries { frames: (0..100).collect(), angles_deg, rate_hz: 30.0 };
+            doubts(&summary(0.6, 30.0), &series, model_file::shipped("walking").unwrap(), None).remove(0)
+        };
+        assert!(knee(40.0).contains("is the rate right (--input-rate)?; the joints move "), "{}", knee(40.0));
+        assert!(knee(160.0).ends_with("(--input-rate)?"), "{}", knee(160.0));
     }
 
     #[test]

@@ -17,6 +17,9 @@ const ROUNDINGS_S: [f64; 3] = [0.1, 0.01, 0.001];
 const MAX_MEDIAN_STEPS: f64 = 2.5;
 /// Share of the steps that have to be whole. Chosen: a recording may stall now and then.
 const MIN_WHOLE_SHARE: f64 = 0.95;
+/// How far a row's time may be from where an even rate puts it, frames: a row belongs to the frame
+/// whose time is nearest.
+const MAX_OFF_LINE_FRAMES: f64 = 0.5;
 /// Longest step that is filled where frames come at uneven times, in median steps (the issue's
 /// 2.5).
 const MAX_FILLED_STEPS: f64 = 2.5;
@@ -67,14 +70,28 @@ pub fn timing(times_s: &[f64]) -> Option<Timing> {
                 frame += counted(*length, step) as u64;
                 frame
             });
-            let frames = std::iter::once(0).chain(rest).collect();
-            return Some(Timing { rate_hz: rounded(1.0 / step), frames, is_even: true });
+            let frames: Vec<u64> = std::iter::once(0).chain(rest).collect();
+            if max_off_line_s(&frames, times_s) <= MAX_OFF_LINE_FRAMES * step {
+                return Some(Timing { rate_hz: rounded(1.0 / step), frames, is_even: true });
+            }
         }
     }
     let short: Vec<f64> = steps.into_iter().filter(|step| *step <= MAX_FILLED_STEPS * median).collect();
     let step = short.iter().sum::<f64>() / short.len() as f64;
     let frames = times_s.iter().map(|time| ((time - times_s[0]) / step).round() as u64).collect();
     Some(Timing { rate_hz: rounded(1.0 / step), frames, is_even: false })
+}
+
+/// The farthest that a time is from the line through the times of all frames (least squares),
+/// seconds. Steps that are whole one by one may still run away from it: the rate changes.
+fn max_off_line_s(frames: &[u64], times_s: &[f64]) -> f64 {
+    let count = times_s.len() as f64;
+    let mean_frame = frames.iter().map(|frame| *frame as f64).sum::<f64>() / count;
+    let mean_s = times_s.iter().sum::<f64>() / count;
+    let pairs = || frames.iter().zip(times_s).map(|(frame, time)| (*frame as f64 - mean_frame, time - mean_s));
+    let step_s =
+        pairs().map(|(frame, time)| frame * time).sum::<f64>() / pairs().map(|(frame, _)| frame * frame).sum::<f64>();
+    pairs().map(|(frame, time)| (time - step_s * frame).abs()).fold(0.0, f64::max)
 }
 
 /// Frames in a step: at least one.
@@ -196,6 +213,30 @@ mod tests {
             .collect();
         let found = timing(&times).unwrap();
         assert!(!found.is_even && (found.rate_hz - 31.0).abs() < 3.0, "{found:?}");
+    }
+
+    /// Steps that are whole one by one: the rate changes half way, drifts, or a step is off once.
+    #[test]
+    fn a_rate_that_changes_on_the_way_is_uneven() {
+        let of_steps = |steps: &[f64]| {
+            let mut time_s = 7.0;
+            let rest = steps.iter().map(|step| {
+                time_s += step;
+                time_s
+            });
+            timing(&[7.0].into_iter().chain(rest).collect::<Vec<f64>>()).unwrap()
+        };
+        let two = |first: f64, then: f64| [vec![1.0 / first; 135], vec![1.0 / then; 120]].concat();
+        for (first, then) in [(30.0, 28.0), (30.0, 24.0), (60.0, 50.0)] {
+            assert!(!of_steps(&two(first, then)).is_even, "{first} to {then}");
+        }
+        let drifting: Vec<f64> = (0..265).map(|row| 1.0 / (33.0 - 6.0 * f64::from(row) / 264.0)).collect();
+        assert!(!of_steps(&drifting).is_even);
+        // Jitter within half a frame, and one frame that came late for good.
+        let jitter: Vec<f64> = (0..300).map(|row: i32| (1.0 + 0.08 * f64::from(row * 7 % 5 - 2)) / 30.0).collect();
+        let late: Vec<f64> = (0..300).map(|row| if row == 90 { 1.4 / 30.0 } else { 1.0 / 30.0 }).collect();
+        assert!(of_steps(&jitter).is_even && of_steps(&late).is_even);
+        assert!(of_steps(&two(30.0, 30.0)).is_even);
     }
 
     #[test]

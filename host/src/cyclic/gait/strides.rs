@@ -3,6 +3,7 @@
 use super::events::FootEvents;
 use super::extrema::{is_whole, slope, value_at};
 use super::foot_paths::FootPaths;
+use crate::cyclic::stops::longest_without_stop;
 use crate::signal::median::median;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -87,9 +88,12 @@ pub(super) struct Units<'a> {
     pub hips: Option<&'a [Option<f64>]>,
 }
 
-/// The strides of `foot` beside `other` in which no value is missing.
+/// The strides of `foot` beside `other` in which no value is missing and the person does not stop.
 pub(super) fn strides(foot: Foot, own: FootData<'_>, other: FootData<'_>, units: Units<'_>) -> Vec<Stride> {
-    own.events.strikes.windows(2).filter_map(|pair| stride(foot, [pair[0], pair[1]], own, other, units)).collect()
+    let pairs = own.events.strikes.windows(2);
+    let all: Vec<Stride> = pairs.filter_map(|pair| stride(foot, [pair[0], pair[1]], own, other, units)).collect();
+    let longest_s = longest_without_stop(&all.iter().map(|stride| stride.stride_time_s).collect::<Vec<f64>>());
+    all.into_iter().filter(|stride| stride.stride_time_s <= longest_s).collect()
 }
 
 fn stride(

@@ -55,6 +55,21 @@ fn no_stride_goes_over_a_gap() {
     assert!(gait.strides.len() >= 4);
 }
 
+#[test]
+fn no_stride_goes_over_a_stop() {
+    let walk = swinging(0..300, 0.4, 0.5);
+    let row = |frame: u64| {
+        let angles_rad = walk.rows()[(frame.min(130) + frame.saturating_sub(250)) as usize].angles_rad;
+        AngleRow { frame, angles_rad, extra: Vec::new() }
+    };
+    let gait = of_table(&AngleTable::new((0..420).map(row).collect(), Vec::new()).unwrap(), 60.0, Scale::default());
+    let gait = gait.unwrap();
+    for means in [gait.left, gait.right] {
+        let time = means.stride_time_s.unwrap();
+        assert!((time.mean - 40.0 / 60.0).abs() < 0.02 && time.count >= 4, "{time:?}");
+    }
+}
+
 /// Noise of 3 degrees on each angle, as a detector leaves on a person of 300 pixels.
 #[test]
 fn noise_moves_events_by_less_than_a_frame_and_adds_none() {

@@ -5,8 +5,9 @@ use super::noise;
 use super::phase::{self, Unevenness};
 use super::seen::Seen;
 use super::shape::Shape;
+use super::standing::standing;
 use crate::cyclic::angle_table::{ANGLES, SPACE_ANGLES};
-use crate::cyclic::tracking::summary::LONGEST_BRIDGE_CYCLES;
+use crate::cyclic::stops::LONGEST_BRIDGE_CYCLES;
 use crate::cyclic::tracking::{Tracked, TrackedFrame, TrackingOptions};
 use crate::cyclic::turns::least_angle;
 use crate::cyclic::{AngleTable, CyclicModel};
@@ -44,8 +45,10 @@ fn finish_angles<const N: usize>(
         "frame numbers jump over more than a hundred frames for each row; cut the recording where it jumps, or track it with --online",
     )?;
     let first = phases_of(&tracked);
-    let phased = phase::fitted(&seen, first, &Shape::of_model(model));
-    let cycle_frames = seen.angles_rad.len() as f64 / (phased.phases[phased.phases.len() - 1] - phased.phases[0]).abs();
+    let stands = standing(&seen, &first);
+    let phased = phase::fitted(&seen, first, &Shape::of_model(model), &stands);
+    let moving = stands.iter().filter(|stands| !**stands).count();
+    let cycle_frames = moving as f64 / (phased.phases[phased.phases.len() - 1] - phased.phases[0]).abs();
     let stretches = seen.stretches(LONGEST_BRIDGE_CYCLES * cycle_frames);
     let mut is_known = vec![false; seen.angles_rad.len()];
     stretches.iter().for_each(|[first, last]| is_known[*first..=*last].fill(true));
@@ -55,7 +58,7 @@ fn finish_angles<const N: usize>(
         Course::new(&seen, angle, &phased, (&is_known, noise_rad.unwrap_or_else(found_rad)))
     };
     let courses: Vec<Course> = (0..N).into_par_iter().map(course).collect();
-    let (origin, uneven) = (phased.phases[0], phase::unevenness(&phased.phases));
+    let (origin, uneven) = (phased.phases[0], phase::unevenness(&phased.phases, &stands));
     for row in &mut tracked.frames {
         let frame = (row.frame - seen.first_frame) as usize;
         row.is_known = is_known[frame];

@@ -15,6 +15,7 @@ pub mod path;
 pub mod phase;
 pub mod seen;
 pub mod shape;
+pub mod standing;
 
 #[cfg(test)]
 mod tests;

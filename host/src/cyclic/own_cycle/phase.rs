@@ -27,9 +27,47 @@ pub struct Phased<const N: usize> {
     pub std_rad: [f64; N],
 }
 
-/// Fits the person's cycle and the phases to each other, from the phases of a filter on.
+/// Fits the person's cycle and the phases to each other, from the phases of a filter on. Frames in
+/// which the person `stands` are left out, and have a phase on the straight line between those
+/// beside them.
 #[must_use]
-pub fn fitted<const N: usize>(seen: &Seen<N>, mut phases: Vec<f64>, prior: &Shape<N>) -> Phased<N> {
+pub fn fitted<const N: usize>(seen: &Seen<N>, phases: Vec<f64>, prior: &Shape<N>, stands: &[bool]) -> Phased<N> {
+    if !stands.contains(&true) {
+        let (phases, expected, std_rad, _) = fitted_all(seen, phases, prior);
+        return Phased { phases, expected, std_rad };
+    }
+    let moving: Vec<usize> = (0..stands.len()).filter(|frame| !stands[*frame]).collect();
+    let angles_rad = moving.iter().map(|frame| seen.angles_rad[*frame]).collect();
+    let mut moving_phases = vec![phases[moving[0]]];
+    for (index, pair) in moving.windows(2).enumerate() {
+        let way = phases[pair[1]] - phases[pair[0]];
+        // Whole cycles over a stop are none.
+        let way = if pair[1] > pair[0] + 1 { way - way.round() } else { way };
+        moving_phases.push(moving_phases[index] + way);
+    }
+    let seen = Seen { first_frame: seen.first_frame, angles_rad };
+    let (moving_phases, _, std_rad, shape) = fitted_all(&seen, moving_phases, prior);
+    let phases = spread_over_stops(&moving, &moving_phases, stands.len());
+    Phased { expected: along(&shape, &phases), phases, std_rad }
+}
+
+/// Phases of all frames of those of `moving` frames.
+fn spread_over_stops(moving: &[usize], phases: &[f64], count: usize) -> Vec<f64> {
+    let mut all = vec![phases[0]; moving[0]];
+    for (pair, ends) in moving.windows(2).zip(phases.windows(2)) {
+        let frames = pair[1] - pair[0];
+        all.extend((0..frames).map(|k| ends[0] + (ends[1] - ends[0]) * k as f64 / frames as f64));
+    }
+    all.resize(count, phases[phases.len() - 1]);
+    all
+}
+
+/// Phases, the person's cycle in each frame, its distance from what was seen, and that cycle.
+fn fitted_all<const N: usize>(
+    seen: &Seen<N>,
+    mut phases: Vec<f64>,
+    prior: &Shape<N>,
+) -> (Vec<f64>, Expected<N>, [f64; N], Shape<N>) {
     let mut shape = prior.fitted(seen, &phases);
     let mut std_rad = spread(seen, &along(&shape, &phases));
     phases = path::likeliest(seen, &shape, &std_rad, median_step(&phases));
@@ -45,7 +83,7 @@ pub fn fitted<const N: usize>(seen: &Seen<N>, mut phases: Vec<f64>, prior: &Shap
         expected = along(&shape, &phases);
         std_rad = spread(seen, &expected);
     }
-    Phased { phases, expected, std_rad }
+    (phases, expected, std_rad, shape)
 }
 
 /// Cycles from frame to frame at a frame.
@@ -67,9 +105,22 @@ pub struct Unevenness {
 
 /// The unevenness of a recording's phases in each frame, against the mean progress in the cycle
 /// around it. The first and the last half cycle have one of their own, against the nearest whole
-/// cycle: they are fitted from one side. `None` for less than a cycle.
+/// cycle: they are fitted from one side. Frames in which the person `stands` are left out, and have
+/// that of the frame before them. `None` for less than a cycle.
 #[must_use]
-pub fn unevenness(phases: &[f64]) -> Option<Vec<Unevenness>> {
+pub fn unevenness(phases: &[f64], stands: &[bool]) -> Option<Vec<Unevenness>> {
+    let pairs = || phases.iter().zip(stands);
+    let moving: Vec<f64> = pairs().filter(|(_, stands)| !**stands).map(|(phase, _)| *phase).collect();
+    let of_moving = unevenness_of_moving(&moving)?;
+    let mut passed: usize = 0;
+    let of_all = pairs().map(|(_, stands)| {
+        passed += usize::from(!*stands);
+        of_moving[passed.saturating_sub(1)]
+    });
+    Some(of_all.collect())
+}
+
+fn unevenness_of_moving(phases: &[f64]) -> Option<Vec<Unevenness>> {
     let half = (0.5 / median_step(phases)).round().max(1.0) as usize;
     let last = phases.len().checked_sub(half + 1).filter(|last| *last >= half)?;
     let is_end = |frame: usize| frame < half || frame > last;

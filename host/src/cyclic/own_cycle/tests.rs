@@ -264,6 +264,32 @@ fn a_pause_is_no_cycle() {
     assert!(paused.abs() < 0.1, "{paused}");
 }
 
+/// Stops in mid-stride of two seconds, half of the recording, and three quarters.
+#[test]
+fn cycles_and_cadence_are_those_of_the_walk_about_a_stop() {
+    let model = CyclicModel::from_option("walking").unwrap();
+    let person = SyntheticPerson::draw(&model, 30.0, 4).unwrap();
+    let noise = person.measured(60, 1.0_f64.to_radians(), 0.0, 3).unwrap();
+    for stop in [60, 300, 900] {
+        let moment = |frame: u64| frame.min(150) as f64 + frame.saturating_sub(150 + stop) as f64;
+        let angles = (0..300 + stop).map(|frame| {
+            let off_rad = |angle: usize| {
+                let row = &noise.rows()[frame as usize];
+                least_angle(row.angles_rad[angle].unwrap() - person.pose_rad(frame as f64)[angle])
+            };
+            let pose_rad = person.pose_rad(moment(frame));
+            std::array::from_fn(|angle| Some(pose_rad[angle] + off_rad(angle)))
+        });
+        let table = AngleTable::from_angles(0, &angles.collect::<Vec<_>>()).unwrap();
+        let run = finished(&model, &table);
+        let summary = crate::cyclic::tracking::Summary::of(&run);
+        let [cycles, per_min] = [299.0, 1800.0].map(|frames| frames / person.cycle_frames());
+        assert!((summary.cycles - cycles).abs() < 0.3, "{stop}: {} instead of {cycles}", summary.cycles);
+        let cadence = summary.cadence_per_min.unwrap();
+        assert!((cadence / per_min - 1.0).abs() < 0.02, "{stop}: {cadence} instead of {per_min}");
+    }
+}
+
 #[test]
 fn frame_numbers_that_must_be_wrong_are_refused() {
     let model = CyclicModel::from_option("walking").unwrap();

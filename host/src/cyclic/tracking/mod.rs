@@ -1,7 +1,7 @@
 //! Tracking a recording with one of the core's cyclic filters.
 
 pub mod bank;
-mod cycle_times;
+pub(in crate::cyclic) mod cycle_times;
 pub mod filter;
 mod kept;
 pub mod measurements;

@@ -2,6 +2,7 @@
 
 use super::cycle_times::CycleTimes;
 use super::run::{Tracked, TrackedFrame};
+use crate::cyclic::stops::LONGEST_BRIDGE_CYCLES;
 use crate::resume::{long_real, real};
 use serde::Serialize;
 use sinew_core::saved_state::{SavedState, StateVisitor};
@@ -9,10 +10,6 @@ use sinew_core::saved_state::{SavedState, StateVisitor};
 /// Cycles without which there is no cadence: with less, what one cycle differs from the next
 /// cannot be seen.
 pub const MIN_CYCLES: f64 = 2.0;
-
-/// Longest time without any measurement that is bridged, cycles. Beyond it the person may have
-/// stopped: nothing is said, and the cycles on both sides are counted apart.
-pub const LONGEST_BRIDGE_CYCLES: f64 = 1.0;
 
 /// Summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
