@@ -248,7 +248,7 @@ mod tests {
     fn few_cycles_of_joints_that_move_less_far_name_the_range() {
         let knee = |range_deg: f64| {
             let pose = |row: u32| {
-                std::array::from_fn(|angle| Some(f64::from(u8::from(angle == 4 && row % 2 == 0)) * range_deg))
+                std::array::from_fn(|angle| Some(f64::from(u8::from(angle == 4 && row.is_multiple_of(2))) * range_deg))
             };
             let angles_deg = (0..100).map(pose).collect();
             let series = AnatomicalSeries { frames: (0..100).collect(), angles_deg, rate_hz: 30.0 };

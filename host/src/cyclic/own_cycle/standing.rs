@@ -22,12 +22,12 @@ pub fn standing<const N: usize>(seen: &Seen<N>, phases: &[f64]) -> Vec<bool> {
     for frame in half..=last {
         stands[frame] = phases[frame + half] - phases[frame - half] < STANDING_SHARE * usual_way;
     }
-    let moving_rad2 = variance_rad2(seen, (0..stands.len()).filter(|frame| !stands[*frame]));
+    let moving_rad2 = variance_rad2(seen, &(0..stands.len()).filter(|frame| !stands[*frame]));
     let mut from = 0;
     while from < stands.len() {
         let to = from + stands[from..].iter().take_while(|stands| **stands).count();
         let is_short = ((to - from) as f64) < LONGEST_BRIDGE_CYCLES * cycle_frames;
-        if is_short || variance_rad2(seen, from..to) >= STANDING_SHARE.powi(2) * moving_rad2 {
+        if is_short || variance_rad2(seen, &(from..to)) >= STANDING_SHARE.powi(2) * moving_rad2 {
             stands[from..to].fill(false);
         }
         from = to + 1;
@@ -45,7 +45,7 @@ fn usual_cycle(phases: &[f64]) -> Option<f64> {
 }
 
 /// Sum of the variances of all angles over these frames.
-fn variance_rad2<const N: usize>(seen: &Seen<N>, frames: impl Iterator<Item = usize> + Clone) -> f64 {
+fn variance_rad2<const N: usize>(seen: &Seen<N>, frames: &(impl Iterator<Item = usize> + Clone)) -> f64 {
     let of_angle = |angle: usize| {
         let values = || frames.clone().filter_map(|frame| seen.angles_rad[frame][angle]);
         let count = (values().count() as f64).max(1.0);
