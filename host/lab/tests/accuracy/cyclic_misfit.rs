@@ -14,9 +14,9 @@ const OTHERS: [&str; 2] = ["cmu-expmap/train_basketball_signal_3.txt", "cmu-expm
 /// Runners of another source, by the model of walking, with the least share of the truth inside the
 /// 90 % band at each noise. The first second, in which nothing is known of the runner, is included.
 const RUNNERS: [(&str, [f64; 3]); 3] = [
-    ("bandai/dataset-2_run_active_001.bvh", [0.88, 0.82, 0.76]),
-    ("bandai/dataset-2_run_active_002.bvh", [0.90, 0.82, 0.76]),
-    ("bandai/dataset-2_run_exhausted_001.bvh", [0.90, 0.87, 0.70]),
+    ("bandai/dataset-2_run_active_001.bvh", [0.88, 0.80, 0.75]),
+    ("bandai/dataset-2_run_active_002.bvh", [0.89, 0.84, 0.73]),
+    ("bandai/dataset-2_run_exhausted_001.bvh", [0.89, 0.87, 0.73]),
 ];
 /// Noise, degrees.
 const SIGMAS_DEG: [f64; 3] = [1.5, 6.0, 29.0];
@@ -57,21 +57,30 @@ fn another_motion_is_flagged() {
     }
 }
 
+/// Shares inside the 90 % band and, from the second second on, with `misfit`: means over the seeds.
+fn runner_shares(file: &str, sigma_deg: f64) -> Option<[f64; 2]> {
+    let mut sums = [0.0; 2];
+    for seed in SEEDS {
+        let (tracked, inside) = tracked(file, sigma_deg, seed)?;
+        let later = tracked.frames.iter().skip(60);
+        let flagged = later.clone().filter(|frame| frame.estimate.misfit).count() as f64 / later.count() as f64;
+        sums = [sums[0] + inside, sums[1] + flagged];
+    }
+    Some(sums.map(|sum| sum / SEEDS.count() as f64))
+}
+
 #[test]
 fn the_band_of_a_runner_widens() {
+    let mut found = Vec::new();
     for (file, least) in RUNNERS {
         for (sigma_deg, least) in SIGMAS_DEG.into_iter().zip(least) {
-            let of_seed = |seed| {
-                let (tracked, inside) = tracked(file, sigma_deg, seed)?;
-                let later = tracked.frames.iter().skip(60);
-                let flagged = later.clone().filter(|frame| frame.estimate.misfit).count() as f64 / later.count() as f64;
-                Some([inside, flagged])
-            };
-            let Some(runs) = SEEDS.map(of_seed).collect::<Option<Vec<_>>>() else { return };
-            let [inside, flagged] = [0, 1].map(|at| runs.iter().map(|run| run[at]).sum::<f64>() / runs.len() as f64);
+            let Some([inside, flagged]) = runner_shares(file, sigma_deg) else { return };
             println!("{file}, sigma {sigma_deg}: {inside:.3} inside, from the second second on {flagged:.2} flagged");
-            assert!((least..0.97).contains(&inside), "{file}, sigma {sigma_deg}: {inside}");
+            found.push((file, sigma_deg, inside, least));
         }
+    }
+    for (file, sigma_deg, inside, least) in found {
+        assert!((least..0.97).contains(&inside), "{file}, sigma {sigma_deg}: {inside}");
     }
 }
 
