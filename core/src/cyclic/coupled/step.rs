@@ -25,14 +25,7 @@ impl<const N: usize> CoupledFilter<N> {
             self.rival.hypothesis.predict(model, step_frames);
         }
         self.unwatched_frames += step_frames;
-        let cycles = step_frames * model.mean_cycle_velocity();
-        self.misfit_cycles = max(self.misfit_cycles - cycles, 0.0);
-        if self.second_speed_cycles > 0.0 {
-            self.second_speed_cycles = max(self.second_speed_cycles - cycles, 0.0);
-            if self.second_speed_cycles == 0.0 {
-                self.rival.end();
-            }
-        }
+        self.misfit_cycles = max(self.misfit_cycles - step_frames * model.mean_cycle_velocity(), 0.0);
     }
 
     /// Corrects by the measured angles, after the grid was updated. The better of leader and rival
@@ -52,9 +45,9 @@ impl<const N: usize> CoupledFilter<N> {
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn correct_hypotheses(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> FrameInnovation {
         let (winding, noise) = (&self.winding, &mut self.noise);
-        let learns = !self.rival.exists() || self.second_speed_cycles > 0.0;
+        let learns = !self.rival.exists();
         let innovation = self.leader.correct(model, measurement, winding, (noise, learns));
-        if !self.rival.exists() {
+        if learns {
             return innovation;
         }
         let other = self.rival.hypothesis.correct(model, measurement, winding, (noise, false));

@@ -22,7 +22,7 @@ impl<const N: usize> CoupledFilter<N> {
         let frames = self.unwatched_frames;
         if self.leader.pair.cc > LINEAR_CYCLES * LINEAR_CYCLES {
             self.searching = true;
-            self.end_rival();
+            self.rival.end();
         }
         if !self.searching && frames < GRID_INTERVAL_FRAMES {
             return None;
@@ -58,14 +58,11 @@ impl<const N: usize> CoupledFilter<N> {
     /// so its likelihood says nothing.
     fn compare(&mut self, model: &CoupledModel<'_>, mode: &PhaseMode) {
         if !is_elsewhere(mode.position, self.leader.position) || !is_on(Part::Rival) {
-            if self.second_speed_cycles == 0.0 {
-                self.end_rival();
-            }
+            self.rival.end();
             return;
         }
         if !self.rival.is_at(mode) {
             let number = self.next_number();
-            self.second_speed_cycles = 0.0;
             self.rival.begin_at(model, (mode, number), &self.leader);
         }
         let misfits = self.leader.spread_scale.is_doubtful();
@@ -96,14 +93,8 @@ impl<const N: usize> CoupledFilter<N> {
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub(super) fn lead_by_rival(&mut self) {
         core::mem::swap(&mut self.leader, &mut self.rival.hypothesis);
-        self.end_rival();
-        self.winding = Winding::new();
-    }
-
-    /// Without a rival from here on.
-    const fn end_rival(&mut self) {
-        self.second_speed_cycles = 0.0;
         self.rival.end();
+        self.winding = Winding::new();
     }
 
     /// Number of the hypothesis that begins now.

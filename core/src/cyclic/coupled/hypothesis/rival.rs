@@ -1,5 +1,4 @@
-//! A second hypothesis: another place in the cycle, which the grid names, or another speed at the
-//! start.
+//! A second hypothesis: another place in the cycle, which the grid names.
 //!
 //! Leader and rival see the same frames, and each learns its person. Their log-likelihoods, summed
 //! since the rival began, decide which of them leads: the sequential probability ratio test of
@@ -70,14 +69,6 @@ impl<const N: usize> Rival<N> {
     /// Begins at the grid's mode with an unknown person, as the hypothesis of that number.
     pub(crate) fn begin_at(&mut self, model: &CoupledModel<'_>, at: (&PhaseMode, u32), leader: &Hypothesis<N>) {
         self.hypothesis.begin_at(model, at, leader);
-        (self.exists, self.log_odds) = (true, 0.0);
-    }
-
-    /// Begins at the leader's place with its person, so many times as fast.
-    pub(crate) fn begin_faster(&mut self, leader: &Hypothesis<N>, times: f32) {
-        self.hypothesis = *leader;
-        self.hypothesis.velocity *= times;
-        self.hypothesis.number = leader.number.wrapping_add(1);
         (self.exists, self.log_odds) = (true, 0.0);
     }
 
