@@ -446,7 +446,7 @@ mod tests {
         let off_m: Vec<f32> = pelvis_m.iter().map(|found_m| (found_m - wanted_m).norm()).collect();
         assert!(off_m[0] > 0.5 && off_m[7] < 0.15, "{off_m:?}");
         // A wall that no body explains is no other place.
-        let wall = || (0..300).map(|at| Vec3::new(0.05 * (at % 20) as f32, 0.1 * (at / 20) as f32 - 1.0, 5.0));
+        let wall = || (0..300).map(|at| Vec3::new(0.3 * (at % 20) as f32 - 3.0, 0.2 * (at / 20) as f32 - 1.5, 5.0));
         for _ in 0..10 {
             stream.update(wall(), FrameTime::Next, UNSEEN).unwrap();
         }
