@@ -13,8 +13,8 @@ use sinew_core::pik::processes::stick::StickSight;
 use sinew_core::skeleton::full_body::BODY_ANGLES;
 
 /// Begins `stream` with the pose found in the first of these numbered frames, or with its opposite.
-/// The one by which the points of the first [`decision_frames`] are likelier wins, each tracked with
-/// the guided model. The margin in the answer is the mean over all of these points.
+/// The one by which the points of the first [`decision_frames`] are likelier wins, each tracked
+/// with the guided model. The margin in the answer is the mean over all of these points.
 ///
 /// # Errors
 /// As [`BodyStream::begin_from`].

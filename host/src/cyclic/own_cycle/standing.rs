@@ -4,14 +4,14 @@ use super::seen::Seen;
 use crate::cyclic::stops::{LONGEST_BRIDGE_CYCLES, usual};
 use crate::cyclic::tracking::cycle_times::CycleTimes;
 
-/// Share of the usual way, and of the angles' usual standard deviation, below which a person stands.
-/// Chosen: from half of the way on it is a slow cycle.
+/// Share of the usual way, and of the angles' usual standard deviation, below which a person
+/// stands. Chosen: from half of the way on it is a slow cycle.
 const STANDING_SHARE: f64 = 0.5;
 
-/// Whether the person stands in each frame. By `phases`, those of a filter in cycles, less than half
-/// of the usual way is passed in the time of a usual cycle around it, for a cycle or longer. By what
-/// was seen, the angles have less than half of their standard deviation elsewhere: a filter that is
-/// lost stands, too. The first and the last half cycle are no stop.
+/// Whether the person stands in each frame. By `phases`, those of a filter in cycles, less than
+/// half of the usual way is passed in the time of a usual cycle around it, for a cycle or longer.
+/// By what was seen, the angles have less than half of their standard deviation elsewhere: a filter
+/// that is lost stands, too. The first and the last half cycle are no stop.
 #[must_use]
 pub fn standing<const N: usize>(seen: &Seen<N>, phases: &[f64]) -> Vec<bool> {
     let mut stands = vec![false; phases.len()];
