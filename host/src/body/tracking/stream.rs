@@ -249,7 +249,9 @@ impl BodyStream {
             Phase::Tracking => threads.install(|| filter.step(&seen.blocks, moment.dt_s, stick)),
         };
         self.phase = Phase::Tracking;
-        if self.is_lost(seen) && self.finds_anew(seen)? {
+        if let Some(away_share) = self.lost_share(seen)
+            && self.finds_anew(seen, away_share)?
+        {
             self.begun_anew = Some(moment.frame);
             self.phase = Phase::Tracking;
             let (threads, filter) = (&self.threads, &self.filter);
@@ -264,25 +266,23 @@ impl BodyStream {
         self.begun_anew
     }
 
-    /// Whether for half a second most points were away from the body.
-    fn is_lost(&mut self, seen: &SeenPoints) -> bool {
+    /// Share of these points that are away from the body, where for half a second most were.
+    fn lost_share(&mut self, seen: &SeenPoints) -> Option<f32> {
         if !seen.show_a_body() {
-            return false;
+            return None;
         }
         let (pose_rad, _) = self.filter.before_deadband();
-        let is_away = unexplained_share(self.filter.scene(), &pose_rad, &seen.points_m) > MOST_AWAY;
-        self.away_frames = if is_away { self.away_frames + 1 } else { 0 };
-        self.away_frames >= decision_frames(self.options.rate_hz)
+        let share = unexplained_share(self.filter.scene(), &pose_rad, &seen.points_m);
+        self.away_frames = if share > MOST_AWAY { self.away_frames + 1 } else { 0 };
+        (self.away_frames >= decision_frames(self.options.rate_hz)).then_some(share)
     }
 
     /// Begins anew at the pose found in these points, where it explains most of what the tracked
     /// one does not.
-    fn finds_anew(&mut self, seen: &SeenPoints) -> Result<bool> {
+    fn finds_anew(&mut self, seen: &SeenPoints, away_share: f32) -> Result<bool> {
         self.away_frames = 0;
-        let (pose_rad, _) = self.filter.before_deadband();
-        let away = unexplained_share(self.filter.scene(), &pose_rad, &seen.points_m);
         let found_rad = self.found_in(&seen.points_m)?.angles_rad;
-        if unexplained_share(self.filter.scene(), &found_rad, &seen.points_m) > LEFT_AWAY * away {
+        if unexplained_share(self.filter.scene(), &found_rad, &seen.points_m) > LEFT_AWAY * away_share {
             return Ok(false);
         }
         self.begin_at(found_rad)?;
