@@ -19,7 +19,7 @@ use std::path::PathBuf;
 /// Model or options that the states are said to belong to.
 const FINGERPRINT: u32 = 7;
 /// Checksums of the layouts of `VERSION`: which numbers, in which order, within which ranges.
-const CYCLIC_LAYOUT: u32 = 736_406_768;
+const CYCLIC_LAYOUT: u32 = 2_806_404_174;
 const ARM_LAYOUT: u32 = 2_418_859_162;
 
 /// A walker after a second and a half.
@@ -125,7 +125,7 @@ fn the_layouts_are_those_of_the_version() {
     let found = (layout(&mut |sum| walker().visit(sum)), layout(&mut |sum| arm().visit(sum)));
     assert_eq!(
         (VERSION, found),
-        (6, (CYCLIC_LAYOUT, ARM_LAYOUT)),
+        (7, (CYCLIC_LAYOUT, ARM_LAYOUT)),
         "a layout changed: raise `saved_state::VERSION`, and write it and the new checksums here"
     );
 }

@@ -36,7 +36,9 @@ pub enum Part {
     Secant,
     /// The second hypothesis, where the grid names another place.
     Rival,
-    /// Giving way to it without a comparison, of a filter that does not fit or stands.
+    /// The second speed of a start, until a cycle is seen.
+    SecondSpeed,
+    /// Giving way to a rival without a comparison, of a filter that does not fit or stands.
     GivingWay,
     /// The wider prior of an angle that is far from the mean pose in the first row.
     FirstRowOffset,
@@ -49,7 +51,7 @@ pub enum Part {
 #[cfg(feature = "ablation")]
 impl Part {
     /// All parts.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::NoiseScale,
         Self::SpreadScale,
         Self::Tempering,
@@ -58,6 +60,7 @@ impl Part {
         Self::AngleGate,
         Self::Secant,
         Self::Rival,
+        Self::SecondSpeed,
         Self::GivingWay,
         Self::FirstRowOffset,
         Self::FirstRowNoise,

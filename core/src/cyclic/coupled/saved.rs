@@ -12,6 +12,7 @@ impl<const N: usize> SavedState for CoupledFilter<N> {
         visitor.real(&mut self.unwatched_frames, &NOT_NEGATIVE);
         visitor.flag(&mut self.searching);
         visitor.real(&mut self.misfit_cycles, &(-1.0..=1.0));
+        visitor.real(&mut self.second_speed_cycles, &(0.0..=1.0));
         self.noise.visit(visitor);
         visitor.reals(&mut self.angles_rad, &(-PI..=PI));
         for turns in &mut self.turns {

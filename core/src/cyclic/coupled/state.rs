@@ -39,7 +39,7 @@ use crate::math::wrap_angle;
 pub struct CoupledFilter<const N: usize> {
     /// Place and person of the estimate.
     pub(super) leader: Hypothesis<N>,
-    /// Another place, where the grid names one.
+    /// The start's second speed, then another place where the grid names one.
     pub(super) rival: Rival<N>,
     pub(super) grid: StoredGrid,
     /// Frames since the grid last moved.
@@ -48,6 +48,8 @@ pub struct CoupledFilter<const N: usize> {
     pub(super) searching: bool,
     /// Cycles of the model for which the rows still count as another motion.
     pub(super) misfit_cycles: f32,
+    /// Cycles of the model for which the rival is the start's second speed.
+    pub(super) second_speed_cycles: f32,
     pub(super) noise: MeasurementNoise<N>,
     pub(super) angles_rad: [f32; N],
     pub(super) turns: [i32; N],
@@ -71,6 +73,7 @@ impl<const N: usize> CoupledFilter<N> {
             unwatched_frames: 0.0,
             searching: false,
             misfit_cycles: 0.0,
+            second_speed_cycles: 0.0,
             noise: MeasurementNoise::zero(),
             angles_rad: [0.0; N],
             turns: [0; N],

@@ -25,7 +25,14 @@ impl<const N: usize> CoupledFilter<N> {
             self.rival.hypothesis.predict(model, step_frames);
         }
         self.unwatched_frames += step_frames;
-        self.misfit_cycles = max(self.misfit_cycles - step_frames * model.mean_cycle_velocity(), 0.0);
+        let cycles = step_frames * model.mean_cycle_velocity();
+        self.misfit_cycles = max(self.misfit_cycles - cycles, 0.0);
+        if self.second_speed_cycles > 0.0 {
+            self.second_speed_cycles = max(self.second_speed_cycles - cycles, 0.0);
+            if self.second_speed_cycles == 0.0 {
+                self.rival.end();
+            }
+        }
     }
 
     /// Corrects by the measured angles, after the grid was updated. The better of leader and rival
@@ -41,16 +48,17 @@ impl<const N: usize> CoupledFilter<N> {
         self.estimate(model, innovation.log_likelihood, innovation.outlier)
     }
 
-    /// Corrects leader and rival; returns the innovation of the one that leads then.
+    /// Corrects leader and rival; returns the innovation of the one that leads then. The rival
+    /// comes first, so that both are judged by the same noise: the leader's correction learns it.
     #[cfg_attr(target_arch = "x86_64", inline(always))]
     fn correct_hypotheses(&mut self, model: &CoupledModel<'_>, measurement: &AngleMeasurement<N>) -> FrameInnovation {
         let (winding, noise) = (&self.winding, &mut self.noise);
-        let learns = !self.rival.exists();
-        let innovation = self.leader.correct(model, measurement, winding, (noise, learns));
-        if learns {
-            return innovation;
+        if !self.rival.exists() {
+            return self.leader.correct(model, measurement, winding, (noise, true));
         }
         let other = self.rival.hypothesis.correct(model, measurement, winding, (noise, false));
+        let learns = self.second_speed_cycles > 0.0;
+        let innovation = self.leader.correct(model, measurement, winding, (noise, learns));
         if !self.rival.beats(&other, &innovation) {
             return innovation;
         }

@@ -176,6 +176,57 @@ fn swinging() -> Box<HumanModelTable> {
     swinging
 }
 
+/// Runs of 40 that are off by a fifth of a cycle after the first, of a person so many times as fast
+/// as the mean whose noise is half a radian.
+fn lost_of_40(model: &CoupledModel<'_>, times: f32) -> i32 {
+    let angle = |i: usize, position| if i == 12 { person(0, position) } else { person(i, position) };
+    let mut lost = 0;
+    for seed in 0..40 {
+        let mut stream = Stream::new(seed, 0, 0);
+        let mut seen = |position: f32| {
+            let angles = core::array::from_fn(|i| Some(angle(i, position) + 0.5 * stream.normal()));
+            AngleMeasurement::new(&angles, 0.5).unwrap()
+        };
+        let mut filter = CoupledFilter::<N>::new(model, &seen(0.0), Some(0.0), None).unwrap();
+        let mut most: f32 = 0.0;
+        for (position, frame) in walked(180, |_| times).into_iter().zip(0..) {
+            let estimate = filter.step(model, &seen(position));
+            let way = position_difference(estimate.cycle_position, wrap_position(position)).abs();
+            most = if frame < 65 { 0.0 } else { most.max(way) };
+        }
+        lost += i32::from(most > 0.2);
+    }
+    lost
+}
+
+#[test]
+fn a_start_reaches_people_who_are_far_faster_than_the_mean() {
+    let table = swinging();
+    let model = table.model().unwrap();
+    for (times, most) in [(0.7, 2), (1.0, 1), (1.3, 1), (1.6, 2)] {
+        let lost = lost_of_40(&model, times);
+        assert!(lost <= most, "{times} times as fast: {lost} of 40 lost");
+    }
+}
+
+/// The second speed is no rival of the grid's: it ends after a cycle, and circles have none.
+#[test]
+fn the_second_speed_of_a_start_lasts_one_cycle() {
+    for (table, lasts) in [(swinging(), true), (table(0.001, 9), false)] {
+        let model = table.model().unwrap();
+        let angles =
+            |frame: u16| core::array::from_fn(|i| Some(table.mean_pose_rad[usize::from(frame) * 100 / 65 % 100][i]));
+        let mut filter = CoupledFilter::<N>::new(&model, &exact(&angles(0)), Some(0.0), None).unwrap();
+        for frame in 1..=70 {
+            // By the sum of steps the 65th frame may be the first or the last one.
+            if frame != 66 {
+                assert_eq!(filter.rival.exists(), lasts && frame < 66, "frame {frame}");
+            }
+            filter.step(&model, &AngleMeasurement::new(&angles(frame), 2.0).unwrap());
+        }
+    }
+}
+
 /// Angle of a motion there and back, as of squats: its ways differ by a lag of some angles.
 fn there_and_back(index: usize, position: f32) -> f32 {
     (0.2 + 0.05 * index as f32) * (TAU * (position + 0.004 * (index % 4) as f32)).cos()

@@ -22,7 +22,7 @@ impl<const N: usize> CoupledFilter<N> {
         let frames = self.unwatched_frames;
         if self.leader.pair.cc > LINEAR_CYCLES * LINEAR_CYCLES {
             self.searching = true;
-            self.rival.end();
+            self.end_rival();
         }
         if !self.searching && frames < GRID_INTERVAL_FRAMES {
             return None;
@@ -58,11 +58,14 @@ impl<const N: usize> CoupledFilter<N> {
     /// so its likelihood says nothing.
     fn compare(&mut self, model: &CoupledModel<'_>, mode: &PhaseMode) {
         if !is_elsewhere(mode.position, self.leader.position) || !is_on(Part::Rival) {
-            self.rival.end();
+            if self.second_speed_cycles == 0.0 {
+                self.end_rival();
+            }
             return;
         }
         if !self.rival.is_at(mode) {
             let number = self.next_number();
+            self.second_speed_cycles = 0.0;
             self.rival.begin_at(model, (mode, number), &self.leader);
         }
         let misfits = self.leader.spread_scale.is_doubtful();
@@ -93,8 +96,14 @@ impl<const N: usize> CoupledFilter<N> {
     #[cfg_attr(not(target_arch = "x86_64"), inline(never))]
     pub(super) fn lead_by_rival(&mut self) {
         core::mem::swap(&mut self.leader, &mut self.rival.hypothesis);
-        self.rival.end();
+        self.end_rival();
         self.winding = Winding::new();
+    }
+
+    /// Without a rival from here on.
+    const fn end_rival(&mut self) {
+        self.second_speed_cycles = 0.0;
+        self.rival.end();
     }
 
     /// Number of the hypothesis that begins now.

@@ -13,7 +13,7 @@ const SIGMAS_DEG: [f64; 3] = [1.5, 6.0, 29.0];
 /// Repetitions after something else.
 const AFTER_SEEDS: [u64; 2] = [1, 2];
 /// Repetitions of a tempo.
-const TEMPO_SEEDS: [u64; 3] = [1, 2, 3];
+const TEMPO_SEEDS: [u64; 10] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10];
 
 fn heading() -> Vec<String> {
     line(["", "sigma 1.5 degrees", "sigma 6", "sigma 29"])

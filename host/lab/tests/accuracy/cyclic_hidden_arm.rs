@@ -12,7 +12,7 @@ use sinew_lab::cyclic::other_sources::WALKS;
 use sinew_lab::cyclic::protocol::measurements;
 
 /// Noise, degrees, with the mean error of upper arm and forearm while they are hidden, degrees.
-const HIDDEN: [(f64, f64); 3] = [(1.0, 3.38), (3.0, 3.12), (6.0, 3.12)];
+const HIDDEN: [(f64, f64); 3] = [(1.0, 3.11), (3.0, 2.99), (6.0, 3.08)];
 /// Relative room of these numbers.
 const ROOM: f64 = 0.07;
 /// Upper arm and forearm of each side.
@@ -45,6 +45,7 @@ fn a_hidden_arm_goes_on_as_the_person_swings_it() {
     let Some(data) = shared_data::in_release("mocap") else { return };
     let folder = tempfile::tempdir().unwrap();
     let list = list(&data, folder.path(), &WALKS);
+    let mut found_deg = Vec::new();
     for (sigma_deg, expected_deg) in HIDDEN {
         let mut errors = Vec::new();
         for cuts in list.cuts().chunk_by(|before, after| before.file == after.file) {
@@ -56,6 +57,9 @@ fn a_hidden_arm_goes_on_as_the_person_swings_it() {
         }
         let mean_deg = errors.iter().sum::<f64>() / errors.len() as f64;
         println!("sigma {sigma_deg}: a hidden arm is {mean_deg:.2} degrees off, {} runs", errors.len());
+        found_deg.push((sigma_deg, mean_deg, expected_deg));
+    }
+    for (sigma_deg, mean_deg, expected_deg) in found_deg {
         assert!((mean_deg / expected_deg - 1.0).abs() < ROOM, "sigma {sigma_deg}: {mean_deg}");
     }
 }

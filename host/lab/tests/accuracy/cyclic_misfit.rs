@@ -14,21 +14,24 @@ const OTHERS: [&str; 2] = ["cmu-expmap/train_basketball_signal_3.txt", "cmu-expm
 /// Runners of another source, by the model of walking, with the least share of the truth inside the
 /// 90 % band at each noise. The first second, in which nothing is known of the runner, is included.
 const RUNNERS: [(&str, [f64; 3]); 3] = [
-    ("bandai/dataset-2_run_active_001.bvh", [0.88, 0.82, 0.76]),
-    ("bandai/dataset-2_run_active_002.bvh", [0.90, 0.82, 0.76]),
-    ("bandai/dataset-2_run_exhausted_001.bvh", [0.90, 0.87, 0.70]),
+    ("bandai/dataset-2_run_active_001.bvh", [0.88, 0.80, 0.75]),
+    ("bandai/dataset-2_run_active_002.bvh", [0.89, 0.84, 0.73]),
+    ("bandai/dataset-2_run_exhausted_001.bvh", [0.89, 0.87, 0.73]),
 ];
 /// Noise, degrees.
 const SIGMAS_DEG: [f64; 3] = [1.5, 6.0, 29.0];
 
+/// Seeds of the noise of the runners.
+const SEEDS: std::ops::RangeInclusive<u64> = 1..=5;
+
 /// A recording tracked by the model of walking, with what is inside the 90 % band.
-fn tracked(file: &str, sigma_deg: f64) -> Option<(Tracked, f64)> {
+fn tracked(file: &str, sigma_deg: f64, seed: u64) -> Option<(Tracked, f64)> {
     let path = shared_data::in_release("mocap")?.join(file);
     let options = RecordingOptions { rate_hz: Some(60.0), ..RecordingOptions::default() };
     let truth = angles(&path, &options).unwrap().table;
     let options =
         TrackingOptions { sigma_rad: sigma_deg.to_radians(), rate_hz: Some(60.0), ..TrackingOptions::default() };
-    let seen = measurements(&truth, Protocol::Noisy, options.sigma_rad, 1);
+    let seen = measurements(&truth, Protocol::Noisy, options.sigma_rad, seed);
     let tracked = track(&seen, &CyclicModel::from_option("walking").unwrap(), &options).unwrap();
     let (inside, _) = Errors::of(&tracked, &truth).inside_90();
     Some((tracked, inside))
@@ -36,7 +39,7 @@ fn tracked(file: &str, sigma_deg: f64) -> Option<(Tracked, f64)> {
 
 /// Share of the rows with `misfit`.
 fn misfit_share(file: &str, sigma_deg: f64) -> Option<f64> {
-    let (tracked, inside) = tracked(file, sigma_deg)?;
+    let (tracked, inside) = tracked(file, sigma_deg, 1)?;
     let misfits = tracked.frames.iter().filter(|frame| frame.estimate.misfit).count();
     let share = misfits as f64 / tracked.frames.len() as f64;
     println!("{file}, sigma {sigma_deg}: {:.0} % flagged, {:.0} % inside", 100.0 * share, 100.0 * inside);
@@ -54,16 +57,30 @@ fn another_motion_is_flagged() {
     }
 }
 
+/// Shares inside the 90 % band and, from the second second on, with `misfit`: means over the seeds.
+fn runner_shares(file: &str, sigma_deg: f64) -> Option<[f64; 2]> {
+    let mut sums = [0.0; 2];
+    for seed in SEEDS {
+        let (tracked, inside) = tracked(file, sigma_deg, seed)?;
+        let later = tracked.frames.iter().skip(60);
+        let flagged = later.clone().filter(|frame| frame.estimate.misfit).count() as f64 / later.count() as f64;
+        sums = [sums[0] + inside, sums[1] + flagged];
+    }
+    Some(sums.map(|sum| sum / SEEDS.count() as f64))
+}
+
 #[test]
 fn the_band_of_a_runner_widens() {
+    let mut found = Vec::new();
     for (file, least) in RUNNERS {
         for (sigma_deg, least) in SIGMAS_DEG.into_iter().zip(least) {
-            let Some((tracked, inside)) = tracked(file, sigma_deg) else { return };
-            let later = tracked.frames.iter().skip(60);
-            let flagged = later.clone().filter(|frame| frame.estimate.misfit).count() as f64 / later.count() as f64;
+            let Some([inside, flagged]) = runner_shares(file, sigma_deg) else { return };
             println!("{file}, sigma {sigma_deg}: {inside:.3} inside, from the second second on {flagged:.2} flagged");
-            assert!((least..0.97).contains(&inside), "{file}, sigma {sigma_deg}: {inside}");
+            found.push((file, sigma_deg, inside, least));
         }
+    }
+    for (file, sigma_deg, inside, least) in found {
+        assert!((least..0.97).contains(&inside), "{file}, sigma {sigma_deg}: {inside}");
     }
 }
 

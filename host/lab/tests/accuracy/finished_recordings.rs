@@ -26,12 +26,15 @@ const HEIGHT_PX: f64 = 420.0;
 /// Standard deviation of the keypoints' noise, pixels, and the error of hips and knees in degrees
 /// (root mean square) of `pymo`: raw, Butterworth, finished.
 const NOISE: [(f64, [f64; 3]); 4] =
-    [(0.0, [0.00, 0.57, 0.06]), (1.0, [1.19, 0.92, 0.90]), (3.0, [3.58, 2.21, 2.08]), (6.0, [7.18, 4.36, 3.64])];
-/// Gaps in seconds, and the error of knees and elbows in them of both walks: bridged by
-/// splines and Butterworth, finished.
-const GAPS: [(f64, [[f64; 2]; 2]); 2] = [(0.3, [[10.02, 6.48], [8.95, 3.98]]), (1.0, [[47.38, 9.78], [28.67, 4.75]])];
+    [(0.0, [0.00, 0.57, 0.05]), (1.0, [1.19, 0.92, 0.90]), (3.0, [3.58, 2.21, 2.08]), (6.0, [7.18, 4.36, 3.64])];
+/// Gaps in seconds, and the error of knees and elbows in them of both walks, mean over the
+/// seeds: bridged by splines and Butterworth, finished.
+const GAPS: [(f64, [[f64; 2]; 2]); 2] = [(0.3, [[9.42, 6.22], [7.73, 3.92]]), (1.0, [[46.49, 9.42], [30.35, 5.69]])];
 /// Share of the forearms and shins in gaps inside their 90 % band.
-const INSIDE_GAPS: [f64; 2] = [0.84, 0.97];
+const INSIDE_GAPS: [f64; 2] = [0.83, 0.97];
+/// Seeds of the noise of the recordings with gaps, and of the others.
+const GAPS_SEEDS: std::ops::RangeInclusive<u64> = 1..=8;
+const SEED: u64 = 3;
 /// Noise of the recordings with gaps, pixels.
 const GAPS_NOISE_PX: f64 = 2.0;
 /// Noise of the keypoints, pixels, and the share of all angles inside their 90 % band of each walk.
@@ -58,10 +61,10 @@ fn truth(walk: &str) -> Option<Poses> {
 }
 
 /// Angles between joints that are off by normal noise.
-fn measured(truth: &Poses, noise_px: f64) -> Poses {
+fn measured(truth: &Poses, noise_px: f64, seed: u64) -> Poses {
     let lengths_px = standard_lengths_m(HEIGHT_PX);
     let pose = |(frame, pose): (u64, &[Option<f64>; ANGLES])| {
-        let mut stream = Stream::new(3, frame, 0);
+        let mut stream = Stream::new(seed, frame, 0);
         let joints = joint_positions(Some([0.0; 2]), &lengths_px, pose)
             .map(|joint| joint.map(|place| place.map(|value| value + noise_px * f64::from(stream.normal()))));
         std::array::from_fn(|angle| {
@@ -135,7 +138,7 @@ fn what_was_measured_is_not_made_worse() {
     for (walk, name) in WALKS {
         let Some(truth) = truth(walk) else { return };
         for (noise_px, stated) in NOISE {
-            let raw = measured(&truth, noise_px);
+            let raw = measured(&truth, noise_px, SEED);
             let found = [raw.clone(), butterworth(&raw), finished(&raw)]
                 .map(|poses| error_deg(&poses, &truth, HIPS_AND_KNEES, |_| true));
             if name == "pymo" {
@@ -152,9 +155,32 @@ fn bands_hold_what_they_say() {
     for ((walk, name), stated) in WALKS.into_iter().zip(INSIDE) {
         let Some(truth) = truth(walk) else { return };
         let found =
-            BAND_NOISES_PX.map(|noise_px| inside_90(&tracked(&measured(&truth, noise_px)), &truth, |_, _| true));
+            BAND_NOISES_PX.map(|noise_px| inside_90(&tracked(&measured(&truth, noise_px, SEED)), &truth, |_, _| true));
         holds(&found, &stated, &format!("{name}, inside the 90 % band"));
     }
+}
+
+/// Error of knees and elbows in gaps bridged by splines and Butterworth, finished, degrees, and the
+/// share of forearms and shins inside their band there.
+fn in_gaps(truth: &Poses, gap_s: f64, seed: u64) -> [f64; 3] {
+    let length = (gap_s * RATE_HZ) as usize;
+    let step = ((gap_s + 0.9) * RATE_HZ) as usize;
+    let first = (1.2 * RATE_HZ) as usize;
+    let is_missing = |frame: usize| frame >= first && (frame - first) % step < length;
+    let mut poses = measured(truth, GAPS_NOISE_PX, seed);
+    for (frame, pose) in poses.iter_mut().enumerate().filter(|(frame, _)| is_missing(*frame)) {
+        // The last frames stay, so that lines have an end.
+        if frame + 5 < truth.len() {
+            GAPPED.iter().for_each(|angle| pose[*angle] = None);
+        }
+    }
+    let settled = (SETTLED_S * RATE_HZ) as usize;
+    let is_looked_at = |frame: usize| frame >= settled && is_missing(frame);
+    let run = tracked(&poses);
+    let found = [butterworth(&poses), run.frames.iter().map(|frame| frame.angles_rad.map(Some)).collect()]
+        .map(|poses| error_deg(&poses, truth, KNEES_AND_ELBOWS, is_looked_at));
+    let inside = inside_90(&run, truth, |frame, angle| is_looked_at(frame) && GAPPED.contains(&angle));
+    [found[0], found[1], inside]
 }
 
 #[test]
@@ -162,24 +188,14 @@ fn gaps_are_filled_from_the_persons_own_cycle() {
     for (gap_s, stated) in GAPS {
         for ((walk, name), stated) in WALKS.into_iter().zip(stated) {
             let Some(truth) = truth(walk) else { return };
-            let length = (gap_s * RATE_HZ) as usize;
-            let step = ((gap_s + 0.9) * RATE_HZ) as usize;
-            let first = (1.2 * RATE_HZ) as usize;
-            let is_missing = |frame: usize| frame >= first && (frame - first) % step < length;
-            let mut poses = measured(&truth, GAPS_NOISE_PX);
-            for (frame, pose) in poses.iter_mut().enumerate().filter(|(frame, _)| is_missing(*frame)) {
-                // The last frames stay, so that lines have an end.
-                if frame + 5 < truth.len() {
-                    GAPPED.iter().for_each(|angle| pose[*angle] = None);
-                }
+            let (mut found, mut inside) = ([0.0; 2], 0.0);
+            for seed in GAPS_SEEDS {
+                let [butterworth, finished, within] = in_gaps(&truth, gap_s, seed);
+                let share = 1.0 / GAPS_SEEDS.count() as f64;
+                found = [found[0] + share * butterworth, found[1] + share * finished];
+                inside += share * within;
             }
-            let settled = (SETTLED_S * RATE_HZ) as usize;
-            let is_looked_at = |frame: usize| frame >= settled && is_missing(frame);
-            let run = tracked(&poses);
-            let found = [butterworth(&poses), run.frames.iter().map(|frame| frame.angles_rad.map(Some)).collect()]
-                .map(|poses| error_deg(&poses, &truth, KNEES_AND_ELBOWS, is_looked_at));
             holds(&found, &stated, &format!("{name}, gaps of {gap_s} s"));
-            let inside = inside_90(&run, &truth, |frame, angle| is_looked_at(frame) && GAPPED.contains(&angle));
             println!("{name}, gaps of {gap_s} s: {inside:.2} inside the 90 % band");
             assert!((INSIDE_GAPS[0]..=INSIDE_GAPS[1]).contains(&inside), "{inside}");
         }

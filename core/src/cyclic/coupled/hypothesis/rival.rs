@@ -1,4 +1,5 @@
-//! A second hypothesis: another place in the cycle, which the grid names.
+//! A second hypothesis: another place in the cycle, which the grid names, or another speed at the
+//! start.
 //!
 //! Leader and rival see the same frames, and each learns its person. Their log-likelihoods, summed
 //! since the rival began, decide which of them leads: the sequential probability ratio test of
@@ -6,7 +7,7 @@
 //! What a rival has to learn of the person counts against it, as in a Bayes factor.
 
 use crate::cyclic::CoupledModel;
-use crate::cyclic::coupled::constants::{MIN_DIFFERENCE_CYCLES, MIN_LOG_ODDS};
+use crate::cyclic::coupled::constants::{MIN_DIFFERENCE_CYCLES, MIN_LOG_ODDS, SPEED_SPREAD};
 use crate::cyclic::coupled::hypothesis::Hypothesis;
 use crate::cyclic::coupled::phase::evidence::FrameInnovation;
 use crate::cyclic::coupled::phase::phase_grid::PhaseMode;
@@ -69,6 +70,15 @@ impl<const N: usize> Rival<N> {
     /// Begins at the grid's mode with an unknown person, as the hypothesis of that number.
     pub(crate) fn begin_at(&mut self, model: &CoupledModel<'_>, at: (&PhaseMode, u32), leader: &Hypothesis<N>) {
         self.hypothesis.begin_at(model, at, leader);
+        (self.exists, self.log_odds) = (true, 0.0);
+    }
+
+    /// Begins at the leader's place with its person, faster by so many standard deviations of the
+    /// speeds of people. The odds are even.
+    pub(crate) fn begin_faster(&mut self, leader: &Hypothesis<N>, deviations: f32) {
+        self.hypothesis = *leader;
+        self.hypothesis.velocity *= 1.0 + deviations * SPEED_SPREAD;
+        self.hypothesis.number = leader.number.wrapping_add(1);
         (self.exists, self.log_odds) = (true, 0.0);
     }
 

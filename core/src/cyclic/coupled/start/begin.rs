@@ -1,5 +1,6 @@
 //! Start of the phase-coupled filter: at the first row, or anywhere in the cycle.
 
+use crate::cyclic::coupled::ablation::{Part, is_on};
 use crate::cyclic::coupled::measurement::measured_path::MeasuredPath;
 use crate::cyclic::coupled::measurement::measurement_noise::MeasurementNoise;
 use crate::cyclic::coupled::measurement::winding::Winding;
@@ -59,7 +60,18 @@ impl<const N: usize> CoupledFilter<N> {
         self.leader.correct(model, &row.measurement, &self.winding, (&mut self.noise, false));
         self.update_angles(model, &row.measurement);
         self.start_counting(model, first);
+        if !model.winds() && is_on(Part::SecondSpeed) {
+            self.begin_second_speed();
+        }
         Ok(())
+    }
+
+    /// A person two standard deviations faster, for one cycle: one linearisation does not reach so
+    /// far, and teaches the person a wrong phase. In an even circle likelihoods distinguish none.
+    fn begin_second_speed(&mut self) {
+        self.hypotheses = 1;
+        self.rival.begin_faster(&self.leader, 2.0);
+        self.second_speed_cycles = 1.0;
     }
 
     /// A start anywhere in the cycle at any speed, with the first row as a measurement among
@@ -90,6 +102,7 @@ impl<const N: usize> CoupledFilter<N> {
         self.unwatched_frames = 0.0;
         self.searching = false;
         self.misfit_cycles = 0.0;
+        self.second_speed_cycles = 0.0;
         self.noise = MeasurementNoise::new();
         self.angles_rad = [0.0; N];
         self.turns = [0; N];
