@@ -2,7 +2,7 @@
 
 use super::end_effector::stiffness;
 use super::goal::{GoalMemory, GoalProcess, Goals};
-use super::motion::{BodyMotion, BodyParticle, BodyScene, FramePast, Proposed};
+use super::motion::{BodyMotion, BodyParticle, BodyScene, Climbed, FramePast, Proposed};
 use super::proposal::LaplaceProposal;
 use super::root::RootProcess;
 use crate::kinematics::body_information::BodyInformation;
@@ -348,12 +348,12 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
 
     // Not inlined: the solver's memory is not that of the weights.
     #[inline(never)]
-    fn refine(
+    fn climb(
         &self,
         past: &FramePast<'_, BONES, ANGLES>,
         before: &BodyParticle<BONES, ANGLES>,
-        mean_rad: &[f32; ANGLES],
-    ) -> Option<[f32; ANGLES]> {
+        mean_rad: Option<&[f32; ANGLES]>,
+    ) -> Option<Climbed<ANGLES>> {
         if self.refining_steps == 0 {
             return None;
         }
@@ -361,7 +361,16 @@ impl<P: GoalProcess<BONES>, const BONES: usize, const ANGLES: usize> BodyMotion<
         let prior = self.prior(past, before, &mut before.memory.clone(), &mut Stream::new(0, 0, 0));
         let prior = prior.density(&past.scene.skeleton);
         let density = GuidedDensity::of_some(prior, past.scene, past.blocks, usize::MAX);
-        Some(density.solve_within(&[*mean_rad], self.refining_steps, &mut SolverMemory::new()).angles_rad)
+        let mut memory = SolverMemory::new();
+        let solution = match mean_rad {
+            Some(mean_rad) => density.solve_within(&[*mean_rad], self.refining_steps, &mut memory),
+            None if self.is_any_loose(past) => {
+                let far_rad = density.far_start_rad(&prior, &mut memory);
+                density.solve_within(&[prior.previous_rad, far_rad], self.refining_steps, &mut memory)
+            }
+            None => density.solve_within(&[], self.refining_steps, &mut memory),
+        };
+        Some(Climbed { angles_rad: solution.angles_rad, log_density: solution.log_density })
     }
 }
 

@@ -229,6 +229,33 @@ impl<'a, const BONES: usize, const ANGLES: usize> FramePast<'a, BONES, ANGLES> {
     }
 }
 
+/// A pose that was climbed to.
+///
+/// ```
+/// use sinew_core::pik::example::{arm_past, arm_points, arm_scene, guided_arm, hand_goals};
+/// use sinew_core::pik::guided::GuidedMotion;
+/// use sinew_core::pik::motion::{BodyMotion, BodyParticle};
+///
+/// let (scene, goals) = (arm_scene()?, hand_goals()?);
+/// let motion = GuidedMotion { refining_steps: 3, ..guided_arm(&goals) };
+/// let cloud = arm_points(&scene, &[0.5, 0.1, 0.1, 1.1]);
+/// let before = BodyParticle::at(&scene.skeleton, [0.5, 0.1, 0.1, 1.0]);
+/// let past = arm_past(&scene, &before, cloud.blocks());
+/// // From where the pose is expected, and from the true one.
+/// let found = motion.climb(&past, &before, None).expect("the guided model climbs");
+/// let from_truth = motion.climb(&past, &before, Some(&[0.5, 0.1, 0.1, 1.1])).expect("as before");
+/// assert!((found.angles_rad[3] - 1.1).abs() < 0.05);
+/// assert!((found.log_density - from_truth.log_density).abs() < 1.0);
+/// # Ok::<(), sinew_core::error::ParameterError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Climbed<const ANGLES: usize> {
+    /// Coordinates of the pose.
+    pub angles_rad: [f32; ANGLES],
+    /// Log density there, up to a constant of the frame.
+    pub log_density: f32,
+}
+
 /// A particle moved on, not yet weighed by the points.
 ///
 /// ```
@@ -318,14 +345,15 @@ pub trait BodyMotion<const BONES: usize, const ANGLES: usize> {
         stream: &mut Stream,
     ) -> Proposed<BONES, ANGLES>;
 
-    /// The estimate, where that is not the particles' mean `mean_rad`, PIK (30). `before` is the
-    /// estimate of the frame before.
-    fn refine(
+    /// The mode that is reported in place of the particles' mean, PIK (30), and its log density;
+    /// `None` of a model that reports the mean. It climbs from `mean_rad`, or where there is none
+    /// from what is expected after `before`, the pose of the frame before.
+    fn climb(
         &self,
         past: &FramePast<'_, BONES, ANGLES>,
         before: &BodyParticle<BONES, ANGLES>,
-        mean_rad: &[f32; ANGLES],
-    ) -> Option<[f32; ANGLES]> {
+        mean_rad: Option<&[f32; ANGLES]>,
+    ) -> Option<Climbed<ANGLES>> {
         let _ = (past, before, mean_rad);
         None
     }

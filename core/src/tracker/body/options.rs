@@ -2,6 +2,7 @@
 
 use super::alignment::RootAlignment;
 use super::pace::SpeedScaledNoise;
+use super::rival::RivalOptions;
 use crate::error::{ParameterError, Rule};
 
 /// Options of the filter itself.
@@ -42,6 +43,9 @@ pub struct BodyOptions {
     /// Part of the deadband that no number of particles reduces, metres. With both zero each
     /// frame's mean is reported.
     pub jitter_std_m: f32,
+    /// When a body with exchanged legs takes the place of the estimate; `None` never. Motion models
+    /// that do not climb ([`BodyMotion::climb`](crate::pik::motion::BodyMotion::climb)) have none.
+    pub rival: Option<RivalOptions>,
     /// How the noise of a limb follows its pace; `None` leaves every limb the motion model's own.
     pub pace: Option<SpeedScaledNoise>,
     /// Share of the velocity's last change that goes on, in [0, 1]: motion models are given a
@@ -56,6 +60,7 @@ pub const DEFAULT_BODY_OPTIONS: BodyOptions = BodyOptions {
     alignment: None,
     jitter_std_errors: 0.0,
     jitter_std_m: 0.0,
+    rival: None,
     pace: None,
     acceleration_share: 0.0,
 };
@@ -79,6 +84,7 @@ impl BodyOptions {
             }
         }
         self.alignment.map(RootAlignment::checked).transpose()?;
+        self.rival.map(RivalOptions::checked).transpose()?;
         self.pace.map(SpeedScaledNoise::checked).transpose()?;
         Ok(())
     }

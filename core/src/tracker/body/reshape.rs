@@ -22,6 +22,9 @@ where
     pub fn reshape(&mut self, skeleton: &Skeleton<BONES, ANGLES>) {
         self.particles.as_mut().iter_mut().for_each(|particle| particle.reshape(skeleton));
         self.before.reshape(skeleton);
+        if let Some(rival) = &mut self.rival {
+            rival.pose.reshape(skeleton);
+        }
         self.deadband.reported.reshape(skeleton);
     }
 }

@@ -1,7 +1,8 @@
 //! A body tracker's state as it is saved.
 
+use super::rival::Rival;
 use super::state::BodyTracker;
-use super::velocity::Velocity;
+use super::velocity::{EstimateVelocity, Velocity};
 use crate::math::Vec3;
 use crate::pik::motion::BodyParticle;
 use crate::saved_state::{SavedState, StateVisitor};
@@ -33,6 +34,14 @@ impl<const BONES: usize, const ANGLES: usize> SavedState for Velocity<BONES, ANG
     }
 }
 
+impl<const BONES: usize, const ANGLES: usize> SavedState for EstimateVelocity<BONES, ANGLES> {
+    fn visit(&mut self, visitor: &mut impl StateVisitor) {
+        self.last.visit(visitor);
+        self.change.visit(visitor);
+        visitor.flag(&mut self.is_known);
+    }
+}
+
 impl<const BONES: usize, const ANGLES: usize, const N: usize, S> SavedState for BodyTracker<BONES, ANGLES, N, S>
 where
     S: AsMut<[BodyParticle<BONES, ANGLES>]>,
@@ -60,9 +69,16 @@ where
         self.before.visit(visitor);
         self.deadband.reported.visit(visitor);
         places(&mut self.deadband.off_m, visitor);
-        self.velocity.last.visit(visitor);
-        self.velocity.change.visit(visitor);
-        visitor.flag(&mut self.velocity.is_known);
+        self.velocity.visit(visitor);
+        let mut is_rivalled = self.rival.is_some();
+        visitor.flag(&mut is_rivalled);
+        // Without a rival the same numbers are written, so that every state is as long.
+        let blank = Rival { pose: self.before, velocity: self.velocity, log_weight: 0.0 };
+        let mut rival = self.rival.unwrap_or(blank);
+        rival.pose.visit(visitor);
+        rival.velocity.visit(visitor);
+        visitor.real(&mut rival.log_weight, &NUMBER);
+        self.rival = is_rivalled.then_some(rival);
         visitor.reals(&mut self.noise.shares, &NUMBER);
         for is_unseen in &mut self.noise.is_unseen {
             visitor.flag(is_unseen);

@@ -3,6 +3,7 @@
 use super::deadband::Deadband;
 use super::options::BodyOptions;
 use super::pace::LimbNoise;
+use super::rival::Rival;
 use super::velocity::EstimateVelocity;
 use crate::error::{ParameterError, Rule};
 use crate::math::Vec3;
@@ -48,6 +49,7 @@ pub struct BodyTracker<const BONES: usize, const ANGLES: usize, const N: usize, 
     pub(super) deadband: Deadband<BONES, ANGLES>,
     pub(super) noise: LimbNoise,
     pub(super) velocity: EstimateVelocity<BONES, ANGLES>,
+    pub(super) rival: Option<Rival<BONES, ANGLES>>,
     pub(super) seed: u64,
     pub(super) frame: u64,
 }
@@ -89,6 +91,7 @@ where
             deadband: Deadband::new(*first),
             noise: LimbNoise::FULL,
             velocity: EstimateVelocity::REST,
+            rival: None,
             seed,
             frame: 0,
         })

@@ -126,14 +126,18 @@ where
         if weighed_limbs.count() > 1 {
             self.join_groups(scene);
         }
-        if let Some(refined_rad) = motion.refine(past, &self.before, &angles_rad) {
-            angles_rad = refined_rad;
+        let mut rival_rad = None;
+        if let Some(climbed) = motion.climb(past, &self.before, Some(&angles_rad)) {
+            if dt_s > MIN_DT_S && !blocks.is_empty() {
+                rival_rad = self.judge_rival(motion, past, limbs, &climbed);
+            }
+            angles_rad = rival_rad.unwrap_or(climbed.angles_rad);
             standard_error_m = standard_error_m.map(|error_m| REFINED_ERROR_SHARE * error_m);
         }
         let posture = scene.posture(&angles_rad);
         let mean = BodyParticle { angles_rad, ends_m: posture.ends, ..self.before };
         let observed = observed(&scene.surface(&posture), limbs, blocks);
-        if dt_s > MIN_DT_S {
+        if dt_s > MIN_DT_S && rival_rad.is_none() {
             self.velocity.follow(&self.before, &mean, dt_s);
         }
         if let Some(pace) = &self.options.pace {

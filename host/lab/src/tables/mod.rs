@@ -132,7 +132,7 @@ pub const TABLES: [Table; 22] = [
     },
     Table {
         name: "body-runners",
-        page: "measurements_body.md",
+        page: "measurements_runners.md",
         cost: Cost::Long,
         recordings: Some("mocap"),
         rows: runners::runners,

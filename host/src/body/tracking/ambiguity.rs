@@ -39,11 +39,39 @@ pub fn elsewhere_share<const BONES: usize, const ANGLES: usize>(
 ) -> [f32; BONES] {
     let total: f32 = weights.iter().sum();
     std::array::from_fn(|bone| {
-        let is_elsewhere = |end_m: Vec3| (end_m - ends_m[bone]).norm_squared() > LOST_JOINT_M * LOST_JOINT_M;
+        let is_elsewhere = |end_m: Vec3| is_lost(&end_m, &ends_m[bone]);
         let weighed = particles.iter().zip(weights);
         let there = weighed.filter(|(particle, _)| is_elsewhere(particle.ends_m[bone]));
         // A sum of no numbers would be -0.
         let share = there.fold(0.0, |sum, (_, weight)| sum + weight) / total;
         if share.is_finite() { share.min(1.0) } else { 1.0 }
     })
+}
+
+/// `shares` where one more hypothesis, with its bones' ends at `rival_m`, has so many times the
+/// weight of all others together.
+///
+/// ```
+/// use sinew::body::tracking::ambiguity::with_rival;
+/// use sinew_core::math::Vec3;
+///
+/// let ends_m = [Vec3::zeros(); 2];
+/// let rival_m = [Vec3::new(0.3, 0.0, 0.0), Vec3::zeros()];
+/// assert_eq!(with_rival(&[0.0, 0.5], (&rival_m, 1.0), &ends_m), [0.5, 0.25]);
+/// ```
+#[must_use]
+pub fn with_rival<const BONES: usize>(
+    shares: &[f32; BONES],
+    (rival_m, times): (&[Vec3; BONES], f32),
+    ends_m: &[Vec3; BONES],
+) -> [f32; BONES] {
+    std::array::from_fn(|bone| {
+        let of_rival = if is_lost(&rival_m[bone], &ends_m[bone]) { times } else { 0.0 };
+        (shares[bone] + of_rival) / (1.0 + times)
+    })
+}
+
+/// Whether a joint is lost that is here where another has it there.
+fn is_lost(here_m: &Vec3, there_m: &Vec3) -> bool {
+    (here_m - there_m).norm_squared() > LOST_JOINT_M * LOST_JOINT_M
 }

@@ -3,7 +3,7 @@
 //! Every particle draws from its own stream and results are stored by index, so the bits do not
 //! depend on the threads.
 
-use super::ambiguity::elsewhere_share;
+use super::ambiguity::{elsewhere_share, with_rival};
 use super::by_joint::ByJoint;
 use super::end_effectors::{CARRIED, END_EFFECTORS, JOINTS, MAX_BODY_PARTICLES};
 use super::model_kind::BodyModelKind;
@@ -169,7 +169,13 @@ impl<const BONES: usize, const ANGLES: usize> SizedFilter<BONES, ANGLES> {
 
     /// Share of the weight that puts each bone's end elsewhere than `ends_m`.
     pub fn ambiguous(&self, ends_m: &[Vec3; BONES]) -> [f32; BONES] {
-        elsewhere_share(self.particles(), self.weights(), ends_m)
+        let shares = elsewhere_share(self.particles(), self.weights(), ends_m);
+        match &self.tracker {
+            AnyTracker::Particles(tracker) => tracker.rival().map_or(shares, |(rival, log_weight)| {
+                with_rival(&shares, (&rival.ends_m, sinew_core::math::exp(log_weight)), ends_m)
+            }),
+            AnyTracker::Modes(_) => shares,
+        }
     }
 
     /// The core's tracker, whose state is saved.

@@ -13,7 +13,7 @@ use sinew_core::pik::processes::extrapolation::LinearGoals;
 use sinew_core::pik::root::RootProcess;
 use sinew_core::saved_state::{SavedState, StateKind, restore};
 use sinew_core::tracker::body::{
-    BodyFrame, BodyOptions, BodyTracker, DEFAULT_BODY_OPTIONS, RootAlignment, SpeedScaledNoise,
+    BodyFrame, BodyOptions, BodyTracker, DEFAULT_BODY_OPTIONS, RivalOptions, RootAlignment, SpeedScaledNoise,
 };
 
 /// An arm whose root is held, a rod whose root is free, and the saved state of each.
@@ -48,7 +48,10 @@ fn options(numbers: &mut Numbers<'_>) -> BodyOptions {
         &mut pace.unseen_growth_s,
         &mut pace.max_scale_unseen,
     ]);
+    let mut rival = RivalOptions { evidence_share: 0.2, switch_cost: 10.0 };
+    numbers.change(&mut [&mut rival.evidence_share, &mut rival.switch_cost]);
     let mut options = BodyOptions {
+        rival: numbers.flag().then_some(rival),
         jitter_std_errors: 1.0,
         jitter_std_m: 0.005,
         pace: numbers.flag().then_some(pace),

@@ -1,36 +1,14 @@
 //! Where rivals of the leading mode begin: limbs of a pair exchanged, the pelvis turned.
 
+use super::super::exchange::{MAX_PAIRS, exchange, pairs};
 use super::state::BodyMode;
-use crate::kinematics::forward::posture;
-use crate::math::Vec3;
 use crate::skeleton::tree::{FREE_ROOT_COORDINATES, SHIFTS};
 use crate::skeleton::{Limbs, Skeleton};
 use heapless::Vec;
 
-/// Pairs of limbs that are exchanged: arms and legs.
-const MAX_PAIRS: usize = 2;
 /// Rivals that begin in a frame at most: each pair exchanged, both, and either turn of the pelvis
 /// with the last pair as it is and exchanged.
 pub(super) const MAX_RIVALS: usize = MAX_PAIRS + 1 + 4;
-
-/// Groups of limbs that have the same joints, two by two.
-pub(super) fn pairs<const BONES: usize, const ANGLES: usize>(
-    skeleton: &Skeleton<BONES, ANGLES>,
-    limbs: &Limbs<BONES>,
-) -> Vec<[usize; 2], MAX_PAIRS> {
-    let joints = |group: usize| {
-        let bones = skeleton.bones().iter().enumerate().filter(move |(bone, _)| limbs.group(*bone) == group);
-        bones.map(|(_, bone)| bone.joint.angle_count())
-    };
-    let mut pairs = Vec::new();
-    for first in 1..limbs.count() {
-        if let Some(second) = (first + 1..limbs.count()).find(|&second| joints(first).eq(joints(second))) {
-            // A pair beyond the capacity is not exchanged.
-            let _ = pairs.push([first, second]);
-        }
-    }
-    pairs
-}
 
 /// The rivals of `leader`; where `turn_rad` is zero, none with a turned pelvis.
 pub(super) fn rivals<const BONES: usize, const ANGLES: usize>(
@@ -64,26 +42,13 @@ pub(super) fn rivals<const BONES: usize, const ANGLES: usize>(
 
 /// The limbs of a pair exchanged as in a mirror, with their velocities.
 fn exchanged<const BONES: usize, const ANGLES: usize>(
-    (skeleton, limbs): (&Skeleton<BONES, ANGLES>, &Limbs<BONES>),
+    body: (&Skeleton<BONES, ANGLES>, &Limbs<BONES>),
     mode: &BodyMode<BONES, ANGLES>,
-    [left, right]: [usize; 2],
+    pair: [usize; 2],
 ) -> BodyMode<BONES, ANGLES> {
     let mut other = *mode;
-    let velocities = [&mut other.velocity.last, &mut other.velocity.change];
-    let angles = |group| (0..ANGLES).filter(move |&angle| limbs.group(skeleton.bone_of_angle(angle)) == group);
-    let bones = |group| (0..BONES).filter(move |&bone| limbs.group(bone) == group);
-    for velocity in velocities {
-        for (l, r) in angles(left).zip(angles(right)) {
-            velocity.angles_per_s.swap(l, r);
-        }
-        for (l, r) in bones(left).zip(bones(right)) {
-            velocity.ends_m_per_s.swap(l, r);
-        }
-    }
-    for (l, r) in angles(left).zip(angles(right)) {
-        other.pose.angles_rad.swap(l, r);
-    }
-    placed(skeleton, other)
+    exchange(body, &mut other.pose, &mut other.velocity, pair);
+    other
 }
 
 /// The root turned about its first axis.
@@ -96,17 +61,9 @@ fn turned<const BONES: usize, const ANGLES: usize>(
     if let Some(turn) = other.pose.angles_rad.get_mut(SHIFTS) {
         *turn += turn_rad;
     }
-    placed(skeleton, other)
-}
-
-/// Inside the limits, with the ends of its bones.
-fn placed<const BONES: usize, const ANGLES: usize>(
-    skeleton: &Skeleton<BONES, ANGLES>,
-    mut mode: BodyMode<BONES, ANGLES>,
-) -> BodyMode<BONES, ANGLES> {
-    mode.pose.angles_rad = skeleton.clamp(mode.pose.angles_rad);
-    mode.pose.ends_m = posture(skeleton, &Vec3::zeros(), &mode.pose.angles_rad).ends;
-    mode
+    other.pose.angles_rad = skeleton.clamp(other.pose.angles_rad);
+    other.pose.reshape(skeleton);
+    other
 }
 
 #[cfg(test)]
@@ -114,10 +71,10 @@ mod tests {
     use super::super::options::DEFAULT_MODE_OPTIONS;
     use super::super::state::ModeTracker;
     use super::*;
+    use crate::math::Vec3;
     use crate::pik::motion::BodyParticle;
     use crate::skeleton::BodyMeasures;
     use crate::skeleton::full_body::{BODY_ANGLES, FOREARMS, HEAD, SHANKS, THIGHS, full_body};
-    use crate::skeleton::upper_body::upper_body;
 
     #[test]
     fn exchanged_legs_are_mirrored_with_their_velocities_and_the_rest_stays() {
@@ -143,11 +100,5 @@ mod tests {
         assert_eq!(other.velocity.last.ends_m_per_s[SHANKS[1]], Vec3::z());
         assert_eq!(other.pose.ends_m[HEAD], mode.pose.ends_m[HEAD]);
         assert_eq!(exchanged((&skeleton, &limbs), &other, legs), mode, "twice is not at all");
-    }
-
-    #[test]
-    fn an_upper_body_has_one_pair() {
-        let skeleton = upper_body(&BodyMeasures::of_height(1.75).unwrap()).unwrap();
-        assert_eq!(pairs(&skeleton, &Limbs::of(&skeleton)).len(), 1);
     }
 }

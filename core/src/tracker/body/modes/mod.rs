@@ -17,6 +17,7 @@ mod step;
 mod tests;
 
 pub use options::{DEFAULT_MODE_OPTIONS, MAX_MODES, ModeOptions};
+pub(super) use select::is_alike;
 pub use single::SingleModeTracker;
 pub use state::{BodyMode, ModeTracker};
 pub use step::ModeAdvance;

@@ -9,9 +9,7 @@ impl<const BONES: usize, const ANGLES: usize> SavedState for BodyMode<BONES, ANG
     /// A drawn limb is left out: no mode has one between frames.
     fn visit(&mut self, visitor: &mut impl StateVisitor) {
         self.pose.visit(visitor);
-        self.velocity.last.visit(visitor);
-        self.velocity.change.visit(visitor);
-        visitor.flag(&mut self.velocity.is_known);
+        self.velocity.visit(visitor);
         visitor.reals(&mut self.spread_m, &NUMBER);
         visitor.reals(core::slice::from_mut(&mut self.log_weight), &NUMBER);
         visitor.reals(core::slice::from_mut(&mut self.log_density), &NUMBER);

@@ -29,7 +29,8 @@ pub(super) fn select<const BONES: usize, const ANGLES: usize>(
     let _ = kept.push(BodyMode { log_weight: 0.0, is_rival: false, ..*leader });
     let most = if leader.is_rival { -options.switch_cost } else { 0.0 };
     while kept.len() < options.max_modes {
-        let is_new = |mode: &&BodyMode<BONES, ANGLES>| kept.iter().all(|other| !is_alike(mode, other));
+        let is_new =
+            |mode: &&BodyMode<BONES, ANGLES>| kept.iter().all(|other| !is_alike(&mode.pose.ends_m, &other.pose.ends_m));
         let Some(next) = heaviest(candidates.iter().filter(is_new)) else { break };
         let log_weight = min(next.log_weight - leader.log_weight, most);
         if !(log_weight >= -PRUNED_COSTS * options.switch_cost) {
@@ -49,12 +50,10 @@ fn heaviest<'m, const BONES: usize, const ANGLES: usize>(
     })
 }
 
-fn is_alike<const BONES: usize, const ANGLES: usize>(
-    one: &BodyMode<BONES, ANGLES>,
-    other: &BodyMode<BONES, ANGLES>,
-) -> bool {
+/// Whether two poses whose bones end there are one explanation.
+pub(in super::super) fn is_alike(one_m: &[Vec3], other_m: &[Vec3]) -> bool {
     let mut farthest_m2 = 0.0;
-    for (one_m, other_m) in one.pose.ends_m.iter().zip(&other.pose.ends_m) {
+    for (one_m, other_m) in one_m.iter().zip(other_m) {
         let off_m: Vec3 = one_m - other_m;
         farthest_m2 = max(farthest_m2, off_m.dot(&off_m));
     }

@@ -1,6 +1,7 @@
 //! The tracker as a whole, on a body that waves before a camera.
 
 mod accuracy;
+mod rival;
 mod state;
 mod unseen;
 mod weighing;
@@ -139,6 +140,7 @@ const OPTIONS: BodyOptions = BodyOptions {
     }),
     jitter_std_errors: 0.0,
     jitter_std_m: 0.0,
+    rival: None,
     pace: None,
     acceleration_share: 0.0,
 };
