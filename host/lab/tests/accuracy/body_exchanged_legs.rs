@@ -32,10 +32,12 @@ const RIGHT: [(f32, RangeInclusive<f64>); 2] = [(20.0, 0.9..=0.99), (1.0e6, 0.8.
 /// Whether knees and ankles are nearer to their own places than to those of the other side.
 fn sides_are_right(ends_m: &[Vec3; BODY_BONES], truth_m: &BodyJoints) -> bool {
     let off_m = |bone: usize, place: usize| truth_m[place].map_or(0.0, |truth_m| (ends_m[bone] - truth_m).norm());
-    let sum_m = |of: fn(&dyn Fn(usize, usize) -> f32, [usize; 2]) -> f32| {
-        [THIGHS, SHANKS].into_iter().map(|pair| of(&off_m, pair)).sum::<f32>()
-    };
-    sum_m(|off_m, [l, r]| off_m(l, l) + off_m(r, r)) < sum_m(|off_m, [l, r]| off_m(l, r) + off_m(r, l))
+    let (mut own_m, mut other_m) = (0.0, 0.0);
+    for [left, right] in [THIGHS, SHANKS] {
+        own_m += off_m(left, left) + off_m(right, right);
+        other_m += off_m(left, right) + off_m(right, left);
+    }
+    own_m < other_m
 }
 
 /// Whether the sides are right in the tenth frame after `start`, from the true pose with exchanged
