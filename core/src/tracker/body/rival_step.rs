@@ -5,6 +5,7 @@ use super::exchange::{exchange, pairs};
 use super::modes::is_alike;
 use super::rival::Rival;
 use super::state::BodyTracker;
+use super::step::MIN_DT_S;
 use super::velocity::EstimateVelocity;
 use crate::pik::motion::{BodyMotion, BodyParticle, Climbed, FramePast};
 use crate::skeleton::Limbs;
@@ -22,13 +23,31 @@ where
         self.rival.as_ref().map(|rival| (&rival.pose, rival.log_weight))
     }
 
+    /// The pose that is reported in place of the particles' mean, and whether it is the rival's;
+    /// the tracker's velocity is the rival's then. `None` of a model that reports the mean.
+    pub(super) fn lead<M: BodyMotion<BONES, ANGLES>>(
+        &mut self,
+        motion: &M,
+        past: &FramePast<'_, BONES, ANGLES>,
+        limbs: &Limbs<BONES>,
+        mean_rad: &[f32; ANGLES],
+    ) -> Option<([f32; ANGLES], bool)> {
+        let climbed = motion.climb(past, &self.before, Some(mean_rad))?;
+        if past.blocks.is_empty() || !(past.dt_s > MIN_DT_S) {
+            // Its past would have a gap.
+            self.rival = None;
+            return Some((climbed.angles_rad, false));
+        }
+        let rival_rad = self.judge_rival(motion, past, limbs, &climbed);
+        Some(rival_rad.map_or((climbed.angles_rad, false), |rival_rad| (rival_rad, true)))
+    }
+
     /// Follows the rival beside `leader`, what the particles' mean climbed to. One that has gained
     /// more than it cost to begin leads (a cumulative sum test, Page 1954): all particles are put
-    /// at its pose, and the leader becomes the rival. Its pose is returned then, and the tracker's
-    /// velocity is its own.
+    /// at its pose, which is returned, and the leader becomes the rival.
     // Not inlined: the solver's memory is not that of the weights.
     #[inline(never)]
-    pub(super) fn judge_rival<M: BodyMotion<BONES, ANGLES>>(
+    fn judge_rival<M: BodyMotion<BONES, ANGLES>>(
         &mut self,
         motion: &M,
         past: &FramePast<'_, BONES, ANGLES>,

@@ -18,7 +18,7 @@ const RESAMPLING_STREAM: u32 = u32::MAX;
 const LIMB_STREAM: u32 = u32::MAX - 1;
 /// Shortest time between two frames, seconds: it still lets particles differ, and says nothing of
 /// their velocity. Chosen: no camera is as fast.
-const MIN_DT_S: f32 = 1.0e-4;
+pub(super) const MIN_DT_S: f32 = 1.0e-4;
 /// Longest time between two frames, seconds. Chosen: the pose is unknown after it.
 const MAX_DT_S: f32 = 10.0;
 /// Share of the mean's standard error that is left in a refined pose. Chosen: the reported pose
@@ -126,18 +126,15 @@ where
         if weighed_limbs.count() > 1 {
             self.join_groups(scene);
         }
-        let mut rival_rad = None;
-        if let Some(climbed) = motion.climb(past, &self.before, Some(&angles_rad)) {
-            if dt_s > MIN_DT_S && !blocks.is_empty() {
-                rival_rad = self.judge_rival(motion, past, limbs, &climbed);
-            }
-            angles_rad = rival_rad.unwrap_or(climbed.angles_rad);
+        let led = self.lead(motion, past, limbs, &angles_rad);
+        if let Some((led_rad, _)) = led {
+            angles_rad = led_rad;
             standard_error_m = standard_error_m.map(|error_m| REFINED_ERROR_SHARE * error_m);
         }
         let posture = scene.posture(&angles_rad);
         let mean = BodyParticle { angles_rad, ends_m: posture.ends, ..self.before };
         let observed = observed(&scene.surface(&posture), limbs, blocks);
-        if dt_s > MIN_DT_S && rival_rad.is_none() {
+        if dt_s > MIN_DT_S && !led.is_some_and(|(_, is_rival)| is_rival) {
             self.velocity.follow(&self.before, &mean, dt_s);
         }
         if let Some(pace) = &self.options.pace {

@@ -72,6 +72,18 @@ fn legs_that_are_right_stay_as_they_are() {
 }
 
 #[test]
+fn a_frame_without_points_gives_the_rival_up() {
+    let scene = sharp_scene();
+    let mut tracker = walker(&scene, (Some(RIVAL), true));
+    let _ = walk_on(&mut tracker, &scene, 1);
+    assert!(tracker.rival().is_some());
+    let goals = goals();
+    let motion = GuidedMotion { refining_steps: 3, ..guided(&goals) };
+    let _ = tracker.step(&scene, &motion, &BodyFrame { dt_s: DT_S, blocks: &[] });
+    assert_eq!(tracker.rival(), None);
+}
+
+#[test]
 fn a_state_with_a_rival_goes_on_as_if_nothing_had_been() {
     let scene = sharp_scene();
     let mut tracker = walker(&scene, (Some(RIVAL), true));
