@@ -2,6 +2,7 @@
 //! (`docs/body_tracker.md`). Runs in release where `../shared/data` is at hand, and says so where
 //! not.
 
+use crate::body_clips::RUNNERS;
 use crate::shared_data;
 use rayon::prelude::*;
 use sinew::body::tracking::ambiguity::LOST_JOINT_M;
@@ -12,10 +13,7 @@ use sinew_lab::body::MotionChoice;
 use sinew_lab::body::trial::SeenMotion;
 use std::path::Path;
 
-/// Runners on which nothing was chosen.
-const RUNNERS: [&str; 3] =
-    ["bandai/dataset-2_run_active_002.bvh", "bandai/dataset-2_run_exhausted_001.bvh", "cmu-expmap/train_running_3.txt"];
-/// Other motions, likewise.
+/// Other motions on which nothing was chosen.
 const OTHERS: [&str; 3] =
     ["bandai/dataset-2_wave-both-hands_normal_001.bvh@0-4", "cmu-walk/02/02_01.amc", "cmu-exercise/13_29.amc@0-3.9"];
 /// Clouds of the camera for each motion.

@@ -1,6 +1,7 @@
 //! Runners who are begun with exchanged legs six metres away (`docs/measurements_runners.md`).
 //! Runs in release where `../shared/data` is at hand, and says so where not.
 
+use crate::body_clips::RUNNERS;
 use crate::shared_data;
 use rayon::prelude::*;
 use sinew::body::tracking::{BodyFilter, BodyModelKind, BodyTuning};
@@ -13,9 +14,6 @@ use sinew_lab::body::trial::SeenMotion;
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-/// Runners on which nothing was chosen.
-const RUNNERS: [&str; 3] =
-    ["bandai/dataset-2_run_active_002.bvh", "bandai/dataset-2_run_exhausted_001.bvh", "cmu-expmap/train_running_3.txt"];
 const CLOUDS: u64 = 3;
 const SEEDS: u64 = 2;
 const PARTICLES: usize = 30;

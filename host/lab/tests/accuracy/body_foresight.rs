@@ -2,6 +2,7 @@
 //! the most that a better memory could give them. See docs/body_tracker.md, *what goals could gain
 //! at most*. Runs in release where `../shared/data` is at hand, and says so where not.
 
+use crate::body_clips::REPORT_SET;
 use crate::shared_data;
 
 use sinew::body::run::score::RunningMean;
@@ -25,15 +26,6 @@ use sinew_core::tracker::body::{BodyEstimate, BodyFrame, BodyTracker};
 use sinew_lab::body::MotionChoice;
 use sinew_lab::body::trial::SeenMotion;
 
-/// As the book's table of bodies.
-const MOTIONS: [&str; 6] = [
-    "cmu-expmap/train_directing_traffic_1.txt@0-5",
-    "bandai/dataset-2_wave-both-hands_normal_001.bvh@0-5",
-    "cmu-walk/02/02_01.amc",
-    "cmu-walk/35/35_01.amc",
-    "cmu-exercise/13_29.amc@0-3.9",
-    "cmu-exercise/13_29.amc@31.7-36",
-];
 /// Counts that are compared.
 const PARTICLES: [usize; 2] = [100, 500];
 /// Share of the shipped noise that serves both models best where the past has none.
@@ -245,14 +237,14 @@ fn with_a_past_free_of_noise_goals_are_ahead_by_a_tenth() {
     let Some(folder) = shared_data::in_long_form("mocap") else { return };
     let skeleton = folder.join("cmu-walk/35/35.asf");
     let mut errors_m = [[0.0; 2]; PARTICLES.len()];
-    for motion in MOTIONS {
+    for motion in REPORT_SET {
         let motion: MotionChoice = format!("{}/{motion}", folder.display()).parse().unwrap();
         let seen = motion.seen(Some(&skeleton), 1).unwrap();
         let foresight = Foresight::of(&seen);
         let models = [BodyModelKind::EndEffector, BodyModelKind::Angular].map(|kind| Model::new(&seen, kind));
         for (errors_m, particles) in errors_m.iter_mut().zip(PARTICLES) {
             for (sum_m, model) in errors_m.iter_mut().zip(&models) {
-                *sum_m += model.error_m(&seen, &foresight, particles) / MOTIONS.len() as f64;
+                *sum_m += model.error_m(&seen, &foresight, particles) / REPORT_SET.len() as f64;
             }
         }
     }

@@ -1,6 +1,7 @@
 //! What is lost of runners who are near, and why (`docs/measurements_runners.md`). Runs in release
 //! where `../shared/data` is at hand, and says so where not.
 
+use crate::body_clips::RUNNERS as UNSEEN;
 use crate::shared_data;
 use rayon::prelude::*;
 use sinew::body::tracking::ambiguity::LOST_JOINT_M;
@@ -50,13 +51,9 @@ fn most_joints_that_near_runners_lose_lie_in_missing_patches_and_are_flagged() {
     }
 }
 
-/// Runners on which nothing was chosen, and the share of their near frames that lose a joint where
-/// the true pose is expected.
-const REPORTED: [(&str, [f64; 2]); 3] = [
-    ("bandai/dataset-2_run_active_002.bvh", [0.12, 0.28]),
-    ("bandai/dataset-2_run_exhausted_001.bvh", [0.0, 0.03]),
-    ("cmu-expmap/train_running_3.txt", [0.0, 0.06]),
-];
+/// Shares of the near frames of each unseen runner that lose a joint where the true pose is
+/// expected.
+const LOST_FROM_THE_TRUTH: [[f64; 2]; 3] = [[0.12, 0.28], [0.0, 0.03], [0.0, 0.06]];
 
 /// Near frames that lose a joint where the frame's true pose is expected, which no tracker has.
 fn lost_from_the_truth(seen: &SeenMotion) -> Vec<bool> {
@@ -78,7 +75,7 @@ fn lost_from_the_truth(seen: &SeenMotion) -> Vec<bool> {
 #[test]
 fn some_joints_are_lost_even_where_the_true_pose_is_expected() {
     let Some(recordings) = shared_data::in_long_form("mocap") else { return };
-    for (runner, [least, most]) in REPORTED {
+    for (runner, [least, most]) in UNSEEN.into_iter().zip(LOST_FROM_THE_TRUTH) {
         let motion: MotionChoice = format!("{}/{runner}", recordings.display()).parse().unwrap();
         let of_cloud = |cloud| lost_from_the_truth(&motion.seen(None, cloud).unwrap());
         let lost: Vec<bool> = (1..=SEEDS.clouds).into_par_iter().flat_map_iter(of_cloud).collect();
@@ -94,7 +91,7 @@ fn some_joints_are_lost_even_where_the_true_pose_is_expected() {
 fn unseen_runners_are_followed() {
     let Some(recordings) = shared_data::in_long_form("mocap") else { return };
     let (mut whole, mut near) = (Vec::new(), Vec::new());
-    for (runner, _) in REPORTED {
+    for runner in UNSEEN {
         let motion: MotionChoice = format!("{}/{runner}", recordings.display()).parse().unwrap();
         let (read, guided) = (motion.read(None).unwrap(), (BodyModelKind::Guided, PARTICLES));
         let seeds = Seeds { clouds: 3, trackers: 2 };

@@ -1,6 +1,7 @@
 //! Whether the particles' spread is that of the error (`docs/measurements_runners.md`). Runs in
 //! release where `../shared/data` is at hand, and says so where not.
 
+use crate::body_clips::{REPORT_SET, RUNNERS};
 use crate::shared_data;
 use rayon::prelude::*;
 use sinew::body::tracking::{BodyFilter, BodyModelKind, BodyTuning};
@@ -13,29 +14,8 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 
 /// The six motions of the report set, and the runners; nothing was chosen on either.
-const SETS: [(&str, &[&str], RangeInclusive<f64>); 2] = [
-    (
-        "report set",
-        &[
-            "cmu-expmap/train_directing_traffic_1.txt@0-5",
-            "bandai/dataset-2_wave-both-hands_normal_001.bvh@0-5",
-            "cmu-walk/02/02_01.amc",
-            "cmu-walk/35/35_01.amc",
-            "cmu-exercise/13_29.amc@0-3.9",
-            "cmu-exercise/13_29.amc@31.7-36",
-        ],
-        0.94..=0.98,
-    ),
-    (
-        "runners",
-        &[
-            "bandai/dataset-2_run_active_002.bvh",
-            "bandai/dataset-2_run_exhausted_001.bvh",
-            "cmu-expmap/train_running_3.txt",
-        ],
-        0.75..=0.90,
-    ),
-];
+const SETS: [(&str, &[&str], RangeInclusive<f64>); 2] =
+    [("report set", &REPORT_SET, 0.94..=0.98), ("runners", &RUNNERS, 0.75..=0.90)];
 const CLOUDS: u64 = 3;
 const PARTICLES: usize = 30;
 /// Chi-square of three degrees of freedom below which 90 % lie.

@@ -5,6 +5,7 @@ mod arm;
 mod arm_spread;
 mod body;
 mod body_ambiguity;
+mod body_clips;
 mod body_exchanged_legs;
 mod body_first_pose;
 mod body_foresight;
